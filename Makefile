@@ -1,0 +1,60 @@
+# `make` alone lists the targets. Needs Python 3.11 or newer; another one: make demo PYTHON=python3.13
+PYTHON ?= $(or $(shell command -v python3.11),python3)
+VENV   := .venv
+BIN    := $(VENV)/bin
+PIP    := $(BIN)/python -m pip install -qq --disable-pip-version-check
+
+# Each recipe says itself what the user needs to know; errors of the tools come through (pip -qq: errors only).
+.SILENT:
+.NOTPARALLEL:
+.PHONY: help demo test lint format derive check-derive bench clean
+
+help:  ## list the targets
+	grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /|/' | awk -F'|' '{printf "  make %-14s %s\n", $$1, $$2}'
+
+demo: $(VENV)/installed  ## solve two shipped problems, with pictures, into results/
+	for name in soft-return its-thesis; do \
+	    echo; echo "satsym solve $$name --plot --out results/$$name"; \
+	    $(BIN)/satsym solve $$name --plot --out results/$$name || exit $$?; \
+	done
+	echo; echo "Results and pictures:"; ls -1 results/soft-return/* results/its-thesis/* | sed 's/^/  /'
+
+test: lint check-derive  ## lint, check generated/, run all tests
+	$(BIN)/python -m pytest -n 2 --dist loadfile
+
+lint: $(VENV)/installed-dev  ## style, types, import floors
+	$(BIN)/ruff check --quiet
+	$(BIN)/ruff format --check --quiet --diff || { echo "to apply this: make format"; exit 1; }
+	$(BIN)/mypy --no-error-summary
+	PYTHONPATH=. $(BIN)/lint-imports --no-cache --no-logo > $(VENV)/lint-imports.log || { cat $(VENV)/lint-imports.log; exit 1; }
+	echo "lint: clean"
+
+format: $(VENV)/installed-dev  ## let ruff put the style right
+	$(BIN)/ruff check --quiet --fix-only
+	$(BIN)/ruff format --quiet
+
+derive: $(VENV)/installed  ## write generated/ from derivations/
+	$(BIN)/satsym derive
+
+check-derive: $(VENV)/installed  ## fail if generated/ is not what derivations/ says
+	$(BIN)/satsym derive --check
+
+bench: $(VENV)/installed-bench  ## time satsym beside its peers
+	$(BIN)/python tests/bench/run.py
+
+clean:  ## remove the environment, results and caches
+	rm -rf $(VENV) results build *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# One environment for everything, made again only when pyproject.toml changes.
+$(VENV)/installed: pyproject.toml
+	echo "Setting up $(VENV) (once) ..."
+	$(PYTHON) -m venv $(VENV)
+	$(PIP) --editable .
+	touch $@
+
+$(VENV)/installed-%: pyproject.toml
+	echo "Setting up $(VENV) with the $* tools (once) ..."
+	$(PYTHON) -m venv $(VENV)
+	$(PIP) --editable '.[$*]'
+	touch $(VENV)/installed $@

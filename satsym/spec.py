@@ -1,0 +1,135 @@
+"""What a model and a problem are made of, as plain data: no sympy, no numbers of an instance.
+
+Derivation files declare these, generated modules carry them as literals, and everything numeric reads
+them: the one description of names, units, defaults and kinds that all parts share.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, fields
+from typing import Any, Literal
+
+FORMAT = 1
+"""Version of the literal that generated modules carry as ``MODEL``."""
+
+ControlSet = Literal["free", "box", "ball"]
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A named quantity: a state, a control, a parameter, an output or a defined constant.
+
+    Parameters
+    ----------
+    symbol
+        Name used in instances, results and generated code (a Python identifier).
+    latex
+        How it is typeset.
+    unit
+        Unit of its numbers, as pint reads it; ``"1"`` where there is none.
+    meaning
+        What it is, in a few words.
+    default
+        Value where an instance gives none (parameters only).
+    kind
+        ``"real"``, or ``"angle"`` where values a turn apart mean the same place.
+    positive
+        Whether only positive values have a meaning. For a state this is its domain.
+    """
+
+    symbol: str
+    latex: str
+    unit: str = "1"
+    meaning: str = ""
+    default: float | None = None
+    kind: Literal["real", "angle"] = "real"
+    positive: bool = False
+
+    def __post_init__(self) -> None:
+        if not _NAME.match(self.symbol) or "__" in self.symbol:
+            raise ValueError(f"variable {self.symbol!r}: use a letter, then letters, digits and single underscores")
+
+
+@dataclass(frozen=True)
+class ProblemSpec:
+    """Names, units and kinds of one generated model or optimal control problem.
+
+    Attributes
+    ----------
+    name, title, source
+        Name in instances, one line for people, and the derivation file it came from.
+    states, controls, parameters
+        In the model's order; arrays and JSON objects follow it.
+    control_set
+        Kind of the control set; ``None`` for a model without a cost.
+    has_cost, has_terminal_cost, has_reference, autonomous
+        Which of the generated functions mean something.
+    invariants, position
+        Names of the conserved quantities of the uncontrolled motion, and of the components of the
+        position vector (empty where the model has none).
+    """
+
+    name: str
+    title: str
+    source: str
+    states: tuple[Variable, ...]
+    controls: tuple[Variable, ...]
+    parameters: tuple[Variable, ...]
+    control_set: ControlSet | None
+    has_cost: bool
+    has_terminal_cost: bool
+    has_reference: bool
+    autonomous: bool
+    invariants: tuple[Variable, ...] = ()
+    position: tuple[Variable, ...] = ()
+
+    @property
+    def state_names(self) -> tuple[str, ...]:
+        return names(self.states)
+
+    @property
+    def control_names(self) -> tuple[str, ...]:
+        return names(self.controls)
+
+    @property
+    def parameter_names(self) -> tuple[str, ...]:
+        return names(self.parameters)
+
+    def to_literal(self) -> dict[str, Any]:
+        """The literal that a generated module carries; what has its default value is left out of variables."""
+        return {"format": FORMAT} | {
+            f.name: tuple(map(_stated, value)) if isinstance(value := getattr(self, f.name), tuple) else value
+            for f in fields(self)
+        }
+
+    @classmethod
+    def from_literal(cls, literal: Mapping[str, Any]) -> ProblemSpec:
+        """Read the literal of a generated module.
+
+        Raises
+        ------
+        ValueError
+            If it was written in another format or has other fields.
+        """
+        stated = dict(literal)
+        if stated.pop("format", None) != FORMAT:
+            raise ValueError(f"written in another format than {FORMAT}")
+        try:
+            for key in ("states", "controls", "parameters", "invariants", "position"):
+                stated[key] = tuple(Variable(**entry) for entry in stated[key])
+            return cls(**stated)
+        except (KeyError, TypeError) as error:
+            raise ValueError(f"its MODEL has other fields than this version knows ({error})") from None
+
+
+def names(variables: Iterable[Variable]) -> tuple[str, ...]:
+    """Names of the variables, in order."""
+    return tuple(v.symbol for v in variables)
+
+
+def _stated(variable: Variable) -> dict[str, Any]:
+    """The fields of a variable that differ from their defaults."""
+    return {f.name: value for f in fields(variable) if (value := getattr(variable, f.name)) != f.default}

@@ -1,0 +1,54 @@
+"""What can come of a request: solver statuses with advice, exit codes, and the error for bad input."""
+
+from __future__ import annotations
+
+from enum import Enum, IntEnum
+
+
+class Status(str, Enum):
+    """How a solver run ended; each value carries a sentence of advice."""
+
+    CONVERGED = "converged"
+    NOT_CONVERGED = "not converged"
+    INFEASIBLE = "infeasible"
+    NO_MINIMISER = "no minimiser"
+    LEFT_DOMAIN = "left domain"
+    NON_FINITE = "non-finite"
+    TIME_LIMIT = "time limit"
+
+    @property
+    def advice(self) -> str:
+        """What the user can do about it; empty for a converged run."""
+        return _ADVICE[self]
+
+    @property
+    def answered(self) -> bool:
+        """Whether the run gave an answer (as opposed to a reason for having none)."""
+        return self is Status.CONVERGED
+
+
+_ADVICE = {
+    Status.CONVERGED: "",
+    Status.NOT_CONVERGED: "try more steps, another method, or a guess closer to the answer",
+    Status.INFEASIBLE: "give it more time, or wider bounds on the control",
+    Status.NO_MINIMISER: "put a weight on time, or fix the final time",
+    Status.LEFT_DOMAIN: "check the initial state, shorten the horizon, or widen the control bounds",
+    Status.NON_FINITE: "check the initial state and the parameters for values that divide by zero or overflow",
+    Status.TIME_LIMIT: "raise [solver] max_seconds, or use fewer steps",
+}
+
+
+class ExitCode(IntEnum):
+    """Exit codes of the command line."""
+
+    DONE = 0
+    UNFORESEEN = 1
+    USAGE = 2
+    BAD_INPUT = 3
+    NO_ANSWER = 4
+    CERTIFICATE_FAILED = 5
+    STALE = 6
+
+
+class BadInput(Exception):
+    """A file or value from the user is not usable; the message is one line: what, where, what to do."""

@@ -1,0 +1,48 @@
+"""Pieces of one-line messages: values from outside made printable and short, names that come near.
+
+Text from a file or an argument may hold line breaks, terminal escapes, right-to-left marks or a
+megabyte of anything. Nothing of it reaches a message except through here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+LIMIT = 60
+"""Characters of a foreign value that a message repeats."""
+
+
+def printable(text: str, limit: int = LIMIT) -> str:
+    """The text on one line: other than printable characters escaped, the middle of a long text left out."""
+    if len(text) > limit:
+        head = (limit - 3) * 2 // 3
+        text = text[:head] + "..." + text[len(text) - (limit - 3 - head) :]
+    return "".join(c if c.isprintable() else c.encode("unicode_escape", "backslashreplace").decode() for c in text)
+
+
+def shown(value: object) -> str:
+    """A value read from TOML, as a message repeats it: printable, short, whatever it is."""
+    if isinstance(value, str):
+        return f'"{printable(value)}"'
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int):
+        # str() of a huge int is slow, and refused by Python beyond 4300 digits
+        return str(value) if value.bit_length() < 64 else "a whole number of more than 64 bits"
+    if isinstance(value, float):
+        return repr(value).removesuffix(".0")
+    if isinstance(value, list):
+        return f"a list of {len(value)}"
+    if isinstance(value, dict):
+        return "a table"
+    return f"a {type(value).__name__}"
+
+
+def suggestion(name: str, known: Iterable[str]) -> str:
+    """What to write instead of an unknown name: the nearest known one, else what there is."""
+    known = list(known)
+    near = get_close_matches(name[:LIMIT], known, n=1)
+    if near:
+        return f'did you mean "{near[0]}"?'
+    return f"known here: {', '.join(known)}" if known else "remove it, nothing may stand here"
