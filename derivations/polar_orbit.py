@@ -1,0 +1,67 @@
+"""A satellite in the plane of its orbit, in polar coordinates, thrusting radially and tangentially.
+
+Everything is per unit mass. The reference is a circular orbit of radius sigma and angular velocity omega; it
+is an orbit only if mu = sigma^3 omega^2, which is therefore how mu is given.
+"""
+
+from sympy import Matrix, cos, sin
+
+from satsym.symbolic import Definition, Newton, Problem, Variable, symbols_of, t
+
+STATES = (
+    Variable("r", "r", "km", "distance from the centre of attraction", positive=True),
+    Variable("r_dot", r"\dot r", "km/s", "radial velocity"),
+    Variable("theta", r"\theta", "rad", "polar angle in the inertial plane", kind="angle"),
+    Variable("theta_dot", r"\dot\theta", "rad/s", "angular velocity"),
+)
+CONTROLS = (
+    Variable("u1", "u_1", "km/s**2", "radial thrust per unit mass"),
+    Variable("u2", "u_2", "km/s**2", "tangential thrust per unit mass"),
+)
+PARAMETERS = (
+    Variable("sigma", r"\sigma", "km", "radius of the reference orbit", 1.0, positive=True),
+    Variable("omega", r"\omega", "rad/s", "angular velocity of the reference orbit", 1.0, positive=True),
+    Variable("c1", "c_1", "1", "weight of the radial thrust", 1.0, positive=True),
+    Variable("c2", "c_2", "1", "weight of the tangential thrust", 1.0, positive=True),
+    Variable("k1", "k_1", "1/s**3", "terminal weight of the distance", 0.0),
+    Variable("k2", "k_2", "1/s", "terminal weight of the radial velocity", 0.0),
+    Variable("k3", "k_3", "km**2/s**3", "terminal weight of the angle", 0.0),
+    Variable("k4", "k_4", "km**2/s", "terminal weight of the angular velocity", 0.0),
+)
+r, r_dot, theta, theta_dot = symbols_of(STATES)
+u1, u2 = symbols_of(CONTROLS)
+sigma, omega, c1, c2, k1, k2, k3, k4 = symbols_of(PARAMETERS)
+
+MU = Variable("mu", r"\mu", "km**3/s**2", "gravitational parameter", positive=True)
+(mu,) = symbols_of((MU,))
+
+e_r = Matrix([cos(theta), sin(theta)])
+e_theta = Matrix([-sin(theta), cos(theta)])
+
+orbit = Newton(
+    name="polar_motion",
+    title="Motion of a satellite in polar coordinates",
+    states=STATES,
+    controls=CONTROLS,
+    parameters=PARAMETERS,
+    definitions=(Definition(MU, sigma**3 * omega**2),),
+    coordinates={r: r_dot, theta: theta_dot},
+    directions={"e_r": e_r, "e_theta": e_theta},
+    position=r * e_r,
+    forces={"gravity": -mu / r**2 * e_r, "radial thrust": u1 * e_r, "tangential thrust": u2 * e_theta},
+    reference={r: sigma, r_dot: 0, theta: omega * t, theta_dot: omega},
+)
+
+polar_orbit = Problem(
+    name="polar_orbit",
+    title="Least-effort transfer of a satellite in polar coordinates",
+    model=orbit,
+    running_cost=(c1 * u1**2 + c2 * u2**2) / 2,
+    terminal_cost=(
+        k1 * (r - sigma) ** 2 + k2 * r_dot**2 + k3 * (theta - omega * t) ** 2 + k4 * (theta_dot - omega) ** 2
+    )
+    / 2,
+    control_set="box",
+)
+
+PROBLEMS = (polar_orbit,)

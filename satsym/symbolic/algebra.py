@@ -1,0 +1,43 @@
+"""Small symbolic operations that several steps share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+import sympy as sp
+
+from satsym.symbolic.model import Model, symbols_of, t
+
+
+def total_derivative(expression: sp.Expr | sp.Matrix, rates: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr | sp.Matrix:
+    """d/dt of an expression, or entry by entry of a matrix, along a motion with the given rates: the chain rule."""
+    along = (sp.diff(expression, symbol) * rate for symbol, rate in rates.items())
+    return sum(along, sp.diff(expression, t))
+
+
+def definitions_of(model: Model) -> dict[sp.Symbol, sp.Expr]:
+    """Named constants -> their values, for substitution."""
+    return {symbols_of((d.variable,))[0]: d.value for d in model.definitions}
+
+
+def gradient(expression: sp.Expr, symbols: Iterable[sp.Symbol]) -> list[sp.Expr]:
+    """Partial derivatives, in order."""
+    return [sp.diff(expression, s) for s in symbols]
+
+
+def tidy(expression: sp.Expr, by: Sequence[sp.Symbol] = ()) -> sp.Expr:
+    """The expression as a sum over the symbols it is linear in, each with its shortest coefficient."""
+    expanded = _expand(expression)
+    collected = sp.collect(expanded, list(by), evaluate=False) if by else {sp.Integer(1): expanded}
+    parts = [factor * _shortest(coefficient) for factor, coefficient in collected.items()]
+    return sp.Add(*parts)
+
+
+def _shortest(expression: sp.Expr) -> sp.Expr:
+    candidates = [_expand(expression), sp.factor(expression), sp.together(expression)]
+    return min(candidates, key=sp.count_ops)
+
+
+def _expand(expression: sp.Expr) -> sp.Expr:
+    """Products and powers multiplied out; a logarithm of a quotient stays one, as its parts may have units."""
+    return sp.expand(expression, log=False)

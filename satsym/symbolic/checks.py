@@ -1,0 +1,115 @@
+"""Numeric confirmation of symbolic results, at random points and with 30 digits."""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Any, TypeAlias
+
+import mpmath as mp
+import sympy as sp
+
+from satsym.symbolic.control_sets import MPMATH_FUNCTIONS
+from satsym.symbolic.derivation import Check, DerivationError
+
+DIGITS = 30
+LIMIT = 1e-15
+"""Allowed relative deviation: far above what 30 digits and numeric differentiation leave, far below a mistake."""
+POINTS = 5
+
+Point: TypeAlias = dict[sp.Symbol, Any]
+
+
+def random_point(symbols: Iterable[sp.Symbol], rng: random.Random) -> Point:
+    """A generic point: numbers of size one, positive where the symbol is, and away from zero."""
+    point = {}
+    for symbol in sorted(symbols, key=lambda s: s.name):
+        size = mp.mpf(rng.uniform(0.5, 1.5))
+        point[symbol] = size if symbol.is_positive or rng.random() < 0.5 else -size
+    return point
+
+
+def points(symbols: Iterable[sp.Symbol], seed: str, count: int = POINTS) -> Iterator[Point]:
+    """Reproducible random points, drawn anew for every seed text."""
+    chosen = list(symbols)
+    rng = random.Random(seed)
+    for _ in range(count):
+        yield random_point(chosen, rng)
+
+
+def numeric(expressions: Sequence[sp.Expr]) -> Callable[[Mapping[sp.Symbol, Any]], list[Any]]:
+    """A function that evaluates the expressions at a point, in the working precision of mpmath."""
+    symbols = sorted(set().union(*(sp.sympify(e).free_symbols for e in expressions)), key=lambda s: s.name)
+    function = sp.lambdify(symbols, list(expressions), modules=[MPMATH_FUNCTIONS, "mpmath"])
+    return lambda point: function(*(point[s] for s in symbols))
+
+
+def deviation(found: Iterable[Any], expected: Iterable[Any]) -> float:
+    """Largest difference, relative to one plus the size of what was expected; NaN if any of them is."""
+    return _largest(abs(a - b) / (1 + abs(b)) for a, b in zip(found, expected, strict=True))
+
+
+def compare(
+    claim: str,
+    symbols: Iterable[sp.Symbol],
+    sides: Callable[[Point], tuple[Iterable[Any], Iterable[Any]]],
+    limit: float = LIMIT,
+) -> Check:
+    """Check two routes to the same numbers at random points.
+
+    Parameters
+    ----------
+    claim
+        Key of the sentence that says what is compared; also the seed of the points.
+    symbols
+        What the points give values to.
+    sides
+        Point -> (numbers by the derived expressions, the same numbers by the other route).
+    """
+    with mp.workdps(DIGITS):
+        errors = [deviation(*sides(point)) for point in points(symbols, claim)]
+    return Check(claim, _largest(errors), limit)
+
+
+def never_below(
+    claim: str, symbols: Iterable[sp.Symbol], margins: Callable[[Point, random.Random], Iterable[Any]]
+) -> Check:
+    """Check that margins which must not be negative are not, at random points.
+
+    Raises
+    ------
+    DerivationError
+        If a margin is not a real number, as where the root of a negative state is taken.
+    """
+    rng = random.Random(claim)
+    try:
+        with mp.workdps(DIGITS):
+            deficits = [max(-m, mp.mpf(0)) if m == m else m for p in points(symbols, claim) for m in margins(p, rng)]
+    except TypeError as error:
+        if "complex" not in str(error):  # which mpmath does not order
+            raise
+        raise DerivationError(
+            f"the check {claim!r} met complex numbers; declare the variables that have to be positive so"
+        ) from None
+    return Check(claim, _largest(deficits), LIMIT)
+
+
+def _largest(values: Iterable[Any]) -> float:
+    """The largest of some non-negative numbers; NaN if any of them is, which ``max`` alone may pass over."""
+    found = list(values)
+    return float(max(found, default=0.0)) if all(v == v for v in found) else math.nan
+
+
+def identity(claim: str, expressions: Iterable[sp.Expr]) -> Check:
+    """Check that expressions are identically zero, by simplification."""
+    remainders = [r for r in (sp.simplify(e) for e in expressions) if r != 0]
+    return Check(claim, float(len(remainders)), 0.0)
+
+
+def partial(function: Callable[[Mapping[sp.Symbol, Any]], list[Any]], point: Point, symbol: sp.Symbol) -> list[Any]:
+    """Numeric partial derivatives of a vector function by central differences in high precision."""
+    with mp.workdps(3 * DIGITS):
+        h = mp.mpf(10) ** (-DIGITS)
+        above, below = (function({**point, symbol: point[symbol] + s * h}) for s in (1, -1))
+        return [(a - b) / (2 * h) for a, b in zip(above, below, strict=True)]

@@ -1,0 +1,156 @@
+"""A derivation as data: named equations in ordered steps, each with what it follows from and its checks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import TypeAlias
+
+import sympy as sp
+
+from satsym.symbolic.model import Model, Problem
+
+
+class DerivationError(Exception):
+    """What a derivation file states cannot be derived from, or a machine check failed; one line says why."""
+
+
+@dataclass(frozen=True)
+class Equation:
+    """``lhs = rhs`` under a name that is unique within its step."""
+
+    name: str
+    lhs: sp.Expr
+    rhs: sp.Expr
+
+
+@dataclass(frozen=True)
+class Check:
+    """A measured confirmation of a step by a route other than the one that derived it.
+
+    Attributes
+    ----------
+    claim
+        Key of the sentence that says what was compared.
+    error
+        Largest deviation found, relative to the size of what was compared.
+    limit
+        Largest deviation allowed.
+    """
+
+    claim: str
+    error: float
+    limit: float
+
+    @property
+    def passed(self) -> bool:
+        """Whether the deviation is within the limit (NaN is not)."""
+        return self.error <= self.limit
+
+
+@dataclass(frozen=True)
+class Step:
+    """One move of the derivation.
+
+    Attributes
+    ----------
+    name
+        Unique within the derivation; the first half of an address.
+    rule
+        Key of the sentence that says by which rule the equations follow.
+    equations
+        What the step establishes. A step that finds nothing to say has none and is left out.
+    follows_from
+        Names of the steps, or of declared things, it uses.
+    checks
+        At least one.
+    """
+
+    name: str
+    rule: str
+    equations: tuple[Equation, ...]
+    follows_from: tuple[str, ...]
+    checks: tuple[Check, ...]
+
+
+@dataclass(frozen=True)
+class Derivation:
+    """Everything derived from a problem (or a model without a cost), in order.
+
+    ``notation`` maps the name of each symbol that occurs to its LaTeX.
+    """
+
+    model: Model
+    problem: Problem | None
+    notation: Mapping[str, str]
+    steps: tuple[Step, ...] = field(default=())
+
+    @property
+    def name(self) -> str:
+        """Name of what was derived: the first half of every address, and of the generated files."""
+        return self.problem.name if self.problem else self.model.name
+
+    @property
+    def title(self) -> str:
+        """One line for people."""
+        return self.problem.title if self.problem else self.model.title
+
+    def __contains__(self, step: str) -> bool:
+        return any(s.name == step for s in self.steps)
+
+    def step(self, name: str) -> Step:
+        """The step of that name.
+
+        Raises
+        ------
+        KeyError
+            If the derivation has no such step.
+        """
+        for step in self.steps:
+            if step.name == name:
+                return step
+        raise KeyError(f"{self.name}: no step {name!r}; it has {', '.join(s.name for s in self.steps)}")
+
+    def equation(self, address: str) -> Equation:
+        """The equation at ``step.equation`` or ``model:step.equation``.
+
+        Raises
+        ------
+        KeyError
+            If the address names another model, or nothing in this derivation.
+        """
+        model, _, rest = address.rpartition(":")
+        if model and model != self.name:
+            raise KeyError(f"{address}: this is the derivation of {self.name}")
+        step_name, _, equation_name = rest.partition(".")
+        step = self.step(step_name)
+        for equation in step.equations:
+            if equation.name == equation_name:
+                return equation
+        raise KeyError(f"{address}: the step has {', '.join(e.name for e in step.equations)}")
+
+    def rhs(self, step: str) -> sp.Matrix:
+        """Right-hand sides of a step's equations, stacked as a column."""
+        return sp.Matrix([e.rhs for e in self.step(step).equations])
+
+    def extended(self, step: Step) -> Derivation:
+        """This derivation with one more step.
+
+        Raises
+        ------
+        DerivationError
+            If the step carries no check, or one that failed.
+        """
+        if not step.checks:
+            raise DerivationError(f"{self.name}:{step.name} carries no machine check")
+        for check in step.checks:
+            if not check.passed:
+                raise DerivationError(
+                    f"{self.name}:{step.name} failed its check {check.claim!r}: "
+                    f"deviation {check.error:.2g}, allowed {check.limit:.0g}"
+                )
+        return replace(self, steps=(*self.steps, step))
+
+
+StepFunction: TypeAlias = Callable[[Derivation], Step]
+"""A pure function from what has been derived so far to the next step."""

@@ -1,0 +1,118 @@
+"""What a derivation file states: physics and a cost. Declaring derives nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+import sympy as sp
+
+from satsym.spec import ControlSet, Variable
+
+t = sp.Symbol("t", real=True)
+"""Time. In a terminal cost it stands for the final time."""
+
+
+def symbols_of(variables: Iterable[Variable]) -> tuple[sp.Symbol, ...]:
+    """Sympy symbols of declared variables: real, and positive where they are declared so."""
+    return tuple(sp.Symbol(v.symbol, real=True, positive=True if v.positive else None) for v in variables)
+
+
+@dataclass(frozen=True)
+class Definition:
+    """A constant with a name of its own, given by the parameters: ``variable = value``."""
+
+    variable: Variable
+    value: sp.Expr
+
+
+@dataclass(frozen=True, kw_only=True)
+class Model:
+    """What all models declare.
+
+    Parameters
+    ----------
+    name
+        Name of the model where it is generated without a cost.
+    title
+        One line for people.
+    states, controls, parameters
+        Declared variables; arrays everywhere follow this order.
+    definitions
+        Named constants used in the equations.
+    reference
+        State -> curve c(t, p); proved to satisfy the equations without control. May be empty.
+    """
+
+    name: str
+    title: str
+    states: tuple[Variable, ...]
+    controls: tuple[Variable, ...]
+    parameters: tuple[Variable, ...]
+    definitions: tuple[Definition, ...] = ()
+    reference: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Newton(Model):
+    """Motion of a point by Newton's law, all forces per unit mass.
+
+    Parameters
+    ----------
+    coordinates
+        Each generalised coordinate with the state that is its rate of change.
+    directions
+        Name -> unit vector (inertial components) along which vectors are resolved; the name is that of a
+        symbol such as ``e_r``. They must be orthonormal, which is checked.
+    position
+        Position vector, inertial components, in terms of the coordinates.
+    forces
+        Name -> force vector per unit mass, inertial components.
+    """
+
+    coordinates: Mapping[sp.Symbol, sp.Symbol]
+    directions: Mapping[str, sp.Matrix]
+    position: sp.Matrix
+    forces: Mapping[str, sp.Matrix]
+
+
+@dataclass(frozen=True, kw_only=True)
+class FirstOrder(Model):
+    """Equations of motion given in first-order form.
+
+    Parameters
+    ----------
+    rates
+        State -> its rate of change f(t, x, u, p).
+    """
+
+    rates: Mapping[sp.Symbol, sp.Expr]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Problem:
+    """An optimal control problem: a model, what it costs, and the kind of control set.
+
+    Parameters
+    ----------
+    name
+        Name in instances, and of the generated files.
+    title
+        One line for people.
+    model
+        The motion.
+    running_cost
+        Integrand L(t, x, u, p) (Lagrange term).
+    terminal_cost
+        S(x, t, p), taken at the final time (Mayer term).
+    control_set
+        ``"free"``, ``"box"`` (each control between its bounds) or ``"ball"`` (a bound on the norm); the
+        numbers belong to the instance.
+    """
+
+    name: str
+    title: str
+    model: Model
+    running_cost: sp.Expr
+    terminal_cost: sp.Expr = sp.Integer(0)
+    control_set: ControlSet = "free"

@@ -1,0 +1,107 @@
+"""What holds for any first-order form: given rates, the reference, conserved quantities, linearisation."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from satsym.symbolic import notation as n
+from satsym.symbolic.algebra import definitions_of, tidy, total_derivative
+from satsym.symbolic.checks import compare, identity, numeric, partial
+from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
+from satsym.symbolic.model import FirstOrder, Newton, symbols_of, t
+from satsym.symbolic.potential import potential
+
+
+def given_rates(so_far: Derivation) -> Step:
+    """The first-order form as the model states it."""
+    model = so_far.model
+    assert isinstance(model, FirstOrder)
+    states = symbols_of(model.states)
+    if set(states) != set(model.rates):
+        raise DerivationError(f"{model.name}: give one rate for each state, no more, no less")
+    equations = tuple(Equation(s.name, n.rate_of(s), sp.sympify(model.rates[s])) for s in states)
+    declared = {t, *states, *symbols_of(model.controls), *symbols_of(model.parameters), *definitions_of(model)}
+    unknown = sorted(s.name for e in equations for s in e.rhs.free_symbols - declared)
+    if unknown:
+        raise DerivationError(f"{model.name}: the rates use undeclared symbols: {', '.join(unknown)}")
+    check = identity("declared", [sp.Integer(len(unknown))])
+    return Step("first_order", "given", equations, ("rates",), (check,))
+
+
+def reference(so_far: Derivation) -> Step | None:
+    """The reference curve, proved to satisfy the equations without control."""
+    model = so_far.model
+    if not model.reference:
+        return None
+    states = symbols_of(model.states)
+    missing = [s.name for s in states if s not in model.reference]
+    if missing:
+        raise DerivationError(f"{model.name}: the reference says nothing of {', '.join(missing)}")
+    curve = {s: sp.sympify(model.reference[s]) for s in states}
+    coast = dict.fromkeys(symbols_of(model.controls), sp.Integer(0))
+    rates = so_far.rhs("first_order").xreplace(coast).xreplace(curve).xreplace(definitions_of(model))
+    proof = identity("satisfies the equations", [sp.diff(curve[s], t) - f for s, f in zip(states, rates, strict=True)])
+    if not proof.passed:
+        raise DerivationError(f"{model.name}: the reference does not satisfy the equations of motion")
+    equations = tuple(Equation(s.name, s, curve[s]) for s in states)
+    return Step("reference", "given and proved", equations, ("first_order", "definitions"), (proof,))
+
+
+def conserved(so_far: Derivation) -> Step | None:
+    """Energy and momenta that the uncontrolled motion keeps (Noether), where the forces have a potential.
+
+    A coordinate that the Lagrangian does not contain has a constant momentum; a Lagrangian without explicit
+    time has a constant energy, or Jacobi integral where the axes move.
+    """
+    model = so_far.model
+    if not isinstance(model, Newton):
+        return None
+    coordinates = model.coordinates
+    coast = dict.fromkeys(symbols_of(model.controls), sp.Integer(0))
+    height = potential(model, coast)
+    if height is None:
+        return None
+    speed = model.position.applyfunc(lambda c: total_derivative(c, coordinates))
+    kinetic = tidy(sp.simplify(speed.dot(speed) / 2))
+    lagrangian = kinetic - height
+    momenta = {q: sp.diff(lagrangian, q_dot) for q, q_dot in coordinates.items()}
+    found = []
+    if not lagrangian.has(t) and not model.position.has(t):
+        found.append(("energy", kinetic + height))
+    elif not lagrangian.has(t):
+        # in a moving frame, what the symmetry in time keeps is not the energy
+        kept = sum((p * coordinates[q] for q, p in momenta.items()), -lagrangian)
+        found.append(("jacobi_integral", tidy(sp.simplify(kept - height)) + height))
+    angles = {v.symbol for v in model.states if v.kind == "angle"}
+    cyclic = [q for q in coordinates if not lagrangian.has(q)]
+    for q in cyclic:
+        rotation = q.name in angles and len([c for c in cyclic if c.name in angles]) == 1
+        found.append(("angular_momentum" if rotation else f"momentum_{q.name}", momenta[q]))
+    if not found:
+        return None
+    rates = dict(zip(symbols_of(model.states), so_far.rhs("first_order").xreplace(coast), strict=True))
+    proof = identity("constant along the motion", [total_derivative(expression, rates) for _, expression in found])
+    equations = tuple(Equation(name, sp.Symbol(name, real=True), expression) for name, expression in found)
+    return Step("conserved", "symmetry", equations, ("position", "forces", "first_order"), (proof,))
+
+
+def linearisation(so_far: Derivation) -> Step:
+    """Jacobians A = f_x and B = f_u along any motion."""
+    model = so_far.model
+    states, controls = symbols_of(model.states), symbols_of(model.controls)
+    f = so_far.rhs("first_order")
+    equations, pairs = [], []
+    for letter, columns in (("A", states), ("B", controls)):
+        for row, state in enumerate(states):
+            for column in columns:
+                entry = tidy(sp.diff(f[row], column))
+                name = f"{letter}_{state.name}_{column.name}"
+                equations.append(Equation(name, sp.Symbol(name, real=True), entry))
+                pairs.append((row, column, entry))
+    rates, entries = numeric(list(f)), numeric([entry for *_, entry in pairs])
+    check = compare(
+        "numeric derivative",
+        f.free_symbols | {*states, *controls},
+        lambda point: (entries(point), [partial(rates, point, column)[row] for row, column, _ in pairs]),
+    )
+    return Step("linearisation", "differentiate rates", tuple(equations), ("first_order",), (check,))

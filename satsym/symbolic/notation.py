@@ -1,0 +1,128 @@
+"""Which symbols a derivation uses and how each is typeset; clashes of names are refused here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import sympy as sp
+
+from satsym.spec import Variable
+from satsym.symbolic import control_sets
+from satsym.symbolic.derivation import Derivation, DerivationError
+from satsym.symbolic.model import Model, Newton, Problem, symbols_of
+
+TIME, FINAL_TIME = sp.Symbol("t", real=True), sp.Symbol("t_f", real=True)
+HAMILTONIAN, MINIMISED = sp.Symbol("H", real=True), sp.Symbol("H_star", real=True)
+POSITION, VELOCITY, ACCELERATION, FORCE = (sp.Symbol(f"{name}_vector") for name in ("r", "v", "a", "F"))
+RUNNING_COST, TERMINAL_COST = sp.Symbol("L", real=True), sp.Symbol("S", real=True)
+ENERGY, ANGULAR_MOMENTUM = sp.Symbol("energy", real=True), sp.Symbol("angular_momentum", real=True)
+JACOBI_INTEGRAL = sp.Symbol("jacobi_integral", real=True)
+
+FIXED = {
+    TIME: "t",
+    FINAL_TIME: r"t_f",
+    HAMILTONIAN: "H",
+    MINIMISED: "H^*",
+    POSITION: r"\mathbf{r}",
+    VELOCITY: r"\mathbf{v}",
+    ACCELERATION: r"\mathbf{a}",
+    FORCE: r"\mathbf{F}",
+    RUNNING_COST: "L",
+    TERMINAL_COST: "S",
+    ENERGY: r"\mathcal{E}",
+    ANGULAR_MOMENTUM: r"\ell",
+    JACOBI_INTEGRAL: r"\mathcal{J}",
+}
+
+PYTHON_NAMES = frozenset(
+    "and as assert async await break class continue def del elif else except finally for from global if import in "
+    "is lambda nonlocal not or pass raise return try while with None True False x u p lam h i out times bounds "
+    "math np min max range len".split()
+)
+"""Names that generated code needs for itself."""
+
+
+def symbol(name: str, latex: str, notation: dict[str, str]) -> sp.Symbol:
+    """A real symbol, entered into the notation."""
+    notation[name] = latex
+    return sp.Symbol(name, real=True)
+
+
+def rate_of(state: sp.Symbol) -> sp.Symbol:
+    """The symbol for dx/dt."""
+    return sp.Symbol(f"d_{state.name}", real=True)
+
+
+def costate_of(state: sp.Symbol) -> sp.Symbol:
+    """The symbol for the costate of a state."""
+    return sp.Symbol(f"lambda_{state.name}", real=True)
+
+
+def acceleration_of(coordinate: sp.Symbol) -> sp.Symbol:
+    """The symbol for the second time derivative of a coordinate."""
+    return sp.Symbol(f"{coordinate.name}_ddot", real=True)
+
+
+def optimal(control: sp.Symbol) -> sp.Symbol:
+    """The symbol for the value of a control that minimises H."""
+    return sp.Symbol(f"{control.name}_star", real=True)
+
+
+def unconstrained(control: sp.Symbol) -> sp.Symbol:
+    """The symbol for the value of a control at which H_u vanishes."""
+    return sp.Symbol(f"{control.name}_hat", real=True)
+
+
+def initial(state: sp.Symbol) -> sp.Symbol:
+    """The symbol for the given initial value of a state."""
+    return sp.Symbol(f"{state.name}_0", real=True)
+
+
+def begin(model: Model, problem: Problem | None) -> Derivation:
+    """An empty derivation with its notation.
+
+    Raises
+    ------
+    DerivationError
+        If two things have the same name, or one has a name that generated code needs.
+    """
+    variables = [*model.states, *model.controls, *model.parameters, *(d.variable for d in model.definitions)]
+    if problem:
+        variables += control_sets.bounds(problem.control_set, model.controls)
+    _refuse_clashes(variables)
+    notation = {s.name: latex for s, latex in FIXED.items()} | {v.symbol: v.latex for v in variables}
+    latex = {v.symbol: v.latex for v in model.states}
+    for state in symbols_of(model.states):
+        own = latex[state.name]
+        notation[rate_of(state).name] = rf"\frac{{d {own}}}{{dt}}"
+        notation[initial(state).name] = rf"{{{own}}}_0"
+        if problem:
+            notation[costate_of(state).name] = rf"\lambda_{{{own}}}"
+            notation[rate_of(costate_of(state)).name] = rf"\dot\lambda_{{{own}}}"
+    for control in model.controls:
+        notation[f"{control.symbol}_star"] = rf"{control.latex}^*"
+        notation[f"{control.symbol}_hat"] = rf"\hat {control.latex}"
+    if isinstance(model, Newton):
+        for coordinate in model.coordinates:
+            notation[f"momentum_{coordinate.name}"] = rf"p_{{{latex[coordinate.name]}}}"
+            notation[acceleration_of(coordinate).name] = rf"\ddot{{{latex[coordinate.name]}}}"
+        for name in model.directions:
+            notation[name] = rf"\mathbf{{e}}_{{{_subscript(name, latex)}}}"
+            notation[f"d_{name}"] = rf"\dot{{\mathbf{{e}}}}_{{{_subscript(name, latex)}}}"
+    return Derivation(model, problem, notation)
+
+
+def _subscript(direction: str, latex: dict[str, str]) -> str:
+    """LaTeX of what a direction is named after: ``e_theta`` is along theta."""
+    name = direction.partition("_")[2] or direction
+    return latex.get(name, name)
+
+
+def _refuse_clashes(variables: Iterable[Variable]) -> None:
+    seen = {s.name for s in FIXED}
+    for variable in variables:
+        if variable.symbol in seen:
+            raise DerivationError(f"the name {variable.symbol!r} is used twice; names H, S, L, t, t_f are taken")
+        if variable.symbol in PYTHON_NAMES:
+            raise DerivationError(f"the name {variable.symbol!r} is needed by generated code; choose another")
+        seen.add(variable.symbol)
