@@ -1,0 +1,153 @@
+"""An expression graph as straight-line assignments: invariants taken out, powers made cheap, repeats shared."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from satsym.symbolic.control_sets import Clip, Shorten
+
+Assignment = tuple[sp.Symbol, sp.Expr]
+
+
+@dataclass(frozen=True)
+class Block:
+    """Assignments in an order that can be executed, and the expressions they lead to.
+
+    The symbols assigned to are internal: whoever emits the block renames them.
+    """
+
+    assignments: tuple[Assignment, ...]
+    outputs: tuple[sp.Expr, ...]
+
+    @property
+    def inputs(self) -> set[sp.Symbol]:
+        """Symbols the block reads and does not assign."""
+        read = set().union(*(e.free_symbols for _, e in self.assignments), *(e.free_symbols for e in self.outputs))
+        return read - {s for s, _ in self.assignments}
+
+
+def build(
+    outputs: Sequence[sp.Expr], definitions: Sequence[Assignment], layers: Sequence[Iterable[sp.Symbol]]
+) -> Block:
+    """Turn expressions into a block.
+
+    Parameters
+    ----------
+    outputs
+        What is computed.
+    definitions
+        Named constants that the outputs may use; those they do not use are left out.
+    layers
+        Sets of symbols, innermost invariants first. What depends only on a layer is computed by itself, so
+        that it can leave the loop, or be shared by stages that differ only in other symbols.
+    """
+    assignments: list[Assignment] = list(definitions)
+    current = [sp.sympify(e) for e in outputs]
+    inner = {s for s, _ in definitions}
+    for layer in layers:
+        inner |= set(layer)
+        extraction = _Extraction(inner, prefix=f"_layer{len(assignments)}_")
+        current = [extraction.apply(e) for e in current]
+        assignments += extraction.assignments
+        inner |= {s for s, _ in extraction.assignments}
+    cheap = _Cheapened()
+    assignments = [(s, cheap.apply(e)) for s, e in assignments]
+    current = [cheap.apply(e) for e in current]
+    assignments += cheap.assignments
+    return _ordered(*_shared(assignments, current))
+
+
+class _Extraction:
+    """Takes out the largest compound parts that use no symbol outside a set."""
+
+    def __init__(self, allowed: set[sp.Symbol], prefix: str) -> None:
+        self.allowed, self.prefix = allowed, prefix
+        self.assignments: list[Assignment] = []
+        self.known: dict[sp.Expr, sp.Symbol] = {}
+
+    def apply(self, expression: sp.Expr) -> sp.Expr:
+        if self._invariant(expression):
+            return self._take(expression)
+        if not isinstance(expression, sp.Add | sp.Mul):
+            return expression.func(*(self.apply(a) for a in expression.args)) if expression.args else expression
+        inside = [a for a in expression.args if self._invariant(a)]
+        outside = [self.apply(a) for a in expression.args if not self._invariant(a)]
+        if sum(not a.is_Number for a in inside) > 1:
+            return expression.func(self._take(expression.func(*inside)), *outside)
+        return expression.func(*(self._take(a) for a in inside), *outside)
+
+    def _invariant(self, expression: sp.Expr) -> bool:
+        return expression.free_symbols <= self.allowed
+
+    def _take(self, part: sp.Expr) -> sp.Expr:
+        if not part.args or not part.free_symbols:
+            return part
+        if part not in self.known:
+            self.known[part] = sp.Symbol(f"{self.prefix}{len(self.known)}", real=True)
+            self.assignments.append((self.known[part], part))
+        return self.known[part]
+
+
+class _Cheapened:
+    """Rewrites what is dear or awkward to print.
+
+    Powers become products, one division and one root a base; projections get names for their arguments and for
+    themselves, so that they print as one conditional.
+    """
+
+    def __init__(self) -> None:
+        self.assignments: list[Assignment] = []
+        self.known: dict[sp.Expr, sp.Symbol] = {}
+
+    def apply(self, expression: sp.Expr) -> sp.Expr:
+        if not expression.args:
+            return expression
+        args = [self.apply(a) for a in expression.args]
+        if isinstance(expression, Clip | Shorten):
+            return self._take(expression.func(*(a if a.is_Symbol else self._take(a) for a in args)))
+        if not expression.is_Pow:
+            return expression.func(*args)
+        base, exponent = args
+        if not (exponent.is_Rational and exponent.q in (1, 2)):
+            return base**exponent
+        base = base if base.is_Symbol else self._take(base)
+        if exponent.q == 2:
+            base = self._take(sp.sqrt(base))
+        if exponent < 0:
+            base = self._take(1 / base)
+        return base ** abs(exponent.p)
+
+    def _take(self, part: sp.Expr) -> sp.Expr:
+        if part.is_Number:
+            return part
+        if part not in self.known:
+            self.known[part] = sp.Symbol(f"_cheap{len(self.known)}", positive=True)
+            self.assignments.append((self.known[part], part))
+        return self.known[part]
+
+
+def _shared(assignments: list[Assignment], outputs: list[sp.Expr]) -> tuple[list[Assignment], list[sp.Expr]]:
+    """Give what occurs more than once a name."""
+    names = sp.utilities.numbered_symbols("_shared", real=True)
+    repeats, reduced = sp.cse([e for _, e in assignments] + outputs, symbols=names, order="canonical")
+    kept = [(s, e) for (s, _), e in zip(assignments, reduced, strict=False)]
+    return list(repeats) + kept, reduced[len(assignments) :]
+
+
+def _ordered(assignments: list[Assignment], outputs: list[sp.Expr]) -> Block:
+    """Only what the outputs need, each before its first use."""
+    value = dict(assignments)
+    done: dict[sp.Symbol, sp.Expr] = {}
+
+    def need(expression: sp.Expr) -> None:
+        for symbol in sorted(expression.free_symbols, key=lambda s: s.name):
+            if symbol in value and symbol not in done:
+                need(value[symbol])
+                done[symbol] = value[symbol]
+
+    for output in outputs:
+        need(output)
+    return Block(tuple(done.items()), tuple(outputs))

@@ -1,0 +1,151 @@
+"""Which functions a module has: their arguments, what they return, and the expressions behind them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import sympy as sp
+
+from satsym.spec import names
+from satsym.symbolic.control_sets import bounds
+from satsym.symbolic.derivation import Derivation
+from satsym.symbolic.model import symbols_of, t
+from satsym.symbolic.notation import costate_of
+
+ARGUMENTS = ("t", "x", "u", "lam", "p", "bounds")
+"""Names of arguments, in the order in which every function takes those it has."""
+
+
+@dataclass(frozen=True)
+class Function:
+    """One function of a generated module.
+
+    Attributes
+    ----------
+    name, summary
+        Its name, and the first line of its docstring.
+    arguments
+        Those of :data:`ARGUMENTS` it takes, in that order.
+    value
+        The expression it returns, or the matrix; a column is returned as a vector.
+    kind
+        ``"scalar"``, ``"vector"`` or ``"matrix"``.
+    hints
+        Names for the outputs, where they have any.
+    """
+
+    name: str
+    summary: str
+    arguments: tuple[str, ...]
+    value: sp.Matrix
+    kind: str
+    hints: tuple[str, ...] = ()
+
+    @property
+    def outputs(self) -> list[sp.Expr]:
+        """The expressions, row by row."""
+        return list(self.value)
+
+
+@dataclass(frozen=True)
+class Symbols:
+    """The symbols behind each argument of generated functions."""
+
+    t: sp.Symbol
+    x: tuple[sp.Symbol, ...]
+    u: tuple[sp.Symbol, ...]
+    lam: tuple[sp.Symbol, ...]
+    p: tuple[sp.Symbol, ...]
+    bounds: tuple[sp.Symbol, ...]
+
+    def of(self, argument: str) -> tuple[sp.Symbol, ...]:
+        """Symbols of an argument; time alone is not a tuple."""
+        found = getattr(self, argument)
+        return found if isinstance(found, tuple) else (found,)
+
+
+def symbols(derivation: Derivation) -> Symbols:
+    """The symbols of a derivation, argument by argument."""
+    model, problem = derivation.model, derivation.problem
+    states = symbols_of(model.states)
+    return Symbols(
+        t=t,
+        x=states,
+        u=symbols_of(model.controls),
+        lam=tuple(costate_of(s) for s in states) if problem else (),
+        p=symbols_of(model.parameters),
+        bounds=symbols_of(bounds(problem.control_set, model.controls)) if problem else (),
+    )
+
+
+def functions(derivation: Derivation) -> list[Function]:
+    """Every function that follows from a derivation, in the order in which a module has them."""
+    s = symbols(derivation)
+    n, m = len(s.x), len(s.u)
+    entries = [e.rhs for e in derivation.step("linearisation").equations]
+    found = [
+        _vector("dynamics", "Rates of change of the states, f(t, x, u).", "t x u p", derivation.rhs("first_order")),
+        _matrix("jacobian_x", "A = df/dx, row by row.", "t x u p", sp.Matrix(n, n, entries[: n * n])),
+        _matrix("jacobian_u", "B = df/du, row by row.", "t x u p", sp.Matrix(n, m, entries[n * n :])),
+    ]
+    if "reference" in derivation:
+        found.append(_vector("reference", "The reference curve c(t).", "t p", derivation.rhs("reference")))
+    if "conserved" in derivation:
+        summary = "What the motion without control keeps constant."
+        found.append(_vector("invariants", summary, "t x p", derivation.rhs("conserved")))
+    position = getattr(derivation.model, "position", None)
+    if position is not None:
+        found.append(_vector("position", "Inertial components of the position vector.", "t x p", position))
+    return found + (_cost_functions(derivation) if derivation.problem else [])
+
+
+def _cost_functions(derivation: Derivation) -> list[Function]:
+    problem = derivation.problem
+    assert problem is not None
+    n = len(derivation.model.states)
+    conditions = derivation.step("boundary_conditions").equations
+    h_u = [e.rhs for e in derivation.step("stationarity").equations if e.lhs == 0]
+    return [
+        _scalar("running_cost", "Integrand L of the cost.", "t x u p", problem.running_cost),
+        _scalar("terminal_cost", "Terminal cost S.", "t x p", problem.terminal_cost),
+        _vector(
+            "terminal_gradient",
+            "S_x: the costates at the final time where the final state is free.",
+            "t x p",
+            sp.Matrix([e.rhs for e in conditions[n : 2 * n]]),
+        ),
+        _scalar("hamiltonian", "H = L + lam' f.", "t x u lam p", derivation.equation("hamiltonian.H").rhs),
+        _vector("stationarity", "H_u.", "t x u lam p", sp.Matrix(h_u)),
+        _matrix(
+            "control_hessian",
+            "H_uu, row by row.",
+            "t x u lam p",
+            sp.Matrix(h_u).jacobian(symbols_of(derivation.model.controls)),
+        ),
+        Function(
+            "control_law",
+            "The controls that minimise H over the control set.",
+            ("t", "x", "lam", "p", "bounds"),
+            derivation.rhs("control_law"),
+            "vector",
+            names(derivation.model.controls),
+        ),
+        _vector(
+            "costate_rate",
+            "Rates of change of the costates, -H_x.",
+            "t x u lam p",
+            derivation.rhs("costate_equations"),
+        ),
+    ]
+
+
+def _scalar(name: str, summary: str, arguments: str, value: sp.Expr) -> Function:
+    return Function(name, summary, tuple(arguments.split()), sp.Matrix([value]), "scalar")
+
+
+def _vector(name: str, summary: str, arguments: str, value: sp.Matrix) -> Function:
+    return Function(name, summary, tuple(arguments.split()), value, "vector")
+
+
+def _matrix(name: str, summary: str, arguments: str, value: sp.Matrix) -> Function:
+    return Function(name, summary, tuple(arguments.split()), value, "matrix")

@@ -1,0 +1,190 @@
+"""The text of a generated module, from a derivation."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import sympy as sp
+
+from satsym.codegen import rk4
+from satsym.codegen.block import Assignment, build
+from satsym.codegen.emitter import Emitter
+from satsym.codegen.functions import Function, Symbols, functions, symbols
+from satsym.codegen.printers import BatchPrinter, ScalarPrinter
+from satsym.spec import ProblemSpec, Variable
+from satsym.symbolic.algebra import definitions_of
+from satsym.symbolic.derivation import Derivation
+
+
+def render(derivation: Derivation, source: str) -> str:
+    """Source text of the module generated from a derivation.
+
+    Parameters
+    ----------
+    derivation
+        What was derived.
+    source
+        Name of the derivation file, for the header.
+
+    Returns
+    -------
+    str
+        Straight-line Python that imports only ``math`` and ``numpy``; the same text for the same derivation,
+        always.
+    """
+    s, found = symbols(derivation), functions(derivation)
+    constants = list(definitions_of(derivation.model).items())
+    parts = [
+        _header(derivation, source),
+        _literal(spec(derivation, source)),
+        *(_scalar_form(f, s, constants) for f in found),
+        *(rk4.source(loop) for loop in _loops(derivation, s, constants)),
+        *(_batch_form(f, s, constants) for f in found),
+    ]
+    return "\n\n".join(parts)
+
+
+def spec(derivation: Derivation, source: str) -> ProblemSpec:
+    """What the module says of itself."""
+    model, problem = derivation.model, derivation.problem
+    conserved = derivation.step("conserved").equations if "conserved" in derivation else ()
+    position = getattr(model, "position", ())
+    return ProblemSpec(
+        name=derivation.name,
+        title=derivation.title,
+        source=source,
+        states=model.states,
+        controls=model.controls,
+        parameters=model.parameters,
+        control_set=problem.control_set if problem else None,
+        has_cost=problem is not None,
+        has_terminal_cost=bool(problem and problem.terminal_cost != 0),
+        has_reference="reference" in derivation,
+        autonomous=not any(e.has(symbols(derivation).t) for e in derivation.rhs("first_order")),
+        invariants=tuple(Variable(e.name, derivation.notation[e.name]) for e in conserved),
+        position=tuple(Variable(axis, axis) for axis in ("x", "y", "z")[: len(position)]),
+    )
+
+
+def _header(derivation: Derivation, source: str) -> str:
+    return f'''"""{derivation.title}.
+
+Written by satsym from {source}. Do not edit: mend that file instead, then run
+    satsym derive {source}
+"""
+
+import math
+
+import numpy as np
+'''
+
+
+def _literal(described: ProblemSpec) -> str:
+    """``MODEL``, a line for each variable."""
+    lines = []
+    for key, value in described.to_literal().items():
+        if isinstance(value, tuple) and value:
+            lines += [f"    {key!r}: (", *(f"        {entry!r}," for entry in value), "    ),"]
+        else:
+            lines.append(f"    {key!r}: {value!r},")
+    return "\n".join(["MODEL = {", *lines, "}", ""])
+
+
+def _unpack(function: Function, s: Symbols) -> list[str]:
+    """Lines that give the arguments' components their names."""
+    groups = [(a, s.of(a)) for a in function.arguments if a != "t"]
+    return [f"{rk4.unpacking(names)} = {a}" for a, names in groups if names]
+
+
+def _straight_line(
+    function: Function, s: Symbols, constants: Sequence[Assignment]
+) -> tuple[list[Assignment], list[sp.Expr]]:
+    """Assignments and outputs of a function under their final names."""
+    names = {symbol.name for a in function.arguments for symbol in s.of(a)} | {*function.arguments, "out", "np", "math"}
+    emit = Emitter(names)
+    outputs = emit.inline(build(function.outputs, constants, ()), {}, function.hints)
+    return emit.before + emit.lines, outputs
+
+
+def _scalar_form(function: Function, s: Symbols, constants: Sequence[Assignment]) -> str:
+    code = ScalarPrinter().doprint
+    assignments, outputs = _straight_line(function, s, constants)
+    results = [code(o) for o in outputs]
+    body = [*_unpack(function, s), *(f"{a} = {code(e)}" for a, e in assignments)]
+    if function.kind == "scalar":
+        body.append(f"return {results[0]}")
+    else:
+        body += ["return (", *(f"    {r}," for r in results), ")"]
+    return _function(f"{function.name}({', '.join(function.arguments)})", function.summary, body)
+
+
+def _batch_form(function: Function, s: Symbols, constants: Sequence[Assignment]) -> str:
+    code = BatchPrinter().doprint
+    assignments, outputs = _straight_line(function, s, constants)
+    rows, columns = function.value.shape
+    shape = {"scalar": "shape", "vector": f"({rows}, *shape)", "matrix": f"({rows}, {columns}, *shape)"}[function.kind]
+    sizes = [f"{a}[0]" if a in ("x", "u", "lam") else a for a in function.arguments if a not in ("p", "bounds")]
+    types = [f"*{a}" if a in ("p", "bounds") else a for a in function.arguments]
+    body = [
+        *_unpack(function, s),
+        "if out is None:",
+        f"    shape = np.broadcast_shapes({', '.join(f'np.shape({a})' for a in sizes)})",
+        f"    out = np.empty({shape}, np.result_type(float, {', '.join(types)}))",
+        *(f"{a} = {code(e)}" for a, e in assignments),
+    ]
+    for k, output in enumerate(outputs):
+        place = {"scalar": "...", "vector": str(k), "matrix": f"{k // columns}, {k % columns}"}[function.kind]
+        body.append(f"out[{place}] = {code(output)}")
+    return _function(
+        f"{function.name}_batch({', '.join(function.arguments)}, out=None)",
+        f"{function.summary} Batch form.",
+        [*body, "return out"],
+    )
+
+
+def _function(signature: str, summary: str, body: Sequence[str]) -> str:
+    return "\n".join([f"def {signature}:", f'    """{summary}"""', *(f"    {line}" for line in body), ""])
+
+
+def _loops(derivation: Derivation, s: Symbols, constants: Sequence[Assignment]) -> list[rk4.Loop]:
+    """The forward loop and, where there is a cost, the backward one."""
+    problem = derivation.problem
+    fixed = {*s.p, *(c for c, _ in constants)}
+    running = [problem.running_cost] if problem else []
+    forward = rk4.Loop(
+        name="forward",
+        summary="RK4 over the nodes from x0 at times[0]; returns the integral of the running cost."
+        if problem
+        else "RK4 over the nodes from x0 at times[0].",
+        signature="times, x0, u, u_mid, p, x, x_mid",
+        backward=False,
+        time=s.t,
+        parameters=s.p,
+        integrated=s.x,
+        start="x0",
+        nodes="x",
+        mids="x_mid",
+        given=(("u", "u_mid", s.u),),
+        rates=build([*derivation.rhs("first_order"), *running], constants, (fixed,)),
+        sums=problem is not None,
+    )
+    if not problem:
+        return [forward]
+    return [
+        forward,
+        rk4.Loop(
+            name="backward",
+            summary="RK4 over the nodes, from the costates lam_f at times[-1] back to times[0].",
+            signature="times, lam_f, x, x_mid, u, u_mid, p, lam, lam_mid",
+            backward=True,
+            time=s.t,
+            parameters=s.p,
+            integrated=s.lam,
+            start="lam_f",
+            nodes="lam",
+            mids="lam_mid",
+            given=(("x", "x_mid", s.x), ("u", "u_mid", s.u)),
+            rates=build(list(derivation.rhs("costate_equations")), constants, (fixed, {*s.x, *s.u, s.t})),
+            sums=False,
+        ),
+    ]

@@ -1,0 +1,118 @@
+"""Expressions as source text: floats and ``math`` for the scalar form, arrays and ``np`` for the batch form."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import sympy as sp
+from sympy.printing.precedence import PRECEDENCE
+from sympy.printing.pycode import PythonCodePrinter
+
+from satsym.symbolic.derivation import DerivationError
+
+LARGEST_PRODUCT = 4
+"""Integer powers up to this one are printed as products, which are several times faster."""
+
+FUNCTIONS = ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "Abs")
+"""Functions that derivations may use, by their sympy names."""
+
+
+class _Printer(PythonCodePrinter):
+    """What both forms share. Numbers are floats: an int literal makes float code slower."""
+
+    module: str
+    functions: Mapping[str, str]
+
+    def __init__(self) -> None:
+        super().__init__({"fully_qualified_modules": False, "contract": False})
+
+    def _as_ordered_terms(self, expr: Any, order: Any = None) -> list[Any]:
+        """A term with a plus sign first where there is one: a leading minus is one operation more."""
+        return sorted(super()._as_ordered_terms(expr, order), key=lambda term: term.could_extract_minus_sign())
+
+    def parenthesize(self, item: Any, level: int, strict: bool = False) -> str:
+        """Brackets where needed, but none around a fraction that prints as one literal."""
+        return self._print(item) if _literal(item) else super().parenthesize(item, level, strict)
+
+    def _print_Integer(self, expr: Any) -> str:
+        return repr(float(expr))
+
+    def _print_Rational(self, expr: Any) -> str:
+        return repr(float(expr)) if _exact(expr) else f"{float(expr.p)!r}/{float(expr.q)!r}"
+
+    _print_Half = _print_NegativeOne = _print_One = _print_Zero = _print_Rational
+
+    def _print_Float(self, expr: Any) -> str:
+        return repr(float(expr))
+
+    def _print_Pi(self, expr: Any) -> str:
+        return f"{self.module}.pi"
+
+    def _print_Pow(self, expr: Any, rational: bool = False) -> str:
+        base, exponent = expr.as_base_exp()
+        if exponent == sp.S.Half:
+            return f"{self.module}.sqrt({self._print(base)})"
+        text = self._factor(base)
+        if exponent == -1:
+            return f"1.0/{text}"
+        if exponent.is_Integer and 1 < exponent <= LARGEST_PRODUCT and base.is_Symbol:
+            return "*".join([text] * int(exponent))
+        return f"{text}**{self._factor(exponent)}"
+
+    def _print_Function(self, expr: Any) -> str:
+        name = expr.func.__name__
+        if name not in self.functions:
+            raise DerivationError(f"generated code has no function {name}; it has {', '.join(sorted(self.functions))}")
+        return f"{self.module}.{self.functions[name]}({', '.join(self._print(a) for a in expr.args)})"
+
+    _print_sin = _print_cos = _print_tan = _print_asin = _print_acos = _print_atan = _print_atan2 = _print_Function
+    _print_sinh = _print_cosh = _print_tanh = _print_exp = _print_log = _print_Abs = _print_Function
+
+    def _factor(self, expr: Any) -> str:
+        return self.parenthesize(expr, PRECEDENCE["Atom"], strict=True)
+
+
+class ScalarPrinter(_Printer):
+    """Floats and the ``math`` module; what numba compiles as well."""
+
+    module = "math"
+    functions = {name: name for name in FUNCTIONS} | {"Abs": "fabs"}
+
+    def _print_Clip(self, expr: Any) -> str:
+        value, lower, upper = (self._print(a) for a in expr.args)
+        return f"{lower} if {value} < {lower} else {upper} if {value} > {upper} else {value}"
+
+    def _print_Shorten(self, expr: Any) -> str:
+        norm_squared, limit = (self._print(a) for a in expr.args)
+        return f"1.0 if {norm_squared} <= {limit}*{limit} else {limit}/math.sqrt({norm_squared})"
+
+
+class BatchPrinter(_Printer):
+    """Arrays and ``np``, real or complex."""
+
+    module = "np"
+    functions = {name: name for name in FUNCTIONS} | {
+        "Abs": "abs",
+        "asin": "arcsin",
+        "acos": "arccos",
+        "atan": "arctan",
+        "atan2": "arctan2",
+    }
+
+    def _print_Clip(self, expr: Any) -> str:
+        value, lower, upper = (self._print(a) for a in expr.args)
+        return f"np.minimum(np.maximum({value}, {lower}), {upper})"
+
+    def _print_Shorten(self, expr: Any) -> str:
+        norm_squared, limit = (self._print(a) for a in expr.args)
+        return f"np.minimum(1.0, {limit}/np.sqrt(np.maximum({norm_squared}, 1e-300)))"
+
+
+def _exact(number: Any) -> bool:
+    """Whether a rational is a binary fraction, so that one literal holds it."""
+    return number.q & (number.q - 1) == 0
+
+
+def _literal(item: Any) -> bool:
+    return bool(item.is_Rational and item >= 0 and _exact(item))

@@ -1,0 +1,218 @@
+"""The RK4 loops: forward for the states, backward for the costates, stages unrolled.
+
+Both are one loop: a step of signed length h from where it departs to where it arrives. Between nodes it
+leaves the Hermite midpoint (y0 + y1)/2 + h/8 (f0 - f1), which is fourth order like the steps; averaging the
+nodes would make the whole sweep second order (Hairer, Norsett, Wanner, Solving Ordinary Differential
+Equations I, II.6).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from satsym.codegen.block import Block
+from satsym.codegen.emitter import Emitter, free_symbols, live
+from satsym.codegen.printers import ScalarPrinter
+
+HALF, SIXTH, EIGHTH = sp.Rational(1, 2), sp.Rational(1, 6), sp.Rational(1, 8)
+
+
+@dataclass(frozen=True)
+class Loop:
+    """What an RK4 loop integrates.
+
+    Attributes
+    ----------
+    name, summary, signature
+        Of the generated function.
+    backward
+        Whether it runs from the last node to the first.
+    time, parameters
+        Their symbols.
+    integrated
+        Symbols of what is integrated, under the names of the arguments that give its start, its nodes and
+        its midpoints.
+    start, nodes, mids
+        Names of those three arguments.
+    given
+        (argument of nodes, argument of midpoints, symbols) of each group that is known beforehand.
+    rates
+        Block from time, integrated and given symbols to the rates; with ``sums``, one output more.
+    sums
+        Whether the last output of the block is integrated to a number, which the function returns.
+    """
+
+    name: str
+    summary: str
+    signature: str
+    backward: bool
+    time: sp.Symbol
+    parameters: tuple[sp.Symbol, ...]
+    integrated: tuple[sp.Symbol, ...]
+    start: str
+    nodes: str
+    mids: str
+    given: tuple[tuple[str, str, tuple[sp.Symbol, ...]], ...]
+    rates: Block
+    sums: bool
+
+
+def source(loop: Loop) -> str:
+    """Source text of the function."""
+    names = _Names(loop)
+    step = _Step(loop, names)
+    return _text(loop, names, step)
+
+
+class _Names:
+    """The names a loop uses beside those of its symbols; all distinct."""
+
+    def __init__(self, loop: Loop) -> None:
+        self.given = [s for *_, group in loop.given for s in group]
+        arguments = {a.strip() for a in loop.signature.split(",")}
+        symbols = (loop.time, *loop.parameters, *loop.integrated, *self.given)
+        taken = {s.name for s in symbols} | arguments | {"i", "len", "range", "math"}
+        self.emit = Emitter(taken, loop.parameters)
+        fresh = self.emit.fresh
+        self.at = {s: fresh(f"{s.name}_at") for s in (*loop.integrated, *self.given)}
+        self.mid = {s: fresh(f"{s.name}_mid") for s in (*loop.integrated, *self.given)}
+        self.end = {s: fresh(f"{s.name}_end") for s in (loop.time, *loop.integrated, *self.given)}
+        self.half = {s: fresh(f"{s.name}_half") for s in self.given}
+        self.h, self.steps, self.total = fresh("h"), fresh("steps"), fresh("total")
+        self.slopes = [self._slope(loop, k, output) for k, output in enumerate(loop.rates.outputs)]
+
+    def _slope(self, loop: Loop, k: int, output: sp.Expr) -> sp.Expr:
+        """The rate at departure: carried from step to step, unless it is a number or itself integrated."""
+        if output.is_Number or output in loop.integrated:
+            return output
+        what = loop.integrated[k].name if k < len(loop.integrated) else "total"
+        return self.emit.fresh(f"slope_{what}")
+
+
+class _Step:
+    """The assignments of a loop: before it, at its first node, and of one step."""
+
+    def __init__(self, loop: Loop, names: _Names) -> None:
+        self.loop, self.names, self.emit = loop, names, names.emit
+        carries = [isinstance(k, sp.Symbol) and k not in loop.integrated for k in names.slopes]
+
+        first = self.emit.inline(loop.rates, {})
+        self.first_slopes = [(k, v) for k, v, c in zip(names.slopes, first, carries, strict=True) if c]
+        self.opening = live(self.emit.take_lines(), [v for _, v in self.first_slopes])
+
+        self.arrival = [names.end[y] for y in loop.integrated]
+        means = self._stages()
+        final = self._rates(names.end[loop.time], self.arrival, names.end, "slope_end")
+        self.slopes = [(k, v) for k, v, c in zip(names.slopes, final, carries, strict=True) if c]
+        self.middles = self._middles(final)
+        self.added = means[-1] if loop.sums else sp.Integer(0)
+
+        roots = [*self.arrival, *self.middles, *(v for _, v in self.slopes), self.added]
+        self.body = live(self.emit.lines, roots)
+        self.used = free_symbols([*roots, *(e for _, e in self.body)])
+        self.used_first = free_symbols([*(v for _, v in self.first_slopes), *(e for _, e in self.opening)])
+        self.before = live(self.emit.before, self.used | self.used_first)
+
+    def _stages(self) -> list[sp.Expr]:
+        """Emit the stages and the arrival; h times the mean slope of everything integrated."""
+        loop, names, emit = self.loop, self.names, self.emit
+        half, sixth = emit.assign(HALF * names.h, "half"), emit.assign(SIXTH * names.h, "sixth")
+        middle, end = (half, loop.time + half, names.half), (names.h, names.end[loop.time], names.end)
+        slopes = [names.slopes]
+        for stage, (length, time, given) in enumerate((middle, middle, end), start=2):
+            steps = zip(loop.integrated, slopes[-1], strict=False)
+            reached = [emit.assign(y + length * k, f"{y}_{stage}") for y, k in steps]
+            slopes.append(self._rates(time, reached, given, f"k{stage}"))
+        means = [self._mean(sixth, k) for k in zip(*slopes, strict=True)]
+        emit.lines += [(e, y + mean) for e, y, mean in zip(self.arrival, loop.integrated, means, strict=False)]
+        return means
+
+    def _rates(
+        self, time: sp.Expr, values: Sequence[sp.Expr], given: dict[sp.Symbol, sp.Symbol], name: str
+    ) -> list[sp.Expr]:
+        loop = self.loop
+        place = dict(zip(loop.integrated, values, strict=True)) | {s: given[s] for s in self.names.given}
+        if loop.time in loop.rates.inputs:
+            place[loop.time] = self.emit.assign(time)
+        hints = [f"{name}_{y}" for y in (*loop.integrated, self.names.total)]
+        rates = self.emit.inline(loop.rates, place, hints)
+        return [self.emit.assign(r, hint) for r, hint in zip(rates, hints, strict=False)]
+
+    def _mean(self, sixth: sp.Expr, slopes: Sequence[sp.Expr]) -> sp.Expr:
+        """h/6 (k1 + 2 k2 + 2 k3 + k4)."""
+        k1, k2, k3, k4 = slopes
+        middle = 4 * k2 if k2 == k3 else 2 * self.emit.assign(k2 + k3)
+        return sixth * (k1 + middle + k4)
+
+    def _middles(self, final: Sequence[sp.Expr]) -> list[sp.Expr]:
+        """The Hermite midpoints."""
+        eighth = self.emit.assign(EIGHTH * self.names.h, "eighth")
+        ends = zip(self.loop.integrated, self.arrival, self.names.slopes, final, strict=False)
+        return [HALF * self.emit.assign(a + b) + eighth * (p - q) for a, b, p, q in ends]
+
+
+def _text(loop: Loop, names: _Names, step: _Step) -> str:
+    code = ScalarPrinter().doprint
+    lines: list[str] = []
+
+    def put(indent: int, target: object, value: object) -> None:
+        lines.append("    " * indent + f"{target} = {code(value) if isinstance(value, sp.Basic) else value}")
+
+    for argument, symbols in (
+        ("p", loop.parameters),
+        (loop.nodes, [names.at[s] for s in loop.integrated]),
+        (loop.mids, [names.mid[s] for s in loop.integrated]),
+        *((nodes, [names.at[s] for s in group]) for nodes, _, group in loop.given),
+        *((mids, [names.mid[s] for s in group]) for _, mids, group in loop.given),
+        (loop.start, loop.integrated),
+    ):
+        if symbols:
+            put(1, unpacking(symbols), argument)
+    for symbol, expression in step.before:
+        put(1, symbol, expression)
+    put(1, names.steps, "len(times) - 1")
+    origin = names.steps if loop.backward else "0"
+    put(1, loop.time, f"times[{origin}]")
+    for y in loop.integrated:
+        put(1, f"{names.at[y]}[{origin}]", y)
+    for s in names.given:
+        if s in step.used_first:
+            put(1, s, f"{names.at[s]}[{origin}]")
+    for symbol, expression in (*step.opening, *step.first_slopes):
+        put(1, symbol, expression)
+    if loop.sums:
+        put(1, names.total, sp.Integer(0))
+
+    arrives = "i" if loop.backward else "i + 1"
+    lines.append(f"    for i in range({f'{names.steps} - 1, -1, -1' if loop.backward else names.steps}):")
+    put(2, names.end[loop.time], f"times[{arrives}]")
+    put(2, names.h, f"{names.end[loop.time]} - {loop.time}")
+    for s in names.given:
+        if names.half[s] in step.used:
+            put(2, names.half[s], f"{names.mid[s]}[i]")
+        if names.end[s] in step.used:
+            put(2, names.end[s], f"{names.at[s]}[{arrives}]")
+    for symbol, expression in step.body:
+        put(2, symbol, expression)
+    for y, middle, value in zip(loop.integrated, step.middles, step.arrival, strict=True):
+        put(2, f"{names.mid[y]}[i]", middle)
+        put(2, f"{names.at[y]}[{arrives}]", value)
+    if loop.sums:
+        put(2, names.total, names.total + step.added)
+    put(2, loop.time, names.end[loop.time])
+    for y, value in zip(loop.integrated, step.arrival, strict=True):
+        put(2, y, value)
+    for symbol, expression in step.slopes:
+        put(2, symbol, expression)
+    if loop.sums:
+        lines.append(f"    return {names.total}")
+    return "\n".join([f"def {loop.name}({loop.signature}):", f'    """{loop.summary}"""', *lines, ""])
+
+
+def unpacking(names: Iterable[object]) -> str:
+    """Left-hand side that unpacks a tuple, also one of length one."""
+    found = [str(n) for n in names]
+    return f"({found[0]},)" if len(found) == 1 else ", ".join(found)

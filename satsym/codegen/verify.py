@@ -1,0 +1,171 @@
+"""Generated text against the derivation, before it is written: values, derivatives, and whole loops.
+
+Three independent routes: every function, in both forms, against its expression evaluated with 30 digits;
+derivatives against complex steps through other generated functions; loops against a plain RK4 that calls the
+generated right-hand sides.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import mpmath as mp
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.codegen.functions import Function, Symbols, functions, symbols
+from satsym.kernels import Kernels
+from satsym.symbolic.checks import DIGITS, numeric
+from satsym.symbolic.derivation import Derivation, DerivationError
+
+POINTS = 12
+LIMIT = 1e-12
+"""Allowed deviation relative to one plus the size of the number: rounding of some tens of operations."""
+
+COMPLEX_STEP = 1e-30
+
+DERIVATIVES = {
+    "jacobian_x": ("dynamics", "x", 1.0),
+    "jacobian_u": ("dynamics", "u", 1.0),
+    "terminal_gradient": ("terminal_cost", "x", 1.0),
+    "dynamics": ("hamiltonian", "lam", 1.0),
+    "stationarity": ("hamiltonian", "u", 1.0),
+    "costate_rate": ("hamiltonian", "x", -1.0),
+    "control_hessian": ("stationarity", "u", 1.0),
+}
+"""Function -> (function it is a derivative of, by which argument, factor)."""
+
+Arguments = dict[str, Any]
+Array = NDArray[np.float64]
+
+
+def verify(derivation: Derivation, kernels: Kernels) -> None:
+    """Compare generated functions with what they were generated from.
+
+    Raises
+    ------
+    DerivationError
+        Naming the first function that deviates, and by how much. Nothing must be written then.
+    """
+    known, found = symbols(derivation), functions(derivation)
+    rng = random.Random(derivation.name)
+    places = [_arguments(known, derivation, rng) for _ in range(POINTS)]
+    for function in found:
+        _same_values(derivation.name, kernels, function, known, places)
+    names = {f.name for f in found}
+    for name, (of, by, factor) in DERIVATIVES.items():
+        if {name, of} <= names:
+            _same_derivatives(derivation.name, kernels, (name, of, by, factor), found, places)
+    _same_loops(derivation, kernels, rng)
+
+
+def _arguments(known: Symbols, derivation: Derivation, rng: random.Random) -> Arguments:
+    """Random arguments of size one; bounds that are met by some controls and not by others."""
+
+    def draw(symbol: Any) -> float:
+        size = rng.uniform(0.5, 1.5)
+        return size if symbol.is_positive or rng.random() < 0.5 else -size
+
+    place: Arguments = {a: tuple(map(draw, known.of(a))) for a in ("x", "u", "lam", "p", "bounds")}
+    if derivation.problem and derivation.problem.control_set == "box":
+        m = len(known.u)
+        place["bounds"] = tuple(-abs(b) for b in place["bounds"][:m]) + tuple(abs(b) for b in place["bounds"][m:])
+    return place | {"t": draw(known.t)}
+
+
+def _same_values(name: str, kernels: Kernels, function: Function, known: Symbols, places: Sequence[Arguments]) -> None:
+    exact = numeric(function.outputs)
+    batch = getattr(kernels, f"{function.name}_batch")(*(_stacked(a, places) for a in function.arguments))
+    columns = np.reshape(batch, (len(function.outputs), len(places)))
+    for place, column in zip(places, columns.T, strict=True):
+        point = {s: v for a in function.arguments for s, v in zip(known.of(a), np.atleast_1d(place[a]), strict=True)}
+        with mp.workdps(DIGITS):
+            expected = [float(v) for v in exact({s: mp.mpf(float(v)) for s, v in point.items()})]
+        scalar = np.atleast_1d(getattr(kernels, function.name)(*(place[a] for a in function.arguments)))
+        _refuse(name, f"{function.name}", scalar, expected)
+        _refuse(name, f"{function.name}_batch", column, expected)
+
+
+def _same_derivatives(
+    model: str,
+    kernels: Kernels,
+    relation: tuple[str, str, str, float],
+    found: Sequence[Function],
+    places: Sequence[Arguments],
+) -> None:
+    name, of, by, factor = relation
+    signature = {f.name: f.arguments for f in found}
+    arguments = {a: _stacked(a, places) for a in {*signature[name], *signature[of]}}
+    derived = getattr(kernels, f"{name}_batch")(*(arguments[a] for a in signature[name]))
+    slopes = []
+    for i in range(len(arguments[by])):
+        moved = np.array(arguments[by], dtype=complex)
+        moved[i] += 1j * COMPLEX_STEP
+        stepped = {**arguments, by: moved}
+        slopes.append(np.imag(getattr(kernels, f"{of}_batch")(*(stepped[a] for a in signature[of]))) / COMPLEX_STEP)
+    columns = np.stack(slopes, axis=-2)
+    _refuse(model, f"{name} (as derivative of {of})", derived.reshape(columns.shape), factor * columns)
+
+
+def _stacked(argument: str, places: Sequence[Arguments]) -> Any:
+    """An argument at all places, as the batch form takes it."""
+    values = np.array([place[argument] for place in places]).T
+    return tuple(values) if argument in ("p", "bounds") else values
+
+
+def _same_loops(derivation: Derivation, kernels: Kernels, rng: random.Random) -> None:
+    known = symbols(derivation)
+    place = _arguments(known, derivation, rng)
+    times = np.cumsum([0.3, 0.02, 0.03, 0.01])
+    steps, m = len(times) - 1, len(known.u)
+    u, u_mid = (np.array([[rng.uniform(-1, 1) for _ in range(k)] for _ in range(m)]) for k in (steps + 1, steps))
+    p, costs = place["p"], derivation.problem is not None
+
+    def rates(t: float, y: Array, u_now: Array) -> Array:
+        state = tuple(y[: len(known.x)])
+        running = [kernels.running_cost(t, state, tuple(u_now), p)] if costs else []
+        return np.array([*kernels.dynamics(t, state, tuple(u_now), p), *running])
+
+    start = np.array([*place["x"], *([0.0] if costs else [])])
+    y, y_mid = _plain_rk4(rates, times, start, u, u_mid)
+    x, x_mid, total = kernels.forward(times, place["x"], u, u_mid, p)
+    n = len(known.x)
+    _refuse(derivation.name, "forward", np.hstack([x, x_mid]), np.hstack([y[:n], y_mid[:n]]))
+    if not costs:
+        return
+    _refuse(derivation.name, "forward (cost)", [total], [y[n, -1]])
+
+    def costate_rates(t: float, lam: Array, given: Array) -> Array:
+        return np.array(kernels.costate_rate(t, tuple(given[:n]), tuple(given[n:]), tuple(lam), p))
+
+    given, given_mid = np.vstack([x, u])[:, ::-1], np.vstack([x_mid, u_mid])[:, ::-1]
+    lam, lam_mid = _plain_rk4(costate_rates, times[::-1], np.array(place["lam"]), given, given_mid)
+    found = np.hstack(kernels.backward(times, place["lam"], x, x_mid, u, u_mid, p))
+    _refuse(derivation.name, "backward", found, np.hstack([lam[:, ::-1], lam_mid[:, ::-1]]))
+
+
+def _plain_rk4(
+    rates: Callable[[float, Array, Array], Array], times: Array, start: Array, given: Array, given_mid: Array
+) -> tuple[Array, Array]:
+    """RK4 and Hermite midpoints, written as in a textbook; times may run backward."""
+    y, middles = [start], []
+    for i, h in enumerate(np.diff(times)):
+        t, here = times[i], y[-1]
+        k1 = rates(t, here, given[:, i])
+        k2 = rates(t + h / 2, here + h / 2 * k1, given_mid[:, i])
+        k3 = rates(t + h / 2, here + h / 2 * k2, given_mid[:, i])
+        k4 = rates(t + h, here + h * k3, given[:, i + 1])
+        there = here + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+        middles.append((here + there) / 2 + h / 8 * (k1 - rates(t + h, there, given[:, i + 1])))
+        y.append(there)
+    return np.array(y).T, np.array(middles).T
+
+
+def _refuse(model: str, what: str, found: Any, expected: Any) -> None:
+    """Raise unless the numbers agree."""
+    a, b = np.asarray(found, float), np.asarray(expected, float)
+    error = float(np.max(np.abs(a - b) / (1.0 + np.abs(b)), initial=0.0))
+    if not error <= LIMIT:
+        raise DerivationError(f"{model}: generated {what} deviates by {error:.1e} from the derivation; nothing written")
