@@ -1,0 +1,14 @@
+"""Instances: the numbers of one case of a model, read from TOML and checked.
+
+:func:`load` gives an :class:`Instance` in the model's units, or :class:`~satsym.status.BadInput` with one line that
+names the file, the key, what is wrong and what to write. Instances are data: nothing in them is ever evaluated.
+"""
+
+from __future__ import annotations
+
+from satsym.instance.files import shipped, titles
+from satsym.instance.loading import load
+from satsym.instance.schema import SolverOptions
+from satsym.instance.types import Guess, Instance, LqrOptions
+
+__all__ = ["Guess", "Instance", "LqrOptions", "SolverOptions", "load", "shipped", "titles"]

@@ -1,0 +1,146 @@
+"""Instance files: finding them by name or path, and reading TOML that may be anything."""
+
+from __future__ import annotations
+
+import math
+import re
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from satsym.status import BadInput
+from satsym.wording import printable, shown, suggestion
+
+SHIPPED = Path(__file__).parent.parent / "instances"
+MAX_BYTES = 1_000_000
+
+# tomllib takes time quadratic in the number of parts of a dotted key: more than a minute for 64000 of them
+MAX_PARTS = 20
+_PART = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')"""
+_LONG_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{MAX_PARTS}}}")
+_MANY_DIGITS = re.compile(r"[0-9][0-9_]{4000,}")
+
+
+def shipped() -> list[str]:
+    """Names of the instances that come with satsym."""
+    return sorted(path.stem for path in SHIPPED.glob("*.toml"))
+
+
+def titles() -> dict[str, str]:
+    """Title of each shipped instance by name; reads no model."""
+    return {name: read(SHIPPED / f"{name}.toml").get("title", "") for name in shipped()}
+
+
+def locate(name_or_path: str) -> Path:
+    """The file of a shipped instance, or the path that was given.
+
+    Raises
+    ------
+    BadInput
+        If it is neither a shipped name nor looks like a path.
+    """
+    if name_or_path in shipped():
+        return SHIPPED / f"{name_or_path}.toml"
+    path = Path(name_or_path)
+    if path.suffix == ".toml" or len(path.parts) > 1 or _exists(path):
+        return path
+    raise BadInput(f"no instance of this name; {suggestion(name_or_path, shipped())} (or give the path of a TOML file)")
+
+
+def read(path: Path) -> dict[str, Any]:
+    """Read a TOML file whose numbers are all finite.
+
+    Raises
+    ------
+    BadInput
+        For whatever keeps it from being read.
+    """
+    text = _text(path)
+    if _LONG_KEY.search(text):
+        raise BadInput(f"a key has more than {MAX_PARTS} parts joined by dots; see the shipped instances for the keys")
+    tree = _parse(text)
+    for key, value in _leaves(tree):
+        if not _finite(value):
+            raise BadInput(f"{key}: the number is {_excess(value)}; write a finite one")
+    return tree
+
+
+def _parse(text: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise BadInput(f"not valid TOML: {printable(str(error), 150)}; correct it there") from None
+    except RecursionError:
+        raise BadInput("brackets are nested too deeply; a matrix needs two levels") from None
+    except ValueError:
+        # Python reads no int of more than 4300 digits; one of a few hundred is too large as well, but has a key
+        shorter = _MANY_DIGITS.sub("9" * 400, text)
+        if shorter == text:
+            raise BadInput("a number is out of range; write numbers with fewer digits") from None
+    return _parse(shorter)
+
+
+def _exists(path: Path) -> bool:
+    try:
+        return path.exists()
+    except (OSError, ValueError):
+        return False
+
+
+def _text(path: Path) -> str:
+    try:
+        if path.is_dir():
+            raise BadInput("is a directory; give the path of a TOML file")
+        if not path.is_file():
+            # also a device or a pipe, which might never end
+            what = "is not a regular file" if path.exists() else "no such file"
+            raise BadInput(f"{what}; give the path of a TOML file, or one of {', '.join(shipped())}")
+        with path.open("rb") as stream:
+            data = stream.read(MAX_BYTES + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or "not a path"
+        raise BadInput(f"cannot be read ({reason}); check its name and permissions") from None
+    if len(data) > MAX_BYTES:
+        raise BadInput(f"larger than {MAX_BYTES} bytes; an instance holds a few numbers, remove the rest")
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise BadInput(f"not UTF-8 text (byte {error.start}); save it as UTF-8") from None
+    if "\0" in text:
+        raise BadInput("holds NUL characters, so it is no text; give the path of a TOML file")
+    return text
+
+
+def _leaves(tree: dict[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Every value that is no table or list, in the file's order, with the key to name in a message."""
+    stack: list[tuple[str, Any]] = [("", tree)]
+    while stack:
+        key, value = stack.pop()
+        if isinstance(value, dict):
+            stack.extend((_join(key, name, entry), entry) for name, entry in reversed(value.items()))
+        elif isinstance(value, list):
+            stack.extend((key, entry) for entry in reversed(value))
+        else:
+            yield key, value
+
+
+def _join(table: str, name: str, value: Any) -> str:
+    if isinstance(value, dict):
+        name = f"[{table[1:-1]}.{name}]" if table else f"[{name}]"
+    else:
+        name = f"{table} {name}" if table else name
+    return printable(name, 150)
+
+
+def _finite(value: Any) -> bool:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return True
+    try:
+        return math.isfinite(value)
+    except OverflowError:
+        return False
+
+
+def _excess(value: Any) -> str:
+    return shown(value) if isinstance(value, float) else "too large"

@@ -1,0 +1,83 @@
+"""From a name or a path to an instance that fits its model."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from satsym.instance import files, resolve
+from satsym.instance.options import guess, lqr, solver
+from satsym.instance.schema import InstanceFile, check
+from satsym.instance.types import Instance
+from satsym.status import BadInput
+from satsym.wording import printable, shown
+
+if TYPE_CHECKING:
+    from satsym.kernels import Kernels
+
+MAX_TITLE = 200
+
+
+def load(name_or_path: str | Path) -> Instance:
+    """Read an instance and check it against its model.
+
+    Parameters
+    ----------
+    name_or_path
+        A shipped name, see :func:`~satsym.instance.shipped`, or the path of a TOML file.
+
+    Returns
+    -------
+    Instance
+        With every number finite and in the model's unit.
+
+    Raises
+    ------
+    BadInput
+        With one line, ``FILE: KEY: what is wrong; what to do``.
+    """
+    given = str(name_or_path)
+    try:
+        path = files.locate(given)
+        file = check(files.read(path))
+        return _resolve(path, file, _model(file.model, path.parent))
+    except BadInput as error:
+        raise BadInput(f"{printable(given, 200) or shown(given)}: {error}") from None
+
+
+def _model(model: str, folder: Path) -> Kernels:
+    # imported here because listing the shipped instances needs no numpy
+    from satsym import kernels
+
+    if not model or not model.isprintable():
+        raise BadInput(f'model: {shown(model)} is no name; write a model\'s name, such as "polar_orbit"')
+    try:
+        return kernels.load(model, folder)
+    except BadInput as error:
+        raise BadInput(f"model: {printable(str(error), 400)}") from None
+
+
+def _resolve(path: Path, file: InstanceFile, model: Kernels) -> Instance:
+    spec = model.spec
+    if len(file.title) > MAX_TITLE or not file.title.isprintable():
+        raise BadInput(f"title: {shown(file.title)} is not one short line; write at most {MAX_TITLE} plain characters")
+    t0, tf, tf_guess = resolve.times(file.time, spec)
+    lower, upper, max_norm = resolve.bounds(file.control, spec)
+    return Instance(
+        name=path.stem,
+        path=path,
+        title=file.title,
+        model=model,
+        parameters=resolve.parameters(file.parameters, spec),
+        initial=resolve.initial(file.initial, spec),
+        final=resolve.final(file.final, spec),
+        t0=t0,
+        tf=tf,
+        tf_guess=tf_guess,
+        lower=lower,
+        upper=upper,
+        max_norm=max_norm,
+        solver=solver(file.solver, spec),
+        lqr=lqr(file.lqr, spec),
+        guess=guess(file.guess, spec),
+    )

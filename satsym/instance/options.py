@@ -1,0 +1,120 @@
+"""The optional tables of an instance, checked against its model: [solver], [lqr], [guess]."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from satsym.instance.resolve import known, quantity, time, value_of
+from satsym.instance.schema import GuessTable, LqrTable, SolverOptions
+from satsym.instance.types import Guess, LqrOptions
+from satsym.spec import ProblemSpec, Variable
+from satsym.status import BadInput
+from satsym.wording import shown
+
+Row = tuple[float, ...]
+Matrix = tuple[Row, ...]
+ROUNDING = 1e-12
+"""How far a matrix may be from symmetric, or below zero, relative to its largest entry."""
+
+
+def solver(options: SolverOptions, spec: ProblemSpec) -> SolverOptions:
+    """The options, if they fit together and the angles are angles of the model."""
+    if options.relaxation is not None and options.method not in ("auto", "sweep"):
+        raise BadInput('[solver] relaxation: only sweeps have one; remove it, or write method = "sweep"')
+    angles = [v for v in spec.states if v.kind == "angle"]
+    for name in options.free_angles:
+        if name not in [v.symbol for v in angles]:
+            have = ", ".join(v.symbol for v in angles) or "none"
+            raise BadInput(f"[solver] free_angles: {shown(name)} is no angle among the states; angles here: {have}")
+    _no_repetition(options.free_angles, "[solver] free_angles")
+    return options
+
+
+def lqr(table: LqrTable | None, spec: ProblemSpec) -> LqrOptions | None:
+    """Weights as full matrices, checked for shape, symmetry and sign."""
+    if table is None:
+        return None
+    inputs = spec.control_names if table.inputs is None else table.inputs
+    for name in inputs:
+        if name not in spec.control_names:
+            have = ", ".join(spec.control_names) or "none"
+            raise BadInput(f"[lqr] inputs: the model has no control {shown(name)}; controls here: {have}")
+    _no_repetition(inputs, "[lqr] inputs")
+    if not inputs:
+        raise BadInput("[lqr] inputs: no input is left to control with; name at least one control")
+    horizon = None if table.horizon is None else time(table.horizon, "[lqr] horizon", spec)
+    if horizon is not None and horizon <= 0:
+        raise BadInput(f"[lqr] horizon: {shown(table.horizon)} is not positive; write a length of time, or remove it")
+    q, r = _matrix(table.Q, len(spec.states), "Q"), _matrix(table.R, len(inputs), "R")
+    if _smallest_eigenvalue(q) < -ROUNDING:
+        raise BadInput("[lqr] Q: not positive semidefinite, so cost has no lower bound; write weights of at least 0")
+    if _smallest_eigenvalue(r) <= ROUNDING:
+        raise BadInput("[lqr] R: not positive definite, so some input costs nothing; write weights above 0")
+    return LqrOptions(Q=q, R=r, inputs=tuple(inputs), horizon=horizon)
+
+
+def guess(table: GuessTable, spec: ProblemSpec) -> Guess:
+    """Series by name, in the model's units; costates have no unit of their own and take plain numbers."""
+    return Guess(
+        state=_series(table.state, spec.states, "state"),
+        costate=_series(table.costate, spec.states, "costate"),
+        control=_series(table.control, spec.controls, "control"),
+    )
+
+
+def _series(
+    table: Mapping[str, float | str | list[float | str]], variables: Sequence[Variable], what: str
+) -> dict[str, Row]:
+    known(table, variables, what, f"guess.{what}")
+    return {v.symbol: _values(table[v.symbol], v, what) for v in variables if v.symbol in table}
+
+
+def _values(value: float | str | list[float | str], variable: Variable, what: str) -> Row:
+    key = f"[guess.{what}] {variable.symbol}"
+    values = value if isinstance(value, list) else [value]
+    if not values:
+        raise BadInput(f"{key}: an empty list; write at least one number, or remove it")
+    if what == "costate":
+        for entry in values:
+            if isinstance(entry, str):
+                raise BadInput(f"{key}: {shown(entry)} is text; write a costate as a plain number")
+        return tuple(quantity(entry, "1", key) for entry in values)
+    return tuple(value_of(variable, entry, key) for entry in values)
+
+
+def _no_repetition(names: Sequence[str], key: str) -> None:
+    for name in names:
+        if names.count(name) > 1:
+            raise BadInput(f"{key}: {shown(name)} stands there twice; name each once")
+
+
+def _matrix(rows: Sequence[float | Sequence[float]], size: int, name: str) -> Matrix:
+    """A symmetric matrix from its rows or its diagonal."""
+    wanted = f"write {size} numbers (the diagonal) or {size} rows of {size} numbers"
+    diagonal = [row for row in rows if not isinstance(row, Sequence)]
+    if len(rows) != size or len(diagonal) not in (0, size):
+        raise BadInput(f"[lqr] {name}: it has {len(rows)} entries of the wrong number or mixed kinds; {wanted}")
+    if diagonal:
+        return tuple(tuple(x if i == j else 0.0 for j in range(size)) for i, x in enumerate(diagonal))
+    matrix = tuple(tuple(row) for row in rows if isinstance(row, Sequence))
+    for i, row in enumerate(matrix):
+        if len(row) != size:
+            raise BadInput(f"[lqr] {name}: row {i + 1} has {len(row)} numbers; {wanted}")
+    limit = ROUNDING * _largest(matrix)
+    for i in range(size):
+        for j in range(i):
+            if not abs(matrix[i][j] - matrix[j][i]) <= limit:
+                raise BadInput(f"[lqr] {name}: not symmetric at row {i + 1}, column {j + 1}; write (A + A')/2")
+    return matrix
+
+
+def _largest(matrix: Matrix) -> float:
+    return max(abs(x) for row in matrix for x in row)
+
+
+def _smallest_eigenvalue(matrix: Matrix) -> float:
+    """Of the matrix scaled to a largest entry of 1."""
+    import numpy as np
+
+    scale = _largest(matrix) or 1.0
+    return float(np.linalg.eigvalsh([[x / scale for x in row] for row in matrix])[0])

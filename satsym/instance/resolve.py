@@ -1,0 +1,167 @@
+"""The numbers of an instance against the description of its model: names, units, domains, kinds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import Any, Literal
+
+from satsym import units
+from satsym.instance.schema import TimeTable
+from satsym.spec import ProblemSpec, Variable
+from satsym.status import BadInput
+from satsym.wording import printable, shown, suggestion
+
+Row = tuple[float, ...]
+REFERENCE: Literal["reference"] = "reference"
+FREE = "free"
+MAX_NORM = "max_norm"
+
+
+def quantity(value: float | str, unit: str, key: str) -> float:
+    """A number as it stands, or a text with its own unit, in the model's unit."""
+    if not isinstance(value, str):
+        return float(value)
+    try:
+        return units.parse_quantity(value, unit)
+    except BadInput as error:
+        raise BadInput(f"{key}: {error}") from None
+
+
+def known(names: Iterable[str], variables: Iterable[Variable], what: str, section: str) -> None:
+    """Refuse names that are not among the variables."""
+    symbols = [v.symbol for v in variables]
+    for name in names:
+        if name not in symbols:
+            raise BadInput(f"[{section}] {printable(name)}: the model has no such {what}; {suggestion(name, symbols)}")
+
+
+def value_of(variable: Variable, value: float | str, key: str) -> float:
+    """A variable's value in its unit, inside its domain."""
+    number = quantity(value, variable.unit, key)
+    if variable.positive and number <= 0:
+        raise BadInput(f"{key}: {shown(value)} is outside the domain of {variable.symbol}; write a positive value")
+    return number
+
+
+def parameters(table: Mapping[str, float | str], spec: ProblemSpec) -> Row:
+    """Parameters in the model's order; those left out take the model's defaults."""
+    known(table, spec.parameters, "parameter", "parameters")
+    return tuple(_parameter(v, table.get(v.symbol, v.default)) for v in spec.parameters)
+
+
+def _parameter(variable: Variable, value: float | str | None) -> float:
+    key = f"[parameters] {variable.symbol}"
+    if value is None:
+        raise BadInput(f"{key}: missing, and the model has no default; add {_wanted(variable)}")
+    return value_of(variable, value, key)
+
+
+def initial(table: Mapping[str, float | str], spec: ProblemSpec) -> Row:
+    """The initial state in the model's order."""
+    known(table, spec.states, "state", "initial")
+    return tuple(_initial(v, table.get(v.symbol)) for v in spec.states)
+
+
+def _initial(variable: Variable, value: float | str | None) -> float:
+    key = f"[initial] {variable.symbol}"
+    if value is None:
+        raise BadInput(f"{key}: missing; add {_wanted(variable)}")
+    if value == REFERENCE:
+        raise BadInput(f'{key}: "{REFERENCE}" is for [final] only; write {_wanted(variable)}')
+    return value_of(variable, value, key)
+
+
+def final(table: Mapping[str, float | str], spec: ProblemSpec) -> dict[str, float | Literal["reference"]]:
+    """The given final states in the model's order; ``"reference"`` stays as it is."""
+    known(table, spec.states, "state", "final")
+    return {v.symbol: _final(v, table[v.symbol], spec) for v in spec.states if v.symbol in table}
+
+
+def _final(variable: Variable, value: float | str, spec: ProblemSpec) -> float | Literal["reference"]:
+    key = f"[final] {variable.symbol}"
+    if value != REFERENCE:
+        return value_of(variable, value, key)
+    if not spec.has_reference:
+        raise BadInput(f"{key}: the model {spec.name} has no reference; write {_wanted(variable)}")
+    return REFERENCE
+
+
+def times(table: TimeTable, spec: ProblemSpec) -> tuple[float, float | None, float | None]:
+    """Initial time, final time (``None`` where free) and the guess of it."""
+    t0 = time(table.t0, "[time] t0", spec)
+    tf = None if table.tf == FREE else time(table.tf, "[time] tf", spec)
+    if tf is None and not spec.has_cost:
+        raise BadInput(f"[time] tf: the model {spec.name} has no cost, so nothing chooses the time; write a number")
+    if tf is not None and table.tf_guess is not None:
+        raise BadInput(f'[time] tf_guess: the final time is given; remove tf_guess, or write tf = "{FREE}"')
+    tf_guess = None if table.tf_guess is None else time(table.tf_guess, "[time] tf_guess", spec)
+    for key, end, given in (("tf", tf, table.tf), ("tf_guess", tf_guess, table.tf_guess)):
+        if end is not None and not (end > t0 and math.isfinite(end - t0)):
+            why = "is not after" if end <= t0 else "is too far from"
+            raise BadInput(f"[time] {key}: {shown(given)} {why} t0 = {shown(t0)}; write a later, reachable time")
+    return t0, tf, tf_guess
+
+
+def time(value: float | str, key: str, spec: ProblemSpec) -> float:
+    """A time in the model's unit of time."""
+    if not isinstance(value, str):
+        return float(value)
+    try:
+        unit = units.time_unit(v.unit for v in (*spec.states, *spec.controls, *spec.parameters))
+    except BadInput as error:
+        raise BadInput(f"{key}: {error}") from None
+    return quantity(value, unit, key)
+
+
+def bounds(table: Mapping[str, Any], spec: ProblemSpec) -> tuple[Row, Row, float]:
+    """Lower and upper bounds in the model's order and the largest norm, infinite where nothing is given."""
+    controls = spec.controls
+    lower = dict.fromkeys(spec.control_names, -math.inf)
+    upper = dict.fromkeys(spec.control_names, math.inf)
+    max_norm = math.inf
+    for name, value in table.items():
+        key = f"[control] {printable(name)}"
+        if name == MAX_NORM and spec.control_set == "ball":
+            max_norm = _max_norm(value, controls[0].unit, key)
+        elif name == MAX_NORM:
+            raise BadInput(f"{key}: {_control_set(spec)}")
+        else:
+            known([name], controls, "control", "control")
+            if spec.control_set != "box":
+                raise BadInput(f"{key}: {_control_set(spec)}")
+            unit = controls[spec.control_names.index(name)].unit
+            lower[name], upper[name] = _interval(value, unit, key)
+    return tuple(lower.values()), tuple(upper.values()), max_norm
+
+
+def _max_norm(value: Any, unit: str, key: str) -> float:
+    if isinstance(value, tuple):
+        raise BadInput(f"{key}: got a list of {len(value)}; write one positive number")
+    number = quantity(value, unit, key)
+    if number <= 0:
+        raise BadInput(f"{key}: {shown(value)} leaves no control; write a positive number")
+    return number
+
+
+def _interval(value: Any, unit: str, key: str) -> tuple[float, float]:
+    if not isinstance(value, tuple):
+        raise BadInput(f"{key}: got {shown(value)}; write both bounds, such as [-0.2, 0.2]")
+    low, high = (quantity(bound, unit, key) for bound in value)
+    if low > high:
+        raise BadInput(f"{key}: the lower bound {shown(value[0])} is above the upper, {shown(value[1])}; swap them")
+    return low, high
+
+
+def _control_set(spec: ProblemSpec) -> str:
+    """What the model's kind of control set takes."""
+    return {
+        "box": "the model bounds its controls one by one; write u = [lower, upper] for each",
+        "ball": f"the model bounds the norm of its controls; write {MAX_NORM} = a number",
+        "free": "the model's controls are free; remove this bound",
+        None: "the model has no cost, hence no control set; remove this bound",
+    }[spec.control_set]
+
+
+def _wanted(variable: Variable) -> str:
+    return "a number" + (f" in {variable.unit}" if variable.unit != "1" else "")

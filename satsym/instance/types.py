@@ -1,0 +1,108 @@
+"""What an instance is once it has been checked against its model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from satsym.instance.schema import SolverOptions
+
+if TYPE_CHECKING:
+    from satsym.kernels import Kernels
+
+Row = tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class LqrOptions:
+    """What a linear-quadratic regulator minimises: the integral of x'Qx + u'Ru, without a factor 1/2.
+
+    Parameters
+    ----------
+    Q
+        State weights, n rows of n; symmetric, positive semidefinite.
+    R
+        Weights of the active inputs, one row each; symmetric, positive definite.
+    inputs
+        Names of the active inputs, in the order of `R`.
+    horizon
+        Length of time, ``None`` for an infinite one.
+    """
+
+    Q: tuple[Row, ...]
+    R: tuple[Row, ...]
+    inputs: tuple[str, ...]
+    horizon: float | None = None
+
+
+@dataclass(frozen=True)
+class Guess:
+    """Where a solver may start: values evenly spaced from t0 to tf, straight lines between; one value is constant.
+
+    Parameters
+    ----------
+    state, control
+        By name; names left out are the solver's to guess.
+    costate
+        By the name of the state each belongs to.
+    """
+
+    state: Mapping[str, Row] = field(default_factory=dict)
+    costate: Mapping[str, Row] = field(default_factory=dict)
+    control: Mapping[str, Row] = field(default_factory=dict)
+
+    def __bool__(self) -> bool:
+        return bool(self.state or self.costate or self.control)
+
+
+@dataclass(frozen=True)
+class Instance:
+    """One case of a model, checked; all numbers finite (bounds apart) and in the model's units.
+
+    Parameters
+    ----------
+    name, path, title
+        The file's name without its ending, where it was read, and one line for people.
+    model
+        Kernels of the model.
+    parameters, initial
+        In the model's order.
+    final
+        Given final states by name, in the model's order: a number, or ``"reference"`` for the value of the model's
+        reference at the final time. A state that is not here is free.
+    t0, tf, tf_guess
+        Initial time; final time, ``None`` where it is free; and then where to start looking, if stated.
+    lower, upper
+        Bounds of the controls, in the model's order; infinite where there is none.
+    max_norm
+        Radius of the ball of controls; infinite where there is none.
+    solver, lqr, guess
+        Options; `lqr` is ``None`` where the instance has none.
+    """
+
+    name: str
+    path: Path
+    title: str
+    model: Kernels
+    parameters: Row
+    initial: Row
+    final: Mapping[str, float | Literal["reference"]]
+    t0: float
+    tf: float | None
+    tf_guess: float | None
+    lower: Row
+    upper: Row
+    max_norm: float
+    solver: SolverOptions
+    lqr: LqrOptions | None
+    guess: Guess
+
+    @property
+    def bounds(self) -> Row:
+        """The control set as generated functions take it: lower and upper bounds, the radius, or nothing."""
+        kind = self.model.spec.control_set
+        if kind == "box":
+            return self.lower + self.upper
+        return (self.max_norm,) if kind == "ball" else ()
