@@ -1,0 +1,119 @@
+"""What solving and simulating hand back: trajectories with their facts, ready for reports."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+from satsym.status import Status
+
+Array: TypeAlias = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Iteration:
+    """One line of a solver's history.
+
+    Attributes
+    ----------
+    number
+        From 0, the starting point.
+    objective
+        The cost there.
+    residual
+        How far the optimality conditions are from holding, relative to the size of the control.
+    """
+
+    number: int
+    objective: float
+    residual: float
+
+
+Progress: TypeAlias = Callable[[Iteration], None]
+"""Called after each iteration of a solver."""
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """How a solver run ended, and where.
+
+    Attributes
+    ----------
+    instance
+        What was solved; names, units and bounds are there.
+    method, status, message
+        Solver, outcome, and one sentence for people.
+    boundary_type
+        1 to 5, as transversality distinguishes them.
+    objective
+        The cost J; NaN where there is none.
+    times
+        Nodes, shape (N+1,).
+    x, u, lam
+        States (n, N+1), controls (m, N+1) and costates (n, N+1) at the nodes.
+    switching_times
+        For each control, the times at which it meets or leaves a bound.
+    iterations, history
+        Their number, and what each achieved.
+    wall_s
+        Seconds of solving, without loading and reporting.
+    """
+
+    instance: Instance
+    method: str
+    status: Status
+    message: str
+    boundary_type: int
+    objective: float
+    times: Array
+    x: Array
+    u: Array
+    lam: Array
+    switching_times: tuple[tuple[float, ...], ...]
+    iterations: int
+    history: tuple[Iteration, ...]
+    wall_s: float
+
+
+@dataclass(frozen=True)
+class Invariant:
+    """A conserved quantity: its initial value, and the largest departure from it, in its own unit."""
+
+    initial: float
+    drift: float
+
+
+@dataclass(frozen=True, eq=False)
+class Flight:
+    """A simulated motion.
+
+    Attributes
+    ----------
+    instance
+        What was simulated.
+    feedback
+        Name of the control law, ``"none"`` for the motion without control.
+    status, message
+        Outcome, and one sentence for people.
+    times, x, u
+        As in :class:`Solution`.
+    invariants
+        By name; only the motion without control has any.
+    metrics
+        Numbers that describe the flight, by name.
+    """
+
+    instance: Instance
+    feedback: str
+    status: Status
+    message: str
+    times: Array
+    x: Array
+    u: Array
+    invariants: dict[str, Invariant]
+    metrics: dict[str, float]

@@ -1,0 +1,72 @@
+"""The set of admissible controls of an instance: projection onto it, and where its boundary is."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+
+Array = NDArray[np.float64]
+
+
+def project(instance: Instance, u: Array) -> Array:
+    """The nearest admissible controls.
+
+    Parameters
+    ----------
+    u
+        Controls, shape (m, M).
+    """
+    kind = instance.model.spec.control_set
+    if kind == "box":
+        return np.minimum(np.maximum(u, _column(instance.lower)), _column(instance.upper))
+    if kind == "ball":
+        norm = np.linalg.norm(u, axis=0)
+        return np.where(norm > instance.max_norm, u * (instance.max_norm / np.maximum(norm, 1e-300)), u)
+    return u
+
+
+def active(instance: Instance, unbounded: Array) -> NDArray[np.int8]:
+    """Which bound holds each control: -1 the lower, 1 the upper, 0 none; on a ball 1 or 0.
+
+    Parameters
+    ----------
+    unbounded
+        What the controls would be without bounds, shape (m, M).
+    """
+    kind = instance.model.spec.control_set
+    if kind == "box":
+        below, above = unbounded < _column(instance.lower), unbounded > _column(instance.upper)
+        return above.astype(np.int8) - below.astype(np.int8)
+    if kind == "ball":
+        outside = np.linalg.norm(unbounded, axis=0) > instance.max_norm
+        return np.broadcast_to(outside, unbounded.shape).astype(np.int8)
+    return np.zeros(unbounded.shape, np.int8)
+
+
+def excess(instance: Instance, unbounded: Array) -> Array:
+    """Signed distances to each bound, whose zeros are the switching times; shape (bounds, M).
+
+    The rows are, for a box, control minus lower bound and control minus upper bound for each control; for a
+    ball the norm minus its limit. Bounds that are infinite have rows of infinities.
+    """
+    kind = instance.model.spec.control_set
+    if kind == "box":
+        return np.concatenate([unbounded - _column(instance.lower), unbounded - _column(instance.upper)])
+    if kind == "ball":
+        return (np.linalg.norm(unbounded, axis=0) - instance.max_norm)[None, :]
+    return np.empty((0, unbounded.shape[1]))
+
+
+def without_bounds(instance: Instance) -> tuple[float, ...]:
+    """The ``bounds`` argument of kernels for an unlimited control."""
+    m = len(instance.model.spec.controls)
+    infinity = float("inf")
+    return {"box": (-infinity,) * m + (infinity,) * m, "ball": (infinity,)}.get(
+        instance.model.spec.control_set or "free", ()
+    )
+
+
+def _column(values: tuple[float, ...]) -> Array:
+    return np.array(values)[:, None]

@@ -1,0 +1,68 @@
+"""Init, step, terminate: how the iterative solvers run, with history, progress and limits."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import Generic, Protocol, TypeVar
+
+from satsym.solution import Iteration, Progress
+from satsym.status import Status
+
+State = TypeVar("State")
+
+
+class Method(Protocol[State]):
+    """An iterative solver as three pure functions of its state."""
+
+    def init(self) -> State:
+        """The starting point."""
+
+    def step(self, state: State) -> State:
+        """One iteration."""
+
+    def terminate(self, state: State) -> tuple[Status, str] | None:
+        """Why to stop, or ``None`` to go on."""
+
+    def measure(self, state: State, number: int) -> Iteration:
+        """The line of this state in the history."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """When to give up."""
+
+    iterations: int
+    deadline: float
+
+    @property
+    def expired(self) -> bool:
+        """Whether the time is over."""
+        return time.perf_counter() > self.deadline
+
+
+@dataclass(frozen=True)
+class Run(Generic[State]):
+    """How an iteration ended."""
+
+    state: State
+    status: Status
+    message: str
+    history: tuple[Iteration, ...]
+
+
+def iterate(method: Method[State], limits: Limits, progress: Progress | None) -> Run[State]:
+    """Step until the method terminates or a limit is reached."""
+    state = method.init()
+    history = [method.measure(state, 0)]
+    while True:
+        if progress:
+            progress(history[-1])
+        if verdict := method.terminate(state):
+            return Run(state, *verdict, tuple(history))
+        if len(history) > limits.iterations:
+            return Run(state, Status.NOT_CONVERGED, f"no convergence in {limits.iterations} iterations", tuple(history))
+        if limits.expired:
+            return Run(state, Status.TIME_LIMIT, f"time was up after {len(history) - 1} iterations", tuple(history))
+        state = method.step(state)
+        history.append(method.measure(state, len(history)))
