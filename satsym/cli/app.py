@@ -1,0 +1,97 @@
+"""The program ``satsym``: its commands in the order in which one meets them, and what becomes of errors.
+
+Commands load what they need when they run, so that ``--help`` loads nothing but click.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import Any
+
+import click
+
+from satsym import __version__
+from satsym.cli.derive import derive
+from satsym.cli.doctor import doctor
+from satsym.cli.instances import instances
+from satsym.cli.latex import latex
+from satsym.cli.models import models
+from satsym.cli.output import complain, silence
+from satsym.cli.simulate import simulate
+from satsym.cli.solve import solve
+from satsym.status import BadInput, ExitCode
+from satsym.wording import printable
+
+INTERRUPTED = 130
+CLOSED_PIPE = 141
+"""As the shell reports programs that SIGINT or SIGPIPE ended."""
+
+OVERVIEW = """\b
+Start here:
+  satsym instances                       what can be solved as it stands
+  satsym solve soft-return --plot        solve one, with pictures
+  satsym latex polar_orbit -o orbit.tex  typeset where it comes from
+
+\b
+Exit codes: 0 done, 2 wrong usage, 3 bad input file, 4 no answer,
+5 certificate fails, 6 generated files are stale, 1 anything unforeseen
+(SATSYM_DEBUG=1 shows where that was).
+
+`satsym COMMAND --help` has examples."""
+
+
+class Program(click.Group):
+    """Commands that end with an exit code or with one line on stderr, never with a bare traceback."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(self.commands)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        try:
+            return super().invoke(ctx)
+        except (click.ClickException, click.exceptions.Exit):
+            raise
+        except BadInput as error:
+            complain(str(error))
+            return ExitCode.BAD_INPUT
+        except (KeyboardInterrupt, click.Abort):
+            complain("interrupted")
+            return INTERRUPTED
+        except BrokenPipeError:
+            silence()
+            return CLOSED_PIPE
+        except Exception as error:
+            _unforeseen(error)
+            return ExitCode.UNFORESEEN
+
+
+@click.group(
+    cls=Program,
+    commands=[models, instances, solve, simulate, derive, latex, doctor],
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog=OVERVIEW,
+)
+@click.version_option(__version__, message="satsym %(version)s")
+def program() -> None:
+    """Derive, solve and typeset satellite optimal control problems."""
+
+
+def run(argv: Sequence[str] | None = None) -> int:
+    """Run the program on these arguments and give its exit code."""
+    try:
+        outcome = program.main(None if argv is None else list(argv), prog_name="satsym", standalone_mode=False)
+    except click.ClickException as error:
+        error.show()
+        return error.exit_code
+    return int(outcome or 0)
+
+
+def _unforeseen(error: Exception) -> None:
+    if os.environ.get("SATSYM_DEBUG"):
+        import traceback
+
+        complain("\n" + "".join(traceback.format_exception(error)))
+        return
+    what = printable(" ".join(str(error).split()), 300)
+    complain(f"unforeseen {type(error).__name__}{what and ': '}{what} (SATSYM_DEBUG=1 shows where)")

@@ -1,0 +1,47 @@
+"""``satsym latex``: a derivation, typeset."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from satsym.cli.output import emit, live
+from satsym.status import ExitCode
+
+EXAMPLES = r"""
+Examples:
+  satsym latex polar_orbit -o polar_orbit.tex
+  satsym latex my_model.py --fragment   for \input in a document of your own
+  satsym latex my_model.py:my_problem   one of several in a file"""
+
+
+@click.command(epilog=f"\b{EXAMPLES}")
+@click.argument("name")
+@click.option(
+    "-o", "--output", metavar="FILE", type=click.Path(path_type=Path), help="Write there instead of to stdout."
+)
+@click.option(
+    "--lang", "language", type=click.Choice(("en", "id")), default="en", help="Language of the text.", show_default=True
+)
+@click.option("--fragment", is_flag=True, help="Without a preamble, to be included.")
+def latex(name: str, output: Path | None, language: str, fragment: bool) -> ExitCode:
+    """Typeset a derivation.
+
+    NAME is a shipped model (`satsym models` lists them) or a derivation file. It is derived anew, and each step is
+    checked by machine, before anything is written.
+    """
+    from satsym.cli.derivations import explained, find
+    from satsym.report import latex as typesetting
+    from satsym.report.files import write_text
+    from satsym.symbolic import derive
+
+    with live() as line, explained():
+        line.show(f"deriving {name} ...")
+        derivation = derive(find(name))
+    text = typesetting.render(derivation, language=language, standalone=not fragment)
+    if output is None:
+        emit(text)
+    else:
+        write_text(output, text)
+    return ExitCode.DONE

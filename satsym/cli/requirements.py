@@ -1,0 +1,73 @@
+"""What satsym says it needs, and whether the versions that are here will do."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from importlib import metadata
+
+from satsym.cli.derivations import checkout
+
+_REQUIREMENT = re.compile(r"([A-Za-z0-9._-]+)([^;]*)(?:;.*extra == ['\"]([^'\"]+)['\"])?")
+_CLAUSE = re.compile(r"(==|>=|<)\s*([0-9][0-9.]*)(\.\*)?")
+
+
+@dataclass(frozen=True)
+class Requirement:
+    """A distribution that is needed, always or for an extra, in certain versions."""
+
+    name: str
+    versions: str
+    extra: str | None = None
+
+    @property
+    def installed(self) -> str | None:
+        """The version that is here, if any."""
+        try:
+            return metadata.version(self.name)
+        except metadata.PackageNotFoundError:
+            return None
+
+    def allows(self, version: str) -> bool:
+        """Whether a version will do; of the clauses only ``==``, ``>=`` and ``<`` are understood, others pass."""
+        return all(
+            _allows(_numbers(version), operator, _numbers(limit), bool(series))
+            for operator, limit, series in _CLAUSE.findall(self.versions)
+        )
+
+
+def requirements() -> list[Requirement]:
+    """All of them, as the installed package states them, or the checkout that runs without being installed."""
+    return [Requirement(m[1], m[2].strip(), m[3]) for line in _stated() if (m := _REQUIREMENT.match(line))]
+
+
+def _stated() -> list[str]:
+    try:
+        return metadata.requires("satsym") or []
+    except metadata.PackageNotFoundError:
+        return _from_checkout()
+
+
+def _from_checkout() -> list[str]:
+    import tomllib
+
+    home = checkout()
+    if home is None:
+        return []
+    project = tomllib.loads((home / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    extras = project.get("optional-dependencies", {})
+    return [*project["dependencies"], *(f'{line}; extra == "{extra}"' for extra in extras for line in extras[extra])]
+
+
+def _numbers(version: str) -> tuple[int, ...]:
+    """``1.14.0`` as (1, 14); what follows the numbers, as in ``1.14rc1``, does not count."""
+    numbers = [int(part) for part in re.match(r"[0-9.]*", version)[0].split(".") if part]  # type: ignore[index]
+    while numbers and not numbers[-1]:
+        numbers.pop()
+    return tuple(numbers)
+
+
+def _allows(version: tuple[int, ...], operator: str, limit: tuple[int, ...], series: bool) -> bool:
+    if operator == "==":
+        return version[: len(limit)] == limit if series else version == limit
+    return version >= limit if operator == ">=" else version < limit

@@ -1,0 +1,55 @@
+"""``satsym simulate``: the motion of an instance under a given control law."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from satsym.cli.options import json_option, out_option, plot_option, subject_argument
+from satsym.cli.output import complain, emit, emit_json, in_colour
+from satsym.cli.saving import folder_for, save
+from satsym.status import ExitCode
+
+FEEDBACKS = ("none",)
+"""Control laws to fly with; here once more, because ``--help`` loads no solver."""
+
+EXAMPLES = """\b
+Examples:
+  satsym simulate its-thesis            where the satellite goes if nobody steers it
+  satsym simulate its-thesis --plot     with pictures, into results/its-thesis"""
+
+
+@click.command(epilog=EXAMPLES)
+@subject_argument
+@click.option(
+    "--feedback", type=click.Choice(FEEDBACKS), default="none", metavar="LAW", help=f"One of: {', '.join(FEEDBACKS)}."
+)
+@json_option
+@out_option
+@plot_option
+def simulate(subject: str, feedback: str, as_json: bool, out: Path | None, plot: bool) -> ExitCode:
+    """Follow the motion under a control law.
+
+    X is a shipped instance (`satsym instances` lists them) or the path of a TOML file. The motion is followed from
+    the initial state to the final time, and what ought to be conserved is measured.
+    """
+    from satsym import instance
+    from satsym import solve as solvers
+    from satsym.report.results import flight_object
+    from satsym.report.text import flight_text, with_files
+
+    case = instance.load(subject)
+    folder = folder_for(case.name, out, plot)
+    flight = solvers.simulate(case, feedback=feedback)
+    result = flight_object(flight)
+    saved = save(folder, flight, result, plot)
+    if as_json:
+        emit_json(result)
+    else:
+        emit(with_files(flight_text(flight, in_colour()), saved))
+    if flight.status.answered:
+        return ExitCode.DONE
+    if as_json:  # its object has no key for the reason
+        complain(f"{flight.status.value}: {flight.message}")
+    return ExitCode.NO_ANSWER

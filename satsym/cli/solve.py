@@ -1,0 +1,89 @@
+"""``satsym solve``: the optimum of an instance."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from satsym.cli.options import json_option, out_option, plot_option, subject_argument
+from satsym.cli.output import emit, emit_json, in_colour, live
+from satsym.cli.saving import folder_for, save
+from satsym.status import ExitCode
+
+if TYPE_CHECKING:
+    from satsym.instance import Instance
+
+METHODS = ("auto", "sweep", "collocation", "shooting", "linear", "bang-bang")
+"""What ``[solver] method`` may say; here once more, because ``--help`` loads no schema."""
+
+EXAMPLES = """\b
+Examples:
+  satsym solve soft-return --plot       results and pictures into results/soft-return
+  satsym solve my_case.toml --json      the numbers alone, for another program
+
+Exit codes: 0 converged, 3 the instance cannot be used, 4 there is no answer (its status says why)."""
+
+
+def _positive(_context: click.Context, _option: click.Parameter, value: float | None) -> float | None:
+    if value is not None and not 0.0 < value < math.inf:
+        raise click.BadParameter(f"{value} is not a positive number.")
+    return value
+
+
+@click.command(epilog=EXAMPLES)
+@subject_argument
+@json_option
+@out_option
+@plot_option
+@click.option(
+    "--method", type=click.Choice(METHODS), metavar="METHOD", help=f"Instead of the instance's: {', '.join(METHODS)}."
+)
+@click.option("--steps", type=click.IntRange(2, 10**7), metavar="N", help="Steps of the grid.")
+@click.option("--tolerance", type=float, callback=_positive, metavar="EPS", help="Largest residual of an answer.")
+def solve(
+    subject: str,
+    as_json: bool,
+    out: Path | None,
+    plot: bool,
+    method: str | None,
+    steps: int | None,
+    tolerance: float | None,
+) -> ExitCode:
+    """Find the control that costs least.
+
+    X is a shipped instance (`satsym instances` lists them) or the path of a TOML file. A summary is printed;
+    states, controls and costates over time go into files with --out or --plot. METHOD, N and EPS replace what
+    [solver] says in the instance.
+    """
+    from satsym import instance
+    from satsym import solve as solvers
+    from satsym.report.results import solution_object
+    from satsym.report.text import progress_line, solution_text, with_files
+
+    case = _changed(instance.load(subject), method=method, steps=steps, tolerance=tolerance)
+    folder = folder_for(case.name, out, plot)
+    with live() as line:
+        solution = solvers.solve(case, progress=lambda iteration: line.show(progress_line(iteration)))
+    result = solution_object(solution)
+    saved = save(folder, solution, result, plot)
+    if as_json:
+        emit_json(result)
+    else:
+        emit(with_files(solution_text(solution, in_colour()), saved))
+    return ExitCode.DONE if solution.status.answered else ExitCode.NO_ANSWER
+
+
+def _changed(case: Instance, **options: Any) -> Instance:
+    """The instance with the solver options that the command line gave."""
+    given = {name: value for name, value in options.items() if value is not None}
+    if not given:
+        return case
+    import msgspec
+
+    from satsym.instance.options import solver
+
+    return replace(case, solver=solver(msgspec.structs.replace(case.solver, **given), case.model.spec))

@@ -1,0 +1,1 @@
+"""Showing what was derived and computed: LaTeX, and the texts of rules and messages in each language."""

@@ -1,0 +1,135 @@
+"""Result files, written whole or not at all."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any, TypeAlias
+
+from satsym.status import BadInput
+from satsym.wording import printable
+
+if TYPE_CHECKING:
+    from satsym.solution import Flight, Solution
+
+Content: TypeAlias = Callable[[IO[bytes]], object]
+"""Writes a file's content to a stream."""
+
+
+def text(content: str) -> Content:
+    """A text as the content of a file, in UTF-8."""
+    return lambda stream: stream.write(content.encode())
+
+
+def trajectory(found: Solution | Flight) -> dict[str, Content]:
+    """``trajectory.npz`` and ``trajectory.csv`` of a solution or a flight.
+
+    The first holds ``times`` (N+1), ``x`` (n, N+1), ``u`` (m, N+1), for a solution ``lam`` (n, N+1), and the names in
+    ``states`` and ``controls``. The second has a header and a line for each node: time, states, controls, costates as
+    ``lambda_STATE``; its numbers read back exactly.
+    """
+    import numpy as np
+
+    spec = found.instance.model.spec
+    arrays: dict[str, Any] = {"times": found.times, "x": found.x, "u": found.u}
+    header = ["t", *spec.state_names, *spec.control_names]
+    lam = getattr(found, "lam", None)
+    if lam is not None:
+        arrays["lam"] = lam
+        header += [f"lambda_{name}" for name in spec.state_names]
+    # dtype, because an array of no names would be one of floats.
+    names: dict[str, Any] = {
+        "states": np.array(spec.state_names, dtype=str),
+        "controls": np.array(spec.control_names, dtype=str),
+    }
+
+    def lines() -> Iterator[bytes]:
+        yield (",".join(header) + "\n").encode()
+        for row in np.vstack(list(arrays.values())).T:
+            yield (",".join(map(repr, row.tolist())) + "\n").encode()
+
+    return {
+        "trajectory.npz": lambda stream: np.savez(stream, **arrays, **names),
+        "trajectory.csv": lambda stream: stream.writelines(lines()),
+    }
+
+
+def check_writable(folder: Path) -> None:
+    """See, without making anything, whether files can be written into a folder that need not exist yet.
+
+    Raises
+    ------
+    BadInput
+        If not.
+    """
+    try:
+        existing = next(place for place in (folder, *folder.absolute().parents) if place.exists())
+        fine = existing.is_dir() and os.access(existing, os.W_OK | os.X_OK)
+    except OSError as error:
+        raise unwritable(folder, error) from None
+    if not fine:
+        reason = "no permission to write there" if existing.is_dir() else f"{printable(str(existing))} is not a folder"
+        raise BadInput(f"{printable(str(folder))}: {reason}; give another folder")
+
+
+def write(folder: Path, files: Mapping[str, Content]) -> list[Path]:
+    """Write files into a folder, which is made if need be.
+
+    All are written beside their places and flushed to the disk before the first takes its place, so that
+    whatever goes wrong meanwhile leaves what was there before.
+
+    Returns
+    -------
+    list of Path
+        In the order of `files`.
+
+    Raises
+    ------
+    BadInput
+        If the folder cannot be written to.
+    """
+    waiting: dict[Path, Path] = {}
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, content in files.items():
+            beside = folder / f".{name}.{os.getpid()}.tmp"
+            waiting[beside] = folder / name
+            with beside.open("wb") as stream:
+                content(stream)
+                stream.flush()
+                os.fsync(stream.fileno())
+        for beside, place in waiting.items():
+            beside.replace(place)
+    except OSError as error:
+        raise unwritable(folder, error) from None
+    finally:
+        for beside in waiting:
+            beside.unlink(missing_ok=True)
+    return list(waiting.values())
+
+
+def write_text(path: Path, content: str) -> None:
+    """Write a text file whole or not at all; through links, and straight into what is a device or a pipe.
+
+    Raises
+    ------
+    BadInput
+        If it cannot be written.
+    """
+    try:
+        target = path.resolve()
+        if target.is_dir():
+            raise BadInput(f"{printable(str(path))}: is a folder; give the name of a file")
+        if target.exists() and not target.is_file():
+            target.write_text(content, encoding="utf-8")
+            return
+    except (OSError, RuntimeError) as error:  # RuntimeError: a loop of links
+        raise unwritable(path, error) from None
+    write(target.parent, {target.name: text(content)})
+
+
+def unwritable(place: Path, error: Exception) -> BadInput:
+    """The complaint about a place that the system would not write to."""
+    reason = getattr(error, "strerror", None) or "the path leads nowhere"
+    return BadInput(f"{printable(str(place))}: cannot be written ({reason}); give another place")
