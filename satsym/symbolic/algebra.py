@@ -27,7 +27,7 @@ def gradient(expression: sp.Expr, symbols: Iterable[sp.Symbol]) -> list[sp.Expr]
 
 def tidy(expression: sp.Expr, by: Sequence[sp.Symbol] = ()) -> sp.Expr:
     """The expression as a sum over the symbols it is linear in, each with its shortest coefficient."""
-    expanded = _expand(expression)
+    expanded = _expand(sp.sympify(expression))
     collected = sp.collect(expanded, list(by), evaluate=False) if by else {sp.Integer(1): expanded}
     parts = [factor * _shortest(coefficient) for factor, coefficient in collected.items()]
     return sp.Add(*parts)
@@ -39,5 +39,12 @@ def _shortest(expression: sp.Expr) -> sp.Expr:
 
 
 def _expand(expression: sp.Expr) -> sp.Expr:
-    """Products and powers multiplied out; a logarithm of a quotient stays one, as its parts may have units."""
-    return sp.expand(expression, log=False)
+    """Products and powers multiplied out, but roots of sums and logarithms in one piece.
+
+    A root is worth more whole, and the parts of a logarithm may have units.
+    """
+    powers = {p for p in expression.atoms(sp.Pow) if p.base.is_Add and p.exp.is_Rational and not p.exp.is_Integer}
+    whole = {sp.Pow(p.base, sp.Rational(1, p.exp.q)): sp.Dummy(positive=True) for p in powers}
+    hidden = {p: whole[sp.Pow(p.base, sp.Rational(1, p.exp.q))] ** p.exp.p for p in powers}
+    expanded = sp.expand(expression.xreplace(hidden), log=False)
+    return expanded.xreplace({dummy: root for root, dummy in whole.items()})

@@ -86,12 +86,10 @@ def never_below(
     try:
         with mp.workdps(DIGITS):
             deficits = [max(-m, mp.mpf(0)) if m == m else m for p in points(symbols, claim) for m in margins(p, rng)]
-    except TypeError as error:
-        if "complex" not in str(error):  # which mpmath does not order
-            raise
+    except TypeError as error:  # mpmath does not order complex numbers
         raise DerivationError(
-            f"the check {claim!r} met complex numbers; declare the variables that have to be positive so"
-        ) from None
+            f"the check {claim!r} met values without an order, such as complex ones; declare what must be positive so"
+        ) from error
     return Check(claim, _largest(deficits), LIMIT)
 
 

@@ -18,8 +18,6 @@ from satsym.symbolic.model import Newton, symbols_of
 def unit_vectors(so_far: Derivation) -> Step:
     """How the directions turn: their rates of change, resolved along themselves."""
     model = _newton(so_far)
-    if {len(model.position), *map(len, model.directions.values())} != {len(model.directions)}:
-        raise DerivationError(f"{model.name}: position and directions need as many components as there are directions")
     basis = sp.Matrix.hstack(*model.directions.values())
     orthonormal = identity("orthonormal", basis.T * basis - sp.eye(basis.cols))
     if not orthonormal.passed:
@@ -98,7 +96,7 @@ def equations_of_motion(so_far: Derivation) -> Step:
     law = [e.lhs - e.rhs for e in so_far.step("newton").equations]
     mass, load = sp.linear_eq_to_matrix(law, unknown)
     if mass.rows != mass.cols or sp.simplify(mass.det()) == 0:
-        raise DerivationError(f"{model.name}: Newton's law does not determine the {len(unknown)} accelerations")
+        raise DerivationError(f"{model.name}: Newton's law does not determine {', '.join(a.name for a in unknown)}")
     controls = symbols_of(model.controls)
     simple = [sp.simplify(s) for s in mass.LUsolve(load)]
     solved = [min(tidy(s), tidy(s, controls), key=sp.count_ops) for s in simple]
@@ -124,8 +122,6 @@ def first_order(so_far: Derivation) -> Step:
     for q, q_dot in model.coordinates.items():
         rate[q_dot] = so_far.equation(f"equations_of_motion.{q.name}").rhs
     states = symbols_of(model.states)
-    if set(states) != set(rate):
-        raise DerivationError(f"{model.name}: the states must be the coordinates and their rates, no more, no less")
     equations = tuple(Equation(s.name, n.rate_of(s), rate[s]) for s in states)
     f = sp.Matrix([e.rhs for e in equations])
     flow = dict(zip(states, f, strict=True))

@@ -105,6 +105,8 @@ class Problem:
         Integrand L(t, x, u, p) (Lagrange term).
     terminal_cost
         S(x, t, p), taken at the final time (Mayer term).
+    terminal_constraints
+        Expressions psi(x, t, p) that vanish at the final time.
     control_set
         ``"free"``, ``"box"`` (each control between its bounds) or ``"ball"`` (a bound on the norm); the
         numbers belong to the instance.
@@ -115,4 +117,5 @@ class Problem:
     model: Model
     running_cost: sp.Expr
     terminal_cost: sp.Expr = sp.Integer(0)
+    terminal_constraints: tuple[sp.Expr, ...] = ()
     control_set: ControlSet = "free"

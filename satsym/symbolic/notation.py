@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 import sympy as sp
 
@@ -15,6 +15,7 @@ TIME, FINAL_TIME = sp.Symbol("t", real=True), sp.Symbol("t_f", real=True)
 HAMILTONIAN, MINIMISED = sp.Symbol("H", real=True), sp.Symbol("H_star", real=True)
 POSITION, VELOCITY, ACCELERATION, FORCE = (sp.Symbol(f"{name}_vector") for name in ("r", "v", "a", "F"))
 RUNNING_COST, TERMINAL_COST = sp.Symbol("L", real=True), sp.Symbol("S", real=True)
+RESIDUAL_TIME = sp.Symbol("residual_t_f", real=True)
 ENERGY, ANGULAR_MOMENTUM = sp.Symbol("energy", real=True), sp.Symbol("angular_momentum", real=True)
 JACOBI_INTEGRAL = sp.Symbol("jacobi_integral", real=True)
 
@@ -29,6 +30,7 @@ FIXED = {
     FORCE: r"\mathbf{F}",
     RUNNING_COST: "L",
     TERMINAL_COST: "S",
+    RESIDUAL_TIME: "B_{t_f}",
     ENERGY: r"\mathcal{E}",
     ANGULAR_MOMENTUM: r"\ell",
     JACOBI_INTEGRAL: r"\mathcal{J}",
@@ -73,6 +75,31 @@ def unconstrained(control: sp.Symbol) -> sp.Symbol:
     return sp.Symbol(f"{control.name}_hat", real=True)
 
 
+def given(state: sp.Symbol) -> sp.Symbol:
+    """One where the final value of a state is given, else zero."""
+    return sp.Symbol(f"given_{state.name}", real=True)
+
+
+def on_reference(state: sp.Symbol) -> sp.Symbol:
+    """One where a state ends on its reference, else zero."""
+    return sp.Symbol(f"on_reference_{state.name}", real=True)
+
+
+def target(state: sp.Symbol) -> sp.Symbol:
+    """The given final value of a state."""
+    return sp.Symbol(f"target_{state.name}", real=True)
+
+
+def multipliers(problem: Problem) -> tuple[sp.Symbol, ...]:
+    """The multipliers of the terminal constraints."""
+    return tuple(sp.Symbol(f"nu_{k}", real=True) for k in range(1, len(problem.terminal_constraints) + 1))
+
+
+def residual_of(symbol: sp.Symbol) -> sp.Symbol:
+    """The symbol for the boundary residual of a state, a terminal constraint or the final time."""
+    return sp.Symbol(f"residual_{symbol.name}", real=True)
+
+
 def initial(state: sp.Symbol) -> sp.Symbol:
     """The symbol for the given initial value of a state."""
     return sp.Symbol(f"{state.name}_0", real=True)
@@ -89,8 +116,7 @@ def begin(model: Model, problem: Problem | None) -> Derivation:
     variables = [*model.states, *model.controls, *model.parameters, *(d.variable for d in model.definitions)]
     if problem:
         variables += control_sets.bounds(problem.control_set, model.controls)
-    _refuse_clashes(variables)
-    notation = {s.name: latex for s, latex in FIXED.items()} | {v.symbol: v.latex for v in variables}
+    notation = {s.name: latex for s, latex in FIXED.items()}
     latex = {v.symbol: v.latex for v in model.states}
     for state in symbols_of(model.states):
         own = latex[state.name]
@@ -98,7 +124,15 @@ def begin(model: Model, problem: Problem | None) -> Derivation:
         notation[initial(state).name] = rf"{{{own}}}_0"
         if problem:
             notation[costate_of(state).name] = rf"\lambda_{{{own}}}"
+            notation[given(state).name] = rf"g_{{{own}}}"
+            notation[on_reference(state).name] = rf"\rho_{{{own}}}"
+            notation[target(state).name] = rf"\bar{{{own}}}"
+            notation[residual_of(state).name] = rf"B_{{{own}}}"
+            notation[residual_of(costate_of(state)).name] = rf"B_{{\lambda_{{{own}}}}}"
             notation[rate_of(costate_of(state)).name] = rf"\dot\lambda_{{{own}}}"
+    for k, multiplier in enumerate(multipliers(problem) if problem else (), start=1):
+        notation[multiplier.name] = rf"\nu_{{{k}}}"
+        notation[residual_of(multiplier).name] = rf"B_{{\psi_{{{k}}}}}"
     for control in model.controls:
         notation[f"{control.symbol}_star"] = rf"{control.latex}^*"
         notation[f"{control.symbol}_hat"] = rf"\hat {control.latex}"
@@ -109,7 +143,8 @@ def begin(model: Model, problem: Problem | None) -> Derivation:
         for name in model.directions:
             notation[name] = rf"\mathbf{{e}}_{{{_subscript(name, latex)}}}"
             notation[f"d_{name}"] = rf"\dot{{\mathbf{{e}}}}_{{{_subscript(name, latex)}}}"
-    return Derivation(model, problem, notation)
+    _refuse_clashes(variables, {*notation, *_entries(model)})
+    return Derivation(model, problem, notation | {v.symbol: v.latex for v in variables})
 
 
 def _subscript(direction: str, latex: dict[str, str]) -> str:
@@ -118,11 +153,20 @@ def _subscript(direction: str, latex: dict[str, str]) -> str:
     return latex.get(name, name)
 
 
-def _refuse_clashes(variables: Iterable[Variable]) -> None:
-    seen = {s.name for s in FIXED}
-    for variable in variables:
-        if variable.symbol in seen:
-            raise DerivationError(f"the name {variable.symbol!r} is used twice; names H, S, L, t, t_f are taken")
-        if variable.symbol in PYTHON_NAMES:
-            raise DerivationError(f"the name {variable.symbol!r} is needed by generated code; choose another")
-        seen.add(variable.symbol)
+def _entries(model: Model) -> Iterable[str]:
+    """Names of matrix entries: A = f_x, B = f_u, H_uu."""
+    states, controls = ([v.symbol for v in group] for group in (model.states, model.controls))
+    for letter, rows, columns in (("A", states, states), ("B", states, controls), ("H", controls, controls)):
+        yield from (f"{letter}_{row}_{column}" for row in rows for column in columns)
+
+
+def _refuse_clashes(variables: Iterable[Variable], derived: Collection[str]) -> None:
+    seen: set[str] = set()
+    for name in (v.symbol for v in variables):
+        if name in seen:
+            raise DerivationError(f"the name {name!r} is used twice; choose another for one of the two")
+        if name in derived:
+            raise DerivationError(f"the name {name!r} is given to something that is derived; choose another")
+        if name in PYTHON_NAMES:
+            raise DerivationError(f"the name {name!r} is needed by generated code; choose another")
+        seen.add(name)

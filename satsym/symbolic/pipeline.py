@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TypeAlias
 
-from satsym.symbolic import mechanics, motion, pontryagin
-from satsym.symbolic.derivation import Derivation, Step
+from satsym.symbolic import dimensions, mechanics, motion, pontryagin, transversality
+from satsym.symbolic.declared import refuse_foreign_symbols, refuse_misfits
+from satsym.symbolic.derivation import Derivation, DerivationError, Step
 from satsym.symbolic.model import FirstOrder, Model, Newton, Problem
 from satsym.symbolic.notation import begin
 
@@ -38,6 +40,7 @@ MINIMUM_PRINCIPLE: tuple[MaybeStep, ...] = (
     pontryagin.state_equations,
     pontryagin.costate_equations,
     pontryagin.boundary_conditions,
+    transversality.boundary_residual,
 )
 
 MODEL_STEPS: dict[type[Model], tuple[MaybeStep, ...]] = {Newton: NEWTON, FirstOrder: FIRST_ORDER}
@@ -58,9 +61,27 @@ def derive(subject: Problem | Model) -> Derivation:
         failed.
     """
     problem, model = (subject, subject.model) if isinstance(subject, Problem) else (None, subject)
+    try:
+        return _derived(model, problem)
+    except DerivationError as error:
+        # what is refused far down, by a control set for instance, does not know of whom it speaks
+        known = str(error).startswith((f"{subject.name}:", f"{model.name}:"))
+        raise DerivationError(str(error) if known else f"{subject.name}: {error}") from error.__cause__
+
+
+def _derived(model: Model, problem: Problem | None) -> Derivation:
+    """Run the steps in order, each with the check of its dimensions."""
+    steps = next((found for kind, found in MODEL_STEPS.items() if isinstance(model, kind)), None)
+    if steps is None:
+        kinds = " or ".join(kind.__name__ for kind in MODEL_STEPS)
+        raise DerivationError(f"a {type(model).__name__} has no steps of its own; state the model as {kinds}")
+    refuse_misfits(model, problem)
     derivation = begin(model, problem)
-    for step_function in (*MODEL_STEPS[type(model)], *(MINIMUM_PRINCIPLE if problem else ())):
+    refuse_foreign_symbols(derivation)
+    known = dimensions.declared(derivation)
+    for step_function in (*steps, *(MINIMUM_PRINCIPLE if problem else ())):
         step = step_function(derivation)
         if step is not None:
-            derivation = derivation.extended(step)
+            derivation = derivation.extended(replace(step, checks=(*step.checks, dimensions.agreement(known, step))))
+            known = dimensions.extended(known, step)
     return derivation

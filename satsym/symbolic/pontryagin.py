@@ -8,6 +8,7 @@ from typing import Any
 
 import mpmath as mp
 import sympy as sp
+from sympy.solvers.solveset import NonlinearError
 
 from satsym.symbolic import control_sets
 from satsym.symbolic import notation as n
@@ -210,7 +211,7 @@ def _linear_system(
     """H_u = 0 as a linear system in the controls."""
     try:
         rows, load = sp.linear_eq_to_matrix(h_u, controls)
-    except sp.solvers.solveset.NonlinearError:
+    except NonlinearError:
         raise DerivationError(f"{so_far.name}: H is not quadratic in the controls, H_u = 0 not linear") from None
     if sp.simplify(rows.det()) == 0:
         raise DerivationError(f"{so_far.name}: H_uu is singular, so H_u = 0 does not determine the controls")

@@ -1,0 +1,85 @@
+"""Products taken apart for print: sign, numbers, what stands above the fraction line and what below."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import sympy as sp
+
+
+@dataclass(frozen=True)
+class Product:
+    """A product: sign * number * top / (number_below * bottom), the numbers positive and without common factors."""
+
+    negative: bool
+    number: sp.Expr
+    top: tuple[sp.Expr, ...]
+    number_below: sp.Integer
+    bottom: tuple[sp.Expr, ...]
+
+
+def take_apart(expression: sp.Expr) -> Product:
+    """Any expression as a product, with minuses and whole numbers drawn out of its sums."""
+    number, below = sp.Integer(1), sp.Integer(1)
+    top: list[sp.Expr] = []
+    bottom: list[sp.Expr] = []
+    for factor in _factors(expression):
+        if factor.is_Rational:
+            number, below = number * factor.p, below * factor.q
+        elif factor.is_Float:
+            number *= factor
+        elif factor.is_Pow and factor.exp.is_Rational and factor.exp.is_negative:
+            bottom.append(sp.Pow(factor.base, -factor.exp))
+        elif factor.is_Add and expression.is_Mul:
+            content, primitive = factor.primitive()
+            flip = all(map(is_negative, primitive.args))
+            number, below = number * content.p * (-1 if flip else 1), below * content.q
+            top.append(-primitive if flip else primitive)
+        else:
+            top.append(factor)
+    negative = bool(number.is_negative)
+    mixed = [k for k, f in enumerate(top) if f.is_Add and any(map(is_negative, f.args))]
+    if negative and expression.is_Mul and mixed and sum(bool(f.is_Add) for f in top) > 1:
+        # -(a - b)(c - d) is better read as (a - b)(d - c)
+        negative, top[mixed[-1]] = False, -top[mixed[-1]]
+    if not number.is_Float:
+        number, below = sp.fraction(number / below)
+    return Product(negative, abs(number), tuple(top), below, tuple(bottom))
+
+
+def spread(summand: sp.Expr) -> sp.Expr:
+    """The summand with a sum above its fraction line divided term by term, where that makes it shorter."""
+    parts = take_apart(summand)
+    sums = [f for f in parts.top if f.is_Add]
+    if len(sums) != 1 or not parts.bottom:
+        return summand
+    below = sp.Mul(parts.number_below, *parts.bottom)
+    divided = sp.Add(*(a / below for a in sums[0].args))
+    if sp.count_ops(divided) >= sp.count_ops(sums[0] / below):
+        return summand
+    number = -parts.number if parts.negative else parts.number
+    return sp.Mul(number, *(f for f in parts.top if f is not sums[0])) * divided
+
+
+def is_negative(summand: sp.Expr) -> bool:
+    """Whether a minus stands before it in print."""
+    return take_apart(summand).negative
+
+
+def base(factor: sp.Expr) -> sp.Expr:
+    """The base of a power, or the factor itself."""
+    return factor.base if factor.is_Pow else factor
+
+
+def exponent(factor: sp.Expr) -> sp.Expr:
+    """The exponent of a power with a rational one, else one."""
+    return factor.exp if factor.is_Pow and factor.exp.is_Rational else sp.Integer(1)
+
+
+def _factors(expression: sp.Expr) -> Iterator[sp.Expr]:
+    for factor in sp.Mul.make_args(expression):
+        if factor.is_Mul:
+            yield from _factors(factor)
+        else:
+            yield factor

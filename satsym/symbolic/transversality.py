@@ -1,0 +1,114 @@
+"""The boundary residual: one function whose zero is the right end of every boundary type.
+
+At the final time the first variation of the cost leaves (H + S_t) dt + (S_x - lambda)' dx, which must vanish
+for every variation that the instance admits (Kirk, Optimal Control Theory, 5.1). Two numbers for each state
+say which: ``given`` (dx = 0) and ``on_reference`` (dx = c'(t) dt); with neither the state is free. What then
+multiplies each independent variation, and each condition on the end itself, are the residuals. With the five
+choices of textbooks, and all mixtures, they are the boundary conditions. Terminal constraints psi = 0 enter
+through S + nu' psi.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+from typing import Any
+
+import mpmath as mp
+import sympy as sp
+
+from satsym.symbolic import notation as n
+from satsym.symbolic.algebra import gradient, tidy
+from satsym.symbolic.checks import DIGITS, Point, compare, numeric
+from satsym.symbolic.derivation import Check, Derivation, Equation, Step
+from satsym.symbolic.model import symbols_of, t
+
+TIME_VARIATION = sp.Symbol("delta_t", real=True)
+KINDS = ("given", "reference", "free")
+
+
+def boundary_residual(so_far: Derivation) -> Step:
+    """The residuals of the end itself and of transversality, state by state, of constraints and of the final time.
+
+    Of the two residuals of a state one is zero by the choice of ``given`` and ``on_reference``.
+    """
+    problem = so_far.problem
+    if problem is None:
+        raise TypeError(f"{so_far.name} has no cost")
+    states = symbols_of(so_far.model.states)
+    lam = [n.costate_of(x) for x in states]
+    given, on_reference = [n.given(x) for x in states], [n.on_reference(x) for x in states]
+    target, nu = [n.target(x) for x in states], n.multipliers(problem)
+    curve = [so_far.model.reference.get(x, sp.Integer(0)) for x in states]
+    constraints = [sp.sympify(c) for c in problem.terminal_constraints]
+    weighted = problem.terminal_cost + sum((v * c for v, c in zip(nu, constraints, strict=True)), sp.Integer(0))
+
+    slopes, slope_t = [tidy(g) for g in gradient(weighted, states)], tidy(sp.diff(weighted, t))
+    free = [sp.Symbol(f"delta_{x.name}", real=True) for x in states]
+    moves = [
+        rho * sp.diff(c, t) * TIME_VARIATION + (1 - g - rho) * dx
+        for g, rho, c, dx in zip(given, on_reference, curve, free, strict=True)
+    ]
+    variation = (n.HAMILTONIAN + slope_t) * TIME_VARIATION + sum(
+        ((slope - costate) * move for slope, costate, move in zip(slopes, lam, moves, strict=True)), sp.Integer(0)
+    )
+    ends = [
+        g * (x - goal) + rho * (x - c)
+        for g, rho, x, goal, c in zip(given, on_reference, states, target, curve, strict=True)
+    ]
+    equations = (
+        *(Equation(x.name, n.residual_of(x), end) for x, end in zip(states, ends, strict=True)),
+        *(
+            Equation(costate.name, n.residual_of(costate), -sp.diff(variation, dx))
+            for costate, dx in zip(lam, free, strict=True)
+        ),
+        *(Equation(v.name, n.residual_of(v), c) for v, c in zip(nu, constraints, strict=True)),
+        Equation("final_time", n.residual_of(n.FINAL_TIME), sp.diff(variation, TIME_VARIATION)),
+    )
+    return Step(
+        "boundary_residual",
+        "collect variations",
+        equations,
+        ("boundary_conditions",),
+        (_first_variation(states, lam, weighted, curve, equations),),
+    )
+
+
+def _first_variation(
+    states: Sequence[sp.Symbol],
+    lam: Sequence[sp.Symbol],
+    weighted: sp.Expr,
+    curve: Sequence[sp.Expr],
+    equations: Sequence[Equation],
+) -> Check:
+    """Hold the residuals against the change of S + H t - lambda' x along admissible ends, by differences."""
+    residuals, cost, path = numeric([e.rhs for e in equations]), numeric([weighted]), numeric(list(curve))
+    rng = random.Random("ends")
+    everything = {*states, *lam, n.HAMILTONIAN, t}.union(*(e.rhs.free_symbols for e in equations))
+
+    def value(point: Point) -> Any:
+        costates = sum(point[costate] * point[x] for x, costate in zip(states, lam, strict=True))
+        return cost(point)[0] + point[n.HAMILTONIAN] * point[t] - costates
+
+    def sides(point: Point) -> tuple[list[Any], list[Any]]:
+        kinds = [rng.choice(KINDS) for _ in states]
+        dt, moves = rng.uniform(-1, 1), [rng.uniform(-1, 1) for _ in states]
+        chosen = {n.given(x): int(kind == "given") for x, kind in zip(states, kinds, strict=True)}
+        chosen |= {n.on_reference(x): int(kind == "reference") for x, kind in zip(states, kinds, strict=True)}
+        here = {**point, **chosen}
+        found = residuals(here)
+        # The residual of a free state is lambda - S_x: what its variation multiplies, with the sign changed.
+        free = sum(f * dx for f, dx in zip(found[len(states) :], moves, strict=False))
+        with mp.workdps(3 * DIGITS):
+            step = mp.mpf(10) ** -DIGITS
+            values = []
+            for h in (step, -step):
+                end = {**here, t: here[t] + h * dt}
+                on_curve = zip(path(end), path(here), strict=True)
+                for x, kind, dx, (later, now) in zip(states, kinds, moves, on_curve, strict=True):
+                    end[x] = here[x] + {"given": 0, "reference": later - now, "free": h * dx}[kind]
+                values.append(value(end))
+            change = (values[0] - values[1]) / (2 * step)
+        return [found[-1] * dt - free], [change]
+
+    return compare("change along admissible ends", everything, sides)

@@ -1,0 +1,362 @@
+"""A derivation file with a mistake is answered in one line that says what is wrong and where."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import pytest
+import sympy as sp
+from sympy import Matrix, cos, sin
+
+from satsym.symbolic import (
+    Definition,
+    DerivationError,
+    FirstOrder,
+    Model,
+    Newton,
+    Problem,
+    Variable,
+    derive,
+    symbols_of,
+    t,
+)
+
+STATES = (Variable("q1", "q"), Variable("v1", "v"))
+CONTROLS = (Variable("u1", "u_1"), Variable("u2", "u_2"))
+PARAMETERS = (Variable("k", "k", positive=True), Variable("c", "c"))
+q1, v1 = symbols_of(STATES)
+u1, u2 = symbols_of(CONTROLS)
+k, c = symbols_of(PARAMETERS)
+ghost = sp.Symbol("ghost", real=True)
+EFFORT = (u1**2 + u2**2) / 2
+
+
+def first_order(**changes: Any) -> FirstOrder:
+    fields: dict[str, Any] = {
+        "name": "small",
+        "title": "A small model",
+        "states": STATES,
+        "controls": CONTROLS,
+        "parameters": PARAMETERS,
+        "rates": {q1: v1 + u2, v1: -k * q1 + u1},
+    }
+    return FirstOrder(**(fields | changes))
+
+
+def plane(**changes: Any) -> Newton:
+    """A point in the plane, Cartesian."""
+    states = tuple(Variable(name, name) for name in ("a", "b", "a_dot", "b_dot"))
+    a, b, a_dot, b_dot = symbols_of(states)
+    fields: dict[str, Any] = {
+        "name": "plane",
+        "title": "Motion in the plane",
+        "states": states,
+        "controls": CONTROLS,
+        "parameters": PARAMETERS,
+        "coordinates": {a: a_dot, b: b_dot},
+        "directions": {"e_a": Matrix([1, 0]), "e_b": Matrix([0, 1])},
+        "position": Matrix([a, b]),
+        "forces": {"thrust": Matrix([u1, u2])},
+    }
+    return Newton(**(fields | changes))
+
+
+a, b, a_dot, b_dot = symbols_of(plane().states)
+
+
+def problem(model: Model | None = None, **changes: Any) -> Problem:
+    fields: dict[str, Any] = {"name": "task", "title": "", "model": model or first_order(), "running_cost": EFFORT}
+    return Problem(**(fields | changes))
+
+
+def complaint(subject: Problem | Model) -> str:
+    """The one line in which a subject is refused."""
+    with pytest.raises(DerivationError) as caught:
+        derive(subject)
+    text = str(caught.value)
+    assert text
+    assert "\n" not in text
+    assert len(text) < 250
+    return text
+
+
+@pytest.mark.parametrize(
+    "subject",
+    [first_order(), plane(), problem(), problem(plane())],
+    ids=lambda s: s.name + type(s).__name__ + str(bool(getattr(s, "model", None)) and s.model.name),
+)
+def test_the_models_that_the_mistakes_are_planted_in_are_sound(subject: Problem | Model) -> None:
+    assert derive(subject).steps
+
+
+# Names.
+
+
+@pytest.mark.parametrize(
+    "twice",
+    [
+        {"parameters": (*PARAMETERS, Variable("q1", "q"))},
+        {"controls": (*CONTROLS, Variable("u1", "u"))},
+        {"definitions": (Definition(Variable("k", "k"), sp.Integer(2)),)},
+    ],
+    ids=["state and parameter", "two controls", "parameter and definition"],
+)
+def test_a_name_may_be_used_once(twice: Mapping[str, Any]) -> None:
+    assert "is used twice" in complaint(first_order(**twice))
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "t",
+        "t_f",
+        "H",
+        "H_star",
+        "L",
+        "S",
+        "energy",
+        "d_q1",
+        "q1_0",
+        "u1_star",
+        "u1_hat",
+        "A_q1_v1",
+        "B_q1_u1",
+        "H_u1_u2",
+    ],
+)
+def test_a_name_of_something_derived_may_not_be_declared(name: str) -> None:
+    text = complaint(first_order(parameters=(*PARAMETERS, Variable(name, name))))
+    assert f"{name!r}" in text
+    assert "derived" in text
+
+
+@pytest.mark.parametrize("name", ["lambda_q1", "d_lambda_v1"])
+def test_costates_reserve_their_names_where_there_is_a_cost(name: str) -> None:
+    model = first_order(parameters=(*PARAMETERS, Variable(name, name)))
+    assert derive(model).steps
+    assert f"{name!r}" in complaint(problem(model))
+
+
+@pytest.mark.parametrize("name", ["e_a", "d_e_b", "a_ddot", "r_vector"])
+def test_vectors_and_accelerations_reserve_their_names(name: str) -> None:
+    assert f"{name!r}" in complaint(plane(parameters=(*PARAMETERS, Variable(name, name))))
+
+
+@pytest.mark.parametrize(("control_set", "name"), [("box", "u1_min"), ("box", "u2_max"), ("ball", "u_max")])
+def test_bounds_reserve_their_names(control_set: str, name: str) -> None:
+    model = first_order(parameters=(*PARAMETERS, Variable(name, name)))
+    assert derive(problem(model)).steps
+    assert f"{name!r} is used twice" in complaint(problem(model, control_set=control_set))
+
+
+def test_a_direction_may_not_have_the_name_of_a_state() -> None:
+    assert "'a'" in complaint(plane(directions={"a": Matrix([1, 0]), "e_b": Matrix([0, 1])}))
+
+
+@pytest.mark.parametrize("name", ["x", "u", "p", "lam", "lambda", "np", "math", "out", "for"])
+def test_names_that_generated_code_needs_are_refused(name: str) -> None:
+    assert f"the name {name!r} is needed by generated code" in complaint(
+        first_order(parameters=(*PARAMETERS, Variable(name, name)))
+    )
+
+
+@pytest.mark.parametrize("name", ["2r", "r__dot", "", "r dot", "r;import os"])
+def test_a_variable_needs_a_name_that_is_one(name: str) -> None:
+    with pytest.raises(ValueError, match="use a letter"):
+        Variable(name, "r")
+
+
+# Symbols.
+
+
+@pytest.mark.parametrize(
+    ("subject", "where"),
+    [
+        (first_order(rates={q1: v1 + ghost, v1: u1}), "small: the rate of q1"),
+        (problem(running_cost=EFFORT + ghost**2), "task: the running cost"),
+        (problem(terminal_cost=ghost * q1), "task: the terminal cost"),
+        (plane(forces={"pull": Matrix([-ghost * a, 0])}), "plane: the force 'pull'"),
+        (plane(position=Matrix([a + ghost, b])), "plane: the position"),
+        (plane(directions={"e_a": Matrix([1, 0]), "e_b": Matrix([0, ghost])}), "plane: the direction e_b"),
+        (problem(terminal_constraints=(ghost - q1,)), "task: a terminal constraint"),
+        (first_order(definitions=(Definition(Variable("g", "g"), ghost),)), "small: the value of g"),
+        (first_order(reference={q1: ghost, v1: 0}), "small: the reference of q1"),
+    ],
+    ids=lambda value: value.partition(": ")[2] if isinstance(value, str) else "",
+)
+def test_undeclared_symbols_are_named_with_the_place(subject: Problem | Model, where: str) -> None:
+    assert complaint(subject) == f"{where} uses undeclared symbols: ghost"
+
+
+@pytest.mark.parametrize(
+    "subject",
+    [
+        first_order(rates={q1: sp.Symbol("v1"), v1: u1}),
+        problem(running_cost=EFFORT + sp.Symbol("q1") ** 2),
+        plane(forces={"pull": Matrix([-sp.Symbol("k") * a, 0])}),
+    ],
+    ids=["rate", "cost", "force"],
+)
+def test_a_symbol_with_the_right_name_and_other_assumptions_is_refused(subject: Problem | Model) -> None:
+    """It would count as a constant, and every derivative by it would silently be zero."""
+    assert "take those from symbols_of" in complaint(subject)
+
+
+@pytest.mark.parametrize(
+    ("subject", "message"),
+    [
+        (problem(terminal_cost=q1 * u1), "task: the terminal cost cannot depend on u1"),
+        (first_order(reference={q1: v1, v1: 0}), "small: the reference of q1 cannot depend on v1"),
+        (first_order(definitions=(Definition(Variable("g", "g"), k * t),)), "small: the value of g cannot depend on t"),
+        (plane(position=Matrix([a, b + a_dot])), "plane: the position cannot depend on a_dot"),
+    ],
+    ids=["terminal cost", "reference", "definition", "position"],
+)
+def test_symbols_out_of_place_are_refused(subject: Problem | Model, message: str) -> None:
+    assert complaint(subject) == message
+
+
+# Mechanics.
+
+
+@pytest.mark.parametrize(
+    "directions",
+    [
+        {"e_a": Matrix([1, 0]), "e_b": Matrix([1, 1])},
+        {"e_a": Matrix([1, 0]), "e_b": Matrix([0, 2])},
+        {"e_a": Matrix([cos(a), sin(a)]), "e_b": Matrix([sin(a), cos(a)])},
+    ],
+    ids=["oblique", "too long", "sign"],
+)
+def test_directions_must_be_orthonormal(directions: Mapping[str, Matrix]) -> None:
+    assert complaint(plane(directions=directions)) == (
+        "plane: the directions must have length one and be at right angles"
+    )
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"directions": {"e_a": Matrix([1, 0])}},
+        {"directions": {"e_a": Matrix([1, 0, 0]), "e_b": Matrix([0, 1, 0])}},
+        {"position": Matrix([a, b, 0])},
+        {"forces": {"thrust": Matrix([u1, u2, 0])}},
+    ],
+    ids=["one missing", "three components", "position", "force"],
+)
+def test_vectors_need_as_many_components_as_there_are_directions(changes: Mapping[str, Any]) -> None:
+    assert "as many components as there are directions" in complaint(plane(**changes))
+
+
+def test_newtons_law_has_to_determine_the_accelerations() -> None:
+    for position in (Matrix([a + b, 2 * a + 2 * b]), Matrix([cos(a + b), sin(a + b)])):
+        assert complaint(plane(position=position)) == "plane: Newton's law does not determine a_ddot, b_ddot"
+    short = plane(coordinates={a: a_dot}, states=plane().states[::2], position=Matrix([a, a]))
+    assert complaint(short) == "plane: Newton's law does not determine a_ddot"
+
+
+def test_states_are_the_coordinates_and_their_rates() -> None:
+    mass = Variable("m", "m", positive=True)
+    assert complaint(plane(states=(*plane().states, mass))) == (
+        "plane: the states must be the coordinates and their rates, no more, no less"
+    )
+    shared = plane(coordinates={a: a_dot, b: a_dot})
+    assert "the states must be the coordinates and their rates" in complaint(shared)
+
+
+def test_every_state_needs_one_rate() -> None:
+    for rates in ({q1: v1}, {q1: v1, v1: u1, k: u2}):
+        assert complaint(first_order(rates=rates)) == "small: give one rate for each state, no more, no less"
+
+
+def test_a_reference_names_every_state() -> None:
+    start = "small: the reference must have one curve for each state; look at"
+    assert complaint(first_order(reference={q1: sp.Integer(0)})) == f"{start} v1"
+    assert complaint(first_order(reference={q1: sp.Integer(0), v1: sp.Integer(0), k: sp.Integer(1)})) == f"{start} k"
+
+
+def test_a_reference_has_to_satisfy_the_equations() -> None:
+    assert complaint(first_order(reference={q1: cos(t), v1: -sin(t)})) == (
+        "small: the reference does not satisfy the equations of motion"
+    )
+    assert "reference" in derive(
+        first_order(reference={q1: cos(sp.sqrt(k) * t), v1: -sp.sqrt(k) * sin(sp.sqrt(k) * t)})
+    )
+
+
+def test_a_kind_of_model_without_steps_is_refused() -> None:
+    fields = {name: getattr(first_order(), name) for name in ("name", "title", "states", "controls", "parameters")}
+    assert complaint(Model(**fields)).startswith("small: ")
+
+
+# Cost and control.
+
+
+@pytest.mark.parametrize(
+    "cost",
+    [u1**4 + u2**2, sp.Abs(u1) + u2**2, EFFORT + sp.exp(u1), sp.sqrt(1 + u1**2 + u2**2), EFFORT + u1**2 * u2],
+    ids=str,
+)
+def test_hamiltonians_that_are_not_quadratic_are_refused(cost: sp.Expr) -> None:
+    assert complaint(problem(running_cost=cost)) == ("task: H is not quadratic in the controls, H_u = 0 not linear")
+
+
+@pytest.mark.parametrize(
+    "cost",
+    [u1**2, sp.Integer(1), sp.Integer(0), (u1 + u2) ** 2, (u1 * sin(q1)) ** 2 + (u1 * cos(q1)) ** 2],
+    ids=str,
+)
+def test_a_singular_second_derivative_is_refused(cost: sp.Expr) -> None:
+    assert complaint(problem(running_cost=cost)) == (
+        "task: H_uu is singular, so H_u = 0 does not determine the controls"
+    )
+
+
+@pytest.mark.parametrize(
+    "cost", [u1**2 - u2**2, -EFFORT, u1**2 + 3 * u1 * u2 + u2**2, c * u1**2 + u2**2, q1 * EFFORT, k * u1 * u2], ids=str
+)
+def test_an_indefinite_second_derivative_is_refused(cost: sp.Expr) -> None:
+    text = complaint(problem(running_cost=cost))
+    assert text.startswith("task: H_uu is not positive definite, so H has no minimum in the controls")
+
+
+def test_a_weight_has_to_be_declared_positive() -> None:
+    assert "declared positive" in complaint(problem(running_cost=c * u1**2 + u2**2))
+    assert derive(problem(running_cost=k * u1**2 + u2**2)).steps
+
+
+def test_a_box_needs_uncoupled_controls() -> None:
+    coupled = EFFORT + u1 * u2 / 4
+    assert complaint(problem(running_cost=coupled, control_set="box")) == (
+        "task: a box needs a diagonal H_uu: clipping each control minimises H only then"
+    )
+    assert derive(problem(running_cost=coupled)).steps
+
+
+def test_a_ball_needs_equal_weights() -> None:
+    for cost in (u1**2 + 2 * u2**2, EFFORT + u1 * u2 / 4, k * u1**2 + u2**2):
+        assert complaint(problem(running_cost=cost, control_set="ball")) == (
+            "task: a ball needs equal control weights: shortening the control minimises H only then"
+        )
+        assert derive(problem(running_cost=cost)).steps
+
+
+def test_a_problem_needs_a_control() -> None:
+    model = first_order(controls=(), rates={q1: v1, v1: -q1})
+    assert derive(model).steps
+    assert complaint(problem(model, running_cost=q1**2)) == (
+        "task: the model has no controls, so there is nothing to optimise"
+    )
+
+
+def test_roots_of_states_need_positive_states() -> None:
+    level = Variable("q1", "q", positive=True)
+    (positive,) = symbols_of((level,))
+
+    def tank(state: Variable, q: sp.Symbol) -> Problem:
+        model = first_order(states=(state,), controls=CONTROLS[:1], rates={q: -k * sp.sqrt(q) + u1})
+        return problem(model, running_cost=u1**2, control_set="box")
+
+    assert derive(tank(level, positive)).steps
+    assert "declare what must be positive so" in complaint(tank(STATES[0], q1))
