@@ -67,9 +67,9 @@ class ProblemSpec:
         Kind of the control set; ``None`` for a model without a cost.
     has_cost, has_terminal_cost, has_reference, autonomous
         Which of the generated functions mean something.
-    invariants, position
-        Names of the conserved quantities of the uncontrolled motion, and of the components of the
-        position vector (empty where the model has none).
+    invariants, position, multipliers
+        Names of the conserved quantities of the uncontrolled motion, of the components of the position vector, and
+        of the multipliers of terminal constraints (each empty where there are none).
     """
 
     name: str
@@ -85,6 +85,7 @@ class ProblemSpec:
     autonomous: bool
     invariants: tuple[Variable, ...] = ()
     position: tuple[Variable, ...] = ()
+    multipliers: tuple[Variable, ...] = ()
 
     @property
     def state_names(self) -> tuple[str, ...]:
@@ -118,7 +119,7 @@ class ProblemSpec:
         if stated.pop("format", None) != FORMAT:
             raise ValueError(f"written in another format than {FORMAT}")
         try:
-            for key in ("states", "controls", "parameters", "invariants", "position"):
+            for key in ("states", "controls", "parameters", "invariants", "position", "multipliers"):
                 stated[key] = tuple(Variable(**entry) for entry in stated[key])
             return cls(**stated)
         except (KeyError, TypeError) as error:

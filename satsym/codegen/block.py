@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from satsym.symbolic.control_sets import Clip, Shorten
+from satsym.codegen.printers import LARGEST_PRODUCT
+from satsym.symbolic.control_sets import PROJECTIONS
 
 Assignment = tuple[sp.Symbol, sp.Expr]
 
@@ -73,11 +74,9 @@ class _Extraction:
             return self._take(expression)
         if not isinstance(expression, sp.Add | sp.Mul):
             return expression.func(*(self.apply(a) for a in expression.args)) if expression.args else expression
-        inside = [a for a in expression.args if self._invariant(a)]
-        outside = [self.apply(a) for a in expression.args if not self._invariant(a)]
-        if sum(not a.is_Number for a in inside) > 1:
-            return expression.func(self._take(expression.func(*inside)), *outside)
-        return expression.func(*(self._take(a) for a in inside), *outside)
+        inside = expression.func(*(a for a in expression.args if self._invariant(a)))
+        outside = (self.apply(a) for a in expression.args if not self._invariant(a))
+        return expression.func(self._take(inside), *outside)
 
     def _invariant(self, expression: sp.Expr) -> bool:
         return expression.free_symbols <= self.allowed
@@ -85,10 +84,17 @@ class _Extraction:
     def _take(self, part: sp.Expr) -> sp.Expr:
         if not part.args or not part.free_symbols:
             return part
+        if _negative(part):  # so that what uses it subtracts, instead of adding what was negated
+            return -self._take(-part)
         if part not in self.known:
             self.known[part] = sp.Symbol(f"{self.prefix}{len(self.known)}", real=True)
             self.assignments.append((self.known[part], part))
         return self.known[part]
+
+
+def _negative(expression: sp.Expr) -> bool:
+    """Whether every term has a minus sign."""
+    return all(term.as_coeff_Mul()[0].is_negative for term in sp.Add.make_args(expression))
 
 
 class _Cheapened:
@@ -106,7 +112,7 @@ class _Cheapened:
         if not expression.args:
             return expression
         args = [self.apply(a) for a in expression.args]
-        if isinstance(expression, Clip | Shorten):
+        if isinstance(expression, PROJECTIONS):
             return self._take(expression.func(*(a if a.is_Symbol else self._take(a) for a in args)))
         if not expression.is_Pow:
             return expression.func(*args)
@@ -118,7 +124,13 @@ class _Cheapened:
             base = self._take(sp.sqrt(base))
         if exponent < 0:
             base = self._take(1 / base)
-        return base ** abs(exponent.p)
+        return self._power(base, abs(exponent.p))
+
+    def _power(self, base: sp.Expr, exponent: int) -> sp.Expr:
+        """A high power from a named square; ``**`` would call pow, also where the code is compiled."""
+        if exponent <= LARGEST_PRODUCT or base.is_Number:
+            return base**exponent
+        return self._power(self._take(base**2), exponent // 2) * base ** (exponent % 2)
 
     def _take(self, part: sp.Expr) -> sp.Expr:
         if part.is_Number:

@@ -95,6 +95,9 @@ def _name(expression: sp.Expr) -> str:
         name = names.get(expression.exp, "w")
     elif expression.is_Mul and all(a.is_Symbol for a in expression.args):
         name = "_".join(sorted(a.name for a in expression.args))
+    elif expression.is_Mul and len(expression.args) == 2 and expression.args[1].is_Symbol:
+        words = {sp.S.Half: "half", sp.Integer(2): "twice"}
+        name = f"{words[expression.args[0]]}_{expression.args[1].name}" if expression.args[0] in words else "w"
     elif expression.is_Function and len(expression.args) == 1 and expression.args[0].is_Symbol:
         name = f"{expression.func.__name__}_{expression.args[0].name}"
     return name if len(name) <= LONGEST_NAME else "w"

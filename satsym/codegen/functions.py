@@ -10,10 +10,13 @@ from satsym.spec import names
 from satsym.symbolic.control_sets import bounds
 from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.model import symbols_of, t
-from satsym.symbolic.notation import costate_of
+from satsym.symbolic.notation import costate_of, given, multipliers, on_reference, target
 
-ARGUMENTS = ("t", "x", "u", "lam", "p", "bounds")
+ARGUMENTS = ("t", "x", "u", "lam", "nu", "p", "bounds", "final")
 """Names of arguments, in the order in which every function takes those it has."""
+
+TUPLES = ("nu", "p", "bounds", "final")
+"""Those that are tuples of numbers also in the batch form."""
 
 
 @dataclass(frozen=True)
@@ -55,8 +58,10 @@ class Symbols:
     x: tuple[sp.Symbol, ...]
     u: tuple[sp.Symbol, ...]
     lam: tuple[sp.Symbol, ...]
+    nu: tuple[sp.Symbol, ...]
     p: tuple[sp.Symbol, ...]
     bounds: tuple[sp.Symbol, ...]
+    final: tuple[sp.Symbol, ...]
 
     def of(self, argument: str) -> tuple[sp.Symbol, ...]:
         """Symbols of an argument; time alone is not a tuple."""
@@ -73,8 +78,10 @@ def symbols(derivation: Derivation) -> Symbols:
         x=states,
         u=symbols_of(model.controls),
         lam=tuple(costate_of(s) for s in states) if problem else (),
+        nu=multipliers(problem) if problem else (),
         p=symbols_of(model.parameters),
         bounds=symbols_of(bounds(problem.control_set, model.controls)) if problem else (),
+        final=tuple(kind(s) for kind in (given, on_reference, target) for s in states) if problem else (),
     )
 
 

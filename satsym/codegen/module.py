@@ -9,7 +9,8 @@ import sympy as sp
 from satsym.codegen import rk4
 from satsym.codegen.block import Assignment, build
 from satsym.codegen.emitter import Emitter
-from satsym.codegen.functions import Function, Symbols, functions, symbols
+from satsym.codegen.extremals import all_functions
+from satsym.codegen.functions import TUPLES, Function, Symbols, symbols
 from satsym.codegen.printers import BatchPrinter, ScalarPrinter
 from satsym.spec import ProblemSpec, Variable
 from satsym.symbolic.algebra import definitions_of
@@ -32,7 +33,7 @@ def render(derivation: Derivation, source: str) -> str:
         Straight-line Python that imports only ``math`` and ``numpy``; the same text for the same derivation,
         always.
     """
-    s, found = symbols(derivation), functions(derivation)
+    s, found = symbols(derivation), all_functions(derivation)
     constants = list(definitions_of(derivation.model).items())
     parts = [
         _header(derivation, source),
@@ -62,6 +63,7 @@ def spec(derivation: Derivation, source: str) -> ProblemSpec:
         has_reference="reference" in derivation,
         autonomous=not any(e.has(symbols(derivation).t) for e in derivation.rhs("first_order")),
         invariants=tuple(Variable(e.name, derivation.notation[e.name]) for e in conserved),
+        multipliers=tuple(Variable(v.name, derivation.notation[v.name]) for v in symbols(derivation).nu),
         position=tuple(Variable(axis, axis) for axis in ("x", "y", "z")[: len(position)]),
     )
 
@@ -123,8 +125,8 @@ def _batch_form(function: Function, s: Symbols, constants: Sequence[Assignment])
     assignments, outputs = _straight_line(function, s, constants)
     rows, columns = function.value.shape
     shape = {"scalar": "shape", "vector": f"({rows}, *shape)", "matrix": f"({rows}, {columns}, *shape)"}[function.kind]
-    sizes = [f"{a}[0]" if a in ("x", "u", "lam") else a for a in function.arguments if a not in ("p", "bounds")]
-    types = [f"*{a}" if a in ("p", "bounds") else a for a in function.arguments]
+    sizes = [a if a == "t" else f"{a}[0]" for a in function.arguments if a not in TUPLES]
+    types = [f"*{a}" if a in TUPLES else a for a in function.arguments]
     body = [
         *_unpack(function, s),
         "if out is None:",

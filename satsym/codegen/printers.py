@@ -83,9 +83,17 @@ class ScalarPrinter(_Printer):
         value, lower, upper = (self._print(a) for a in expr.args)
         return f"{lower} if {value} < {lower} else {upper} if {value} > {upper} else {value}"
 
+    def _print_Inside(self, expr: Any) -> str:
+        value, lower, upper = (self._print(a) for a in expr.args)
+        return f"0.0 if {value} < {lower} else 0.0 if {value} > {upper} else 1.0"
+
     def _print_Shorten(self, expr: Any) -> str:
         norm_squared, limit = (self._print(a) for a in expr.args)
         return f"1.0 if {norm_squared} <= {limit}*{limit} else {limit}/math.sqrt({norm_squared})"
+
+    def _print_ShortenSlope(self, expr: Any) -> str:
+        s, limit = (self._print(a) for a in expr.args)
+        return f"0.0 if {s} <= {limit}*{limit} else -0.5*{limit}/({s}*math.sqrt({s}))"
 
 
 class BatchPrinter(_Printer):
@@ -107,6 +115,16 @@ class BatchPrinter(_Printer):
     def _print_Shorten(self, expr: Any) -> str:
         norm_squared, limit = (self._print(a) for a in expr.args)
         return f"np.minimum(1.0, {limit}/np.sqrt(np.maximum({norm_squared}, 1e-300)))"
+
+    def _print_Inside(self, expr: Any) -> str:
+        value, lower, upper = (self._print(a) for a in expr.args)
+        return f"np.heaviside({value} - {lower}, 1.0)*np.heaviside({upper} - {value}, 1.0)"
+
+    def _print_ShortenSlope(self, expr: Any) -> str:
+        s, limit = (self._print(a) for a in expr.args)
+        # Finite whatever the limit and the norm, because the other factor must be able to make it zero.
+        slope = f"np.minimum({limit}, 1e100)/np.maximum({s}*np.sqrt({s}), 1e-100)"
+        return f"-0.5*np.heaviside({s} - {limit}*{limit}, 0.0)*{slope}"
 
 
 def _exact(number: Any) -> bool:

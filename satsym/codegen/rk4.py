@@ -103,8 +103,10 @@ class _Step:
         self.first_slopes = [(k, v) for k, v, c in zip(names.slopes, first, carries, strict=True) if c]
         self.opening = live(self.emit.take_lines(), [v for _, v in self.first_slopes])
 
-        self.arrival = [names.end[y] for y in loop.integrated]
         means = self._stages()
+        moves = list(zip(loop.integrated, means, strict=False))
+        self.arrival = [names.end[y] if mean else y for y, mean in moves]
+        self.emit.lines += [(names.end[y], y + mean) for y, mean in moves if mean]
         final = self._rates(names.end[loop.time], self.arrival, names.end, "slope_end")
         self.slopes = [(k, v) for k, v, c in zip(names.slopes, final, carries, strict=True) if c]
         self.middles = self._middles(final)
@@ -117,7 +119,7 @@ class _Step:
         self.before = live(self.emit.before, self.used | self.used_first)
 
     def _stages(self) -> list[sp.Expr]:
-        """Emit the stages and the arrival; h times the mean slope of everything integrated."""
+        """Emit the stages; h times the mean slope of everything integrated."""
         loop, names, emit = self.loop, self.names, self.emit
         half, sixth = emit.assign(HALF * names.h, "half"), emit.assign(SIXTH * names.h, "sixth")
         middle, end = (half, loop.time + half, names.half), (names.h, names.end[loop.time], names.end)
@@ -126,9 +128,7 @@ class _Step:
             steps = zip(loop.integrated, slopes[-1], strict=False)
             reached = [emit.assign(y + length * k, f"{y}_{stage}") for y, k in steps]
             slopes.append(self._rates(time, reached, given, f"k{stage}"))
-        means = [self._mean(sixth, k) for k in zip(*slopes, strict=True)]
-        emit.lines += [(e, y + mean) for e, y, mean in zip(self.arrival, loop.integrated, means, strict=False)]
-        return means
+        return self._means(sixth, list(zip(*slopes, strict=True)))
 
     def _rates(
         self, time: sp.Expr, values: Sequence[sp.Expr], given: dict[sp.Symbol, sp.Symbol], name: str
@@ -141,17 +141,35 @@ class _Step:
         rates = self.emit.inline(loop.rates, place, hints)
         return [self.emit.assign(r, hint) for r, hint in zip(rates, hints, strict=False)]
 
-    def _mean(self, sixth: sp.Expr, slopes: Sequence[sp.Expr]) -> sp.Expr:
-        """h/6 (k1 + 2 k2 + 2 k3 + k4)."""
-        k1, k2, k3, k4 = slopes
-        middle = 4 * k2 if k2 == k3 else 2 * self.emit.assign(k2 + k3)
-        return sixth * (k1 + middle + k4)
+    def _means(self, sixth: sp.Expr, slopes: Sequence[Sequence[sp.Expr]]) -> list[sp.Expr]:
+        """h/6 (k1 + 2 k2 + 2 k3 + k4) of each.
+
+        Where the rate of y is itself an integrated v, this is h (v + h/6 (k1 + k2 + k3)) with the slopes of v: RK4
+        takes Nystrom's form (II.14 of the same book), whose sums serve y and v.
+        """
+        integrated = self.loop.integrated
+        means = [sixth * (k1 + _scaled(2, k2 + k3) + k4) for k1, k2, k3, k4 in slopes]
+        for k, v in enumerate(self.loop.rates.outputs):
+            if v in integrated:
+                j = integrated.index(v)
+                k1, k2, k3, k4 = slopes[j]
+                inner = self.emit.assign(k2 + k3, f"k23_{v}")
+                first = self.emit.assign(k1 + inner, f"k123_{v}")
+                means[k] = self.names.h * (v + sixth * first)
+                if self.loop.rates.outputs[j] not in integrated:
+                    means[j] = sixth * (first + inner + k4)
+        return means
 
     def _middles(self, final: Sequence[sp.Expr]) -> list[sp.Expr]:
         """The Hermite midpoints."""
         eighth = self.emit.assign(EIGHTH * self.names.h, "eighth")
         ends = zip(self.loop.integrated, self.arrival, self.names.slopes, final, strict=False)
-        return [HALF * self.emit.assign(a + b) + eighth * (p - q) for a, b, p, q in ends]
+        return [_scaled(HALF, a + b) + eighth * (p - q) for a, b, p, q in ends]
+
+
+def _scaled(factor: sp.Expr | int, total: sp.Expr) -> sp.Expr:
+    """A number times a sum, not multiplied out: one operation less."""
+    return sp.Mul(factor, total, evaluate=not total.is_Add)
 
 
 def _text(loop: Loop, names: _Names, step: _Step) -> str:
@@ -190,6 +208,9 @@ def _text(loop: Loop, names: _Names, step: _Step) -> str:
     lines.append(f"    for i in range({f'{names.steps} - 1, -1, -1' if loop.backward else names.steps}):")
     put(2, names.end[loop.time], f"times[{arrives}]")
     put(2, names.h, f"{names.end[loop.time]} - {loop.time}")
+    if not loop.backward:  # stored at departure, where the index is i itself; backward that is at arrival
+        for y in loop.integrated:
+            put(2, f"{names.at[y]}[i]", y)
     for s in names.given:
         if names.half[s] in step.used:
             put(2, names.half[s], f"{names.mid[s]}[i]")
@@ -199,14 +220,19 @@ def _text(loop: Loop, names: _Names, step: _Step) -> str:
         put(2, symbol, expression)
     for y, middle, value in zip(loop.integrated, step.middles, step.arrival, strict=True):
         put(2, f"{names.mid[y]}[i]", middle)
-        put(2, f"{names.at[y]}[{arrives}]", value)
+        if loop.backward:
+            put(2, f"{names.at[y]}[i]", value)
     if loop.sums:
         put(2, names.total, names.total + step.added)
     put(2, loop.time, names.end[loop.time])
     for y, value in zip(loop.integrated, step.arrival, strict=True):
-        put(2, y, value)
+        if value != y:
+            put(2, y, value)
     for symbol, expression in step.slopes:
         put(2, symbol, expression)
+    if not loop.backward:
+        for y in loop.integrated:
+            put(1, f"{names.at[y]}[{names.steps}]", y)
     if loop.sums:
         lines.append(f"    return {names.total}")
     return "\n".join([f"def {loop.name}({loop.signature}):", f'    """{loop.summary}"""', *lines, ""])

@@ -8,15 +8,18 @@ generated right-hand sides.
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import mpmath as mp
 import numpy as np
+import sympy as sp
 from numpy.typing import NDArray
 
-from satsym.codegen.functions import Function, Symbols, functions, symbols
+from satsym.codegen.extremals import all_functions
+from satsym.codegen.functions import TUPLES, Function, Symbols, symbols
 from satsym.kernels import Kernels
+from satsym.symbolic.algebra import definitions_of
 from satsym.symbolic.checks import DIGITS, numeric
 from satsym.symbolic.derivation import Derivation, DerivationError
 
@@ -27,18 +30,21 @@ LIMIT = 1e-12
 COMPLEX_STEP = 1e-30
 
 DERIVATIVES = {
-    "jacobian_x": ("dynamics", "x", 1.0),
-    "jacobian_u": ("dynamics", "u", 1.0),
-    "terminal_gradient": ("terminal_cost", "x", 1.0),
-    "dynamics": ("hamiltonian", "lam", 1.0),
-    "stationarity": ("hamiltonian", "u", 1.0),
-    "costate_rate": ("hamiltonian", "x", -1.0),
-    "control_hessian": ("stationarity", "u", 1.0),
+    "jacobian_x": ("dynamics", ("x",), 1.0),
+    "jacobian_u": ("dynamics", ("u",), 1.0),
+    "terminal_gradient": ("terminal_cost", ("x",), 1.0),
+    "dynamics": ("hamiltonian", ("lam",), 1.0),
+    "stationarity": ("hamiltonian", ("u",), 1.0),
+    "costate_rate": ("hamiltonian", ("x",), -1.0),
+    "control_hessian": ("stationarity", ("u",), 1.0),
+    "canonical_jacobian": ("canonical", ("x", "lam"), 1.0),
+    "canonical_drift": ("canonical", ("t",), 1.0),
+    "boundary_jacobian": ("boundary", ("x", "lam", "nu", "t"), 1.0),
 }
-"""Function -> (function it is a derivative of, by which argument, factor)."""
+"""Function -> (function it is a derivative of, by which arguments, factor)."""
 
 Arguments = dict[str, Any]
-Array = NDArray[np.float64]
+Array = NDArray[np.floating[Any]]
 
 
 def verify(derivation: Derivation, kernels: Kernels) -> None:
@@ -49,11 +55,13 @@ def verify(derivation: Derivation, kernels: Kernels) -> None:
     DerivationError
         Naming the first function that deviates, and by how much. Nothing must be written then.
     """
-    known, found = symbols(derivation), functions(derivation)
+    known, found = symbols(derivation), all_functions(derivation)
+    constants = definitions_of(derivation.model)
     rng = random.Random(derivation.name)
     places = [_arguments(known, derivation, rng) for _ in range(POINTS)]
     for function in found:
-        _same_values(derivation.name, kernels, function, known, places)
+        exact = numeric([output.xreplace(constants) for output in function.outputs])
+        _same_values(derivation.name, kernels, function, exact, known, places)
     names = {f.name for f in found}
     for name, (of, by, factor) in DERIVATIVES.items():
         if {name, of} <= names:
@@ -68,15 +76,21 @@ def _arguments(known: Symbols, derivation: Derivation, rng: random.Random) -> Ar
         size = rng.uniform(0.5, 1.5)
         return size if symbol.is_positive or rng.random() < 0.5 else -size
 
-    place: Arguments = {a: tuple(map(draw, known.of(a))) for a in ("x", "u", "lam", "p", "bounds")}
+    place: Arguments = {a: tuple(map(draw, known.of(a))) for a in ("x", "u", "lam", *TUPLES)}
     if derivation.problem and derivation.problem.control_set == "box":
         m = len(known.u)
         place["bounds"] = tuple(-abs(b) for b in place["bounds"][:m]) + tuple(abs(b) for b in place["bounds"][m:])
     return place | {"t": draw(known.t)}
 
 
-def _same_values(name: str, kernels: Kernels, function: Function, known: Symbols, places: Sequence[Arguments]) -> None:
-    exact = numeric(function.outputs)
+def _same_values(
+    name: str,
+    kernels: Kernels,
+    function: Function,
+    exact: Callable[[Mapping[sp.Symbol, Any]], list[Any]],
+    known: Symbols,
+    places: Sequence[Arguments],
+) -> None:
     batch = getattr(kernels, f"{function.name}_batch")(*(_stacked(a, places) for a in function.arguments))
     columns = np.reshape(batch, (len(function.outputs), len(places)))
     for place, column in zip(places, columns.T, strict=True):
@@ -91,7 +105,7 @@ def _same_values(name: str, kernels: Kernels, function: Function, known: Symbols
 def _same_derivatives(
     model: str,
     kernels: Kernels,
-    relation: tuple[str, str, str, float],
+    relation: tuple[str, str, tuple[str, ...], float],
     found: Sequence[Function],
     places: Sequence[Arguments],
 ) -> None:
@@ -100,19 +114,30 @@ def _same_derivatives(
     arguments = {a: _stacked(a, places) for a in {*signature[name], *signature[of]}}
     derived = getattr(kernels, f"{name}_batch")(*(arguments[a] for a in signature[name]))
     slopes = []
-    for i in range(len(arguments[by])):
-        moved = np.array(arguments[by], dtype=complex)
-        moved[i] += 1j * COMPLEX_STEP
-        stepped = {**arguments, by: moved}
-        slopes.append(np.imag(getattr(kernels, f"{of}_batch")(*(stepped[a] for a in signature[of]))) / COMPLEX_STEP)
+    for argument in by:
+        for moved in _moved(arguments[argument]):
+            stepped = {**arguments, argument: moved}
+            values = getattr(kernels, f"{of}_batch")(*(stepped[a] for a in signature[of]))
+            slopes.append(np.imag(values) / COMPLEX_STEP)
     columns = np.stack(slopes, axis=-2)
     _refuse(model, f"{name} (as derivative of {of})", derived.reshape(columns.shape), factor * columns)
+
+
+def _moved(values: Any) -> Iterator[Any]:
+    """An argument with a complex step in each of its components in turn."""
+    if np.ndim(values) == 1 and not isinstance(values, tuple):
+        yield values + 1j * COMPLEX_STEP
+        return
+    for i in range(len(values)):
+        moved = np.array(values, dtype=complex)
+        moved[i] += 1j * COMPLEX_STEP
+        yield tuple(moved) if isinstance(values, tuple) else moved
 
 
 def _stacked(argument: str, places: Sequence[Arguments]) -> Any:
     """An argument at all places, as the batch form takes it."""
     values = np.array([place[argument] for place in places]).T
-    return tuple(values) if argument in ("p", "bounds") else values
+    return tuple(values) if argument in TUPLES else values
 
 
 def _same_loops(derivation: Derivation, kernels: Kernels, rng: random.Random) -> None:

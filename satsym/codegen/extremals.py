@@ -1,0 +1,72 @@
+"""Functions of extremals: the canonical equations with the control law in them, their Jacobian, the right end.
+
+With the control law substituted, states and costates obey one system z' = F(t, z). Its Jacobian is exact also
+where a bound is active: the projection's derivative is one inside the control set and zero outside.
+"""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from satsym.codegen.functions import Function, Symbols, functions, symbols
+from satsym.symbolic import notation as n
+from satsym.symbolic.derivation import Derivation
+
+
+def all_functions(derivation: Derivation) -> list[Function]:
+    """Every function of a generated module, in its order."""
+    s = symbols(derivation)
+    return functions(derivation) + (extremal_functions(derivation, s) if derivation.problem else [])
+
+
+def extremal_functions(derivation: Derivation, s: Symbols) -> list[Function]:
+    """The canonical system and the boundary residual, each with its derivatives."""
+    law = dict(zip(s.u, derivation.rhs("control_law"), strict=True))
+    z = sp.Matrix([*s.x, *s.lam])
+    rates = sp.Matrix([*derivation.rhs("first_order"), *derivation.rhs("costate_equations")]).xreplace(law)
+    h = derivation.equation("hamiltonian.H").rhs.xreplace(law)
+    ends = _ends(derivation, len(s.x)).xreplace({n.HAMILTONIAN: h})
+    unknown = sp.Matrix([*z, *s.nu, s.t])
+    return [
+        Function(
+            "canonical",
+            "Rates of change of states and costates under the control law.",
+            ("t", "x", "lam", "p", "bounds"),
+            rates,
+            "vector",
+        ),
+        Function(
+            "canonical_jacobian",
+            "The canonical rates by states and costates, row by row.",
+            ("t", "x", "lam", "p", "bounds"),
+            rates.jacobian(z),
+            "matrix",
+        ),
+        Function(
+            "canonical_drift",
+            "The canonical rates by explicit time.",
+            ("t", "x", "lam", "p", "bounds"),
+            rates.diff(s.t),
+            "vector",
+        ),
+        Function(
+            "boundary",
+            "Residuals at the final time: for each state (its end or its transversality), each constraint, the time.",
+            ("t", "x", "lam", "nu", "p", "bounds", "final"),
+            ends,
+            "vector",
+        ),
+        Function(
+            "boundary_jacobian",
+            "The boundary residuals by states, costates, multipliers and final time, row by row.",
+            ("t", "x", "lam", "nu", "p", "bounds", "final"),
+            ends.jacobian(unknown),
+            "matrix",
+        ),
+    ]
+
+
+def _ends(derivation: Derivation, states: int) -> sp.Matrix:
+    """The boundary residuals, the two of each state in one: the instance's choice makes one of them zero."""
+    residuals = derivation.rhs("boundary_residual")
+    return sp.Matrix([residuals[:states, 0] + residuals[states : 2 * states, 0], residuals[2 * states :, 0]])

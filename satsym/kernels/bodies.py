@@ -1,0 +1,242 @@
+"""Whether the body of a function is one that the generator writes.
+
+A body unpacks its arguments, assigns numbers to names, and returns numbers or stores them. A pointwise function
+is straight-line; a loop has one ``for`` over the steps. Whole numbers occur only as indices, in the few forms that
+stay within nodes and midpoints: compiled code does not check them again. Nothing calls a function of the file,
+so what passes takes time in proportion to its length and to the number of nodes.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Mapping
+from math import prod
+from typing import NoReturn
+
+from satsym.kernels.contract import Signature
+
+_GROUPS = {"x": "n", "x0": "n", "x_mid": "n", "lam": "n", "lam_f": "n", "lam_mid": "n", "u": "m", "u_mid": "m"}
+_GROUPS |= {"p": "k", "bounds": "b", "nu": "c", "final": "f"}
+_TUPLES = ("nu", "p", "bounds", "final")  # of numbers, also in the batch form
+_NODES, _MIDPOINTS = ("times", "x", "lam", "u"), ("x_mid", "lam_mid", "u_mid")
+_KEPT = {"math", "np", "len", "range", "float", "out", "shape"}
+_UNARY = ("sqrt", "sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log")
+_FUNCTIONS = {
+    "math": dict.fromkeys((*_UNARY, "asin", "acos", "atan", "fabs"), 1) | {"atan2": 2},
+    "np": dict.fromkeys((*_UNARY, "arcsin", "arccos", "arctan", "abs"), 1)
+    | dict.fromkeys(("arctan2", "heaviside", "minimum", "maximum"), 2),
+}
+
+
+class Unexpected(Exception):
+    """Something in a module that the generator does not write.
+
+    Parameters
+    ----------
+    line
+        Where, counted from 1.
+    reason
+        What, in a few words.
+    """
+
+    def __init__(self, line: int, reason: str) -> None:
+        super().__init__(line, reason)
+        self.line, self.reason = line, reason
+
+
+def refuse(node: ast.AST, reason: str) -> NoReturn:
+    """Refuse the line of a node."""
+    raise Unexpected(getattr(node, "lineno", 1), reason)
+
+
+def text_of(node: ast.AST) -> str:
+    """The node in Python's own layout: two nodes of one text are the same code."""
+    try:
+        return ast.unparse(node)
+    except ValueError:  # an int of thousands of digits, some f-strings
+        refuse(node, "has a value that cannot be written down")
+
+
+class Body:
+    """Checks a function, statement by statement.
+
+    Parameters
+    ----------
+    signature
+        Its arguments and the shape of its result.
+    sizes
+        Number behind each letter, see :func:`satsym.kernels.contract.sizes`.
+    form
+        ``"math"`` for a pointwise function on floats, ``"np"`` for one on arrays, ``"loop"``.
+    returns
+        Whether it returns something; only a loop may not.
+    """
+
+    def __init__(self, signature: Signature, sizes: Mapping[str, int], form: str, returns: bool) -> None:
+        self.signature, self.form, self.returns = signature, form, returns
+        self.module = "np" if form == "np" else "math"
+        self.shape = tuple(sizes[letter] for letter in signature.shape)
+        self.packed = {a: sizes[_GROUPS[a]] for a in signature.arguments if a in _GROUPS}
+        self.numbers = {a for a in signature.arguments if a == "t"}
+        self.nodes = {a for a in signature.arguments if a == "times"}
+        self.midpoints: set[str] = set()
+        self.stored: set[tuple[object, ...]] = set()
+        self.taken = _KEPT | set(signature.arguments)
+        self.steps = self.index = ""
+        self.looped = self.allocated = False
+
+    def check(self, statements: list[ast.stmt]) -> None:
+        """Check the statements after the docstring."""
+        last = statements[-1] if statements else None
+        if self.returns and not isinstance(last, ast.Return):
+            raise Unexpected(getattr(last, "lineno", 1), "ends without a result")
+        for statement in statements:
+            if statement is last and self.returns:
+                self._result(statement)
+            else:
+                self._statement(statement)
+
+    def _statement(self, node: ast.stmt) -> None:
+        match node:
+            case ast.Assign(targets=[ast.Tuple(elts=targets)], value=ast.Name(id=group)) if group in self.packed:
+                self._unpack(node, targets, group)
+            case ast.Assign(targets=[ast.Name(id=name)], value=ast.BinOp(left=ast.Call(), right=ast.Constant())) if (
+                self.form == "loop" and text_of(node.value) == "len(times) - 1"
+            ):
+                self.steps = self._new(node, name)
+            case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                self._number(value)
+                self.numbers.add(name if name in self.numbers else self._new(node, name))
+            case ast.Assign(targets=[ast.Subscript(value=ast.Name(id="out"), slice=place)], value=value) if (
+                self.allocated
+            ):
+                self._number(value)
+                self._store(place)
+            case ast.Assign(targets=[ast.Subscript() as target], value=value):
+                self._number(value)
+                self._element(target)
+            case ast.For(target=ast.Name(id=name), orelse=[]) if self.form == "loop" and not self.index:
+                self._for(node, name)
+            case ast.If() if self.form == "np" and not self.allocated and text_of(node) == self._allocation():
+                self.allocated = True
+            case _:
+                refuse(node, f"has a statement of another kind ({_kind(node)})")
+
+    def _unpack(self, node: ast.stmt, targets: list[ast.expr], group: str) -> None:
+        if len(targets) != self.packed[group]:
+            refuse(node, f"unpacks {len(targets)} numbers from {group}, which has {self.packed[group]}")
+        for target in targets:
+            if not isinstance(target, ast.Name):
+                refuse(node, "unpacks into something other than names")
+            if self.form == "loop" and group in _NODES:
+                self.nodes.add(self._new(node, target.id))
+            elif self.form == "loop" and group in _MIDPOINTS:
+                self.midpoints.add(self._new(node, target.id))
+            else:
+                self.numbers.add(self._new(node, target.id))
+
+    def _new(self, node: ast.AST, name: str) -> str:
+        """A name that is given a meaning here, which it then keeps."""
+        if name in self.taken or "__" in name or not name.isascii():
+            refuse(node, "gives a name another meaning")
+        self.taken.add(name)
+        return name
+
+    def _for(self, node: ast.For, name: str) -> None:
+        whole = (f"range({self.steps})", f"range({self.steps} - 1, -1, -1)")
+        if self.looped or not self.steps or text_of(node.iter) not in whole:
+            refuse(node, "has a loop other than the one over the steps")
+        before = set(self.numbers)
+        self.index = self._new(node, name)
+        for statement in node.body:
+            self._statement(statement)
+        self.looped, self.index, self.numbers = True, "", before
+
+    def _allocation(self) -> str:
+        """How a batch form makes its result."""
+        arguments = self.signature.arguments
+        parts = [f"np.shape({a}[0])" if a in self.packed else f"np.shape({a})" for a in arguments if a not in _TUPLES]
+        types = [f"*{a}" if a in _TUPLES else a for a in arguments]
+        shape = f"({', '.join(map(str, self.shape))}, *shape)" if self.shape else "shape"
+        return (
+            f"if out is None:\n    shape = np.broadcast_shapes({', '.join(parts)})\n"
+            f"    out = np.empty({shape}, np.result_type(float, {', '.join(types)}))"
+        )
+
+    def _store(self, place: ast.expr) -> None:
+        """An entry of the result of a batch form."""
+        match place:
+            case ast.Constant(value=value) if value is ...:
+                entry: tuple[object, ...] = ()
+            case ast.Constant(value=value):
+                entry = (value,)
+            case ast.Tuple(elts=[ast.Constant(value=row), ast.Constant(value=column)]):
+                entry = (row, column)
+            case _:
+                refuse(place, "stores into no entry of the result")
+        inside = (type(k) is int and 0 <= k < size for k, size in zip(entry, self.shape, strict=False))
+        if len(entry) != len(self.shape) or not all(inside):
+            refuse(place, "stores into no entry of the result")
+        self.stored.add(entry)
+
+    def _result(self, node: ast.stmt) -> None:
+        assert isinstance(node, ast.Return)
+        match node.value:
+            case ast.Name(id="out") if self.allocated and len(self.stored) == prod(self.shape):
+                pass
+            case ast.Tuple(elts=entries) if self.form == "math" and self.shape and len(entries) == prod(self.shape):
+                for entry in entries:
+                    self._number(entry)
+            case ast.expr() as value if self.form != "np" and not self.shape:
+                self._number(value)
+            case _:
+                refuse(node, "returns something of another shape")
+
+    def _number(self, node: ast.expr) -> None:
+        """A float, or an array of floats in a batch form. Loops rather than generators: one frame a level."""
+        match node:
+            case ast.Constant(value=float()):
+                pass
+            case ast.Name(id=name) if name in self.numbers:
+                pass
+            case ast.UnaryOp(op=ast.USub(), operand=operand):
+                self._number(operand)
+            case ast.BinOp(left=left, op=ast.Add() | ast.Sub() | ast.Mult() | ast.Div() | ast.Pow(), right=right):
+                self._number(left)
+                self._number(right)
+            case ast.Subscript():
+                self._element(node)
+            case ast.Attribute(value=ast.Name(id=module), attr="pi") if module == self.module:
+                pass
+            case ast.Call(func=ast.Attribute(value=ast.Name(id=module), attr=name), args=arguments, keywords=[]) if (
+                module == self.module and _FUNCTIONS[module].get(name) == len(arguments)
+            ):
+                for argument in arguments:
+                    self._number(argument)
+            case ast.IfExp(
+                test=ast.Compare(left=left, ops=[ast.Lt() | ast.LtE() | ast.Gt() | ast.GtE()], comparators=[right])
+            ) if self.form != "np":
+                for part in (left, right, node.body, node.orelse):
+                    self._number(part)
+            case _:
+                refuse(node, f"has an expression of another kind ({_kind(node)})")
+
+    def _element(self, node: ast.Subscript) -> None:
+        """An element of a sequence over nodes or midpoints, with an index that is certainly inside."""
+        inside: set[str] = set()
+        if isinstance(node.value, ast.Name):
+            if node.value.id in self.nodes:
+                inside = {self.index, f"{self.index} + 1"} if self.index else {"0", self.steps}
+            elif node.value.id in self.midpoints and self.index:
+                inside = {self.index}
+        if text_of(node.slice) not in inside:
+            refuse(node, "has an index of another kind")
+
+
+def _kind(node: ast.AST) -> str:
+    """What a reader calls a node, as far as Python has a word for it."""
+    if isinstance(node, ast.Constant):
+        return f"a constant that is no float, but {type(node.value).__name__}"
+    if isinstance(node, ast.Name):
+        return "a name without a value here"
+    return type(node).__name__

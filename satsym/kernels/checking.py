@@ -1,0 +1,148 @@
+"""Whether a text is a module that the generator writes; nothing of it runs here.
+
+The generator writes a docstring, two imports, one literal and functions of known names, arguments and results,
+nothing else. What is accepted is that language and no more.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import warnings
+from math import isfinite
+
+import msgspec
+
+from satsym.kernels.bodies import Body, Unexpected, refuse, text_of
+from satsym.kernels.contract import BATCH, Signature, loops, missing, pointwise, sizes
+from satsym.spec import ProblemSpec
+
+_IMPORTS = ("import math", "import numpy as np")
+_LARGEST = 10**6
+_LONGEST = 1000
+_NAME = re.compile(r"[a-z][a-z0-9_]*\Z")
+
+
+def check(text: str) -> tuple[ProblemSpec, list[ast.FunctionDef]]:
+    """Read a module without running it.
+
+    Returns
+    -------
+    The model's description, and the functions, which can be compiled.
+
+    Raises
+    ------
+    Unexpected
+        At the first line that the generator does not write.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # they would print lines of the file
+            body = ast.parse(text).body
+    except SyntaxError as error:
+        raise Unexpected(error.lineno or 1, f"is no Python ({error.msg})") from None
+    except ValueError:  # NUL characters, up to Python 3.11
+        raise Unexpected(1, "or a later one is no text") from None
+    opening = len(_IMPORTS) + 2
+    docstring, *imports = body[: opening - 1] or [ast.Pass()]
+    _docstring(docstring)
+    if tuple(text_of(node) for node in imports if isinstance(node, ast.Import)) != _IMPORTS:
+        refuse(docstring, f"is not followed by `{'` and `'.join(_IMPORTS)}`")
+    if len(body) < opening:
+        refuse(docstring, "is not followed by MODEL")
+    spec = _model(body[opening - 1])
+    return spec, _functions(body[opening:], spec)
+
+
+def _docstring(node: ast.stmt) -> None:
+    match node:
+        case ast.Expr(value=ast.Constant(value=str())):
+            pass
+        case _:
+            refuse(node, "has no docstring where one belongs")
+
+
+def _model(node: ast.stmt) -> ProblemSpec:
+    match node:
+        case ast.Assign(targets=[ast.Name(id="MODEL")], value=ast.Dict() as value):
+            _literal(value)
+        case _:
+            refuse(node, "is not MODEL = {...}")
+    literal = ast.literal_eval(value)
+    try:
+        ProblemSpec.from_literal(literal)
+        spec = msgspec.convert(literal, ProblemSpec)
+    except ValueError as error:  # the second one's too: fields of another type
+        refuse(node, f"begins a MODEL that cannot be read: {error}")
+    if fault := _fault(spec):
+        refuse(node, f"begins a MODEL with {fault}")
+    return spec
+
+
+def _literal(node: ast.AST) -> None:
+    match node:
+        case ast.Dict(keys=keys, values=values):
+            for key in keys:
+                if not (isinstance(key, ast.Constant) and isinstance(key.value, str)):
+                    refuse(node, "has a table with a key that is no text")
+            for value in values:
+                _literal(value)
+        case ast.Tuple(elts=values):
+            for value in values:
+                _literal(value)
+        case ast.UnaryOp(op=ast.USub(), operand=ast.Constant(value=float() | int())):
+            pass
+        case ast.Constant(value=str() as text) if len(text) <= _LONGEST and text.isprintable():
+            pass
+        case ast.Constant(value=int() as number) if abs(number) <= _LARGEST:
+            pass
+        case ast.Constant(value=float() as number) if isfinite(number):
+            pass
+        case ast.Constant(value=None):
+            pass
+        case _:
+            refuse(node, "has something in MODEL that is no plain value")
+
+
+def _fault(spec: ProblemSpec) -> str:
+    """What no model has, though its fields are of the right types."""
+    if not _NAME.match(spec.name):
+        return "a name that is none"
+    if spec.has_cost == (spec.control_set is None):
+        return "a cost and no control set, or the reverse"
+    if not spec.states:
+        return "no states"
+    groups = (spec.states, spec.controls, spec.parameters, spec.invariants, spec.position, spec.multipliers)
+    for group in groups:
+        if len({v.symbol for v in group}) < len(group):
+            return "two variables of one name"
+    return ""
+
+
+def _functions(nodes: list[ast.stmt], spec: ProblemSpec) -> list[ast.FunctionDef]:
+    found: dict[str, ast.FunctionDef] = {}
+    simple, looping, counts = pointwise(spec), loops(spec), sizes(spec)
+    for node in nodes:
+        if not isinstance(node, ast.FunctionDef):
+            refuse(node, "is no function")
+        name = node.name.removesuffix(BATCH)
+        batch = name != node.name
+        if node.name in found or (name not in simple and (batch or name not in looping)):
+            refuse(node, "defines a function that does not belong there")
+        signature = simple.get(name) or looping[name]
+        _header(node, signature, batch)
+        form = "np" if batch else "math" if name in simple else "loop"
+        Body(signature, counts, form, form != "loop" or (name == "forward" and spec.has_cost)).check(node.body[1:])
+        found[node.name] = node
+    if absent := missing(spec, found):
+        raise Unexpected(1, f"is followed by no {', '.join(absent)}")
+    return list(found.values())
+
+
+def _header(node: ast.FunctionDef, signature: Signature, batch: bool) -> None:
+    """Everything about a function but its body: no decorators, annotations, or defaults that could run."""
+    arguments = ", ".join((*signature.arguments, "out=None") if batch else signature.arguments)
+    plain = not (node.decorator_list or node.returns or getattr(node, "type_params", None))
+    if not plain or text_of(node.args) != arguments:
+        refuse(node, f"defines {node.name} with other arguments than ({arguments})")
+    _docstring(node.body[0])

@@ -1,0 +1,95 @@
+"""What a generated module holds, function by function: the contract between the generator and everyone else."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+from satsym.spec import ProblemSpec
+
+BATCH = "_batch"
+"""Suffix of the batch form of a pointwise function; it takes ``out=None`` as well."""
+
+
+@dataclass(frozen=True)
+class Signature:
+    """Arguments of a function, and the shape of its result.
+
+    Attributes
+    ----------
+    arguments
+        Names, in order.
+    shape
+        A letter for each axis, see :func:`sizes`: ``""`` for a number, ``"n"`` for a vector, ``"nm"`` for a
+        matrix.
+    """
+
+    arguments: tuple[str, ...]
+    shape: str = ""
+
+
+def _signature(arguments: str, shape: str = "") -> Signature:
+    return Signature(tuple(arguments.split()), shape)
+
+
+_MOTION = {
+    "dynamics": _signature("t x u p", "n"),
+    "jacobian_x": _signature("t x u p", "nn"),
+    "jacobian_u": _signature("t x u p", "nm"),
+}
+_REFERENCE = {"reference": _signature("t p", "n")}
+_INVARIANTS = {"invariants": _signature("t x p", "i")}
+_POSITION = {"position": _signature("t x p", "q")}
+_COST = {
+    "running_cost": _signature("t x u p"),
+    "terminal_cost": _signature("t x p"),
+    "terminal_gradient": _signature("t x p", "n"),
+    "hamiltonian": _signature("t x u lam p"),
+    "stationarity": _signature("t x u lam p", "m"),
+    "control_hessian": _signature("t x u lam p", "mm"),
+    "control_law": _signature("t x lam p bounds", "m"),
+    "costate_rate": _signature("t x u lam p", "n"),
+    "canonical": _signature("t x lam p bounds", "z"),
+    "canonical_jacobian": _signature("t x lam p bounds", "zz"),
+    "canonical_drift": _signature("t x lam p bounds", "z"),
+    "boundary": _signature("t x lam nu p bounds final", "e"),
+    "boundary_jacobian": _signature("t x lam nu p bounds final", "ev"),
+}
+_FORWARD = {"forward": _signature("times x0 u u_mid p x x_mid")}
+_BACKWARD = {"backward": _signature("times lam_f x x_mid u u_mid p lam lam_mid")}
+
+LOOPS = _FORWARD | _BACKWARD
+"""Trajectory loops. Their controls, states and costates are tables: a sequence over time for each component."""
+
+
+def pointwise(spec: ProblemSpec) -> dict[str, Signature]:
+    """Signatures of the functions of one point in time that a model with this description has."""
+    found = dict(_MOTION)
+    found |= _REFERENCE if spec.has_reference else {}
+    found |= _INVARIANTS if spec.invariants else {}
+    found |= _POSITION if spec.position else {}
+    return found | (_COST if spec.has_cost else {})
+
+
+def loops(spec: ProblemSpec) -> dict[str, Signature]:
+    """Signatures of the trajectory loops that a model with this description has."""
+    return LOOPS if spec.has_cost else _FORWARD
+
+
+def sizes(spec: ProblemSpec) -> dict[str, int]:
+    """What each letter counts.
+
+    States (n), controls (m), parameters (k), bounds (b), invariants (i), position components (q), constraints at the
+    final time (c), choices and targets there (f), states and costates (z), residuals at the final time (e) and
+    unknowns there (v).
+    """
+    n, m, c = len(spec.states), len(spec.controls), len(spec.multipliers)
+    counts = {"n": n, "m": m, "k": len(spec.parameters), "i": len(spec.invariants), "q": len(spec.position), "c": c}
+    counts["b"] = {"box": 2 * m, "ball": 1}.get(spec.control_set or "free", 0)
+    return counts | {"f": 3 * n, "z": 2 * n, "e": n + c + 1, "v": 2 * n + c + 1}
+
+
+def missing(spec: ProblemSpec, present: Collection[str]) -> list[str]:
+    """Names of functions that a module with this description must have and has not."""
+    functions = pointwise(spec)
+    return [name for name in (*functions, *loops(spec), *(f + BATCH for f in functions)) if name not in present]

@@ -1,0 +1,217 @@
+"""The Kernels object: a model's description and functions, and the trajectory loops on arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from satsym.spec import ProblemSpec
+
+Array = NDArray[np.float64]
+Backend = Literal["python", "numba"]
+Function = Callable[..., Any]
+LOOPS = ("forward", "backward")
+
+_ARITHMETIC = (ZeroDivisionError, OverflowError, ValueError, TypeError)
+"""What Python floats and math raise where arrays have inf or nan; shapes are checked beforehand.
+
+The last comes from complex numbers, which Python makes of fractional powers of negative ones.
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class Kernels:
+    """A model that solvers can call.
+
+    Every generated function is an attribute (``kernels.dynamics(t, x, u, p)``), with the loops ``forward``
+    and ``backward`` wrapped for arrays; ``functions`` holds the loops as they were generated.
+
+    Attributes
+    ----------
+    spec
+        Names, units and kinds.
+    functions
+        The generated functions by name.
+    backend
+        ``"python"`` (floats; nothing to wait for) or ``"numba"`` (compiled at the first call of each).
+    origin
+        What :func:`satsym.kernels.load` was given, so that another process can load it again.
+    """
+
+    spec: ProblemSpec
+    functions: Mapping[str, Function]
+    backend: Backend = "python"
+    origin: tuple[str, Path | None] | None = None
+
+    def __post_init__(self) -> None:
+        # Instance attributes, not __getattr__: solvers call these in inner loops.
+        vars(self).update({name: f for name, f in self.functions.items() if name not in LOOPS})
+
+    def __getattr__(self, name: str) -> Function:
+        raise AttributeError(f"model {self.spec.name} has no function {name}" if "spec" in vars(self) else name)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        if self.origin is None:
+            return Kernels, (self.spec, self.functions, self.backend)
+        return _restore, (*self.origin, self.backend)
+
+    def forward(
+        self, times: ArrayLike, x0: Sequence[float], u: ArrayLike, u_mid: ArrayLike, p: Sequence[float]
+    ) -> tuple[Array, Array, float]:
+        """Integrate the states forward with RK4 and the running cost with Simpson's rule.
+
+        Parameters
+        ----------
+        times
+            Nodes, shape (N+1,).
+        x0
+            State at the first node, n numbers.
+        u, u_mid
+            Controls at nodes and midpoints, shapes (m, N+1) and (m, N).
+        p
+            Parameters, in the model's order.
+
+        Returns
+        -------
+        x, x_mid : arrays of shapes (n, N+1) and (n, N)
+            States at nodes and (Hermite) midpoints.
+        cost : float
+            Integral of the running cost; nan if the trajectory is not finite, 0 for a model without a cost.
+
+        Notes
+        -----
+        Never raises for a division by zero or an overflow: what lies beyond is nan (or inf).
+        """
+        nodes, steps = _nodes(times)
+        n, m = len(self.spec.states), len(self.spec.controls)
+        cost, x, x_mid = self._run(
+            "forward",
+            [nodes, _numbers(x0, n, "x0"), _table(u, m, steps + 1, "u"), _table(u_mid, m, steps, "u_mid")],
+            _numbers(p, len(self.spec.parameters), "p"),
+            steps,
+        )
+        if not np.isfinite(x[:, -1]).all():
+            cost = float("nan")
+        return x, x_mid, 0.0 if cost is None else cost
+
+    def backward(
+        self,
+        times: ArrayLike,
+        lam_f: Sequence[float],
+        x: ArrayLike,
+        x_mid: ArrayLike,
+        u: ArrayLike,
+        u_mid: ArrayLike,
+        p: Sequence[float],
+    ) -> tuple[Array, Array]:
+        """Integrate the costates backward with RK4 along a trajectory.
+
+        Parameters
+        ----------
+        times, u, u_mid, p
+            As in :meth:`forward`.
+        lam_f
+            Costate at the last node, n numbers.
+        x, x_mid
+            States, shapes (n, N+1) and (n, N), as :meth:`forward` returns them.
+
+        Returns
+        -------
+        lam, lam_mid : arrays of shapes (n, N+1) and (n, N)
+            Costates at nodes and midpoints; nan (or inf) before the point where they cease to be finite.
+        """
+        nodes, steps = _nodes(times)
+        n, m = len(self.spec.states), len(self.spec.controls)
+        _, lam, lam_mid = self._run(
+            "backward",
+            [
+                nodes,
+                _numbers(lam_f, n, "lam_f"),
+                _table(x, n, steps + 1, "x"),
+                _table(x_mid, n, steps, "x_mid"),
+                _table(u, m, steps + 1, "u"),
+                _table(u_mid, m, steps, "u_mid"),
+            ],
+            _numbers(p, len(self.spec.parameters), "p"),
+            steps,
+        )
+        return lam, lam_mid
+
+    def in_domain(self, x: ArrayLike) -> bool:
+        """Whether the states that must be positive are so, at every node of ``x``, shape (n,) or (n, N+1)."""
+        rows = np.asarray(x, dtype=float)
+        return all(bool((rows[i] > 0.0).all()) for i, state in enumerate(self.spec.states) if state.positive)
+
+    def compiled(self) -> Kernels:
+        """The same functions compiled with numba (extra ``fast``), from the very same code; made once.
+
+        Raises
+        ------
+        BadInput
+            If numba is not installed.
+        """
+        return self if self.backend == "numba" else self._compiled
+
+    @cached_property
+    def _compiled(self) -> Kernels:
+        from satsym.kernels.compiling import compile_functions
+
+        shipped = self.origin is not None and self.origin[1] is None
+        return replace(self, functions=compile_functions(self.functions, cache=shipped), backend="numba")
+
+    def _run(self, name: str, given: list[Any], p: tuple[float, ...], steps: int) -> tuple[float | None, Array, Array]:
+        """Call a loop on fresh outputs filled with nan; for the Python backend arrays become lists."""
+        loop, n, nan = self.functions[name], len(self.spec.states), float("nan")
+        if self.backend == "numba":
+            given = [tuple(value) if isinstance(value, np.ndarray) and value.ndim == 2 else value for value in given]
+            at_nodes, at_midpoints = np.full((n, steps + 1), nan), np.full((n, steps), nan)
+            return loop(*given, p, tuple(at_nodes), tuple(at_midpoints)), at_nodes, at_midpoints
+        given = [value.tolist() if isinstance(value, np.ndarray) else value for value in given]
+        node_lists = tuple([nan] * (steps + 1) for _ in range(n))
+        midpoint_lists = tuple([nan] * steps for _ in range(n))
+        try:
+            result = loop(*given, p, node_lists, midpoint_lists)
+        except _ARITHMETIC:
+            result = nan
+        return nan if isinstance(result, complex) else result, _real(node_lists), _real(midpoint_lists)
+
+
+def _restore(model: str, folder: Path | None, backend: Backend) -> Kernels:
+    from satsym.kernels.loading import load
+
+    kernels = load(model, folder)
+    return kernels.compiled() if backend == "numba" else kernels
+
+
+def _nodes(times: ArrayLike) -> tuple[Array, int]:
+    # A copy, so that read-only times are no second type to compile for.
+    nodes = np.array(times, dtype=float)
+    if nodes.ndim != 1 or len(nodes) < 1:
+        raise ValueError(f"times must be a sequence of nodes, not an array of shape {nodes.shape}")
+    return nodes, len(nodes) - 1
+
+
+def _real(rows: Sequence[list[Any]]) -> Array:
+    try:
+        return np.array(rows, dtype=float)
+    except TypeError:
+        return np.array([[float("nan") if isinstance(v, complex) else v for v in row] for row in rows])
+
+
+def _numbers(values: Sequence[float], count: int, name: str) -> tuple[float, ...]:
+    if len(values) != count:
+        raise ValueError(f"{name} must hold {count} numbers, not {len(values)}")
+    return tuple(map(float, values))
+
+
+def _table(values: ArrayLike, rows: int, columns: int, name: str) -> Array:
+    table = np.array(values, dtype=float, order="C")
+    if table.shape != (rows, columns):
+        raise ValueError(f"{name} must have shape {(rows, columns)}, not {table.shape}")
+    return table

@@ -1,0 +1,157 @@
+"""Find a model by name or by path, and make its Kernels.
+
+Shipped modules are imported like any other. A file that an instance names by path is data from someone else:
+it must lie in the instance's folder, and it is checked node by node before anything in it runs.
+"""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import math
+import re
+from collections.abc import Mapping
+from functools import cache, lru_cache
+from pathlib import Path
+from types import FunctionType
+from typing import Any
+
+import numpy as np
+
+from satsym.kernels.core import Function, Kernels
+from satsym.spec import ProblemSpec
+from satsym.status import BadInput
+from satsym.wording import printable, shown, suggestion
+
+PACKAGE = "satsym.generated"
+LARGEST = 2_000_000
+"""Bytes of a module file; the shipped ones have a hundredth of that."""
+
+_NAME = re.compile(r"[a-z][a-z0-9_]{0,99}\Z")
+_ANEW = "write it anew with `satsym derive`"
+
+
+def shipped() -> list[str]:
+    """Names of the shipped models, without importing them."""
+    folders = importlib.import_module(PACKAGE).__path__
+    return sorted({file.stem for folder in folders for file in Path(folder).glob("*.py") if _NAME.match(file.stem)})
+
+
+def load(model: str, folder: Path | None = None) -> Kernels:
+    """The kernels of a shipped model, or of a generated file in ``folder``.
+
+    Parameters
+    ----------
+    model
+        A shipped name, or a path relative to ``folder``, without ``.py``: ``"DIR/name"``, ``"./name"``, or
+        just ``"name"`` where no shipped model has that name.
+    folder
+        Where paths start, and what they cannot leave: the instance file's folder. The working folder by default.
+
+    Raises
+    ------
+    BadInput
+        If there is no such model, or if its file is not what ``satsym derive`` writes.
+    """
+    folder = folder or Path()
+    if "/" not in model:
+        if _NAME.match(model) and model in shipped():
+            return _load_shipped(model)
+        if not (_NAME.match(model) and (folder / f"{model}.py").is_file()):
+            raise BadInput(_unknown(model))
+        model = f"./{model}"
+    path, root = _resolve(model, folder)
+    return _load_text(model, root, path, _read(model, path))
+
+
+def from_text(text: str, name: str) -> Kernels:
+    """The kernels of a module that has not been written to a file, checked as one that has.
+
+    Parameters
+    ----------
+    text
+        What a generated file would hold.
+    name
+        How messages call it.
+
+    Raises
+    ------
+    BadInput
+        If the text is not what ``satsym derive`` writes.
+    """
+    return _load_text(name, Path(), Path(name), text)
+
+
+def _unknown(model: str) -> str:
+    return f"{shown(model)} is no shipped model; {suggestion(model, shipped())} (`satsym models` tells more)"
+
+
+@cache
+def _load_shipped(name: str) -> Kernels:
+    module = importlib.import_module(f"{PACKAGE}.{name}")
+    try:
+        return Kernels(ProblemSpec.from_literal(module.MODEL), _defined(vars(module)), origin=(name, None))
+    except ValueError as error:
+        raise BadInput(f"{shown(name)}: {error}; {_ANEW}") from None
+
+
+def _resolve(model: str, folder: Path) -> tuple[Path, Path]:
+    """The file that a relative path names, and the folder that it cannot leave, symbolic links followed."""
+    if model.endswith(".py"):
+        raise BadInput(f"{shown(model)}: leave out the ending .py")
+    if Path(model).is_absolute():
+        raise BadInput(f"{shown(model)}: an absolute path; write one that starts in the instance file's folder")
+    if not _NAME.match(model.rpartition("/")[2]):
+        raise BadInput(f"{shown(model)}: a file's name is a small letter, then small letters, digits and underscores")
+    try:
+        root = folder.resolve(strict=True)
+        path = (root / f"{model}.py").resolve(strict=True)
+        regular = path.is_file()
+    except (OSError, RuntimeError, ValueError):  # missing, no access, a loop of links, a NUL character
+        raise BadInput(f"{shown(model)}: no such file; check the path, or write it with `satsym derive`") from None
+    if not path.is_relative_to(root):
+        raise BadInput(f"{shown(model)}: leads out of the instance file's folder; put the file there")
+    if not regular:
+        raise BadInput(f"{shown(model)}: not a file; name a module that `satsym derive` wrote")
+    return path, root
+
+
+def _read(model: str, path: Path) -> str:
+    """The text of the file, read once: what is checked is what runs."""
+    try:
+        with path.open("rb") as stream:
+            data = stream.read(LARGEST + 1)
+        if len(data) > LARGEST:
+            raise BadInput(f"{shown(model)}: larger than {LARGEST} bytes; name a module that `satsym derive` wrote")
+        return data.decode("utf-8")
+    except OSError as error:
+        raise BadInput(f"{shown(model)}: cannot be read ({error.strerror}); check its permissions") from None
+    except UnicodeDecodeError:
+        raise BadInput(f"{shown(model)}: not UTF-8 text; name a module that `satsym derive` wrote") from None
+
+
+@lru_cache(maxsize=32)
+def _load_text(model: str, root: Path, path: Path, text: str) -> Kernels:
+    # Imported here: shipped models need no check.
+    from satsym.kernels.bodies import Unexpected
+    from satsym.kernels.checking import check
+
+    try:
+        spec, definitions = check(text)
+        code = compile(ast.Module(list(definitions), []), str(path), "exec", dont_inherit=True)
+    except Unexpected as error:
+        raise BadInput(f"{shown(model)}: line {error.line} {printable(error.reason, 200)}; {_ANEW}") from None
+    except (RecursionError, MemoryError, SystemError):  # the last by the parser of some versions
+        raise BadInput(f"{shown(model)}: nested too deeply; {_ANEW}") from None
+    namespace: dict[str, Any] = {
+        "__builtins__": {"float": float, "len": len, "range": range},
+        "__name__": f"satsym.loaded.{path.stem}",
+        "math": math,
+        "np": np,
+    }
+    exec(code, namespace)  # noqa: S102 - definitions only, each of them checked
+    return Kernels(spec, _defined(namespace), origin=(model, root))
+
+
+def _defined(namespace: Mapping[str, Any]) -> dict[str, Function]:
+    return {name: value for name, value in namespace.items() if isinstance(value, FunctionType)}
