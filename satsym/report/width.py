@@ -12,7 +12,9 @@ SCRIPT = 0.72
 
 _TOKEN = re.compile(r"\\[A-Za-z]+\*?|\\.|.", re.DOTALL)
 _ACCENTS = frozenset(rf"\{name}" for name in "dot ddot dddot hat bar tilde vec check breve".split())
-_FONTS = frozenset(rf"\{name}" for name in "mathbf mathrm mathit mathcal mathsf text boldsymbol bm operatorname".split())
+_FONTS = frozenset(
+    rf"\{name}" for name in "mathbf mathrm mathit mathcal mathsf text boldsymbol bm operatorname".split()
+)
 _SIZES = {r"\bigl": 0.46, r"\bigr": 0.46, r"\Bigl": 0.6, r"\Bigr": 0.6, r"\biggl": 0.74, r"\biggr": 0.74}
 _SIZES |= {r"\Biggl": 0.8, r"\Biggr": 0.8}
 _WORDS = {name: 0.5 * len(name) + 0.2 for name in "sin cos tan cot sec csc sinh cosh tanh ln exp min max".split()}

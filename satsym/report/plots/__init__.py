@@ -1,0 +1,57 @@
+"""Pictures of a solution or a flight, for any model: PNG files, and on request vector graphics.
+
+matplotlib is imported when the first picture is drawn, without pyplot.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from satsym.report import files
+from satsym.solution import Flight, Solution
+
+
+def save(result: Solution | Flight, folder: Path, formats: Sequence[str] = ("png",)) -> list[Path]:
+    """Draw a result.
+
+    Parameters
+    ----------
+    result
+        Also one that did not converge, as far as there is something to draw.
+    folder
+        Made if it is not there.
+    formats
+        Of ``png``, ``pdf`` and ``svg``.
+
+    Returns
+    -------
+    list of Path
+        What was written, the overview first. A picture that would show nothing is left out: ``orbit`` where the
+        model has no position vector, ``controls`` where a flight has none, ``costates`` for a flight, ``invariants``
+        where the model has none, ``convergence`` for fewer than two iterations, and all but that where there is no
+        trajectory.
+
+    Raises
+    ------
+    BadInput
+        If the folder cannot be written to.
+    """
+    from satsym.report.plots import pages, style
+    from satsym.report.plots.convergence import convergence
+    from satsym.report.plots.overview import overview
+    from satsym.report.plots.scene import Scene
+
+    pictures = (overview, pages.orbit, pages.states, pages.controls, pages.costates, pages.invariants, convergence)
+    scene = Scene.of(result)
+    drawn: dict[str, files.Content] = {}
+    with style.applied():
+        for picture in pictures:
+            page = picture(scene)
+            if page is not None:
+                drawn |= {f"{picture.__name__}.{kind}": _content(style.rendered(page, kind)) for kind in formats}
+    return files.write(folder, drawn) if drawn else []
+
+
+def _content(picture: bytes) -> files.Content:
+    return lambda stream: stream.write(picture)

@@ -1,0 +1,125 @@
+"""Curves in space that the pictures need, from a model's generated functions: path, thrust, relative motion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.kernels import Kernels
+
+Array = NDArray[np.floating[Any]]
+LARGEST = 1e100
+"""Beyond it a number is the debris of a failed run, and too large for arithmetic on axes."""
+_COMPLEX_STEP = 1e-30
+_REAL_STEP = 1e-5
+
+
+def clean(values: Array) -> Array:
+    """The values with NaN for whatever cannot be drawn."""
+    array = np.array(values, dtype=float)
+    with np.errstate(invalid="ignore"):
+        array[~(np.abs(array) < LARGEST)] = np.nan
+    return array
+
+
+def states(model: Kernels, x: Array) -> Array:
+    """States up to where they leave their domain: what comes after that has no meaning. Shape (n, N+1)."""
+    rows = clean(x)
+    positive = [i for i, state in enumerate(model.spec.states) if state.positive]
+    with np.errstate(invalid="ignore"):
+        outside = np.flatnonzero((rows[positive] <= 0.0).any(axis=0))
+    if outside.size:
+        rows[:, outside[0] :] = np.nan
+    return rows
+
+
+def path(model: Kernels, times: Array, x: Array, p: Sequence[float]) -> Array:
+    """Position vectors along a trajectory, shape (2 or 3, N+1)."""
+    with np.errstate(all="ignore"):
+        return clean(model.position_batch(times, x, p))
+
+
+def reference(model: Kernels, times: Array, p: Sequence[float]) -> Array:
+    """States on the reference curve, shape (n, N+1)."""
+    with np.errstate(all="ignore"):
+        return clean(model.reference_batch(times, p))
+
+
+def uncontrolled(model: Kernels, times: Array, x0: Sequence[float], p: Sequence[float]) -> Array:
+    """States of the motion without control at the nodes, shape (n, N+1), by at least a thousand steps."""
+    m, parts = len(model.spec.controls), -(-1000 // (len(times) - 1))
+    fine = np.interp(np.arange((len(times) - 1) * parts + 1) / parts, np.arange(len(times)), times)
+    rest = np.zeros((m, len(fine)))
+    x, _, _ = model.forward(fine, x0, rest, rest[:, 1:], p)
+    return states(model, x[:, ::parts])
+
+
+def thrust(model: Kernels, times: Array, x: Array, u: Array, p: Sequence[float]) -> Array:
+    """What the controls do to the motion in space, shape (2 or 3, N+1): the acceleration they add.
+
+    The generated functions know positions and rates of states, no forces. But the velocity in space is the
+    derivative of the position along the dynamics, and its change along what the controls add to the dynamics is
+    the acceleration that they add. Where the controls act on the velocity itself, that is what is returned.
+    """
+    with np.errstate(all="ignore"):
+        coasting = model.dynamics_batch(times, x, np.zeros_like(u), p)
+        added = model.dynamics_batch(times, x, u, p) - coasting
+
+        def velocity(states: Array, rates: Array) -> Array:
+            return model.position_batch(times, states + 1j * _COMPLEX_STEP * rates, p).imag / _COMPLEX_STEP
+
+        direct = velocity(x, added)
+        if np.nanmax(np.abs(direct), initial=0.0) > 0.0:
+            return clean(direct)
+        size = np.nanmax(np.abs(added) / np.nanmax(np.abs(x), axis=1, keepdims=True), initial=0.0)
+        if not 0.0 < size < np.inf:
+            return np.zeros_like(direct)
+        step = _REAL_STEP / size
+        ahead, behind = x + step * added, x - step * added
+        ahead_rates, behind_rates = (model.dynamics_batch(times, y, np.zeros_like(u), p) for y in (ahead, behind))
+        return clean((velocity(ahead, ahead_rates) - velocity(behind, behind_rates)) / (2.0 * step))
+
+
+@dataclass(frozen=True, eq=False)
+class Relative:
+    """Motion relative to a moving reference point, in the curved coordinates of orbit work; arrays of shape (N+1,).
+
+    Attributes
+    ----------
+    along
+        Distance ahead, along the circle through the reference point about the origin.
+    radial
+        Distance above that circle.
+    """
+
+    along: Array
+    radial: Array
+
+
+def relative(positions: Array, reference: Array) -> Relative | None:
+    """Where a path is, seen from the reference point; nothing if that stands still or passes the origin.
+
+    Parameters
+    ----------
+    positions, reference
+        At the same times, shape (2 or 3, N+1).
+    """
+    if len(reference) == 2:
+        positions, reference = (np.vstack([curve, np.zeros(curve.shape[1])]) for curve in (positions, reference))
+    radius = np.linalg.norm(reference, axis=0)
+    motion = np.gradient(reference, axis=1)
+    normal = np.cross(reference, motion, axis=0)
+    turning = np.linalg.norm(normal, axis=0)
+    if not (turning > 1e-12 * radius**2).all() or not np.isfinite(turning).all():
+        return None
+    outward = reference / radius
+    ahead = np.cross(normal / turning, outward, axis=0)
+    up, on = (positions * outward).sum(axis=0), (positions * ahead).sum(axis=0)
+    angle = np.full_like(up, np.nan)
+    known = np.isfinite(up) & np.isfinite(on)
+    angle[known] = np.unwrap(np.arctan2(on[known], up[known]))
+    return Relative(radius * angle, np.hypot(up, on) - radius)

@@ -1,0 +1,72 @@
+"""One legend for a whole page, with what is really on it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from satsym.report.plots import style
+from satsym.report.plots.orbit import Orbit
+from satsym.report.plots.reading import read
+from satsym.report.plots.scene import Scene
+from satsym.report.plots.series import Series
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+PER_INCH = 0.71
+"""Entries side by side that an inch of a page has room for."""
+Entry = tuple[Any, str]
+
+
+def motion(scene: Scene, colour: str) -> list[Entry]:
+    """The path itself, the reference and the motion without control."""
+    found = [(_line(color=colour, **style.MAIN), scene.name)]
+    if scene.reference is not None:
+        found.append((_line(**style.REFERENCE), "reference"))
+    if scene.free is not None:
+        found.append((_line(**style.FREE), "without control"))
+    return found
+
+
+def in_space(orbit: Orbit) -> list[Entry]:
+    """What only pictures in space have."""
+    arrow = _line(
+        color=style.VERMILION, marker=r"$\rightarrow$", markersize=15.0, markeredgewidth=0.2, linestyle="none"
+    )
+    found = [(arrow, "thrust")] if orbit.thrust is not None else []
+    found.append((_line(color=style.STATE, **style.START), "start"))
+    found.append((_line(color=style.STATE, **style.END), "end"))
+    found.append((_line(**style.ORIGIN), "origin"))
+    return found
+
+
+def on_axes(quantities: Iterable[Series], colour: str) -> list[Entry]:
+    """What is counted from the reference, required ends, bounds and the time spent on them."""
+    from matplotlib.patches import Patch
+
+    quantities, found = list(quantities), []
+    if any(read(q).deviation for q in quantities):
+        found.append((_line(linestyle="none"), r"$\Delta$: minus reference"))
+    if any(q.target is not None for q in quantities):
+        found.append((_line(**style.TARGET), "required end"))
+    if any(q.active is not None for q in quantities):
+        found.append((Patch(**style.FORBIDDEN), "not allowed"))
+    if any(q.active is not None and q.active.any() for q in quantities):
+        found.append((Patch(color=colour, alpha=style.SHADE, linewidth=0.0), "on a bound"))
+    return found
+
+
+def below(page: Figure, entries: list[Entry]) -> None:
+    """Put the legend below the axes; a single entry says nothing that the page does not."""
+    if len(entries) > 1:
+        handles, labels = zip(*entries, strict=True)
+        rows = math.ceil(len(entries) / (PER_INCH * page.get_figwidth()))
+        page.legend(handles, labels, loc="outside lower center", ncols=-(-len(entries) // rows))
+
+
+def _line(**look: Any) -> Any:
+    from matplotlib.lines import Line2D
+
+    return Line2D([], [], **(look | {"clip_on": True}))

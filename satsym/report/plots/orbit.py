@@ -1,0 +1,182 @@
+"""The path in space, and seen from the reference."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.report.plots import curves, style
+from satsym.report.plots.display import exponent_for, formula, labelled, length_unit
+from satsym.report.plots.reading import BURIED, within_reach
+from satsym.report.plots.scene import Scene
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.floating[Any]]
+ARROWS = 32
+LONGEST = 0.13
+"""Length of the longest arrow, relative to the size of the picture."""
+CLOSED = 0.05
+"""How near to its start, relative to its size, a curve is taken to close."""
+NEAR = 0.3
+"""Up to this distance from the reference, relative to the orbit, the path is also shown from the reference."""
+
+
+@dataclass(frozen=True, eq=False)
+class Orbit:
+    """Curves in space, shape (2 or 3, N+1) each, and the path seen from the reference."""
+
+    unit: str
+    labels: tuple[str, ...]
+    path: Array
+    reference: Array | None
+    free: Array | None
+    thrust: Array | None
+    relative: curves.Relative | None
+    free_relative: curves.Relative | None
+
+    @classmethod
+    def of(cls, scene: Scene) -> Orbit | None:
+        """The curves of a scene; nothing if the model has no position vector with two or three components."""
+        position = scene.spec.position
+        if len(position) not in (2, 3) or not scene.drawable:
+            return None
+        model, p = scene.instance.model, scene.instance.parameters
+
+        def path(x: Array | None) -> Array | None:
+            return None if x is None else curves.path(model, scene.nodes, x, p)
+
+        own, reference, free = curves.path(model, scene.nodes, scene.x, p), path(scene.reference), path(scene.free)
+        unit = position[0].unit if position[0].unit != "1" else length_unit(v.unit for v in scene.spec.states)
+        seen = None if reference is None else curves.relative(own, reference)
+        return cls(
+            unit,
+            tuple(formula(v.latex, v.symbol) for v in position),
+            own,
+            reference,
+            free,
+            curves.thrust(model, scene.nodes, scene.x, scene.u, p) if scene.free is not None else None,
+            seen if _near(seen, reference) else None,
+            curves.relative(free, reference) if free is not None and reference is not None else None,
+        )
+
+
+def in_space(axes: Axes, orbit: Orbit, across: int = 0, up: int = 1) -> None:
+    """Draw the path in a plane of coordinates, at equal scales."""
+    pick = [across, up]
+    curve, others = orbit.path[pick], [c[pick] for c in (orbit.reference, orbit.free) if c is not None]
+    low, high = _box(curve, [*others, np.zeros((2, 1))])
+    centre, half = 0.5 * (low + high), 0.5 * float((high - low).max())
+    names = [orbit.labels[i] for i in pick]
+    datum = np.zeros((2, 1))
+    if half < BURIED * np.abs(centre).max():
+        # far from the origin ticks would need many digits
+        datum = curve[:, np.isfinite(curve).all(axis=0)][:, :1]
+        names = [f"{name}$\\,-\\,${name}$(t_0)$" for name in names]
+    centre, curve = centre - datum[:, 0], curve - datum
+    exponent = exponent_for(float(np.abs(centre).max()) + half)
+    scale = 10.0**-exponent
+    axes.set_aspect("equal")
+    axes.set_xlim((centre[0] - half) * scale, (centre[0] + half) * scale)
+    axes.set_ylim((centre[1] - half) * scale, (centre[1] + half) * scale)
+    if orbit.reference is not None:
+        axes.plot(*((_once(orbit.reference[pick]) - datum) * scale), **style.REFERENCE)
+    if orbit.free is not None:
+        axes.plot(*((orbit.free[pick] - datum) * scale), **style.FREE)
+    if orbit.thrust is not None:
+        _arrows(axes, curve * scale, orbit.thrust[pick], LONGEST * 2.0 * half * scale)
+    axes.plot(*(curve * scale), color=style.STATE, **style.MAIN)
+    if not datum.any():
+        axes.plot([0.0], [0.0], **style.ORIGIN)
+    _ends(axes, *(curve * scale))
+    axes.set_xlabel(labelled(names[0], orbit.unit, exponent))
+    axes.set_ylabel(labelled(names[1], orbit.unit, exponent))
+    _few_ticks(axes)
+
+
+def from_reference(axes: Axes, orbit: Orbit) -> None:
+    """Draw the path as it is seen from the reference: ahead to the right, outwards up."""
+    assert orbit.relative is not None
+    curve = np.vstack([orbit.relative.along, orbit.relative.radial])
+    others = [np.zeros((2, 1))]
+    if orbit.free_relative is not None:
+        others.append(np.vstack([orbit.free_relative.along, orbit.free_relative.radial]))
+    low, high = _box(curve, others)
+    exponent = exponent_for(float(np.abs([low, high]).max()))
+    scale = 10.0**-exponent
+    axes.set_xlim(low[0] * scale, high[0] * scale)
+    axes.set_ylim(low[1] * scale, high[1] * scale)
+    axes.set_title("seen from the reference")
+    axes.axhline(0.0, **style.REFERENCE)
+    if orbit.free_relative is not None:
+        axes.plot(*(others[1] * scale), **style.FREE)
+    axes.plot(*(curve * scale), color=style.STATE, **style.MAIN)
+    axes.plot([0.0], [0.0], **style.TARGET)
+    _ends(axes, *(curve * scale))
+    axes.set_xlabel(labelled("along-track", orbit.unit, exponent))
+    axes.set_ylabel(labelled("radial", orbit.unit, exponent))
+    _few_ticks(axes)
+
+
+def _near(seen: curves.Relative | None, reference: Array | None) -> bool:
+    if seen is None or reference is None:
+        return False
+    furthest = np.nanmax(np.abs([seen.along, seen.radial]))
+    return bool(0.0 < furthest < NEAR * np.linalg.norm(reference, axis=0).max())
+
+
+def _box(curve: Array, others: list[Array]) -> tuple[Array, Array]:
+    """Corners around a curve; what is drawn beside it widens them as far as the curve stays readable."""
+    low, high = np.nanmin(curve, axis=1), np.nanmax(curve, axis=1)
+    width = float((high - low).max()) or np.inf
+    core = (low, high)
+    for other in others:
+        if np.isfinite(other).any(axis=1).all():
+            below, above = core[0] - np.nanmin(other, axis=1), np.nanmax(other, axis=1) - core[1]
+            low = np.minimum(low, core[0] - [within_reach(excess, width) for excess in below])
+            high = np.maximum(high, core[1] + [within_reach(excess, width) for excess in above])
+    room = 0.07 * (high - low)
+    room[room == 0.0] = 0.07 * float((high - low).max()) or 1.0
+    return low - room, high + room
+
+
+def _once(curve: Array) -> Array:
+    """A closed curve up to where it comes back to its start: dashes drawn over dashes would look solid."""
+    from_start = np.linalg.norm(curve - curve[:, :1], axis=0)
+    away = np.flatnonzero(from_start > 0.5 * np.nanmax(from_start))
+    if not away.size:
+        return curve
+    coming = from_start[away[0] :]
+    back = np.flatnonzero(coming < CLOSED * np.nanmax(from_start))
+    if not back.size:
+        return curve
+    gone = np.flatnonzero(coming[back[0] :] >= coming[back[0]])[1:]
+    until = back[0] + (gone[0] if gone.size else len(coming))
+    return curve[:, : away[0] + back[0] + int(np.nanargmin(coming[back[0] : until])) + 1]
+
+
+def _arrows(axes: Axes, curve: Array, thrust: Array, longest: float) -> None:
+    length = np.linalg.norm(thrust, axis=0)
+    if not np.nanmax(length, initial=0.0) > 0.0:
+        return
+    thrust = thrust * (longest / np.nanmax(length))
+    chosen = np.unique(np.linspace(0, curve.shape[1] - 1, ARROWS).round().astype(int))
+    chosen = chosen[np.isfinite(curve[:, chosen]).all(axis=0) & np.isfinite(thrust[:, chosen]).all(axis=0)]
+    axes.quiver(*curve[:, chosen], *thrust[:, chosen], **style.ARROW)
+
+
+def _ends(axes: Axes, across: Array, up: Array) -> None:
+    known = np.flatnonzero(np.isfinite(across) & np.isfinite(up))
+    axes.plot(across[known[:1]], up[known[:1]], color=style.STATE, **style.START)
+    axes.plot(across[known[-1:]], up[known[-1:]], color=style.STATE, **style.END)
+
+
+def _few_ticks(axes: Axes) -> None:
+    from matplotlib.ticker import MaxNLocator
+
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MaxNLocator(5))

@@ -1,0 +1,132 @@
+"""One quantity against time, in axes of its own: the piece that most pictures are made of."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.report.plots import style
+from satsym.report.plots.display import labelled, number, shortened, unit_text
+from satsym.report.plots.reading import ROUNDING, Reading, read
+from satsym.report.plots.scene import Scene
+from satsym.report.plots.series import Series
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure, SubFigure
+
+Array = NDArray[np.floating[Any]]
+MOST_TIMES = 4
+ROUND = [1, 2, 5, 10]
+"""Leading digits of the distance between ticks."""
+
+
+def small_multiples(
+    part: Figure | SubFigure,
+    scene: Scene,
+    quantities: Sequence[tuple[Series, str]],
+    columns: int,
+    title: int = 0,
+) -> None:
+    """Draw quantities, each in its colour, in rows over a common time; a last one that is alone fills its row."""
+    rows = -(-len(quantities) // columns)
+    grid = part.add_gridspec(rows, columns)
+    for i, (quantity, colour) in enumerate(quantities):
+        row, column = divmod(i, columns)
+        alone = i == len(quantities) - 1 and column == 0
+        axes = part.add_subplot(grid[row, :] if alone else grid[row, column])
+        against_time(axes, scene, quantity, colour, title)
+        if row < rows - 1:
+            axes.tick_params(labelbottom=False)
+        else:
+            axes.set_xlabel(labelled("$t$", scene.time_unit))
+    part.align_ylabels()
+
+
+def against_time(axes: Axes, scene: Scene, series: Series, colour: str, title: int = 0) -> None:
+    """Draw a quantity.
+
+    Parameters
+    ----------
+    title
+        Characters that its meaning may have above the axes; 0 leaves the title out.
+    """
+    shown, times = read(series), scene.times
+    axes.set_xlim(times[0], times[-1])
+    axes.set_ylim(shown.low, shown.high)
+    _bounds(axes, scene, series, shown, colour)
+    if shown.reference is not None:
+        axes.plot(times, shown.reference, **style.REFERENCE)
+    if shown.free is not None:
+        axes.plot(times, shown.free, **style.FREE)
+    axes.plot(times, shown.values, color=colour, **style.MAIN)
+    if shown.target is not None:
+        axes.plot(times[-1:], [shown.target], **style.TARGET)
+    axes.set_ylabel(shown.label, fontsize="large" if series.unit == "1" else None)
+    ticks(axes, shown, scene.time_unit == "h")
+    if title:
+        axes.set_title(shortened(series.meaning, title))
+        axes.set_title(_remark(scene, series, shown), loc="right")
+
+
+def ticks(axes: Axes, shown: Reading, hours: bool) -> None:
+    """Few, round ticks; multiples of pi for an angle that turns."""
+    from matplotlib.ticker import FuncFormatter, MaxNLocator, MultipleLocator
+
+    axes.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 3, 6, 10] if hours else ROUND))
+    if not shown.turns:
+        axes.yaxis.set_major_locator(MaxNLocator(5, steps=ROUND, min_n_ticks=3))
+        return
+    step = 0.25
+    while (shown.high - shown.low) / (step * math.pi) > 5.0:
+        step *= 2.0
+    axes.yaxis.set_major_locator(MultipleLocator(step * math.pi))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: _of_pi(value / math.pi)))
+
+
+def _remark(scene: Scene, series: Series, shown: Reading) -> str:
+    """The switching times of a quantity, or where it ends."""
+    if series.switching:
+        times = [number(time, 4) for time in series.switching[:MOST_TIMES]]
+        more = ", \N{HORIZONTAL ELLIPSIS}" if len(series.switching) > MOST_TIMES else ""
+        return f"switching at {', '.join(times)}{more} {unit_text(scene.time_unit)}".rstrip()
+    known = shown.values[np.isfinite(shown.values)]
+    if not known.size:
+        return ""
+    last = float(known[-1])
+    return f"end {number(last if abs(last) > ROUNDING * (shown.high - shown.low) else 0.0, 5)}"
+
+
+def _of_pi(multiple: float) -> str:
+    quarters = round(4.0 * multiple)
+    divisor = math.gcd(quarters, 4)
+    top, bottom = quarters // divisor, 4 // divisor
+    if top == 0:
+        return "0"
+    text = {1: "", -1: "-"}.get(top, str(top)) + r"\pi"
+    return f"${text}/{bottom}$" if bottom > 1 else f"${text}$"
+
+
+def _bounds(axes: Axes, scene: Scene, series: Series, shown: Reading, colour: str) -> None:
+    """Hatch what is not allowed, shade the time spent on a bound, mark the switching times."""
+    for bound, beyond in ((shown.lower, shown.low), (shown.upper, shown.high)):
+        if shown.low <= bound <= shown.high:
+            axes.axhspan(bound, beyond, **style.FORBIDDEN)
+            axes.axhline(bound, **style.BOUND)
+    if series.active is not None:
+        for first, last in _runs(series.active):
+            axes.axvspan(
+                scene.times[first], scene.times[last], color=colour, alpha=style.SHADE, linewidth=0.0, zorder=1.0
+            )
+    for time in series.switching:
+        axes.axvline(time, color=colour, **style.SWITCHING)
+
+
+def _runs(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """First and last index of each run of true values that is longer than one."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(int), [0]])))
+    return [(int(a), int(b) - 1) for a, b in zip(edges[::2], edges[1::2], strict=True) if b - a > 1]

@@ -1,0 +1,157 @@
+"""How the numbers of a quantity become numbers on an axis that a person can read. Draws nothing."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.report.plots.display import exponent_for, labelled
+from satsym.report.plots.series import Series
+
+Array = NDArray[np.floating[Any]]
+SMALL = 0.02
+"""A deviation smaller than this fraction of the value is shown itself: in the value it could not be seen."""
+BURIED = 1e-3
+"""A variation smaller than this fraction of the value is counted from the first value: ticks would need many digits."""
+FURTHEST, GLIMPSE = 3.0, 1.0
+"""Beside the main curve all is shown up to so many of its widths; of what goes beyond, only so many."""
+IN_SIGHT = 2.0
+"""A bound is in sight if it is no further off than so many widths of the rest."""
+ROUNDING = 1e-9
+"""Variation below this fraction of the size is taken for none."""
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """A quantity as it is shown.
+
+    Attributes
+    ----------
+    label
+        Symbol with unit and power of ten.
+    values, reference, free, target, lower, upper
+        As in :class:`~satsym.report.plots.series.Series`, in that unit and counted from the datum.
+    low, high
+        Ends of the axis.
+    deviation
+        Whether it is the deviation from the reference.
+    turns
+        Whether to mark multiples of pi.
+    """
+
+    label: str
+    values: Array
+    reference: Array | None
+    free: Array | None
+    target: float | None
+    lower: float
+    upper: float
+    low: float
+    high: float
+    deviation: bool
+    turns: bool
+
+
+def read(series: Series) -> Reading:
+    """Choose what to show: the deviation where the value hides it, its unit, power of ten, and the ends of the axis."""
+    size = max(_size(series.values), series.size)
+    datum, deviation = _datum(series, size)
+    symbol, unit, factor = series.symbol, series.unit, 1.0
+    if deviation:
+        symbol = rf"$\Delta${symbol}"
+    elif np.any(datum):
+        symbol = rf"{symbol}$\,-\,${symbol}$(t_0)$"
+    radians = series.angle and unit == "rad"
+    if radians and deviation:
+        unit, factor = "deg", 180.0 / math.pi
+    turns = radians and not deviation and _width(series.values - datum) > 0.5 * math.pi
+    shown = (series.values - datum) * factor
+    low, high = _ends(series, shown, datum, factor, size * factor)
+    exponent = 0 if turns else exponent_for(max(abs(low), abs(high)))
+    scale = 10.0**-exponent
+
+    def placed(values: Array | None) -> Array | None:
+        return None if values is None else (values - datum) * factor * scale
+
+    last = datum if isinstance(datum, float) else float(datum[-1])
+    return Reading(
+        label=labelled(symbol, unit, exponent),
+        values=shown * scale,
+        reference=placed(series.reference),
+        free=placed(series.free),
+        target=None if series.target is None else (series.target - last) * factor * scale,
+        lower=series.lower * scale,
+        upper=series.upper * scale,
+        low=low * scale,
+        high=high * scale,
+        deviation=deviation,
+        turns=turns,
+    )
+
+
+def within_reach(excess: float, width: float) -> float:
+    """How much an axis may grow for what is drawn beside the main curve: for all of it, or if that is too far, a bit.
+
+    Parameters
+    ----------
+    excess
+        What it would take to show all.
+    width
+        Of the main curve.
+    """
+    return excess if excess <= FURTHEST * width else GLIMPSE * width
+
+
+def _datum(series: Series, size: float) -> tuple[Array | float, bool]:
+    """What to count from: the reference, the first value, or zero."""
+    reference, known = series.reference, _known(series.values)
+    if reference is not None and np.isfinite(reference).all():
+        hidden = ROUNDING * size < _size(series.values - reference) < SMALL * _size(known)
+        return (reference, True) if hidden else (0.0, False)
+    hidden = ROUNDING * size < _width(known) < BURIED * _size(known)
+    return (float(known[0]), False) if hidden else (0.0, False)
+
+
+def _ends(series: Series, shown: Array, datum: Array | float, factor: float, size: float) -> tuple[float, float]:
+    """Ends of the axis: all of the values, and of what is drawn beside them as much as leaves them readable."""
+    core = _known(shown)
+    low, high = float(core.min()), float(core.max())
+    if series.target is not None:
+        wanted = (series.target - (datum if isinstance(datum, float) else float(datum[-1]))) * factor
+        low, high = min(low, wanted), max(high, wanted)
+    if series.from_zero:
+        low, high = min(low, 0.0), max(high, 0.0)
+    flat = high - low <= ROUNDING * size
+    reach = math.inf if flat else high - low
+    lowest, highest = low, high
+    for curve in (series.reference, series.free):
+        if curve is not None and np.isfinite(curve).any():
+            beside = _known((curve - datum) * factor)
+            low = min(low, lowest - within_reach(lowest - float(beside.min()), reach))
+            high = max(high, highest + within_reach(float(beside.max()) - highest, reach))
+    for bound in (series.lower, series.upper):
+        if math.isfinite(bound) and low - IN_SIGHT * reach <= bound <= high + IN_SIGHT * reach:
+            low, high = min(low, bound), max(high, bound)
+    if high - low <= ROUNDING * size or high == low:
+        room = 0.1 * max(abs(low), size) or 1.0
+    else:
+        room = 0.07 * (high - low)
+    return low - room, high + room
+
+
+def _known(values: Array) -> Array:
+    """The finite ones; a zero where there is none."""
+    known = values[np.isfinite(values)]
+    return known if known.size else np.zeros(1)
+
+
+def _width(values: Array) -> float:
+    return float(np.ptp(_known(values)))
+
+
+def _size(values: Array) -> float:
+    return float(np.abs(_known(values)).max())

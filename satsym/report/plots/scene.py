@@ -1,0 +1,113 @@
+"""A result made ready for drawing: trajectories, what is drawn beside them, and readable times."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+from satsym.report.plots import curves, display
+from satsym.solution import Flight, Iteration, Solution
+from satsym.spec import ProblemSpec
+
+Array = NDArray[np.floating[Any]]
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """A solution or a flight, and what is drawn beside it.
+
+    Attributes
+    ----------
+    result
+        What was solved or simulated.
+    name
+        What its motion is called in a legend.
+    times, time_unit
+        Nodes in a readable unit, ``"1"`` where the model counts time in none.
+    time_factor
+        Model units of time in that unit.
+    x, u, lam
+        As in the result, NaN for what cannot be drawn or has left its domain; ``lam`` is ``None`` for a flight.
+    reference, free
+        States of the reference curve and of the motion without control at the nodes; ``None`` where there is none
+        or, for the latter, where it is the motion itself.
+    """
+
+    result: Solution | Flight
+    name: str
+    times: Array
+    time_unit: str
+    time_factor: float
+    x: Array
+    u: Array
+    lam: Array | None
+    reference: Array | None
+    free: Array | None
+
+    @classmethod
+    def of(cls, result: Solution | Flight) -> Scene:
+        """Gather what the pictures of a result show."""
+        instance, nodes = result.instance, np.asarray(result.times, dtype=float)
+        spec, p = instance.model.spec, instance.parameters
+        variables = (*spec.states, *spec.controls, *spec.parameters)
+        factor, unit = display.time_scale((v.unit for v in variables), float(np.ptp(nodes)) if len(nodes) else 0.0)
+        return cls(
+            result=result,
+            name=_name(result),
+            times=nodes / factor,
+            time_unit=unit,
+            time_factor=factor,
+            x=curves.states(instance.model, result.x),
+            u=curves.clean(result.u),
+            lam=curves.clean(result.lam) if isinstance(result, Solution) and spec.has_cost else None,
+            reference=curves.reference(instance.model, nodes, p) if spec.has_reference else None,
+            free=None if _coasts(result) else curves.uncontrolled(instance.model, nodes, instance.initial, p),
+        )
+
+    @property
+    def instance(self) -> Instance:
+        return self.result.instance
+
+    @property
+    def spec(self) -> ProblemSpec:
+        return self.instance.model.spec
+
+    @property
+    def title(self) -> str:
+        """What the instance is about, in a line."""
+        return self.instance.title or self.spec.title or self.instance.name
+
+    @property
+    def nodes(self) -> Array:
+        """Nodes in the model's unit of time."""
+        return np.asarray(self.result.times, dtype=float)
+
+    @property
+    def coasting(self) -> bool:
+        """Whether there is no control at any time."""
+        return _coasts(self.result)
+
+    @property
+    def drawable(self) -> bool:
+        """Whether there is any trajectory to see."""
+        return len(self.times) > 1 and int(np.isfinite(self.x).all(axis=0).sum()) > 1
+
+    @property
+    def history(self) -> tuple[Iteration, ...]:
+        return self.result.history if isinstance(self.result, Solution) else ()
+
+
+def _name(result: Solution | Flight) -> str:
+    if isinstance(result, Solution):
+        return "solution" if result.status.answered else "last iterate"
+    if result.feedback != "none":
+        return f"with {result.feedback}"
+    return "without control" if _coasts(result) else "flight"
+
+
+def _coasts(result: Solution | Flight) -> bool:
+    return len(result.times) < 2 or not bool((np.nan_to_num(result.u) != 0.0).any())

@@ -1,0 +1,211 @@
+"""The quantities that are drawn against time: states, controls, costates and what ought to stay constant."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.report.plots import curves
+from satsym.report.plots.display import formula, plain
+from satsym.report.plots.scene import Scene
+from satsym.solution import Flight
+
+Array = NDArray[np.floating[Any]]
+ON_BOUND = 1e-7
+"""How near to a bound a control is on it, relative to the width of its range."""
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """One quantity against time.
+
+    Attributes
+    ----------
+    latex, name
+        As a formula, and in letters where that cannot be set.
+    unit, meaning
+        As in :class:`~satsym.spec.Variable`.
+    values
+        At the nodes, NaN where there is nothing to draw.
+    reference, free
+        The same quantity on the reference curve, and in the motion without control.
+    target
+        The value that is required at the end.
+    angle
+        Whether it is an angle.
+    lower, upper
+        Bounds, infinite where there are none.
+    active
+        Nodes at which it is on a bound.
+    switching
+        Times at which it meets or leaves a bound, as in the scene.
+    size
+        What counts as large for it, where its values may be nothing but rounding errors.
+    from_zero
+        Whether its axis must show zero.
+    """
+
+    latex: str
+    name: str
+    unit: str
+    meaning: str
+    values: Array
+    reference: Array | None = None
+    free: Array | None = None
+    target: float | None = None
+    angle: bool = False
+    lower: float = -math.inf
+    upper: float = math.inf
+    active: NDArray[np.bool_] | None = None
+    switching: tuple[float, ...] = ()
+    size: float = 0.0
+    from_zero: bool = False
+
+    @property
+    def symbol(self) -> str:
+        return formula(self.latex, self.name)
+
+
+def states(scene: Scene) -> list[Series]:
+    """The states, with the reference and the motion without control."""
+    return [
+        Series(
+            v.latex,
+            v.symbol,
+            v.unit,
+            plain(v.meaning),
+            scene.x[i],
+            reference=None if scene.reference is None else scene.reference[i],
+            free=None if scene.free is None else scene.free[i],
+            target=_target(scene, i),
+            angle=v.kind == "angle",
+        )
+        for i, v in enumerate(scene.spec.states)
+    ]
+
+
+def controls(scene: Scene) -> list[Series]:
+    """The controls with their bounds, for a ball also their norm; none of a flight without control."""
+    instance, spec = scene.instance, scene.spec
+    if isinstance(scene.result, Flight) and scene.coasting:
+        return []
+    switching = getattr(scene.result, "switching_times", ()) or ((),) * len(spec.controls)
+    box = spec.control_set == "box"
+    found = [
+        Series(
+            v.latex,
+            v.symbol,
+            v.unit,
+            plain(v.meaning),
+            scene.u[i],
+            lower=instance.lower[i] if box else -math.inf,
+            upper=instance.upper[i] if box else math.inf,
+            active=_active(scene.u[i], instance.lower[i], instance.upper[i]) if box else None,
+            switching=tuple(t / scene.time_factor for t in switching[i]) if box else (),
+            from_zero=True,
+        )
+        for i, v in enumerate(spec.controls)
+    ]
+    if spec.control_set == "ball":
+        norm, units = np.linalg.norm(scene.u, axis=0), {v.unit for v in spec.controls}
+        times = sorted({t / scene.time_factor for each in switching for t in each})
+        active = _active(norm, -math.inf, instance.max_norm)
+        unit = units.pop() if len(units) == 1 else "1"
+        found.append(
+            Series(
+                r"\Vert u \Vert",
+                "|u|",
+                unit,
+                "norm of the control",
+                norm,
+                upper=instance.max_norm,
+                active=active,
+                switching=tuple(times),
+                from_zero=True,
+            )
+        )
+    return found
+
+
+def costates(scene: Scene) -> list[Series]:
+    """The costates and the Hamiltonian; nothing for a flight."""
+    if scene.lam is None:
+        return []
+    model, p = scene.instance.model, scene.instance.parameters
+    # what a costate is worth, cost per unit of its state, tells its rounding errors from its values
+    widths = np.array([_largest(row) or 1.0 for row in scene.x])
+    worth = max(_largest(row) * width for row, width in zip(scene.lam, widths, strict=True))
+    found = [
+        Series(
+            rf"\lambda_{{{v.latex}}}",
+            f"lambda_{v.symbol}",
+            "1",
+            f"costate of {formula(v.latex, v.symbol)}",
+            values,
+            size=worth / width,
+        )
+        for v, values, width in zip(scene.spec.states, scene.lam, widths, strict=True)
+    ]
+    with np.errstate(all="ignore"):
+        along = curves.clean(model.hamiltonian_batch(scene.nodes, scene.x, scene.u, scene.lam, p))
+        terms = np.abs(scene.lam * model.dynamics_batch(scene.nodes, scene.x, scene.u, p))
+    meaning = "Hamiltonian" + (", constant on an extremal" if scene.spec.autonomous else "")
+    return [*found, Series("H", "H", "1", meaning, along, size=_largest(curves.clean(terms)))]
+
+
+def invariants(scene: Scene) -> list[Series]:
+    """What the motion without control keeps constant, with its value there."""
+    model, p = scene.instance.model, scene.instance.parameters
+    if not scene.spec.invariants:
+        return []
+    with np.errstate(all="ignore"):
+        rows = curves.clean(model.invariants_batch(scene.nodes, scene.x, p))
+        free = None if scene.free is None else curves.clean(model.invariants_batch(scene.nodes, scene.free, p))
+        reference = (
+            None if scene.reference is None else curves.clean(model.invariants_batch(scene.nodes, scene.reference, p))
+        )
+    return [
+        Series(
+            v.latex,
+            v.symbol,
+            v.unit,
+            plain(v.meaning) or v.symbol.replace("_", " "),
+            rows[i],
+            reference=None if reference is None else reference[i],
+            free=None if free is None else free[i],
+            size=_largest(rows[i]),
+        )
+        for i, v in enumerate(scene.spec.invariants)
+    ]
+
+
+def _target(scene: Scene, i: int) -> float | None:
+    """The final value that the instance asks for; of an angle that counts modulo a turn, the nearest one."""
+    state, last = scene.spec.states[i], scene.x[i, -1] if scene.x.shape[1] else math.nan
+    given = scene.instance.final.get(state.symbol)
+    if given is None:
+        return None
+    if given == "reference":
+        if scene.reference is None or not scene.reference.shape[1]:
+            return None
+        given = float(scene.reference[i, -1])
+    if state.symbol in scene.instance.solver.free_angles and math.isfinite(last):
+        turn = 360.0 if state.unit.startswith("deg") else 2.0 * math.pi
+        given += turn * round((last - given) / turn)
+    return float(given)
+
+
+def _active(values: Array, lower: float, upper: float) -> NDArray[np.bool_] | None:
+    if not (math.isfinite(lower) or math.isfinite(upper)):
+        return None
+    near = ON_BOUND * (upper - lower if math.isfinite(upper - lower) else _largest(values))
+    with np.errstate(invalid="ignore"):
+        return (values <= lower + near) | (values >= upper - near)
+
+
+def _largest(values: Array) -> float:
+    return float(np.nanmax(np.abs(values), initial=0.0))

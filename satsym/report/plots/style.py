@@ -1,0 +1,141 @@
+"""How pictures look, and how they become files: the same bytes for the same result on the same versions."""
+
+from __future__ import annotations
+
+import io
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from satsym.report.plots.display import shortened
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+# Okabe and Ito's palette for all kinds of colour vision; lines also differ in dashes and width
+BLUE, VERMILION, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#A6508A"
+INK, SOFT, GREY, FAINT, ALARM = "#222222", "#555555", "#8A8A8A", "#E4E4E4", "#B00020"
+SHADE = 0.12
+STATE, CONTROL, COSTATE, INVARIANT = BLUE, VERMILION, GREEN, PURPLE
+
+REFERENCE: dict[str, Any] = {"color": INK, "linewidth": 1.1, "linestyle": (0, (5, 3)), "zorder": 2.1}
+FREE: dict[str, Any] = {"color": GREY, "linewidth": 1.1, "linestyle": "-", "zorder": 2.0}
+MAIN: dict[str, Any] = {"linewidth": 2.0, "zorder": 3.0}
+START: dict[str, Any] = {"marker": "o", "markersize": 6.5, "linestyle": "none", "zorder": 4.0, "clip_on": False}
+END: dict[str, Any] = {"marker": "s", "markersize": 6.0, "linestyle": "none", "zorder": 4.0, "clip_on": False}
+TARGET: dict[str, Any] = {
+    "marker": "o",
+    "markersize": 11.0,
+    "markerfacecolor": "none",
+    "markeredgecolor": INK,
+    "markeredgewidth": 1.2,
+    "linestyle": "none",
+    "zorder": 3.9,
+    "clip_on": False,
+}
+FORBIDDEN: dict[str, Any] = {
+    "facecolor": "none",
+    "edgecolor": "#C4C4C4",
+    "hatch": "////",
+    "linewidth": 0.0,
+    "zorder": 1.2,
+}
+BOUND: dict[str, Any] = {"color": "#777777", "linewidth": 0.9, "zorder": 1.9}
+SWITCHING: dict[str, Any] = {"linewidth": 0.8, "linestyle": ":", "zorder": 1.8}
+ORIGIN: dict[str, Any] = {"marker": "+", "markersize": 11.0, "color": INK, "linestyle": "none", "markeredgewidth": 1.2}
+ARROW: dict[str, Any] = {
+    "color": VERMILION,
+    "angles": "xy",
+    "scale_units": "xy",
+    "scale": 1.0,
+    "width": 0.0045,
+    "headwidth": 4.2,
+    "headlength": 5.0,
+    "headaxislength": 4.4,
+    "minlength": 0.0,
+    "zorder": 2.6,
+}
+
+WIDTH = 10.0
+"""Of a page, in inches."""
+DPI = 160
+_UNDATED: dict[str, dict[str, None]] = {"png": {"Software": None}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}
+_RC: dict[Any, Any] = {
+    "font.size": 10.5,
+    "mathtext.fontset": "cm",
+    "axes.labelsize": 11.0,
+    "axes.titlesize": 9.5,
+    "axes.titlecolor": "#555555",
+    "axes.titlelocation": "left",
+    "axes.titlepad": 5.0,
+    "axes.edgecolor": "#9A9A9A",
+    "axes.linewidth": 0.8,
+    "axes.labelcolor": INK,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.unicode_minus": True,
+    "axes.formatter.useoffset": False,
+    "grid.color": FAINT,
+    "grid.linewidth": 0.7,
+    "xtick.color": "#9A9A9A",
+    "ytick.color": "#9A9A9A",
+    "xtick.labelcolor": INK,
+    "ytick.labelcolor": INK,
+    "xtick.labelsize": 9.5,
+    "ytick.labelsize": 9.5,
+    "legend.frameon": False,
+    "legend.fontsize": 10.0,
+    "legend.handlelength": 2.2,
+    "legend.columnspacing": 1.6,
+    "hatch.color": "#C8C8C8",
+    "hatch.linewidth": 0.7,
+    "lines.solid_capstyle": "round",
+    "figure.constrained_layout.h_pad": 0.06,
+    "figure.constrained_layout.w_pad": 0.06,
+    "figure.dpi": DPI,
+    "savefig.dpi": "figure",
+    "svg.hashsalt": "satsym",  # names of parts that do not change from run to run
+    "savefig.facecolor": "white",
+}
+
+
+@contextmanager
+def applied() -> Iterator[None]:
+    """Draw in this style, whatever the user's matplotlibrc says; afterwards their settings are back."""
+    import matplotlib
+
+    with matplotlib.rc_context(), warnings.catch_warnings():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(_RC)
+        # a title may be in any script; a box in its place is no news to whoever reads it
+        warnings.filterwarnings("ignore", "Glyph .* missing from")
+        yield
+
+
+def figure(width: float, height: float) -> Figure:
+    """An empty figure, in inches, that lays itself out; no pyplot, hence no window and no global state."""
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def titled(title: str, width: float, height: float) -> Figure:
+    """A figure under a title, which is cut if it is longer than a line."""
+    page = figure(width, height)
+    text = shortened(title, int(9.8 * width))
+    page.suptitle(text, x=0.012, ha="left", fontsize=11.5, fontweight="bold", parse_math=False)
+    return page
+
+
+def rendered(page: Figure, kind: str) -> bytes:
+    """A figure as the content of a file of a kind, such as ``png``; without a date, so that it can be compared."""
+    if (engine := page.get_layout_engine()) is not None:
+        # laid out here, once; savefig alone would draw the whole figure a second time to that end
+        engine.execute(page)
+        page.set_layout_engine("none")
+    content = io.BytesIO()
+    page.savefig(content, format=kind, metadata=_UNDATED.get(kind, {}))
+    return content.getvalue()

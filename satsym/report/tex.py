@@ -1,0 +1,112 @@
+"""Text, units and numbers from outside, made safe and well set for LaTeX."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+
+_SPECIAL = {
+    "\\": r"\textbackslash{}",
+    "{": r"\{",
+    "}": r"\}",
+    "$": r"\$",
+    "&": r"\&",
+    "#": r"\#",
+    "%": r"\%",
+    "_": r"\_",
+    "^": r"\textasciicircum{}",
+    "~": r"\textasciitilde{}",
+    "<": r"\textless{}",
+    ">": r"\textgreater{}",
+    "|": r"\textbar{}",
+    '"': r"\textquotedbl{}",
+    "`": r"\textasciigrave{}",
+}
+_SYMBOLS = {
+    "–": r"\textendash{}",
+    "—": r"\textemdash{}",
+    "‘": "`",
+    "’": "'",
+    "“": "``",
+    "”": "''",
+    "…": r"\ldots{}",
+    "€": r"\texteuro{}",
+    "°": r"\textdegree{}",
+    "×": r"\ensuremath{\times}",
+    "·": r"\ensuremath{\cdot}",
+    "±": r"\ensuremath{\pm}",
+    "−": r"\ensuremath{-}",
+    "²": r"\ensuremath{^2}",
+    "³": r"\ensuremath{^3}",
+    "\N{NO-BREAK SPACE}": "~",
+}
+_GREEK = (
+    "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi chi psi "
+    "omega"
+).split()
+_GREEK_CAPITALS = frozenset("gamma delta theta lambda xi pi sigma upsilon phi psi omega".split())
+_ACCENTS = {"\u0300", "\u0301", "\u0302", "\u0303", "\u0308", "\u030a", "\u030b", "\u030c", "\u0327", "\u0328"}
+_UNIT = re.compile(r"(?P<operator>[*/]?)(?P<name>[A-Za-zµ%]+|1)(?:(?:\*\*|\^)(?P<power>-?[0-9]+))?")
+
+
+def escape(text: str) -> str:
+    """Any text, so that LaTeX prints it and nothing more; what its fonts lack appears by its code point."""
+    escaped = "".join(map(_character, unicodedata.normalize("NFC", " ".join(text.split()))))
+    # hyphens stay hyphens: TeX would join them to a dash
+    return re.sub("-(?=-)", "-{}", escaped)
+
+
+def _character(c: str) -> str:
+    if c in _SPECIAL:
+        return _SPECIAL[c]
+    if c.isascii():
+        return c if c.isprintable() else ""
+    if c in _SYMBOLS:
+        return _SYMBOLS[c]
+    name = unicodedata.name(c, "")
+    if name.startswith("GREEK") and (letter := name.split()[-1].lower().replace("lamda", "lambda")) in _GREEK:
+        if name.startswith("GREEK SMALL LETTER"):
+            return rf"\ensuremath{{\{letter}}}"
+        if letter in _GREEK_CAPITALS:
+            return rf"\ensuremath{{\{letter.capitalize()}}}"
+    plain, mark = unicodedata.normalize("NFD", c)[:1], unicodedata.normalize("NFD", c)[1:]
+    if plain.isascii() and plain.isalpha() and mark in _ACCENTS and ord(c) < 0x180:
+        return c
+    return c if c in "ßæÆøØœŒłŁðÐþÞđĐı" else rf"\texttt{{U+{ord(c):04X}}}"
+
+
+def unit(text: str) -> str:
+    """A unit such as ``km**3/s**2``, upright; an en dash for a pure number."""
+    if text.strip() in ("", "1"):
+        return "--"
+    compact = text.replace(" ", "")
+    factors = list(_UNIT.finditer(compact))
+    if "".join(f[0] for f in factors) != compact:
+        return rf"\texttt{{{escape(text)}}}"
+    written = ""
+    for factor in factors:
+        written += {"*": r"\,", "/": "/", "": ""}[factor["operator"]]
+        written += factor["name"].replace("%", r"\%").replace("µ", "\N{MICRO SIGN}")
+        written += f"^{{{factor['power']}}}" if factor["power"] else ""
+    return rf"$\mathrm{{{written}}}$"
+
+
+def number(value: float | None) -> str:
+    """A number as a person writes it; an en dash for none."""
+    if value is None:
+        return "--"
+    digits, _, exponent = f"{value:.12g}".partition("e")
+    if not exponent:
+        return f"${digits}$"
+    power = f"10^{{{int(exponent)}}}"
+    return f"${power}$" if digits == "1" else rf"${digits} \times {power}$"
+
+
+def name(identifier: str) -> str:
+    """A name as it is typed in files."""
+    return rf"\texttt{{{escape(identifier)}}}"
+
+
+def label(address: str) -> str:
+    """An address, as a LaTeX label."""
+    return re.sub(r"[^A-Za-z0-9_.:+-]", "-", address)

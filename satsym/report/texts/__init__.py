@@ -1,0 +1,74 @@
+"""Sentences of reports in each language: one TOML file a language, the same keys in all of them."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+from satsym.status import BadInput
+from satsym.wording import shown
+
+
+class MissingText(LookupError):
+    """A language has no text for something that a report must say."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+@dataclass(frozen=True)
+class Texts:
+    """The texts of one language; they hold LaTeX, and ``<name>`` where something is filled in."""
+
+    language: str
+    tables: Mapping[str, Mapping[str, str]]
+
+    def get(self, table: str, key: str, **fill: str) -> str:
+        """The text at a key of a table, with its places filled in.
+
+        Raises
+        ------
+        MissingText
+            If there is none, or a place in it is left open.
+        """
+        text = self.find(table, key)
+        if text is None:
+            raise MissingText(f'{self.language}.toml: no text for "{key}" in [{table}]')
+        for place, value in fill.items():
+            text = text.replace(f"<{place}>", value)
+        return text
+
+    def find(self, table: str, key: str) -> str | None:
+        """The text at a key of a table, as it stands there; ``None`` if there is none."""
+        return self.tables.get(table, {}).get(key)
+
+    def listed(self, items: list[str]) -> str:
+        """Items as an enumeration: a, b and c."""
+        if len(items) < 2:
+            return "".join(items)
+        last = f"{' ' if len(items) == 2 else self.get('words', 'comma')}{self.get('words', 'and')} "
+        return ", ".join(items[:-1]) + last + items[-1]
+
+
+def languages() -> list[str]:
+    """Languages there are texts in."""
+    return sorted(f.name.removesuffix(".toml") for f in files(__name__).iterdir() if f.name.endswith(".toml"))
+
+
+@cache
+def load(language: str) -> Texts:
+    """The texts of a language.
+
+    Raises
+    ------
+    BadInput
+        If there are none.
+    """
+    if language not in languages():
+        raise BadInput(f"no texts in the language {shown(language)}; there are {', '.join(languages())}")
+    tables: dict[str, Any] = tomllib.loads(files(__name__).joinpath(f"{language}.toml").read_text(encoding="utf-8"))
+    return Texts(language, tables)
