@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from satsym.instance import Instance
 from satsym.status import Status
 
-Array: TypeAlias = NDArray[np.float64]
+Array: TypeAlias = NDArray[np.floating[Any]]
 
 
 @dataclass(frozen=True)
@@ -48,8 +48,6 @@ class Solution:
         What was solved; names, units and bounds are there.
     method, status, message
         Solver, outcome, and one sentence for people.
-    boundary_type
-        1 to 5, as transversality distinguishes them.
     objective
         The cost J; NaN where there is none.
     times
@@ -68,7 +66,6 @@ class Solution:
     method: str
     status: Status
     message: str
-    boundary_type: int
     objective: float
     times: Array
     x: Array

@@ -100,6 +100,16 @@ class Instance:
     guess: Guess
 
     @property
+    def boundary_type(self) -> int:
+        """Which of the five cases of transversality it is, 1 to 5; one free state makes the final state a free one."""
+        everything = len(self.final) == len(self.initial)
+        if self.tf is not None:
+            return 1 if everything else 3
+        if not everything:
+            return 5
+        return 4 if "reference" in self.final.values() else 2
+
+    @property
     def bounds(self) -> Row:
         """The control set as generated functions take it: lower and upper bounds, the radius, or nothing."""
         kind = self.model.spec.control_set

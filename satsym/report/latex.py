@@ -49,6 +49,8 @@ MACROS = r"""\makeatletter
   \@for\satsym@label:=#2\do{\label{\satsym@label}}\addtocounter{equation}{#1}\endgroup}
 % {claims}: how a step was checked
 \def\satsymchecks#1{\par\nobreak{\footnotesize\noindent\color{black!55}#1\par}}
+% keeps a list on one page
+\def\satsymtogether{\@itempenalty\@M\@beginparpenalty\@M\@endparpenalty\@M\itemsep0pt}
 \makeatother
 """
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from satsym.report.results import boundary_type, bounded
+from satsym.report.results import bounded
 from satsym.report.table import figure, table
 from satsym.spec import ProblemSpec, Variable
 
@@ -27,7 +27,7 @@ def instances_text(instances: Iterable[Instance]) -> str:
         (
             each.name,
             each.model.spec.name,
-            str(boundary_type(each)),
+            str(each.boundary_type),
             "free" if each.tf is None else figure(each.tf),
             "yes" if bounded(each) else "no",
             each.title,

@@ -30,7 +30,7 @@ def solution_object(solution: Solution) -> dict[str, Any]:
         "method": solution.method,
         "status": solution.status.value,
         "message": solution.message,
-        "boundary_type": solution.boundary_type,
+        "boundary_type": solution.instance.boundary_type,
         "objective": number(solution.objective),
         "t_final": _last(solution.times),
         "x_final": _named(states, map(_last, solution.x)),
@@ -81,21 +81,11 @@ def instance_object(instance: Instance) -> dict[str, Any]:
         "name": instance.name,
         "title": instance.title,
         "model": instance.model.spec.name,
-        "boundary_type": boundary_type(instance),
+        "boundary_type": instance.boundary_type,
         "t0": instance.t0,
         "tf": instance.tf,
         "bounded": bounded(instance),
     }
-
-
-def boundary_type(instance: Instance) -> int:
-    """Which of the five cases of transversality an instance is; a state left free makes the final state a free one."""
-    everything = len(instance.final) == len(instance.initial)
-    if instance.tf is not None:
-        return 1 if everything else 3
-    if not everything:
-        return 5
-    return 4 if "reference" in instance.final.values() else 2
 
 
 def bounded(instance: Instance) -> bool:

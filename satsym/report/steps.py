@@ -111,7 +111,7 @@ def _boundary_conditions(context: Context, step: Step) -> Shown:
     numbers = {group: numbers_of(rows[0].address, rows[-1].address) for group, rows in groups.items() if rows}
     types = [texts.get("boundary", key, **numbers) for key in ("none", "time", "state", "curve", "both")]
     items = "\n".join(rf"  \item {text}" for text in types)
-    parts.append(f"{texts.get('boundary', 'intro')}\n\\begin{{enumerate}}\\itemsep0pt\n{items}\n\\end{{enumerate}}")
+    parts.append(f"{texts.get('boundary', 'intro')}\n\\begin{{enumerate}}\\satsymtogether\n{items}\n\\end{{enumerate}}")
     if context.derivation.problem and context.derivation.problem.terminal_constraints:
         parts.append(texts.get("boundary", "constraints"))
     rows = [row for group in groups.values() for row in group]

@@ -45,7 +45,7 @@ def solution_text(solution: Solution, colour: bool = False) -> str:
     facts = [
         ("cost J", figure(solution.objective, 10)),
         ("final time", f"{figure(_last(solution.times), 10)} {unit}".rstrip()),
-        ("boundary type", f"{solution.boundary_type}, {_BOUNDARY[solution.boundary_type]}"),
+        ("boundary type", f"{instance.boundary_type}, {_BOUNDARY[instance.boundary_type]}"),
     ]
     blocks = [
         _heading(instance, solution.status, f"{solution.method}, {_effort(solution)}", colour),

@@ -8,7 +8,8 @@ from satsym.status import BadInput
 
 __all__ = ["simulate", "solve"]
 
-METHODS = ("sweep",)
+METHODS = ("sweep", "collocation")
+"""What is available of what an instance may name."""
 
 
 def solve(instance: Instance, progress: Progress | None = None) -> Solution:
@@ -26,20 +27,27 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     BadInput
         If the model has no cost, or no method here can solve such an instance.
     """
-    from satsym.solve import forward_backward
-
     spec, method = instance.model.spec, instance.solver.method
     if not spec.has_cost:
         raise BadInput(f"{instance.name}: model {spec.name} has no cost, so there is nothing to solve; try simulate")
     if method not in ("auto", *METHODS):
-        raise BadInput(f'{instance.name}: solver.method: "{method}" is not available; use "auto" or "sweep"')
-    if instance.tf is None or instance.final:
-        given = "a free final time" if instance.tf is None else f"a given final {', '.join(instance.final)}"
+        available = " or ".join(f'"{name}"' for name in ("auto", *METHODS))
+        raise BadInput(f'{instance.name}: solver.method: "{method}" is not available; use {available}')
+    if instance.tf is None:
+        raise BadInput(f"{instance.name}: time.tf: a free final time cannot be solved for yet; give a number")
+    if method == "sweep" and instance.final:
+        given = ", ".join(instance.final)
         raise BadInput(
-            f"{instance.name}: {given} cannot be swept for; give the final time, leave the final state free and weigh "
-            "its error in the terminal cost"
+            f"{instance.name}: a given final {given} cannot be swept for; leave it free and weigh its error in the "
+            'terminal cost, or use method "collocation"'
         )
-    return forward_backward.solve(instance, progress)
+    if method == "sweep" or (method == "auto" and not instance.final):
+        from satsym.solve import forward_backward
+
+        return forward_backward.solve(instance, progress)
+    from satsym.solve import two_point
+
+    return two_point.solve(instance, progress)
 
 
 def simulate(instance: Instance, feedback: str = "none") -> Flight:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 from satsym.instance import Instance
 
-Array = NDArray[np.float64]
+Array = NDArray[np.floating[Any]]
 
 
 def project(instance: Instance, u: Array) -> Array:
@@ -45,27 +47,42 @@ def active(instance: Instance, unbounded: Array) -> NDArray[np.int8]:
     return np.zeros(unbounded.shape, np.int8)
 
 
-def excess(instance: Instance, unbounded: Array) -> Array:
+def excess(instance: Instance, unbounded: Array, widening: float = 0.0) -> Array:
     """Signed distances to each bound, whose zeros are the switching times; shape (bounds, M).
 
     The rows are, for a box, control minus lower bound and control minus upper bound for each control; for a
     ball the norm minus its limit. Bounds that are infinite have rows of infinities.
     """
+    kind, limits = instance.model.spec.control_set, widened(instance, widening)
+    if kind == "box":
+        m = len(limits) // 2
+        return np.concatenate([unbounded - _column(limits[:m]), unbounded - _column(limits[m:])])
+    if kind == "ball":
+        return (np.linalg.norm(unbounded, axis=0) - limits[0])[None, :]
+    return np.empty((0, unbounded.shape[1]))
+
+
+def violation(instance: Instance, u: Array) -> float:
+    """By how much controls leave the control set at most; not positive where they do not."""
+    kind = instance.model.spec.control_set
+    distances = excess(instance, u)
+    if kind == "box":
+        m = len(u)
+        distances = np.concatenate([-distances[:m], distances[m:]])
+    return float(distances.max(initial=-np.inf))
+
+
+def widened(instance: Instance, by: float) -> tuple[float, ...]:
+    """The ``bounds`` argument of kernels with every bound moved outwards, in the controls' units."""
     kind = instance.model.spec.control_set
     if kind == "box":
-        return np.concatenate([unbounded - _column(instance.lower), unbounded - _column(instance.upper)])
-    if kind == "ball":
-        return (np.linalg.norm(unbounded, axis=0) - instance.max_norm)[None, :]
-    return np.empty((0, unbounded.shape[1]))
+        return (*(low - by for low in instance.lower), *(high + by for high in instance.upper))
+    return (instance.max_norm + by,) if kind == "ball" else ()
 
 
 def without_bounds(instance: Instance) -> tuple[float, ...]:
     """The ``bounds`` argument of kernels for an unlimited control."""
-    m = len(instance.model.spec.controls)
-    infinity = float("inf")
-    return {"box": (-infinity,) * m + (infinity,) * m, "ball": (infinity,)}.get(
-        instance.model.spec.control_set or "free", ()
-    )
+    return widened(instance, float("inf"))
 
 
 def _column(values: tuple[float, ...]) -> Array:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from satsym.grid import Grid
 from satsym.instance import Instance
-from satsym.kernels import Kernels
 from satsym.solution import Array, Flight, Invariant
 from satsym.solve import control_set
 from satsym.status import BadInput, Status
@@ -18,7 +19,16 @@ ORDER = 4
 MARGIN = 0.1
 """Share of the tolerance that the estimated error may take: estimates can be low."""
 
+ROUNDING = 100.0 * float(np.finfo(float).eps)
+"""Relative change of the initial state whose effect is taken for that of rounding. More steps do not make the error
+smaller, and a state that is small because large terms cancel (the radial velocity on a nearly circular orbit) feels it.
+"""
+
 MOST_STEPS = 2**20
+"""More are used only where the instance asks for more than half as many itself."""
+
+HOPELESS = 64
+"""Times the given steps with which a motion that is not finite is given up: until then the steps may be too long."""
 
 
 def simulate(instance: Instance, feedback: str = "none") -> Flight:
@@ -35,7 +45,8 @@ def simulate(instance: Instance, feedback: str = "none") -> Flight:
     -------
     Flight
         At the instance's number of steps; ``metrics`` has the steps that were needed and the estimated
-        error (Richardson), relative to the size of each state.
+        error (Richardson), relative to the size of each state or, where more, to the size at which rounding alone
+        causes that error.
 
     Raises
     ------
@@ -46,15 +57,14 @@ def simulate(instance: Instance, feedback: str = "none") -> Flight:
         raise BadInput(f"--feedback {feedback}: unknown; this model has {', '.join(FEEDBACKS)}")
     if instance.tf is None:
         raise BadInput(f"{instance.name}: time.tf: a simulation needs a number, not a free final time")
-    coarse_steps = instance.solver.steps
-    kernels = instance.model
-    x = _fly(instance, kernels, coarse_steps)
-    steps, error = coarse_steps, float("nan")
-    while np.isfinite(x).all() and 2 * steps <= MOST_STEPS:
-        finer = _fly(instance, kernels, 2 * steps)
-        error = _difference(x, finer[:, ::2]) / (2**ORDER - 1)
-        steps, x = 2 * steps, finer
-        if error <= MARGIN * instance.solver.tolerance or not np.isfinite(error):
+    coarse_steps, sufficient = instance.solver.steps, MARGIN * instance.solver.tolerance
+    steps, x, error = coarse_steps, _fly(instance, coarse_steps), float("nan")
+    while 2 * steps <= max(MOST_STEPS, 2 * coarse_steps) and (steps < HOPELESS * coarse_steps or np.isfinite(x).all()):
+        steps, coarse, x, before = 2 * steps, x, _fly(instance, 2 * steps), error
+        error = _difference(coarse, x[:, ::2])
+        if error > 0.25 * before:  # no longer fourth order
+            error = _difference(coarse, x[:, ::2], _rounding(instance, x, steps) / sufficient)
+        if error <= sufficient:
             break
     x = x[:, :: steps // coarse_steps]
     times = Grid.uniform(instance.t0, instance.tf, coarse_steps).nodes
@@ -64,7 +74,7 @@ def simulate(instance: Instance, feedback: str = "none") -> Flight:
         instance=instance,
         feedback=feedback,
         status=status,
-        message=_message(status, error),
+        message=_message(status, error, steps),
         times=times,
         x=x,
         u=u,
@@ -78,18 +88,27 @@ def _control(instance: Instance) -> Array:
     return control_set.project(instance, np.zeros((len(instance.model.spec.controls), 1)))
 
 
-def _fly(instance: Instance, kernels: Kernels, steps: int) -> Array:
+def _fly(instance: Instance, steps: int) -> Array:
     assert instance.tf is not None
     grid = Grid.uniform(instance.t0, instance.tf, steps)
     u = np.repeat(_control(instance), steps + 1, axis=1)
-    x, _, _ = kernels.forward(grid.nodes, instance.initial, u, u[:, 1:], instance.parameters)
+    x, _, _ = instance.model.forward(grid.nodes, instance.initial, u, u[:, 1:], instance.parameters)
     return x
 
 
-def _difference(coarse: Array, fine: Array) -> float:
-    """Largest difference of each state, relative to its size."""
-    size = np.maximum(np.abs(fine).max(axis=1, keepdims=True), np.finfo(float).tiny)
-    return float((np.abs(coarse - fine) / size).max())
+def _rounding(instance: Instance, x: Array, steps: int) -> Array:
+    """What rounding can do to each state, shape (n, 1)."""
+    nudged = replace(instance, initial=tuple(value * (1.0 + ROUNDING) for value in instance.initial))
+    with np.errstate(invalid="ignore"):
+        effect: Array = np.abs(_fly(nudged, steps) - x).max(axis=1, keepdims=True)
+    return effect
+
+
+def _difference(coarse: Array, fine: Array, least: Array | float = 0.0) -> float:
+    """Estimated error of the coarser of two runs (Richardson) relative to the size of each state, or a least size."""
+    with np.errstate(invalid="ignore"):
+        size = np.maximum(np.abs(fine).max(axis=1, keepdims=True), np.maximum(least, np.finfo(float).tiny))
+        return float((np.abs(coarse - fine) / size).max()) / (2**ORDER - 1)
 
 
 def _status(instance: Instance, x: Array, error: float) -> Status:
@@ -100,13 +119,11 @@ def _status(instance: Instance, x: Array, error: float) -> Status:
     return Status.CONVERGED if error <= instance.solver.tolerance else Status.NOT_CONVERGED
 
 
-def _message(status: Status, error: float) -> str:
+def _message(status: Status, error: float, steps: int) -> str:
     if status is Status.CONVERGED:
         return f"two runs, one with half the steps, agree to {error:.0e}"
     if status is Status.NOT_CONVERGED:
-        return (
-            f"even {MOST_STEPS} steps leave an estimated error of {error:.0e}: the motion comes close to a singularity"
-        )
+        return f"even {steps} steps leave an estimated error of {error:.0e}: the motion comes close to a singularity"
     return f"the motion is not finite: {status.advice}" if status is Status.NON_FINITE else status.advice
 
 

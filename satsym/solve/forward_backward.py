@@ -61,16 +61,19 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     run = _run(problem, start, limits, progress)
     history = run.history
     switches = switching_times(problem, run.state.sweep)
-    for _ in range(ROUNDS if run.status is Status.CONVERGED else 0):
-        if not any(switches):
+    for _ in range(ROUNDS):
+        if not any(switches) or not _improvable(run):
             break
         before = switches
         moved = _with_kinks(problem, switches)
-        run = _run(moved, forward(moved, _carried_over(problem, run.state.sweep, moved)), limits, progress)
+        start = forward(moved, _carried_over(problem, run.state.sweep, moved))
+        if not start.usable:
+            break
+        run = _run(moved, start, limits, progress)
         history = _continued(history, run.history)
         problem = moved
         switches = switching_times(problem, run.state.sweep)
-        if run.status is not Status.CONVERGED or _settled(before, switches, instance.tf - instance.t0):
+        if _settled(before, switches, instance.tf - instance.t0):
             break
     return _solution(problem, run, history, switches, time.perf_counter() - began)
 
@@ -117,6 +120,11 @@ def _run(
     return iterate(QuasiNewton(problem, start, options.tolerance), limits, progress)
 
 
+def _improvable(run: Run[Descent] | Run[Relaxed]) -> bool:
+    """Whether nodes at the kinks can help: also a descent that is stuck may be so for the kinks within its steps."""
+    return run.status is Status.CONVERGED or (isinstance(run.state, Descent) and run.state.stalled)
+
+
 def _with_kinks(problem: SweepProblem, switches: tuple[tuple[float, ...], ...]) -> SweepProblem:
     uniform = Grid.uniform(problem.grid.t0, problem.grid.tf, problem.instance.solver.steps)
     points = sorted({t for times in switches for t in times})
@@ -155,7 +163,6 @@ def _solution(
         method="sweep",
         status=run.status,
         message=_explained(problem, sweep, run),
-        boundary_type=3,
         objective=sweep.objective,
         times=problem.grid.nodes,
         x=sweep.forward.x[:, ::2],
@@ -189,7 +196,6 @@ def _without_answer(problem: SweepProblem, start: Forward, wall_s: float) -> Sol
         method="sweep",
         status=status,
         message=f"the motion under the starting control {what}",
-        boundary_type=3,
         objective=float("nan"),
         times=problem.grid.nodes,
         x=start.x[:, ::2],

@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+Array = NDArray[np.floating[Any]]
+
+MOST_STEPS = 100
+LAST_DIGITS = 1e-15
 
 STENCIL = 5
 """Points of the polynomial through which a zero is found."""
@@ -31,6 +37,29 @@ def zeros(times: Array, values: Array) -> list[float]:
         first = int(np.clip(k - STENCIL // 2 + 1, 0, max(len(times) - STENCIL, 0)))
         found.append(_zero(times[first : first + STENCIL], values[first : first + STENCIL], times[k], times[k + 1]))
     return sorted(found)
+
+
+def zero(function: Callable[[float], float], low: float, high: float) -> float:
+    """The zero of a continuous function between two points where its signs differ, to the last digits.
+
+    Secant steps that keep the zero enclosed (the Illinois method). The library function for this would cost an
+    import several times longer than solving.
+    """
+    at_low, at_high = function(low), function(high)
+    for _ in range(MOST_STEPS):
+        if at_high == 0.0 or high == low:
+            break
+        between = high - at_high * (high - low) / (at_high - at_low)
+        value = function(between)
+        if value * at_high < 0.0:
+            low, at_low = high, at_high
+        else:
+            at_low /= 2.0
+        moved = abs(between - high)
+        high, at_high = between, value
+        if moved <= LAST_DIGITS * max(abs(high), 1.0):
+            break
+    return high
 
 
 def _zero(times: Array, values: Array, low: float, high: float) -> float:

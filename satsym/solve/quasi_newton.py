@@ -37,6 +37,12 @@ NOTICEABLE = 1e-9
 ROUNDING = 30.0
 """A residual within this factor of what a change of the last digit causes cannot be reduced."""
 
+TINY = 1e-9
+"""Residual below which rounding is looked at before each step, lest many steps be spent on the last digits."""
+
+SURE = 3.0
+"""The factor of ``ROUNDING`` while steps that reduce the residual are still found."""
+
 
 @dataclass(frozen=True, eq=False)
 class Descent:
@@ -78,11 +84,11 @@ class QuasiNewton:
         residual = state.sweep.residual
         if residual <= self.tolerance:
             return Status.CONVERGED, "control and control law agree"
+        factor = ROUNDING if state.stalled else SURE if residual <= TINY else 0.0
+        if factor and residual <= factor * _rounding(self.problem, state.sweep):
+            return Status.CONVERGED, f"control and control law agree to {residual:.0e}, as far as rounding allows"
         if not state.stalled:
             return None
-        floor = _rounding(self.problem, state.sweep)
-        if residual <= floor:
-            return Status.CONVERGED, f"control and control law agree to {residual:.0e}, as far as rounding allows"
         return Status.NOT_CONVERGED, f"no step decreases the cost further; residual {residual:.1e}"
 
     def step(self, state: Descent) -> Descent:
@@ -146,7 +152,7 @@ class QuasiNewton:
 
 
 def _rounding(problem: SweepProblem, sweep: Sweep) -> float:
-    """The residual that rounding alone can cause: the law's response to a change in the last digits."""
+    """A residual that rounding alone causes: the law's response to a change in the last digits."""
     nudged = sweep.u * (1.0 + 4.0 * np.finfo(float).eps)
     instance = problem.instance
     initial = tuple(float(np.nextafter(value, np.inf)) for value in instance.initial)
@@ -155,7 +161,7 @@ def _rounding(problem: SweepProblem, sweep: Sweep) -> float:
     if not motion.usable:
         return 0.0
     change = np.abs(backward(moved, motion).law - sweep.law).max(initial=0.0)
-    return float(ROUNDING * change / max(np.abs(sweep.law).max(initial=0.0), np.finfo(float).tiny))
+    return float(change / max(np.abs(sweep.law).max(initial=0.0), np.finfo(float).tiny))
 
 
 def _shrink(change: float, predicted: float) -> float:

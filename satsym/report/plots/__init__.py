@@ -1,4 +1,4 @@
-"""Pictures of a solution or a flight, for any model: PNG files, and on request vector graphics.
+"""Pictures of a solution or a flight, for any model: PNG files, and on request PDF.
 
 matplotlib is imported when the first picture is drawn, without pyplot.
 """
@@ -22,7 +22,7 @@ def save(result: Solution | Flight, folder: Path, formats: Sequence[str] = ("png
     folder
         Made if it is not there.
     formats
-        Of ``png``, ``pdf`` and ``svg``.
+        Of ``png`` and ``pdf``.
 
     Returns
     -------

@@ -72,7 +72,7 @@ def in_space(axes: Axes, orbit: Orbit, across: int = 0, up: int = 1) -> None:
     low, high = _box(curve, [*others, np.zeros((2, 1))])
     centre, half = 0.5 * (low + high), 0.5 * float((high - low).max())
     names = [orbit.labels[i] for i in pick]
-    datum = np.zeros((2, 1))
+    datum: Array = np.zeros((2, 1))
     if half < BURIED * np.abs(centre).max():
         # far from the origin ticks would need many digits
         datum = curve[:, np.isfinite(curve).all(axis=0)][:, :1]
@@ -102,7 +102,7 @@ def from_reference(axes: Axes, orbit: Orbit) -> None:
     """Draw the path as it is seen from the reference: ahead to the right, outwards up."""
     assert orbit.relative is not None
     curve = np.vstack([orbit.relative.along, orbit.relative.radial])
-    others = [np.zeros((2, 1))]
+    others: list[Array] = [np.zeros((2, 1))]
     if orbit.free_relative is not None:
         others.append(np.vstack([orbit.free_relative.along, orbit.free_relative.radial]))
     low, high = _box(curve, others)

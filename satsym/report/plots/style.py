@@ -60,7 +60,7 @@ ARROW: dict[str, Any] = {
 WIDTH = 10.0
 """Of a page, in inches."""
 DPI = 160
-_UNDATED: dict[str, dict[str, None]] = {"png": {"Software": None}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}
+_UNDATED: dict[str, dict[str, None]] = {"png": {"Software": None}, "pdf": {"CreationDate": None}}
 _RC: dict[Any, Any] = {
     "font.size": 10.5,
     "mathtext.fontset": "cm",
@@ -97,7 +97,6 @@ _RC: dict[Any, Any] = {
     "figure.constrained_layout.w_pad": 0.06,
     "figure.dpi": DPI,
     "savefig.dpi": "figure",
-    "svg.hashsalt": "satsym",  # names of parts that do not change from run to run
     "savefig.facecolor": "white",
 }
 

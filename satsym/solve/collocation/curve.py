@@ -1,0 +1,101 @@
+"""A curve of states and costates: polynomials on the intervals of a mesh, with the extra unknowns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import NDArray
+
+from satsym.solve.collocation.gauss import scheme
+
+Array = NDArray[np.floating[Any]]
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """Values at the nodes of a mesh and at the Gauss points between them.
+
+    Attributes
+    ----------
+    mesh
+        Nodes in [0, 1], shape (N+1,).
+    nodes
+        Values there, shape (2n, N+1).
+    stages
+        Values at the s Gauss points of each interval, shape (2n, N, s).
+    theta
+        Extra unknowns, shape (e,).
+    """
+
+    mesh: Array
+    nodes: Array
+    stages: Array
+    theta: Array
+
+    @property
+    def order(self) -> int:
+        """Number s of stages."""
+        return int(self.stages.shape[2])
+
+    @property
+    def flat(self) -> Array:
+        """The stage values in order of time, shape (2n, N s)."""
+        return self.stages.reshape(len(self.stages), -1)
+
+    def __call__(self, tau: Array) -> Array:
+        """Values at ``tau`` in [0, 1], shape (2n, M)."""
+        tau = np.asarray(tau, dtype=float)
+        interval = np.clip(np.searchsorted(self.mesh, tau, side="right") - 1, 0, len(self.mesh) - 2)
+        local = 2 * (tau - self.mesh[interval]) / np.diff(self.mesh)[interval] - 1
+        known = np.concatenate([self.nodes[:, :-1, None], self.stages], axis=2)
+        coefficients = known @ scheme(self.order).coefficients.T
+        values: Array = np.einsum("aik,ik->ai", coefficients[:, interval], legendre.legvander(local, self.order))
+        return values
+
+    def on(self, mesh: Array, order: int) -> Curve:
+        """The same curve, as far as that can be, on another mesh or with another number of stages."""
+        tau = stage_times(mesh, order)
+        stages = self(tau.ravel()).reshape(len(self.nodes), *tau.shape)
+        return Curve(mesh, self(mesh), stages, self.theta)
+
+    def moved(self, step: Step, length: float) -> Curve:
+        """The curve after a share of a step."""
+        return Curve(
+            self.mesh,
+            self.nodes + length * step.nodes,
+            self.stages + length * step.stages,
+            self.theta + length * step.theta,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """A change of a curve, in the same shapes."""
+
+    nodes: Array
+    stages: Array
+    theta: Array
+
+    def size(self, curve: Curve) -> float:
+        """Largest change: states relative to their size (at least one), costates relative to theirs."""
+        n = len(curve.nodes) // 2
+        x = max(1.0, np.abs(curve.nodes[:n]).max(), np.abs(curve.stages[:n]).max())
+        lam = max(np.abs(curve.nodes[n:]).max(), np.abs(curve.stages[n:]).max(), 1e-300)
+        theta = np.abs(self.theta) / np.maximum(np.abs(curve.theta), 1e-300) if len(self.theta) else np.zeros(1)
+        parts = (
+            np.abs(self.nodes[:n]).max() / x,
+            np.abs(self.stages[:n]).max() / x,
+            np.abs(self.nodes[n:]).max() / lam,
+            np.abs(self.stages[n:]).max() / lam,
+            theta[-1],
+        )
+        return float(max(parts))
+
+
+def stage_times(mesh: Array, order: int) -> Array:
+    """Gauss points of each interval, shape (N, s)."""
+    times: Array = mesh[:-1, None] + np.diff(mesh)[:, None] * scheme(order).nodes
+    return times

@@ -1,0 +1,64 @@
+"""Gauss collocation schemes: s stages, order 2s, symplectic.
+
+Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import NDArray
+
+Array = NDArray[np.floating[Any]]
+
+
+@dataclass(frozen=True, eq=False)
+class Scheme:
+    """Tables of a scheme with s stages on [0, 1].
+
+    Attributes
+    ----------
+    nodes, weights
+        Gauss points and weights, shape (s,).
+    matrix, inverse
+        Integrals of the Lagrange polynomials up to each node, shape (s, s), and the inverse of that.
+    end
+        ``weights @ inverse``: from differences at the stages to the difference at the end.
+    coefficients
+        From values at 0 and at the stages to Legendre coefficients on [-1, 1], shape (s + 1, s + 1).
+    """
+
+    nodes: Array
+    weights: Array
+    matrix: Array
+    inverse: Array
+    end: Array
+    coefficients: Array
+
+    @property
+    def stages(self) -> int:
+        """Number s of stages."""
+        return len(self.nodes)
+
+
+@lru_cache
+def scheme(stages: int) -> Scheme:
+    """The scheme with that many stages."""
+    x, w = legendre.leggauss(stages)
+    to_coefficients = np.linalg.inv(legendre.legvander(x, stages - 1))
+    integrals = [legendre.legval(x, legendre.legint(unit, lbnd=-1)) for unit in np.eye(stages)]
+    matrix = np.array(integrals).T @ to_coefficients / 2
+    inverse = np.linalg.inv(matrix)
+    with_start = np.concatenate([[-1.0], x])
+    return Scheme(
+        nodes=(x + 1) / 2,
+        weights=w / 2,
+        matrix=matrix,
+        inverse=inverse,
+        end=w / 2 @ inverse,
+        coefficients=np.linalg.inv(legendre.legvander(with_start, stages)),
+    )

@@ -1,0 +1,102 @@
+"""Newton's method on the collocation equations, from a good curve: damped by the natural monotonicity test.
+
+Exact Jacobians make it converge quadratically, also where bounds are active (the equations are then only
+semismooth). The test compares simplified corrections, so it does not depend on how equations are scaled
+(Deuflhard, Newton Methods for Nonlinear Problems, 3.3).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.solve.collocation.curve import Curve, Step
+from satsym.solve.collocation.problem import TwoPoint
+from satsym.solve.collocation.system import Linearised, System
+
+Array = NDArray[np.floating[Any]]
+
+KEEP = 0.3
+"""Share of a positive state that a step must leave."""
+
+SURE = 1e-4
+"""Corrections below this are taken whole."""
+
+SHORTEST = 1e-3
+FLOOR = 1e-9
+"""Corrections below this that no longer shrink are rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """Where Newton ended.
+
+    Attributes
+    ----------
+    curve
+        The last one.
+    converged
+        Whether the last correction was small enough.
+    iterations
+        Number of corrections.
+    first
+        Size of the first correction: the error of the curve it started from.
+    defects
+        Defects of that curve between neighbouring intervals, shape (N, 2n).
+    linearised
+        The last linearisation.
+    """
+
+    curve: Curve
+    converged: bool
+    iterations: int
+    first: float
+    defects: Array
+    linearised: Linearised
+
+
+def newton(system: System, start: Curve, tolerance: float = 1e-12, most: int = 12) -> Outcome | None:
+    """Newton from a curve on the system's mesh; ``None`` where the equations are singular or not finite."""
+    problem, curve = system.problem, start
+    residual = system.residual(curve)
+    first, before = 0.0, float("inf")
+    defects: Array = np.zeros(0)
+    for iteration in range(1, most + 1):
+        try:
+            linearised = system.linearised(curve, residual, system.jacobian(curve))
+            step = linearised.step(residual)
+        except np.linalg.LinAlgError:
+            return None
+        size = step.size(curve)
+        if not np.isfinite(size):
+            return None
+        if iteration == 1:
+            first, defects = size, linearised.defects(residual)
+        length = within_domain(problem, curve, step)
+        while True:
+            trial = curve.moved(step, length)
+            residual = system.residual(trial)
+            if size < SURE or linearised.step(residual).size(trial) <= (1.0 - length / 4.0) * size:
+                break
+            length /= 2.0
+            if length < SHORTEST:
+                return Outcome(curve, False, iteration, first, defects, linearised)
+        curve = trial
+        if size < tolerance or (size < FLOOR and size > 0.2 * before):
+            return Outcome(curve, True, iteration, first, defects, linearised)
+        before = size
+    return Outcome(curve, False, most, first, defects, linearised)
+
+
+def within_domain(problem: TwoPoint, curve: Curve, step: Step) -> float:
+    """The longest part of a step, at most all of it, that leaves positive states positive and the duration sane."""
+    length = 1.0
+    for i in problem.positive:
+        fall = max((-step.stages[i] / curve.stages[i]).max(), (-step.nodes[i] / curve.nodes[i]).max())
+        length = min(length, (1.0 - KEEP) / max(1.0 - KEEP, fall))
+    if problem.free_time:
+        length = min(length, 0.5 * curve.theta[-1] / max(abs(step.theta[-1]), 1e-300))
+    return length

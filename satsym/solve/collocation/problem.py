@@ -1,0 +1,209 @@
+"""An instance as a two-point boundary value problem in scaled variables: all that collocation and shooting see.
+
+States are divided by their size along the way, costates by energy over that, so that kilometres and seconds at
+geostationary height look like radius one: everything is of order one, and the response of the states to the
+costates at most so over the horizon.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+from satsym.solve import control_set
+
+Array = NDArray[np.floating[Any]]
+
+
+@dataclass(frozen=True, eq=False)
+class Scale:
+    """Units of the scaled problem.
+
+    Attributes
+    ----------
+    state
+        Of each state, shape (n,).
+    cost
+        Of the cost; a costate has the unit cost over state.
+    """
+
+    state: Array
+    cost: float
+
+    @cached_property
+    def both(self) -> Array:
+        """Of states and costates, shape (2n, 1)."""
+        return np.concatenate([self.state, self.cost / self.state])[:, None]
+
+    @cached_property
+    def ratio(self) -> Array:
+        """What turns a Jacobian into the scaled one, shape (2n, 2n, 1)."""
+        return (self.both.T / self.both)[:, :, None]
+
+
+@dataclass(frozen=True, eq=False)
+class TwoPoint:
+    """The canonical equations from the given initial state to the right end that an instance asks for.
+
+    Unknowns are z = (states, costates), scaled, over tau in [0, 1], and ``theta``: the multipliers of terminal
+    constraints (scaled by the cost), then the duration where it is free.
+
+    Attributes
+    ----------
+    instance
+        What is solved.
+    final
+        The ``final`` argument of the boundary functions: given, on reference, target, state by state.
+    duration
+        tf - t0; where it is free, where to start.
+    scale
+        Units.
+    widening
+        By how much every bound of the control is moved outwards; infinite: no bounds.
+    """
+
+    instance: Instance
+    final: tuple[float, ...]
+    duration: float
+    scale: Scale
+    widening: float = 0.0
+
+    @property
+    def states(self) -> int:
+        """Number n of states."""
+        return len(self.instance.model.spec.states)
+
+    @property
+    def free_time(self) -> bool:
+        """Whether the duration is unknown."""
+        return self.instance.tf is None
+
+    @cached_property
+    def unknowns(self) -> int:
+        """Length of ``theta``."""
+        return len(self.instance.model.spec.multipliers) + self.free_time
+
+    @cached_property
+    def theta(self) -> Array:
+        """Where ``theta`` starts: no multipliers, the first guess of the duration."""
+        start = np.zeros(self.unknowns)
+        if self.free_time:
+            start[-1] = self.duration
+        return start
+
+    @cached_property
+    def initial(self) -> Array:
+        """The initial state, scaled."""
+        return np.array(self.instance.initial) / self.scale.state
+
+    def starting_at(self, initial: Array) -> TwoPoint:
+        """The same problem from another initial state, scaled."""
+        return replace(self, instance=replace(self.instance, initial=tuple((initial * self.scale.state).tolist())))
+
+    @cached_property
+    def positive(self) -> tuple[int, ...]:
+        """Indices of the states that must stay positive."""
+        return tuple(i for i, v in enumerate(self.instance.model.spec.states) if v.positive)
+
+    @cached_property
+    def bounds(self) -> tuple[float, ...]:
+        """The ``bounds`` argument of kernels, widened."""
+        return control_set.widened(self.instance, self.widening)
+
+    def widened(self, widening: float) -> TwoPoint:
+        """The same problem with other bounds."""
+        return replace(self, widening=widening)
+
+    def elapsed(self, theta: Array) -> float:
+        """The duration."""
+        return float(theta[-1]) if self.free_time else self.duration
+
+    def _arguments(self, tau: Array, z: Array, theta: Array) -> tuple[object, ...]:
+        t = self.instance.t0 + self.elapsed(theta) * tau
+        physical = z * self.scale.both
+        return t, physical[: self.states], physical[self.states :], self.instance.parameters
+
+    def rates(self, tau: Array, z: Array, theta: Array) -> Array:
+        """dz/dt, shape (2n, N), at ``tau`` (N,) and ``z`` (2n, N)."""
+        rates: Array = self.instance.model.canonical_batch(*self._arguments(tau, z, theta), self.bounds)
+        return rates / self.scale.both
+
+    def jacobian(self, tau: Array, z: Array, theta: Array) -> Array:
+        """The rates by z, shape (2n, 2n, N)."""
+        slopes: Array = self.instance.model.canonical_jacobian_batch(*self._arguments(tau, z, theta), self.bounds)
+        return slopes * self.scale.ratio
+
+    def drift(self, tau: Array, z: Array, theta: Array) -> Array | float:
+        """The rates by explicit time, shape (2n, N)."""
+        if self.instance.model.spec.autonomous:
+            return 0.0
+        slopes: Array = self.instance.model.canonical_drift_batch(*self._arguments(tau, z, theta), self.bounds)
+        return slopes / self.scale.both
+
+    def running_cost(self, tau: Array, z: Array, theta: Array) -> Array:
+        """The integrand of the cost under the control law, scaled, shape (N,)."""
+        t, x, lam, p = self._arguments(tau, z, theta)
+        model = self.instance.model
+        u = model.control_law_batch(t, x, lam, p, self.bounds)
+        return np.asarray(model.running_cost_batch(t, x, u, p)) / self.scale.cost
+
+    def terminal_cost(self, end: Array, theta: Array) -> float:
+        """S at the end, scaled."""
+        x = tuple((end[: self.states] * self.scale.state).tolist())
+        tf = self.instance.t0 + self.elapsed(theta)
+        return float(self.instance.model.terminal_cost(tf, x, self.instance.parameters)) / self.scale.cost
+
+    def control(self, tau: Array, z: Array, theta: Array, bounded: bool = True) -> Array:
+        """The control law, in the model's units, shape (m, N)."""
+        bounds = self.bounds if bounded else control_set.without_bounds(self.instance)
+        law: Array = self.instance.model.control_law_batch(*self._arguments(tau, z, theta), bounds)
+        return law
+
+    def boundary(self, end: Array, theta: Array) -> tuple[Array, Array, Array]:
+        """Residuals at the right end with their derivatives, scaled.
+
+        Parameters
+        ----------
+        end
+            z at the end, shape (2n,).
+        theta
+            Extra unknowns, shape (e,).
+
+        Returns
+        -------
+        residual, by_end, by_theta : arrays of shapes (n + e,), (n + e, 2n), (n + e, e)
+        """
+        n, e = self.states, self.unknowns
+        tf = self.instance.t0 + self.elapsed(theta)
+        physical = end * self.scale.both[:, 0]
+        q = e - self.free_time
+        x, lam, nu = tuple(physical[:n].tolist()), tuple(physical[n:].tolist()), tuple(theta[:q] * self.scale.cost)
+        arguments = (tf, x, lam, nu, self.instance.parameters, self.bounds, self.final)
+        rows = slice(0, n + e)
+        residual = np.array(self.instance.model.boundary(*arguments))[rows]
+        slopes = np.array(self.instance.model.boundary_jacobian(*arguments)).reshape(
+            len(residual) + 1 - self.free_time, -1
+        )
+        columns = np.concatenate([self.scale.both[:, 0], np.full(q, self.scale.cost), [1.0]])
+        scaled = slopes[rows] * columns / self._row_scale[:, None]
+        by_theta = scaled[:, 2 * n : 2 * n + e] if self.free_time else scaled[:, 2 * n : 2 * n + q]
+        return residual / self._row_scale, scaled[:, : 2 * n], by_theta
+
+    @cached_property
+    def fixed(self) -> NDArray[np.bool_]:
+        """Which states have their end given or on the reference, shape (n,)."""
+        n = self.states
+        return np.array(self.final[:n]) + np.array(self.final[n : 2 * n]) > 0
+
+    @cached_property
+    def _row_scale(self) -> Array:
+        own = np.where(self.fixed, self.scale.state, self.scale.cost / self.scale.state)
+        rest = np.ones(self.unknowns)
+        if self.free_time:
+            rest[-1] = self.scale.cost / self.duration
+        return np.concatenate([own, rest])

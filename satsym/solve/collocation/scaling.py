@@ -1,0 +1,109 @@
+"""From an instance to its scaled two-point problem."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+from satsym.solve import control_set
+from satsym.solve.collocation.problem import Scale, TwoPoint
+
+Array = NDArray[np.floating[Any]]
+
+POINTS = 9
+"""Points of the straight line at which sizes and responses are looked at."""
+
+NEGLIGIBLE = 1e-3
+"""A state this much smaller along the way than what it does to the others is scaled by the latter."""
+
+TURN = 2.0 * math.pi
+
+
+def two_point(instance: Instance, duration: float, turns: dict[str, int] | None = None) -> TwoPoint:
+    """The scaled problem of an instance.
+
+    Parameters
+    ----------
+    instance
+        What is to be solved.
+    duration
+        tf - t0; where it is free, a first guess.
+    turns
+        Whole turns added to the given final value of angles.
+    """
+    final = _final(instance, turns or {})
+    start, end = np.array(instance.initial), _end(instance, final, duration)
+    return TwoPoint(instance, final, duration, _scale(instance, start, end, duration))
+
+
+def _final(instance: Instance, turns: dict[str, int]) -> tuple[float, ...]:
+    """The ``final`` argument of the boundary functions."""
+    given, on_reference, target = [], [], []
+    for name in instance.model.spec.state_names:
+        wanted = instance.final.get(name)
+        extra = TURN * turns.get(name, 0)
+        # A reference that counts modulo a turn is left for a number, which only a given final time allows.
+        number = _on_curve(instance, name) if wanted == "reference" and extra else wanted
+        given.append(float(isinstance(number, float | int)))
+        on_reference.append(float(number == "reference"))
+        target.append(float(number) + extra if isinstance(number, float | int) else 0.0)
+    return (*given, *on_reference, *target)
+
+
+def _on_curve(instance: Instance, name: str) -> float:
+    assert instance.tf is not None
+    curve = instance.model.reference(instance.tf, instance.parameters)
+    return float(curve[instance.model.spec.state_names.index(name)])
+
+
+def _end(instance: Instance, final: tuple[float, ...], duration: float) -> Array:
+    """Where the motion should end, as far as that is known; elsewhere the initial state."""
+    n = len(instance.initial)
+    given, on_reference, target = (np.array(final[k * n : (k + 1) * n]) for k in range(3))
+    end = np.where(given > 0, target, np.array(instance.initial))
+    if on_reference.any():
+        curve = np.array(instance.model.reference(instance.t0 + duration, instance.parameters))
+        end = np.where(on_reference > 0, curve, end)
+    return end
+
+
+def straight(problem: TwoPoint) -> Array:
+    """The straight line's two ends in scaled states, shape (n, 2)."""
+    end = _end(problem.instance, problem.final, problem.duration)
+    return np.stack([problem.initial, end / problem.scale.state], axis=1)
+
+
+def _scale(instance: Instance, start: Array, end: Array, duration: float) -> Scale:
+    """Sizes of the states along the straight line; the cost that makes the response to costates one."""
+    n, model = len(start), instance.model
+    path = start[:, None] + (end - start)[:, None] * np.linspace(0.0, 1.0, POINTS)
+    times = instance.t0 + duration * np.linspace(0.0, 1.0, POINTS)
+    free = control_set.without_bounds(instance)
+    slopes = np.abs(model.canonical_jacobian_batch(times, path, np.zeros_like(path), instance.parameters, free)).max(
+        axis=2
+    )
+    size = np.abs(path).max(axis=1)
+    for j in range(n):
+        through = [
+            size[i] / (slopes[i, j] * duration) for i in range(n) if i != j and slopes[i, j] > 0.0 and size[i] > 0.0
+        ]
+        least = min(through, default=1.0)
+        if size[j] < NEGLIGIBLE * least:
+            size[j] = least
+    response = (slopes[:n, n:] / np.outer(size, size)).max()
+    return Scale(size, 1.0 / (duration * response) if response > 0.0 else 1.0)
+
+
+def revolutions(instance: Instance, most: int) -> Iterator[dict[str, int]]:
+    """Choices of whole turns for the angles that count modulo a turn, the stated one first."""
+    angles = [name for name in instance.solver.free_angles if name in instance.final]
+    yield {}
+    for name in angles:
+        for k in range(1, most + 1):
+            yield {name: k}
+            yield {name: -k}

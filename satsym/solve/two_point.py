@@ -1,0 +1,150 @@
+"""Given ends: collocation from a cold start, refined until the error estimate is small enough, within bounds."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from satsym.instance import Instance
+from satsym.solution import Array, Iteration, Progress, Solution
+from satsym.solve.collocation.cold_start import STAGES, Start, cold_start
+from satsym.solve.collocation.continuation import Bounded, by_bound, tighten
+from satsym.solve.collocation.problem import TwoPoint
+from satsym.solve.collocation.refinement import Refined, refine
+from satsym.solve.collocation.scaling import two_point
+from satsym.solve.collocation.system import System
+from satsym.solve.iteration import Limits
+from satsym.status import Status
+
+
+@dataclass(frozen=True, eq=False)
+class Extremal:
+    """What solving came to.
+
+    Attributes
+    ----------
+    problem
+        The two-point problem, with its bounds.
+    refined
+        The curve, with its error estimate.
+    status, message
+        Outcome.
+    iterations
+        Linear systems that were solved.
+    """
+
+    problem: TwoPoint
+    refined: Refined
+    status: Status
+    message: str
+    iterations: int
+
+
+def solve(instance: Instance, progress: Progress | None = None) -> Solution:
+    """Solve an instance by collocation.
+
+    Parameters
+    ----------
+    instance
+        With final states given, on the reference or free, and a given final time.
+    progress
+        Called after each phase.
+
+    Returns
+    -------
+    Solution
+        With status ``converged`` when the estimated error is within the instance's tolerance.
+    """
+    began = time.perf_counter()
+    if instance.tf is None:
+        raise ValueError("a free final time is not for this solver")
+    limits = Limits(instance.solver.max_iterations or 500, began + instance.solver.max_seconds)
+    problem = two_point(instance, instance.tf - instance.t0)
+    history: list[Iteration] = []
+
+    def report(objective: float, residual: float) -> None:
+        history.append(Iteration(len(history), objective, residual))
+        if progress:
+            progress(history[-1])
+
+    with np.errstate(all="ignore"):
+        extremal = _extremal(problem, limits, report)
+    return _solution(extremal, tuple(history), time.perf_counter() - began)
+
+
+def _extremal(problem: TwoPoint, limits: Limits, report: Callable[[float, float], None]) -> Extremal:
+    tolerance = problem.instance.solver.tolerance
+    start = cold_start(problem, limits)
+    if start.way == "none":
+        return _nowhere(problem, start, limits)
+    free = problem.widened(float("inf"))
+    report(start.found.cost * problem.scale.cost, 1.0)
+    refined = refine(free, start.found.curve, tolerance)
+    report(_cost(free, refined), refined.error)
+    steps = start.steps + refined.iterations
+    bounded = tighten(problem, refined.curve, STAGES)
+    if bounded.iterations:
+        steps += bounded.iterations
+        if not bounded.converged:
+            return Extremal(problem, refined, Status.NOT_CONVERGED, _stuck(problem, bounded), steps)
+        refined = refine(problem, bounded.curve, tolerance, keep_nodes=True)
+        steps += refined.iterations
+        report(_cost(problem, refined), refined.error)
+    if not refined.converged:
+        message = f"the estimated error stays at {refined.error:.0e} on {len(refined.curve.mesh) - 1} intervals"
+        return Extremal(problem, refined, Status.NOT_CONVERGED, message, steps)
+    message = f"estimated error {refined.error:.0e} on {len(refined.curve.mesh) - 1} intervals, from the {start.way}"
+    return Extremal(problem, refined, Status.CONVERGED, message, steps)
+
+
+def _nowhere(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
+    refined = Refined(start.found.curve, float("inf"), False, 0)
+    if limits.expired:
+        return Extremal(problem, refined, Status.TIME_LIMIT, "time was up before an extremal was found", start.steps)
+    return Extremal(problem, refined, Status.NOT_CONVERGED, f"no extremal found: {start.found.reason}", start.steps)
+
+
+def _stuck(problem: TwoPoint, bounded: Bounded) -> str:
+    if bounded.reached < 1.0:
+        return f"bounds could be brought in only {bounded.reached:.0%} of the way from where they do not bind"
+    return "the times at which bounds are met do not settle"
+
+
+def _cost(problem: TwoPoint, refined: Refined) -> float:
+    system = System(problem, refined.curve.mesh, refined.curve.order)
+    return system.cost(refined.curve) * problem.scale.cost
+
+
+def _solution(extremal: Extremal, history: tuple[Iteration, ...], wall_s: float) -> Solution:
+    problem, curve, instance = extremal.problem, extremal.refined.curve, extremal.problem.instance
+    n, m = problem.states, len(instance.model.spec.controls)
+    tau = np.unique(np.concatenate([np.linspace(0.0, 1.0, instance.solver.steps + 1), curve.mesh]))
+    scaled = curve(tau)
+    answered = extremal.status.answered
+    z = scaled * problem.scale.both
+    elapsed = problem.elapsed(curve.theta)
+    met = by_bound(problem, curve) if answered else []
+    return Solution(
+        instance=instance,
+        method="collocation",
+        status=extremal.status,
+        message=extremal.message,
+        objective=_cost(problem, extremal.refined) if answered else float("nan"),
+        times=instance.t0 + elapsed * tau,
+        x=z[:n],
+        u=problem.control(tau, scaled, curve.theta),
+        lam=z[n:],
+        switching_times=tuple(_times(met, i, m, instance.t0, elapsed) for i in range(m)),
+        iterations=extremal.iterations,
+        history=history,
+        wall_s=wall_s,
+    )
+
+
+def _times(met: list[Array], control: int, controls: int, t0: float, elapsed: float) -> tuple[float, ...]:
+    """Switching times of a control; on a ball the bound is everyone's."""
+    rows = met[control::controls] if len(met) > 1 else met
+    return tuple(sorted(t0 + elapsed * float(tau) for row in rows for tau in row))
