@@ -15,7 +15,7 @@ import pytest
 from satsym import instance
 from satsym.instance import Instance
 from satsym.report import files
-from satsym.report.results import boundary_type, flight_object, model_object, solution_object
+from satsym.report.results import flight_object, model_object, solution_object
 from satsym.report.table import figure, table
 from satsym.report.text import flight_text, solution_text, with_files
 from satsym.solution import Flight, Invariant, Solution
@@ -42,7 +42,6 @@ def solution(case: Instance) -> Solution:
         method="sweep",
         status=Status.CONVERGED,
         message="the message",
-        boundary_type=3,
         objective=1.0 / 3.0,
         times=times,
         x=np.arange(20.0).reshape(4, 5) / 7.0,
@@ -163,7 +162,7 @@ def test_model_is_told_with_units_and_defaults(case: Instance) -> None:
 def test_boundary_type_follows_from_what_is_given(
     case: Instance, tf: float | None, final: dict[str, Any], expected: int
 ) -> None:
-    assert boundary_type(replace(case, tf=tf, final=final)) == expected
+    assert replace(case, tf=tf, final=final).boundary_type == expected
 
 
 def test_trajectory_files_give_back_every_number(solution: Solution, tmp_path: Path) -> None:

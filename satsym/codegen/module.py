@@ -125,7 +125,7 @@ def _batch_form(function: Function, s: Symbols, constants: Sequence[Assignment])
     assignments, outputs = _straight_line(function, s, constants)
     rows, columns = function.value.shape
     shape = {"scalar": "shape", "vector": f"({rows}, *shape)", "matrix": f"({rows}, {columns}, *shape)"}[function.kind]
-    sizes = [a if a == "t" else f"{a}[0]" for a in function.arguments if a not in TUPLES]
+    sizes = [a if a == "t" else f"{a}[0]" for a in function.arguments if a not in TUPLES and s.of(a)]
     types = [f"*{a}" if a in TUPLES else a for a in function.arguments]
     body = [
         *_unpack(function, s),

@@ -67,7 +67,7 @@ class _Printer(PythonCodePrinter):
         return f"{self.module}.{self.functions[name]}({', '.join(self._print(a) for a in expr.args)})"
 
     _print_sin = _print_cos = _print_tan = _print_asin = _print_acos = _print_atan = _print_atan2 = _print_Function
-    _print_sinh = _print_cosh = _print_tanh = _print_exp = _print_log = _print_Abs = _print_Function
+    _print_sign = _print_sinh = _print_cosh = _print_tanh = _print_exp = _print_log = _print_Abs = _print_Function
 
     def _factor(self, expr: Any) -> str:
         return self.parenthesize(expr, PRECEDENCE["Atom"], strict=True)

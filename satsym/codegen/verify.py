@@ -119,6 +119,8 @@ def _same_derivatives(
             stepped = {**arguments, argument: moved}
             values = getattr(kernels, f"{of}_batch")(*(stepped[a] for a in signature[of]))
             slopes.append(np.imag(values) / COMPLEX_STEP)
+    if not slopes:  # a model without controls
+        return
     columns = np.stack(slopes, axis=-2)
     _refuse(model, f"{name} (as derivative of {of})", derived.reshape(columns.shape), factor * columns)
 
@@ -145,7 +147,7 @@ def _same_loops(derivation: Derivation, kernels: Kernels, rng: random.Random) ->
     place = _arguments(known, derivation, rng)
     times = np.cumsum([0.3, 0.02, 0.03, 0.01])
     steps, m = len(times) - 1, len(known.u)
-    u, u_mid = (np.array([[rng.uniform(-1, 1) for _ in range(k)] for _ in range(m)]) for k in (steps + 1, steps))
+    u, u_mid = (np.array([[rng.uniform(-1, 1) for _ in range(m)] for _ in range(k)]).T for k in (steps + 1, steps))
     p, costs = place["p"], derivation.problem is not None
 
     def rates(t: float, y: Array, u_now: Array) -> Array:

@@ -155,7 +155,8 @@ class Body:
     def _allocation(self) -> str:
         """How a batch form makes its result."""
         arguments = self.signature.arguments
-        parts = [f"np.shape({a}[0])" if a in self.packed else f"np.shape({a})" for a in arguments if a not in _TUPLES]
+        sized = [a for a in arguments if a not in _TUPLES and self.packed.get(a) != 0]
+        parts = [f"np.shape({a}[0])" if a in self.packed else f"np.shape({a})" for a in sized]
         types = [f"*{a}" if a in _TUPLES else a for a in arguments]
         shape = f"({', '.join(map(str, self.shape))}, *shape)" if self.shape else "shape"
         return (

@@ -6,9 +6,8 @@ from collections.abc import Mapping
 from types import FunctionType
 from typing import Any
 
+from satsym.kernels.contract import BATCH
 from satsym.status import BadInput
-
-BATCH = "_batch"
 
 
 def compile_functions(functions: Mapping[str, Any], *, cache: bool) -> dict[str, Any]:

@@ -11,12 +11,12 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from satsym.kernels.contract import LOOPS
 from satsym.spec import ProblemSpec
 
 Array = NDArray[np.float64]
 Backend = Literal["python", "numba"]
 Function = Callable[..., Any]
-LOOPS = ("forward", "backward")
 
 _ARITHMETIC = (ZeroDivisionError, OverflowError, ValueError, TypeError)
 """What Python floats and math raise where arrays have inf or nan; shapes are checked beforehand.

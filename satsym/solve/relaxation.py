@@ -2,16 +2,20 @@
 
 Near an extremal without active bounds the law responds to a change v of the control by -K v with K >= 0, so
 an error shrinks by 1 - rho (1 + k) for each eigenvalue k of K: relaxation is stable only if
-rho < 2/(1 + max k). K grows quickly with the horizon.
+rho < 2/(1 + max k). K grows quickly with the horizon. Far from the extremal K is another one, so what a
+failed relaxation is told is measured at the extremal, which a method without this limit finds.
 """
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from satsym.solution import Iteration
+from satsym.solve.iteration import Limits, iterate
+from satsym.solve.quasi_newton import QuasiNewton
 from satsym.solve.sweep import Forward, Sweep, SweepProblem, backward, forward, unbounded_law
 from satsym.status import Status
 
@@ -26,6 +30,9 @@ PROBE = 1e-6
 
 PROBES = 30
 """Power iterations at the most, to find the largest response."""
+
+ASIDE = 100, 5.0
+"""Iterations and seconds that finding the extremal may take when relaxation has failed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,16 +88,21 @@ class Relaxation:
         if state.sweep.residual <= self.tolerance:
             return Status.CONVERGED, "control and control law agree"
         if state.broken or _distance(state.sweep) > GROWTH * state.closest:
-            return Status.NOT_CONVERGED, f"relaxation {self.share:g} diverges; {self._advice(state.sweep)}"
+            return Status.NOT_CONVERGED, f"relaxation {self.share:g} diverges; {self._advice()}"
         if state.since >= PATIENCE:
-            return Status.NOT_CONVERGED, f"relaxation {self.share:g} goes round in circles; {self._advice(state.sweep)}"
+            return Status.NOT_CONVERGED, f"relaxation {self.share:g} goes round in circles; {self._advice()}"
         return None
 
-    def _advice(self, sweep: Sweep) -> str:
-        largest = largest_stable(self.problem, self.start)
+    def _advice(self) -> str:
+        largest = largest_stable(self.problem, self._near_extremal())
         return (
             f"it is stable only below about {largest:.2g} here; leave relaxation out for a method that is not limited"
         )
+
+    def _near_extremal(self) -> Forward:
+        iterations, seconds = ASIDE
+        limits = Limits(iterations, time.perf_counter() + seconds)
+        return iterate(QuasiNewton(self.problem, self.start, self.tolerance), limits, None).state.sweep.forward
 
 
 def largest_stable(problem: SweepProblem, motion: Forward) -> float:

@@ -63,9 +63,8 @@ class Printer(LatexPrinter):
         """The terms of a sum in order."""
         parts = (part for summand in sp.Add.make_args(expression) for part in sp.Add.make_args(spread(summand)))
         summands = sorted(parts, key=self._summand_order)
-        if plus_first and is_negative(summands[0]):
-            first = next((s for s in summands if not is_negative(s)), summands[0])
-            summands = [first, *(s for s in summands if s is not first)]
+        if plus_first:
+            summands = _plus_first(summands)
         return [self._term(s) if len(rest) == 0 else self._halves([s, *rest]) for s, *rest in self._alike(summands)]
 
     def _print_Add(self, expr: sp.Add, order: Any = None) -> str:
@@ -256,6 +255,15 @@ class Printer(LatexPrinter):
         self._small += 1
         yield
         self._small -= 1
+
+
+def _plus_first(summands: Sequence[sp.Expr]) -> list[sp.Expr]:
+    """In another order if the first has a minus: a number goes to the end, else the first with a plus to the front."""
+    first, *rest = summands
+    plus = next((s for s in rest if not is_negative(s)), None)
+    if plus is None or not is_negative(first):
+        return list(summands)
+    return [*_plus_first(rest), first] if first.is_number else [plus, *(s for s in summands if s is not plus)]
 
 
 def _whole(negative: bool, tex: str, names: frozenset[str]) -> Term:

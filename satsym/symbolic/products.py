@@ -33,16 +33,18 @@ def take_apart(expression: sp.Expr) -> Product:
             bottom.append(sp.Pow(factor.base, -factor.exp))
         elif factor.is_Add and expression.is_Mul:
             content, primitive = factor.primitive()
+            if not content.is_Integer:
+                content, primitive = sp.Integer(1), factor
             flip = all(map(is_negative, primitive.args))
-            number, below = number * content.p * (-1 if flip else 1), below * content.q
+            number *= -content if flip else content
             top.append(-primitive if flip else primitive)
         else:
             top.append(factor)
     negative = bool(number.is_negative)
-    mixed = [k for k, f in enumerate(top) if f.is_Add and any(map(is_negative, f.args))]
-    if negative and expression.is_Mul and mixed and sum(bool(f.is_Add) for f in top) > 1:
-        # -(a - b)(c - d) is better read as (a - b)(d - c)
-        negative, top[mixed[-1]] = False, -top[mixed[-1]]
+    if negative and expression.is_Mul and sum(bool(f.is_Add) for f in top) > 1:
+        turned = next((k for k, f in enumerate(top) if _turns_well(f)), None)
+        if turned is not None:  # -(1 - a)(b - c) is better read as (1 - a)(c - b)
+            negative, top[turned] = False, -top[turned]
     if not number.is_Float:
         number, below = sp.fraction(number / below)
     return Product(negative, abs(number), tuple(top), below, tuple(bottom))
@@ -60,6 +62,12 @@ def spread(summand: sp.Expr) -> sp.Expr:
         return summand
     number = -parts.number if parts.negative else parts.number
     return sp.Mul(number, *(f for f in parts.top if f is not sums[0])) * divided
+
+
+def _turns_well(factor: sp.Expr) -> bool:
+    """Whether it is a sum with minuses in which no number gets one if the sign is changed."""
+    minuses = [is_negative(a) for a in factor.args] if factor.is_Add else []
+    return any(minuses) and not any(a.is_number and not minus for a, minus in zip(factor.args, minuses, strict=False))
 
 
 def is_negative(summand: sp.Expr) -> bool:
