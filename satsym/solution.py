@@ -38,6 +38,54 @@ Progress: TypeAlias = Callable[[Iteration], None]
 """Called after each iteration of a solver."""
 
 
+@dataclass(frozen=True)
+class Check:
+    """A measured condition of optimality, with the limit it must keep."""
+
+    name: str
+    value: float
+    limit: float
+
+    @property
+    def passed(self) -> bool:
+        """Whether the value is within its limit (NaN is not)."""
+        return self.value <= self.limit
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """Evidence for an optimum that anyone can recompute from the initial costates.
+
+    Attributes
+    ----------
+    verdict
+        ``"certified"``, ``"extremal only"`` or ``"failed"``.
+    boundary_residual
+        Largest residual at the right end of the flow that starts from the initial costates, relative.
+    dynamics_defect
+        Largest distance of the solver's trajectory from that flow, relative.
+    stationarity
+        Largest difference of the control from the one that minimises H, relative.
+    hamiltonian_drift
+        Largest change of H along the flow, relative; ``None`` where time is explicit.
+    legendre_clebsch
+        Smallest eigenvalue of H_uu.
+    conjugate_time
+        The first one, or ``None``.
+    checks
+        All that was measured, with limits.
+    """
+
+    verdict: str
+    boundary_residual: float
+    dynamics_defect: float
+    stationarity: float
+    hamiltonian_drift: float | None
+    legendre_clebsch: float
+    conjugate_time: float | None
+    checks: tuple[Check, ...]
+
+
 @dataclass(frozen=True, eq=False)
 class Solution:
     """How a solver run ended, and where.
@@ -60,6 +108,8 @@ class Solution:
         Their number, and what each achieved.
     wall_s
         Seconds of solving, without loading and reporting.
+    certificate
+        ``None`` where there is no answer to certify.
     """
 
     instance: Instance
@@ -75,6 +125,7 @@ class Solution:
     iterations: int
     history: tuple[Iteration, ...]
     wall_s: float
+    certificate: Certificate | None = None
 
 
 @dataclass(frozen=True)

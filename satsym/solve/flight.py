@@ -28,7 +28,7 @@ MOST_STEPS = 2**20
 """More are used only where the instance asks for more than half as many itself."""
 
 HOPELESS = 64
-"""Times the given steps with which a motion that is not finite is given up: until then the steps may be too long."""
+"""Times the given steps at which a motion outside the domain is given up: until then the steps may be too long."""
 
 
 def simulate(instance: Instance, feedback: str = "none") -> Flight:
@@ -59,7 +59,7 @@ def simulate(instance: Instance, feedback: str = "none") -> Flight:
         raise BadInput(f"{instance.name}: time.tf: a simulation needs a number, not a free final time")
     coarse_steps, sufficient = instance.solver.steps, MARGIN * instance.solver.tolerance
     steps, x, error = coarse_steps, _fly(instance, coarse_steps), float("nan")
-    while 2 * steps <= max(MOST_STEPS, 2 * coarse_steps) and (steps < HOPELESS * coarse_steps or np.isfinite(x).all()):
+    while 2 * steps <= max(MOST_STEPS, 2 * coarse_steps) and (steps < HOPELESS * coarse_steps or _sound(instance, x)):
         steps, coarse, x, before = 2 * steps, x, _fly(instance, 2 * steps), error
         error = _difference(coarse, x[:, ::2])
         if error > 0.25 * before:  # no longer fourth order
@@ -94,6 +94,10 @@ def _fly(instance: Instance, steps: int) -> Array:
     u = np.repeat(_control(instance), steps + 1, axis=1)
     x, _, _ = instance.model.forward(grid.nodes, instance.initial, u, u[:, 1:], instance.parameters)
     return x
+
+
+def _sound(instance: Instance, x: Array) -> bool:
+    return bool(np.isfinite(x).all()) and instance.model.in_domain(x)
 
 
 def _rounding(instance: Instance, x: Array, steps: int) -> Array:

@@ -24,8 +24,8 @@ MEMORY = 20
 SUFFICIENT = 1e-4
 """Share of the decrease predicted by the gradient that a step must achieve (Armijo)."""
 
-SHORTEST = 2.0**-40
-"""Step length below which the direction is given up."""
+SHORTEST, SHORTEST_CLOSE = 2.0**-40, 2.0**-10
+"""Step length below which the direction is given up, far from the optimum and close to it."""
 
 CLOSE = 1e-2
 """Residual below which a step may be accepted because it reduces the residual. Gradient and J are both
@@ -124,8 +124,8 @@ class QuasiNewton:
         direction, gradient = self._direction(sweep, pairs)
         if not np.sum(gradient * direction) < 0.0:
             return None
-        length = 1.0
-        while length > SHORTEST:
+        length, shortest = 1.0, SHORTEST_CLOSE if sweep.residual < CLOSE else SHORTEST
+        while length > shortest:
             u = control_set.project(self.problem.instance, sweep.u + length * direction)
             predicted = float(np.sum(gradient * (u - sweep.u)))
             motion = forward(self.problem, u)

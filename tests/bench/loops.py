@@ -80,8 +80,7 @@ def trajectories(rounds: int = 30) -> Table:
     goals = {
         LAMBDIFY: _goals("at least 3 x generated", LAMBDIFY, PYTHON, 3.0, samples, least=True),
         NUMPY: _goals("at least 10 x generated", NUMPY, PYTHON, 10.0, samples, least=True),
-        NUMBA: _goals("at most 1.2 x C -O3", NUMBA, C, 1.2, samples)
-        + _goals("at most 1.2 x C -march=native", NUMBA, C_NATIVE, 1.2, samples),
+        NUMBA: _goals("at most 1.2 x C -O3", NUMBA, C, 1.2, samples),
     }
     rows = [
         _row(name, samples[name], ours, on.steps, goals.get(name, ()), runners[name].note)

@@ -1,0 +1,149 @@
+"""Necessary and sufficient conditions, measured along the flow."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.solution import Solution
+from satsym.solve.certificate.flow import Flow
+
+Array = NDArray[np.floating[Any]]
+
+
+def boundary_residual(solution: Solution, flow: Flow) -> float:
+    """Largest residual at the right end of the flow, each relative to the size of what it compares."""
+    instance, model = solution.instance, solution.instance.model
+    n, spec = len(instance.initial), instance.model.spec
+    tf, x, lam = float(flow.times[-1]), tuple(flow.x[:, -1].tolist()), tuple(flow.lam[:, -1].tolist())
+    final = final_argument(solution)
+
+    def at(nu: tuple[float, ...]) -> Array:
+        return np.array(model.boundary(tf, x, lam, nu, instance.parameters, instance.bounds, final))
+
+    residual = at((0.0,) * len(spec.multipliers))
+    if spec.multipliers:  # the residual is affine in the multipliers: take those that fit best
+        units = np.eye(len(spec.multipliers))
+        slopes = np.stack([at(tuple(unit)) - residual for unit in units], axis=1)
+        residual = residual + slopes @ np.linalg.lstsq(slopes, -residual, rcond=None)[0]
+    fixed = np.array(final[:n]) + np.array(final[n : 2 * n]) > 0.0
+    state, costate = np.abs(flow.x).max(axis=1), np.abs(flow.lam).max(axis=1)
+    typical = max(float(costate @ state), np.finfo(float).tiny)
+    rows = np.where(fixed, np.maximum(state, 1e-300), np.maximum(costate, typical / np.maximum(state, 1e-300) * 1e-3))
+    found = np.abs(residual[:n]) / rows
+    parts = [*found, *np.abs(residual[n:-1])]
+    if instance.tf is None:
+        rates = np.array(model.canonical(tf, x, lam, instance.parameters, instance.bounds))
+        parts.append(abs(residual[-1]) / max(float(np.abs(flow.lam[:, -1] * rates[:n]).sum()), 1e-300))
+    return float(max(parts))
+
+
+def final_argument(solution: Solution) -> tuple[float, ...]:
+    """The ``final`` argument of the boundary function; angles that count modulo a turn at the one they reached."""
+    instance = solution.instance
+    names = instance.model.spec.state_names
+    turn = 2.0 * np.pi
+    given, on_reference, target = [], [], []
+    reference = (
+        instance.model.reference(float(solution.times[-1]), instance.parameters)
+        if "reference" in instance.final.values()
+        else (0.0,) * len(names)
+    )
+    for name, curve, reached in zip(names, reference, solution.x[:, -1], strict=True):
+        wanted = instance.final.get(name)
+        number = float(curve) if wanted == "reference" else float(wanted) if wanted is not None else 0.0
+        turns = (
+            round((float(reached) - number) / turn) if name in instance.solver.free_angles and wanted is not None else 0
+        )
+        follows = wanted == "reference" and not turns
+        given.append(float(wanted is not None and not follows))
+        on_reference.append(float(follows))
+        target.append(0.0 if follows else number + turn * turns)
+    return (*given, *on_reference, *target)
+
+
+def dynamics_defect(solution: Solution, flow: Flow) -> float:
+    """Largest distance of the solver's states and costates from the flow, relative to the size of each.
+
+    Compared at those nodes of the solver that are stations, and at the ends.
+    """
+    here = np.searchsorted(solution.times, flow.times)
+    here = np.clip(here, 0, len(solution.times) - 1)
+    same = np.abs(solution.times[here] - flow.times) <= 1e-12 * max(abs(float(flow.times[-1])), 1e-300)
+    parts = []
+    for mine, theirs in ((flow.x, solution.x), (flow.lam, solution.lam)):
+        size = np.abs(mine).max(axis=1)
+        size = np.where(size > 0.0, size, max(float(size.max()), 1.0))
+        parts.append((np.abs(mine[:, same] - theirs[:, here[same]]).max(axis=1) / size).max())
+    return float(max(parts))
+
+
+def stationarity(solution: Solution) -> float:
+    """Largest difference of the control from the one that minimises H, relative to the largest control."""
+    instance = solution.instance
+    law = instance.model.control_law_batch(
+        solution.times, solution.x, solution.lam, instance.parameters, instance.bounds
+    )
+    size = max(float(np.abs(solution.u).max()), float(np.abs(law).max()))
+    return float(np.abs(law - solution.u).max() / size) if size > 0.0 else 0.0
+
+
+def hamiltonian_drift(solution: Solution, flow: Flow) -> float | None:
+    """Largest change of H along the flow, relative to the terms it consists of; ``None`` with explicit time."""
+    instance, model = solution.instance, solution.instance.model
+    if not model.spec.autonomous:
+        return None
+    u = model.control_law_batch(flow.times, flow.x, flow.lam, instance.parameters, instance.bounds)
+    h = np.asarray(model.hamiltonian_batch(flow.times, flow.x, u, flow.lam, instance.parameters))
+    terms = np.abs(flow.lam * model.dynamics_batch(flow.times, flow.x, u, instance.parameters)).sum(axis=0).max()
+    return float(np.abs(h - h[0]).max() / max(terms, np.abs(h).max(), 1e-300))
+
+
+def legendre_clebsch(solution: Solution) -> float:
+    """Smallest eigenvalue of H_uu along the trajectory; positive where the strict condition holds."""
+    instance, model = solution.instance, solution.instance.model
+    hessian = np.asarray(
+        model.control_hessian_batch(solution.times, solution.x, solution.u, solution.lam, instance.parameters)
+    )
+    return float(np.linalg.eigvalsh(hessian.transpose(2, 0, 1)).min()) if len(hessian) else float("inf")
+
+
+def conjugate_time(flow: Flow) -> float | None:
+    """The first time after the start at which neighbouring extremals meet again, or ``None``.
+
+    There the derivative of the states by the initial costates is singular, which its determinant shows by a
+    change of sign; bounds that are active stay so. At the end itself it only matters where the end is given.
+    """
+    n = flow.x.shape[0]
+    signs = []
+    for slopes in flow.field[1:]:
+        upper = slopes[:n] / np.maximum(np.linalg.norm(slopes, axis=0), 1e-300)
+        rows = np.maximum(np.abs(upper).max(axis=1, keepdims=True), 1e-300)
+        signs.append(np.linalg.slogdet(upper / rows)[0])
+    changes = np.flatnonzero(np.array(signs[1:]) * np.array(signs[:-1]) < 0.0)
+    return float(flow.times[changes[0] + 2]) if len(changes) else None
+
+
+def negative_end(solution: Solution, flow: Flow) -> float:
+    """Smallest curvature of the cost in the free final states, relative; positive at a minimum.
+
+    Infinite where no final state is free. It is the second derivative of S + nu' psi minus that of the cost to
+    come, -Lambda X^-1, in the free components.
+    """
+    instance, n = solution.instance, flow.x.shape[0]
+    final = final_argument(solution)
+    free = np.flatnonzero(np.array(final[:n]) + np.array(final[n : 2 * n]) == 0.0)
+    if not len(free) or instance.model.spec.multipliers:
+        return float("inf")
+    tf, x, lam = float(flow.times[-1]), tuple(flow.x[:, -1].tolist()), tuple(flow.lam[:, -1].tolist())
+    slopes = np.array(instance.model.boundary_jacobian(tf, x, lam, (), instance.parameters, instance.bounds, final))
+    hessian = -slopes.reshape(n + 1, -1)[:n, :n]
+    # The columns' scales cancel in Lambda X^-1, but keep the inversion well conditioned.
+    scaled = flow.field[-1] / np.maximum(np.linalg.norm(flow.field[-1], axis=0), 1e-300)
+    arriving = np.linalg.solve(scaled[:n].T, scaled[n:].T).T
+    pivot = (hessian - arriving)[np.ix_(free, free)]
+    size = 1.0 / np.sqrt(np.maximum(np.abs(np.diag(pivot)), 1e-300))
+    balanced = pivot * np.outer(size, size)
+    return float(np.linalg.eigvalsh(balanced + balanced.T).min() / 2.0)

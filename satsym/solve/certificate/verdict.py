@@ -1,0 +1,91 @@
+"""From measured conditions to a verdict."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from satsym.solution import Certificate, Check, Solution
+from satsym.solve.certificate import competitors, conditions
+from satsym.solve.certificate.flow import Flow, flow
+
+RESIDUAL, DEFECT, STATIONARY, DRIFT = 1e-9, 1e-7, 1e-8, 1e-9
+"""Largest boundary residual, defect, violation of stationarity and change of H."""
+
+DEARER = 1e-9
+"""Relative margin by which a competitor may seem cheaper: its own error."""
+
+
+def certify(solution: Solution) -> Certificate | None:
+    """Certify a solution; ``None`` where there is nothing to certify.
+
+    Returns
+    -------
+    Certificate
+        ``certified``: a strict local optimum, with no cheaper competitor among the kinds that its checks list.
+        ``extremal only``: the first-order conditions hold, a sufficient one does not. ``failed``: not even the
+        former hold.
+    """
+    if not solution.status.answered:
+        return None
+    with np.errstate(all="ignore"):
+        recomputed = flow(solution)
+        if recomputed is None:
+            return _without_flow()
+        first = _first_order(solution, recomputed)
+        second = _sufficient(solution, recomputed) if all(c.passed for c in first) else []
+    verdict = "failed" if not second else "certified" if all(c.passed for c in second) else "extremal only"
+    measured: dict[str, Any] = {c.name: c.value for c in (*first, *second)}
+    return Certificate(
+        verdict=verdict,
+        boundary_residual=measured["boundary residual"],
+        dynamics_defect=measured["dynamics defect"],
+        stationarity=measured["stationarity"],
+        hamiltonian_drift=measured.get("hamiltonian drift"),
+        legendre_clebsch=conditions.legendre_clebsch(solution),
+        conjugate_time=conditions.conjugate_time(recomputed),
+        checks=(*first, *second),
+    )
+
+
+def _first_order(solution: Solution, recomputed: Flow) -> list[Check]:
+    model = solution.instance.model
+    checks = [
+        Check("boundary residual", conditions.boundary_residual(solution, recomputed), RESIDUAL),
+        Check("dynamics defect", conditions.dynamics_defect(solution, recomputed), DEFECT),
+        Check("stationarity", conditions.stationarity(solution), STATIONARY),
+        Check("outside the domain", float(not model.in_domain(recomputed.x)), 0.0),
+    ]
+    drift = conditions.hamiltonian_drift(solution, recomputed)
+    return checks if drift is None else [*checks, Check("hamiltonian drift", drift, DRIFT)]
+
+
+def _sufficient(solution: Solution, recomputed: Flow) -> list[Check]:
+    """Each is a deficit that must not be positive."""
+    fixed = np.array(conditions.final_argument(solution)).reshape(3, -1)[:2].any(axis=0)
+    time = conditions.conjugate_time(recomputed)
+    checks = [
+        Check("smallest eigenvalue of H_uu, negated", -conditions.legendre_clebsch(solution), -1e-300),
+        Check("conjugate times", 0.0 if time is None else 1.0, 0.0),
+    ]
+    if not fixed.all():
+        checks.append(
+            Check("curvature in the free end, negated", -conditions.negative_end(solution, recomputed), -1e-12)
+        )
+    for name, competitor in (
+        ("feasible neighbours", competitors.neighbours),
+        ("other starts", competitors.other_starts),
+        ("earlier arrivals", competitors.earlier_arrivals),
+    ):
+        margin = competitor(solution)
+        if math.isfinite(margin):
+            checks.append(Check(f"cheaper by: {name}", max(0.0, -margin), DEARER))
+    return checks
+
+
+def _without_flow() -> Certificate:
+    missing = float("nan")
+    check = Check("flow from the initial costates is finite", 1.0, 0.0)
+    return Certificate("failed", missing, missing, missing, None, missing, None, (check,))

@@ -1,0 +1,143 @@
+"""Integration to the last digits: extrapolation of the modified midpoint rule (Gragg, Bulirsch, Stoer).
+
+Used to check solutions by means other than the solver's own, so it shares nothing with collocation. Its order
+and step size adapt, and it evaluates nothing but the rates (Hairer, Norsett, Wanner, Solving Ordinary
+Differential Equations I, II.9). The library's own integrators take longer to import than a solution to check.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.floating[Any]]
+Rates = Callable[[float, Array], Array]
+
+SUBSTEPS = (2, 4, 6, 8, 10, 12, 14, 16)
+"""Numbers of midpoint steps in the columns of the extrapolation table; the last has order 16."""
+
+SAFETY, LEAST, MOST = 0.7, 0.1, 4.0
+"""Of the next step: share of what the error allows, and bounds of its change."""
+
+MOST_STEPS = 100_000
+
+
+class NotFinite(Exception):
+    """The solution ceases to be finite, or the step size goes to zero."""
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """Values at the ends of the steps that were taken.
+
+    Attributes
+    ----------
+    times
+        Shape (K,), from the start to the end.
+    values
+        Shape (K, d).
+    """
+
+    times: Array
+    values: Array
+
+    @property
+    def end(self) -> Array:
+        """The last value, shape (d,)."""
+        return np.asarray(self.values[-1])
+
+
+def integrate(rates: Rates, times: Array, start: Array, tolerance: float, size: Array) -> list[Trajectory]:
+    """Integrate y' = rates(t, y) through given times; each is met exactly, as a kink must be.
+
+    Parameters
+    ----------
+    rates
+        Function of time and value, shape (d,).
+    times
+        Start, stops, end: shape (S+1,), monotone.
+    start
+        Value at the first, shape (d,).
+    tolerance
+        Largest error of a step, relative to ``size``.
+    size
+        Typical sizes of the components, shape (d,).
+
+    Returns
+    -------
+    list of Trajectory
+        One for each of the S pieces.
+
+    Raises
+    ------
+    NotFinite
+        If the solution does not reach the end.
+    """
+    pieces, value = [], np.asarray(start, dtype=float)
+    step = float(times[1] - times[0]) / 4.0
+    for begin, end in pairwise(times):
+        piece, step = _piece(rates, float(begin), float(end), value, step, tolerance, size)
+        pieces.append(piece)
+        value = piece.end
+    return pieces
+
+
+def _piece(
+    rates: Rates, begin: float, end: float, value: Array, step: float, tolerance: float, size: Array
+) -> tuple[Trajectory, float]:
+    at, times, values = begin, [begin], [value]
+    step = np.copysign(min(abs(step), abs(end - begin)), end - begin)
+    for _ in range(MOST_STEPS):
+        left = end - at
+        if left == 0.0:
+            return Trajectory(np.array(times), np.array(values)), float(step)
+        last = abs(step) >= abs(left) * (1.0 - 1e-12)
+        h = left if last else step
+        reached, error, column = _extrapolated(rates, at, values[-1], h, tolerance, size)
+        if error <= 1.0:
+            at = end if last else at + h
+            times.append(at)
+            values.append(reached)
+        factor = SAFETY * (1.0 / max(error, 1e-10)) ** (1.0 / (2 * column + 1))
+        grown = h * min(MOST, max(LEAST, factor))
+        step = grown if not last or error > 1.0 else np.copysign(max(abs(grown), abs(step)), h)
+        if abs(step) < 1e-14 * max(abs(at), abs(end - begin)):
+            break
+    raise NotFinite(f"the solution is not finite beyond t = {at:g}")
+
+
+def _extrapolated(
+    rates: Rates, t: float, y: Array, h: float, tolerance: float, size: Array
+) -> tuple[Array, float, int]:
+    """One extrapolated step; its error in units of the tolerance, and the column that was reached."""
+    table: list[Array] = []
+    slope = rates(t, y)
+    error, best = float("inf"), y
+    for k, count in enumerate(SUBSTEPS):
+        row = [_midpoint(rates, t, y, slope, h, count)]
+        for j in range(k):
+            ratio = (count / SUBSTEPS[k - j - 1]) ** 2
+            row.append(row[j] + (row[j] - table[j]) / (ratio - 1.0))
+        if not np.isfinite(row[-1]).all():
+            return y, float("inf"), max(k, 1)
+        if k > 0:
+            scale = tolerance * np.maximum(size, np.abs(row[-1]))
+            error, best = float(np.max(np.abs(row[-1] - row[-2]) / scale)), row[-1]
+            if k > 2 and error <= 1.0:
+                return best, error, k
+        table = row
+    return best, error, len(SUBSTEPS) - 1
+
+
+def _midpoint(rates: Rates, t: float, y: Array, slope: Array, h: float, count: int) -> Array:
+    """The modified midpoint rule with that many steps, without its smoothing step."""
+    width = h / count
+    before, now = y, y + width * slope
+    for i in range(1, count):
+        before, now = now, before + 2.0 * width * rates(t + i * width, now)
+    return now
