@@ -39,10 +39,15 @@ def shown(value: object) -> str:
     return f"a {type(value).__name__}"
 
 
+MOST_NAMES = 12
+"""Known names that a message lists."""
+
+
 def suggestion(name: str, known: Iterable[str]) -> str:
     """What to write instead of an unknown name: the nearest known one, else what there is."""
     known = list(known)
     near = get_close_matches(name[:LIMIT], known, n=1)
     if near:
         return f'did you mean "{near[0]}"?'
-    return f"known here: {', '.join(known)}" if known else "remove it, nothing may stand here"
+    more = ", ..." if len(known) > MOST_NAMES else ""
+    return f"known here: {', '.join(known[:MOST_NAMES])}{more}" if known else "remove it, nothing may stand here"

@@ -29,7 +29,7 @@ from satsym.symbolic import (
     t,
 )
 
-(POLAR,) = loader.load(Path(__file__).resolve().parent.parent / "derivations" / "polar_orbit.py")
+POLAR, BALL = loader.load(Path(__file__).resolve().parent.parent / "derivations" / "polar_orbit.py")
 NUMERIC = [
     {
         "Clip": lambda value, lower, upper: np.clip(value, lower, upper),
@@ -368,19 +368,20 @@ def test_energy_of_an_ellipse_is_that_of_vis_viva(polar: Derivation) -> None:
 @pytest.mark.parametrize(
     ("force", "expected"),
     [
-        (-k * q1, {"energy"}),
-        (-k * q1**3 + sp.exp(-q1) + sin(q1), {"energy"}),
-        (-k / (1 + q1**2), {"energy"}),
-        (sp.Integer(0), {"energy", "momentum_q1"}),
-        (-k * v1, set()),
-        (-k * q1 * v1**2, set()),
-        (-k * q1 + cos(t), set()),
+        (-k * q1, "energy"),
+        (-k * q1**3 + sp.exp(-q1) + sin(q1), "energy"),
+        (-k / (1 + q1**2), "energy"),
+        (sp.Integer(0), "energy momentum_q1"),
+        (-k * v1, ""),
+        (-k * q1 * v1**2, ""),
+        (-k * q1 + cos(t), ""),
     ],
     ids=str,
 )
-def test_only_forces_with_a_potential_keep_the_energy(force: sp.Expr, expected: set[str]) -> None:
+def test_only_forces_with_a_potential_keep_the_energy(force: sp.Expr, expected: str) -> None:
     found = derive(on_a_line(force))
-    assert ({e.name for e in found.step("conserved").equations} if "conserved" in found else set()) == expected
+    kept = {e.name for e in found.step("conserved").equations} if "conserved" in found else set()
+    assert kept == set(expected.split())
 
 
 def test_forces_that_only_look_conservative_keep_nothing() -> None:
@@ -446,7 +447,7 @@ def hamiltonian_by_hand(name: str, p: dict[str, Any]) -> Any:
             "theta": p["theta_dot"],
             "theta_dot": (p["u2"] - 2 * p["r_dot"] * p["theta_dot"]) / p["r"],
         }
-        cost = (p["c1"] * p["u1"] ** 2 + p["c2"] * p["u2"] ** 2) / 2
+        cost = p["c0"] + (p["c1"] * p["u1"] ** 2 + p["c2"] * p["u2"] ** 2) / 2
     elif name == "van_der_pol":
         speed = p["k"] * (1 - p["q1"] ** 2) * p["v1"] - p["q1"] + p["u1"] * (2 + np.cos(p["t"]))
         rates = {"q1": p["v1"], "v1": speed}

@@ -25,7 +25,8 @@ Examples:
   satsym solve soft-return --plot       results and pictures into results/soft-return
   satsym solve my_case.toml --json      the numbers alone, for another program
 
-Exit codes: 0 converged, 3 the instance cannot be used, 4 there is no answer (its status says why)."""
+Exit codes: 0 converged, 3 the instance cannot be used, 4 there is no answer (its status says why),
+5 an answer whose certificate fails."""
 
 
 def _positive(_context: click.Context, _option: click.Parameter, value: float | None) -> float | None:
@@ -74,7 +75,10 @@ def solve(
         emit_json(result)
     else:
         emit(with_files(solution_text(solution, in_colour()), saved))
-    return ExitCode.DONE if solution.status.answered else ExitCode.NO_ANSWER
+    if not solution.status.answered:
+        return ExitCode.NO_ANSWER
+    failed = solution.certificate is not None and solution.certificate.verdict == "failed"
+    return ExitCode.CERTIFICATE_FAILED if failed else ExitCode.DONE
 
 
 def _changed(case: Instance, **options: Any) -> Instance:

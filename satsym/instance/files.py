@@ -45,7 +45,10 @@ def locate(name_or_path: str) -> Path:
     path = Path(name_or_path)
     if path.suffix == ".toml" or len(path.parts) > 1 or _exists(path):
         return path
-    raise BadInput(f"no instance of this name; {suggestion(name_or_path, shipped())} (or give the path of a TOML file)")
+    instead = suggestion(name_or_path, shipped())
+    raise BadInput(
+        f"no instance of this name; {instead} (`satsym instances` lists all; or give the path of a TOML file)"
+    )
 
 
 def read(path: Path) -> dict[str, Any]:

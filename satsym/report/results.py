@@ -10,7 +10,7 @@ from satsym.spec import ProblemSpec, Variable
 
 if TYPE_CHECKING:
     from satsym.instance import Instance
-    from satsym.solution import Array, Flight, Solution
+    from satsym.solution import Array, Certificate, Flight, Solution
 
 
 def solution_object(solution: Solution) -> dict[str, Any]:
@@ -38,7 +38,24 @@ def solution_object(solution: Solution) -> dict[str, Any]:
         "switching_times": sorted(switches),
         "iterations": solution.iterations,
         "wall_s": number(solution.wall_s),
-        "certificate": None,
+        "certificate": certificate_object(solution.certificate) if solution.certificate else None,
+    }
+
+
+def certificate_object(certificate: Certificate) -> dict[str, Any]:
+    """The certificate of a solution, as JSON has it."""
+    return {
+        "verdict": certificate.verdict,
+        "boundary_residual": number(certificate.boundary_residual),
+        "dynamics_defect": number(certificate.dynamics_defect),
+        "stationarity": number(certificate.stationarity),
+        "hamiltonian_drift": number(certificate.hamiltonian_drift),
+        "legendre_clebsch": number(certificate.legendre_clebsch),
+        "conjugate_time": number(certificate.conjugate_time),
+        "checks": [
+            {"name": c.name, "value": number(c.value), "limit": number(c.limit), "passed": c.passed}
+            for c in certificate.checks
+        ],
     }
 
 
@@ -93,9 +110,9 @@ def bounded(instance: Instance) -> bool:
     return any(math.isfinite(bound) for bound in (*instance.lower, *instance.upper, instance.max_norm))
 
 
-def number(value: float) -> float | None:
+def number(value: float | None) -> float | None:
     """A finite float, without the sign of a zero; ``None`` for anything else."""
-    value = float(value)
+    value = math.nan if value is None else float(value)
     return value + 0.0 if math.isfinite(value) else None
 
 

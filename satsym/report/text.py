@@ -12,7 +12,7 @@ import numpy as np
 
 from satsym.instance import Instance
 from satsym.report.table import figure, table
-from satsym.solution import Array, Flight, Iteration, Solution
+from satsym.solution import Array, Certificate, Flight, Iteration, Solution
 from satsym.status import Status
 
 WIDTH = 100
@@ -54,6 +54,7 @@ def solution_text(solution: Solution, colour: bool = False) -> str:
         _states(solution.instance, solution.times, solution.x, solution.lam),
         _controls(instance, solution.times, solution.u),
         _switching(solution, unit),
+        _certificate(solution.certificate) if solution.certificate else [],
     ]
     return _joined(blocks)
 
@@ -90,6 +91,15 @@ def with_files(text: str, saved: Sequence[Path]) -> str:
 def progress_line(iteration: Iteration) -> str:
     """One iteration of a solver, for the live line."""
     return f"iteration {iteration.number}   J {iteration.objective:.8g}   residual {iteration.residual:.1e}"
+
+
+def _certificate(certificate: Certificate) -> list[str]:
+    """The verdict, and each check with its limit; a failed one says so."""
+    rows = [
+        (c.name, figure(abs(c.value), 2), "ok" if c.passed else f"FAILED, limit {figure(c.limit, 2)}")
+        for c in certificate.checks
+    ]
+    return [f"  certificate: {certificate.verdict}", *table([("", "", ""), *rows], right=(1,))[1:]]
 
 
 def _joined(blocks: Sequence[Sequence[str]]) -> str:

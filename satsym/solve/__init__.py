@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from satsym.instance import Instance
 from satsym.solution import Flight, Progress, Solution
 from satsym.status import BadInput
@@ -13,7 +15,9 @@ METHODS = ("sweep", "collocation")
 
 
 def solve(instance: Instance, progress: Progress | None = None) -> Solution:
-    """Solve an instance by the method it names, or by the one that fits.
+    """Solve an instance by the method it names, or by the one that fits, and certify the answer.
+
+    The sweep is as accurate as its steps allow; a certificate asks for more, so only collocation's answers have one.
 
     Parameters
     ----------
@@ -33,21 +37,23 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     if method not in ("auto", *METHODS):
         available = " or ".join(f'"{name}"' for name in ("auto", *METHODS))
         raise BadInput(f'{instance.name}: solver.method: "{method}" is not available; use {available}')
-    if instance.tf is None:
-        raise BadInput(f"{instance.name}: time.tf: a free final time cannot be solved for yet; give a number")
+    if method == "sweep" and instance.tf is None:
+        raise BadInput(f'{instance.name}: time.tf: a free final time cannot be swept for; use method "collocation"')
     if method == "sweep" and instance.final:
         given = ", ".join(instance.final)
         raise BadInput(
             f"{instance.name}: a given final {given} cannot be swept for; leave it free and weigh its error in the "
             'terminal cost, or use method "collocation"'
         )
-    if method == "sweep" or (method == "auto" and not instance.final):
+    if method == "sweep" or (method == "auto" and not instance.final and instance.tf is not None):
         from satsym.solve import forward_backward
 
         return forward_backward.solve(instance, progress)
     from satsym.solve import two_point
+    from satsym.solve.certificate import certify
 
-    return two_point.solve(instance, progress)
+    solution = two_point.solve(instance, progress)
+    return replace(solution, certificate=certify(solution))
 
 
 def simulate(instance: Instance, feedback: str = "none") -> Flight:

@@ -79,9 +79,13 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
 
 
 def switching_times(problem: SweepProblem, sweep: Sweep) -> tuple[tuple[float, ...], ...]:
-    """For each control, when it meets or leaves a bound (on a ball: the same times for all)."""
-    m = len(problem.instance.model.spec.controls)
-    distances = control_set.excess(problem.instance, unbounded_law(problem, sweep))
+    """For each control, when it meets or leaves a bound (on a ball: the same times for all); never, if it is fixed."""
+    instance = problem.instance
+    m = len(instance.model.spec.controls)
+    distances = control_set.excess(instance, unbounded_law(problem, sweep))
+    if instance.model.spec.control_set == "box":
+        fixed = np.tile(np.equal(instance.lower, instance.upper), 2)
+        distances[fixed] = np.inf
     found = [kinks.zeros(problem.times, row) if np.isfinite(row).all() else [] for row in distances]
     if len(found) == 1:
         found = found * m

@@ -2,7 +2,8 @@
 
 In the metric of H_uu the Hessian of J is the identity plus a smoothing operator, so a limited-memory method
 that starts from the identity converges quickly and independently of the grid. Where a bound holds the control, the
-step goes to the control law instead (a two-metric projection: Bertsekas, SIAM J. Control Optim. 20, 1982).
+step goes to the control law instead (a two-metric projection: Bertsekas, SIAM J. Control Optim. 20, 1982); on the
+sphere that bounds a ball the descent continues along the sphere.
 """
 
 from __future__ import annotations
@@ -11,11 +12,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from satsym.solution import Iteration
 from satsym.solve import control_set
-from satsym.solve.sweep import Array, Forward, Sweep, SweepProblem, backward, forward, unbounded_law
+from satsym.solve.sweep import Array, Forward, Sweep, SweepProblem, backward, forward
+from satsym.solve.tangent import Tangent, tangent
 from satsym.status import Status
 
 MEMORY = 20
@@ -24,7 +25,7 @@ MEMORY = 20
 SUFFICIENT = 1e-4
 """Share of the decrease predicted by the gradient that a step must achieve (Armijo)."""
 
-SHORTEST, SHORTEST_CLOSE = 2.0**-40, 2.0**-10
+SHORTEST, SHORTEST_CLOSE = 2.0**-40, 2.0**-20
 """Step length below which the direction is given up, far from the optimum and close to it."""
 
 CLOSE = 1e-2
@@ -99,25 +100,21 @@ class QuasiNewton:
                 return Descent(found, self._remember(pairs, state.sweep, found))
         return replace(state, stalled=True)
 
-    def _scale(self, sweep: Sweep) -> Array:
-        """Square roots of weight times H_uu: in the control so scaled, J is nearly the identity's quadratic."""
+    def _scale(self, sweep: Sweep, free: Tangent) -> Array:
+        """Square roots of weight times Hessian of H: in the control so scaled, J is nearly the identity's quadratic."""
         instance = self.problem.instance
         h_uu = self.problem.kernels.control_hessian_batch(
             self.problem.times, sweep.forward.x, sweep.u, sweep.lam, instance.parameters
         )
-        return np.sqrt(self.problem.weights * np.einsum("iik->ik", h_uu))
+        return np.sqrt(self.problem.weights * np.einsum("iik->ik", h_uu) * free.curvature)
 
     def _direction(self, sweep: Sweep, pairs: Sequence[tuple[Array, Array]]) -> tuple[Array, Array]:
-        """The step in the control, and the gradient of J on the fine grid."""
-        scale = self._scale(sweep)
-        gradient = self.problem.weights * sweep.gradient
-        free = self._free(sweep)
-        descent = -_inverse_hessian(pairs, np.where(free, gradient / scale, 0.0), free) / scale
-        return np.where(free, descent, sweep.step), gradient
-
-    def _free(self, sweep: Sweep) -> NDArray[np.bool_]:
-        """Where the control law does not lie on a bound."""
-        return control_set.active(self.problem.instance, unbounded_law(self.problem, sweep)) == 0
+        """The step in the control, and the gradient of J on the fine grid as far as the control can follow it."""
+        free = tangent(self.problem, sweep)
+        scale = self._scale(sweep, free)
+        gradient = free.along(self.problem.weights * sweep.gradient)
+        descent = -_inverse_hessian(pairs, free.free(gradient / scale), free) / scale
+        return np.where(free.moves, descent, sweep.step), gradient
 
     def _search(self, sweep: Sweep, pairs: Sequence[tuple[Array, Array]]) -> Sweep | None:
         """Backtrack along the projected direction until the cost, or close to the end the residual, decreases."""
@@ -145,9 +142,10 @@ class QuasiNewton:
     def _remember(
         self, pairs: Sequence[tuple[Array, Array]], before: Sweep, after: Sweep
     ) -> tuple[tuple[Array, Array], ...]:
-        scale = self._scale(after)
+        then, now = tangent(self.problem, before), tangent(self.problem, after)
+        scale = self._scale(after, now)
         step = scale * (after.u - before.u)
-        change = self.problem.weights * (after.gradient - before.gradient) / scale
+        change = self.problem.weights * (now.along(after.gradient) - then.along(before.gradient)) / scale
         return (*pairs, (step, change))[-MEMORY:]
 
 
@@ -170,12 +168,12 @@ def _shrink(change: float, predicted: float) -> float:
     return float(min(0.5, max(0.1, -predicted / (2.0 * curvature)))) if curvature > 0.0 else 0.5
 
 
-def _inverse_hessian(pairs: Sequence[tuple[Array, Array]], gradient: Array, free: NDArray[np.bool_]) -> Array:
-    """The L-BFGS two-loop recursion on the free components, from the identity (Nocedal and Wright, 7.4)."""
+def _inverse_hessian(pairs: Sequence[tuple[Array, Array]], gradient: Array, free: Tangent) -> Array:
+    """The L-BFGS two-loop recursion in the free directions, from the identity (Nocedal and Wright, 7.4)."""
     q = gradient.copy()
     used = []
     for step, change in reversed(pairs):
-        s, y = np.where(free, step, 0.0), np.where(free, change, 0.0)
+        s, y = free.free(step), free.free(change)
         curvature = np.sum(s * y)
         if curvature > 1e-12 * np.sum(y * y):
             weight = np.sum(s * q) / curvature

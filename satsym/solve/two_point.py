@@ -10,13 +10,16 @@ import numpy as np
 
 from satsym.instance import Instance
 from satsym.solution import Array, Iteration, Progress, Solution
+from satsym.solve import revolutions
 from satsym.solve.collocation.cold_start import STAGES, Start, cold_start
 from satsym.solve.collocation.continuation import Bounded, by_bound, tighten
+from satsym.solve.collocation.durations import free_duration
 from satsym.solve.collocation.problem import TwoPoint
 from satsym.solve.collocation.refinement import Refined, refine
 from satsym.solve.collocation.scaling import two_point
 from satsym.solve.collocation.system import System
 from satsym.solve.iteration import Limits
+from satsym.solve.revolutions import TURN, Best
 from satsym.status import Status
 
 
@@ -49,7 +52,7 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     Parameters
     ----------
     instance
-        With final states given, on the reference or free, and a given final time.
+        With final states given, on the reference or free, and a final time that is given or free.
     progress
         Called after each phase.
 
@@ -59,10 +62,7 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         With status ``converged`` when the estimated error is within the instance's tolerance.
     """
     began = time.perf_counter()
-    if instance.tf is None:
-        raise ValueError("a free final time is not for this solver")
     limits = Limits(instance.solver.max_iterations or 500, began + instance.solver.max_seconds)
-    problem = two_point(instance, instance.tf - instance.t0)
     history: list[Iteration] = []
 
     def report(objective: float, residual: float) -> None:
@@ -71,15 +71,30 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
             progress(history[-1])
 
     with np.errstate(all="ignore"):
-        extremal = _extremal(problem, limits, report)
-    return _solution(extremal, tuple(history), time.perf_counter() - began)
+        best = revolutions.cheapest(instance, limits, lambda one: _extremal(one, limits, report), _objective)
+    return _solution(instance, best, tuple(history), time.perf_counter() - began)
 
 
-def _extremal(problem: TwoPoint, limits: Limits, report: Callable[[float, float], None]) -> Extremal:
+def _extremal(instance: Instance, limits: Limits, report: Callable[[float, float], None]) -> Extremal:
+    if instance.tf is not None:
+        problem = two_point(instance, instance.tf - instance.t0)
+        start, way = cold_start(problem, limits), ""
+        if start.way == "none":
+            return _nowhere(problem, start, limits)
+    else:
+        chosen = free_duration(instance, limits)
+        problem, start, way = chosen.problem.widened(0.0), chosen.start, f", {chosen.message}"
+        if not chosen.status.answered:
+            unknown = Refined(start.found.curve, float("inf"), False, 0)
+            return Extremal(problem, unknown, chosen.status, chosen.message, start.steps)
+    return _accurate(problem, start, way, limits, report)
+
+
+def _accurate(
+    problem: TwoPoint, start: Start, way: str, limits: Limits, report: Callable[[float, float], None]
+) -> Extremal:
+    """From an extremal of low order without bounds to an accurate one within them."""
     tolerance = problem.instance.solver.tolerance
-    start = cold_start(problem, limits)
-    if start.way == "none":
-        return _nowhere(problem, start, limits)
     free = problem.widened(float("inf"))
     report(start.found.cost * problem.scale.cost, 1.0)
     refined = refine(free, start.found.curve, tolerance)
@@ -96,7 +111,8 @@ def _extremal(problem: TwoPoint, limits: Limits, report: Callable[[float, float]
     if not refined.converged:
         message = f"the estimated error stays at {refined.error:.0e} on {len(refined.curve.mesh) - 1} intervals"
         return Extremal(problem, refined, Status.NOT_CONVERGED, message, steps)
-    message = f"estimated error {refined.error:.0e} on {len(refined.curve.mesh) - 1} intervals, from the {start.way}"
+    where = f"{len(refined.curve.mesh) - 1} intervals, from the {start.way}{way}"
+    message = f"estimated error {refined.error:.0e} on {where}"
     return Extremal(problem, refined, Status.CONVERGED, message, steps)
 
 
@@ -113,26 +129,37 @@ def _stuck(problem: TwoPoint, bounded: Bounded) -> str:
     return "the times at which bounds are met do not settle"
 
 
+def _objective(extremal: Extremal) -> float:
+    """The cost, infinite where there is no answer."""
+    return _cost(extremal.problem, extremal.refined) if extremal.status.answered else float("inf")
+
+
 def _cost(problem: TwoPoint, refined: Refined) -> float:
     system = System(problem, refined.curve.mesh, refined.curve.order)
     return system.cost(refined.curve) * problem.scale.cost
 
 
-def _solution(extremal: Extremal, history: tuple[Iteration, ...], wall_s: float) -> Solution:
-    problem, curve, instance = extremal.problem, extremal.refined.curve, extremal.problem.instance
+def _solution(instance: Instance, best: Best[Extremal], history: tuple[Iteration, ...], wall_s: float) -> Solution:
+    extremal = best.answer
+    problem, curve = extremal.problem, extremal.refined.curve
     n, m = problem.states, len(instance.model.spec.controls)
     tau = np.unique(np.concatenate([np.linspace(0.0, 1.0, instance.solver.steps + 1), curve.mesh]))
     scaled = curve(tau)
-    answered = extremal.status.answered
     z = scaled * problem.scale.both
+    for name, turns in best.turns.items():
+        z[instance.model.spec.state_names.index(name)] += turns * TURN
     elapsed = problem.elapsed(curve.theta)
-    met = by_bound(problem, curve) if answered else []
+    status, message = extremal.status, "; ".join(part for part in (extremal.message, best.message) if part)
+    if best.endless and instance.tf is None:
+        costs = ", ".join(f"{value:.4g}" for value in best.endless)
+        status, message = Status.NO_MINIMISER, f"more turns are always cheaper: the last three numbers cost {costs}"
+    met = by_bound(problem, curve) if status.answered else []
     return Solution(
         instance=instance,
         method="collocation",
-        status=extremal.status,
-        message=extremal.message,
-        objective=_cost(problem, extremal.refined) if answered else float("nan"),
+        status=status,
+        message=message,
+        objective=_objective(extremal) if status.answered else float("nan"),
         times=instance.t0 + elapsed * tau,
         x=z[:n],
         u=problem.control(tau, scaled, curve.theta),

@@ -10,6 +10,7 @@ through S + nu' psi.
 
 from __future__ import annotations
 
+import itertools
 import random
 from collections.abc import Sequence
 from typing import Any
@@ -83,7 +84,7 @@ def _first_variation(
 ) -> Check:
     """Hold the residuals against the change of S + H t - lambda' x along admissible ends, by differences."""
     residuals, cost, path = numeric([e.rhs for e in equations]), numeric([weighted]), numeric(list(curve))
-    rng = random.Random("ends")
+    rng, turns = random.Random("ends"), itertools.count()
     everything = {*states, *lam, n.HAMILTONIAN, t}.union(*(e.rhs.free_symbols for e in equations))
 
     def value(point: Point) -> Any:
@@ -91,7 +92,8 @@ def _first_variation(
         return cost(point)[0] + point[n.HAMILTONIAN] * point[t] - costates
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
-        kinds = [rng.choice(KINDS) for _ in states]
+        turn = next(turns)  # so every state is of each kind at some point
+        kinds = [KINDS[(turn + i) % len(KINDS)] for i in range(len(states))]
         dt, moves = rng.uniform(-1, 1), [rng.uniform(-1, 1) for _ in states]
         chosen = {n.given(x): int(kind == "given") for x, kind in zip(states, kinds, strict=True)}
         chosen |= {n.on_reference(x): int(kind == "reference") for x, kind in zip(states, kinds, strict=True)}

@@ -23,14 +23,14 @@ from satsym.solve.iteration import Limits
 
 Array = NDArray[np.floating[Any]]
 
-STEPS = 400
+STEPS = 200
 """RK4 steps with which neighbours are compared, on the same grid as the solution itself."""
 
-NEIGHBOURS, WAVES = 12, 6
-AMPLITUDE = 0.1
+NEIGHBOURS, WAVES = 8, 6
+AMPLITUDE = 0.05
 """Of a neighbour's departure from the control, relative to the largest control."""
 
-CORRECTIONS = 4
+CORRECTIONS = 12
 MISSED = 1e-9
 """Relative miss of the end up to which a neighbour counts as feasible."""
 
@@ -66,6 +66,8 @@ def neighbours(solution: Solution) -> float:
     rng = random.Random("neighbours")
     cheapest = float("inf")
     for _ in range(NEIGHBOURS):
+        slopes = response
+        tried: Array = np.zeros(0)
         weights = np.array([rng.gauss(0.0, 1.0) for _ in shapes])
         weights *= AMPLITUDE * size / max(1.0, float(np.linalg.norm(weights)))
         found, miss = float("inf"), float("inf")
@@ -76,7 +78,10 @@ def neighbours(solution: Solution) -> float:
             miss = float(np.abs(gap).max(initial=0.0))
             if miss <= MISSED or not np.isfinite(miss):
                 break
-            weights = weights - np.linalg.lstsq(response, gap, rcond=None)[0]
+            if len(tried):  # Broyden: the response as the last correction found it
+                slopes = slopes + np.outer(gap, tried) / float(tried @ tried)
+            tried = -np.linalg.lstsq(slopes, gap, rcond=None)[0]
+            weights = weights + tried
         if miss <= MISSED:
             cheapest = min(cheapest, found)
     return _margin(cheapest, cost)

@@ -2,7 +2,8 @@
 
 First the minimisation from the straight line in the state space. Where it does not walk straight through, the
 second way decides as well: from a motion that needs no control at all and ends where it should, the initial
-state is moved to the given one, each problem starting from the last. The cheaper minimum stands.
+state is moved to the given one, each problem starting from the last. The cheaper minimum stands. Where neither
+way arrives, the duration is halved until the straight line leads to a minimum, and lengthened from there.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 from satsym.grid import Grid
 from satsym.solve.collocation import mesh as meshes
 from satsym.solve.collocation.curve import Curve, stage_times
+from satsym.solve.collocation.longer import along_durations
 from satsym.solve.collocation.problem import TwoPoint
 from satsym.solve.collocation.scaling import straight
 from satsym.solve.collocation.sqp import OUTGROWN, Found, minimise
@@ -48,7 +50,7 @@ class Start:
     found
         The cheapest minimum, or the last attempt.
     way
-        ``"straight line"``, ``"path of problems"`` or ``"none"``.
+        ``"straight line"``, ``"path of problems"``, ``"path of durations"`` or ``"none"``.
     steps
         Steps of all attempts.
     minima
@@ -61,7 +63,7 @@ class Start:
     minima: dict[str, float]
 
 
-def cold_start(problem: TwoPoint, limits: Limits, thorough: bool = False) -> Start:
+def cold_start(problem: TwoPoint, limits: Limits, quick: bool = False) -> Start:
     """Find a minimum of a problem without bounds.
 
     Parameters
@@ -70,19 +72,25 @@ def cold_start(problem: TwoPoint, limits: Limits, thorough: bool = False) -> Sta
         Bounds are ignored.
     limits
         When to stop.
-    thorough
-        Try the second way also where the first went straight through.
+    quick
+        Try the first way only.
     """
     free = problem.widened(float("inf"))
-    line = straight(free)
     ways: list[tuple[str, Callable[[], Found | None]]] = [
-        ("straight line", lambda: from_path(free, lambda tau: line[:, :1] + (line[:, 1:] - line[:, :1]) * tau, limits)),
+        ("straight line", lambda: from_path(free, straight_path(free), limits)),
         ("path of problems", lambda: along_problems(free, limits)),
+        ("path of durations", lambda: along_durations(free, STAGES, limits, shorter)),
     ]
+
+    def shorter(problem: TwoPoint) -> Found:
+        return from_path(problem, straight_path(problem), limits)
+
     minima: dict[str, Found] = {}
     last: Found | None = None
     steps = 0
     for way, attempt in ways:
+        if way == "path of durations" and minima:
+            break
         with np.errstate(all="ignore"):
             found = attempt()
         if found is None:
@@ -90,9 +98,9 @@ def cold_start(problem: TwoPoint, limits: Limits, thorough: bool = False) -> Sta
         last, steps = found, steps + found.iterations
         if found.minimum and _in_domain(free, found.curve):
             minima[way] = found
-            if not (found.hard or thorough):
+            if not found.hard:
                 break
-        if limits.expired:
+        if limits.expired or quick:
             break
     costs = {way: found.cost for way, found in minima.items()}
     if not minima:
@@ -100,6 +108,17 @@ def cold_start(problem: TwoPoint, limits: Limits, thorough: bool = False) -> Sta
         return Start(replace(last, reason=_reason(last)), "none", steps, costs)
     best = min(minima, key=lambda way: minima[way].cost)
     return Start(minima[best], best, steps, costs)
+
+
+def straight_path(problem: TwoPoint) -> Callable[[Array], Array]:
+    """States on a straight line from start to end, as a function of tau."""
+    line = straight(problem)
+    return lambda tau: line[:, :1] + (line[:, 1:] - line[:, :1]) * tau
+
+
+def straight_curve(problem: TwoPoint) -> Curve:
+    """The same as a curve."""
+    return _without_costates(problem, straight_path(problem))
 
 
 def from_path(problem: TwoPoint, path: Callable[[Array], Array], limits: Limits, most: int = STRAIGHT_THROUGH) -> Found:
@@ -126,7 +145,7 @@ def from_path(problem: TwoPoint, path: Callable[[Array], Array], limits: Limits,
 def along_problems(problem: TwoPoint, limits: Limits) -> Found | None:
     """Move the initial state from a motion without control to the given one; ``None`` where there is no such motion.
 
-    The end must be given for that: then coasting backwards from it is an extremal without control.
+    It coasts backwards from an end that is given, or costs nothing.
     """
     coasting = _coasting_to_the_end(problem)
     if coasting is None:
@@ -172,11 +191,10 @@ def between(a: Array, b: Array, share: float) -> Array:
 
 
 def _coasting_to_the_end(problem: TwoPoint) -> Callable[[Array], Array] | None:
-    """The motion without control that arrives at the given end, as a function of tau."""
-    instance = problem.instance
-    if not problem.fixed.all() or problem.free_time:
+    """The motion without control that arrives at the end, as a function of tau."""
+    instance, end = problem.instance, _end_without_costates(problem)
+    if end is None:
         return None
-    end = straight(problem)[:, 1] * problem.scale.state
     grid = Grid.uniform(0.0, 1.0, 20 * SAMPLES)
     times = instance.t0 + problem.duration * (1.0 - grid.nodes)
     none = np.zeros((len(instance.model.spec.controls), grid.steps + 1))
@@ -185,6 +203,25 @@ def _coasting_to_the_end(problem: TwoPoint) -> Callable[[Array], Array] | None:
     if not np.isfinite(backwards).all() or not instance.model.in_domain(x):
         return None
     return lambda tau: np.array([np.interp(tau, grid.nodes, row) for row in backwards])
+
+
+def _end_without_costates(problem: TwoPoint) -> Array | None:
+    """A final state where costates may be zero: where a state is free, the terminal cost must not depend on it."""
+    instance, free = problem.instance, ~problem.fixed
+    if problem.free_time or instance.model.spec.multipliers:
+        return None
+    end = straight(problem)[:, 1] * problem.scale.state
+    candidates = [end]
+    tf = instance.t0 + problem.duration
+    if instance.model.spec.has_reference:
+        curve = np.array(instance.model.reference(tf, instance.parameters))
+        candidates.insert(0, np.where(free, curve, end))
+    for candidate in candidates:
+        gradient = instance.model.terminal_gradient(tf, tuple(candidate.tolist()), instance.parameters)
+        slopes = np.array(gradient) * problem.scale.state / problem.scale.cost
+        if not (np.abs(slopes[free]) > 1e-12).any():
+            return candidate
+    return None
 
 
 def _without_costates(problem: TwoPoint, path: Callable[[Array], Array]) -> Curve:

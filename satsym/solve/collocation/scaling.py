@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -21,10 +19,8 @@ POINTS = 9
 NEGLIGIBLE = 1e-3
 """A state this much smaller along the way than what it does to the others is scaled by the latter."""
 
-TURN = 2.0 * math.pi
 
-
-def two_point(instance: Instance, duration: float, turns: dict[str, int] | None = None) -> TwoPoint:
+def two_point(instance: Instance, duration: float) -> TwoPoint:
     """The scaled problem of an instance.
 
     Parameters
@@ -33,32 +29,19 @@ def two_point(instance: Instance, duration: float, turns: dict[str, int] | None 
         What is to be solved.
     duration
         tf - t0; where it is free, a first guess.
-    turns
-        Whole turns added to the given final value of angles.
     """
-    final = _final(instance, turns or {})
+    final = _final(instance)
     start, end = np.array(instance.initial), _end(instance, final, duration)
     return TwoPoint(instance, final, duration, _scale(instance, start, end, duration))
 
 
-def _final(instance: Instance, turns: dict[str, int]) -> tuple[float, ...]:
+def _final(instance: Instance) -> tuple[float, ...]:
     """The ``final`` argument of the boundary functions."""
-    given, on_reference, target = [], [], []
-    for name in instance.model.spec.state_names:
-        wanted = instance.final.get(name)
-        extra = TURN * turns.get(name, 0)
-        # A reference that counts modulo a turn is left for a number, which only a given final time allows.
-        number = _on_curve(instance, name) if wanted == "reference" and extra else wanted
-        given.append(float(isinstance(number, float | int)))
-        on_reference.append(float(number == "reference"))
-        target.append(float(number) + extra if isinstance(number, float | int) else 0.0)
+    wanted = [instance.final.get(name) for name in instance.model.spec.state_names]
+    given = [float(isinstance(value, float | int)) for value in wanted]
+    on_reference = [float(value == "reference") for value in wanted]
+    target = [float(value) if isinstance(value, float | int) else 0.0 for value in wanted]
     return (*given, *on_reference, *target)
-
-
-def _on_curve(instance: Instance, name: str) -> float:
-    assert instance.tf is not None
-    curve = instance.model.reference(instance.tf, instance.parameters)
-    return float(curve[instance.model.spec.state_names.index(name)])
 
 
 def _end(instance: Instance, final: tuple[float, ...], duration: float) -> Array:
@@ -97,13 +80,3 @@ def _scale(instance: Instance, start: Array, end: Array, duration: float) -> Sca
             size[j] = least
     response = (slopes[:n, n:] / np.outer(size, size)).max()
     return Scale(size, 1.0 / (duration * response) if response > 0.0 else 1.0)
-
-
-def revolutions(instance: Instance, most: int) -> Iterator[dict[str, int]]:
-    """Choices of whole turns for the angles that count modulo a turn, the stated one first."""
-    angles = [name for name in instance.solver.free_angles if name in instance.final]
-    yield {}
-    for name in angles:
-        for k in range(1, most + 1):
-            yield {name: k}
-            yield {name: -k}

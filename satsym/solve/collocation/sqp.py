@@ -29,6 +29,10 @@ CLOSE = 1e-3
 CUT = 0.2
 """A Newton step that had to be cut below this share is followed by a Gauss-Newton step."""
 
+SHARES = (1.0, 0.8, 0.5, 0.0)
+"""Shares of the costates with which their own rates by the states are evaluated: the first for which the second
+variation is positive is taken. One is Newton, zero Gauss-Newton, whose quadratic programme is always convex."""
+
 SHORTEST = 1e-6
 SUFFICIENT = 1e-4
 OUTGROWN = "the curve outgrew its mesh"
@@ -122,7 +126,7 @@ def minimise(
             measured = _measured(system, trial, trial_residual, penalty)
             if measured <= enough or close:
                 break
-            if tried == 0:
+            if tried < 4:
                 corrected = _corrected(system, curve, trial, trial_residual, linearised)
                 if corrected is not None:
                     corrected_residual = system.residual(corrected)
@@ -143,23 +147,21 @@ def _direction(
     """The linearisation to step with, and whether it is Newton's."""
     n = system.problem.states
     without_costates = not curve.stages[n:].any()
-    if (trusted or not avoid) and not without_costates:
-        try:
-            linearised = system.linearised(curve, residual, jacobian)
-            if trusted or negative_directions(system.problem, curve, linearised) == 0:
-                return linearised, True
-        except np.linalg.LinAlgError:
-            pass
+    bare = jacobian
     if not without_costates:
         stages, nodes = curve.stages.copy(), curve.nodes.copy()
         stages[n:], nodes[n:] = 0.0, 0.0
-        bare = replace(curve, stages=stages, nodes=nodes)
-        jacobian = jacobian.copy()
-        jacobian[n:, :n] = system.jacobian(bare)[n:, :n]
-    try:
-        return system.linearised(curve, residual, jacobian), False
-    except np.linalg.LinAlgError:
-        return None, False
+        bare = jacobian.copy()
+        bare[n:, :n] = system.jacobian(replace(curve, stages=stages, nodes=nodes))[n:, :n]
+    shares = (0.0,) if without_costates else (1.0, 0.0) if trusted else SHARES[int(avoid) :]
+    for share in shares:
+        try:
+            linearised = system.linearised(curve, residual, share * jacobian + (1.0 - share) * bare)
+            if trusted or share == 0.0 or negative_directions(system.problem, curve, linearised) == 0:
+                return linearised, share == 1.0
+        except np.linalg.LinAlgError:
+            continue
+    return None, False
 
 
 def _kind(system: System, curve: Curve) -> str:
