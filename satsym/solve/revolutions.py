@@ -15,6 +15,7 @@ import numpy as np
 
 from satsym.grid import Grid
 from satsym.instance import Instance
+from satsym.solve.collocation.durations import time_scale
 from satsym.solve.iteration import Limits
 
 Answer = TypeVar("Answer")
@@ -36,7 +37,8 @@ class Best(Generic[Answer]):
     message
         Which number won, and what its neighbours cost; empty where no angle counts modulo a turn.
     endless
-        Whether the cost still fell after all moves: costs of the last numbers of turns.
+        Costs of the last numbers of turns where they fall without end in sight: after all moves, or up to a
+        neighbour that has no answer.
     """
 
     answer: Answer
@@ -46,7 +48,7 @@ class Best(Generic[Answer]):
 
 
 def cheapest(
-    instance: Instance, limits: Limits, solve: Callable[[Instance], Answer], cost: Callable[[Answer], float]
+    instance: Instance, limits: Limits, solve: Callable[[Instance, bool], Answer], cost: Callable[[Answer], float]
 ) -> Best[Answer]:
     """Solve with the number of turns that costs least.
 
@@ -57,19 +59,20 @@ def cheapest(
     limits
         When to stop.
     solve, cost
-        From an instance to an answer, and its cost: infinite where there is none.
+        From an instance to an answer, with great effort or not, and its cost: infinite where there is none. The
+        first number of turns is worth the effort, its neighbours are not.
     """
     angles = [name for name in instance.solver.free_angles if name in instance.final]
     at = _natural(instance, angles)
     if not angles:
-        return Best(solve(instance), {}, "")
+        return Best(solve(instance, True), {}, "")
     known: dict[tuple[int, ...], Answer] = {}
 
     def costs(turns: tuple[int, ...]) -> float:
         if turns not in known:
             if known and limits.expired:
                 return math.inf
-            known[turns] = solve(shifted(instance, dict(zip(angles, turns, strict=True))))
+            known[turns] = solve(shifted(instance, dict(zip(angles, turns, strict=True))), not known)
         return cost(known[turns])
 
     path = [costs(at)]
@@ -80,8 +83,10 @@ def cheapest(
         at = best
         path.append(costs(at))
     turns = dict(zip(angles, at, strict=True))
-    endless = tuple(path[-3:]) if len(path) > MOST_MOVES else ()
-    return Best(known[at], turns, _message(angles, at, {k: costs(k) for k in _neighbours(at)}), endless)
+    others = {k: costs(k) for k in _neighbours(at)}
+    lost = len(path) > 2 and any(math.isinf(value) for value in others.values())
+    endless = tuple(path[-3:]) if lost or len(path) > MOST_MOVES else ()
+    return Best(known[at], turns, _message(angles, at, others), endless)
 
 
 def shifted(instance: Instance, turns: dict[str, int]) -> Instance:
@@ -97,11 +102,14 @@ def _neighbours(at: tuple[int, ...]) -> list[tuple[int, ...]]:
 
 
 def _natural(instance: Instance, angles: list[str]) -> tuple[int, ...]:
-    """The turns that the motion without control comes closest to."""
+    """The turns that the motion without control comes closest to; with a free final time, in a typical one."""
     none = tuple([0] * len(angles))
-    if instance.tf is None or not angles:
+    if not angles:
         return none
-    grid = Grid.uniform(instance.t0, instance.tf, 2000)
+    end = instance.tf if instance.tf is not None else instance.tf_guess
+    if end is None:
+        end = instance.t0 + TURN * time_scale(instance)
+    grid = Grid.uniform(instance.t0, end, 2000)
     idle = np.zeros((len(instance.model.spec.controls), grid.steps + 1))
     x, _, _ = instance.model.forward(grid.nodes, instance.initial, idle, idle[:, 1:], instance.parameters)
     names = instance.model.spec.state_names
@@ -110,7 +118,7 @@ def _natural(instance: Instance, angles: list[str]) -> tuple[int, ...]:
     found = []
     for name in angles:
         wanted, row = instance.final[name], names.index(name)
-        goal = instance.model.reference(instance.tf, instance.parameters)[row] if wanted == "reference" else wanted
+        goal = instance.model.reference(end, instance.parameters)[row] if wanted == "reference" else wanted
         found.append(round((float(x[row, -1]) - float(goal)) / TURN))
     return tuple(found)
 

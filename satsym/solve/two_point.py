@@ -71,18 +71,22 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
             progress(history[-1])
 
     with np.errstate(all="ignore"):
-        best = revolutions.cheapest(instance, limits, lambda one: _extremal(one, limits, report), _objective)
+        best = revolutions.cheapest(
+            instance, limits, lambda one, effort: _extremal(one, limits, report, effort), _objective
+        )
     return _solution(instance, best, tuple(history), time.perf_counter() - began)
 
 
-def _extremal(instance: Instance, limits: Limits, report: Callable[[float, float], None]) -> Extremal:
+def _extremal(
+    instance: Instance, limits: Limits, report: Callable[[float, float], None], effort: bool
+) -> Extremal:
     if instance.tf is not None:
         problem = two_point(instance, instance.tf - instance.t0)
         start, way = cold_start(problem, limits), ""
         if start.way == "none":
             return _nowhere(problem, start, limits)
     else:
-        chosen = free_duration(instance, limits)
+        chosen = free_duration(instance, limits, effort)
         problem, start, way = chosen.problem.widened(0.0), chosen.start, f", {chosen.message}"
         if not chosen.status.answered:
             unknown = Refined(start.found.curve, float("inf"), False, 0)

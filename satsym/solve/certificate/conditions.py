@@ -12,6 +12,9 @@ from satsym.solve.certificate.flow import Flow
 
 Array = NDArray[np.floating[Any]]
 
+RESOLVED = 1e-9
+"""Smallest singular value, relative to the largest, of a field whose determinant has a sign that can be trusted."""
+
 
 def boundary_residual(solution: Solution, flow: Flow) -> float:
     """Largest residual at the right end of the flow, each relative to the size of what it compares."""
@@ -114,16 +117,21 @@ def conjugate_time(flow: Flow) -> float | None:
     """The first time after the start at which neighbouring extremals meet again, or ``None``.
 
     There the derivative of the states by the initial costates is singular, which its determinant shows by a
-    change of sign; bounds that are active stay so. At the end itself it only matters where the end is given.
+    change of sign; bounds that are active stay so. Shortly after the start, or while bounds leave little freedom,
+    the determinant is too small to have a sign that can be trusted, and such times are passed over.
     """
-    n = flow.x.shape[0]
-    signs = []
-    for slopes in flow.field[1:]:
+    n, sign = flow.x.shape[0], 0.0
+    for time, slopes in zip(flow.times[1:], flow.field[1:], strict=True):
         upper = slopes[:n] / np.maximum(np.linalg.norm(slopes, axis=0), 1e-300)
-        rows = np.maximum(np.abs(upper).max(axis=1, keepdims=True), 1e-300)
-        signs.append(np.linalg.slogdet(upper / rows)[0])
-    changes = np.flatnonzero(np.array(signs[1:]) * np.array(signs[:-1]) < 0.0)
-    return float(flow.times[changes[0] + 2]) if len(changes) else None
+        balanced = upper / np.maximum(np.abs(upper).max(axis=1, keepdims=True), 1e-300)
+        values = np.linalg.svd(balanced, compute_uv=False)
+        if values[-1] < RESOLVED * values[0]:
+            continue
+        now = float(np.linalg.slogdet(balanced)[0])
+        if now * sign < 0.0:
+            return float(time)
+        sign = now
+    return None
 
 
 def negative_end(solution: Solution, flow: Flow) -> float:

@@ -34,6 +34,7 @@ RATIO = 2.0**0.5
 
 AROUND_GUESS = (-2, 2)
 AROUND_SCALE = (-2, 8)
+FEWER = (3, 5)
 """Powers of the ratio that are tried at first: around the stated guess, and around the motion's own time scale."""
 
 MOST_SCALES, LEAST_SCALES = 64.0, 1e-7
@@ -85,7 +86,7 @@ class Try:
     """What every unit of time costs at least along this motion, without any control."""
 
 
-def free_duration(instance: Instance, limits: Limits) -> Chosen:
+def free_duration(instance: Instance, limits: Limits, effort: bool = True) -> Chosen:
     """Find the duration that costs least, for an instance whose final time is free.
 
     Parameters
@@ -94,11 +95,13 @@ def free_duration(instance: Instance, limits: Limits) -> Chosen:
         Its bounds are ignored.
     limits
         When to stop.
+    effort
+        Whether to try harder where the straight line leads nowhere at all durations.
     """
     search = _Search(instance, limits)
     search.scan()
-    if not search.tries:
-        search.quick = False
+    if effort and not search.tries:
+        search.thorough()
         search.scan()
     tries = search.tries
     if not tries:
@@ -152,6 +155,11 @@ class _Search:
         self.steps, self.duration = 0, self.first
         self.last: Curve | None = None
         self.unit = self.problem(self.first).scale.cost
+
+    def thorough(self) -> None:
+        """Try harder from now on, at fewer durations."""
+        self.quick = False
+        self.powers = FEWER if self.instance.tf_guess is None else (0, 0)
 
     def problem(self, duration: float) -> TwoPoint:
         """The problem with the duration free, and this one to start from; without bounds."""

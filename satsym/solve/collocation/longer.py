@@ -19,7 +19,8 @@ FIRST, SMALLEST = 1.3, 1.002
 """Ratios of neighbouring durations: at first, and where it is given up."""
 
 ROUNDS, STEPS, COARSE = 6, 60, 2.5
-"""Minimisations for one duration, each on a new mesh; steps of each; how much more than planned the motion may turn in an interval, as in the cold start."""
+"""Minimisations for one duration, each on a new mesh; steps of each; and by how much, as in the cold start, the
+motion may turn more in an interval than planned."""
 
 
 def along_durations(problem: TwoPoint, stages: int, limits: Limits, solve: Callable[[TwoPoint], Found]) -> Found | None:
