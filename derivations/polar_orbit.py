@@ -29,11 +29,11 @@ PARAMETERS = (
     Variable("k2", "k_2", "1/s", "terminal weight of the radial velocity", 0.0),
     Variable("k3", "k_3", "km**2/s**3", "terminal weight of the angle", 0.0),
     Variable("k4", "k_4", "km**2/s", "terminal weight of the angular velocity", 0.0),
-    Variable("c0", "c_0", "km**2/s**4", "weight of time", 0.0),
 )
+TIME_WEIGHT = Variable("c0", "c_0", "km**2/s**4", "weight of time", 0.0)
 r, r_dot, theta, theta_dot = symbols_of(STATES)
 u1, u2 = symbols_of(CONTROLS)
-sigma, omega, c1, c2, k1, k2, k3, k4, c0 = symbols_of(PARAMETERS)
+sigma, omega, c1, c2, k1, k2, k3, k4, c0 = symbols_of((*PARAMETERS, TIME_WEIGHT))
 
 MU = Variable("mu", r"\mu", "km**3/s**2", "gravitational parameter", positive=True)
 (mu,) = symbols_of((MU,))
@@ -55,13 +55,24 @@ orbit = Newton(
     reference={r: sigma, r_dot: 0, theta: omega * t, theta_dot: omega},
 )
 
+EFFORT = (c1 * u1**2 + c2 * u2**2) / 2
 MISS = (k1 * (r - sigma) ** 2 + k2 * r_dot**2 + k3 * (theta - omega * t) ** 2 + k4 * (theta_dot - omega) ** 2) / 2
 
 polar_orbit = Problem(
     name="polar_orbit",
     title="Least-effort transfer of a satellite in polar coordinates",
     model=orbit,
-    running_cost=c0 + (c1 * u1**2 + c2 * u2**2) / 2,
+    running_cost=EFFORT,
+    terminal_cost=MISS,
+    control_set="box",
+)
+
+polar_orbit_timed = Problem(
+    name="polar_orbit_timed",
+    title="Transfer of a satellite in polar coordinates, weighing time against effort",
+    # Where the final time is free, effort alone has no minimum: longer is always cheaper.
+    model=replace(orbit, parameters=(*PARAMETERS, TIME_WEIGHT)),
+    running_cost=c0 + EFFORT,
     terminal_cost=MISS,
     control_set="box",
 )
@@ -71,9 +82,9 @@ polar_orbit_ball = Problem(
     title="Least-effort transfer of a satellite with one steerable engine, in polar coordinates",
     # One engine pointed anywhere in the plane: its thrust is limited in norm and has one weight.
     model=replace(orbit, parameters=tuple(v for v in PARAMETERS if v.symbol != "c2")),
-    running_cost=c0 + c1 * (u1**2 + u2**2) / 2,
+    running_cost=c1 * (u1**2 + u2**2) / 2,
     terminal_cost=MISS,
     control_set="ball",
 )
 
-PROBLEMS = (polar_orbit, polar_orbit_ball)
+PROBLEMS = (polar_orbit, polar_orbit_timed, polar_orbit_ball)

@@ -33,7 +33,6 @@ MODEL = {
         {'symbol': 'k2', 'latex': 'k_2', 'unit': '1/s', 'meaning': 'terminal weight of the radial velocity', 'default': 0.0},
         {'symbol': 'k3', 'latex': 'k_3', 'unit': 'km**2/s**3', 'meaning': 'terminal weight of the angle', 'default': 0.0},
         {'symbol': 'k4', 'latex': 'k_4', 'unit': 'km**2/s', 'meaning': 'terminal weight of the angular velocity', 'default': 0.0},
-        {'symbol': 'c0', 'latex': 'c_0', 'unit': 'km**2/s**4', 'meaning': 'weight of time', 'default': 0.0},
     ),
     'control_set': 'box',
     'has_cost': True,
@@ -56,7 +55,7 @@ def dynamics(t, x, u, p):
     """Rates of change of the states, f(t, x, u)."""
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     inv_r = 1.0/r
     mu = omega*omega*sigma*sigma*sigma
     return (
@@ -71,7 +70,7 @@ def jacobian_x(t, x, u, p):
     """A = df/dx, row by row."""
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     inv_r = 1.0/r
     mu = omega*omega*sigma*sigma*sigma
     twice_theta_dot = 2.0*theta_dot
@@ -99,7 +98,7 @@ def jacobian_u(t, x, u, p):
     """B = df/du, row by row."""
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     inv_r = 1.0/r
     return (
         0.0,
@@ -115,7 +114,7 @@ def jacobian_u(t, x, u, p):
 
 def reference(t, p):
     """The reference curve c(t)."""
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     return (
         sigma,
         0.0,
@@ -127,7 +126,7 @@ def reference(t, p):
 def invariants(t, x, p):
     """What the motion without control keeps constant."""
     r, r_dot, theta, theta_dot = x
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     inv_r = 1.0/r
     r_sq = r*r
     mu = omega*omega*sigma*sigma*sigma
@@ -140,7 +139,7 @@ def invariants(t, x, p):
 def position(t, x, p):
     """Inertial components of the position vector."""
     r, r_dot, theta, theta_dot = x
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     return (
         r*math.cos(theta),
         r*math.sin(theta),
@@ -151,14 +150,14 @@ def running_cost(t, x, u, p):
     """Integrand L of the cost."""
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
-    return c0 + 0.5*c1*u1*u1 + 0.5*c2*u2*u2
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
+    return 0.5*c1*u1*u1 + 0.5*c2*u2*u2
 
 
 def terminal_cost(t, x, p):
     """Terminal cost S."""
     r, r_dot, theta, theta_dot = x
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     w = r - sigma
     w_2 = theta - omega*t
     w_3 = theta_dot - omega
@@ -168,7 +167,7 @@ def terminal_cost(t, x, p):
 def terminal_gradient(t, x, p):
     """S_x: the costates at the final time where the final state is free."""
     r, r_dot, theta, theta_dot = x
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     return (
         k1*(r - sigma),
         k2*r_dot,
@@ -182,10 +181,10 @@ def hamiltonian(t, x, u, lam, p):
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     inv_r = 1.0/r
     mu = omega*omega*sigma*sigma*sigma
-    return c0 + 0.5*c1*u1*u1 + 0.5*c2*u2*u2 + inv_r*lambda_theta_dot*(u2 - 2.0*r_dot*theta_dot) + lambda_r*r_dot + lambda_r_dot*(r*theta_dot*theta_dot + u1 - inv_r*inv_r*mu) + lambda_theta*theta_dot
+    return 0.5*c1*u1*u1 + 0.5*c2*u2*u2 + inv_r*lambda_theta_dot*(u2 - 2.0*r_dot*theta_dot) + lambda_r*r_dot + lambda_r_dot*(r*theta_dot*theta_dot + u1 - inv_r*inv_r*mu) + lambda_theta*theta_dot
 
 
 def stationarity(t, x, u, lam, p):
@@ -193,7 +192,7 @@ def stationarity(t, x, u, lam, p):
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     inv_r = 1.0/r
     return (
         c1*u1 + lambda_r_dot,
@@ -206,7 +205,7 @@ def control_hessian(t, x, u, lam, p):
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     return (
         c1,
         0.0,
@@ -219,7 +218,7 @@ def control_law(t, x, lam, p, bounds):
     """The controls that minimise H over the control set."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     u1_min, u2_min, u1_max, u2_max = bounds
     inv_c1 = 1.0/c1
     w = -inv_c1*lambda_r_dot
@@ -239,7 +238,7 @@ def costate_rate(t, x, u, lam, p):
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     inv_r = 1.0/r
     twice_theta_dot = 2.0*theta_dot
     mu = omega*omega*sigma*sigma*sigma
@@ -255,7 +254,7 @@ def canonical(t, x, lam, p, bounds):
     """Rates of change of states and costates under the control law."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     u1_min, u2_min, u1_max, u2_max = bounds
     inv_c1 = 1.0/c1
     w = -inv_c1*lambda_r_dot
@@ -286,7 +285,7 @@ def canonical_jacobian(t, x, lam, p, bounds):
     """The canonical rates by states and costates, row by row."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     u1_min, u2_min, u1_max, u2_max = bounds
     inv_r = 1.0/r
     inv_r_cubed = inv_r*inv_r*inv_r
@@ -387,7 +386,7 @@ def canonical_drift(t, x, lam, p, bounds):
     """The canonical rates by explicit time."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     u1_min, u2_min, u1_max, u2_max = bounds
     return (
         0.0,
@@ -405,7 +404,7 @@ def boundary(t, x, lam, nu, p, bounds, final):
     """Residuals at the final time: for each state (its end or its transversality), each constraint, the time."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     u1_min, u2_min, u1_max, u2_max = bounds
     given_r, given_r_dot, given_theta, given_theta_dot, on_reference_r, on_reference_r_dot, on_reference_theta, on_reference_theta_dot, target_r, target_r_dot, target_theta, target_theta_dot = final
     w = r - sigma
@@ -429,7 +428,7 @@ def boundary(t, x, lam, nu, p, bounds, final):
         given_r_dot*(r_dot - target_r_dot) + on_reference_r_dot*r_dot - (k2*r_dot - lambda_r_dot)*(1.0 - given_r_dot - on_reference_r_dot),
         given_theta*(-target_theta - w_2) + on_reference_theta*w_4 - w_5*(1.0 - given_theta - on_reference_theta),
         given_theta_dot*(-target_theta_dot - w_6) + on_reference_theta_dot*w_7 - (k4*w_7 - lambda_theta_dot)*(1.0 - given_theta_dot - on_reference_theta_dot),
-        c0 + 0.5*c1*w_9*w_9 + 0.5*c2*w_11*w_11 + inv_r_lambda_theta_dot*(w_11 - 2.0*r_dot*theta_dot) + k3*omega*w_3 + lambda_r*r_dot + lambda_r_dot*(r*theta_dot*theta_dot + w_9 - inv_r*inv_r*mu) + lambda_theta*theta_dot + omega*on_reference_theta*w_5,
+        0.5*c1*w_9*w_9 + 0.5*c2*w_11*w_11 + inv_r_lambda_theta_dot*(w_11 - 2.0*r_dot*theta_dot) + k3*omega*w_3 + lambda_r*r_dot + lambda_r_dot*(r*theta_dot*theta_dot + w_9 - inv_r*inv_r*mu) + lambda_theta*theta_dot + omega*on_reference_theta*w_5,
     )
 
 
@@ -437,7 +436,7 @@ def boundary_jacobian(t, x, lam, nu, p, bounds, final):
     """The boundary residuals by states, costates, multipliers and final time, row by row."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     u1_min, u2_min, u1_max, u2_max = bounds
     given_r, given_r_dot, given_theta, given_theta_dot, on_reference_r, on_reference_r_dot, on_reference_theta, on_reference_theta_dot, target_r, target_r_dot, target_theta, target_theta_dot = final
     w = given_r + on_reference_r
@@ -522,7 +521,7 @@ def boundary_jacobian(t, x, lam, nu, p, bounds, final):
 
 def forward(times, x0, u, u_mid, p, x, x_mid):
     """RK4 over the nodes from x0 at times[0]; returns the integral of the running cost."""
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     r_at, r_dot_at, theta_at, theta_dot_at = x
     r_mid, r_dot_mid, theta_mid, theta_dot_mid = x_mid
     u1_at, u2_at = u
@@ -542,7 +541,7 @@ def forward(times, x0, u, u_mid, p, x, x_mid):
     inv_r = 1.0/r
     slope_r_dot = r*theta_dot*theta_dot + u1 - inv_r*inv_r*mu
     slope_theta_dot = inv_r*(u2 - 2.0*r_dot*theta_dot)
-    slope_total = c0 + half_c1*u1*u1 + half_c2*u2*u2
+    slope_total = half_c1*u1*u1 + half_c2*u2*u2
     total = 0.0
     for i in range(steps):
         t_end = times[i + 1]
@@ -563,7 +562,7 @@ def forward(times, x0, u, u_mid, p, x, x_mid):
         inv_r_2 = 1.0/r_2
         k2_r_dot = r_2*theta_dot_2*theta_dot_2 + u1_half - inv_r_2*inv_r_2*mu
         k2_theta_dot = inv_r_2*(u2_half - 2.0*r_dot_2*theta_dot_2)
-        k2_total = c0 + half_c1*u1_half*u1_half + half_c2*u2_half*u2_half
+        k2_total = half_c1*u1_half*u1_half + half_c2*u2_half*u2_half
         r_3 = half*r_dot_2 + r
         r_dot_3 = half*k2_r_dot + r_dot
         theta_dot_3 = half*k2_theta_dot + theta_dot
@@ -576,7 +575,7 @@ def forward(times, x0, u, u_mid, p, x, x_mid):
         inv_r_4 = 1.0/r_4
         k4_r_dot = r_4*theta_dot_4*theta_dot_4 + u1_end - inv_r_4*inv_r_4*mu
         k4_theta_dot = inv_r_4*(u2_end - 2.0*r_dot_4*theta_dot_4)
-        k4_total = c0 + half_c1*u1_end*u1_end + half_c2*u2_end*u2_end
+        k4_total = half_c1*u1_end*u1_end + half_c2*u2_end*u2_end
         k23_r_dot = k2_r_dot + k3_r_dot
         k123_r_dot = k23_r_dot + slope_r_dot
         k23_theta_dot = k2_theta_dot + k3_theta_dot
@@ -611,7 +610,7 @@ def forward(times, x0, u, u_mid, p, x, x_mid):
 
 def backward(times, lam_f, x, x_mid, u, u_mid, p, lam, lam_mid):
     """RK4 over the nodes, from the costates lam_f at times[-1] back to times[0]."""
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     lambda_r_at, lambda_r_dot_at, lambda_theta_at, lambda_theta_dot_at = lam
     lambda_r_mid, lambda_r_dot_mid, lambda_theta_mid, lambda_theta_dot_mid = lam_mid
     r_at, r_dot_at, theta_at, theta_dot_at = x
@@ -714,7 +713,7 @@ def dynamics_batch(t, x, u, p, out=None):
     """Rates of change of the states, f(t, x, u). Batch form."""
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((4, *shape), np.result_type(float, t, x, u, *p))
@@ -731,7 +730,7 @@ def jacobian_x_batch(t, x, u, p, out=None):
     """A = df/dx, row by row. Batch form."""
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, u, *p))
@@ -761,7 +760,7 @@ def jacobian_u_batch(t, x, u, p, out=None):
     """B = df/du, row by row. Batch form."""
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((4, 2, *shape), np.result_type(float, t, x, u, *p))
@@ -779,7 +778,7 @@ def jacobian_u_batch(t, x, u, p, out=None):
 
 def reference_batch(t, p, out=None):
     """The reference curve c(t). Batch form."""
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t))
         out = np.empty((4, *shape), np.result_type(float, t, *p))
@@ -793,7 +792,7 @@ def reference_batch(t, p, out=None):
 def invariants_batch(t, x, p, out=None):
     """What the motion without control keeps constant. Batch form."""
     r, r_dot, theta, theta_dot = x
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
         out = np.empty((2, *shape), np.result_type(float, t, x, *p))
@@ -808,7 +807,7 @@ def invariants_batch(t, x, p, out=None):
 def position_batch(t, x, p, out=None):
     """Inertial components of the position vector. Batch form."""
     r, r_dot, theta, theta_dot = x
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
         out = np.empty((2, *shape), np.result_type(float, t, x, *p))
@@ -821,18 +820,18 @@ def running_cost_batch(t, x, u, p, out=None):
     """Integrand L of the cost. Batch form."""
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty(shape, np.result_type(float, t, x, u, *p))
-    out[...] = c0 + 0.5*c1*u1*u1 + 0.5*c2*u2*u2
+    out[...] = 0.5*c1*u1*u1 + 0.5*c2*u2*u2
     return out
 
 
 def terminal_cost_batch(t, x, p, out=None):
     """Terminal cost S. Batch form."""
     r, r_dot, theta, theta_dot = x
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
         out = np.empty(shape, np.result_type(float, t, x, *p))
@@ -846,7 +845,7 @@ def terminal_cost_batch(t, x, p, out=None):
 def terminal_gradient_batch(t, x, p, out=None):
     """S_x: the costates at the final time where the final state is free. Batch form."""
     r, r_dot, theta, theta_dot = x
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
         out = np.empty((4, *shape), np.result_type(float, t, x, *p))
@@ -862,13 +861,13 @@ def hamiltonian_batch(t, x, u, lam, p, out=None):
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
         out = np.empty(shape, np.result_type(float, t, x, u, lam, *p))
     inv_r = 1.0/r
     mu = omega*omega*sigma*sigma*sigma
-    out[...] = c0 + 0.5*c1*u1*u1 + 0.5*c2*u2*u2 + inv_r*lambda_theta_dot*(u2 - 2.0*r_dot*theta_dot) + lambda_r*r_dot + lambda_r_dot*(r*theta_dot*theta_dot + u1 - inv_r*inv_r*mu) + lambda_theta*theta_dot
+    out[...] = 0.5*c1*u1*u1 + 0.5*c2*u2*u2 + inv_r*lambda_theta_dot*(u2 - 2.0*r_dot*theta_dot) + lambda_r*r_dot + lambda_r_dot*(r*theta_dot*theta_dot + u1 - inv_r*inv_r*mu) + lambda_theta*theta_dot
     return out
 
 
@@ -877,7 +876,7 @@ def stationarity_batch(t, x, u, lam, p, out=None):
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
         out = np.empty((2, *shape), np.result_type(float, t, x, u, lam, *p))
@@ -892,7 +891,7 @@ def control_hessian_batch(t, x, u, lam, p, out=None):
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
         out = np.empty((2, 2, *shape), np.result_type(float, t, x, u, lam, *p))
@@ -907,7 +906,7 @@ def control_law_batch(t, x, lam, p, bounds, out=None):
     """The controls that minimise H over the control set. Batch form."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     u1_min, u2_min, u1_max, u2_max = bounds
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
@@ -929,7 +928,7 @@ def costate_rate_batch(t, x, u, lam, p, out=None):
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
         out = np.empty((4, *shape), np.result_type(float, t, x, u, lam, *p))
@@ -947,7 +946,7 @@ def canonical_batch(t, x, lam, p, bounds, out=None):
     """Rates of change of states and costates under the control law. Batch form."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     u1_min, u2_min, u1_max, u2_max = bounds
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
@@ -980,7 +979,7 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     """The canonical rates by states and costates, row by row. Batch form."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     u1_min, u2_min, u1_max, u2_max = bounds
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
@@ -1083,7 +1082,7 @@ def canonical_drift_batch(t, x, lam, p, bounds, out=None):
     """The canonical rates by explicit time. Batch form."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     u1_min, u2_min, u1_max, u2_max = bounds
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
@@ -1103,7 +1102,7 @@ def boundary_batch(t, x, lam, nu, p, bounds, final, out=None):
     """Residuals at the final time: for each state (its end or its transversality), each constraint, the time. Batch form."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     u1_min, u2_min, u1_max, u2_max = bounds
     given_r, given_r_dot, given_theta, given_theta_dot, on_reference_r, on_reference_r_dot, on_reference_theta, on_reference_theta_dot, target_r, target_r_dot, target_theta, target_theta_dot = final
     if out is None:
@@ -1129,7 +1128,7 @@ def boundary_batch(t, x, lam, nu, p, bounds, final, out=None):
     out[1] = given_r_dot*(r_dot - target_r_dot) + on_reference_r_dot*r_dot - (k2*r_dot - lambda_r_dot)*(1.0 - given_r_dot - on_reference_r_dot)
     out[2] = given_theta*(-target_theta - w_2) + on_reference_theta*w_4 - w_5*(1.0 - given_theta - on_reference_theta)
     out[3] = given_theta_dot*(-target_theta_dot - w_6) + on_reference_theta_dot*w_7 - (k4*w_7 - lambda_theta_dot)*(1.0 - given_theta_dot - on_reference_theta_dot)
-    out[4] = c0 + 0.5*c1*w_9*w_9 + 0.5*c2*w_11*w_11 + inv_r_lambda_theta_dot*(w_11 - 2.0*r_dot*theta_dot) + k3*omega*w_3 + lambda_r*r_dot + lambda_r_dot*(r*theta_dot*theta_dot + w_9 - inv_r*inv_r*mu) + lambda_theta*theta_dot + omega*on_reference_theta*w_5
+    out[4] = 0.5*c1*w_9*w_9 + 0.5*c2*w_11*w_11 + inv_r_lambda_theta_dot*(w_11 - 2.0*r_dot*theta_dot) + k3*omega*w_3 + lambda_r*r_dot + lambda_r_dot*(r*theta_dot*theta_dot + w_9 - inv_r*inv_r*mu) + lambda_theta*theta_dot + omega*on_reference_theta*w_5
     return out
 
 
@@ -1137,7 +1136,7 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     """The boundary residuals by states, costates, multipliers and final time, row by row. Batch form."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, c2, k1, k2, k3, k4 = p
     u1_min, u2_min, u1_max, u2_max = bounds
     given_r, given_r_dot, given_theta, given_theta_dot, on_reference_r, on_reference_r_dot, on_reference_theta, on_reference_theta_dot, target_r, target_r_dot, target_theta, target_theta_dot = final
     if out is None:

@@ -32,7 +32,6 @@ MODEL = {
         {'symbol': 'k2', 'latex': 'k_2', 'unit': '1/s', 'meaning': 'terminal weight of the radial velocity', 'default': 0.0},
         {'symbol': 'k3', 'latex': 'k_3', 'unit': 'km**2/s**3', 'meaning': 'terminal weight of the angle', 'default': 0.0},
         {'symbol': 'k4', 'latex': 'k_4', 'unit': 'km**2/s', 'meaning': 'terminal weight of the angular velocity', 'default': 0.0},
-        {'symbol': 'c0', 'latex': 'c_0', 'unit': 'km**2/s**4', 'meaning': 'weight of time', 'default': 0.0},
     ),
     'control_set': 'ball',
     'has_cost': True,
@@ -55,7 +54,7 @@ def dynamics(t, x, u, p):
     """Rates of change of the states, f(t, x, u)."""
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     inv_r = 1.0/r
     mu = omega*omega*sigma*sigma*sigma
     return (
@@ -70,7 +69,7 @@ def jacobian_x(t, x, u, p):
     """A = df/dx, row by row."""
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     inv_r = 1.0/r
     mu = omega*omega*sigma*sigma*sigma
     twice_theta_dot = 2.0*theta_dot
@@ -98,7 +97,7 @@ def jacobian_u(t, x, u, p):
     """B = df/du, row by row."""
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     inv_r = 1.0/r
     return (
         0.0,
@@ -114,7 +113,7 @@ def jacobian_u(t, x, u, p):
 
 def reference(t, p):
     """The reference curve c(t)."""
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     return (
         sigma,
         0.0,
@@ -126,7 +125,7 @@ def reference(t, p):
 def invariants(t, x, p):
     """What the motion without control keeps constant."""
     r, r_dot, theta, theta_dot = x
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     inv_r = 1.0/r
     r_sq = r*r
     mu = omega*omega*sigma*sigma*sigma
@@ -139,7 +138,7 @@ def invariants(t, x, p):
 def position(t, x, p):
     """Inertial components of the position vector."""
     r, r_dot, theta, theta_dot = x
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     return (
         r*math.cos(theta),
         r*math.sin(theta),
@@ -150,14 +149,14 @@ def running_cost(t, x, u, p):
     """Integrand L of the cost."""
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
-    return c0 + 0.5*c1*(u1*u1 + u2*u2)
+    sigma, omega, c1, k1, k2, k3, k4 = p
+    return 0.5*c1*(u1*u1 + u2*u2)
 
 
 def terminal_cost(t, x, p):
     """Terminal cost S."""
     r, r_dot, theta, theta_dot = x
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     w = r - sigma
     w_2 = theta - omega*t
     w_3 = theta_dot - omega
@@ -167,7 +166,7 @@ def terminal_cost(t, x, p):
 def terminal_gradient(t, x, p):
     """S_x: the costates at the final time where the final state is free."""
     r, r_dot, theta, theta_dot = x
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     return (
         k1*(r - sigma),
         k2*r_dot,
@@ -181,11 +180,10 @@ def hamiltonian(t, x, u, lam, p):
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     inv_r = 1.0/r
-    half_c1 = 0.5*c1
     mu = omega*omega*sigma*sigma*sigma
-    return c0 + half_c1*u1*u1 + half_c1*u2*u2 + inv_r*lambda_theta_dot*(u2 - 2.0*r_dot*theta_dot) + lambda_r*r_dot + lambda_r_dot*(r*theta_dot*theta_dot + u1 - inv_r*inv_r*mu) + lambda_theta*theta_dot
+    return 0.5*c1*(u1*u1 + u2*u2) + inv_r*lambda_theta_dot*(u2 - 2.0*r_dot*theta_dot) + lambda_r*r_dot + lambda_r_dot*(r*theta_dot*theta_dot + u1 - inv_r*inv_r*mu) + lambda_theta*theta_dot
 
 
 def stationarity(t, x, u, lam, p):
@@ -193,7 +191,7 @@ def stationarity(t, x, u, lam, p):
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     inv_r = 1.0/r
     return (
         c1*u1 + lambda_r_dot,
@@ -206,7 +204,7 @@ def control_hessian(t, x, u, lam, p):
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     return (
         c1,
         0.0,
@@ -219,7 +217,7 @@ def control_law(t, x, lam, p, bounds):
     """The controls that minimise H over the control set."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     (u_max,) = bounds
     inv_c1 = 1.0/c1
     inv_r = 1.0/r
@@ -238,7 +236,7 @@ def costate_rate(t, x, u, lam, p):
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     inv_r = 1.0/r
     twice_theta_dot = 2.0*theta_dot
     mu = omega*omega*sigma*sigma*sigma
@@ -254,7 +252,7 @@ def canonical(t, x, lam, p, bounds):
     """Rates of change of states and costates under the control law."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     (u_max,) = bounds
     inv_r = 1.0/r
     inv_r_sq = inv_r*inv_r
@@ -284,7 +282,7 @@ def canonical_jacobian(t, x, lam, p, bounds):
     """The canonical rates by states and costates, row by row."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     (u_max,) = bounds
     inv_r = 1.0/r
     w = 2.0*inv_r*inv_r*inv_r
@@ -391,7 +389,7 @@ def canonical_drift(t, x, lam, p, bounds):
     """The canonical rates by explicit time."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     (u_max,) = bounds
     return (
         0.0,
@@ -409,7 +407,7 @@ def boundary(t, x, lam, nu, p, bounds, final):
     """Residuals at the final time: for each state (its end or its transversality), each constraint, the time."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     (u_max,) = bounds
     given_r, given_r_dot, given_theta, given_theta_dot, on_reference_r, on_reference_r_dot, on_reference_theta, on_reference_theta_dot, target_r, target_r_dot, target_theta, target_theta_dot = final
     w = r - sigma
@@ -419,24 +417,24 @@ def boundary(t, x, lam, nu, p, bounds, final):
     w_5 = k3*w_4 - lambda_theta
     w_6 = -theta_dot
     w_7 = -omega - w_6
-    lambda_r_dot_sq = lambda_r_dot*lambda_r_dot
     inv_c1 = 1.0/c1
     inv_c1_sq = inv_c1*inv_c1
+    w_8 = inv_c1_sq*lambda_r_dot*lambda_r_dot
     inv_r = 1.0/r
     inv_r_sq = inv_r*inv_r
-    w_8 = inv_r_sq*lambda_theta_dot*lambda_theta_dot
-    w_9 = inv_c1_sq*lambda_r_dot_sq + inv_c1_sq*w_8
-    w_10 = 1.0 if w_9 <= u_max*u_max else u_max/math.sqrt(w_9)
-    w_11 = 0.5*inv_c1*w_10*w_10
-    inv_c1_w_10 = inv_c1*w_10
+    w_9 = inv_c1_sq*inv_r_sq*lambda_theta_dot*lambda_theta_dot
+    w_10 = w_8 + w_9
+    w_11 = 1.0 if w_10 <= u_max*u_max else u_max/math.sqrt(w_10)
+    inv_c1_w_11 = inv_c1*w_11
     inv_r_lambda_theta_dot = inv_r*lambda_theta_dot
+    w_11_sq = w_11*w_11
     mu = omega*omega*sigma*sigma*sigma
     return (
         given_r*(r - target_r) + on_reference_r*w - (k1*w - lambda_r)*(1.0 - given_r - on_reference_r),
         given_r_dot*(r_dot - target_r_dot) + on_reference_r_dot*r_dot - (k2*r_dot - lambda_r_dot)*(1.0 - given_r_dot - on_reference_r_dot),
         given_theta*(-target_theta - w_2) + on_reference_theta*w_4 - w_5*(1.0 - given_theta - on_reference_theta),
         given_theta_dot*(-target_theta_dot - w_6) + on_reference_theta_dot*w_7 - (k4*w_7 - lambda_theta_dot)*(1.0 - given_theta_dot - on_reference_theta_dot),
-        c0 + inv_r_lambda_theta_dot*(-inv_c1_w_10*inv_r_lambda_theta_dot - 2.0*r_dot*theta_dot) + k3*omega*w_3 + lambda_r*r_dot + lambda_r_dot*(r*theta_dot*theta_dot - inv_c1_w_10*lambda_r_dot - inv_r_sq*mu) + lambda_r_dot_sq*w_11 + lambda_theta*theta_dot + omega*on_reference_theta*w_5 + w_11*w_8,
+        0.5*c1*(w_11_sq*w_8 + w_11_sq*w_9) + inv_r_lambda_theta_dot*(-inv_c1_w_11*inv_r_lambda_theta_dot - 2.0*r_dot*theta_dot) + k3*omega*w_3 + lambda_r*r_dot + lambda_r_dot*(r*theta_dot*theta_dot - inv_c1_w_11*lambda_r_dot - inv_r_sq*mu) + lambda_theta*theta_dot + omega*on_reference_theta*w_5,
     )
 
 
@@ -444,7 +442,7 @@ def boundary_jacobian(t, x, lam, nu, p, bounds, final):
     """The boundary residuals by states, costates, multipliers and final time, row by row."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     (u_max,) = bounds
     given_r, given_r_dot, given_theta, given_theta_dot, on_reference_r, on_reference_r_dot, on_reference_theta, on_reference_theta_dot, target_r, target_r_dot, target_theta, target_theta_dot = final
     w = given_r + on_reference_r
@@ -458,34 +456,36 @@ def boundary_jacobian(t, x, lam, nu, p, bounds, final):
     w_7 = given_theta_dot + on_reference_theta_dot
     w_8 = 1.0 - w_7
     inv_r = 1.0/r
+    inv_r_sq = inv_r*inv_r
     inv_c1 = 1.0/c1
     inv_c1_sq = inv_c1*inv_c1
     lambda_r_dot_sq = lambda_r_dot*lambda_r_dot
-    inv_r_sq = inv_r*inv_r
     lambda_theta_dot_sq = lambda_theta_dot*lambda_theta_dot
-    w_9 = inv_r_sq*lambda_theta_dot_sq
-    w_10 = inv_c1_sq*lambda_r_dot_sq + inv_c1_sq*w_9
+    w_9 = inv_c1_sq*lambda_theta_dot_sq
+    w_10 = inv_c1_sq*lambda_r_dot_sq + inv_r_sq*w_9
     w_11 = 1.0 if w_10 <= u_max*u_max else u_max/math.sqrt(w_10)
-    inv_r_cubed = inv_r*inv_r*inv_r
-    w_12 = inv_c1*w_11*w_11
-    w_13 = 0.0 if w_10 <= u_max*u_max else -0.5*u_max/(w_10*math.sqrt(w_10))
-    w_14 = inv_c1*inv_c1*inv_c1*w_13
-    twice_w_14 = 2.0*w_14
-    twice_w_14_w_11 = twice_w_14*w_11
     inv_c1_w_11 = inv_c1*w_11
-    twice_theta_dot = 2.0*theta_dot
     inv_r_lambda_theta_dot = inv_r*lambda_theta_dot
-    w_15 = -inv_c1_w_11*inv_r_lambda_theta_dot - r_dot*twice_theta_dot
-    w_16 = inv_r_sq*lambda_theta_dot
-    twice_inv_r_cubed = 2.0*inv_r_cubed
-    w_17 = lambda_theta_dot_sq*twice_inv_r_cubed*w_14
-    w_18 = inv_r*inv_r*inv_r*inv_r*lambda_theta_dot*lambda_theta_dot*lambda_theta_dot*twice_w_14
+    twice_theta_dot = 2.0*theta_dot
+    w_12 = -inv_c1_w_11*inv_r_lambda_theta_dot - r_dot*twice_theta_dot
+    w_13 = inv_r_sq*lambda_theta_dot
+    w_14 = 0.0 if w_10 <= u_max*u_max else -0.5*u_max/(w_10*math.sqrt(w_10))
+    w_15 = inv_c1*inv_c1*inv_c1*w_14
+    twice_w_15 = 2.0*w_15
+    w_16 = inv_r*inv_r*inv_r*inv_r*lambda_theta_dot*lambda_theta_dot*lambda_theta_dot
     theta_dot_sq = theta_dot*theta_dot
+    inv_r_cubed = inv_r*inv_r*inv_r
+    twice_inv_r_cubed = 2.0*inv_r_cubed
+    w_17 = lambda_theta_dot_sq*twice_inv_r_cubed*w_15
+    w_11_sq = w_11*w_11
+    w_18 = 4.0*inv_c1*inv_c1*inv_c1*inv_c1*w_11*w_14
+    lambda_r_dot_sq_w_18 = lambda_r_dot_sq*w_18
+    half_c1 = 0.5*c1
     omega_sq = omega*omega
     mu = omega_sq*sigma*sigma*sigma
-    lambda_r_dot_w_9 = lambda_r_dot*w_9
-    w_19 = lambda_r_dot_sq*twice_w_14
-    w_16_w_19 = w_16*w_19
+    w_19 = inv_r_sq*lambda_r_dot*lambda_theta_dot_sq
+    w_20 = lambda_r_dot_sq*twice_w_15
+    w_21 = 2.0*inv_c1_sq*w_11_sq
     return (
         w - k1*w_2,
         0.0,
@@ -523,21 +523,21 @@ def boundary_jacobian(t, x, lam, nu, p, bounds, final):
         0.0,
         w_8,
         0.0,
-        inv_r*lambda_theta_dot*(inv_c1_w_11*w_16 + w_18) + lambda_r_dot*(lambda_r_dot*w_17 + mu*twice_inv_r_cubed + theta_dot_sq) - inv_r*inv_r_sq*inv_r_sq*lambda_theta_dot*lambda_theta_dot*lambda_theta_dot*lambda_theta_dot*twice_w_14_w_11 - inv_r_cubed*lambda_theta_dot_sq*w_12 - lambda_r_dot_sq*w_11*w_17 - w_15*w_16,
+        half_c1*(-inv_r*inv_r_sq*inv_r_sq*lambda_theta_dot*lambda_theta_dot*lambda_theta_dot*lambda_theta_dot*w_18 - inv_r_cubed*lambda_r_dot_sq_w_18*lambda_theta_dot_sq - twice_inv_r_cubed*w_11_sq*w_9) + inv_r_lambda_theta_dot*(inv_c1_w_11*w_13 + twice_w_15*w_16) + lambda_r_dot*(lambda_r_dot*w_17 + mu*twice_inv_r_cubed + theta_dot_sq) - w_12*w_13,
         lambda_r - inv_r_lambda_theta_dot*twice_theta_dot,
         k3*omega_on_reference_theta - k3*omega,
         lambda_r_dot*r*twice_theta_dot + lambda_theta - 2.0*inv_r_lambda_theta_dot*r_dot,
         r_dot,
-        lambda_r_dot*lambda_r_dot*lambda_r_dot*twice_w_14_w_11 + lambda_r_dot*w_12 + lambda_r_dot*(-inv_c1_w_11 - w_19) + lambda_r_dot_w_9*twice_w_14_w_11 + r*theta_dot_sq - inv_c1_w_11*lambda_r_dot - inv_r_sq*mu - lambda_r_dot_w_9*twice_w_14,
+        0.5*c1*(lambda_r_dot*lambda_r_dot*lambda_r_dot*w_18 + lambda_r_dot*w_21 + w_18*w_19) + lambda_r_dot*(-inv_c1_w_11 - w_20) + r*theta_dot_sq - inv_c1_w_11*lambda_r_dot - inv_r_sq*mu - twice_w_15*w_19,
         theta_dot - omega_on_reference_theta,
-        inv_r*w_15 + inv_r_lambda_theta_dot*(-inv_c1_w_11*inv_r - w_17) + w_11*w_16_w_19 + w_11*w_18 + w_12*w_16 - w_16_w_19,
+        half_c1*(lambda_r_dot_sq_w_18*w_13 + w_13*w_21 + w_16*w_18) + inv_r*w_12 + inv_r_lambda_theta_dot*(-inv_c1_w_11*inv_r - w_17) - w_13*w_20,
         k3*omega_sq - k3*omega_sq*on_reference_theta,
     )
 
 
 def forward(times, x0, u, u_mid, p, x, x_mid):
     """RK4 over the nodes from x0 at times[0]; returns the integral of the running cost."""
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     r_at, r_dot_at, theta_at, theta_dot_at = x
     r_mid, r_dot_mid, theta_mid, theta_dot_mid = x_mid
     u1_at, u2_at = u
@@ -556,7 +556,7 @@ def forward(times, x0, u, u_mid, p, x, x_mid):
     inv_r = 1.0/r
     slope_r_dot = r*theta_dot*theta_dot + u1 - inv_r*inv_r*mu
     slope_theta_dot = inv_r*(u2 - 2.0*r_dot*theta_dot)
-    slope_total = c0 + half_c1*(u1*u1 + u2*u2)
+    slope_total = half_c1*(u1*u1 + u2*u2)
     total = 0.0
     for i in range(steps):
         t_end = times[i + 1]
@@ -577,7 +577,7 @@ def forward(times, x0, u, u_mid, p, x, x_mid):
         inv_r_2 = 1.0/r_2
         k2_r_dot = r_2*theta_dot_2*theta_dot_2 + u1_half - inv_r_2*inv_r_2*mu
         k2_theta_dot = inv_r_2*(u2_half - 2.0*r_dot_2*theta_dot_2)
-        k2_total = c0 + half_c1*(u1_half*u1_half + u2_half*u2_half)
+        k2_total = half_c1*(u1_half*u1_half + u2_half*u2_half)
         r_3 = half*r_dot_2 + r
         r_dot_3 = half*k2_r_dot + r_dot
         theta_dot_3 = half*k2_theta_dot + theta_dot
@@ -590,7 +590,7 @@ def forward(times, x0, u, u_mid, p, x, x_mid):
         inv_r_4 = 1.0/r_4
         k4_r_dot = r_4*theta_dot_4*theta_dot_4 + u1_end - inv_r_4*inv_r_4*mu
         k4_theta_dot = inv_r_4*(u2_end - 2.0*r_dot_4*theta_dot_4)
-        k4_total = c0 + half_c1*(u1_end*u1_end + u2_end*u2_end)
+        k4_total = half_c1*(u1_end*u1_end + u2_end*u2_end)
         k23_r_dot = k2_r_dot + k3_r_dot
         k123_r_dot = k23_r_dot + slope_r_dot
         k23_theta_dot = k2_theta_dot + k3_theta_dot
@@ -625,7 +625,7 @@ def forward(times, x0, u, u_mid, p, x, x_mid):
 
 def backward(times, lam_f, x, x_mid, u, u_mid, p, lam, lam_mid):
     """RK4 over the nodes, from the costates lam_f at times[-1] back to times[0]."""
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     lambda_r_at, lambda_r_dot_at, lambda_theta_at, lambda_theta_dot_at = lam
     lambda_r_mid, lambda_r_dot_mid, lambda_theta_mid, lambda_theta_dot_mid = lam_mid
     r_at, r_dot_at, theta_at, theta_dot_at = x
@@ -728,7 +728,7 @@ def dynamics_batch(t, x, u, p, out=None):
     """Rates of change of the states, f(t, x, u). Batch form."""
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((4, *shape), np.result_type(float, t, x, u, *p))
@@ -745,7 +745,7 @@ def jacobian_x_batch(t, x, u, p, out=None):
     """A = df/dx, row by row. Batch form."""
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, u, *p))
@@ -775,7 +775,7 @@ def jacobian_u_batch(t, x, u, p, out=None):
     """B = df/du, row by row. Batch form."""
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty((4, 2, *shape), np.result_type(float, t, x, u, *p))
@@ -793,7 +793,7 @@ def jacobian_u_batch(t, x, u, p, out=None):
 
 def reference_batch(t, p, out=None):
     """The reference curve c(t). Batch form."""
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t))
         out = np.empty((4, *shape), np.result_type(float, t, *p))
@@ -807,7 +807,7 @@ def reference_batch(t, p, out=None):
 def invariants_batch(t, x, p, out=None):
     """What the motion without control keeps constant. Batch form."""
     r, r_dot, theta, theta_dot = x
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
         out = np.empty((2, *shape), np.result_type(float, t, x, *p))
@@ -822,7 +822,7 @@ def invariants_batch(t, x, p, out=None):
 def position_batch(t, x, p, out=None):
     """Inertial components of the position vector. Batch form."""
     r, r_dot, theta, theta_dot = x
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
         out = np.empty((2, *shape), np.result_type(float, t, x, *p))
@@ -835,18 +835,18 @@ def running_cost_batch(t, x, u, p, out=None):
     """Integrand L of the cost. Batch form."""
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
         out = np.empty(shape, np.result_type(float, t, x, u, *p))
-    out[...] = c0 + 0.5*c1*(u1*u1 + u2*u2)
+    out[...] = 0.5*c1*(u1*u1 + u2*u2)
     return out
 
 
 def terminal_cost_batch(t, x, p, out=None):
     """Terminal cost S. Batch form."""
     r, r_dot, theta, theta_dot = x
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
         out = np.empty(shape, np.result_type(float, t, x, *p))
@@ -860,7 +860,7 @@ def terminal_cost_batch(t, x, p, out=None):
 def terminal_gradient_batch(t, x, p, out=None):
     """S_x: the costates at the final time where the final state is free. Batch form."""
     r, r_dot, theta, theta_dot = x
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
         out = np.empty((4, *shape), np.result_type(float, t, x, *p))
@@ -876,14 +876,13 @@ def hamiltonian_batch(t, x, u, lam, p, out=None):
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
         out = np.empty(shape, np.result_type(float, t, x, u, lam, *p))
     inv_r = 1.0/r
-    half_c1 = 0.5*c1
     mu = omega*omega*sigma*sigma*sigma
-    out[...] = c0 + half_c1*u1*u1 + half_c1*u2*u2 + inv_r*lambda_theta_dot*(u2 - 2.0*r_dot*theta_dot) + lambda_r*r_dot + lambda_r_dot*(r*theta_dot*theta_dot + u1 - inv_r*inv_r*mu) + lambda_theta*theta_dot
+    out[...] = 0.5*c1*(u1*u1 + u2*u2) + inv_r*lambda_theta_dot*(u2 - 2.0*r_dot*theta_dot) + lambda_r*r_dot + lambda_r_dot*(r*theta_dot*theta_dot + u1 - inv_r*inv_r*mu) + lambda_theta*theta_dot
     return out
 
 
@@ -892,7 +891,7 @@ def stationarity_batch(t, x, u, lam, p, out=None):
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
         out = np.empty((2, *shape), np.result_type(float, t, x, u, lam, *p))
@@ -907,7 +906,7 @@ def control_hessian_batch(t, x, u, lam, p, out=None):
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
         out = np.empty((2, 2, *shape), np.result_type(float, t, x, u, lam, *p))
@@ -922,7 +921,7 @@ def control_law_batch(t, x, lam, p, bounds, out=None):
     """The controls that minimise H over the control set. Batch form."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     (u_max,) = bounds
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
@@ -943,7 +942,7 @@ def costate_rate_batch(t, x, u, lam, p, out=None):
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
         out = np.empty((4, *shape), np.result_type(float, t, x, u, lam, *p))
@@ -961,7 +960,7 @@ def canonical_batch(t, x, lam, p, bounds, out=None):
     """Rates of change of states and costates under the control law. Batch form."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     (u_max,) = bounds
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
@@ -993,7 +992,7 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     """The canonical rates by states and costates, row by row. Batch form."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     (u_max,) = bounds
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
@@ -1102,7 +1101,7 @@ def canonical_drift_batch(t, x, lam, p, bounds, out=None):
     """The canonical rates by explicit time. Batch form."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     (u_max,) = bounds
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
@@ -1122,7 +1121,7 @@ def boundary_batch(t, x, lam, nu, p, bounds, final, out=None):
     """Residuals at the final time: for each state (its end or its transversality), each constraint, the time. Batch form."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     (u_max,) = bounds
     given_r, given_r_dot, given_theta, given_theta_dot, on_reference_r, on_reference_r_dot, on_reference_theta, on_reference_theta_dot, target_r, target_r_dot, target_theta, target_theta_dot = final
     if out is None:
@@ -1135,23 +1134,23 @@ def boundary_batch(t, x, lam, nu, p, bounds, final, out=None):
     w_5 = k3*w_4 - lambda_theta
     w_6 = -theta_dot
     w_7 = -omega - w_6
-    lambda_r_dot_sq = lambda_r_dot*lambda_r_dot
     inv_c1 = 1.0/c1
     inv_c1_sq = inv_c1*inv_c1
+    w_8 = inv_c1_sq*lambda_r_dot*lambda_r_dot
     inv_r = 1.0/r
     inv_r_sq = inv_r*inv_r
-    w_8 = inv_r_sq*lambda_theta_dot*lambda_theta_dot
-    w_9 = inv_c1_sq*lambda_r_dot_sq + inv_c1_sq*w_8
-    w_10 = np.minimum(1.0, u_max/np.sqrt(np.maximum(w_9, 1e-300)))
-    w_11 = 0.5*inv_c1*w_10*w_10
-    inv_c1_w_10 = inv_c1*w_10
+    w_9 = inv_c1_sq*inv_r_sq*lambda_theta_dot*lambda_theta_dot
+    w_10 = w_8 + w_9
+    w_11 = np.minimum(1.0, u_max/np.sqrt(np.maximum(w_10, 1e-300)))
+    inv_c1_w_11 = inv_c1*w_11
     inv_r_lambda_theta_dot = inv_r*lambda_theta_dot
+    w_11_sq = w_11*w_11
     mu = omega*omega*sigma*sigma*sigma
     out[0] = given_r*(r - target_r) + on_reference_r*w - (k1*w - lambda_r)*(1.0 - given_r - on_reference_r)
     out[1] = given_r_dot*(r_dot - target_r_dot) + on_reference_r_dot*r_dot - (k2*r_dot - lambda_r_dot)*(1.0 - given_r_dot - on_reference_r_dot)
     out[2] = given_theta*(-target_theta - w_2) + on_reference_theta*w_4 - w_5*(1.0 - given_theta - on_reference_theta)
     out[3] = given_theta_dot*(-target_theta_dot - w_6) + on_reference_theta_dot*w_7 - (k4*w_7 - lambda_theta_dot)*(1.0 - given_theta_dot - on_reference_theta_dot)
-    out[4] = c0 + inv_r_lambda_theta_dot*(-inv_c1_w_10*inv_r_lambda_theta_dot - 2.0*r_dot*theta_dot) + k3*omega*w_3 + lambda_r*r_dot + lambda_r_dot*(r*theta_dot*theta_dot - inv_c1_w_10*lambda_r_dot - inv_r_sq*mu) + lambda_r_dot_sq*w_11 + lambda_theta*theta_dot + omega*on_reference_theta*w_5 + w_11*w_8
+    out[4] = 0.5*c1*(w_11_sq*w_8 + w_11_sq*w_9) + inv_r_lambda_theta_dot*(-inv_c1_w_11*inv_r_lambda_theta_dot - 2.0*r_dot*theta_dot) + k3*omega*w_3 + lambda_r*r_dot + lambda_r_dot*(r*theta_dot*theta_dot - inv_c1_w_11*lambda_r_dot - inv_r_sq*mu) + lambda_theta*theta_dot + omega*on_reference_theta*w_5
     return out
 
 
@@ -1159,7 +1158,7 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     """The boundary residuals by states, costates, multipliers and final time, row by row. Batch form."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
-    sigma, omega, c1, k1, k2, k3, k4, c0 = p
+    sigma, omega, c1, k1, k2, k3, k4 = p
     (u_max,) = bounds
     given_r, given_r_dot, given_theta, given_theta_dot, on_reference_r, on_reference_r_dot, on_reference_theta, on_reference_theta_dot, target_r, target_r_dot, target_theta, target_theta_dot = final
     if out is None:
@@ -1176,34 +1175,36 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     w_7 = given_theta_dot + on_reference_theta_dot
     w_8 = 1.0 - w_7
     inv_r = 1.0/r
+    inv_r_sq = inv_r*inv_r
     inv_c1 = 1.0/c1
     inv_c1_sq = inv_c1*inv_c1
     lambda_r_dot_sq = lambda_r_dot*lambda_r_dot
-    inv_r_sq = inv_r*inv_r
     lambda_theta_dot_sq = lambda_theta_dot*lambda_theta_dot
-    w_9 = inv_r_sq*lambda_theta_dot_sq
-    w_10 = inv_c1_sq*lambda_r_dot_sq + inv_c1_sq*w_9
+    w_9 = inv_c1_sq*lambda_theta_dot_sq
+    w_10 = inv_c1_sq*lambda_r_dot_sq + inv_r_sq*w_9
     w_11 = np.minimum(1.0, u_max/np.sqrt(np.maximum(w_10, 1e-300)))
-    inv_r_cubed = inv_r*inv_r*inv_r
-    w_12 = inv_c1*w_11*w_11
-    w_13 = -0.5*np.heaviside(w_10 - u_max*u_max, 0.0)*np.minimum(u_max, 1e100)/np.maximum(w_10*np.sqrt(w_10), 1e-100)
-    w_14 = inv_c1*inv_c1*inv_c1*w_13
-    twice_w_14 = 2.0*w_14
-    twice_w_14_w_11 = twice_w_14*w_11
     inv_c1_w_11 = inv_c1*w_11
-    twice_theta_dot = 2.0*theta_dot
     inv_r_lambda_theta_dot = inv_r*lambda_theta_dot
-    w_15 = -inv_c1_w_11*inv_r_lambda_theta_dot - r_dot*twice_theta_dot
-    w_16 = inv_r_sq*lambda_theta_dot
-    twice_inv_r_cubed = 2.0*inv_r_cubed
-    w_17 = lambda_theta_dot_sq*twice_inv_r_cubed*w_14
-    w_18 = inv_r*inv_r*inv_r*inv_r*lambda_theta_dot*lambda_theta_dot*lambda_theta_dot*twice_w_14
+    twice_theta_dot = 2.0*theta_dot
+    w_12 = -inv_c1_w_11*inv_r_lambda_theta_dot - r_dot*twice_theta_dot
+    w_13 = inv_r_sq*lambda_theta_dot
+    w_14 = -0.5*np.heaviside(w_10 - u_max*u_max, 0.0)*np.minimum(u_max, 1e100)/np.maximum(w_10*np.sqrt(w_10), 1e-100)
+    w_15 = inv_c1*inv_c1*inv_c1*w_14
+    twice_w_15 = 2.0*w_15
+    w_16 = inv_r*inv_r*inv_r*inv_r*lambda_theta_dot*lambda_theta_dot*lambda_theta_dot
     theta_dot_sq = theta_dot*theta_dot
+    inv_r_cubed = inv_r*inv_r*inv_r
+    twice_inv_r_cubed = 2.0*inv_r_cubed
+    w_17 = lambda_theta_dot_sq*twice_inv_r_cubed*w_15
+    w_11_sq = w_11*w_11
+    w_18 = 4.0*inv_c1*inv_c1*inv_c1*inv_c1*w_11*w_14
+    lambda_r_dot_sq_w_18 = lambda_r_dot_sq*w_18
+    half_c1 = 0.5*c1
     omega_sq = omega*omega
     mu = omega_sq*sigma*sigma*sigma
-    lambda_r_dot_w_9 = lambda_r_dot*w_9
-    w_19 = lambda_r_dot_sq*twice_w_14
-    w_16_w_19 = w_16*w_19
+    w_19 = inv_r_sq*lambda_r_dot*lambda_theta_dot_sq
+    w_20 = lambda_r_dot_sq*twice_w_15
+    w_21 = 2.0*inv_c1_sq*w_11_sq
     out[0, 0] = w - k1*w_2
     out[0, 1] = 0.0
     out[0, 2] = 0.0
@@ -1240,13 +1241,13 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     out[3, 6] = 0.0
     out[3, 7] = w_8
     out[3, 8] = 0.0
-    out[4, 0] = inv_r*lambda_theta_dot*(inv_c1_w_11*w_16 + w_18) + lambda_r_dot*(lambda_r_dot*w_17 + mu*twice_inv_r_cubed + theta_dot_sq) - inv_r*inv_r_sq*inv_r_sq*lambda_theta_dot*lambda_theta_dot*lambda_theta_dot*lambda_theta_dot*twice_w_14_w_11 - inv_r_cubed*lambda_theta_dot_sq*w_12 - lambda_r_dot_sq*w_11*w_17 - w_15*w_16
+    out[4, 0] = half_c1*(-inv_r*inv_r_sq*inv_r_sq*lambda_theta_dot*lambda_theta_dot*lambda_theta_dot*lambda_theta_dot*w_18 - inv_r_cubed*lambda_r_dot_sq_w_18*lambda_theta_dot_sq - twice_inv_r_cubed*w_11_sq*w_9) + inv_r_lambda_theta_dot*(inv_c1_w_11*w_13 + twice_w_15*w_16) + lambda_r_dot*(lambda_r_dot*w_17 + mu*twice_inv_r_cubed + theta_dot_sq) - w_12*w_13
     out[4, 1] = lambda_r - inv_r_lambda_theta_dot*twice_theta_dot
     out[4, 2] = k3*omega_on_reference_theta - k3*omega
     out[4, 3] = lambda_r_dot*r*twice_theta_dot + lambda_theta - 2.0*inv_r_lambda_theta_dot*r_dot
     out[4, 4] = r_dot
-    out[4, 5] = lambda_r_dot*lambda_r_dot*lambda_r_dot*twice_w_14_w_11 + lambda_r_dot*w_12 + lambda_r_dot*(-inv_c1_w_11 - w_19) + lambda_r_dot_w_9*twice_w_14_w_11 + r*theta_dot_sq - inv_c1_w_11*lambda_r_dot - inv_r_sq*mu - lambda_r_dot_w_9*twice_w_14
+    out[4, 5] = 0.5*c1*(lambda_r_dot*lambda_r_dot*lambda_r_dot*w_18 + lambda_r_dot*w_21 + w_18*w_19) + lambda_r_dot*(-inv_c1_w_11 - w_20) + r*theta_dot_sq - inv_c1_w_11*lambda_r_dot - inv_r_sq*mu - twice_w_15*w_19
     out[4, 6] = theta_dot - omega_on_reference_theta
-    out[4, 7] = inv_r*w_15 + inv_r_lambda_theta_dot*(-inv_c1_w_11*inv_r - w_17) + w_11*w_16_w_19 + w_11*w_18 + w_12*w_16 - w_16_w_19
+    out[4, 7] = half_c1*(lambda_r_dot_sq_w_18*w_13 + w_13*w_21 + w_16*w_18) + inv_r*w_12 + inv_r_lambda_theta_dot*(-inv_c1_w_11*inv_r - w_17) - w_13*w_20
     out[4, 8] = k3*omega_sq - k3*omega_sq*on_reference_theta
     return out

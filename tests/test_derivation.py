@@ -29,7 +29,7 @@ from satsym.symbolic import (
     t,
 )
 
-POLAR, BALL = loader.load(Path(__file__).resolve().parent.parent / "derivations" / "polar_orbit.py")
+POLAR, *_ = loader.load(Path(__file__).resolve().parent.parent / "derivations" / "polar_orbit.py")
 NUMERIC = [
     {
         "Clip": lambda value, lower, upper: np.clip(value, lower, upper),
@@ -447,7 +447,7 @@ def hamiltonian_by_hand(name: str, p: dict[str, Any]) -> Any:
             "theta": p["theta_dot"],
             "theta_dot": (p["u2"] - 2 * p["r_dot"] * p["theta_dot"]) / p["r"],
         }
-        cost = p["c0"] + (p["c1"] * p["u1"] ** 2 + p["c2"] * p["u2"] ** 2) / 2
+        cost = (p["c1"] * p["u1"] ** 2 + p["c2"] * p["u2"] ** 2) / 2
     elif name == "van_der_pol":
         speed = p["k"] * (1 - p["q1"] ** 2) * p["v1"] - p["q1"] + p["u1"] * (2 + np.cos(p["t"]))
         rates = {"q1": p["v1"], "v1": speed}

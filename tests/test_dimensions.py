@@ -32,7 +32,7 @@ from satsym.symbolic import (
 from satsym.symbolic.checks import numeric
 from satsym.symbolic.control_sets import Clip, Shorten
 
-POLAR, BALL = loader.load(Path(__file__).resolve().parent.parent / "derivations" / "polar_orbit.py")
+POLAR, *_ = loader.load(Path(__file__).resolve().parent.parent / "derivations" / "polar_orbit.py")
 BY_NAME = {v.symbol: v for v in (*POLAR.model.states, *POLAR.model.controls, *POLAR.model.parameters)}
 
 
@@ -194,7 +194,7 @@ sigma, omega, c1, c2, k1, *_ = symbols_of(POLAR.model.parameters)
             unit("c1", "km"),
             (
                 "the running cost puts",
-                "c0 of dimension [length]^2/[time]^4",
+                "c2*u2**2/2 of dimension [length]^2/[time]^4",
                 "c1*u1**2/2 of dimension [length]^3/[time]^4",
             ),
         ),

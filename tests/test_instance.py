@@ -72,7 +72,7 @@ def test_the_example_of_the_manual_arrives_as_written(load: Callable[[str], Inst
     case = load(EXAMPLE)
     assert (case.name, case.title) == ("case", "Return to the reference orbit")
     assert case.model.spec.name == "polar_orbit"
-    assert case.parameters == (1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    assert case.parameters == (1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0)
     assert case.initial == (1.1, 0.0, 0.0, 0.9)
     assert case.final == {"r": 1.0, "r_dot": 0.0, "theta": "reference", "theta_dot": 1.0}
     assert (case.t0, case.tf, case.tf_guess) == (0.0, 2 * math.pi, None)
@@ -212,7 +212,7 @@ def test_every_shipped_instance_loads_and_has_a_title() -> None:
 )
 def test_the_thesis_is_as_printed(name: str, weights: tuple[float, float]) -> None:
     case = instance.load(name)
-    assert case.parameters == (1.0, 1.0, *weights, 0.0, 0.0, 0.0, 0.0, 0.0)
+    assert case.parameters == (1.0, 1.0, *weights, 0.0, 0.0, 0.0, 0.0)
     assert (case.initial, case.final) == ((1.0, 1.0, 1.0, 1.0), {})
     assert (case.t0, case.tf, case.bounds) == (0.0, 60.0, (0.0, 0.0, 1.0, 1.0))
 

@@ -45,7 +45,7 @@ def refuse(folder: Path, text: str | bytes, trap: Trap) -> str:
     return message
 
 
-FIRST = "    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p\n"  # ends the unpacking in the first function
+FIRST = "    sigma, omega, c1, c2, k1, k2, k3, k4 = p\n"  # ends the unpacking in the first function
 STEP = "        h = t_end - t\n"  # a statement of a loop
 STORE, STORE_MID, START = "    r_at[i] = ", "    r_mid[i] = ", "    r_at[0] = "
 DEF = "def dynamics(t, x, u, p):\n"
@@ -132,8 +132,8 @@ ATTACKS = {
     "a starred target": ("r, r_dot, theta, theta_dot = x\n", "r, *theta = x\n"),
     "too few targets": ("r, r_dot, theta, theta_dot = x\n", "r, r_dot, theta = x\n"),
     "a nested target": ("r, r_dot, theta, theta_dot = x\n", "r, r_dot, theta, (a, b) = x\n"),
-    "no result": ("    return c0 + 0.5*c1*u1*u1 + 0.5*c2*u2*u2\n", "    w = 1.0\n"),
-    "a result of another shape": ("    return c0 + 0.5*c1*u1*u1 + 0.5*c2*u2*u2\n", "    return (r, r)\n"),
+    "no result": ("    return 0.5*c1*u1*u1 + 0.5*c2*u2*u2\n", "    w = 1.0\n"),
+    "a result of another shape": ("    return 0.5*c1*u1*u1 + 0.5*c2*u2*u2\n", "    return (r, r)\n"),
     "a loop in a pointwise function": (FIRST, FIRST + "    for i in range(9):\n        new = r\n"),
     # names
     "math as a name": (FIRST, FIRST + "    math = 1.0\n"),
@@ -301,7 +301,7 @@ def test_files_that_are_no_module_at_all_are_refused(data: bytes, tmp_path: Path
 def test_code_behind_a_false_encoding_stays_a_comment(legal: str, tmp_path: Path, trap: Trap):
     hidden = "".join(f"+{'AAo'}-{trap.code}")
     (tmp_path / "sly.py").write_text(f"# coding: utf-7\n#{hidden}\n{legal}", encoding="utf-8")
-    load("./sly", tmp_path).dynamics(0.0, (1.0, 0.0, 0.0, 1.0), (0.0, 0.0), (1.0,) * 9)
+    load("./sly", tmp_path).dynamics(0.0, (1.0, 0.0, 0.0, 1.0), (0.0, 0.0), (1.0,) * 8)
     assert not trap.file.exists()
 
 

@@ -77,9 +77,7 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     return _solution(instance, best, tuple(history), time.perf_counter() - began)
 
 
-def _extremal(
-    instance: Instance, limits: Limits, report: Callable[[float, float], None], effort: bool
-) -> Extremal:
+def _extremal(instance: Instance, limits: Limits, report: Callable[[float, float], None], effort: bool) -> Extremal:
     if instance.tf is not None:
         problem = two_point(instance, instance.tf - instance.t0)
         start, way = cold_start(problem, limits), ""

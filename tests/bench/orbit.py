@@ -11,8 +11,8 @@ Array = NDArray[np.float64]
 
 START = (1.1, 0.02, -0.1, 0.9)
 COSTATE = (0.1, -0.2, 0.3, 0.4)
-PARAMETERS = (1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-"""sigma, omega, c1, c2, the terminal weights k1 ... k4 and the weight of time c0."""
+PARAMETERS = (1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0)
+"""sigma, omega, c1, c2 and the terminal weights k1 ... k4."""
 T_FINAL = 6.0
 
 
