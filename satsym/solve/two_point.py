@@ -102,17 +102,17 @@ def _accurate(
     refined = refine(free, start.found.curve, tolerance)
     report(_cost(free, refined), refined.error)
     steps = start.steps + refined.iterations
-    bounded = tighten(problem, refined.curve, STAGES)
+    bounded = tighten(problem, refined.curve, STAGES, limits)
     if bounded.iterations:
         steps += bounded.iterations
         if not bounded.converged:
-            return Extremal(problem, refined, Status.NOT_CONVERGED, _stuck(problem, bounded), steps)
+            return _unfinished(problem, refined, _stuck(problem, bounded), steps, limits)
         refined = refine(problem, bounded.curve, tolerance, keep_nodes=True)
         steps += refined.iterations
         report(_cost(problem, refined), refined.error)
     if not refined.converged:
         message = f"the estimated error stays at {refined.error:.0e} on {len(refined.curve.mesh) - 1} intervals"
-        return Extremal(problem, refined, Status.NOT_CONVERGED, message, steps)
+        return _unfinished(problem, refined, message, steps, limits)
     where = f"{len(refined.curve.mesh) - 1} intervals, from the {start.way}{way}"
     message = f"estimated error {refined.error:.0e} on {where}"
     return Extremal(problem, refined, Status.CONVERGED, message, steps)
@@ -120,9 +120,13 @@ def _accurate(
 
 def _nowhere(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
     refined = Refined(start.found.curve, float("inf"), False, 0)
+    return _unfinished(problem, refined, f"no extremal found: {start.found.reason}", start.steps, limits)
+
+
+def _unfinished(problem: TwoPoint, refined: Refined, message: str, steps: int, limits: Limits) -> Extremal:
     if limits.expired:
-        return Extremal(problem, refined, Status.TIME_LIMIT, "time was up before an extremal was found", start.steps)
-    return Extremal(problem, refined, Status.NOT_CONVERGED, f"no extremal found: {start.found.reason}", start.steps)
+        return Extremal(problem, refined, Status.TIME_LIMIT, f"time was up: {message}", steps)
+    return Extremal(problem, refined, Status.NOT_CONVERGED, message, steps)
 
 
 def _stuck(problem: TwoPoint, bounded: Bounded) -> str:

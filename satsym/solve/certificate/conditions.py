@@ -12,6 +12,9 @@ from satsym.solve.certificate.flow import Flow
 
 Array = NDArray[np.floating[Any]]
 
+NEGLIGIBLE = 1e-3
+"""A costate this much smaller than the others, all weighed by their states, is compared at that size."""
+
 RESOLVED = 1e-9
 """Smallest singular value, relative to the largest, of a field whose determinant has a sign that can be trusted."""
 
@@ -34,7 +37,9 @@ def boundary_residual(solution: Solution, flow: Flow) -> float:
     fixed = np.array(final[:n]) + np.array(final[n : 2 * n]) > 0.0
     state, costate = np.abs(flow.x).max(axis=1), np.abs(flow.lam).max(axis=1)
     typical = max(float(costate @ state), np.finfo(float).tiny)
-    rows = np.where(fixed, np.maximum(state, 1e-300), np.maximum(costate, typical / np.maximum(state, 1e-300) * 1e-3))
+    rows = np.where(
+        fixed, np.maximum(state, 1e-300), np.maximum(costate, NEGLIGIBLE * typical / np.maximum(state, 1e-300))
+    )
     found = np.abs(residual[:n]) / rows
     parts = [*found, *np.abs(residual[n:-1])]
     if instance.tf is None:
@@ -70,16 +75,20 @@ def final_argument(solution: Solution) -> tuple[float, ...]:
 def dynamics_defect(solution: Solution, flow: Flow) -> float:
     """Largest distance of the solver's states and costates from the flow, relative to the size of each.
 
-    Compared at those nodes of the solver that are stations, and at the ends.
+    A row that is small throughout beside what the others make of its size counts at that size: costates by the
+    largest product of state and costate. Compared at those nodes of the solver that are stations, and at the ends.
     """
     here = np.searchsorted(solution.times, flow.times)
     here = np.clip(here, 0, len(solution.times) - 1)
     same = np.abs(solution.times[here] - flow.times) <= 1e-12 * max(abs(float(flow.times[-1])), 1e-300)
-    parts = []
-    for mine, theirs in ((flow.x, solution.x), (flow.lam, solution.lam)):
-        size = np.abs(mine).max(axis=1)
-        size = np.where(size > 0.0, size, max(float(size.max()), 1.0))
-        parts.append((np.abs(mine[:, same] - theirs[:, here[same]]).max(axis=1) / size).max())
+    state, costate = np.abs(flow.x).max(axis=1), np.abs(flow.lam).max(axis=1)
+    state = np.where(state > 0.0, state, max(float(state.max()), 1.0))
+    typical = float((state * costate).max()) or 1.0
+    costate = np.maximum(costate, NEGLIGIBLE * typical / state)
+    parts = [
+        (np.abs(mine[:, same] - theirs[:, here[same]]).max(axis=1) / size).max()
+        for mine, theirs, size in ((flow.x, solution.x, state), (flow.lam, solution.lam, costate))
+    ]
     return float(max(parts))
 
 

@@ -18,6 +18,7 @@ from satsym.solve.collocation.curve import Curve, stage_times
 from satsym.solve.collocation.newton import newton
 from satsym.solve.collocation.problem import TwoPoint
 from satsym.solve.collocation.system import System
+from satsym.solve.iteration import Limits
 from satsym.solve.kinks import zero
 
 Array = NDArray[np.floating[Any]]
@@ -68,7 +69,7 @@ class Bounded:
     iterations: int
 
 
-def tighten(problem: TwoPoint, free: Curve, order: int) -> Bounded:
+def tighten(problem: TwoPoint, free: Curve, order: int, limits: Limits) -> Bounded:
     """From the extremal without bounds to the one with them.
 
     Parameters
@@ -79,6 +80,8 @@ def tighten(problem: TwoPoint, free: Curve, order: int) -> Bounded:
         An extremal of the same problem without them.
     order
         Stages.
+    limits
+        When to stop.
     """
     worst = _violation(problem, free)
     if worst <= 0.0:
@@ -93,7 +96,7 @@ def tighten(problem: TwoPoint, free: Curve, order: int) -> Bounded:
         outcome = newton(System(step, mesh, order), curve.on(mesh, order), tolerance=1e-6, most=15)
         if outcome is None or not outcome.converged:
             move /= 2.0
-            if move < SHORTEST * worst:
+            if move < SHORTEST * worst or limits.expired:
                 return Bounded(curve, kinks(problem, curve), 1.0 - width / worst, False, total)
             continue
         total += outcome.iterations

@@ -46,6 +46,9 @@ MOST_INTERVALS = 300
 FAR_DEARER, RISES = 3.0, 3
 """No longer durations are tried either once the cost has risen that many times running, and so far."""
 
+FAILURES = 3
+"""Nor once that many durations running have given no extremal, after one that has."""
+
 POLISHED = 3
 """Brackets, the cheapest first, in which a minimum is looked for."""
 
@@ -87,23 +90,15 @@ class Try:
 
 
 def free_duration(instance: Instance, limits: Limits, effort: bool = True) -> Chosen:
-    """Find the duration that costs least, for an instance whose final time is free.
-
-    Parameters
-    ----------
-    instance
-        Its bounds are ignored.
-    limits
-        When to stop.
-    effort
-        Whether to try harder where the straight line leads nowhere at all durations.
-    """
+    """Find the duration that costs least, without bounds; with effort, also where the straight line leads nowhere."""
     search = _Search(instance, limits)
     search.scan()
     if effort and not search.tries:
         search.thorough()
         search.scan()
     tries = search.tries
+    if not tries and limits.expired:
+        return search.none(Status.TIME_LIMIT, "time was up before any duration was solved for")
     if not tries:
         return search.none(Status.NOT_CONVERGED, "no extremal found at any duration that was tried")
     if flat := search.nothing_decides():
@@ -151,7 +146,7 @@ class _Search:
         self.first = time_scale(instance) if guess is None else guess - instance.t0
         self.powers = AROUND_SCALE if guess is None else AROUND_GUESS
         self.tries: list[Try] = []
-        self.quick = True
+        self.quick, self.failures = True, 0
         self.steps, self.duration = 0, self.first
         self.last: Curve | None = None
         self.unit = self.problem(self.first).scale.cost
@@ -245,7 +240,9 @@ class _Search:
         return Found(outcome.curve, "minimum", cost, outcome.iterations, near.start.found.hard) if minimum else None
 
     def _solve(self, duration: float) -> None:
-        if found := self._tried(duration, self.quick):
+        found = self._tried(duration, self.quick)
+        self.failures = 0 if found else self.failures + 1
+        if found:
             self.tries = sorted([*self.tries, found], key=lambda t: t.duration)
 
     def _tried(self, duration: float, quick: bool) -> Try | None:
@@ -271,7 +268,7 @@ class _Search:
         if not self.tries:
             return power <= high
         last, costs = self.tries[-1], [t.cost for t in self.tries]
-        if len(last.start.found.curve.mesh) > MOST_INTERVALS:
+        if self.failures >= FAILURES or len(last.start.found.curve.mesh) > MOST_INTERVALS:
             return False
         rising = len(costs) > RISES and all(a < b for a, b in pairwise(costs[-RISES - 1 :]))
         if rising and last.cost > FAR_DEARER * min(costs):
