@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
@@ -30,10 +31,21 @@ class Method(Protocol[State]):
 
 @dataclass(frozen=True)
 class Limits:
-    """When to give up."""
+    """When to give up, and who watches until then.
+
+    Attributes
+    ----------
+    iterations
+        Of the method.
+    deadline
+        On the clock of ``time.perf_counter``.
+    watch
+        Told cost and residual after inner steps, for a solver whose phases take long.
+    """
 
     iterations: int
     deadline: float
+    watch: Callable[[float, float], None] | None = None
 
     @property
     def expired(self) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import count
 
 import numpy as np
 
@@ -54,7 +55,7 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     instance
         With final states given, on the reference or free, and a final time that is given or free.
     progress
-        Called after each phase.
+        Called after each step of the minimisation, and each phase.
 
     Returns
     -------
@@ -62,13 +63,18 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         With status ``converged`` when the estimated error is within the instance's tolerance.
     """
     began = time.perf_counter()
-    limits = Limits(instance.solver.max_iterations or 500, began + instance.solver.max_seconds)
     history: list[Iteration] = []
+    inner = count()
+
+    def watch(objective: float, residual: float) -> None:
+        if progress:
+            progress(Iteration(next(inner), objective, residual))
+
+    limits = Limits(instance.solver.max_iterations or 500, began + instance.solver.max_seconds, watch)
 
     def report(objective: float, residual: float) -> None:
         history.append(Iteration(len(history), objective, residual))
-        if progress:
-            progress(history[-1])
+        watch(objective, residual)
 
     with np.errstate(all="ignore"):
         best = revolutions.cheapest(

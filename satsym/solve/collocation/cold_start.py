@@ -127,7 +127,7 @@ def from_path(problem: TwoPoint, path: Callable[[Array], Array], limits: Limits,
     steps, hard, stage = 0, False, 0
     while True:
         system = System(problem, curve.mesh, STAGES)
-        found = minimise(system, curve, TOLERANCES[stage], max(most - steps, 1), COARSE * meshes.TURN)
+        found = minimise(system, curve, limits, TOLERANCES[stage], max(most - steps, 1), COARSE * meshes.TURN)
         steps, hard = steps + found.iterations, hard or found.hard
         found = replace(found, iterations=steps, hard=hard)
         extremal = found.reason in ("minimum", "saddle")
@@ -161,7 +161,7 @@ def along_problems(problem: TwoPoint, limits: Limits) -> Found | None:
         system = System(moved, curve.mesh, STAGES)
         last = there == 1.0
         found = minimise(
-            system, guess, 1e-7 if last else 1e-3, (6 if move > 0.03 else 14) + 4 * last, COARSE * meshes.TURN
+            system, guess, limits, 1e-7 if last else 1e-3, (6 if move > 0.03 else 14) + 4 * last, COARSE * meshes.TURN
         )
         steps += max(found.iterations, 1)
         if found.reason == OUTGROWN:

@@ -101,6 +101,8 @@ def tighten(problem: TwoPoint, free: Curve, order: int, limits: Limits) -> Bound
             continue
         total += outcome.iterations
         curve, width = outcome.curve, narrower
+        if limits.watch:
+            limits.watch(System(step, mesh, order).cost(curve) * step.scale.cost, width / worst)
         move *= FASTER if outcome.iterations <= QUICK else 1.0
     return _settled(problem, curve, order, count, total)
 

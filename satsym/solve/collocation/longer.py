@@ -73,7 +73,7 @@ def _descended(problem: TwoPoint, curve: Curve, stages: int, tolerance: float, l
     steps = 0
     for _ in range(ROUNDS):
         curve = curve.on(meshes.laid(problem, curve), stages)
-        found = minimise(System(problem, curve.mesh, stages), curve, tolerance, STEPS, COARSE * meshes.TURN)
+        found = minimise(System(problem, curve.mesh, stages), curve, limits, tolerance, STEPS, COARSE * meshes.TURN)
         steps, curve = steps + found.iterations, found.curve
         if limits.expired or not found.reason.startswith((OUTGROWN, "no convergence")):
             break

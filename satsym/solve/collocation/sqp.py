@@ -20,6 +20,7 @@ from satsym.solve.collocation.curve import Curve, Step
 from satsym.solve.collocation.newton import within_domain
 from satsym.solve.collocation.second_variation import negative_directions
 from satsym.solve.collocation.system import Linearised, Residual, System
+from satsym.solve.iteration import Limits
 
 Array = NDArray[np.floating[Any]]
 
@@ -72,7 +73,12 @@ class Found:
 
 
 def minimise(
-    system: System, start: Curve, tolerance: float = 1e-7, most: int = 80, coarsest: float = float("inf")
+    system: System,
+    start: Curve,
+    limits: Limits,
+    tolerance: float = 1e-7,
+    most: int = 80,
+    coarsest: float = float("inf"),
 ) -> Found:
     """Minimise the cost from a curve without costates, over all curves that solve the problem.
 
@@ -83,6 +89,8 @@ def minimise(
     start
         A curve on the system's mesh: a guess of the states without costates, or an extremal of a neighbouring
         problem.
+    limits
+        When to stop, and who watches.
     tolerance
         Size of the last step.
     most
@@ -110,6 +118,10 @@ def minimise(
         size = step.size(curve.moved(step, 1.0))
         if not np.isfinite(size):
             return Found(curve, "not finite", cost, iteration, True)
+        if limits.expired:
+            return Found(curve, "time was up", cost, iteration, True)
+        if limits.watch:
+            limits.watch(cost * problem.scale.cost, size)
         if size < tolerance and (newton or first):
             curve = curve.moved(step, 1.0)
             return Found(curve, _kind(system, curve), system.cost(curve), iteration + 1, hard)
