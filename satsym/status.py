@@ -21,6 +21,10 @@ class Status(str, Enum):
         """What the user can do about it; empty for a converged run."""
         return _ADVICE[self]
 
+    def explain(self, message: str) -> str:
+        """A message with the advice behind it, unless it says so itself."""
+        return "; ".join(filter(None, [message, "" if self.advice in message else self.advice]))
+
     @property
     def answered(self) -> bool:
         """Whether the run gave an answer (as opposed to a reason for having none)."""

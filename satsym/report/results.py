@@ -29,7 +29,7 @@ def solution_object(solution: Solution) -> dict[str, Any]:
         "instance": solution.instance.name,
         "method": solution.method,
         "status": solution.status.value,
-        "message": solution.message,
+        "message": solution.status.explain(solution.message),
         "boundary_type": solution.instance.boundary_type,
         "objective": number(solution.objective),
         "t_final": _last(solution.times),

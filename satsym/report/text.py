@@ -117,8 +117,7 @@ def _effort(solution: Solution) -> str:
 
 
 def _message(status: Status, message: str) -> list[str]:
-    advice = "" if status.advice in message else status.advice
-    return _wrapped("; ".join(filter(None, [message, advice])))
+    return _wrapped(status.explain(message))
 
 
 def _wrapped(text: str) -> list[str]:
