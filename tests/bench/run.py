@@ -10,6 +10,7 @@ from time import perf_counter
 
 import rows
 from commands import commands
+from ends import ends
 from loops import sweeps, trajectories
 from machine import described
 from startup import startup
@@ -19,7 +20,7 @@ def main() -> None:
     """Run every subject; exit code 0 whatever was reached, for a busy machine is no fault of the code."""
     start = perf_counter()
     print(described(), flush=True)
-    print(rows.text([trajectories(), sweeps(), commands(), startup()]))
+    print(rows.text([trajectories(), sweeps(), commands(), startup(), ends()]))
     print(f"{perf_counter() - start:.0f} s")
 
 
