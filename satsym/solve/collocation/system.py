@@ -120,15 +120,16 @@ class System:
         matrix = ((-elapsed) * self._matrix[:, :, None, :, None] * by_stage[:, None]).reshape(count, s * n, s * n)
         diagonal = np.arange(s * n)
         matrix[:, diagonal, diagonal] += 1.0
-        right = np.zeros((count, s * n, n + e))
+        right = np.zeros((count, s * n, n + 1 + e))
         right[:, :, :n] = np.tile(np.eye(n), (s, 1))
+        right[:, :, n] = _by_interval(residual)
         if self.problem.free_time:
             right[:, :, -1] = self._by_duration(curve, residual).transpose(1, 2, 0).reshape(count, -1)
         solved = np.linalg.solve(matrix, right)
         response = solved[:, :, :n]
         transition = np.einsum("j,ijab->iab", self.scheme.end, response.reshape(count, s, n, n))
         transition[:, np.arange(n), np.arange(n)] += 1.0 - self.scheme.end.sum()
-        return Linearised(self, matrix, response, transition, residual, solved[:, :, n:])
+        return Linearised(self, matrix, response, transition, residual, solved[:, :, n], solved[:, :, n + 1 :])
 
     def _by_duration(self, curve: Curve, residual: Residual) -> Array:
         """Minus the derivative of the stage residuals by the duration, shape (2n, N, s)."""
@@ -149,12 +150,20 @@ class Linearised:
     """
 
     def __init__(
-        self, system: System, matrix: Array, response: Array, transition: Array, residual: Residual, extra: Array
+        self,
+        system: System,
+        matrix: Array,
+        response: Array,
+        transition: Array,
+        residual: Residual,
+        local: Array,
+        extra: Array,
     ) -> None:
         from scipy.linalg.lapack import dgbtrf
 
         self.system, self.transition = system, transition
         self._matrix, self._response = matrix, response
+        self._residual, self._local_step = residual, local
         n, half = system.rows, system.problem.states
         self._by_end, self._by_theta = residual.finish_by_end, residual.finish_by_theta
         self._band = _band(half, system.intervals)
@@ -175,10 +184,8 @@ class Linearised:
 
     def step(self, residual: Residual) -> Step:
         """The Newton correction for a residual."""
-        count, half = self.system.intervals, self.system.problem.states
-        right = -residual.stages.transpose(1, 2, 0).reshape(count, -1, 1)
-        local = np.linalg.solve(self._matrix, right)[:, :, 0]
-        nodes, stages = self._inner(local, residual.ends, residual.start, residual.finish[:half])
+        half = self.system.problem.states
+        nodes, stages = self._inner(self._local(residual), residual.ends, residual.start, residual.finish[:half])
         if not self._columns:
             return Step(nodes, stages, np.zeros(0))
         lower, slopes = self._by_end[half:], self._by_theta[half:]
@@ -197,10 +204,16 @@ class Linearised:
     def defects(self, residual: Residual) -> Array:
         """Defects between neighbouring intervals once the stages fit, shape (N, 2n)."""
         count, s, n = self.system.intervals, self.system.order, self.system.rows
-        right = -residual.stages.transpose(1, 2, 0).reshape(count, -1, 1)
-        local = np.linalg.solve(self._matrix, right)[:, :, 0].reshape(count, s, n)
+        local = self._local(residual).reshape(count, s, n)
         found: Array = np.einsum("j,ija->ia", self.system.scheme.end, local) - residual.ends.T
         return found
+
+    def _local(self, residual: Residual) -> Array:
+        """Corrections of the stages that keep the nodes, shape (N, s 2n); known already for the first residual."""
+        if residual is self._residual:
+            return self._local_step
+        solved: Array = np.linalg.solve(self._matrix, _by_interval(residual)[:, :, None])[:, :, 0]
+        return solved
 
     def _inner(self, local: Array, ends: Array, start: Array, finish: Array) -> tuple[Array, Array]:
         """Nodes and stages for corrections of the stages that keep the nodes."""
@@ -214,6 +227,13 @@ class Linearised:
         nodes = nodes.reshape(count + 1, n)
         stages = local + (self._response @ nodes[:-1, :, None]).reshape(count, s, n)
         return nodes.T, stages.transpose(2, 0, 1)
+
+
+def _by_interval(residual: Residual) -> Array:
+    """Minus the residuals of the stages, interval by interval, shape (N, s 2n)."""
+    count = residual.stages.shape[1]
+    found: Array = -residual.stages.transpose(1, 2, 0).reshape(count, -1)
+    return found
 
 
 @lru_cache
