@@ -38,8 +38,8 @@ FIXED = {
 
 PYTHON_NAMES = frozenset(
     "and as assert async await break class continue def del elif else except finally for from global if import in "
-    "is lambda nonlocal not or pass raise return try while with None True False x u p lam h i out times bounds "
-    "math np min max range len".split()
+    "is lambda nonlocal not or pass raise return try while with None True False x u lam nu p bounds final out shape "
+    "times x0 lam_f x_mid u_mid lam_mid h i math np float len range".split()
 )
 """Names that generated code needs for itself."""
 
