@@ -1,9 +1,10 @@
 """From nothing to an extremal: a straight line where that goes straight, else a path of easier problems.
 
-First the minimisation from the straight line in the state space. Where it does not walk straight through, the
-second way decides as well: from a motion that needs no control at all and ends where it should, the initial
-state is moved to the given one, each problem starting from the last. The cheaper minimum stands. Where neither
-way arrives, the duration is halved until the straight line leads to a minimum, and lengthened from there.
+First Newton's method from the straight line in the state space, then the minimisation from there. Where neither
+walks straight through, the second way decides as well: from a motion that needs no control at all and ends where it
+should, the initial state is moved to the given one, each problem starting from the last. The cheaper minimum
+stands. Where neither way arrives, the duration is halved until the straight line leads to a minimum, and lengthened
+from there.
 """
 
 from __future__ import annotations
@@ -18,27 +19,27 @@ from numpy.typing import NDArray
 from satsym.grid import Grid
 from satsym.solve.collocation import mesh as meshes
 from satsym.solve.collocation.curve import Curve, stage_times
+from satsym.solve.collocation.gauss import STAGES
 from satsym.solve.collocation.longer import along_durations
 from satsym.solve.collocation.problem import TwoPoint
 from satsym.solve.collocation.scaling import straight
 from satsym.solve.collocation.sqp import OUTGROWN, Found, minimise
+from satsym.solve.collocation.straight_through import straight_through
 from satsym.solve.collocation.system import System
 from satsym.solve.iteration import Limits
 
 Array = NDArray[np.floating[Any]]
 
-STAGES = 5
 STRAIGHT_THROUGH = 15
 """Steps within which the straight line leads to a minimum if it does so easily."""
 
 TOLERANCES = (3e-2, 1e-3, 1e-7)
 """Sizes of the last step after which the mesh is laid anew; the last one ends the minimisation."""
 
-COARSE = 2.5
-"""How much more than planned the motion may turn in an interval before the mesh is laid anew."""
-
 FIRST_MOVE, SMALLEST_MOVE, MOST_STEPS = 0.25, 2e-3, 500
 SAMPLES = 201
+POINTS = 41
+"""Points of a path at which the mesh is laid."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,14 +77,16 @@ def cold_start(problem: TwoPoint, limits: Limits, quick: bool = False) -> Start:
         Try the first way only.
     """
     free = problem.widened(float("inf"))
-    ways: list[tuple[str, Callable[[], Found | None]]] = [
-        ("straight line", lambda: from_path(free, straight_path(free), limits)),
-        ("path of problems", lambda: along_problems(free, limits)),
-        ("path of durations", lambda: along_durations(free, STAGES, limits, shorter)),
-    ]
+    line = straight_curve(free)
 
-    def shorter(problem: TwoPoint) -> Found:
+    def from_line(problem: TwoPoint) -> Found:
         return from_path(problem, straight_path(problem), limits)
+
+    ways: list[tuple[str, Callable[[], Found | None]]] = [
+        ("straight line", lambda: straight_through(line, System(free, line.mesh, STAGES)) or from_line(free)),
+        ("path of problems", lambda: along_problems(free, limits)),
+        ("path of durations", lambda: along_durations(free, STAGES, limits, from_line)),
+    ]
 
     minima: dict[str, Found] = {}
     last: Found | None = None
@@ -127,7 +130,7 @@ def from_path(problem: TwoPoint, path: Callable[[Array], Array], limits: Limits,
     steps, hard, stage = 0, False, 0
     while True:
         system = System(problem, curve.mesh, STAGES)
-        found = minimise(system, curve, limits, TOLERANCES[stage], max(most - steps, 1), COARSE * meshes.TURN)
+        found = minimise(system, curve, limits, TOLERANCES[stage], max(most - steps, 1), meshes.COARSEST)
         steps, hard = steps + found.iterations, hard or found.hard
         found = replace(found, iterations=steps, hard=hard)
         extremal = found.reason in ("minimum", "saddle")
@@ -161,7 +164,7 @@ def along_problems(problem: TwoPoint, limits: Limits) -> Found | None:
         system = System(moved, curve.mesh, STAGES)
         last = there == 1.0
         found = minimise(
-            system, guess, limits, 1e-7 if last else 1e-3, (6 if move > 0.03 else 14) + 4 * last, COARSE * meshes.TURN
+            system, guess, limits, 1e-7 if last else 1e-3, (6 if move > 0.03 else 14) + 4 * last, meshes.COARSEST
         )
         steps += max(found.iterations, 1)
         if found.reason == OUTGROWN:
@@ -225,7 +228,7 @@ def _end_without_costates(problem: TwoPoint) -> Array | None:
 
 
 def _without_costates(problem: TwoPoint, path: Callable[[Array], Array]) -> Curve:
-    tau = np.linspace(0.0, 1.0, SAMPLES)
+    tau = np.linspace(0.0, 1.0, POINTS)
     mesh = meshes.along(problem, tau, path(tau), problem.theta)
     n, at = problem.states, stage_times(mesh, STAGES)
     nodes, stages = np.zeros((2 * n, len(mesh))), np.zeros((2 * n, *at.shape))

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.solve import control_set
-from satsym.solve.collocation.curve import Curve, stage_times
+from satsym.solve.collocation.curve import Curve, Path, stage_times
 from satsym.solve.collocation.newton import newton
 from satsym.solve.collocation.problem import TwoPoint
 from satsym.solve.collocation.system import System
@@ -92,7 +92,7 @@ def tighten(problem: TwoPoint, free: Curve, order: int, limits: Limits) -> Bound
         narrower = max(width - move, 0.0)
         narrower = 0.0 if narrower < 1e-3 * worst else narrower
         step = problem.widened(narrower)
-        mesh = _mesh(kinks(step, curve), count)
+        mesh = through(kinks(step, curve), count)
         outcome = newton(System(step, mesh, order), curve.on(mesh, order), tolerance=1e-6, most=15)
         if outcome is None or not outcome.converged:
             move /= 2.0
@@ -107,13 +107,16 @@ def tighten(problem: TwoPoint, free: Curve, order: int, limits: Limits) -> Bound
     return _settled(problem, curve, order, count, total)
 
 
-def kinks(problem: TwoPoint, curve: Curve) -> Array:
+def kinks(problem: TwoPoint, curve: Path) -> Array:
     """Times in (0, 1) at which the control law of a curve meets or leaves a bound, increasing."""
     return np.unique(np.concatenate([np.zeros(0), *by_bound(problem, curve)]))
 
 
-def by_bound(problem: TwoPoint, curve: Curve) -> list[Array]:
+def by_bound(problem: TwoPoint, curve: Path) -> list[Array]:
     """The same, bound by bound, in the order of :func:`satsym.solve.control_set.excess`."""
+    limits = control_set.widened(problem.instance, problem.widening)
+    if not np.isfinite(limits).any():
+        return [np.zeros(0) for _ in limits]
     inside = np.linspace(1e-9, 1.0 - 1e-9, SAMPLES)
     tau = np.unique((curve.mesh[:-1, None] + np.diff(curve.mesh)[:, None] * inside).ravel())
 
@@ -140,8 +143,8 @@ def _violation(problem: TwoPoint, curve: Curve) -> float:
     return control_set.violation(problem.instance, law)
 
 
-def _mesh(points: Array, count: int) -> Array:
-    """About ``count`` intervals, with nodes on the points."""
+def through(points: Array, count: int) -> Array:
+    """A mesh of about ``count`` intervals with nodes on the given points, shape (N+1,)."""
     inner = points[(points > CLOSEST) & (points < 1.0 - CLOSEST)]
     ends = np.concatenate([[0.0], inner, [1.0]])
     ends = ends[np.concatenate([[True], np.diff(ends) > CLOSEST])]
@@ -158,7 +161,7 @@ def _settled(problem: TwoPoint, curve: Curve, order: int, count: int, total: int
     for _ in range(SETTLING):
         if before is not None and len(before) == len(now) and np.abs(now - before).max(initial=0.0) < STILL:
             return Bounded(curve, now, 1.0, True, total)
-        mesh = _mesh(now, count)
+        mesh = through(now, count)
         outcome = newton(System(problem, mesh, order + 2), curve.on(mesh, order + 2), most=15)
         if outcome is None or not outcome.converged:
             break

@@ -3,15 +3,30 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from satsym.solve.collocation.gauss import scheme
+from satsym.solve.collocation.gauss import interpolation, scheme
 
 Array = NDArray[np.floating[Any]]
+
+
+class Path(Protocol):
+    """States and costates over the scaled time tau in [0, 1], smooth between the nodes of a mesh; extra unknowns."""
+
+    @property
+    def mesh(self) -> Array:
+        """Nodes in [0, 1], shape (N+1,)."""
+
+    @property
+    def theta(self) -> Array:
+        """Extra unknowns, shape (e,)."""
+
+    def __call__(self, tau: Array) -> Array:
+        """Values at ``tau`` in [0, 1], shape (2n, M)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,20 +61,32 @@ class Curve:
         return self.stages.reshape(len(self.stages), -1)
 
     def __call__(self, tau: Array) -> Array:
-        """Values at ``tau`` in [0, 1], shape (2n, M)."""
+        """Values at increasing ``tau`` in [0, 1], shape (2n, M)."""
         tau = np.asarray(tau, dtype=float)
         interval = np.clip(np.searchsorted(self.mesh, tau, side="right") - 1, 0, len(self.mesh) - 2)
         local = 2 * (tau - self.mesh[interval]) / np.diff(self.mesh)[interval] - 1
         known = np.concatenate([self.nodes[:, :-1, None], self.stages], axis=2)
-        coefficients = known @ scheme(self.order).coefficients.T
-        values: Array = np.einsum("aik,ik->ai", coefficients[:, interval], legendre.legvander(local, self.order))
+        coefficients = known.transpose(1, 0, 2) @ scheme(self.order).coefficients.T
+        table = legendre.legvander(local, self.order).T
+        values = np.empty((len(self.nodes), len(tau)))
+        first = np.searchsorted(interval, np.arange(len(self.mesh)))
+        for i in np.flatnonzero(np.diff(first)):
+            part = slice(first[i], first[i + 1])
+            values[:, part] = coefficients[i] @ table[:, part]
         return values
 
     def on(self, mesh: Array, order: int) -> Curve:
         """The same curve, as far as that can be, on another mesh or with another number of stages."""
+        if mesh is self.mesh:
+            return self if order == self.order else self.with_stages(order)
         tau = stage_times(mesh, order)
         stages = self(tau.ravel()).reshape(len(self.nodes), *tau.shape)
         return Curve(mesh, self(mesh), stages, self.theta)
+
+    def with_stages(self, order: int) -> Curve:
+        """The same polynomials by their values at another number of Gauss points."""
+        known = np.concatenate([self.nodes[:, :-1, None], self.stages], axis=2)
+        return Curve(self.mesh, self.nodes, known @ interpolation(self.order, order).T, self.theta)
 
     def moved(self, step: Step, length: float) -> Curve:
         """The curve after a share of a step."""

@@ -15,6 +15,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.floating[Any]]
 
+STAGES = 5
+"""Of the collocation equations that are solved: order 10 at the nodes of a mesh."""
+
 
 @dataclass(frozen=True, eq=False)
 class Scheme:
@@ -43,6 +46,13 @@ class Scheme:
     def stages(self) -> int:
         """Number s of stages."""
         return len(self.nodes)
+
+
+@lru_cache
+def interpolation(stages: int, onto: int) -> Array:
+    """From values at 0 and at the stages of a scheme to those at the stages of another, shape (onto, stages + 1)."""
+    table: Array = legendre.legvander(2 * scheme(onto).nodes - 1, stages) @ scheme(stages).coefficients
+    return table
 
 
 @lru_cache

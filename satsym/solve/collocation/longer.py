@@ -18,7 +18,7 @@ SHORTER, HALVINGS = 0.5, 6
 FIRST, SMALLEST = 1.3, 1.002
 """Ratios of neighbouring durations: at first, and where it is given up."""
 
-ROUNDS, STEPS, COARSE = 6, 60, 2.5
+ROUNDS, STEPS = 6, 60
 """Minimisations for one duration, each on a new mesh; steps of each; and by how much, as in the cold start, the
 motion may turn more in an interval than planned."""
 
@@ -73,7 +73,7 @@ def _descended(problem: TwoPoint, curve: Curve, stages: int, tolerance: float, l
     steps = 0
     for _ in range(ROUNDS):
         curve = curve.on(meshes.laid(problem, curve), stages)
-        found = minimise(System(problem, curve.mesh, stages), curve, limits, tolerance, STEPS, COARSE * meshes.TURN)
+        found = minimise(System(problem, curve.mesh, stages), curve, limits, tolerance, STEPS, meshes.COARSEST)
         steps, curve = steps + found.iterations, found.curve
         if limits.expired or not found.reason.startswith((OUTGROWN, "no convergence")):
             break

@@ -16,6 +16,9 @@ TURN = 1.0
 """Angle, in radians, that the fastest mode may pass in one interval. With less than about six intervals a turn the
 collocation equations have solutions of their own."""
 
+COARSEST = 2.5 * TURN
+"""Angle in one interval beyond which the mesh is laid anew."""
+
 FEWEST, MOST = 6, 400
 
 

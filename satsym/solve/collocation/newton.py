@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.solve.collocation.curve import Curve, Step
+from satsym.solve.collocation.linearised import Linearised
 from satsym.solve.collocation.problem import TwoPoint
-from satsym.solve.collocation.system import Linearised, System
+from satsym.solve.collocation.system import System
 
 Array = NDArray[np.floating[Any]]
 
@@ -42,28 +43,24 @@ class Outcome:
         Whether the last correction was small enough.
     iterations
         Number of corrections.
-    first
-        Size of the first correction: the error of the curve it started from.
-    defects
-        Defects of that curve between neighbouring intervals, shape (N, 2n).
     linearised
         The last linearisation.
+    whole
+        Whether no correction had to be cut.
     """
 
     curve: Curve
     converged: bool
     iterations: int
-    first: float
-    defects: Array
     linearised: Linearised
+    whole: bool
 
 
 def newton(system: System, start: Curve, tolerance: float = 1e-12, most: int = 12) -> Outcome | None:
     """Newton from a curve on the system's mesh; ``None`` where the equations are singular or not finite."""
     problem, curve = system.problem, start
     residual = system.residual(curve)
-    first, before = 0.0, float("inf")
-    defects: Array = np.zeros(0)
+    before, whole = float("inf"), True
     for iteration in range(1, most + 1):
         try:
             linearised = system.linearised(curve, residual, system.jacobian(curve))
@@ -73,22 +70,21 @@ def newton(system: System, start: Curve, tolerance: float = 1e-12, most: int = 1
         size = step.size(curve)
         if not np.isfinite(size):
             return None
-        if iteration == 1:
-            first, defects = size, linearised.defects(residual)
         length = within_domain(problem, curve, step)
+        whole = whole and length == 1.0
         while True:
             trial = curve.moved(step, length)
             residual = system.residual(trial)
             if size < SURE or linearised.step(residual).size(trial) <= (1.0 - length / 4.0) * size:
                 break
-            length /= 2.0
+            length, whole = length / 2.0, False
             if length < SHORTEST:
-                return Outcome(curve, False, iteration, first, defects, linearised)
+                return Outcome(curve, False, iteration, linearised, whole)
         curve = trial
         if size < tolerance or (size < FLOOR and size > 0.2 * before):
-            return Outcome(curve, True, iteration, first, defects, linearised)
+            return Outcome(curve, True, iteration, linearised, whole)
         before = size
-    return Outcome(curve, False, most, first, defects, linearised)
+    return Outcome(curve, False, most, linearised, whole)
 
 
 def within_domain(problem: TwoPoint, curve: Curve, step: Step) -> float:

@@ -1,4 +1,4 @@
-"""Accuracy: the error of a curve is what two more stages change; where it is too large the mesh follows the defects."""
+"""Accuracy: defect corrections on many points of each interval, and where these are not enough a finer mesh."""
 
 from __future__ import annotations
 
@@ -9,20 +9,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.solve.collocation.curve import Curve
-from satsym.solve.collocation.newton import Outcome, newton
+from satsym.solve.collocation.gauss import STAGES
+from satsym.solve.collocation.linearised import Linearised
+from satsym.solve.collocation.newton import newton
 from satsym.solve.collocation.problem import TwoPoint
+from satsym.solve.collocation.sharpening import Sharpened, sharpen
 from satsym.solve.collocation.system import System
 
 Array = NDArray[np.floating[Any]]
 
-MORE = 2
-"""Stages added for the estimate, and kept: the answer is of the higher order."""
+NEAR = 1e-3
+"""Last correction of Newton's method from which defect corrections converge quickly."""
 
-SAFETY = 10.0
-ROUNDS = 6
+ROUNDS = 8
 MOST_INTERVALS = 400
 FEWEST, LARGEST_SPLIT = 0.6, 4.0
 """Bounds of the change in the density of the mesh in one round."""
+
+SPARE = 0.1
+"""Share of the tolerance that the next mesh aims at."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +39,7 @@ class Refined:
     curve
         The answer.
     error
-        Estimated error at the nodes, relative as in :meth:`Step.size`.
+        Estimated error, at the nodes and between them, relative as in :meth:`Step.size`.
     converged
         Whether that is below the tolerance.
     iterations
@@ -47,8 +52,10 @@ class Refined:
     iterations: int
 
 
-def refine(problem: TwoPoint, curve: Curve, tolerance: float, keep_nodes: bool = False) -> Refined:
-    """Raise the order, and where that is not enough refine the mesh, until the error is below a tolerance.
+def refine(
+    problem: TwoPoint, curve: Curve, tolerance: float, keep_nodes: bool = False, known: Linearised | None = None
+) -> Refined:
+    """Refine a solution until the error is below a tolerance.
 
     Parameters
     ----------
@@ -60,38 +67,35 @@ def refine(problem: TwoPoint, curve: Curve, tolerance: float, keep_nodes: bool =
         Largest error.
     keep_nodes
         Whether nodes stay where they are (on kinks) and intervals are only split.
+    known
+        The linearised equations at the curve or nearby, if it is a solution with :data:`STAGES` stages already.
     """
-    order, total, error = curve.order, 0, float("inf")
+    total, best = 0, Refined(curve, float("inf"), False, 0)
     for _ in range(ROUNDS):
-        outcome = newton(System(problem, curve.mesh, order + MORE), curve.on(curve.mesh, order + MORE))
-        total += outcome.iterations if outcome else 0
-        if outcome and outcome.converged:
-            curve, error = outcome.curve, _higher(outcome.first, order)
-            if error < tolerance:
-                return Refined(curve, error, True, total)
-            density = _density(problem, outcome, order, tolerance)
-        else:
-            density = np.full(len(curve.mesh) - 1, 2.0)
+        if known is None:
+            outcome = newton(System(problem, curve.mesh, STAGES), curve.on(curve.mesh, STAGES), tolerance=NEAR)
+            total += outcome.iterations if outcome else 0
+            if outcome and outcome.converged:
+                curve, known = outcome.curve, outcome.linearised
+        sharpened = sharpen(curve, known, tolerance) if known else None
+        if sharpened and sharpened.error < best.error:
+            best = Refined(sharpened.curve, sharpened.error, sharpened.error < tolerance, total)
+            if best.converged:
+                break
+        density = _density(sharpened, tolerance) if sharpened else np.full(len(curve.mesh) - 1, 2.0)
         if density.sum() > MOST_INTERVALS:
             break
-        curve = curve.on(_split(curve.mesh, density) if keep_nodes else _spread(curve.mesh, density), order + MORE)
-    return Refined(curve, error, False, total)
+        curve = sharpened.curve if sharpened else curve
+        mesh = _split(curve.mesh, density) if keep_nodes else _spread(curve.mesh, density)
+        curve, known = curve.on(mesh, STAGES), None
+    return best
 
 
-def _higher(error: float, order: int) -> float:
-    """The error of the higher order, from that of the lower one."""
-    return float(SAFETY * error ** ((order + MORE) / order))
-
-
-def _density(problem: TwoPoint, outcome: Outcome, order: int, tolerance: float) -> Array:
-    """Wanted intervals for each present one, from the defects of the lower order."""
-    n, nodes = problem.states, outcome.curve.nodes
-    size = np.concatenate(
-        [np.full(n, max(1.0, np.abs(nodes[:n]).max())), np.full(n, max(np.abs(nodes[n:]).max(), 1e-300))]
-    )
-    defect = (np.abs(outcome.defects) / size).max(axis=1)
-    allowed = 0.3 * (tolerance / SAFETY) ** (order / (order + MORE)) * defect.max() / outcome.first
-    return np.clip((defect / allowed) ** (1.0 / (2 * order + 1)), FEWEST, LARGEST_SPLIT)
+def _density(sharpened: Sharpened, tolerance: float) -> Array:
+    """Wanted intervals for each present one, from what its polynomials leave out."""
+    ratio = sharpened.omitted / (SPARE * tolerance)
+    found: Array = np.clip(ratio ** (1.0 / sharpened.curve.order), FEWEST, LARGEST_SPLIT)
+    return found
 
 
 def _split(mesh: Array, density: Array) -> Array:
@@ -102,7 +106,7 @@ def _split(mesh: Array, density: Array) -> Array:
 
 
 def _spread(mesh: Array, density: Array) -> Array:
-    """The defects equally distributed over a new mesh."""
+    """The errors equally distributed over a new mesh."""
     count = max(int(np.ceil(density.sum())), len(density) + 1)
     cumulated = np.concatenate([[0.0], np.cumsum(density)]) / density.sum()
     spread = np.interp(np.linspace(0.0, 1.0, count + 1), cumulated, mesh)

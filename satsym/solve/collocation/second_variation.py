@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.solve.collocation.curve import Curve
+from satsym.solve.collocation.linearised import Linearised
 from satsym.solve.collocation.problem import TwoPoint
-from satsym.solve.collocation.system import Linearised
 
 Array = NDArray[np.floating[Any]]
 
@@ -29,19 +29,24 @@ def negative_directions(problem: TwoPoint, curve: Curve, linearised: Linearised)
         If a field of extremals is singular at a node.
     """
     n, transition = problem.states, linearised.transition
-    field = transition[0][:, n:]
+    # The field of extremals from the start, by its costates as a function of its states: Lambda X^-1.
+    slope = _right_divided(transition[0][n:, n:], transition[0][:n, n:])
     left = np.empty((len(transition) - 1, n, n))
-    for i in range(1, len(transition)):
-        field = np.linalg.qr(field)[0]
-        arrived = transition[i] @ field
-        left[i - 1] = np.linalg.solve(field[:n].T, arrived[:n].T).T
-        field = arrived
+    for i, matrix in enumerate(transition[1:]):
+        arrived = matrix[:, :n] + matrix[:, n:] @ slope
+        left[i], slope = arrived[:n], _right_divided(arrived[n:], arrived[:n])
     pivots = np.linalg.solve(-transition[1:, :n, n:], left)
     count = _negative(pivots)
-    return count + _at_the_end(problem, curve, field) + _of_the_duration(problem, linearised)
+    return count + _at_the_end(problem, curve, slope) + _of_the_duration(problem, linearised)
 
 
-def _at_the_end(problem: TwoPoint, curve: Curve, field: Array) -> int:
+def _right_divided(a: Array, b: Array) -> Array:
+    """The matrix a b^-1."""
+    found: Array = np.linalg.solve(b.T, a.T).T
+    return found
+
+
+def _at_the_end(problem: TwoPoint, curve: Curve, slope: Array) -> int:
     """Negative pivots of the final states that are free, within the terminal constraints."""
     n = problem.states
     free = np.flatnonzero(~problem.fixed)
@@ -49,7 +54,7 @@ def _at_the_end(problem: TwoPoint, curve: Curve, field: Array) -> int:
         return 0
     _, by_end, _ = problem.boundary(curve.nodes[:, -1], curve.theta)
     # Rows of free states read lambda - S_x - nu' psi_x, so minus their derivative is the Hessian of S + nu' psi.
-    pivot = (-by_end[:n, :n] - np.linalg.solve(field[:n].T, field[n:].T).T)[np.ix_(free, free)]
+    pivot = (-by_end[:n, :n] - slope)[np.ix_(free, free)]
     constraints = problem.unknowns - problem.free_time
     if constraints:
         slopes = by_end[n : n + constraints, :n][:, free]

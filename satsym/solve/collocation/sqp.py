@@ -17,9 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.solve.collocation.curve import Curve, Step
+from satsym.solve.collocation.linearised import Linearised
 from satsym.solve.collocation.newton import within_domain
 from satsym.solve.collocation.second_variation import negative_directions
-from satsym.solve.collocation.system import Linearised, Residual, System
+from satsym.solve.collocation.system import Residual, System
 from satsym.solve.iteration import Limits
 
 Array = NDArray[np.floating[Any]]
@@ -58,6 +59,8 @@ class Found:
     hard
         Whether the way was not straight: a Gauss-Newton step after the first, or a step cut short. Other minima
         may then be cheaper.
+    linearised
+        The equations there, where they are at hand.
     """
 
     curve: Curve
@@ -65,6 +68,7 @@ class Found:
     cost: float
     iterations: int
     hard: bool
+    linearised: Linearised | None = None
 
     @property
     def minimum(self) -> bool:

@@ -1,0 +1,127 @@
+"""A solution made accurate between its nodes as well: defect corrections on more points, at no new linearisation.
+
+Gauss collocation with s stages is right to order 2s at the nodes, but between them its polynomials are right to
+order s + 1 only. On more points of each interval the defect shows what they miss; how it travels to the end of
+the interval, and on to all other nodes, is known from the linearisation at hand, whose fundamental matrices
+X(tau) are inverted without a solve, being symplectic.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.solve.collocation.curve import Curve, Step
+from satsym.solve.collocation.gauss import interpolation, scheme
+from satsym.solve.collocation.linearised import Linearised
+from satsym.solve.collocation.system import System
+
+Array = NDArray[np.floating[Any]]
+
+POINTS = 14
+"""Of each interval."""
+
+MOST = 6
+CONTRACTION = 0.1
+"""Corrections that shrink less are not worth another."""
+
+ROUNDING = 3e-15
+"""Corrections of this size show nothing any more."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sharpened:
+    """A curve after its defect corrections.
+
+    Attributes
+    ----------
+    curve
+        On the same mesh, with more stages.
+    error
+        Estimate of its error, relative as in :meth:`Step.size`: the last correction, or what its polynomials leave
+        out.
+    omitted
+        The latter interval by interval, shape (N,).
+    """
+
+    curve: Curve
+    error: float
+    omitted: Array
+
+
+def sharpen(curve: Curve, linearised: Linearised, tolerance: float) -> Sharpened | None:
+    """Correct a solution of collocation equations until its error is below a tolerance, as far as that goes.
+
+    Parameters
+    ----------
+    curve
+        The solution.
+    linearised
+        The linearised equations there or nearby, on the same mesh with the same stages.
+    tolerance
+        Largest error.
+
+    Returns
+    -------
+    Sharpened or None
+        ``None`` where corrections are not finite or do not shrink.
+    """
+    system = System(linearised.system.problem, curve.mesh, POINTS)
+    onto = interpolation(curve.order, POINTS)
+    fundamental = linearised.fundamental(onto)
+    inverse = _inverted(fundamental)
+    fine, before = curve.with_stages(POINTS), float("inf")
+    for _ in range(MOST):
+        step = _correction(system, fine, linearised, onto, fundamental, inverse)
+        size = step.size(fine)
+        if not size < before:
+            # Near rounding corrections no longer shrink.
+            if before > tolerance:
+                return None
+            size = before
+            break
+        fine = fine.moved(step, 1.0)
+        if size < max(CONTRACTION * tolerance, ROUNDING) or size > CONTRACTION * before:
+            break
+        before = size
+    omitted = _omitted(fine)
+    return Sharpened(fine, max(size, float(omitted.max())), omitted)
+
+
+def _correction(
+    system: System, fine: Curve, linearised: Linearised, onto: Array, fundamental: Array, inverse: Array
+) -> Step:
+    """What the defect on the fine points says, as a step."""
+    residual, own = system.residual(fine), system.scheme
+    defect = (residual.stages @ own.inverse.T).transpose(1, 2, 0)
+    carried = (inverse @ defect[..., None])[..., 0]
+    local = -(fundamental @ (own.matrix @ carried)[..., None])[..., 0]
+    arrived = -(linearised.transition @ (own.weights @ carried)[..., None])[..., 0]
+    # The polynomial through the fine points ends elsewhere than where the next interval begins.
+    nodes, theta = linearised.correction(arrived - residual.ends.T, residual.start, residual.finish)
+    stages = local + linearised.spread(nodes, theta, onto)
+    return Step(nodes.T, stages.transpose(2, 0, 1), theta)
+
+
+def _inverted(matrices: Array) -> Array:
+    """Inverses of symplectic matrices [[A, B], [C, D]]: [[D', -B'], [-C', A']]."""
+    n = matrices.shape[-1] // 2
+    transposed = matrices.swapaxes(-1, -2)
+    found = np.empty_like(matrices)
+    found[..., :n, :n], found[..., n:, n:] = transposed[..., n:, n:], transposed[..., :n, :n]
+    found[..., :n, n:], found[..., n:, :n] = -transposed[..., n:, :n], -transposed[..., :n, n:]
+    return found
+
+
+def _omitted(curve: Curve) -> Array:
+    """What polynomials of this degree leave out, judged by their last two coefficients, relative, shape (N,)."""
+    n = len(curve.nodes) // 2
+    known = np.concatenate([curve.nodes[:, :-1, None], curve.stages], axis=2)
+    last = np.abs(known @ scheme(curve.order).coefficients[-2:].T).max(axis=2)
+    size = np.abs(known).reshape(2 * n, -1).max(axis=1)
+    scale = np.repeat([max(1.0, size[:n].max()), max(size[n:].max(), 1e-300)], n)
+    found: Array = (last / scale[:, None]).max(axis=0)
+    return found

@@ -1,0 +1,60 @@
+"""The quick way: Newton's method from the straight line between the ends, kept if it walks straight through.
+
+No step may leave the domain, each must be less than half the one before, few may be needed; the mesh must still
+resolve the motion and the second variation must be positive. Everything else is left to slower ways.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from satsym.solve.collocation import mesh as meshes
+from satsym.solve.collocation.curve import Curve
+from satsym.solve.collocation.newton import within_domain
+from satsym.solve.collocation.second_variation import negative_directions
+from satsym.solve.collocation.sqp import Found
+from satsym.solve.collocation.system import System
+
+NEAR = 3e-2
+"""Last correction from which the corrections of the refinement converge, with the linearisation at hand."""
+
+FEW = 6
+"""Corrections from the straight line that still count as straight through."""
+
+
+def straight_through(start: Curve, system: System) -> Found | None:
+    """The minimum to which Newton's method leads at once.
+
+    Parameters
+    ----------
+    start
+        A guess without costates.
+    system
+        Collocation equations of a problem without bounds, on the guess's mesh and with its stages.
+    """
+    problem, curve = system.problem, start
+    before, steps = float("inf"), 0
+    while steps < FEW:
+        steps += 1
+        residual, jacobian = system.residual(curve), system.jacobian(curve)
+        try:
+            linearised = system.linearised(curve, residual, jacobian)
+            step = linearised.step(residual)
+            size = step.size(curve)
+            if not size < before or within_domain(problem, curve, step) < 1.0:
+                return None
+            curve = curve.moved(step, 1.0)
+            if size < NEAR:
+                break
+            before = size / 2.0
+        except np.linalg.LinAlgError:
+            return None
+    else:
+        return None
+    try:
+        minimum = negative_directions(problem, curve, linearised) == 0
+    except np.linalg.LinAlgError:
+        return None
+    if not minimum or system.largest_turn(curve, jacobian) > meshes.COARSEST:
+        return None
+    return Found(curve, "minimum", system.cost(curve), steps, False, linearised)
