@@ -280,28 +280,6 @@ def test_where_only_time_costs_the_shortest_would_be_best():
     assert "shorter is always cheaper" in found.message
 
 
-def random_case(rng: np.random.Generator, hard: bool) -> Instance:
-    base = instance.load("return-to-orbit")
-    low, high = (0.4, 2.5) if hard else (0.6, 1.6)
-    r = float(np.exp(rng.uniform(np.log(low), np.log(high)))) if hard else float(rng.uniform(low, high))
-    swing = 0.3 if hard else 0.2
-    v, theta, w = rng.uniform(-swing, swing), rng.uniform(-1.0, 1.0), r**-1.5 * rng.uniform(0.8, 1.2)
-    tf = float(rng.uniform(2.0, 25.0) if hard else rng.uniform(1.0, 12.0))
-    sigma = float(np.exp(rng.uniform(np.log(0.5), np.log(2.0)))) if hard else 1.0
-    goal = {"r": sigma, "r_dot": 0.0, "theta": sigma**-1.5 * tf, "theta_dot": sigma**-1.5}
-    return replace(base, initial=(r, float(v), float(theta), float(w)), tf=tf, final=goal)
-
-
-@pytest.mark.parametrize(("count", "hard", "limit"), [(60, False, 1e-9), (15, True, 1e-8)], ids=["easy", "hard"])
-def test_random_problems_are_solved_from_nothing(count, hard, limit):
-    rng = np.random.default_rng(20)
-    for number in range(count):
-        found = two_point.solve(random_case(rng, hard))
-        assert found.status is Status.CONVERGED, (number, found.message)
-        assert missed(found) < limit, number
-        assert found.x[0].min() > 0.0
-
-
 def test_a_final_angle_may_count_modulo_a_turn():
     plain = two_point.solve(instance.load("ends-1-given"))
     case = instance.load("ends-1-given")

@@ -20,7 +20,11 @@ RESOLVED = 1e-9
 
 
 def boundary_residual(solution: Solution, flow: Flow) -> float:
-    """Largest residual at the right end of the flow, each relative to the size of what it compares."""
+    """Largest residual at the right end of the flow, each relative to the size of what it compares.
+
+    A given state is compared with its own size; a costate with its size and with that of the terms of the gradient
+    of the terminal cost, which may cancel almost: an error of the state then counts alike in both.
+    """
     instance, model = solution.instance, solution.instance.model
     n, spec = len(instance.initial), instance.model.spec
     tf, x, lam = float(flow.times[-1]), tuple(flow.x[:, -1].tolist()), tuple(flow.lam[:, -1].tolist())
@@ -37,9 +41,11 @@ def boundary_residual(solution: Solution, flow: Flow) -> float:
     fixed = np.array(final[:n]) + np.array(final[n : 2 * n]) > 0.0
     state, costate = np.abs(flow.x).max(axis=1), np.abs(flow.lam).max(axis=1)
     typical = max(float(costate @ state), np.finfo(float).tiny)
-    rows = np.where(
-        fixed, np.maximum(state, 1e-300), np.maximum(costate, NEGLIGIBLE * typical / np.maximum(state, 1e-300))
-    )
+    nu = (0.0,) * len(spec.multipliers)
+    slopes = np.array(model.boundary_jacobian(tf, x, lam, nu, instance.parameters, instance.bounds, final))
+    gradient = np.abs(slopes.reshape(len(residual), -1)[:n, :n]) @ state
+    costate = np.maximum(np.maximum(costate, gradient), NEGLIGIBLE * typical / np.maximum(state, 1e-300))
+    rows = np.where(fixed, np.maximum(state, 1e-300), costate)
     found = np.abs(residual[:n]) / rows
     parts = [*found, *np.abs(residual[n:-1])]
     if instance.tf is None:

@@ -10,6 +10,7 @@ import numpy as np
 from satsym.solution import Certificate, Check, Solution
 from satsym.solve.certificate import competitors, conditions
 from satsym.solve.certificate.flow import Flow, flow
+from satsym.solve.certificate.neighbours import neighbours
 
 RESIDUAL, DEFECT, STATIONARY, DRIFT = 1e-9, 1e-7, 1e-8, 1e-9
 """Largest boundary residual, defect, violation of stationarity and change of H."""
@@ -75,13 +76,13 @@ def _sufficient(solution: Solution, recomputed: Flow) -> list[Check]:
             Check("curvature in the free end", float(not conditions.negative_end(solution, recomputed) > 0.0), 0.0)
         )
     for name, competitor in (
-        ("feasible neighbours", competitors.neighbours),
+        ("feasible neighbours", neighbours),
         ("other starts", competitors.other_starts),
         ("earlier arrivals", competitors.earlier_arrivals),
     ):
-        margin = competitor(solution)
-        if math.isfinite(margin):
-            checks.append(Check(f"cheaper by: {name}", max(0.0, -margin), DEARER))
+        dearer = competitor(solution)
+        if math.isfinite(dearer):
+            checks.append(Check(f"cheaper by: {name}", max(0.0, -dearer), DEARER))
     return checks
 
 

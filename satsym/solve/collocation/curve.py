@@ -14,6 +14,10 @@ from satsym.solve.collocation.gauss import interpolation, scheme
 Array = NDArray[np.floating[Any]]
 
 
+NOTHING = 1e-12
+"""Scaled costates below this do nothing: they change the states by such a share of their size."""
+
+
 class Path(Protocol):
     """States and costates over the scaled time tau in [0, 1], smooth between the nodes of a mesh; extra unknowns."""
 
@@ -88,6 +92,10 @@ class Curve:
         known = np.concatenate([self.nodes[:, :-1, None], self.stages], axis=2)
         return Curve(self.mesh, self.nodes, known @ interpolation(self.order, order).T, self.theta)
 
+    def in_domain(self, positive: tuple[int, ...]) -> bool:
+        """Whether the states of these indices are positive everywhere."""
+        return all(self.stages[i].min() > 0.0 and self.nodes[i].min() > 0.0 for i in positive)
+
     def moved(self, step: Step, length: float) -> Curve:
         """The curve after a share of a step."""
         return Curve(
@@ -110,7 +118,7 @@ class Step:
         """Largest change: states relative to their size (at least one), costates relative to theirs."""
         n = len(curve.nodes) // 2
         x = max(1.0, np.abs(curve.nodes[:n]).max(), np.abs(curve.stages[:n]).max())
-        lam = max(np.abs(curve.nodes[n:]).max(), np.abs(curve.stages[n:]).max(), 1e-300)
+        lam = max(np.abs(curve.nodes[n:]).max(), np.abs(curve.stages[n:]).max(), NOTHING)
         theta = np.abs(self.theta) / np.maximum(np.abs(curve.theta), 1e-300) if len(self.theta) else np.zeros(1)
         parts = (
             np.abs(self.nodes[:n]).max() / x,

@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.instance import Instance
-from satsym.solve.collocation.cold_start import Start, cold_start, straight_curve
+from satsym.solve.collocation import paths
+from satsym.solve.collocation.cold_start import Start, cold_start
 from satsym.solve.collocation.curve import Curve, stage_times
 from satsym.solve.collocation.newton import newton
 from satsym.solve.collocation.problem import TwoPoint
@@ -163,7 +164,7 @@ class _Search:
     def none(self, status: Status, message: str) -> Chosen:
         """No minimum; the last attempt is kept for the record."""
         problem = self.problem(self.first)
-        curve = self.last or straight_curve(problem)
+        curve = self.last or paths.curve(problem, paths.first(problem))
         if len(curve.theta) < problem.unknowns:
             curve = replace(curve, theta=np.append(curve.theta, self.duration))
         found = Found(curve, message, float("nan"), 0, True)

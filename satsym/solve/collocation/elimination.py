@@ -1,7 +1,12 @@
-"""LU factors of a stack of matrices: the stages of all intervals, eliminated and kept for further right-hand sides."""
+"""The two linear systems of a collocation step: the stages of each interval, and the nodes between the intervals.
+
+Small ones are left to NumPy: SciPy's LAPACK is quicker from the second right-hand side on and for many intervals, but
+loading it takes longer than solving a usual problem.
+"""
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -9,37 +14,120 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.floating[Any]]
 
+FEW = 128
+"""Unknowns up to which the system of the nodes is inverted."""
+
 
 class Blocks:
-    """Factored square matrices.
-
-    NumPy's stacked solver factors anew for each right-hand side; a substitution alone costs a tenth of that.
+    """Square matrices of a stack, to be solved with.
 
     Parameters
     ----------
     matrices
-        Shape (N, k, k), in rows; overwritten.
-
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        If one of them is singular.
+        Shape (N, k, k).
     """
 
     def __init__(self, matrices: Array) -> None:
-        from scipy.linalg.lapack import dgetrf
-
-        # LAPACK reads columns, so it is handed the transposes, without a copy.
-        factored = [dgetrf(matrix.T, overwrite_a=True) for matrix in matrices]
-        if any(info for _, _, info in factored):
-            raise np.linalg.LinAlgError("singular")
-        self._factors = [(factors, pivots) for factors, pivots, _ in factored]
+        self._matrices = matrices
+        self._factors: list[tuple[Array, Array]] | None = None
+        self._fresh = True
 
     def solve(self, right: Array) -> Array:
-        """Solutions for right-hand sides, both of shape (N, columns, k): a column of the system is a row here."""
-        from scipy.linalg.lapack import dgetrs
+        """Solutions for right-hand sides, both of shape (N, columns, k): a column of the system is a row here.
 
+        The first time they are solved for at once; after that factors are kept.
+
+        Raises
+        ------
+        numpy.linalg.LinAlgError
+            If a matrix is singular.
+        """
+        if self._fresh:
+            self._fresh = False
+            solutions: Array = np.linalg.solve(self._matrices, right.swapaxes(1, 2)).swapaxes(1, 2)
+            return solutions
+        from scipy.linalg.lapack import dgetrf, dgetrs
+
+        if self._factors is None:
+            # LAPACK reads columns, so it is handed the transposes, without a copy.
+            factored = [dgetrf(matrix.T, overwrite_a=True) for matrix in self._matrices]
+            if any(info for _, _, info in factored):
+                raise np.linalg.LinAlgError("singular")
+            self._factors = [(factors, pivots) for factors, pivots, _ in factored]
         solutions = np.array(right)
         for (factors, pivots), columns in zip(self._factors, solutions, strict=True):
             dgetrs(factors, pivots, columns.T, trans=1, overwrite_b=True)
         return solutions
+
+
+class Nodes:
+    """The system that remains once the stages are eliminated: initial rows, transitions, final rows.
+
+    Parameters
+    ----------
+    transition
+        From each node to the next, shape (N, 2n, 2n).
+    final
+        Final residuals by the last node, shape (n, 2n).
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        If it is singular.
+    """
+
+    def __init__(self, transition: Array, final: Array) -> None:
+        count, n = transition.shape[:2]
+        half, self._size = n // 2, n
+        self._inverse: Array | None = None
+        if n * (count + 1) <= FEW:
+            whole = np.zeros((n * (count + 1), n * (count + 1)))
+            whole[:half, :half] = np.eye(half)
+            for i, matrix in enumerate(transition):
+                rows = slice(half + n * i, half + n * (i + 1))
+                whole[rows, n * i : n * (i + 1)] = matrix
+                whole[rows, n * (i + 1) : n * (i + 2)] = -np.eye(n)
+            whole[-half:, -n:] = final
+            self._inverse = np.linalg.inv(whole)
+            return
+        from scipy.linalg.lapack import dgbtrf
+
+        kl, ku, row, column, first, first_column, last, last_column = _band(half, count)
+        band = np.zeros((2 * kl + ku + 1, n * (count + 1)))
+        band[row, column] = transition
+        band[kl + ku + half - n, n:] = -1.0
+        band[first, first_column] = np.eye(n)[:half]
+        band[last, last_column] = final
+        self._band = (kl, ku)
+        self._factors, self._pivots, info = dgbtrf(band, kl, ku)
+        if info:
+            raise np.linalg.LinAlgError("singular")
+
+    def solve(self, start: Array, between: Array, finish: Array) -> Array:
+        """Nodes for right-hand sides of the three kinds of rows, shape (N+1, 2n)."""
+        right = np.concatenate([start, between.ravel(), finish])
+        if self._inverse is not None:
+            return (self._inverse @ right).reshape(-1, self._size)
+        from scipy.linalg.lapack import dgbtrs
+
+        nodes, _ = dgbtrs(self._factors, *self._band, right, self._pivots)
+        return nodes.reshape(-1, self._size)
+
+
+@lru_cache
+def _band(half: int, count: int) -> tuple[Any, ...]:
+    """Widths of the band, and where transition matrices, initial and final rows lie in LAPACK's storage."""
+    n = 2 * half
+    a, b = np.meshgrid(np.arange(n), np.arange(n), indexing="ij")
+    kl, ku = half + n - 1, n - 1
+    diagonal, interval = kl + ku, np.arange(count)[:, None, None]
+    return (
+        kl,
+        ku,
+        np.broadcast_to(diagonal + half + a - b, (count, n, n)).copy(),
+        interval * n + b,
+        diagonal + (a - b)[:half],
+        b[:half],
+        diagonal + half + (a - b)[: n - half],
+        count * n + b[: n - half],
+    )

@@ -1,19 +1,18 @@
 """The linearised collocation equations, factored: corrections of nodes, extra unknowns and all between the nodes.
 
-With the stages eliminated, what remains couples neighbouring nodes only and goes to LAPACK's band solver. Extra
-unknowns are bordered: one more right-hand side each.
+With the stages eliminated, what remains couples neighbouring nodes only. Extra unknowns are bordered: one more
+right-hand side each.
 """
 
 from __future__ import annotations
 
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from satsym.solve.collocation.curve import Step
-from satsym.solve.collocation.elimination import Blocks
+from satsym.solve.collocation.elimination import Blocks, Nodes
 
 if TYPE_CHECKING:
     from satsym.solve.collocation.system import Residual, System
@@ -40,23 +39,12 @@ class Linearised:
         local: Array,
         extra: Array,
     ) -> None:
-        from scipy.linalg.lapack import dgbtrf
-
         self.system, self.transition = system, transition
         self._blocks, self._response = blocks, response
         self._residual, self._local_step = residual, local
         n, half = system.rows, system.problem.states
         self._by_end, self._by_theta = residual.finish_by_end, residual.finish_by_theta
-        self._band = _band(half, system.intervals)
-        kl, ku, row, column, first, first_column, last, last_column = self._band
-        band = np.zeros((2 * kl + ku + 1, n * (system.intervals + 1)))
-        band[row, column] = transition
-        band[kl + ku + half - n, n:] = -1.0
-        band[first, first_column] = np.eye(n)[:half]
-        band[last, last_column] = self._by_end[:half]
-        self._factors, self._pivots, info = dgbtrf(band, kl, ku)
-        if info:
-            raise np.linalg.LinAlgError("singular")
+        self._between = Nodes(transition, self._by_end[:half])
         self._extra = extra.reshape(system.intervals, -1, system.order, n)
         self._columns = [
             self._nodes(self._defects(self._extra[:, j]), np.zeros(half), self._by_theta[:half, j])
@@ -139,27 +127,4 @@ class Linearised:
 
     def _nodes(self, defects: Array, start: Array, finish: Array) -> Array:
         """Corrections of the nodes, shape (N+1, 2n)."""
-        from scipy.linalg.lapack import dgbtrs
-
-        right = np.concatenate([-start, -defects.ravel(), -finish])
-        nodes, _ = dgbtrs(self._factors, self._band[0], self._band[1], right, self._pivots)
-        return nodes.reshape(-1, self.system.rows)
-
-
-@lru_cache
-def _band(half: int, count: int) -> tuple[Any, ...]:
-    """Widths of the band, and where transition matrices, initial and final rows lie in LAPACK's storage."""
-    n = 2 * half
-    a, b = np.meshgrid(np.arange(n), np.arange(n), indexing="ij")
-    kl, ku = half + n - 1, n - 1
-    diagonal, interval = kl + ku, np.arange(count)[:, None, None]
-    return (
-        kl,
-        ku,
-        np.broadcast_to(diagonal + half + a - b, (count, n, n)).copy(),
-        interval * n + b,
-        diagonal + (a - b)[:half],
-        b[:half],
-        diagonal + half + (a - b)[: n - half],
-        count * n + b[: n - half],
-    )
+        return self._between.solve(-start, -defects, -finish)

@@ -8,20 +8,20 @@ X(tau) are inverted without a solve, being symplectic.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from satsym.solve.collocation.curve import Curve, Step
+from satsym.solve.collocation.curve import NOTHING, Curve, Step
 from satsym.solve.collocation.gauss import interpolation, scheme
 from satsym.solve.collocation.linearised import Linearised
 from satsym.solve.collocation.system import System
 
 Array = NDArray[np.floating[Any]]
 
-POINTS = 14
+POINTS = 16
 """Of each interval."""
 
 MOST = 6
@@ -88,7 +88,17 @@ def sharpen(curve: Curve, linearised: Linearised, tolerance: float) -> Sharpened
             break
         before = size
     omitted = _omitted(fine)
-    return Sharpened(fine, max(size, float(omitted.max())), omitted)
+    return Sharpened(_without_rounding(fine), max(size, float(omitted.max())), omitted)
+
+
+def _without_rounding(curve: Curve) -> Curve:
+    """The curve with costates that do nothing set to zero: where no control is needed they are noise of both signs."""
+    n = len(curve.nodes) // 2
+    if max(np.abs(curve.nodes[n:]).max(), np.abs(curve.stages[n:]).max()) >= NOTHING:
+        return curve
+    nodes, stages = curve.nodes.copy(), curve.stages.copy()
+    nodes[n:], stages[n:] = 0.0, 0.0
+    return replace(curve, nodes=nodes, stages=stages)
 
 
 def _correction(
@@ -122,6 +132,6 @@ def _omitted(curve: Curve) -> Array:
     known = np.concatenate([curve.nodes[:, :-1, None], curve.stages], axis=2)
     last = np.abs(known @ scheme(curve.order).coefficients[-2:].T).max(axis=2)
     size = np.abs(known).reshape(2 * n, -1).max(axis=1)
-    scale = np.repeat([max(1.0, size[:n].max()), max(size[n:].max(), 1e-300)], n)
+    scale = np.repeat([max(1.0, size[:n].max()), max(size[n:].max(), NOTHING)], n)
     found: Array = (last / scale[:, None]).max(axis=0)
     return found

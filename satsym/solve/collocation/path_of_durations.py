@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from satsym.solve.collocation import mesh as meshes
-from satsym.solve.collocation.curve import Curve
+from satsym.solve.collocation.descent import descended
 from satsym.solve.collocation.problem import TwoPoint
-from satsym.solve.collocation.sqp import OUTGROWN, Found, minimise
-from satsym.solve.collocation.system import System
+from satsym.solve.collocation.sqp import Found
 from satsym.solve.iteration import Limits
 
 SHORTER, HALVINGS = 0.5, 6
@@ -17,10 +15,6 @@ SHORTER, HALVINGS = 0.5, 6
 
 FIRST, SMALLEST = 1.3, 1.002
 """Ratios of neighbouring durations: at first, and where it is given up."""
-
-ROUNDS, STEPS = 6, 60
-"""Minimisations for one duration, each on a new mesh; steps of each; and by how much, as in the cold start, the
-motion may turn more in an interval than planned."""
 
 
 def along_durations(problem: TwoPoint, stages: int, limits: Limits, solve: Callable[[TwoPoint], Found]) -> Found | None:
@@ -55,7 +49,7 @@ def along_durations(problem: TwoPoint, stages: int, limits: Limits, solve: Calla
         longer = min(duration * ratio, problem.duration)
         last = longer == problem.duration
         there = _lasting(problem, longer)
-        found = _descended(there, curve, stages, 1e-7 if last else 1e-3, limits)
+        found = descended(there, curve, stages, 1e-7 if last else 1e-3, limits)
         steps += max(found.iterations, 1)
         if found.minimum:
             curve, duration = found.curve, longer
@@ -66,18 +60,6 @@ def along_durations(problem: TwoPoint, stages: int, limits: Limits, solve: Calla
         reason = f"lengthening the duration ends at {duration:.4g} of {problem.duration:.4g}"
         return Found(curve, reason, float("inf"), steps, True)
     return replace(found, iterations=steps, hard=True)
-
-
-def _descended(problem: TwoPoint, curve: Curve, stages: int, tolerance: float, limits: Limits) -> Found:
-    """Minimise from a neighbour's minimum. Where there is none nearby the way may be long, and need other meshes."""
-    steps = 0
-    for _ in range(ROUNDS):
-        curve = curve.on(meshes.laid(problem, curve), stages)
-        found = minimise(System(problem, curve.mesh, stages), curve, limits, tolerance, STEPS, meshes.COARSEST)
-        steps, curve = steps + found.iterations, found.curve
-        if limits.expired or not found.reason.startswith((OUTGROWN, "no convergence")):
-            break
-    return replace(found, iterations=steps)
 
 
 def _lasting(problem: TwoPoint, duration: float) -> TwoPoint:

@@ -1,0 +1,122 @@
+"""A cold start for hard problems: from a motion without control the initial state is moved to the given one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.solve.collocation import mesh as meshes
+from satsym.solve.collocation import paths
+from satsym.solve.collocation.curve import Curve
+from satsym.solve.collocation.descent import descended
+from satsym.solve.collocation.gauss import STAGES
+from satsym.solve.collocation.problem import TwoPoint
+from satsym.solve.collocation.sqp import OUTGROWN, Found, minimise
+from satsym.solve.collocation.system import System
+from satsym.solve.iteration import Limits
+
+Array = NDArray[np.floating[Any]]
+Between = Callable[[Array, Array, float], Array]
+"""A state between two others, by its share of the way."""
+
+FIRST_MOVE, SMALLEST_MOVE, MOST_STEPS = 0.25, 2e-3, 500
+
+
+def along_problems(problem: TwoPoint, between: Between, limits: Limits) -> Found | None:
+    """Move the initial state from a motion without control to the given one; ``None`` where there is no such motion.
+
+    It coasts backwards from an end that is given, or costs nothing. Where the minima that one follows come to an
+    end, the minimisation goes on from the last one to whatever lies below.
+
+    Parameters
+    ----------
+    problem
+        Without bounds.
+    between
+        The initial states on the way.
+    limits
+        When to stop.
+    """
+    coasting = paths.coasting_to_the_end(problem)
+    if coasting is None:
+        return None
+    curve = paths.curve(problem, coasting)
+    away, home = coasting(np.zeros(1))[:, 0], problem.initial
+    at, move, steps = 0.0, FIRST_MOVE, 0
+    tangent: tuple[Array, Array] | None = None
+    while steps < MOST_STEPS and move >= SMALLEST_MOVE and not limits.expired:
+        there = min(1.0, at + move)
+        moved = problem.starting_at(between(away, home, there))
+        guess = _predicted(problem, curve, tangent, there - at)
+        system = System(moved, curve.mesh, STAGES)
+        last = there == 1.0
+        found = minimise(
+            system, guess, limits, 1e-7 if last else 1e-3, (6 if move > 0.03 else 14) + 4 * last, meshes.COARSEST
+        )
+        steps += max(found.iterations, 1)
+        if found.reason == OUTGROWN:
+            if found.curve.in_domain(problem.positive):
+                curve, tangent = curve.on(meshes.laid(problem, found.curve), STAGES), None
+            move *= 0.7
+        elif found.minimum:
+            at, curve = there, found.curve
+            if last:
+                return replace(found, iterations=steps, hard=True)
+            tangent = _tangent(moved, curve, lambda share: between(away, home, share), at)
+            mesh = meshes.laid(problem, curve)
+            if abs(len(mesh) - len(curve.mesh)) > 0.15 * len(curve.mesh):
+                curve, tangent = curve.on(mesh, STAGES), None
+            move *= 1.6 if found.iterations <= 5 else 1.0
+        else:
+            move *= 0.4
+    below = descended(problem, curve, STAGES, 1e-7, limits)
+    if below.minimum:
+        return replace(below, iterations=steps + below.iterations, hard=True)
+    reason = f"the path of problems ends after {at:.0%} of its way"
+    return Found(curve, reason, float("inf"), steps + below.iterations, True)
+
+
+def geometric(a: Array, b: Array, share: float) -> Array:
+    """From one state to another: geometrically where both have the same sign, else straight."""
+    same = a * b > 0.0
+    ratio = np.where(same, b, 1.0) / np.where(same, a, 1.0)
+    found: Array = np.where(same, a * np.abs(ratio) ** share, a + (b - a) * share)
+    return found
+
+
+def straight(a: Array, b: Array, share: float) -> Array:
+    """From one state to another on the straight line."""
+    return a + (b - a) * share
+
+
+def _predicted(problem: TwoPoint, curve: Curve, tangent: tuple[Array, Array] | None, move: float) -> Curve:
+    if tangent is None:
+        return curve
+    ahead = replace(curve, nodes=curve.nodes + move * tangent[0], stages=curve.stages + move * tangent[1])
+    falls = any((ahead.stages[i] < 0.5 * curve.stages[i]).any() for i in problem.positive)
+    return curve if falls else ahead
+
+
+def _tangent(problem: TwoPoint, curve: Curve, start: Callable[[float], Array], at: float) -> tuple[Array, Array] | None:
+    """How the extremal changes with the share of the way."""
+    ahead = min(at + 1e-4, 1.0)
+    slope = (start(ahead) - start(at)) / (ahead - at)
+    system = System(problem, curve.mesh, curve.order)
+    residual = system.residual(curve)
+    try:
+        linearised = system.linearised(curve, residual, system.jacobian(curve))
+    except np.linalg.LinAlgError:
+        return None
+    zero = replace(
+        residual,
+        stages=np.zeros_like(residual.stages),
+        ends=np.zeros_like(residual.ends),
+        start=-slope,
+        finish=np.zeros_like(residual.finish),
+    )
+    step = linearised.step(zero)
+    return step.nodes, step.stages

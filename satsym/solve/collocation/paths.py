@@ -1,0 +1,86 @@
+"""Guesses of the states: straight lines, and motions without control."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.grid import Grid
+from satsym.solve.collocation import mesh as meshes
+from satsym.solve.collocation.curve import Curve, stage_times
+from satsym.solve.collocation.gauss import STAGES
+from satsym.solve.collocation.problem import TwoPoint
+from satsym.solve.collocation.scaling import straight
+
+Array = NDArray[np.floating[Any]]
+States = Callable[[Array], Array]
+"""Scaled states, shape (n, M), at M times tau in [0, 1]."""
+
+POINTS = 41
+"""Points of a path at which the mesh is laid."""
+
+STEPS = 4000
+"""RK4 steps of a motion without control."""
+
+
+def first(problem: TwoPoint) -> States:
+    """Where to begin: on the straight line to the end, or where that is free without control."""
+    coasting = None if problem.fixed.any() else _coasting(problem, problem.initial, backwards=False)
+    return coasting or _line(problem)
+
+
+def coasting_to_the_end(problem: TwoPoint) -> States | None:
+    """The motion without control that arrives where the end should be, if there is one."""
+    end = _end_without_costates(problem)
+    return None if end is None else _coasting(problem, end, backwards=True)
+
+
+def curve(problem: TwoPoint, path: States) -> Curve:
+    """A path as a curve without costates, on a mesh that resolves it."""
+    tau = np.linspace(0.0, 1.0, POINTS)
+    mesh = meshes.along(problem, tau, path(tau), problem.theta)
+    n, at = problem.states, stage_times(mesh, STAGES)
+    nodes, stages = np.zeros((2 * n, len(mesh))), np.zeros((2 * n, *at.shape))
+    nodes[:n], stages[:n] = path(mesh), path(at.ravel()).reshape(n, *at.shape)
+    return Curve(mesh, nodes, stages, problem.theta)
+
+
+def _line(problem: TwoPoint) -> States:
+    line = straight(problem)
+    return lambda tau: line[:, :1] + (line[:, 1:] - line[:, :1]) * tau
+
+
+def _coasting(problem: TwoPoint, state: Array, backwards: bool) -> States | None:
+    """The motion without control through a scaled state; ``None`` where it leaves the domain."""
+    instance, grid = problem.instance, Grid.uniform(0.0, 1.0, STEPS)
+    times = instance.t0 + problem.duration * (1.0 - grid.nodes if backwards else grid.nodes)
+    none = np.zeros((len(instance.model.spec.controls), STEPS + 1))
+    start = tuple((state * problem.scale.state).tolist())
+    x, _, _ = instance.model.forward(times, start, none, none[:, 1:], instance.parameters)
+    if not np.isfinite(x).all() or not instance.model.in_domain(x):
+        return None
+    found = (x[:, ::-1] if backwards else x) / problem.scale.state[:, None]
+    return lambda tau: np.array([np.interp(tau, grid.nodes, row) for row in found])
+
+
+def _end_without_costates(problem: TwoPoint) -> Array | None:
+    """A final state where costates may be zero: where a state is free, the terminal cost must not depend on it."""
+    instance, free = problem.instance, ~problem.fixed
+    if problem.free_time or instance.model.spec.multipliers:
+        return None
+    end = straight(problem)[:, 1] * problem.scale.state
+    candidates = [end]
+    tf = instance.t0 + problem.duration
+    if instance.model.spec.has_reference:
+        curve = np.array(instance.model.reference(tf, instance.parameters))
+        candidates.insert(0, np.where(free, curve, end))
+    for candidate in candidates:
+        gradient = instance.model.terminal_gradient(tf, tuple(candidate.tolist()), instance.parameters)
+        slopes = np.array(gradient) * problem.scale.state / problem.scale.cost
+        if not (np.abs(slopes[free]) > 1e-12).any():
+            found: Array = candidate / problem.scale.state
+            return found
+    return None
