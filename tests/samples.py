@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -33,22 +33,25 @@ class Population:
     radial: float
     logarithmic: bool
 
-    def cases(self, count: int | None = None) -> Iterator[Instance]:
-        """The first ones, as instances."""
-        rng, base = np.random.default_rng(self.seed), instance.load("return-to-orbit")
-        for number in range(self.size if count is None else count):
-            r, goal = (self._radius(rng, limits) for limits in (self.radius, self.target))
-            v, theta = rng.uniform(-self.radial, self.radial), rng.uniform(-1.0, 1.0)
-            w, tf = r**-1.5 * rng.uniform(0.8, 1.2), rng.uniform(*self.duration)
-            rate = goal**-1.5
-            final = {"r": goal, "r_dot": 0.0, "theta": float(rate * tf), "theta_dot": rate}
-            initial = (r, float(v), float(theta), float(w))
-            yield replace(base, name=f"{self.seed}-{number}", initial=initial, tf=float(tf), final=final)
+    def case(self, number: int) -> Instance:
+        """One of them, as an instance."""
+        r, goal, v, theta, rotation, tf = (float(column[number]) for column in self._drawn)
+        rate = goal**-1.5
+        initial = (r, v, theta, rotation * r**-1.5)
+        final = {"r": goal, "r_dot": 0.0, "theta": rate * tf, "theta_dot": rate}
+        base = instance.load("return-to-orbit")
+        return replace(base, name=f"{self.seed}-{number}", initial=initial, tf=tf, final=final)
 
-    def _radius(self, rng: np.random.Generator, limits: tuple[float, float]) -> float:
+    @cached_property
+    def _drawn(self) -> tuple[np.ndarray, ...]:
+        rng = np.random.default_rng(self.seed)
+        limits = [self.radius, self.target]
         if self.logarithmic:
-            return float(np.exp(rng.uniform(*np.log(limits))))
-        return float(rng.uniform(*limits))
+            radii = [np.exp(rng.uniform(*np.log(pair), self.size)) for pair in limits]
+        else:
+            radii = [rng.uniform(*pair, self.size) for pair in limits]
+        others = [(-self.radial, self.radial), (-1.0, 1.0), (0.8, 1.2), self.duration]
+        return (*radii, *(rng.uniform(*pair, self.size) for pair in others))
 
 
 EASY = Population(1, 10_000, (0.6, 1.6), (1.0, 1.0), (1.0, 12.0), 0.2, False)

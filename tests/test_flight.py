@@ -10,7 +10,7 @@ import pytest
 
 from satsym.instance import Instance
 from satsym.solve import simulate
-from satsym.solve.flight import FEEDBACKS, MOST_STEPS
+from satsym.solve.flight import MOST_STEPS
 from satsym.status import BadInput, Status
 from tests.cases import parameters, shipped
 from tests.kepler import propagate
@@ -121,11 +121,6 @@ def test_metrics_are_extremes_and_the_final_distance_from_the_reference():
     for name, row in zip(("r", "r_dot", "theta", "theta_dot"), flight.x, strict=True):
         assert (flight.metrics[f"{name}_min"], flight.metrics[f"{name}_max"]) == (row.min(), row.max())
     assert flight.metrics["theta_error"] == flight.x[2, -1] - 2.0 * math.pi
-
-
-def test_a_feedback_that_does_not_exist_is_refused():
-    with pytest.raises(BadInput, match=f"has {', '.join(FEEDBACKS)}"):
-        simulate(from_start(1.1, 0.0, 0.0, 0.9), feedback="telepathy")
 
 
 def test_a_free_final_time_cannot_be_flown():

@@ -11,13 +11,14 @@ from satsym.cli.output import complain, emit, emit_json, in_colour
 from satsym.cli.saving import folder_for, save
 from satsym.status import ExitCode
 
-FEEDBACKS = ("none",)
+FEEDBACKS = ("none", "lqr")
 """Control laws to fly with; here once more, because ``--help`` loads no solver."""
 
 EXAMPLES = """\b
 Examples:
   satsym simulate its-thesis            where the satellite goes if nobody steers it
-  satsym simulate its-thesis --plot     with pictures, into results/its-thesis"""
+  satsym simulate its-thesis --plot     with pictures, into results/its-thesis
+  satsym simulate geo-lqr --feedback lqr    the nonlinear motion under the linear law"""
 
 
 @click.command(epilog=EXAMPLES)
@@ -35,13 +36,13 @@ def simulate(subject: str, feedback: str, as_json: bool, out: Path | None, plot:
     the initial state to the final time, and what ought to be conserved is measured.
     """
     from satsym import instance
-    from satsym import solve as solvers
+    from satsym.analysis.feedback import simulate as simulated
     from satsym.report.results import flight_object
     from satsym.report.text import flight_text, with_files
 
     case = instance.load(subject)
     folder = folder_for(case.name, out, plot)
-    flight = solvers.simulate(case, feedback=feedback)
+    flight = simulated(case, feedback)
     result = flight_object(flight)
     saved = save(folder, flight, result, plot)
     if as_json:

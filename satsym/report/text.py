@@ -50,13 +50,17 @@ def solution_text(solution: Solution, colour: bool = False) -> str:
     blocks = [
         _heading(instance, solution.status, f"{solution.method}, {_effort(solution)}", colour),
         _message(solution.status, solution.message),
+    ]
+    if solution.status in (Status.INFEASIBLE, Status.NO_MINIMISER):
+        return joined(blocks)  # there is no last attempt at an answer, for there is none
+    blocks += [
         table([("", ""), *facts])[1:],
         _states(solution.instance, solution.times, solution.x, solution.lam),
         _controls(instance, solution.times, solution.u),
         _switching(solution, unit),
         _certificate(solution.certificate) if solution.certificate else [],
     ]
-    return _joined(blocks)
+    return joined(blocks)
 
 
 def flight_text(flight: Flight, colour: bool = False) -> str:
@@ -74,7 +78,7 @@ def flight_text(flight: Flight, colour: bool = False) -> str:
         table([("invariant", "initial", "drift"), *kept], right=(1, 2)) if kept else [],
         table([("metric", "value"), *metrics], right=(1,)) if metrics else [],
     ]
-    return _joined(blocks)
+    return joined(blocks)
 
 
 def with_files(text: str, saved: Sequence[Path]) -> str:
@@ -85,7 +89,7 @@ def with_files(text: str, saved: Sequence[Path]) -> str:
     for path in saved:
         places.setdefault(path.parent, []).append(path.name)
     lines = [_wrapped(f"written to {folder}: {', '.join(names)}") for folder, names in places.items()]
-    return _joined([text.splitlines(), *lines])
+    return joined([text.splitlines(), *lines])
 
 
 def progress_line(iteration: Iteration) -> str:
@@ -102,7 +106,8 @@ def _certificate(certificate: Certificate) -> list[str]:
     return [f"  certificate: {certificate.verdict}", *table([("", "", ""), *rows], right=(1,))[1:]]
 
 
-def _joined(blocks: Sequence[Sequence[str]]) -> str:
+def joined(blocks: Sequence[Sequence[str]]) -> str:
+    """Blocks of lines, an empty line between those that have any."""
     return "\n\n".join("\n".join(block) for block in blocks if block)
 
 

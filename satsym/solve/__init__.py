@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from satsym.instance import Instance
 from satsym.solution import Flight, Progress, Solution
 from satsym.status import BadInput
 
+if TYPE_CHECKING:
+    from satsym.solve.closed_loop import Law
+
 __all__ = ["simulate", "solve"]
 
-METHODS = ("sweep", "collocation")
+METHODS = ("sweep", "collocation", "shooting", "linear")
 """What is available of what an instance may name."""
 
 
 def solve(instance: Instance, progress: Progress | None = None) -> Solution:
-    """Solve an instance by the method it names, or by the one that fits, and certify the answer.
+    """Solve an instance by the method it names and certify the answer; by default that is collocation.
 
-    The sweep is as accurate as its steps allow; a certificate asks for more, so only collocation's answers have one.
+    Where it finds nothing and no final state is given, the sweep is tried as well. The sweep is as accurate as its
+    steps allow; a certificate asks for more, so its answers have none.
 
     Parameters
     ----------
@@ -45,19 +51,39 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
             f"{instance.name}: a given final {given} cannot be swept for; leave it free and weigh its error in the "
             'terminal cost, or use method "collocation"'
         )
-    if method == "sweep" or (method == "auto" and not instance.final and instance.tf is not None):
-        from satsym.solve import forward_backward
-
-        return forward_backward.solve(instance, progress)
-    from satsym.solve import two_point
+    if method == "sweep":
+        return _swept(instance, progress)
     from satsym.solve.certificate import certify
 
-    solution = two_point.solve(instance, progress)
+    solution = _solver(method)(instance, progress)
+    if method == "auto" and not solution.status.answered and not instance.final and instance.tf is not None:
+        return _swept(instance, progress)
     return replace(solution, certificate=certify(solution))
 
 
-def simulate(instance: Instance, feedback: str = "none") -> Flight:
-    """Simulate an instance under a feedback; see :func:`satsym.solve.flight.simulate`."""
+def _solver(method: str) -> Callable[[Instance, Progress | None], Solution]:
+    """The one of that name, collocation by default; no other is loaded."""
+    if method == "shooting":
+        from satsym.solve import shooting
+
+        return shooting.solve
+    if method == "linear":
+        from satsym.solve import linear
+
+        return linear.solve
+    from satsym.solve import two_point
+
+    return two_point.solve
+
+
+def _swept(instance: Instance, progress: Progress | None) -> Solution:
+    from satsym.solve import forward_backward
+
+    return forward_backward.solve(instance, progress)
+
+
+def simulate(instance: Instance, law: Law | None = None) -> Flight:
+    """Simulate an instance under a control law; see :func:`satsym.solve.flight.simulate`."""
     from satsym.solve import flight
 
-    return flight.simulate(instance, feedback)
+    return flight.simulate(instance, law)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -27,6 +29,17 @@ def project(instance: Instance, u: Array) -> Array:
         norm = np.linalg.norm(u, axis=0)
         return np.where(norm > instance.max_norm, u * (instance.max_norm / np.maximum(norm, 1e-300)), u)
     return u
+
+
+def nearest(instance: Instance) -> Callable[[Sequence[float]], Sequence[float]]:
+    """The nearest admissible control as a function of one, for loops on plain floats; see :func:`project`."""
+    kind = instance.model.spec.control_set
+    if kind == "box":
+        bounds = list(zip(instance.lower, instance.upper, strict=True))
+        return lambda u: [min(max(v, low), high) for v, (low, high) in zip(u, bounds, strict=True)]
+    if kind == "ball":
+        return lambda u: [v * min(1.0, instance.max_norm / max(math.hypot(*u), 1e-300)) for v in u]
+    return lambda u: u
 
 
 def active(instance: Instance, unbounded: Array) -> NDArray[np.int8]:

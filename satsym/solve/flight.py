@@ -9,15 +9,19 @@ import numpy as np
 from satsym.grid import Grid
 from satsym.instance import Instance
 from satsym.solution import Array, Flight, Invariant
-from satsym.solve import control_set
+from satsym.solve import closed_loop, control_set
+from satsym.solve.closed_loop import Law
 from satsym.status import BadInput, Status
 
-FEEDBACKS = ("none",)
-"""Control laws that a simulation can follow."""
-
-ORDER = 4
+RICHARDSON = 2.0**4 - 1.0
+"""The distance between two runs of RK4, one with half the steps, is so many times the error of the better one."""
 MARGIN = 0.1
 """Share of the tolerance that the estimated error may take: estimates can be low."""
+
+SHARPER, LEAST_TOLERANCE = 0.01, 3e-14
+"""Under a law: the tolerance of a run relative to that before, and the least that is more than rounding."""
+GAINED = 10.0
+"""So many times is such a run better at least; nearly by as much as its tolerance, where the law has no kinks."""
 
 ROUNDING = 100.0 * float(np.finfo(float).eps)
 """Relative change of the initial state whose effect is taken for that of rounding. More steps do not make the error
@@ -31,48 +35,41 @@ HOPELESS = 64
 """Times the given steps at which a motion outside the domain is given up: until then the steps may be too long."""
 
 
-def simulate(instance: Instance, feedback: str = "none") -> Flight:
-    """Integrate the motion with RK4, halving the step until two runs agree.
+def simulate(instance: Instance, law: Law | None = None) -> Flight:
+    """Integrate the motion, twice, until the two runs agree: with RK4, or under a law with DOP853.
 
     Parameters
     ----------
     instance
         With a given final time.
-    feedback
-        ``"none"``: no control, or the admissible one next to it.
+    law
+        What controls it; by default there is no control, or the admissible one next to none.
 
     Returns
     -------
     Flight
         At the instance's number of steps; ``metrics`` has the steps that were needed and the estimated
-        error (Richardson), relative to the size of each state or, where more, to the size at which rounding alone
+        error, relative to the size of each state or, where more, to the size at which rounding alone
         causes that error.
 
     Raises
     ------
     BadInput
-        If the final time is free, or there is no such feedback.
+        If the final time is free.
     """
-    if feedback not in FEEDBACKS:
-        raise BadInput(f"--feedback {feedback}: unknown; this model has {', '.join(FEEDBACKS)}")
     if instance.tf is None:
         raise BadInput(f"{instance.name}: time.tf: a simulation needs a number, not a free final time")
-    coarse_steps, sufficient = instance.solver.steps, MARGIN * instance.solver.tolerance
-    steps, x, error = coarse_steps, _fly(instance, coarse_steps), float("nan")
-    while 2 * steps <= max(MOST_STEPS, 2 * coarse_steps) and (steps < HOPELESS * coarse_steps or _sound(instance, x)):
-        steps, coarse, x, before = 2 * steps, x, _fly(instance, 2 * steps), error
-        error = _difference(coarse, x[:, ::2])
-        if error > 0.25 * before:  # no longer fourth order
-            error = _difference(coarse, x[:, ::2], _rounding(instance, x, steps) / sufficient)
-        if error <= sufficient:
-            break
-    x = x[:, :: steps // coarse_steps]
-    times = Grid.uniform(instance.t0, instance.tf, coarse_steps).nodes
-    status = _status(instance, x, error)
-    u = np.repeat(_control(instance), len(times), axis=1)
+    times = Grid.uniform(instance.t0, instance.tf, instance.solver.steps).nodes
+    if law is None:
+        x, steps, error = _uncontrolled(instance)
+        u, status = np.repeat(_control(instance), len(times), axis=1), _status(instance, x, error)
+    else:
+        run, error = _controlled(instance, law, times)
+        x, u, steps = run.x, run.u, run.steps
+        status = Status.LEFT_DOMAIN if run.left_domain else _status(instance, x, error)
     return Flight(
         instance=instance,
-        feedback=feedback,
+        feedback=law.name if law else "none",
         status=status,
         message=_message(status, error, steps),
         times=times,
@@ -86,6 +83,32 @@ def simulate(instance: Instance, feedback: str = "none") -> Flight:
 def _control(instance: Instance) -> Array:
     """No control, or the admissible one next to it; shape (m, 1)."""
     return control_set.project(instance, np.zeros((len(instance.model.spec.controls), 1)))
+
+
+def _uncontrolled(instance: Instance) -> tuple[Array, int, float]:
+    """States at the nodes by RK4, halving the step until two runs agree; steps; and the estimated error."""
+    coarse_steps, sufficient = instance.solver.steps, MARGIN * instance.solver.tolerance
+    steps, x, error = coarse_steps, _fly(instance, coarse_steps), float("nan")
+    while 2 * steps <= max(MOST_STEPS, 2 * coarse_steps) and (steps < HOPELESS * coarse_steps or _sound(instance, x)):
+        steps, coarse, x, before = 2 * steps, x, _fly(instance, 2 * steps), error
+        error = _difference(coarse, x[:, ::2]) / RICHARDSON
+        if error > 0.25 * before:  # no longer fourth order
+            error = _difference(coarse, x[:, ::2], _rounding(instance, x, steps) / sufficient) / RICHARDSON
+        if error <= sufficient:
+            break
+    return x[:, :: steps // coarse_steps], steps, error
+
+
+def _controlled(instance: Instance, law: Law, times: Array) -> tuple[closed_loop.Run, float]:
+    """The motion under a law, with smaller tolerances until two runs agree; and the estimated error."""
+    sufficient = MARGIN * instance.solver.tolerance
+    tolerance, error = sufficient, float("nan")
+    run = closed_loop.fly(instance, law, times, tolerance)
+    while not error <= sufficient and tolerance > LEAST_TOLERANCE and np.isfinite(run.x).all():
+        tolerance, coarse = max(SHARPER * tolerance, LEAST_TOLERANCE), run
+        run = closed_loop.fly(instance, law, times, tolerance)
+        error = _difference(coarse.x, run.x) / GAINED
+    return run, error
 
 
 def _fly(instance: Instance, steps: int) -> Array:
@@ -109,10 +132,10 @@ def _rounding(instance: Instance, x: Array, steps: int) -> Array:
 
 
 def _difference(coarse: Array, fine: Array, least: Array | float = 0.0) -> float:
-    """Estimated error of the coarser of two runs (Richardson) relative to the size of each state, or a least size."""
+    """Distance between two runs relative to the size of each state, or a least size."""
     with np.errstate(invalid="ignore"):
         size = np.maximum(np.abs(fine).max(axis=1, keepdims=True), np.maximum(least, np.finfo(float).tiny))
-        return float((np.abs(coarse - fine) / size).max()) / (2**ORDER - 1)
+        return float((np.abs(coarse - fine) / size).max())
 
 
 def _status(instance: Instance, x: Array, error: float) -> Status:
@@ -125,7 +148,7 @@ def _status(instance: Instance, x: Array, error: float) -> Status:
 
 def _message(status: Status, error: float, steps: int) -> str:
     if status is Status.CONVERGED:
-        return f"two runs, one with half the steps, agree to {error:.0e}"
+        return f"two runs, one of them with fewer steps, agree to {error:.0e}"
     if status is Status.NOT_CONVERGED:
         return f"even {steps} steps leave an estimated error of {error:.0e}: the motion comes close to a singularity"
     return f"the motion is not finite: {status.advice}" if status is Status.NON_FINITE else status.advice

@@ -15,6 +15,7 @@ import numpy as np
 
 from satsym.grid import Grid
 from satsym.instance import Instance
+from satsym.solution import Solution
 from satsym.solve.collocation.durations import time_scale
 from satsym.solve.iteration import Limits
 
@@ -96,6 +97,26 @@ def shifted(instance: Instance, turns: dict[str, int]) -> Instance:
     return replace(instance, initial=initial)
 
 
+def as_stated(solution: Solution) -> Solution:
+    """A solution with as many turns taken off its angles, throughout, as make them end as stated."""
+    instance, names = solution.instance, solution.instance.model.spec.state_names
+    turns: dict[str, int] = {}
+    for name in instance.solver.free_angles:
+        if name in instance.final:
+            row = names.index(name)
+            goal = _goal(instance, row, instance.final[name], float(solution.times[-1]))
+            turns[name] = round((float(solution.x[row, -1]) - goal) / TURN)
+    if not any(turns.values()):
+        return solution
+    x = solution.x - TURN * np.array([turns.get(name, 0) for name in names])[:, None]
+    return replace(solution, instance=shifted(instance, turns), x=x)
+
+
+def _goal(instance: Instance, row: int, wanted: float | str, tf: float) -> float:
+    """A stated final value."""
+    return float(instance.model.reference(tf, instance.parameters)[row] if isinstance(wanted, str) else wanted)
+
+
 def _neighbours(at: tuple[int, ...]) -> list[tuple[int, ...]]:
     """One turn less or more of one angle."""
     return [(*at[:i], at[i] + step, *at[i + 1 :]) for i in range(len(at)) for step in (-1, 1)]
@@ -117,9 +138,9 @@ def _natural(instance: Instance, angles: list[str]) -> tuple[int, ...]:
         return none
     found = []
     for name in angles:
-        wanted, row = instance.final[name], names.index(name)
-        goal = instance.model.reference(end, instance.parameters)[row] if wanted == "reference" else wanted
-        found.append(round((float(x[row, -1]) - float(goal)) / TURN))
+        row = names.index(name)
+        goal = _goal(instance, row, instance.final[name], end)
+        found.append(round((float(x[row, -1]) - goal) / TURN))
     return tuple(found)
 
 

@@ -8,12 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.solution import Solution
-from satsym.solve.certificate.flow import Flow
+from satsym.solve.certificate.flow import Flow, typical
+from satsym.solve.collocation.scaling import final_argument
 
 Array = NDArray[np.floating[Any]]
-
-NEGLIGIBLE = 1e-3
-"""A costate this much smaller than the others, all weighed by their states, is compared at that size."""
 
 RESOLVED = 1e-9
 """Smallest singular value, relative to the largest, of a field whose determinant has a sign that can be trusted."""
@@ -28,7 +26,7 @@ def boundary_residual(solution: Solution, flow: Flow) -> float:
     instance, model = solution.instance, solution.instance.model
     n, spec = len(instance.initial), instance.model.spec
     tf, x, lam = float(flow.times[-1]), tuple(flow.x[:, -1].tolist()), tuple(flow.lam[:, -1].tolist())
-    final = final_argument(solution)
+    final = final_argument(instance)
 
     def at(nu: tuple[float, ...]) -> Array:
         return np.array(model.boundary(tf, x, lam, nu, instance.parameters, instance.bounds, final))
@@ -39,13 +37,11 @@ def boundary_residual(solution: Solution, flow: Flow) -> float:
         slopes = np.stack([at(tuple(unit)) - residual for unit in units], axis=1)
         residual = residual + slopes @ np.linalg.lstsq(slopes, -residual, rcond=None)[0]
     fixed = np.array(final[:n]) + np.array(final[n : 2 * n]) > 0.0
-    state, costate = np.abs(flow.x).max(axis=1), np.abs(flow.lam).max(axis=1)
-    typical = max(float(costate @ state), np.finfo(float).tiny)
+    state, costate = typical(solution)
     nu = (0.0,) * len(spec.multipliers)
     slopes = np.array(model.boundary_jacobian(tf, x, lam, nu, instance.parameters, instance.bounds, final))
     gradient = np.abs(slopes.reshape(len(residual), -1)[:n, :n]) @ state
-    costate = np.maximum(np.maximum(costate, gradient), NEGLIGIBLE * typical / np.maximum(state, 1e-300))
-    rows = np.where(fixed, np.maximum(state, 1e-300), costate)
+    rows = np.where(fixed, state, np.maximum(costate, gradient))
     found = np.abs(residual[:n]) / rows
     parts = [*found, *np.abs(residual[n:-1])]
     if instance.tf is None:
@@ -54,43 +50,15 @@ def boundary_residual(solution: Solution, flow: Flow) -> float:
     return float(max(parts))
 
 
-def final_argument(solution: Solution) -> tuple[float, ...]:
-    """The ``final`` argument of the boundary function; angles that count modulo a turn at the one they reached."""
-    instance = solution.instance
-    names = instance.model.spec.state_names
-    turn = 2.0 * np.pi
-    given, on_reference, target = [], [], []
-    reference = (
-        instance.model.reference(float(solution.times[-1]), instance.parameters)
-        if "reference" in instance.final.values()
-        else (0.0,) * len(names)
-    )
-    for name, curve, reached in zip(names, reference, solution.x[:, -1], strict=True):
-        wanted = instance.final.get(name)
-        number = float(curve) if wanted == "reference" else float(wanted) if wanted is not None else 0.0
-        turns = (
-            round((float(reached) - number) / turn) if name in instance.solver.free_angles and wanted is not None else 0
-        )
-        follows = wanted == "reference" and not turns
-        given.append(float(wanted is not None and not follows))
-        on_reference.append(float(follows))
-        target.append(0.0 if follows else number + turn * turns)
-    return (*given, *on_reference, *target)
-
-
 def dynamics_defect(solution: Solution, flow: Flow) -> float:
     """Largest distance of the solver's states and costates from the flow, relative to the size of each.
 
-    A row that is small throughout beside what the others make of its size counts at that size: costates by the
-    largest product of state and costate. Compared at those nodes of the solver that are stations, and at the ends.
+    Sizes as :func:`typical` has them. Compared at those nodes of the solver that are stations, and at the ends.
     """
     here = np.searchsorted(solution.times, flow.times)
     here = np.clip(here, 0, len(solution.times) - 1)
     same = np.abs(solution.times[here] - flow.times) <= 1e-12 * max(abs(float(flow.times[-1])), 1e-300)
-    state, costate = np.abs(flow.x).max(axis=1), np.abs(flow.lam).max(axis=1)
-    state = np.where(state > 0.0, state, max(float(state.max()), 1.0))
-    typical = float((state * costate).max()) or 1.0
-    costate = np.maximum(costate, NEGLIGIBLE * typical / state)
+    state, costate = typical(solution)
     parts = [
         (np.abs(mine[:, same] - theirs[:, here[same]]).max(axis=1) / size).max()
         for mine, theirs, size in ((flow.x, solution.x, state), (flow.lam, solution.lam, costate))
@@ -156,7 +124,7 @@ def negative_end(solution: Solution, flow: Flow) -> float:
     come, -Lambda X^-1, in the free components.
     """
     instance, n = solution.instance, flow.x.shape[0]
-    final = final_argument(solution)
+    final = final_argument(instance)
     free = np.flatnonzero(np.array(final[:n]) + np.array(final[n : 2 * n]) == 0.0)
     if not len(free) or instance.model.spec.multipliers:
         return float("inf")

@@ -9,12 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.solution import Solution
+from satsym.solve.collocation.curve import SMALL
+from satsym.solve.collocation.scaling import two_point
 from satsym.solve.integrate import NotFinite, integrate
 
 Array = NDArray[np.floating[Any]]
 
 TOLERANCE = 1e-13
 """Error of a step, relative to the size of each component."""
+
+NEGLIGIBLE = 1e-3
+"""Share of its unit, or of the largest product with its partner, at which something small counts."""
 
 STATIONS = 64
 """Times at which the flow is compared with the solver's trajectory and looked at for conjugate times."""
@@ -47,7 +52,7 @@ def flow(solution: Solution) -> Flow | None:
     start, end = float(solution.times[0]), float(solution.times[-1])
     kinks = [t for times in solution.switching_times for t in times if start < t < end]
     stations = np.unique(np.concatenate([np.linspace(start, end, STATIONS + 1), kinks]))
-    sizes = np.concatenate([_sizes(solution.x), _sizes(solution.lam)])
+    sizes = np.concatenate(typical(solution))
     by_costates = np.concatenate([np.zeros((n, n)), np.eye(n)])
 
     def rates(t: float, y: Array) -> Array:
@@ -69,8 +74,16 @@ def flow(solution: Solution) -> Flow | None:
     return Flow(stations, table[:, :n].T, table[:, n : 2 * n].T, table[:, 2 * n :].reshape(-1, 2 * n, n))
 
 
-def _sizes(rows: Array) -> Array:
-    """Largest magnitude of each row; of a row of zeros, the largest of all, or one."""
-    own = np.abs(rows).max(axis=1)
-    spare = own.max() if own.any() else 1.0
-    return np.where(own > 0.0, own, spare)
+def typical(solution: Solution) -> tuple[Array, Array]:
+    """Sizes to which errors of states and costates are held, shapes (n,).
+
+    Each its largest magnitude along the way, but what is far below its unit counts as a share of that: states are
+    rounded, and what they move is no better. A costate also counts as a share of what the largest product of state
+    and costate makes of it.
+    """
+    unit = two_point(solution.instance, float(solution.times[-1] - solution.times[0])).scale.both[:, 0]
+    n = len(solution.x)
+    state = np.maximum(np.abs(solution.x).max(axis=1), NEGLIGIBLE * unit[:n])
+    costate = np.abs(solution.lam).max(axis=1)
+    product = float((state * costate).max())
+    return state, np.maximum(np.maximum(costate, SMALL * unit[n:]), NEGLIGIBLE * product / state)

@@ -15,7 +15,7 @@ from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solve import control_set
 from satsym.solve.certificate.competitors import margin
-from satsym.solve.certificate.conditions import final_argument
+from satsym.solve.collocation.scaling import final_argument
 
 Array = NDArray[np.floating[Any]]
 
@@ -105,6 +105,8 @@ def _corrected(flown: Flights, u: Array, shapes: list[Array], weights: Array, re
             break
         if len(tried):  # Broyden: the response as the last correction found it
             response = response + np.outer(gap, tried) / float(tried @ tried)
+            if not np.isfinite(response).all():
+                break
         tried = -np.linalg.lstsq(response, gap, rcond=None)[0]
         weights = weights + tried
     return float("inf")
@@ -113,8 +115,10 @@ def _corrected(flown: Flights, u: Array, shapes: list[Array], weights: Array, re
 def _flights(solution: Solution) -> Flights | None:
     """Flights on the first grid on which the solution's own control leads to its end."""
     n = len(solution.instance.initial)
-    final = np.array(final_argument(solution))
-    fixed = np.flatnonzero(final[:n] + final[n : 2 * n] > 0.0)
+    final = np.array(final_argument(solution.instance))
+    # Where constraints tie the end, a neighbour keeps them by keeping the whole of it.
+    tied = bool(solution.instance.model.spec.multipliers)
+    fixed = np.arange(n) if tied else np.flatnonzero(final[:n] + final[n : 2 * n] > 0.0)
     scale = np.maximum(np.abs(solution.x).max(axis=1), 1e-300)
     for steps in STEPS:
         grid = Grid.uniform(float(solution.times[0]), float(solution.times[-1]), steps)

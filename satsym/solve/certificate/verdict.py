@@ -8,9 +8,11 @@ from typing import Any
 import numpy as np
 
 from satsym.solution import Certificate, Check, Solution
+from satsym.solve import revolutions
 from satsym.solve.certificate import competitors, conditions
 from satsym.solve.certificate.flow import Flow, flow
 from satsym.solve.certificate.neighbours import neighbours
+from satsym.solve.collocation.scaling import final_argument
 
 RESIDUAL, DEFECT, STATIONARY, DRIFT = 1e-9, 1e-7, 1e-8, 1e-9
 """Largest boundary residual, defect, violation of stationarity and change of H."""
@@ -31,6 +33,7 @@ def certify(solution: Solution) -> Certificate | None:
     """
     if not solution.status.answered:
         return None
+    solution = revolutions.as_stated(solution)
     with np.errstate(all="ignore"):
         recomputed = flow(solution)
         if recomputed is None:
@@ -65,7 +68,7 @@ def _first_order(solution: Solution, recomputed: Flow) -> list[Check]:
 
 def _sufficient(solution: Solution, recomputed: Flow) -> list[Check]:
     """Each is a deficit that must not be positive."""
-    fixed = np.array(conditions.final_argument(solution)).reshape(3, -1)[:2].any(axis=0)
+    fixed = np.array(final_argument(solution.instance)).reshape(3, -1)[:2].any(axis=0)
     time = conditions.conjugate_time(recomputed)
     checks = [
         Check("legendre-clebsch", float(not conditions.legendre_clebsch(solution) > 0.0), 0.0),
@@ -75,9 +78,13 @@ def _sufficient(solution: Solution, recomputed: Flow) -> list[Check]:
         checks.append(
             Check("curvature in the free end", float(not conditions.negative_end(solution, recomputed) > 0.0), 0.0)
         )
+    if competitors.none_conceivable(solution):
+        return [*checks, Check("cheaper by: anything", 0.0, 0.0)]
     for name, competitor in (
         ("feasible neighbours", neighbours),
         ("other starts", competitors.other_starts),
+        ("other revolutions", competitors.other_revolutions),
+        ("other durations", competitors.other_durations),
         ("earlier arrivals", competitors.earlier_arrivals),
     ):
         dearer = competitor(solution)

@@ -82,7 +82,7 @@ def cold_start(problem: TwoPoint, limits: Limits, quick: bool = False) -> Start:
         return from_path(problem, paths.first(problem), limits)
 
     ways: list[tuple[str, Callable[[], Found | None]]] = [
-        ("straight line", lambda: straight_through(line, System(free, line.mesh, STAGES)) or from_line(free)),
+        ("straight line", lambda: straight_through(line, System(free, line.mesh, STAGES), limits) or from_line(free)),
         ("path of problems", lambda: along_problems(free, geometric, limits)),
         ("straight path of problems", lambda: along_problems(free, straight, limits)),
         ("path of durations", lambda: along_durations(free, STAGES, limits, from_line)),

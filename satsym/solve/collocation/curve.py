@@ -18,12 +18,20 @@ NOTHING = 1e-12
 """Scaled costates below this do nothing: they change the states by such a share of their size."""
 
 
+SMALL = 1e-4
+"""Smaller scaled costates count at this size: states are rounded, and so are costates by as much at least."""
+
+
 class Path(Protocol):
     """States and costates over the scaled time tau in [0, 1], smooth between the nodes of a mesh; extra unknowns."""
 
     @property
     def mesh(self) -> Array:
         """Nodes in [0, 1], shape (N+1,)."""
+
+    @property
+    def nodes(self) -> Array:
+        """Values there, shape (2n, N+1)."""
 
     @property
     def theta(self) -> Array:
@@ -118,7 +126,7 @@ class Step:
         """Largest change: states relative to their size (at least one), costates relative to theirs."""
         n = len(curve.nodes) // 2
         x = max(1.0, np.abs(curve.nodes[:n]).max(), np.abs(curve.stages[:n]).max())
-        lam = max(np.abs(curve.nodes[n:]).max(), np.abs(curve.stages[n:]).max(), NOTHING)
+        lam = max(np.abs(curve.nodes[n:]).max(), np.abs(curve.stages[n:]).max(), SMALL)
         theta = np.abs(self.theta) / np.maximum(np.abs(curve.theta), 1e-300) if len(self.theta) else np.zeros(1)
         parts = (
             np.abs(self.nodes[:n]).max() / x,

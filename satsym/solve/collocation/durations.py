@@ -234,7 +234,7 @@ class _Search:
         self.steps += outcome.iterations
         try:
             final = system.linearised(outcome.curve, system.residual(outcome.curve), system.jacobian(outcome.curve))
-            minimum = outcome.converged and not negative_directions(problem, outcome.curve, final)
+            minimum = outcome.converged and not negative_directions(problem, outcome.curve, final.matching)
         except np.linalg.LinAlgError:
             return None
         cost = system.cost(outcome.curve)

@@ -30,12 +30,12 @@ def two_point(instance: Instance, duration: float) -> TwoPoint:
     duration
         tf - t0; where it is free, a first guess.
     """
-    final = _final(instance)
+    final = final_argument(instance)
     start, end = np.array(instance.initial), _end(instance, final, duration)
     return TwoPoint(instance, final, duration, _scale(instance, start, end, duration))
 
 
-def _final(instance: Instance) -> tuple[float, ...]:
+def final_argument(instance: Instance) -> tuple[float, ...]:
     """The ``final`` argument of the boundary functions."""
     wanted = [instance.final.get(name) for name in instance.model.spec.state_names]
     given = [float(isinstance(value, float | int)) for value in wanted]

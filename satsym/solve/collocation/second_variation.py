@@ -13,14 +13,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from satsym.solve.collocation.curve import Curve
-from satsym.solve.collocation.linearised import Linearised
+from satsym.solve.collocation.curve import Path
+from satsym.solve.collocation.matching import Matching
 from satsym.solve.collocation.problem import TwoPoint
 
 Array = NDArray[np.floating[Any]]
 
 
-def negative_directions(problem: TwoPoint, curve: Curve, linearised: Linearised) -> int:
+def negative_directions(problem: TwoPoint, path: Path, matching: Matching) -> int:
     """Number of negative eigenvalues of the discretised second variation; zero at a strict local minimum.
 
     Raises
@@ -28,7 +28,7 @@ def negative_directions(problem: TwoPoint, curve: Curve, linearised: Linearised)
     numpy.linalg.LinAlgError
         If a field of extremals is singular at a node.
     """
-    n, transition = problem.states, linearised.transition
+    n, transition = problem.states, matching.transition
     # The field of extremals from the start, by its costates as a function of its states: Lambda X^-1.
     slope = _right_divided(transition[0][n:, n:], transition[0][:n, n:])
     left = np.empty((len(transition) - 1, n, n))
@@ -37,7 +37,7 @@ def negative_directions(problem: TwoPoint, curve: Curve, linearised: Linearised)
         left[i], slope = arrived[:n], _right_divided(arrived[n:], arrived[:n])
     pivots = np.linalg.solve(-transition[1:, :n, n:], left)
     count = _negative(pivots)
-    return count + _at_the_end(problem, curve, slope) + _of_the_duration(problem, linearised)
+    return count + _at_the_end(problem, path, slope) + _of_the_duration(problem, matching)
 
 
 def _right_divided(a: Array, b: Array) -> Array:
@@ -46,13 +46,13 @@ def _right_divided(a: Array, b: Array) -> Array:
     return found
 
 
-def _at_the_end(problem: TwoPoint, curve: Curve, slope: Array) -> int:
+def _at_the_end(problem: TwoPoint, path: Path, slope: Array) -> int:
     """Negative pivots of the final states that are free, within the terminal constraints."""
     n = problem.states
     free = np.flatnonzero(~problem.fixed)
     if not len(free):
         return 0
-    _, by_end, _ = problem.boundary(curve.nodes[:, -1], curve.theta)
+    _, by_end, _ = problem.boundary(path.nodes[:, -1], path.theta)
     # Rows of free states read lambda - S_x - nu' psi_x, so minus their derivative is the Hessian of S + nu' psi.
     pivot = (-by_end[:n, :n] - slope)[np.ix_(free, free)]
     constraints = problem.unknowns - problem.free_time
@@ -63,11 +63,11 @@ def _at_the_end(problem: TwoPoint, curve: Curve, slope: Array) -> int:
     return _negative(pivot[None])
 
 
-def _of_the_duration(problem: TwoPoint, linearised: Linearised) -> int:
+def _of_the_duration(problem: TwoPoint, matching: Matching) -> int:
     """One if the cost has a maximum in the duration: its second derivative along the extremals is negative."""
     if not problem.free_time:
         return 0
-    reduced = linearised.reduced()
+    reduced = matching.reduced()
     # With the multipliers eliminated first, the pivot of the duration is a ratio of determinants.
     rest = reduced[:-1, :-1]
     pivot = np.linalg.det(reduced) / (np.linalg.det(rest) if len(rest) else 1.0)

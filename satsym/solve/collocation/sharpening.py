@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from satsym.solve.collocation.curve import NOTHING, Curve, Step
+from satsym.solve.collocation.curve import NOTHING, SMALL, Curve, Step
 from satsym.solve.collocation.gauss import interpolation, scheme
 from satsym.solve.collocation.linearised import Linearised
 from satsym.solve.collocation.system import System
@@ -109,9 +109,9 @@ def _correction(
     defect = (residual.stages @ own.inverse.T).transpose(1, 2, 0)
     carried = (inverse @ defect[..., None])[..., 0]
     local = -(fundamental @ (own.matrix @ carried)[..., None])[..., 0]
-    arrived = -(linearised.transition @ (own.weights @ carried)[..., None])[..., 0]
+    arrived = -(linearised.matching.transition @ (own.weights @ carried)[..., None])[..., 0]
     # The polynomial through the fine points ends elsewhere than where the next interval begins.
-    nodes, theta = linearised.correction(arrived - residual.ends.T, residual.start, residual.finish)
+    nodes, theta = linearised.matching.correction(arrived - residual.ends.T, residual.start, residual.finish)
     stages = local + linearised.spread(nodes, theta, onto)
     return Step(nodes.T, stages.transpose(2, 0, 1), theta)
 
@@ -132,6 +132,6 @@ def _omitted(curve: Curve) -> Array:
     known = np.concatenate([curve.nodes[:, :-1, None], curve.stages], axis=2)
     last = np.abs(known @ scheme(curve.order).coefficients[-2:].T).max(axis=2)
     size = np.abs(known).reshape(2 * n, -1).max(axis=1)
-    scale = np.repeat([max(1.0, size[:n].max()), max(size[n:].max(), NOTHING)], n)
+    scale = np.repeat([max(1.0, size[:n].max()), max(size[n:].max(), SMALL)], n)
     found: Array = (last / scale[:, None]).max(axis=0)
     return found

@@ -173,7 +173,7 @@ def _direction(
     for share in shares:
         try:
             linearised = system.linearised(curve, residual, share * jacobian + (1.0 - share) * bare)
-            if trusted or share == 0.0 or negative_directions(system.problem, curve, linearised) == 0:
+            if trusted or share == 0.0 or negative_directions(system.problem, curve, linearised.matching) == 0:
                 return linearised, share == 1.0
         except np.linalg.LinAlgError:
             continue
@@ -184,7 +184,7 @@ def _kind(system: System, curve: Curve) -> str:
     """``"minimum"`` or ``"saddle"``."""
     try:
         linearised = system.linearised(curve, system.residual(curve), system.jacobian(curve))
-        negative = negative_directions(system.problem, curve, linearised)
+        negative = negative_directions(system.problem, curve, linearised.matching)
     except np.linalg.LinAlgError:
         return "the equations are singular"
     return "minimum" if negative == 0 else "saddle"

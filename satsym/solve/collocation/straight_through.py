@@ -14,6 +14,7 @@ from satsym.solve.collocation.newton import within_domain
 from satsym.solve.collocation.second_variation import negative_directions
 from satsym.solve.collocation.sqp import Found
 from satsym.solve.collocation.system import System
+from satsym.solve.iteration import Limits
 
 NEAR = 3e-2
 """Last correction from which the corrections of the refinement converge, with the linearisation at hand."""
@@ -22,7 +23,7 @@ FEW = 6
 """Corrections from the straight line that still count as straight through."""
 
 
-def straight_through(start: Curve, system: System) -> Found | None:
+def straight_through(start: Curve, system: System, limits: Limits) -> Found | None:
     """The minimum to which Newton's method leads at once.
 
     Parameters
@@ -31,6 +32,8 @@ def straight_through(start: Curve, system: System) -> Found | None:
         A guess without costates.
     system
         Collocation equations of a problem without bounds, on the guess's mesh and with its stages.
+    limits
+        Who watches.
     """
     problem, curve = system.problem, start
     before, steps = float("inf"), 0
@@ -40,10 +43,13 @@ def straight_through(start: Curve, system: System) -> Found | None:
         try:
             linearised = system.linearised(curve, residual, jacobian)
             step = linearised.step(residual)
-            size = step.size(curve)
+            moved = curve.moved(step, 1.0)
+            size = step.size(moved)
             if not size < before or within_domain(problem, curve, step) < 1.0:
                 return None
-            curve = curve.moved(step, 1.0)
+            curve = moved
+            if limits.watch:
+                limits.watch(system.cost(curve) * problem.scale.cost, size)
             if size < NEAR:
                 break
             before = size / 2.0
@@ -52,7 +58,7 @@ def straight_through(start: Curve, system: System) -> Found | None:
     else:
         return None
     try:
-        minimum = negative_directions(problem, curve, linearised) == 0
+        minimum = negative_directions(problem, curve, linearised.matching) == 0
     except np.linalg.LinAlgError:
         return None
     if not minimum or system.largest_turn(curve, jacobian) > meshes.COARSEST:

@@ -1,0 +1,152 @@
+"""Linear systems x' = A x + B u, y = C x + D u, with the names of what they are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from satsym.status import BadInput
+from satsym.wording import shown, suggestion
+
+if TYPE_CHECKING:
+    import control
+
+Array: TypeAlias = NDArray[np.floating[Any]]
+
+
+@dataclass(frozen=True, eq=False)
+class LinearSystem:
+    """A linear system with constant coefficients; its variables are deviations.
+
+    Attributes
+    ----------
+    A, B, C, D
+        Shapes (n, n), (n, m), (k, n) and (k, m).
+    states, inputs, outputs
+        Their names, n, m and k of them.
+    name
+        What it is the linearisation of.
+    """
+
+    A: Array
+    B: Array
+    C: Array
+    D: Array
+    states: tuple[str, ...]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    name: str = ""
+
+    def with_inputs(self, names: Sequence[str]) -> LinearSystem:
+        """The system with these inputs alone, in this order.
+
+        Raises
+        ------
+        BadInput
+            If there is no such input.
+        """
+        for name in names:
+            if name not in self.inputs:
+                raise BadInput(
+                    f"input {shown(name)}: the system has none of this name; {suggestion(name, self.inputs)}"
+                )
+        columns = [self.inputs.index(name) for name in names]
+        return replace(self, B=self.B[:, columns], D=self.D[:, columns], inputs=tuple(names))
+
+    def with_feedback(self, K: Array) -> LinearSystem:
+        """The closed loop under u = v - K x, with v for u: A becomes A - B K, and C becomes C - D K."""
+        return replace(self, A=self.A - self.B @ K, C=self.C - self.D @ K)
+
+    def transition(self, t: float) -> Array:
+        """e^(At): the state after a time t without control, from each unit state; shape (n, n)."""
+        from scipy.linalg import expm
+
+        return np.asarray(expm(self.A * t))
+
+    def to_control(self) -> control.StateSpace:
+        """The system for python-control, with its names.
+
+        Raises
+        ------
+        BadInput
+            If python-control is not installed.
+        """
+        try:
+            import control
+        except ImportError:
+            raise BadInput("python-control is not installed; pip install 'satsym[control]'") from None
+        return control.ss(
+            self.A,
+            self.B,
+            self.C,
+            self.D,
+            states=list(self.states),
+            inputs=list(self.inputs),
+            outputs=list(self.outputs),
+            name=self.name or None,
+        )
+
+
+def system(
+    A: ArrayLike,
+    B: ArrayLike | None = None,
+    C: ArrayLike | None = None,
+    D: ArrayLike | None = None,
+    *,
+    states: Sequence[str] = (),
+    inputs: Sequence[str] = (),
+    outputs: Sequence[str] = (),
+    name: str = "",
+) -> LinearSystem:
+    """A linear system from matrices.
+
+    Parameters
+    ----------
+    A
+        Shape (n, n).
+    B
+        Shape (n, m); no inputs by default.
+    C
+        Shape (k, n); no outputs by default.
+    D
+        Shape (k, m); zero by default.
+    states, inputs, outputs
+        Names; by default x1, x2, ...; u1, ...; y1, ...
+    name
+        Of the system.
+
+    Raises
+    ------
+    BadInput
+        If the shapes do not fit, or a number is not finite.
+    """
+    a = np.asarray(A, dtype=float)
+    n = a.shape[0] if a.ndim else 0
+    b = np.zeros((n, 0)) if B is None else np.asarray(B, dtype=float)
+    c = np.zeros((0, n)) if C is None else np.asarray(C, dtype=float)
+    m, k = b.shape[-1] if b.ndim else 0, c.shape[0] if c.ndim else 0
+    d = np.zeros((k, m)) if D is None else np.asarray(D, dtype=float)
+    shapes = {"A": (n, n), "B": (n, m), "C": (k, n), "D": (k, m)}
+    for (letter, shape), matrix in zip(shapes.items(), (a, b, c, d), strict=True):
+        if matrix.shape != shape or n == 0:
+            raise BadInput(f"{letter}: its shape is {matrix.shape}; give (n, n), (n, m), (k, n) and (k, m) for A to D")
+        if not np.isfinite(matrix).all():
+            raise BadInput(f"{letter}: has an entry that is not finite; check the parameters")
+    return LinearSystem(
+        a,
+        b,
+        c,
+        d,
+        tuple(states) or _numbered("x", n),
+        tuple(inputs) or _numbered("u", m),
+        tuple(outputs) or _numbered("y", k),
+        name,
+    )
+
+
+def _numbered(letter: str, count: int) -> tuple[str, ...]:
+    return tuple(f"{letter}{i + 1}" for i in range(count))

@@ -1,0 +1,121 @@
+"""The algebraic Riccati equation A'P + PA - P G P + Q = 0 with G = B R^-1 B', one at a time.
+
+From x' = A x + B u and J = integral of x'Qx + u'Ru (no 1/2) the minimum principle gives, with lambda = P x for the
+costates of J/2, the Hamiltonian matrix ((A, -G), (-Q, -A')). P comes from its invariant subspace of decaying motions
+(A. J. Laub, A Schur method for solving algebraic Riccati equations, IEEE TAC 24, 1979), in units that balance the
+matrix, and Newton's method (D. L. Kleinman, IEEE TAC 13, 1968) where that is not accurate enough.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.analysis.linear import Array
+
+ACCURATE = 1e-13
+"""A residual below this needs no improvement."""
+MOST_STEPS = 8
+"""Of Newton's method."""
+
+
+class NoSolution(ArithmeticError):
+    """No solution for which the closed loop is stable was found."""
+
+
+def hamiltonian(A: Array, G: Array, Q: Array) -> Array:
+    """The Hamiltonian matrix ((A, -G), (-Q, -A')), shape (2n, 2n)."""
+    n = len(A)
+    found = np.empty((2 * n, 2 * n))
+    found[:n, :n], found[:n, n:], found[n:, :n], found[n:, n:] = A, -G, -Q, -A.T
+    return found
+
+
+def balancing(matrix: Array) -> Array:
+    """Powers of two for the states that make the rows and columns of a Hamiltonian matrix alike in size."""
+    from scipy.linalg import matrix_balance
+
+    n = len(matrix) // 2
+    _, (scale, _) = matrix_balance(np.abs(matrix), permute=False, separate=True)
+    exponents = np.log2(scale)
+    return np.exp2(np.rint(0.5 * (exponents[:n] - exponents[n:])))
+
+
+def solve(A: Array, G: Array, Q: Array) -> tuple[Array, NDArray[np.complexfloating]]:
+    """The stabilising solution.
+
+    Parameters
+    ----------
+    A, G, Q
+        Shape (n, n); G and Q symmetric and positive semidefinite.
+
+    Returns
+    -------
+    P : array of shape (n, n)
+    eigenvalues : complex array of shape (n,)
+        Of the closed loop A - G P, all with negative real parts.
+
+    Raises
+    ------
+    NoSolution
+        If there is none: the pair is not stabilisable, or a mode on the imaginary axis does not show in Q.
+    """
+    matrix = hamiltonian(A, G, Q)
+    units = balancing(matrix)
+    both = np.concatenate([units, 1.0 / units])
+    P = _from_subspace(matrix * (both / both[:, None]))
+    # from here on in the balanced units
+    weight = np.outer(units, units)
+    a, g, q = A * (units / units[:, None]), G / weight, Q * weight
+    error, eigenvalues = residual(a, g, q, P), np.linalg.eigvals(a - g @ P)
+    for _ in range(MOST_STEPS):
+        if error <= ACCURATE or not (eigenvalues.real < 0.0).all():
+            break
+        better = _newton(a, g, q, P)
+        before, error = error, residual(a, g, q, better)
+        if not error < 0.5 * before:
+            break
+        P, eigenvalues = better, np.linalg.eigvals(a - g @ better)
+    if not (eigenvalues.real < 0.0).all():
+        raise NoSolution
+    return P / weight, eigenvalues.astype(complex)
+
+
+def residual(A: Array, G: Array, Q: Array, P: Array, rate: Array | float = 0.0) -> float:
+    """The norm of A'P + PA - P G P + Q - rate, relative to the sum of those of the four terms.
+
+    Both in units in which each diagonal element of P is 1, so that it is the same whatever the units are. In a finite
+    horizon P changes, with the time left, at a `rate`.
+    """
+    diagonal = np.diag(P)
+    if not (diagonal >= 0.0).all() or not np.isfinite(P).all():
+        return float("inf")
+    unit = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+    weight = np.outer(unit, unit)
+    once, twice, q = A.T @ P * weight, P @ G @ P * weight, Q * weight
+    size = 2.0 * np.linalg.norm(once) + np.linalg.norm(twice) + np.linalg.norm(q)
+    return float(np.linalg.norm(once + once.T - twice + q - rate * weight) / (size or 1.0))
+
+
+def _from_subspace(matrix: Array) -> Array:
+    """P from the decaying motions of the Hamiltonian matrix, which must be half of all."""
+    from scipy.linalg.lapack import dgees
+
+    n = len(matrix) // 2
+    _, decaying, *_, vectors, _, failed = dgees(lambda real, imaginary: real < 0.0, matrix, sort_t=1, lwork=40 * n)
+    if decaying != n or failed:
+        raise NoSolution
+    try:
+        P = np.linalg.solve(vectors[:n, :n].T, vectors[n:, :n].T)
+    except np.linalg.LinAlgError:
+        raise NoSolution from None
+    return 0.5 * (P + P.T)
+
+
+def _newton(A: Array, G: Array, Q: Array, P: Array) -> Array:
+    """One step of Newton's method: what the gain of P costs."""
+    from scipy.linalg import solve_continuous_lyapunov
+
+    closed = A - G @ P
+    found = solve_continuous_lyapunov(closed.T, -(Q + P @ G @ P))
+    return np.asarray(0.5 * (found + found.T))

@@ -1,0 +1,123 @@
+"""What the methods for given ends share: limits, history, turns of angles, and how an extremal becomes a solution."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from satsym.instance import Instance
+from satsym.solution import Array, Iteration, Progress, Solution
+from satsym.solve import revolutions
+from satsym.solve.collocation.continuation import by_bound
+from satsym.solve.collocation.curve import Path
+from satsym.solve.collocation.problem import TwoPoint
+from satsym.solve.iteration import Limits
+from satsym.solve.revolutions import TURN, Best
+from satsym.status import Status
+
+Report = Callable[[float, float], None]
+"""Told cost and residual after each phase."""
+
+
+@dataclass(frozen=True, eq=False)
+class Extremal:
+    """What solving came to.
+
+    Attributes
+    ----------
+    problem
+        The two-point problem, with its bounds.
+    path
+        States, costates and extra unknowns, scaled.
+    cost
+        The cost J; infinite where there is no answer.
+    status, message
+        Outcome.
+    iterations
+        Linear systems that were solved.
+    """
+
+    problem: TwoPoint
+    path: Path
+    cost: float
+    status: Status
+    message: str
+    iterations: int
+
+
+Method = Callable[[Instance, Limits, Report, bool], Extremal]
+"""From an instance to an extremal; the last argument says whether with great effort."""
+
+
+def solved(instance: Instance, progress: Progress | None, name: str, method: Method) -> Solution:
+    """Solve an instance by a method, with the cheapest number of turns.
+
+    Parameters
+    ----------
+    instance
+        With final states given, on the reference or free, and a final time that is given or free.
+    progress
+        Called after each step of the method, and each phase.
+    name
+        Of the method.
+    method
+        Finds an extremal; warnings about arithmetic are off while it does.
+    """
+    began = time.perf_counter()
+    history: list[Iteration] = []
+
+    def watch(objective: float, residual: float) -> None:
+        history.append(Iteration(len(history), objective, residual))
+        if progress:
+            progress(history[-1])
+
+    limits = Limits(instance.solver.max_iterations or 500, began + instance.solver.max_seconds, watch)
+
+    with np.errstate(all="ignore"):
+        best = revolutions.cheapest(
+            instance, limits, lambda one, effort: method(one, limits, watch, effort), lambda found: found.cost
+        )
+        return _solution(instance, name, best, tuple(history), began)
+
+
+def _solution(
+    instance: Instance, method: str, best: Best[Extremal], history: tuple[Iteration, ...], began: float
+) -> Solution:
+    extremal = best.answer
+    problem, path = extremal.problem, extremal.path
+    n, m = problem.states, len(instance.model.spec.controls)
+    tau = np.unique(np.concatenate([np.linspace(0.0, 1.0, instance.solver.steps + 1), path.mesh]))
+    scaled = path(tau)
+    z = scaled * problem.scale.both
+    for name, turns in best.turns.items():
+        z[instance.model.spec.state_names.index(name)] += turns * TURN
+    elapsed = problem.elapsed(path.theta)
+    status, message = extremal.status, "; ".join(part for part in (extremal.message, best.message) if part)
+    if best.endless and instance.tf is None:
+        costs = ", ".join(f"{value:.4g}" for value in best.endless)
+        status, message = Status.NO_MINIMISER, f"more turns are always cheaper: the last three numbers cost {costs}"
+    met = by_bound(problem, path) if status.answered else []
+    return Solution(
+        instance=instance,
+        method=method,
+        status=status,
+        message=message,
+        objective=extremal.cost if status.answered else float("nan"),
+        times=instance.t0 + elapsed * tau,
+        x=z[:n],
+        u=problem.control(tau, scaled, path.theta),
+        lam=z[n:],
+        switching_times=tuple(_times(met, i, m, instance.t0, elapsed) for i in range(m)),
+        iterations=extremal.iterations,
+        history=history,
+        wall_s=time.perf_counter() - began,
+    )
+
+
+def _times(met: list[Array], control: int, controls: int, t0: float, elapsed: float) -> tuple[float, ...]:
+    """Switching times of a control; on a ball the bound is everyone's."""
+    rows = met[control::controls] if len(met) > 1 else met
+    return tuple(sorted(t0 + elapsed * float(tau) for row in rows for tau in row))

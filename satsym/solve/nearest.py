@@ -1,0 +1,216 @@
+"""How near to the given end a control within its bounds can come: evidence that an instance is infeasible.
+
+The miss is minimised alone, whatever it costs, from several controls, with the gradient by the adjoint equation.
+Where the least miss is not zero, no control near these arrives; that is evidence, not a proof, and the distance
+itself is never called a solution.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.grid import Grid
+from satsym.instance import Instance
+from satsym.solve.collocation.curve import Path
+from satsym.solve.collocation.problem import TwoPoint
+from satsym.solve.iteration import Limits
+
+Array = NDArray[np.floating[Any]]
+
+STEPS = 200
+ROUNDS = 150
+"""Iterations from each start."""
+
+ARRIVED = 1e-4
+"""Relative miss that the grid and the minimisation may leave of none."""
+
+
+@dataclass(frozen=True, eq=False)
+class Nearest:
+    """The nearest end that was found.
+
+    Attributes
+    ----------
+    missed
+        By how much each given final state is missed, in the model's units, by its name.
+    distance
+        The largest of them relative to the size of its state along the way.
+    starts
+        Controls from which the miss was minimised.
+    """
+
+    missed: dict[str, float]
+    distance: float
+    starts: int
+
+    @property
+    def arrives(self) -> bool:
+        """Whether that is no miss."""
+        return self.distance <= ARRIVED
+
+    @property
+    def message(self) -> str:
+        """One line."""
+        misses = ", ".join(f"{name} by {value:.3g}" for name, value in self.missed.items())
+        return (
+            f"no control within its bounds was found that reaches the given end: "
+            f"the nearest of {self.starts} local searches misses {misses}"
+        )
+
+
+def nearest(problem: TwoPoint, path: Path, limits: Limits) -> Nearest | None:
+    """Minimise the miss of the given end.
+
+    Parameters
+    ----------
+    problem
+        With its bounds, and a given final time.
+    path
+        States and costates whose control law, cut to the bounds, is one of the starts.
+    limits
+        When to stop.
+
+    Returns
+    -------
+    Nearest or None
+        ``None`` where the final time is free, where time was up first, or where nothing could be flown.
+    """
+    from scipy.optimize import minimize
+
+    if problem.free_time or not problem.fixed.any():
+        return None
+    reach = _Reach(problem)
+
+    def stop(_: Array) -> None:
+        if limits.expired:
+            raise StopIteration
+
+    law = problem.control(reach.tau, path(reach.tau), path.theta, bounded=False)
+    starts = [np.zeros_like(law), law, law / 2.0]
+    best, tried = None, 0
+    for start in starts:
+        if limits.expired:
+            return None
+        with np.errstate(all="ignore"):
+            found = minimize(
+                reach.miss,
+                reach.parameters(start).ravel(),
+                jac=True,
+                method="L-BFGS-B",
+                bounds=reach.box,
+                callback=stop,
+                options={"maxiter": ROUNDS, "maxcor": 20, "ftol": 1e-15, "gtol": 1e-10},
+            )
+        tried += 1
+        if np.isfinite(found.fun) and (best is None or found.fun < best.fun):
+            best = found
+    if best is None:
+        return None
+    gap = reach.gap(best.x)
+    if gap is None:
+        return None
+    names = problem.instance.model.spec.state_names
+    rows = np.flatnonzero(problem.fixed)
+    missed = {names[i]: float(gap[k] * problem.scale.state[i]) for k, i in enumerate(rows)}
+    return Nearest(missed, float(np.abs(gap).max()), tried)
+
+
+class _Reach:
+    """Where controls lead that are straight between the nodes of a uniform grid."""
+
+    def __init__(self, problem: TwoPoint) -> None:
+        instance = problem.instance
+        assert instance.tf is not None
+        self.problem, self.grid = problem, Grid.uniform(instance.t0, instance.tf, STEPS)
+        self.tau = np.linspace(0.0, 1.0, STEPS + 1)
+        self.rows = np.flatnonzero(problem.fixed)
+        self.controls = len(instance.model.spec.controls)
+
+    @property
+    def box(self) -> list[tuple[float, float]] | None:
+        """Bounds of the parameters: the controls themselves, but on a ball all vectors that are mapped into it."""
+        instance = self.problem.instance
+        if instance.model.spec.control_set != "box":
+            return None
+        pairs = zip(instance.lower, instance.upper, strict=True)
+        return [pair for pair in pairs for _ in range(STEPS + 1)]
+
+    def parameters(self, u: Array) -> Array:
+        """Parameters of a control, cut to its bounds."""
+        instance = self.problem.instance
+        if self._round:
+            size = np.linalg.norm(u, axis=0) / instance.max_norm
+            inside = np.minimum(size, 0.9)
+            return (
+                u
+                / instance.max_norm
+                * np.where(size > 0.0, inside / np.maximum(size, 1e-300), 1.0)
+                / np.sqrt(1.0 - inside**2)
+            )
+        if instance.model.spec.control_set == "box":
+            lower, upper = (np.array(row)[:, None] for row in (instance.lower, instance.upper))
+            return np.minimum(np.maximum(u, lower), upper)
+        return u
+
+    @property
+    def _round(self) -> bool:
+        instance = self.problem.instance
+        return instance.model.spec.control_set == "ball" and np.isfinite(instance.max_norm)
+
+    def control(self, parameters: Array) -> Array:
+        """The control, shape (m, N + 1)."""
+        found = parameters.reshape(self.controls, -1)
+        if self._round:
+            found = self.problem.instance.max_norm * found / np.sqrt(1.0 + (found**2).sum(axis=0))
+        return found
+
+    def flown(self, u: Array) -> tuple[Array, Array]:
+        """States at the nodes, and the scaled miss of the given ones."""
+        instance = self.problem.instance
+        middle = (u[:, 1:] + u[:, :-1]) / 2.0
+        x, _, _ = instance.model.forward(self.grid.nodes, instance.initial, u, middle, instance.parameters)
+        return x, (x[:, -1] - self._goal(instance))[self.rows] / self.problem.scale.state[self.rows]
+
+    def gap(self, parameters: Array) -> Array | None:
+        """The scaled miss; ``None`` where the motion is not finite."""
+        _, gap = self.flown(self.control(parameters))
+        return gap if np.isfinite(gap).all() else None
+
+    def miss(self, parameters: Array) -> tuple[float, Array]:
+        """Half the squared miss, and its gradient."""
+        problem, instance = self.problem, self.problem.instance
+        u = self.control(parameters)
+        x, gap = self.flown(u)
+        if not np.isfinite(x).all() or not instance.model.in_domain(x):
+            return 1e10, np.zeros_like(parameters)
+        n = problem.states
+        by_x = instance.model.jacobian_x_batch(self.grid.nodes, x, u, instance.parameters)
+        by_u = instance.model.jacobian_u_batch(self.grid.nodes, x, u, instance.parameters)
+        adjoint = np.zeros((n, STEPS + 1))
+        adjoint[self.rows, -1] = gap / problem.scale.state[self.rows]
+        width, transposed = self.grid.nodes[1] - self.grid.nodes[0], by_x.transpose(2, 1, 0)
+        # Trapezoids: second order is plenty for a direction of descent.
+        one = np.eye(n)
+        backwards = np.linalg.solve(one - width / 2.0 * transposed[:-1], one + width / 2.0 * transposed[1:])
+        for k in range(STEPS, 0, -1):
+            adjoint[:, k - 1] = backwards[k - 1] @ adjoint[:, k]
+        weights = np.full(STEPS + 1, width)
+        weights[[0, -1]] /= 2.0
+        slope = np.einsum("ijk,ik->jk", by_u, adjoint) * weights
+        if self._round:
+            v = parameters.reshape(self.controls, -1)
+            length = np.sqrt(1.0 + (v**2).sum(axis=0))
+            slope = instance.max_norm * (slope / length - v * (v * slope).sum(axis=0) / length**3)
+        return float(gap @ gap) / 2.0, slope.ravel()
+
+    def _goal(self, instance: Instance) -> Array:
+        given, on_reference, target = np.array(self.problem.final).reshape(3, -1)
+        goal = np.where(given > 0.0, target, 0.0)
+        if on_reference.any():
+            curve = np.array(instance.model.reference(self.grid.tf, instance.parameters))
+            goal = np.where(on_reference > 0.0, curve, goal)
+        return goal

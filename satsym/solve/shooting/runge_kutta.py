@@ -1,0 +1,44 @@
+"""One step of the explicit method of order 8 by Dormand and Prince, for many arcs at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.floating[Any]]
+Slope = Callable[[Array, Array], Array]
+
+ORDER = 8
+
+
+@lru_cache
+def tableau() -> tuple[Array, Array, Array]:
+    """Coefficients A, b, c of the 12 stages (Hairer, Norsett, Wanner, Solving Differential Equations I, II.5)."""
+    from scipy.integrate import DOP853
+
+    return DOP853.A, DOP853.B, DOP853.C
+
+
+def advance(slope: Slope, tau: Array, values: Array, width: Array) -> Array:
+    """The values one step later.
+
+    Parameters
+    ----------
+    slope
+        Function of times and values.
+    tau, width
+        Where each step begins and how long it is, shape (M,).
+    values
+        There, shape (..., M).
+    """
+    a, b, c = tableau()
+    stages = np.empty((len(b), *values.shape), values.dtype)
+    for i, row in enumerate(a):
+        inner = values + width * np.tensordot(row[:i], stages[:i], 1) if i else values
+        stages[i] = slope(tau + c[i] * width, inner)
+    reached: Array = values + width * np.tensordot(b, stages, 1)
+    return reached

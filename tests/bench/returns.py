@@ -1,0 +1,139 @@
+"""Random returns to an orbit, from nothing: how many are solved and certified, and whether other starts end lower.
+
+`make bench-returns` takes all 10,000 easy and 2,000 hard ones in two processes, which is a matter of hours;
+`python tests/bench/returns.py hard 100` the first hundred hard ones. Easy ones are solved and integrated again, hard
+ones certified as well; `eight` compares hard ones with the best that eight other starts lead to.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+import numpy as np
+from samples import EASY, HARD
+
+from satsym.instance import Instance
+from satsym.solve import two_point
+from satsym.solve.certificate import certify
+from satsym.solve.certificate.conditions import boundary_residual, conjugate_time
+from satsym.solve.certificate.flow import flow
+from satsym.solve.collocation import paths
+from satsym.solve.collocation.cold_start import from_path
+from satsym.solve.collocation.problem import TwoPoint
+from satsym.solve.collocation.scaling import two_point as scaled
+from satsym.solve.iteration import Limits
+
+POPULATIONS = {"easy": EASY, "hard": HARD, "eight": HARD}
+WORKERS = min(2, os.cpu_count() or 1)
+STEPS, SECONDS = 100, 30.0
+DEARER = 1e-4
+"""Relative difference of costs that counts: those of the eight starts are as rough as their meshes."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Of one case: its number, what is wrong (nothing: solved), the residual, seconds, cost over the best of eight."""
+
+    number: int
+    fault: str
+    residual: float
+    seconds: float
+    ratio: float
+
+
+def solved(what: str, number: int) -> Outcome:
+    """Solve one case and look at it."""
+    case = POPULATIONS[what].case(number)
+    begun = time.process_time()
+    found = two_point.solve(case)
+    seconds = time.process_time() - begun
+    if not found.status.answered:
+        return Outcome(number, f"{found.status.value}: {found.message}", float("inf"), seconds, float("nan"))
+    with np.errstate(all="ignore"):
+        again = flow(found)
+    if again is None or again.x[0].min() <= 0.0:
+        return Outcome(number, "leaves the domain", float("inf"), seconds, float("nan"))
+    residual = boundary_residual(found, again)
+    fault = "" if residual < 1e-9 else f"residual {residual:.0e}"
+    if not fault and conjugate_time(again) is not None:
+        fault = "conjugate time"
+    ratio = float("nan")
+    if what == "hard":
+        certificate = certify(found)
+        if not fault and (certificate is None or certificate.verdict != "certified"):
+            fault = "not certified"
+    if what == "eight":
+        ratio = found.objective / best_of_eight(case)
+    return Outcome(number, fault, residual, seconds, ratio)
+
+
+def best_of_eight(case: Instance) -> float:
+    """The least cost to which eight starts lead, each minimised for itself; infinite if none leads anywhere."""
+    assert case.tf is not None
+    problem = scaled(case, case.tf - case.t0).widened(float("inf"))
+    best = float("inf")
+    for start in eight(problem):
+        with np.errstate(all="ignore"):
+            found = from_path(problem, start, Limits(STEPS, time.perf_counter() + SECONDS), STEPS)
+        if found.minimum:
+            best = min(best, found.cost * problem.scale.cost)
+    return best
+
+
+def eight(problem: TwoPoint) -> Iterator[Callable[[np.ndarray], np.ndarray]]:
+    """The straight line, six bent ones, and coasting to the end."""
+    line = paths.first(problem)
+    for waves, bend in ((1, 0.0), (1, -0.3), (1, -0.6), (1, 0.3), (1, 0.6), (2, -0.4), (2, 0.4)):
+        yield partial(_bent, line, waves, bend)
+    yield paths.coasting_to_the_end(problem) or line
+
+
+def _bent(line: Callable[[np.ndarray], np.ndarray], waves: int, bend: float, tau: np.ndarray) -> np.ndarray:
+    states = line(tau)
+    states[0] *= np.exp(bend * np.sin(waves * np.pi * tau))
+    return states
+
+
+def run(what: str, count: int) -> None:
+    """Solve the first cases in two processes, and print what came of it."""
+    outcomes: list[Outcome] = []
+    with ProcessPoolExecutor(WORKERS) as pool:
+        for outcome in pool.map(partial(solved, what), range(count), chunksize=10):
+            outcomes.append(outcome)
+            if outcome.fault:
+                print(f"{what} {outcome.number}: {outcome.fault}", flush=True)
+            if sys.stderr.isatty():
+                print(f"\r{what}: {len(outcomes)} of {count}", end="", file=sys.stderr, flush=True)
+    seconds = np.array([o.seconds for o in outcomes])
+    residuals = np.array([o.residual for o in outcomes])
+    faultless = sum(not o.fault for o in outcomes)
+    print(f"{what}: {faultless} of {count} faultless ({faultless / count:.2%})")
+    print(f"  residual on re-integration: median {np.median(residuals):.0e}, worst {residuals.max():.0e}")
+    worst = f"99 % below {np.quantile(seconds, 0.99):.2f} s, worst {seconds.max():.1f} s"
+    print(f"  seconds of processor time: median {np.median(seconds):.3f}, mean {seconds.mean():.3f}, {worst}")
+    ratios = np.array([o.ratio for o in outcomes])
+    if not np.isnan(ratios).all():
+        known = ratios[~np.isnan(ratios)]
+        good, better = (known < 1.0 + DEARER).mean(), (known < 1.0 - DEARER).mean()
+        print(f"  no dearer than the best of eight starts: {good:.2%} (cheaper: {better:.2%})")
+
+
+def main() -> None:
+    """What the command line says, and how many; or everything."""
+    arguments = sys.argv[1:] or ["easy", str(EASY.size), "hard", str(HARD.size), "eight", str(HARD.size)]
+    for what, count in zip(arguments[::2], arguments[1::2], strict=True):
+        run(what, int(count))
+
+
+if __name__ == "__main__":
+    main()
