@@ -16,6 +16,7 @@ FORMAT = 1
 
 ControlSet = Literal["free", "box", "ball"]
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
+_OF_LINEAR_MODELS = ("outputs", "linear")
 
 
 @dataclass(frozen=True)
@@ -70,6 +71,10 @@ class ProblemSpec:
     invariants, position, multipliers
         Names of the conserved quantities of the uncontrolled motion, of the components of the position vector, and
         of the multipliers of terminal constraints (each empty where there are none).
+    outputs
+        Of a linear model: what is measured. Empty where nothing is, or the model is not linear.
+    linear
+        Names of the functions that only linear models have; empty where the model is not linear.
     """
 
     name: str
@@ -86,6 +91,8 @@ class ProblemSpec:
     invariants: tuple[Variable, ...] = ()
     position: tuple[Variable, ...] = ()
     multipliers: tuple[Variable, ...] = ()
+    outputs: tuple[Variable, ...] = ()
+    linear: tuple[str, ...] = ()
 
     @property
     def state_names(self) -> tuple[str, ...]:
@@ -100,10 +107,14 @@ class ProblemSpec:
         return names(self.parameters)
 
     def to_literal(self) -> dict[str, Any]:
-        """The literal that a generated module carries; what has its default value is left out of variables."""
+        """The literal that a generated module carries.
+
+        What has its default value is left out of variables, and so is what other models than linear ones lack.
+        """
         return {"format": FORMAT} | {
             f.name: tuple(map(_stated, value)) if isinstance(value := getattr(self, f.name), tuple) else value
             for f in fields(self)
+            if f.name not in _OF_LINEAR_MODELS or getattr(self, f.name)
         }
 
     @classmethod
@@ -119,8 +130,9 @@ class ProblemSpec:
         if stated.pop("format", None) != FORMAT:
             raise ValueError(f"written in another format than {FORMAT}")
         try:
-            for key in ("states", "controls", "parameters", "invariants", "position", "multipliers"):
-                stated[key] = tuple(Variable(**entry) for entry in stated[key])
+            for key in ("states", "controls", "parameters", "invariants", "position", "multipliers", "outputs"):
+                entries = stated[key] if key not in _OF_LINEAR_MODELS else stated.get(key, ())
+                stated[key] = tuple(Variable(**entry) for entry in entries)
             return cls(**stated)
         except (KeyError, TypeError) as error:
             raise ValueError(f"its MODEL has other fields than this version knows ({error})") from None
@@ -131,6 +143,8 @@ def names(variables: Iterable[Variable]) -> tuple[str, ...]:
     return tuple(v.symbol for v in variables)
 
 
-def _stated(variable: Variable) -> dict[str, Any]:
-    """The fields of a variable that differ from their defaults."""
+def _stated(variable: Variable | str) -> dict[str, Any] | str:
+    """The fields of a variable that differ from their defaults; a name as it is."""
+    if isinstance(variable, str):
+        return variable
     return {f.name: value for f in fields(variable) if (value := getattr(variable, f.name)) != f.default}

@@ -9,6 +9,7 @@ from __future__ import annotations
 import sympy as sp
 
 from satsym.codegen.functions import Function, Symbols, functions, symbols
+from satsym.codegen.linear import linear_functions
 from satsym.symbolic import notation as n
 from satsym.symbolic.derivation import Derivation
 
@@ -16,7 +17,8 @@ from satsym.symbolic.derivation import Derivation
 def all_functions(derivation: Derivation) -> list[Function]:
     """Every function of a generated module, in its order."""
     s = symbols(derivation)
-    return functions(derivation) + (extremal_functions(derivation, s) if derivation.problem else [])
+    found = functions(derivation) + linear_functions(derivation)
+    return found + (extremal_functions(derivation, s) if derivation.problem else [])
 
 
 def extremal_functions(derivation: Derivation, s: Symbols) -> list[Function]:

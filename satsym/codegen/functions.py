@@ -9,10 +9,11 @@ import sympy as sp
 from satsym.spec import names
 from satsym.symbolic.control_sets import bounds
 from satsym.symbolic.derivation import Derivation
-from satsym.symbolic.model import symbols_of, t
+from satsym.symbolic.linear_notation import matrix_symbols
+from satsym.symbolic.model import Linearised, symbols_of, t
 from satsym.symbolic.notation import costate_of, given, multipliers, on_reference, target
 
-ARGUMENTS = ("t", "x", "u", "lam", "nu", "p", "bounds", "final")
+ARGUMENTS = tuple("t x original u lam nu gain riccati state_weight control_weight p bounds final".split())
 """Names of arguments, in the order in which every function takes those it has."""
 
 TUPLES = ("nu", "p", "bounds", "final")
@@ -35,6 +36,8 @@ class Function:
         ``"scalar"``, ``"vector"`` or ``"matrix"``.
     hints
         Names for the outputs, where they have any.
+    over_parameters
+        Whether each parameter may be an array in the batch form.
     """
 
     name: str
@@ -43,6 +46,7 @@ class Function:
     value: sp.Matrix
     kind: str
     hints: tuple[str, ...] = ()
+    over_parameters: bool = False
 
     @property
     def outputs(self) -> list[sp.Expr]:
@@ -62,6 +66,11 @@ class Symbols:
     p: tuple[sp.Symbol, ...]
     bounds: tuple[sp.Symbol, ...]
     final: tuple[sp.Symbol, ...]
+    original: tuple[sp.Symbol, ...]
+    gain: tuple[sp.Symbol, ...]
+    riccati: tuple[sp.Symbol, ...]
+    state_weight: tuple[sp.Symbol, ...]
+    control_weight: tuple[sp.Symbol, ...]
 
     def of(self, argument: str) -> tuple[sp.Symbol, ...]:
         """Symbols of an argument; time alone is not a tuple."""
@@ -73,6 +82,7 @@ def symbols(derivation: Derivation) -> Symbols:
     """The symbols of a derivation, argument by argument."""
     model, problem = derivation.model, derivation.problem
     states = symbols_of(model.states)
+    n, m = len(states), len(model.controls)
     return Symbols(
         t=t,
         x=states,
@@ -82,6 +92,11 @@ def symbols(derivation: Derivation) -> Symbols:
         p=symbols_of(model.parameters),
         bounds=symbols_of(bounds(problem.control_set, model.controls)) if problem else (),
         final=tuple(kind(s) for kind in (given, on_reference, target) for s in states) if problem else (),
+        original=symbols_of(model.of.states) if isinstance(model, Linearised) else (),
+        gain=tuple(matrix_symbols("K", m, n)),
+        riccati=tuple(matrix_symbols("P", n, n)),
+        state_weight=tuple(matrix_symbols("Q", n, n)),
+        control_weight=tuple(matrix_symbols("R", m, m)),
     )
 
 
@@ -95,7 +110,7 @@ def functions(derivation: Derivation) -> list[Function]:
         _matrix("jacobian_x", "A = df/dx, row by row.", "t x u p", sp.Matrix(n, n, entries[: n * n])),
         _matrix("jacobian_u", "B = df/du, row by row.", "t x u p", sp.Matrix(n, m, entries[n * n :])),
     ]
-    if "reference" in derivation:
+    if derivation.model.reference:
         found.append(_vector("reference", "The reference curve c(t).", "t p", derivation.rhs("reference")))
     if "conserved" in derivation:
         summary = "What the motion without control keeps constant."

@@ -11,6 +11,7 @@ from satsym.codegen.block import Assignment, build
 from satsym.codegen.emitter import Emitter
 from satsym.codegen.extremals import all_functions
 from satsym.codegen.functions import TUPLES, Function, Symbols, symbols
+from satsym.codegen.linear import linear_functions
 from satsym.codegen.printers import BatchPrinter, ScalarPrinter
 from satsym.spec import ProblemSpec, Variable
 from satsym.symbolic.algebra import definitions_of
@@ -60,11 +61,13 @@ def spec(derivation: Derivation, source: str) -> ProblemSpec:
         control_set=problem.control_set if problem else None,
         has_cost=problem is not None,
         has_terminal_cost=bool(problem and problem.terminal_cost != 0),
-        has_reference="reference" in derivation,
+        has_reference=bool(model.reference),
         autonomous=not any(e.has(symbols(derivation).t) for e in derivation.rhs("first_order")),
         invariants=tuple(Variable(e.name, derivation.notation[e.name]) for e in conserved),
         multipliers=tuple(Variable(v.name, derivation.notation[v.name]) for v in symbols(derivation).nu),
         position=tuple(Variable(axis, axis) for axis in ("x", "y", "z")[: len(position)]),
+        outputs=tuple(o.variable for o in model.outputs) if (linear := linear_functions(derivation)) else (),
+        linear=tuple(f.name for f in linear),
     )
 
 
@@ -126,6 +129,7 @@ def _batch_form(function: Function, s: Symbols, constants: Sequence[Assignment])
     rows, columns = function.value.shape
     shape = {"scalar": "shape", "vector": f"({rows}, *shape)", "matrix": f"({rows}, {columns}, *shape)"}[function.kind]
     sizes = [a if a == "t" else f"{a}[0]" for a in function.arguments if a not in TUPLES and s.of(a)]
+    sizes += [f"p[{k}]" for k in range(len(s.p))] if function.over_parameters else []
     types = [f"*{a}" if a in TUPLES else a for a in function.arguments]
     body = [
         *_unpack(function, s),

@@ -17,7 +17,7 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from satsym.codegen.extremals import all_functions
-from satsym.codegen.functions import TUPLES, Function, Symbols, symbols
+from satsym.codegen.functions import ARGUMENTS, TUPLES, Function, Symbols, symbols
 from satsym.kernels import Kernels
 from satsym.symbolic.algebra import definitions_of
 from satsym.symbolic.checks import DIGITS, numeric
@@ -32,6 +32,8 @@ COMPLEX_STEP = 1e-30
 DERIVATIVES = {
     "jacobian_x": ("dynamics", ("x",), 1.0),
     "jacobian_u": ("dynamics", ("u",), 1.0),
+    "state_matrix": ("dynamics", ("x",), 1.0),
+    "input_matrix": ("dynamics", ("u",), 1.0),
     "terminal_gradient": ("terminal_cost", ("x",), 1.0),
     "dynamics": ("hamiltonian", ("lam",), 1.0),
     "stationarity": ("hamiltonian", ("u",), 1.0),
@@ -76,7 +78,7 @@ def _arguments(known: Symbols, derivation: Derivation, rng: random.Random) -> Ar
         size = rng.uniform(0.5, 1.5)
         return size if symbol.is_positive or rng.random() < 0.5 else -size
 
-    place: Arguments = {a: tuple(map(draw, known.of(a))) for a in ("x", "u", "lam", *TUPLES)}
+    place: Arguments = {a: tuple(map(draw, known.of(a))) for a in ARGUMENTS if a != "t"}
     if derivation.problem and derivation.problem.control_set == "box":
         m = len(known.u)
         place["bounds"] = tuple(-abs(b) for b in place["bounds"][:m]) + tuple(abs(b) for b in place["bounds"][m:])
@@ -92,7 +94,10 @@ def _same_values(
     places: Sequence[Arguments],
 ) -> None:
     batch = getattr(kernels, f"{function.name}_batch")(*(_stacked(a, places) for a in function.arguments))
-    columns = np.reshape(batch, (len(function.outputs), len(places)))
+    # a function of the parameters of a model that has none is one and the same at all places
+    outputs = len(function.outputs)
+    single = np.size(batch) == outputs
+    columns = np.broadcast_to(np.reshape(batch, (outputs, 1 if single else len(places))), (outputs, len(places)))
     for place, column in zip(places, columns.T, strict=True):
         point = {s: v for a in function.arguments for s, v in zip(known.of(a), np.atleast_1d(place[a]), strict=True)}
         with mp.workdps(DIGITS):

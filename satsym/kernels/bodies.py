@@ -16,7 +16,8 @@ from typing import NoReturn
 from satsym.kernels.contract import Signature
 
 _GROUPS = {"x": "n", "x0": "n", "x_mid": "n", "lam": "n", "lam_f": "n", "lam_mid": "n", "u": "m", "u_mid": "m"}
-_GROUPS |= {"p": "k", "bounds": "b", "nu": "c", "final": "f"}
+_GROUPS |= {"p": "k", "bounds": "b", "nu": "c", "final": "f", "original": "n"}
+_GROUPS |= {"gain": "mn", "riccati": "nn", "state_weight": "nn", "control_weight": "mm"}
 _TUPLES = ("nu", "p", "bounds", "final")  # of numbers, also in the batch form
 _NODES, _MIDPOINTS = ("times", "x", "lam", "u"), ("x_mid", "lam_mid", "u_mid")
 _KEPT = {"math", "np", "len", "range", "float", "out", "shape"}
@@ -76,7 +77,7 @@ class Body:
         self.signature, self.form, self.returns = signature, form, returns
         self.module = "np" if form == "np" else "math"
         self.shape = tuple(sizes[letter] for letter in signature.shape)
-        self.packed = {a: sizes[_GROUPS[a]] for a in signature.arguments if a in _GROUPS}
+        self.packed = {a: prod(sizes[c] for c in _GROUPS[a]) for a in signature.arguments if a in _GROUPS}
         self.numbers = {a for a in signature.arguments if a == "t"}
         self.nodes = {a for a in signature.arguments if a == "times"}
         self.midpoints: set[str] = set()
@@ -157,6 +158,7 @@ class Body:
         arguments = self.signature.arguments
         sized = [a for a in arguments if a not in _TUPLES and self.packed.get(a) != 0]
         parts = [f"np.shape({a}[0])" if a in self.packed else f"np.shape({a})" for a in sized]
+        parts += [f"np.shape(p[{k}])" for k in range(self.packed["p"])] if self.signature.over_parameters else []
         types = [f"*{a}" if a in _TUPLES else a for a in arguments]
         shape = f"({', '.join(map(str, self.shape))}, *shape)" if self.shape else "shape"
         return (

@@ -14,7 +14,7 @@ from math import isfinite
 import msgspec
 
 from satsym.kernels.bodies import Body, Unexpected, refuse, text_of
-from satsym.kernels.contract import BATCH, Signature, loops, missing, pointwise, sizes
+from satsym.kernels.contract import BATCH, LINEAR, Signature, loops, missing, pointwise, sizes
 from satsym.spec import ProblemSpec
 
 _IMPORTS = ("import math", "import numpy as np")
@@ -112,7 +112,17 @@ def _fault(spec: ProblemSpec) -> str:
         return "a cost and no control set, or the reverse"
     if not spec.states:
         return "no states"
-    groups = (spec.states, spec.controls, spec.parameters, spec.invariants, spec.position, spec.multipliers)
+    if set(spec.linear) - set(LINEAR):
+        return "functions of linear models that none has"
+    groups = (
+        spec.states,
+        spec.controls,
+        spec.parameters,
+        spec.invariants,
+        spec.position,
+        spec.multipliers,
+        spec.outputs,
+    )
     for group in groups:
         if len({v.symbol for v in group}) < len(group):
             return "two variables of one name"

@@ -22,14 +22,21 @@ class Signature:
     shape
         A letter for each axis, see :func:`sizes`: ``""`` for a number, ``"n"`` for a vector, ``"nm"`` for a
         matrix.
+    over_parameters
+        Whether parameters count for the shape of a batch, so that each of them may be an array.
     """
 
     arguments: tuple[str, ...]
     shape: str = ""
+    over_parameters: bool = False
 
 
 def _signature(arguments: str, shape: str = "") -> Signature:
     return Signature(tuple(arguments.split()), shape)
+
+
+def _of_parameters(arguments: str, shape: str) -> Signature:
+    return Signature(tuple(arguments.split()), shape, over_parameters=True)
 
 
 _MOTION = {
@@ -55,6 +62,29 @@ _COST = {
     "boundary": _signature("t x lam nu p bounds final", "e"),
     "boundary_jacobian": _signature("t x lam nu p bounds final", "ev"),
 }
+LINEAR = {
+    "state_matrix": _of_parameters("t p", "nn"),
+    "input_matrix": _of_parameters("t p", "nm"),
+    "output_matrix": _of_parameters("t p", "on"),
+    "feedthrough_matrix": _of_parameters("t p", "om"),
+    "deviation_dynamics": _signature("t x u p", "n"),
+    "original_state": _signature("t x p", "n"),
+    "deviation_state": _signature("t original p", "n"),
+    "characteristic_polynomial": _of_parameters("p", "g"),
+    "routh_column": _of_parameters("p", "g"),
+    "eigenvalues": _of_parameters("p", "nw"),
+    "transition_matrix": _of_parameters("t p", "nn"),
+    "closed_loop_polynomial": _of_parameters("gain p", "g"),
+    "closed_loop_routh": _of_parameters("gain p", "g"),
+    "riccati_residual": _of_parameters("riccati state_weight control_weight p", "nn"),
+}
+"""What linear models may have; ``MODEL["linear"]`` names those that one has.
+
+Matrices among the arguments (``gain`` K, shape (m, n); ``riccati`` P; ``state_weight`` Q; ``control_weight`` R) are
+given as sequences of their entries, row by row; in the batch form as arrays whose first axis counts the entries.
+Eigenvalues are rows of a real and an imaginary part.
+"""
+
 _FORWARD = {"forward": _signature("times x0 u u_mid p x x_mid")}
 _BACKWARD = {"backward": _signature("times lam_f x x_mid u u_mid p lam lam_mid")}
 
@@ -68,6 +98,7 @@ def pointwise(spec: ProblemSpec) -> dict[str, Signature]:
     found |= _REFERENCE if spec.has_reference else {}
     found |= _INVARIANTS if spec.invariants else {}
     found |= _POSITION if spec.position else {}
+    found |= {name: LINEAR[name] for name in spec.linear}
     return found | (_COST if spec.has_cost else {})
 
 
@@ -81,11 +112,12 @@ def sizes(spec: ProblemSpec) -> dict[str, int]:
 
     States (n), controls (m), parameters (k), bounds (b), invariants (i), position components (q), constraints at the
     final time (c), choices and targets there (f), states and costates (z), residuals at the final time (e) and
-    unknowns there (v).
+    unknowns there (v); outputs (o), coefficients of the characteristic polynomial (g), parts of a complex number (w).
     """
     n, m, c = len(spec.states), len(spec.controls), len(spec.multipliers)
     counts = {"n": n, "m": m, "k": len(spec.parameters), "i": len(spec.invariants), "q": len(spec.position), "c": c}
     counts["b"] = {"box": 2 * m, "ball": 1}.get(spec.control_set or "free", 0)
+    counts |= {"o": len(spec.outputs), "g": n + 1, "w": 2}
     return counts | {"f": 3 * n, "z": 2 * n, "e": n + c + 1, "v": 2 * n + c + 1}
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from satsym.report import tex
 from satsym.report.statement import statement
-from satsym.report.steps import Context, Shown, numbers_of, quantities, shown
+from satsym.report.steps import Context, Shown, conclusion, numbers_of, quantities, shown
 from satsym.report.texts import Texts, load
 from satsym.symbolic import Check, Derivation, Step
 from satsym.symbolic.checks import DIGITS, POINTS
@@ -54,7 +54,7 @@ MACROS = r"""\makeatletter
 \makeatother
 """
 
-SECTION_FROM = {"hamiltonian": "conditions"}
+SECTION_FROM = {"hamiltonian": "conditions", "stability": "structure", "lqr_hamiltonian": "regulator"}
 """Steps that begin a new section."""
 
 BY_INSPECTION = frozenset({"declared", "dimensions agree"})
@@ -133,7 +133,8 @@ class _Composer:
         rule = self._texts.get("rules", step.rule, **fill)
         self._shown[step.name] = shown(self._context, step)
         heading = rf"\satsymstep{{{tex.label(self._context.address(step))}}}{{{title}}}"
-        return "\n".join((heading, rule, self._shown[step.name].body, self._checks(step)))
+        said = [conclusion(self._context, c) for c in step.conclusions]
+        return "\n".join((heading, rule, self._shown[step.name].body, *said, self._checks(step)))
 
     def _sources(self, step: Step) -> str:
         named = (self._source(name) for name in step.follows_from)

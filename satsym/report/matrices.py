@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
 
 from satsym.report import tex
 from satsym.report.equations import LINE, Row, array, display
@@ -15,6 +17,8 @@ from satsym.symbolic.typeset import NamedMatrix, Typesetter, matrices
 DEFINED = {
     "A": r"A = \frac{\partial\mathbf{f}}{\partial\mathbf{x}}",
     "B": r"B = \frac{\partial\mathbf{f}}{\partial\mathbf{u}}",
+    "C": r"C = \frac{\partial\mathbf{g}}{\partial\mathbf{x}}",
+    "D": r"D = \frac{\partial\mathbf{g}}{\partial\mathbf{u}}",
     "H": r"H_{\mathbf{uu}} = \frac{\partial^2 H}{\partial\mathbf{u}^2}",
 }
 """What a matrix stands for, by the prefix that the names of its entries have."""
@@ -63,33 +67,69 @@ def with_matrices(
     return "\n".join(p for p in parts if p), [row.address for row in rows]
 
 
+def matrix_rows(address: str, name: str, matrix: Any, typeset: Typesetter) -> tuple[list[Row], list[Row]]:
+    """An equation whose right-hand side is a matrix, and those that its long entries need, or all of its entries."""
+    cells = [[typeset.tex(matrix[i, j]) for j in range(matrix.cols)] for i in range(matrix.rows)]
+    head, _, _ = name.partition(" = ")
+    letter = head.lower() if head.isalpha() and len(head) == 1 else "m"
+    written, named = fitted(cells, LINE - width(name) - 2.0, letter)
+    if written is not None and not (named and matrix.is_symmetric()):
+        places = [Row(f"{address}.{i}.{j}", plain(text), typeset.terms(matrix[i, j])) for text, (i, j) in named.items()]
+        return [Row(address, plain(name), plain(array(written)))], places
+    first, *rest = [
+        Row(f"{address}.{i}.{j}", plain(_indexed(name, i, j)), typeset.terms(matrix[i, j]))
+        for i in range(matrix.rows)
+        for j in range(matrix.cols)
+        if not typeset.is_zero(matrix[i, j]) and not (matrix.is_symmetric() and j < i)
+    ]
+    return [replace(first, address=address), *rest], []
+
+
+def _indexed(name: str, i: int, j: int) -> str:
+    """An entry of what the name stands for; zero stays zero."""
+    return name if name == "0" else rf"({name.partition(' = ')[0]})_{{{i + 1},{j + 1}}}"
+
+
+def fitted(
+    cells: Sequence[Sequence[str]], room: float, letter: str
+) -> tuple[list[list[str]] | None, dict[str, tuple[int, int]]]:
+    """The cells, the longest of them replaced by names until they fit, and the names; ``None`` if nothing helps."""
+    if _total(cells) <= room:
+        return [list(row) for row in cells], {}
+    widths = {(i, j): width(cell) for i, row in enumerate(cells) for j, cell in enumerate(row)}
+    for limit in sorted(set(widths.values()), reverse=True):
+        long = [(i, j) for (i, j), w in widths.items() if w >= limit and cells[i][j] != "0"]
+        named = {_place(letter, i, j, cells): (i, j) for i, j in long}
+        names = {place: name for name, place in named.items()}
+        short = [[names.get((i, j), cell) for j, cell in enumerate(row)] for i, row in enumerate(cells)]
+        if _total(short) <= room:
+            return short, named
+    return None, {}
+
+
 def _written(matrix: NamedMatrix, typeset: Typesetter) -> tuple[str | None, dict[str, Equation]]:
     """The matrix, and which entries it shows by a name; ``None`` if it is too wide even so."""
     room = LINE - width(DEFINED.get(matrix.prefix, matrix.prefix)) - 2.0
     cells = [["0" if e is None else typeset.tex(e.rhs) for e in row] for row in matrix.entries]
-    if _total(cells) <= room:
-        return array(cells), {}
-    named = {}
-    places = {name: (e, width(typeset.tex(e.rhs))) for name, e in _places(matrix, matrix.prefix.lower())}
-    for limit in sorted({w for _, w in places.values()}, reverse=True):
-        named = {name: e for name, (e, w) in places.items() if w >= limit}
-        names = {e.name: name for name, e in named.items()}
-        short = [
-            [cell if e is None else names.get(e.name, cell) for cell, e in zip(texts, row, strict=True)]
-            for texts, row in zip(cells, matrix.entries, strict=True)
-        ]
-        if _total(short) <= room:
-            return array(short), named
-    return None, {}
+    short, named = fitted(cells, room, matrix.prefix.lower())
+    if short is None:
+        return None, {}
+    entries = {name: matrix.entries[i][j] for name, (i, j) in named.items()}
+    return array(short), {name: e for name, e in entries.items() if e is not None}
+
+
+def _place(letter: str, i: int, j: int, cells: Sequence[Sequence[Any]]) -> str:
+    """The letter with indices that stand for an entry."""
+    comma = "," if max(len(cells), len(cells[0])) > 9 else ""
+    return f"{letter}_{{{i + 1}{comma}{j + 1}}}"
 
 
 def _places(matrix: NamedMatrix, letter: str) -> list[tuple[str, Equation]]:
     """Entries with the letter and indices that stand for them."""
-    comma = "," if max(len(matrix.entries), len(matrix.entries[0])) > 9 else ""
     return [
-        (f"{letter}_{{{i}{comma}{j}}}", entry)
-        for i, row in enumerate(matrix.entries, 1)
-        for j, entry in enumerate(row, 1)
+        (_place(letter, i, j, matrix.entries), entry)
+        for i, row in enumerate(matrix.entries)
+        for j, entry in enumerate(row)
         if entry is not None
     ]
 

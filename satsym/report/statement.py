@@ -10,7 +10,7 @@ from satsym.report.equations import LINE, Row, array, display
 from satsym.report.texts import Texts
 from satsym.report.width import width
 from satsym.spec import Variable
-from satsym.symbolic import Derivation, Newton
+from satsym.symbolic import Derivation, Linearised, Newton
 from satsym.symbolic import notation as n
 from satsym.symbolic.control_sets import bounds
 from satsym.symbolic.terms import Term, joined, plain
@@ -29,7 +29,7 @@ def statement(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part
     """The whole of it."""
     parts = [
         part(derivation, texts, typeset)
-        for part in (_cost, _control_set, _constraints, _quantities, _definitions, _physics)
+        for part in (_cost, _control_set, _constraints, _quantities, _definitions, _physics, _linearised, _outputs)
     ]
     return Part(
         tuple(paragraph for part in parts for paragraph in part.paragraphs),
@@ -107,6 +107,8 @@ def _quantities(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Pa
         "controls": model.controls,
         "parameters": model.parameters,
         "constants": tuple(d.variable for d in model.definitions),
+        "outputs": tuple(o.variable for o in model.outputs),
+        "original": model.of.states if isinstance(model, Linearised) else (),
     }
     return Part((texts.get("statement", "quantities"), _table(groups, texts)))
 
@@ -156,6 +158,34 @@ def _physics(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
         ends[thing] = (new[0].address, new[-1].address)
         rows += new
     return Part((f"{texts.get('statement', 'newton')}\n{display(rows)}",), ends)
+
+
+def _linearised(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
+    model = derivation.model
+    if not isinstance(model, Linearised):
+        return Part()
+    rows = [
+        Row(_address(derivation, f"reference.{symbol.name}"), typeset.terms(symbol), typeset.terms(curve))
+        for symbol, curve in model.about.items()
+    ]
+    text = texts.get("statement", "linearised", name=tex.name(model.of.name), title=tex.escape(model.of.title))
+    return Part((f"{text}\n{display(rows)}",), {"reference": (rows[0].address, rows[-1].address)})
+
+
+def _outputs(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
+    model = derivation.model
+    if not model.outputs:
+        return Part()
+    key = "outputs_of_linearised" if isinstance(model, Linearised) else "outputs"
+    rows = [
+        Row(
+            _address(derivation, o.variable.symbol),
+            plain(rf"g_{{{k}}}" if isinstance(model, Linearised) else o.variable.latex),
+            typeset.terms(o.value),
+        )
+        for k, o in enumerate(model.outputs, 1)
+    ]
+    return Part((f"{texts.get('statement', key)}\n{display(rows)}",), {"outputs": (rows[0].address, rows[-1].address)})
 
 
 def _vector(name: str, components: Sequence[tuple[Term, ...]]) -> list[Row]:

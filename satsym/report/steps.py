@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from satsym.report import tex
 from satsym.report.equations import Row, columns, display
-from satsym.report.matrices import with_matrices
+from satsym.report.matrices import matrix_rows, with_matrices
 from satsym.report.texts import Texts
-from satsym.symbolic import Derivation, Equation, Step
+from satsym.symbolic import Conclusion, Derivation, Equation, Step
 from satsym.symbolic.terms import plain
 from satsym.symbolic.typeset import Typesetter
 
@@ -50,7 +50,50 @@ def shown(context: Context, step: Step) -> Shown:
 
 
 def _as_they_stand(context: Context, step: Step) -> Shown:
+    if any(e.rhs.is_Matrix for e in step.equations):
+        return _with_whole_matrices(context, step)
     return _display([_row(context, step, e) for e in step.equations])
+
+
+def _with_whole_matrices(context: Context, step: Step) -> Shown:
+    """Matrices among the equations; long entries that matrices show by name follow theirs."""
+    parts: list[str] = []
+    waiting: list[Row] = []
+    shown: list[Row] = []
+    for e in step.equations:
+        rows, entries = _rows(context, step, e)
+        waiting += rows
+        shown += rows
+        if entries:
+            parts += [display(waiting), context.texts.get("groups", "entries"), display(entries)]
+            waiting = []
+    body = "\n".join([*parts, *([display(waiting)] if waiting else [])])
+    return Shown(body, shown[0].address, shown[-1].address)
+
+
+def _rows(context: Context, step: Step, equation: Equation) -> tuple[list[Row], list[Row]]:
+    if equation.rhs.is_Matrix:
+        address = f"{context.address(step)}.{equation.name}"
+        return matrix_rows(address, context.typeset.tex(equation.lhs), equation.rhs, context.typeset)
+    if equation.name == "characteristic_polynomial":
+        return [_polynomial(context, step, equation)], []
+    return [_row(context, step, equation)], []
+
+
+def _polynomial(context: Context, step: Step, equation: Equation) -> Row:
+    """A polynomial by falling powers."""
+    terms = [term for power in context.typeset.by_powers(equation.rhs) for term in power]
+    address = f"{context.address(step)}.{equation.name}"
+    return Row(address, context.typeset.terms(equation.lhs), tuple(terms))
+
+
+def conclusion(context: Context, said: Conclusion) -> str:
+    """The sentence of a conclusion, with its expressions filled in; tuples as enumerations."""
+    fill = {
+        place: context.texts.listed([f"${text}$" for text in context.typeset.items(value)])
+        for place, value in said.values.items()
+    }
+    return context.texts.get("conclusions", said.key, **fill)
 
 
 def _stationarity(context: Context, step: Step) -> Shown:
@@ -133,6 +176,8 @@ WAYS: dict[str, Callable[[Context, Step], Shown]] = {
     "costate_equations": _costate_equations,
     "boundary_conditions": _boundary_conditions,
     "boundary_residual": _at_the_end,
+    "lqr_stationarity": _stationarity,
+    "lqr_costates": _costate_equations,
 }
 
 

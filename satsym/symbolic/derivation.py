@@ -17,7 +17,7 @@ class DerivationError(Exception):
 
 @dataclass(frozen=True)
 class Equation:
-    """``lhs = rhs`` under a name that is unique within its step."""
+    """``lhs = rhs`` under a name that is unique within its step; the right-hand side may be a matrix."""
 
     name: str
     lhs: sp.Expr
@@ -49,6 +49,22 @@ class Check:
 
 
 @dataclass(frozen=True)
+class Conclusion:
+    """What a step comes to, as a sentence.
+
+    Attributes
+    ----------
+    key
+        Key of the sentence.
+    values
+        What is filled into it: expressions, or tuples of them.
+    """
+
+    key: str
+    values: Mapping[str, sp.Basic]
+
+
+@dataclass(frozen=True)
 class Step:
     """One move of the derivation.
 
@@ -64,6 +80,8 @@ class Step:
         Names of the steps, or of declared things, it uses.
     checks
         At least one.
+    conclusions
+        Sentences behind the equations.
     """
 
     name: str
@@ -71,19 +89,22 @@ class Step:
     equations: tuple[Equation, ...]
     follows_from: tuple[str, ...]
     checks: tuple[Check, ...]
+    conclusions: tuple[Conclusion, ...] = ()
 
 
 @dataclass(frozen=True)
 class Derivation:
     """Everything derived from a problem (or a model without a cost), in order.
 
-    ``notation`` maps the name of each symbol that occurs to its LaTeX.
+    ``notation`` maps the name of each symbol that occurs to its LaTeX. ``original`` is the derivation of the motion
+    that a linear model linearises, as far as its first-order form.
     """
 
     model: Model
     problem: Problem | None
     notation: Mapping[str, str]
     steps: tuple[Step, ...] = field(default=())
+    original: Derivation | None = None
 
     @property
     def name(self) -> str:

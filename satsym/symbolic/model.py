@@ -26,6 +26,14 @@ class Definition:
     value: sp.Expr
 
 
+@dataclass(frozen=True)
+class Output:
+    """A measured quantity: ``variable = value``, a function g(t, x, u, p)."""
+
+    variable: Variable
+    value: sp.Expr
+
+
 @dataclass(frozen=True, kw_only=True)
 class Model:
     """What all models declare.
@@ -42,6 +50,8 @@ class Model:
         Named constants used in the equations.
     reference
         State -> curve c(t, p); proved to satisfy the equations without control. May be empty.
+    outputs
+        What is measured. May be empty.
     """
 
     name: str
@@ -51,6 +61,7 @@ class Model:
     parameters: tuple[Variable, ...]
     definitions: tuple[Definition, ...] = ()
     reference: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    outputs: tuple[Output, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,6 +101,33 @@ class FirstOrder(Model):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Linearised(Model):
+    """Small deviations from a motion, to first order: x' = A x + B u, y = C x + D u.
+
+    The states are the deviations, stated as a change of variables, and so are the controls that the motion needs.
+    Everything else is declared as for any model; parameters and definitions are those of the motion, as far as it
+    needs them. The outputs are functions of the states and controls of the motion, and stand for their deviations
+    from what they are along it.
+
+    Parameters
+    ----------
+    of
+        The model whose motion this is.
+    about
+        Each of its states, and each control that is not zero, along the motion: functions of time and parameters.
+        They must solve its equations, which is proved.
+    deviations
+        Each state of this model, as a function of time and of the states of ``of``; and each control that is not one
+        of ``of``, as a function of these and the controls. They vanish along the motion, and there must be as many as
+        they replace.
+    """
+
+    of: Model
+    about: Mapping[sp.Symbol, sp.Expr]
+    deviations: Mapping[sp.Symbol, sp.Expr]
+
+
+@dataclass(frozen=True, kw_only=True)
 class Problem:
     """An optimal control problem: a model, what it costs, and the kind of control set.
 
@@ -119,3 +157,13 @@ class Problem:
     terminal_cost: sp.Expr = sp.Integer(0)
     terminal_constraints: tuple[sp.Expr, ...] = ()
     control_set: ControlSet = "free"
+
+
+def variables_of(model: Model) -> tuple[Variable, ...]:
+    """Everything that a model declares, and what the motion has that it linearises, each once."""
+    found = [*model.states, *model.controls, *model.parameters, *(d.variable for d in model.definitions)]
+    found += [o.variable for o in model.outputs]
+    if isinstance(model, Linearised):
+        kept = {v.symbol for v in model.controls}
+        found += [*model.of.states, *(v for v in model.of.controls if v.symbol not in kept)]
+    return tuple(found)

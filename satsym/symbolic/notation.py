@@ -7,9 +7,9 @@ from collections.abc import Collection, Iterable
 import sympy as sp
 
 from satsym.spec import Variable
-from satsym.symbolic import control_sets
+from satsym.symbolic import control_sets, linear_notation
 from satsym.symbolic.derivation import Derivation, DerivationError
-from satsym.symbolic.model import Model, Newton, Problem, symbols_of
+from satsym.symbolic.model import Linearised, Model, Newton, Problem, symbols_of, variables_of
 
 TIME, FINAL_TIME = sp.Symbol("t", real=True), sp.Symbol("t_f", real=True)
 HAMILTONIAN, MINIMISED = sp.Symbol("H", real=True), sp.Symbol("H_star", real=True)
@@ -39,7 +39,8 @@ FIXED = {
 PYTHON_NAMES = frozenset(
     "and as assert async await break class continue def del elif else except finally for from global if import in "
     "is lambda nonlocal not or pass raise return try while with None True False x u lam nu p bounds final out shape "
-    "times x0 lam_f x_mid u_mid lam_mid h i math np float len range".split()
+    "times x0 lam_f x_mid u_mid lam_mid h i math np float len range gain riccati state_weight "
+    "control_weight original".split()
 )
 """Names that generated code needs for itself."""
 
@@ -113,10 +114,13 @@ def begin(model: Model, problem: Problem | None) -> Derivation:
     DerivationError
         If two things have the same name, or one has a name that generated code needs.
     """
-    variables = [*model.states, *model.controls, *model.parameters, *(d.variable for d in model.definitions)]
+    variables = list(variables_of(model))
     if problem:
         variables += control_sets.bounds(problem.control_set, model.controls)
     notation = {s.name: latex for s, latex in FIXED.items()}
+    results = {} if problem else linear_notation.results(model)
+    if isinstance(model, Linearised):
+        notation |= {rate_of(s).name: rf"\frac{{d {v.latex}}}{{dt}}" for s, v in _motion_of(model)} | results
     latex = {v.symbol: v.latex for v in model.states}
     for state in symbols_of(model.states):
         own = latex[state.name]
@@ -124,12 +128,12 @@ def begin(model: Model, problem: Problem | None) -> Derivation:
         notation[initial(state).name] = rf"{{{own}}}_0"
         if problem:
             notation[costate_of(state).name] = rf"\lambda_{{{own}}}"
+            notation[rate_of(costate_of(state)).name] = rf"\dot\lambda_{{{own}}}"
             notation[given(state).name] = rf"g_{{{own}}}"
             notation[on_reference(state).name] = rf"\rho_{{{own}}}"
             notation[target(state).name] = rf"\bar{{{own}}}"
             notation[residual_of(state).name] = rf"B_{{{own}}}"
             notation[residual_of(costate_of(state)).name] = rf"B_{{\lambda_{{{own}}}}}"
-            notation[rate_of(costate_of(state)).name] = rf"\dot\lambda_{{{own}}}"
     for k, multiplier in enumerate(multipliers(problem) if problem else (), start=1):
         notation[multiplier.name] = rf"\nu_{{{k}}}"
         notation[residual_of(multiplier).name] = rf"B_{{\psi_{{{k}}}}}"
@@ -144,7 +148,12 @@ def begin(model: Model, problem: Problem | None) -> Derivation:
             notation[name] = rf"\mathbf{{e}}_{{{_subscript(name, latex)}}}"
             notation[f"d_{name}"] = rf"\dot{{\mathbf{{e}}}}_{{{_subscript(name, latex)}}}"
     _refuse_clashes(variables, {*notation, *_entries(model)})
-    return Derivation(model, problem, notation | {v.symbol: v.latex for v in variables})
+    return Derivation(model, problem, results | notation | {v.symbol: v.latex for v in variables})
+
+
+def _motion_of(model: Linearised) -> Iterable[tuple[sp.Symbol, Variable]]:
+    """The states of the motion that is linearised."""
+    return zip(symbols_of(model.of.states), model.of.states, strict=True)
 
 
 def _subscript(direction: str, latex: dict[str, str]) -> str:
@@ -154,9 +163,11 @@ def _subscript(direction: str, latex: dict[str, str]) -> str:
 
 
 def _entries(model: Model) -> Iterable[str]:
-    """Names of matrix entries: A = f_x, B = f_u, H_uu."""
+    """Names of matrix entries: A = f_x, B = f_u, C = g_x, D = g_u, H_uu."""
     states, controls = ([v.symbol for v in group] for group in (model.states, model.controls))
-    for letter, rows, columns in (("A", states, states), ("B", states, controls), ("H", controls, controls)):
+    outputs = [o.variable.symbol for o in model.outputs]
+    dynamic = (("A", states, states), ("B", states, controls), ("H", controls, controls))
+    for letter, rows, columns in (*dynamic, ("C", outputs, states), ("D", outputs, controls)):
         yield from (f"{letter}_{row}_{column}" for row in rows for column in columns)
 
 

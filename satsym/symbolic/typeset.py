@@ -7,9 +7,11 @@ from typing import Any
 
 import sympy as sp
 
+from satsym.symbolic import linear_notation
 from satsym.symbolic import notation as n
+from satsym.symbolic.analysis.spectrum import LAMBDA
 from satsym.symbolic.derivation import Derivation, Equation, Step
-from satsym.symbolic.model import Newton, symbols_of
+from satsym.symbolic.model import Linearised, Newton, symbols_of
 from satsym.symbolic.printer import Kind, Printer
 from satsym.symbolic.terms import Term
 
@@ -42,6 +44,10 @@ class Typesetter:
         """The expression on one line."""
         return self._printer.doprint(sp.sympify(expression))
 
+    def items(self, value: Any) -> list[str]:
+        """An expression, or each one of a tuple of them."""
+        return [self.tex(item) for item in (value.args if isinstance(value, sp.Tuple) else (value,))]
+
     def terms(self, expression: Any, *, plus_first: bool = True) -> tuple[Term, ...]:
         """The expression as a sum of signed terms.
 
@@ -53,6 +59,10 @@ class Typesetter:
             Whether a term with a plus is moved to the front, if the first one has a minus.
         """
         return tuple(self._printer.terms(sp.sympify(expression), plus_first=plus_first))
+
+    def by_powers(self, polynomial: Any) -> list[tuple[Term, ...]]:
+        """The terms of a characteristic polynomial, the highest power first."""
+        return [self.terms(c * LAMBDA**k) for (k,), c in sp.Poly(polynomial, LAMBDA).terms()]
 
     def symbol(self, name: str) -> str:
         """How a name is typeset."""
@@ -71,10 +81,12 @@ def matrices(derivation: Derivation, step: Step) -> list[NamedMatrix]:
     """Matrices whose entries the step names one by one, as ``A_row_column`` for derivatives by states or controls."""
     states = [v.symbol for v in derivation.model.states]
     controls = [v.symbol for v in derivation.model.controls]
+    outputs = [o.variable.symbol for o in derivation.model.outputs]
     named = {e.lhs.name: e for e in step.equations if isinstance(e.lhs, sp.Symbol)}
     found = []
     for prefix in dict.fromkeys(name.partition("_")[0] for name in named):
-        for rows, columns in ((states, states), (states, controls), (controls, controls)):
+        shapes = ((states, states), (states, controls), (controls, controls), (outputs, states), (outputs, controls))
+        for rows, columns in shapes:
             entries = tuple(tuple(named.get(f"{prefix}_{row}_{column}") for column in columns) for row in rows)
             matrix = NamedMatrix(prefix, entries)
             if matrix.equations and all(e in matrix.equations or not _has_prefix(e, prefix) for e in step.equations):
@@ -102,6 +114,7 @@ def _ranks(derivation: Derivation) -> dict[str, tuple[Kind, int]]:
     """Kind of each named thing, and its place in the order of declaration."""
     model = derivation.model
     states = symbols_of(model.states)
+    original = [v.symbol for v in model.of.states] if isinstance(model, Linearised) else []
     accelerations = [n.acceleration_of(q).name for q in model.coordinates] if isinstance(model, Newton) else []
     directions = list(model.directions) if isinstance(model, Newton) else []
     groups = [
@@ -109,8 +122,9 @@ def _ranks(derivation: Derivation) -> dict[str, tuple[Kind, int]]:
         (Kind.CONSTANT, [switch(s).name for switch in (n.given, n.on_reference) for s in states]),
         (Kind.CONSTANT, [m.name for m in n.multipliers(derivation.problem)] if derivation.problem else []),
         (Kind.CONSTANT, [v.symbol for v in (*model.parameters, *(d.variable for d in model.definitions))]),
+        (Kind.CONSTANT, [] if derivation.problem else list(linear_notation.weights(model))),
         (Kind.COSTATE, [n.costate_of(s).name for s in states]),
-        (Kind.MOTION, [s.name for s in states]),
+        (Kind.MOTION, [*original, *(s.name for s in states)]),
         (Kind.ACCELERATION, accelerations),
         (Kind.MOTION, [n.TIME.name]),
         (Kind.CONTROL, [v.symbol for v in model.controls]),

@@ -1,0 +1,70 @@
+"""Small systems of plain numbers, such as textbooks show methods on; the last one varies with time.
+
+The first three are examples 2.8 (both systems) and 2.9, the last one is example 2.7 of the thesis that the ledger
+uny_thesis is about.
+"""
+
+from sympy import cos, sin
+
+from satsym.symbolic import FirstOrder, Linearised, Output, Variable, symbols_of, t
+
+STATES = tuple(Variable(f"x{k}", f"x_{k}", meaning=f"state {k}") for k in (1, 2, 3))
+DEVIATIONS = tuple(Variable(f"z{k}", f"z_{k}", meaning=f"deviation of state {k}") for k in (1, 2))
+CONTROL = Variable("u1", "u_1", meaning="control")
+EFFECT = Variable("v1", "v_1", meaning="deviation of the control")
+OUTPUT = Variable("y1", "y_1", meaning="output")
+SIGNAL = Variable("w1", "w_1", meaning="deviation of the output")
+x1, x2, x3 = symbols_of(STATES)
+z1, z2 = symbols_of(DEVIATIONS)
+u1, v1 = symbols_of((CONTROL, EFFECT))
+
+saddle = FirstOrder(
+    name="saddle",
+    title="A saddle: one state grows, the other decays",
+    states=STATES[:2],
+    controls=(),
+    parameters=(),
+    rates={x1: 3 * x1, x2: -2 * x2},
+)
+
+stable_node = FirstOrder(
+    name="stable_node",
+    title="A stable node: both states decay",
+    states=STATES[:2],
+    controls=(),
+    parameters=(),
+    rates={x1: -5 * x1, x2: -2 * x2},
+)
+
+three_modes = FirstOrder(
+    name="three_modes",
+    title="Three real modes, two of them growing",
+    states=STATES,
+    controls=(),
+    parameters=(),
+    rates={x1: x1, x2: x1 + 2 * x2, x3: x1 - x3},
+)
+
+explicit_time = FirstOrder(
+    name="explicit_time",
+    title="A motion with explicit time and a quadratic output",
+    states=STATES[:2],
+    controls=(CONTROL,),
+    parameters=(),
+    rates={x1: -t * x2 + u1, x2: x1 / t},
+    outputs=(Output(OUTPUT, x1**2 / t**2 + t * x2**2),),
+)
+
+time_varying = Linearised(
+    name="time_varying",
+    title="Linearisation about a motion that varies with time",
+    of=explicit_time,
+    about={x1: t * sin(t), x2: -cos(t), u1: sin(t)},
+    states=DEVIATIONS,
+    controls=(EFFECT,),
+    parameters=(),
+    deviations={z1: x1 - t * sin(t), z2: x2 + cos(t), v1: u1 - sin(t)},
+    outputs=(Output(SIGNAL, explicit_time.outputs[0].value),),
+)
+
+PROBLEMS = (saddle, stable_node, three_modes, explicit_time, time_varying)

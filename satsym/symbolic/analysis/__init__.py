@@ -1,0 +1,132 @@
+"""Exact analysis of linear systems with constant coefficients: numbers, or expressions in positive parameters.
+
+What is found holds for all values of the parameters but those at which something listed under ``assumed`` vanishes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import sympy as sp
+
+from satsym.symbolic.analysis.companion import CompanionForm, companion, companion_form
+from satsym.symbolic.analysis.exponential import matrix_exponential
+from satsym.symbolic.analysis.field import NotExact
+from satsym.symbolic.analysis.jordan import JordanBlock, JordanForm, jordan_form
+from satsym.symbolic.analysis.routh import RouthArray, routh
+from satsym.symbolic.analysis.spectrum import Eigenvalue, Spectrum, spectrum
+from satsym.symbolic.analysis.stability import Stability, stability
+from satsym.symbolic.analysis.structure import KalmanForm, Mode, Reach, controllability, observability
+from satsym.symbolic.analysis.system import LinearSystem, linear_system
+
+__all__ = [
+    "Analysis",
+    "CompanionForm",
+    "Eigenvalue",
+    "JordanBlock",
+    "JordanForm",
+    "KalmanForm",
+    "LinearSystem",
+    "Mode",
+    "NotExact",
+    "Reach",
+    "RouthArray",
+    "Spectrum",
+    "Stability",
+    "analyse",
+    "companion",
+    "companion_form",
+    "controllability",
+    "jordan_form",
+    "linear_system",
+    "matrix_exponential",
+    "observability",
+    "routh",
+    "spectrum",
+    "stability",
+]
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """What the matrices of a linear system say, exactly.
+
+    Attributes
+    ----------
+    system
+        The matrices and names.
+    characteristic_polynomial
+        Coefficients of det(s I - A): monic, highest power first.
+    eigenvalues
+        Each distinct one with its multiplicities and block sizes; only those with a closed form.
+    jordan, exponential
+        Jordan form and e^(At); ``None`` where an eigenvalue has no closed form.
+    stability
+        The verdict and its reason.
+    routh
+        The Routh array of the characteristic polynomial.
+    controllability, by_input
+        For all inputs, and for each alone; ``None`` and empty without inputs.
+    observability, by_output
+        Likewise for outputs.
+    companion
+        For each input that reaches everything alone: the companion form.
+    assumed
+        What is taken not to vanish, where that is not certain.
+    """
+
+    system: LinearSystem
+    characteristic_polynomial: tuple[sp.Expr, ...]
+    eigenvalues: tuple[Eigenvalue, ...]
+    jordan: JordanForm | None
+    exponential: sp.ImmutableMatrix | None
+    stability: Stability
+    routh: RouthArray
+    controllability: Reach | None
+    by_input: Mapping[str, Reach]
+    observability: Reach | None
+    by_output: Mapping[str, Reach]
+    companion: Mapping[str, CompanionForm]
+    assumed: tuple[sp.Expr, ...]
+
+
+def analyse(system: LinearSystem) -> Analysis:
+    """Everything exact about a linear system with constant coefficients.
+
+    Parameters
+    ----------
+    system
+        From :func:`linear_system`, or from a derivation by :func:`satsym.symbolic.linear.system_of`.
+
+    Raises
+    ------
+    NotExact
+        If an entry is not a rational function of parameters and of roots of positive ones.
+    """
+    of = spectrum(system.a)
+    columns = {name: system.b[:, k] for k, name in enumerate(system.inputs)}
+    rows = {name: system.c[k, :] for k, name in enumerate(system.outputs)}
+    by_input = {name: controllability(of, column) for name, column in columns.items()}
+    by_output = {name: observability(of, row) for name, row in rows.items()}
+    whole = controllability(of, system.b) if columns else None
+    seen = observability(of, system.c) if rows else None
+    forms = {name: companion_form(of, column) for name, column in columns.items()}
+    assumed = [*of.assumed]
+    for reach in (whole, seen, *by_input.values(), *by_output.values()):
+        assumed += reach.assumed if reach else ()
+    return Analysis(
+        system,
+        of.coefficients,
+        of.eigenvalues,
+        jordan_form(of),
+        matrix_exponential(of),
+        stability(of),
+        routh(of.coefficients),
+        whole,
+        by_input,
+        seen,
+        by_output,
+        {name: form for name, form in forms.items() if form},
+        tuple(dict.fromkeys(assumed)),
+    )

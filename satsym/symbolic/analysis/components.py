@@ -1,0 +1,110 @@
+"""A matrix taken apart: for each factor of its characteristic polynomial, the invariant subspace and A on it.
+
+On the subspace of an irreducible factor f, A is the sum of two commuting matrices: S, which obeys f(S) = 0 and has
+no Jordan blocks but single ones, and N, a power of which vanishes (the Jordan-Chevalley decomposition). Projector,
+S and N are polynomials in A with coefficients from the field of the entries, so that no eigenvalue is needed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+from sympy.polys.matrices import DomainMatrix
+
+from satsym.symbolic.analysis.field import Field, never_zero
+from satsym.symbolic.analysis.spectrum import LAMBDA, Factor, Spectrum
+
+
+@dataclass(frozen=True)
+class Component:
+    """What belongs to one factor; all matrices vanish on the other subspaces.
+
+    Attributes
+    ----------
+    factor
+        The factor.
+    projector
+        The projector onto its subspace.
+    semisimple, nilpotent
+        S and N there; their sum is A times the projector.
+    """
+
+    factor: Factor
+    projector: DomainMatrix
+    semisimple: DomainMatrix
+    nilpotent: DomainMatrix
+
+    @property
+    def nilpotent_powers(self) -> list[DomainMatrix]:
+        """The projector, N, N^2, ... as far as they do not vanish."""
+        found = [self.projector]
+        for _ in range(max(self.factor.blocks) - 1):
+            found.append(found[-1] * self.nilpotent)
+        return found
+
+
+def components(of: Spectrum) -> tuple[Component, ...]:
+    """The components of a matrix, factor by factor; their projectors add up to the identity."""
+    return tuple(_component(of, factor) for factor in of.factors)
+
+
+def images(matrix: DomainMatrix, vector: DomainMatrix, count: int) -> list[DomainMatrix]:
+    """w, M w, M^2 w, ...; ``count`` of them."""
+    found = [vector]
+    for _ in range(count - 1):
+        found.append(matrix * found[-1])
+    return found
+
+
+def eigenvector(
+    field: Field, factor: Factor, root: sp.Expr, matrix: DomainMatrix, vector: DomainMatrix
+) -> sp.ImmutableMatrix:
+    """An eigenvector to a root of a factor f of a matrix M, from a vector w with f(M) w = 0: f(M)/(M - root) w."""
+    weights: list[sp.Expr] = []
+    for coefficient in factor.coefficients[:-1]:
+        weights.append(sp.expand((weights[-1] if weights else 0) * root + coefficient))
+    found = sp.zeros(vector.shape[0], 1)
+    for image, weight in zip(images(matrix, vector, factor.degree), reversed(weights), strict=True):
+        found += sp.Matrix(field.matrix(image)) * weight
+    return sp.ImmutableMatrix(found.applyfunc(sp.expand))
+
+
+def whole(field: Field, vector: DomainMatrix) -> DomainMatrix:
+    """A multiple of a column without denominators."""
+    denominators = [sp.fraction(field.domain.to_sympy(row[0]))[1] for row in vector.to_dense().to_list()]
+    return vector * field.domain.from_sympy(sp.lcm([sp.Integer(1), *denominators]))
+
+
+def without_common_factor(vectors: Sequence[sp.MatrixBase]) -> list[sp.ImmutableMatrix]:
+    """Vectors divided by what all their entries have in common; as they are where there are roots of sums."""
+    entries = [e for vector in vectors for e in vector if e != 0]
+    if not entries or any(not e.is_rational_function(*e.free_symbols) for e in entries):
+        return [sp.ImmutableMatrix(v) for v in vectors]
+    common = sp.gcd(entries)
+    if not never_zero(common):
+        return [sp.ImmutableMatrix(v) for v in vectors]
+    return [sp.ImmutableMatrix(v.applyfunc(lambda e: sp.expand(sp.cancel(e / common)))) for v in vectors]
+
+
+def _component(of: Spectrum, factor: Factor) -> Component:
+    field, f = of.field, factor.polynomial
+    power = f ** max(factor.blocks)
+    others = sp.Poly(1, LAMBDA, domain=field.domain)
+    for other in of.factors:
+        if other is not factor:
+            others *= other.polynomial ** max(other.blocks)
+    one = others * others.invert(power) if others.degree() else others
+    projector = field.at(one, of.matrix)
+    simple = field.at(_newton(f, power), of.matrix) * projector
+    return Component(factor, projector, simple, of.matrix * projector - simple)
+
+
+def _newton(f: sp.Poly, power: sp.Poly) -> sp.Poly:
+    """The polynomial that is a root of f modulo a power of f, and s modulo f itself: Newton's method."""
+    root = sp.Poly(LAMBDA, LAMBDA, domain=f.domain).rem(power)
+    while not (value := f.compose(root).rem(power)).is_zero:
+        slope = f.diff(LAMBDA).compose(root).rem(power)
+        root = (root - value * slope.invert(power)).rem(power)
+    return root

@@ -1,0 +1,213 @@
+"""Eigenvalues in closed form, and the sizes of their Jordan blocks, without leaving the field of the entries.
+
+The characteristic polynomial is factored over the rational functions of the parameters. All roots of one
+irreducible factor f have blocks of the same sizes, which the ranks of f(A), f(A)^2, ... tell.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import pairwise
+
+import sympy as sp
+from sympy.polys.matrices import DomainMatrix
+
+from satsym.symbolic.analysis.field import Field, exact, never_zero, shortest, sign_of
+from satsym.symbolic.analysis.routh import routh
+
+LAMBDA = sp.Symbol("eigenvalue")
+"""What characteristic polynomials are polynomials in."""
+
+
+@dataclass(frozen=True)
+class Factor:
+    """An irreducible factor of the characteristic polynomial.
+
+    Attributes
+    ----------
+    polynomial
+        Monic, in :data:`LAMBDA`, over the field of the entries.
+    coefficients
+        The same as expressions, highest power first.
+    blocks
+        Sizes of the Jordan blocks of each of its roots, the largest first.
+    roots
+        Its roots: closed forms, or sympy's numbered roots of a polynomial with known coefficients; empty where
+        there is no closed form.
+    right, axis, left
+        Number of its roots with positive, zero and negative real parts; ``None`` where the parameters decide.
+    """
+
+    polynomial: sp.Poly
+    coefficients: tuple[sp.Expr, ...]
+    blocks: tuple[int, ...]
+    roots: tuple[sp.Expr, ...]
+    right: int | None
+    axis: int | None
+    left: int | None
+
+    @property
+    def degree(self) -> int:
+        """How many roots it has."""
+        return int(self.polynomial.degree())
+
+
+@dataclass(frozen=True)
+class Eigenvalue:
+    """An eigenvalue with its multiplicities.
+
+    Attributes
+    ----------
+    value
+        In closed form.
+    algebraic, geometric
+        Multiplicity as a root of the characteristic polynomial, and number of independent eigenvectors.
+    blocks
+        Sizes of its Jordan blocks, the largest first.
+    """
+
+    value: sp.Expr
+    algebraic: int
+    geometric: int
+    blocks: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """What the characteristic polynomial of a square matrix says.
+
+    Attributes
+    ----------
+    field, matrix
+        The matrix, exactly.
+    coefficients
+        Of the characteristic polynomial det(s I - A): monic, highest power first.
+    factors
+        Its irreducible factors, by degree and then by name.
+    assumed
+        What is taken not to vanish, where that is not certain: the parameters at which eigenvalues of different
+        factors meet, or a factor's own roots.
+    """
+
+    field: Field
+    matrix: DomainMatrix
+    coefficients: tuple[sp.Expr, ...]
+    factors: tuple[Factor, ...]
+    assumed: tuple[sp.Expr, ...]
+
+    @property
+    def polynomial(self) -> sp.Expr:
+        """The characteristic polynomial in :data:`LAMBDA`."""
+        return polynomial_of(self.coefficients, LAMBDA)
+
+    @property
+    def closed_form(self) -> bool:
+        """Whether every eigenvalue has a closed form, roots of numbered polynomials not counted."""
+        return all(f.roots and not any(r.has(sp.CRootOf) for r in f.roots) for f in self.factors)
+
+    @property
+    def eigenvalues(self) -> tuple[Eigenvalue, ...]:
+        """Each distinct eigenvalue that has a closed form."""
+        return tuple(Eigenvalue(root, sum(f.blocks), len(f.blocks), f.blocks) for f in self.factors for root in f.roots)
+
+
+def spectrum(a: sp.MatrixBase) -> Spectrum:
+    """The characteristic polynomial of a matrix, its factors, and what follows from them.
+
+    Raises
+    ------
+    NotExact
+        If the entries are not rational functions of parameters and of roots of positive ones.
+    """
+    return _spectrum(sp.ImmutableMatrix(a))
+
+
+@lru_cache(maxsize=64)
+def _spectrum(a: sp.ImmutableMatrix) -> Spectrum:
+    field, (matrix,) = exact(a)
+    coefficients = matrix.charpoly()
+    whole = field.polynomial(coefficients, LAMBDA)
+    _, found = whole.factor_list()
+    parts = [(p.monic().set_domain(field.domain), m) for p, m in found]
+    parts.sort(key=lambda part: (part[0].degree(), not part[0].as_expr().has(LAMBDA), sp.default_sort_key(part[0])))
+    factors = tuple(_factor(field, matrix, p, m) for p, m in parts)
+    return Spectrum(
+        field, matrix, tuple(map(field.expression, coefficients)), factors, _assumed(field, [p for p, _ in parts])
+    )
+
+
+def polynomial_of(coefficients: tuple[sp.Expr, ...], symbol: sp.Symbol) -> sp.Expr:
+    """The polynomial with these coefficients, highest power first."""
+    highest = len(coefficients) - 1
+    return sp.Add(*(c * symbol ** (highest - k) for k, c in enumerate(coefficients)))
+
+
+def _factor(field: Field, matrix: DomainMatrix, polynomial: sp.Poly, multiplicity: int) -> Factor:
+    coefficients = tuple(field.shown(c) for c in polynomial.all_coeffs())
+    array = routh(coefficients)
+    return Factor(
+        polynomial,
+        coefficients,
+        _block_sizes(field, matrix, polynomial, multiplicity),
+        _roots(coefficients),
+        array.right,
+        array.axis,
+        array.left,
+    )
+
+
+def _block_sizes(field: Field, matrix: DomainMatrix, polynomial: sp.Poly, multiplicity: int) -> tuple[int, ...]:
+    """Block sizes of one root: f(A)^k has as many blocks of size k and more as its rank falls by, over the degree."""
+    size, degree = matrix.shape[0], int(polynomial.degree())
+    value = field.at(polynomial, matrix)
+    ranks, power = [size], value
+    while size - ranks[-1] < degree * multiplicity:
+        ranks.append(power.rank())
+        power = power * value
+    at_least = [(a - b) // degree for a, b in pairwise(ranks)]
+    sizes = [k for k, (n, more) in enumerate(pairwise([*at_least, 0]), 1) for _ in range(n - more)]
+    return tuple(sorted(sizes, reverse=True))
+
+
+def _roots(coefficients: tuple[sp.Expr, ...]) -> tuple[sp.Expr, ...]:
+    """Roots of a monic irreducible polynomial; of a pair, the greater or the one above the real axis first."""
+    if len(coefficients) == 2:
+        return (shortest(-coefficients[1]),)
+    if len(coefficients) == 3:
+        _, b, c = coefficients
+        return _pair(shortest(-b / 2), shortest(b**2 / 4 - c))
+    if len(coefficients) == 5 and coefficients[1] == coefficients[3] == 0:
+        return _biquadratic(coefficients[2], coefficients[4])
+    if all(c.is_number for c in coefficients):
+        polynomial = sp.Poly.from_list(coefficients, LAMBDA, extension=True)
+        if polynomial.domain.is_QQ or polynomial.domain.is_ZZ:
+            return tuple(sp.CRootOf(polynomial, k) for k in range(polynomial.degree()))
+    return ()
+
+
+def _pair(centre: sp.Expr, square: sp.Expr) -> tuple[sp.Expr, ...]:
+    """``centre`` plus and minus the root of ``square``."""
+    half = sp.I * _root(-square) if sign_of(square) == -1 else _root(square)
+    return centre + half, centre - half
+
+
+def _biquadratic(p: sp.Expr, q: sp.Expr) -> tuple[sp.Expr, ...]:
+    """Roots of s^4 + p s^2 + q."""
+    square = shortest(p**2 / 4 - q)
+    if sign_of(square) == -1:  # then q is positive, and its root greater than half of p
+        real, imaginary = (_root(shortest(_root(q) / 2 + sign * p / 4)) for sign in (-1, 1))
+        return tuple(a * real + b * sp.I * imaginary for a in (1, -1) for b in (1, -1))
+    return tuple(root for y in (-p / 2 + _root(square), -p / 2 - _root(square)) for root in _pair(sp.Integer(0), y))
+
+
+def _root(square: sp.Expr) -> sp.Expr:
+    """The square root, with squares of what is positive taken out of it."""
+    return sp.sqrt(sp.factor(square))
+
+
+def _assumed(field: Field, factors: list[sp.Poly]) -> tuple[sp.Expr, ...]:
+    differences = [sp.resultant(a, b) for k, a in enumerate(factors) for b in factors[:k]]
+    differences += [sp.discriminant(f) for f in factors if f.degree() > 1]
+    shown = (field.shown(sp.sympify(d)) for d in differences)
+    return tuple(dict.fromkeys(d for d in shown if not never_zero(d)))

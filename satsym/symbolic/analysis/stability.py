@@ -1,0 +1,98 @@
+"""Stability of x' = A x, and why: eigenvalues off the axis first, then the Jordan blocks of those on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import sympy as sp
+
+from satsym.symbolic.analysis.routh import routh
+from satsym.symbolic.analysis.spectrum import Factor, Spectrum
+
+Verdict = Literal["asymptotically stable", "marginally stable", "unstable", "depends on the parameters"]
+Cause = Literal["all left", "bounded on the axis", "right", "block on the axis", "parameters decide"]
+
+_TIMES = {1: "simple", 2: "double", 3: "triple"}
+_GROWTH = {2: "linearly", 3: "quadratically", 4: "cubically"}
+
+
+@dataclass(frozen=True)
+class Stability:
+    """A verdict with its reason.
+
+    Attributes
+    ----------
+    verdict, cause
+        What holds, and which argument shows it.
+    eigenvalues
+        Those that the argument is about; empty where they have no closed form.
+    block
+        Size of the largest Jordan block on the imaginary axis; 0 where no eigenvalue lies there.
+    conditions
+        Where the parameters decide: all eigenvalues have negative real parts exactly where all of these are positive.
+    reason
+        One English sentence without its full stop.
+    """
+
+    verdict: Verdict
+    cause: Cause
+    eigenvalues: tuple[sp.Expr, ...]
+    block: int
+    conditions: tuple[sp.Expr, ...]
+    reason: str
+
+
+def stability(of: Spectrum) -> Stability:
+    """The verdict on the origin of x' = A x, for all values that the parameters may take."""
+    right = [f for f in of.factors if f.right]
+    block = max((f.blocks[0] for f in of.factors if f.axis), default=0)
+    if right:
+        found = tuple(r for f in right for r in _growing(f))
+        return Stability("unstable", "right", found, block, (), _exponential(found))
+    if any(f.right is None for f in of.factors):
+        conditions = tuple(c for c in routh(of.coefficients).column[1:])
+        reason = (
+            "the parameters decide: all eigenvalues have negative real parts exactly where each of these is positive: "
+            + ", ".join(map(str, conditions))
+        )
+        return Stability("depends on the parameters", "parameters decide", (), block, conditions, reason)
+    if block > 1:
+        worst = next(f for f in of.factors if f.axis and f.blocks[0] == block)
+        return Stability("unstable", "block on the axis", worst.roots, block, (), _polynomial(worst))
+    if block:
+        found = tuple(r for f in of.factors if f.axis for r in f.roots)
+        reason = "the eigenvalues on the imaginary axis have Jordan blocks of size 1: deviations neither grow nor decay"
+        return Stability("marginally stable", "bounded on the axis", found, block, (), reason)
+    reason = "all eigenvalues have negative real parts: deviations decay exponentially"
+    return Stability("asymptotically stable", "all left", (), block, (), reason)
+
+
+def _growing(factor: Factor) -> tuple[sp.Expr, ...]:
+    """The roots of a factor whose real parts are positive, as far as that is known."""
+    if factor.right == factor.degree:
+        return factor.roots
+    return tuple(r for r in factor.roots if (real := sp.re(r)).is_positive or (real.is_number and real.evalf() > 0))
+
+
+def _exponential(found: tuple[sp.Expr, ...]) -> str:
+    if not found:
+        return "an eigenvalue has a positive real part: deviations grow exponentially"
+    named = ", ".join(map(str, found))
+    subject = f"the eigenvalue {named} has a" if len(found) == 1 else f"the eigenvalues {named} have"
+    return f"{subject} positive real part{'s' * (len(found) > 1)}: deviations grow exponentially"
+
+
+def _polynomial(factor: Factor) -> str:
+    size, times = factor.blocks[0], sum(factor.blocks)
+    growth = _GROWTH.get(size, f"like t^{size - 1}")
+    manifold = _TIMES.get(times, f"{times}-fold")
+    named = ", ".join(map(str, factor.roots)) or "roots of an irreducible factor"
+    if len(factor.roots) == 1:
+        return (
+            f"the {manifold} eigenvalue {named} has a Jordan block of size {size}: deviations grow {growth} with time"
+        )
+    return (
+        f"the {manifold} eigenvalues {named} on the imaginary axis have Jordan blocks of size {size}: "
+        f"deviations grow {growth} with time"
+    )

@@ -1,0 +1,130 @@
+"""Dimensions of expressions: exponents of base dimensions, exactly, and the rules that sums and products obey."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any, TypeAlias
+
+import sympy as sp
+
+from satsym.symbolic import control_sets
+
+Dimension: TypeAlias = Mapping[str, sp.Expr]
+"""Exact exponents of base dimensions, without zeros; empty for plain numbers."""
+
+Known: TypeAlias = Mapping[str, Dimension | None]
+"""Name of a symbol -> its dimension; ``None`` for zero, which has every dimension."""
+
+PLAIN: Dimension = {}
+_SAME = (sp.Add, sp.Max, sp.Min, control_sets.Clip)
+"""What needs arguments of one dimension and returns it."""
+
+
+class Disagreement(Exception):
+    """An expression puts together what has different dimensions; the message goes on from "the expression ..."."""
+
+
+def dimension_of(expression: Any, known: Known) -> Dimension | None:
+    """Dimension of an expression.
+
+    Parameters
+    ----------
+    expression
+        Anything but a matrix.
+    known
+        Dimensions of its symbols.
+
+    Returns
+    -------
+    Dimension or None
+        ``None`` for zero.
+
+    Raises
+    ------
+    Disagreement
+        If it is not homogeneous.
+    """
+    e = sp.sympify(expression)
+    if e.is_Symbol:
+        if e.name not in known:
+            raise Disagreement(f"uses {e.name}, whose dimension is not known")
+        return known[e.name]
+    if e.is_number:
+        return None if e == 0 else PLAIN
+    if isinstance(e, _SAME):
+        return _common(e.args, known)
+    if e.is_Mul:
+        return product(dimension_of(a, known) for a in e.args)
+    if e.is_Pow:
+        _plain(e.exp, known, "an exponent")
+        return power_of(dimension_of(e.base, known), e.exp)
+    if isinstance(e, sp.Abs):
+        return dimension_of(e.args[0], known)
+    if isinstance(e, sp.Piecewise):
+        for comparison in e.atoms(sp.core.relational.Relational):
+            _common(comparison.args, known)
+        return _common([branch for branch, _ in e.args], known)
+    if isinstance(e, control_sets.Shorten):
+        norm_squared, limit = e.args
+        _common((norm_squared, limit**2), known)
+    elif isinstance(e, sp.atan2):
+        _common(e.args, known)
+    elif not isinstance(e, sp.sign):
+        for argument in e.args:
+            _plain(argument, known, f"{e.func.__name__} of it")
+    return PLAIN
+
+
+def written(dimension: Dimension | None) -> str:
+    """A dimension for people, such as ``[length]/[time]^2``; ``1`` for a plain number."""
+    above: list[str] = []
+    below: list[str] = []
+    for base, exponent in (dimension or PLAIN).items():
+        side, size = (below, -exponent) if exponent.could_extract_minus_sign() else (above, exponent)
+        side.append(base if size == 1 else f"{base}^{size if size.is_Integer else f'({size})'}")
+    return "/".join(["*".join(above) or "1", *below])
+
+
+def _plain(expression: sp.Expr, known: Known, role: str) -> None:
+    found = dimension_of(expression, known)
+    if found:
+        raise Disagreement(f"has {expression} of dimension {written(found)}, but {role} needs a plain number")
+
+
+def _common(expressions: Iterable[sp.Expr], known: Known) -> Dimension | None:
+    """The one dimension of some expressions."""
+    first, found = None, None
+    for expression in expressions:
+        dimension = dimension_of(expression, known)
+        if dimension is None:
+            continue
+        if found is None:
+            first, found = expression, dimension
+        elif dimension != found:
+            one, other = (f"{e} of dimension {written(d)}" for e, d in ((first, found), (expression, dimension)))
+            raise Disagreement(f"puts {one} beside {other}")
+    return found
+
+
+def product(dimensions: Iterable[Dimension | None]) -> Dimension | None:
+    """The dimension of a product."""
+    total: dict[str, sp.Expr] = {}
+    for dimension in dimensions:
+        if dimension is None:
+            return None
+        for base, exponent in dimension.items():
+            total[base] = sp.expand(total.get(base, 0) + exponent)
+    return {base: total[base] for base in sorted(total) if total[base] != 0}
+
+
+def power_of(dimension: Dimension | None, exponent: sp.Expr) -> Dimension | None:
+    """The dimension of a power."""
+    if dimension is None:
+        return None
+    exact = sp.nsimplify(exponent, rational=True)
+    return {base: sp.expand(power * exact) for base, power in dimension.items()}
+
+
+def over(dimension: Dimension | None, other: Dimension | None) -> Dimension | None:
+    """The dimension of a quotient."""
+    return product((dimension, power_of(other, sp.Integer(-1))))

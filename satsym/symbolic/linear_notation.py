@@ -1,0 +1,120 @@
+"""Symbols of linear models and of what follows from them, and how they are typeset."""
+
+from __future__ import annotations
+
+from itertools import combinations_with_replacement
+
+import sympy as sp
+
+from satsym.spec import Variable
+from satsym.symbolic.analysis.spectrum import LAMBDA
+from satsym.symbolic.model import Model, symbols_of
+
+CHARACTERISTIC = sp.Symbol("characteristic_polynomial")
+EIGENVALUES = sp.Symbol("eigenvalues")
+DISTINCT = sp.Symbol("distinct_eigenvalues")
+ALGEBRAIC, GEOMETRIC = sp.Symbol("algebraic_multiplicities"), sp.Symbol("geometric_multiplicities")
+JORDAN, JORDAN_BASIS = sp.Symbol("jordan_form"), sp.Symbol("jordan_basis")
+TRANSITION = sp.Symbol("transition_matrix")
+ROUTH, SIGN_CHANGES = sp.Symbol("routh_array"), sp.Symbol("sign_changes")
+COMPANION = sp.Symbol("companion_matrix")
+COUPLING = sp.Symbol("control_coupling")
+GAIN = sp.Symbol("feedback_gain")
+HAMILTONIAN_MATRIX = sp.Symbol("hamiltonian_matrix")
+RICCATI_RATE, RICCATI_RESIDUAL = sp.Symbol("riccati_rate"), sp.Symbol("riccati_residual")
+
+FIXED = {
+    LAMBDA: r"\lambda",
+    CHARACTERISTIC: r"\det(\lambda I - A)",
+    JORDAN: "J",
+    JORDAN_BASIS: "T",
+    TRANSITION: "e^{At}",
+    ROUTH: r"\mathcal{R}",
+    SIGN_CHANGES: r"n_{+}",
+    COMPANION: "A_c",
+    COUPLING: r"S = B R^{-1} B^{\mathsf{T}}",
+    GAIN: r"K = R^{-1} B^{\mathsf{T}} P",
+    HAMILTONIAN_MATRIX: "M",
+    RICCATI_RATE: r"-\dot P",
+    RICCATI_RESIDUAL: "0",
+}
+
+
+def small(k: int) -> sp.Symbol:
+    """The small positive number in the k-th vanishing element of a Routh array."""
+    return sp.Symbol(f"epsilon_{k}", positive=True)
+
+
+def weight(letter: str, a: sp.Symbol, b: sp.Symbol) -> sp.Symbol:
+    """An entry of a symmetric matrix Q, R, P or S; ``a`` is the earlier one of the two."""
+    return sp.Symbol(f"{letter}_{a.name}_{b.name}", real=True)
+
+
+def symmetric(letter: str, names: tuple[sp.Symbol, ...]) -> sp.ImmutableMatrix:
+    """The symmetric matrix of such entries."""
+    size = len(names)
+    return sp.ImmutableMatrix(size, size, lambda i, j: weight(letter, names[min(i, j)], names[max(i, j)]))
+
+
+def matrix_symbols(letter: str, rows: int, columns: int) -> sp.ImmutableMatrix:
+    """A matrix of symbols, such as generated code takes row by row."""
+    return sp.ImmutableMatrix(rows, columns, lambda i, j: sp.Symbol(f"{letter}_{i + 1}_{j + 1}", real=True))
+
+
+def results(model: Model) -> dict[str, str]:
+    """Notation of what the steps for linear models find; no variable of a model that is analysed has such a name."""
+    notation = {s.name: latex for s, latex in FIXED.items()}
+    n, m = len(model.states), len(model.controls)
+    notation[EIGENVALUES.name] = rf"(\lambda_1, \dots, \lambda_{{{n}}})" if n > 1 else r"\lambda_1"
+    notation[DISTINCT.name] = r"\boldsymbol{\lambda}"
+    notation[ALGEBRAIC.name] = r"\mathbf{m}_a"
+    notation[GEOMETRIC.name] = r"\mathbf{m}_g"
+    notation |= {small(k).name: rf"\varepsilon_{{{k}}}" for k in range(1, n + 2)}
+    for v in model.states:
+        notation[f"lambda_{v.symbol}"] = rf"\lambda_{{{v.latex}}}"
+        notation[f"d_lambda_{v.symbol}"] = rf"\dot\lambda_{{{v.latex}}}"
+    for letter, rows, columns in (("K", m, n), ("P", n, n), ("Q", n, n), ("R", m, m)):
+        notation |= {s.name: rf"{letter.lower()}_{{{s.name[2:]}}}" for s in matrix_symbols(letter, rows, columns)}
+    return notation | weights(model) | _of_ports(model)
+
+
+def weights(model: Model) -> dict[str, str]:
+    """Names of the entries of Q, R, P and S, and how they are typeset."""
+    notation = {}
+    for letter, variables in (("Q", model.states), ("R", model.controls), ("P", model.states), ("S", model.states)):
+        for (i, a), (j, b) in combinations_with_replacement(list(enumerate(symbols_of(variables), 1)), 2):
+            comma = "," if len(variables) > 9 else ""
+            notation[weight(letter, a, b).name] = rf"{letter.lower()}_{{{i}{comma}{j}}}"
+    return notation
+
+
+def _of_ports(model: Model) -> dict[str, str]:
+    notation = {"controllability": "R", "observability": "O"}
+    for kind, letter, ports in (
+        ("controllability", "R", model.controls),
+        ("observability", "O", tuple(o.variable for o in model.outputs)),
+    ):
+        for port in (None, *ports):
+            notation |= _of_port(kind, letter, port)
+    return notation
+
+
+def _of_port(kind: str, letter: str, port: Variable | None) -> dict[str, str]:
+    """Names for one input or output, or for all together."""
+    suffix = f"_{port.symbol}" if port else ""
+    index = f"_{{{port.latex}}}" if port else ""
+    matrix, basis = f"{letter}{index}", f"T{index}"
+    column = rf"\mathbf{{b}}{index}" if port else "B"
+    row = rf"\mathbf{{c}}{index}" if port else "C"
+    controls = kind == "controllability"
+    pencil = rf"(\lambda I - A,\; {column})" if controls else rf"(\lambda I - A;\; {row})"
+    return {
+        f"{kind}{suffix}": matrix,
+        f"{kind}_rank{suffix}": rf"\operatorname{{rank}} {matrix}",
+        f"{kind}_pbh{suffix}": rf"\operatorname{{rank}} {pencil}",
+        f"{kind}_basis{suffix}": basis,
+        f"{kind}_state{suffix}": rf"{basis}^{{-1}} A {basis}",
+        f"{kind}_port{suffix}": rf"{basis}^{{-1}} {column}" if controls else rf"{row} {basis}",
+        f"{kind}_companion_basis{suffix}": f"T_{{c,{port.latex}}}" if port else "T_c",
+        **{f"{kind}_mode{suffix}_{k}": rf"{'z' if controls else 'v'}{index}" for k in range(1, 20)},
+    }

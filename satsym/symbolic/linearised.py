@@ -1,0 +1,252 @@
+"""From a motion and a change of variables to the linear model of its deviations.
+
+The equations of the motion are derived anew as far as their first-order form; a reference is found to solve them,
+and under which condition; then come the exact equations in the deviations, and their first order at zero.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import mpmath as mp
+import sympy as sp
+
+from satsym.symbolic import notation as n
+from satsym.symbolic.algebra import definitions_of, tidy, total_derivative
+from satsym.symbolic.checks import Point, compare, identity, numeric, partial
+from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
+from satsym.symbolic.dimensions import AGREEMENT
+from satsym.symbolic.model import Linearised, symbols_of, t
+
+
+def original_equations(so_far: Derivation) -> Step:
+    """The first-order form of the motion, from its own derivation, with the checks that it passed there."""
+    assert so_far.original is not None
+    step = so_far.original.step("first_order")
+    checks = tuple(c for c in step.checks if c.claim != AGREEMENT)  # every step gets that one anyway
+    return Step("original_equations", "taken over", step.equations, ("motion",), checks)
+
+
+def reference_condition(so_far: Derivation) -> Step | None:
+    """The values of named constants with which the reference solves the equations, and no other ones do."""
+    model = _linearised(so_far)
+    constants = definitions_of(model)
+    defects = [sp.simplify(d) for d in _defects(so_far)]
+    unknown = sorted(set(constants) & set().union(*(d.free_symbols for d in defects)), key=lambda s: s.name)
+    if not unknown:
+        return None
+    found = sp.solve([d for d in defects if d != 0], unknown, dict=True)
+    if len(found) != 1 or set(found[0]) != set(unknown):
+        names = ", ".join(s.name for s in unknown)
+        raise DerivationError(f"{model.name}: the reference does not determine {names}; it may not be a motion at all")
+    for symbol, value in found[0].items():
+        if sp.simplify(value - constants[symbol]) != 0:
+            raise DerivationError(
+                f"{model.name}: the reference solves the equations of motion exactly when {symbol} = {value}, "
+                f"but {symbol} is defined as {constants[symbol]}"
+            )
+    equations = tuple(Equation(s.name, s, tidy(found[0][s])) for s in unknown)
+    values, equal = numeric([e.rhs for e in equations]), numeric(defects)
+
+    def sides(point: Point) -> tuple[list[Any], list[Any]]:
+        """Newton's method on the defects of the equations, from a random start."""
+        start = [point[s] for s in unknown]
+        square = [k for k, d in enumerate(defects) if d != 0][: len(unknown)]
+
+        def residual(*numbers: Any) -> list[Any]:
+            defect = equal({**point, **dict(zip(unknown, numbers, strict=True))})
+            return [defect[k] for k in square]
+
+        return values(point), list(mp.findroot(residual, start))
+
+    symbols = set(unknown).union(*(d.free_symbols for d in defects))
+    checks = (
+        compare("solved numerically", symbols, sides),
+        identity("vanish with these values", [d.xreplace({e.lhs: e.rhs for e in equations}) for d in defects]),
+    )
+    return Step("reference_condition", "solve for constants", equations, ("reference", "original_equations"), checks)
+
+
+def reference(so_far: Derivation) -> Step:
+    """The motion that is linearised about, proved to satisfy the equations with its controls."""
+    model = _linearised(so_far)
+    defects = [d.xreplace(definitions_of(model)) for d in _defects(so_far)]
+    proof = identity("satisfies the equations with its controls", defects)
+    if not proof.passed:
+        raise DerivationError(f"{model.name}: what it is linearised about is no motion of {model.of.name}")
+    states, about = symbols_of(model.of.states), _about(model)
+    controls = [u for u in symbols_of(model.of.controls) if about[u] != 0]
+    equations = tuple(Equation(s.name, s, about[s]) for s in (*states, *controls))
+    condition = ("reference_condition",) if "reference_condition" in so_far else ()
+    sources = ("original_equations", *condition)
+    return Step("reference", "given and proved with controls", equations, sources, (proof,))
+
+
+def deviations(so_far: Derivation) -> Step:
+    """The new variables, which vanish on the reference."""
+    model = _linearised(so_far)
+    stated = _stated(model)
+    proof = identity("vanish on the reference", [d.xreplace(_about(model)) for d in stated.values()])
+    if not proof.passed:
+        raise DerivationError(f"{model.name}: the deviations do not all vanish on the reference")
+    equations = tuple(Equation(s.name, s, d) for s, d in stated.items())
+    return Step("deviations", "change of variables", equations, ("reference",), (proof,))
+
+
+def original_states(so_far: Derivation) -> Step:
+    """The old variables in terms of the new ones."""
+    model = _linearised(so_far)
+    stated, old = _stated(model), _replaced(model)
+    try:
+        solutions = sp.solve([d - s for s, d in stated.items()], old, dict=True)
+    except NotImplementedError:
+        solutions = []
+    zero, about = dict.fromkeys(stated, sp.Integer(0)), _about(model)
+    fitting = [
+        s
+        for s in solutions
+        if set(s) == set(old) and all(sp.simplify(s[o].xreplace(zero) - about[o]) == 0 for o in old)
+    ]
+    if len(fitting) != 1:
+        raise DerivationError(f"{model.name}: the deviations cannot be solved for the variables of {model.of.name}")
+    equations = tuple(Equation(o.name, o, tidy(fitting[0][o])) for o in old)
+    there, back = numeric(list(stated.values())), numeric([e.rhs for e in equations])
+
+    def sides(point: Point) -> tuple[list[Any], list[Any]]:
+        return there({**point, **dict(zip(old, back(point), strict=True))}), [point[s] for s in stated]
+
+    symbols = set().union(*(d.free_symbols for d in stated.values())) | set(stated)
+    check = compare("there and back", symbols, sides)
+    return Step("original_states", "solve for original states", equations, ("deviations",), (check,))
+
+
+def deviation_equations(so_far: Derivation) -> Step:
+    """The exact equations that the deviations obey, by the chain rule."""
+    model = _linearised(so_far)
+    old_states, stated = symbols_of(model.of.states), _stated(model)
+    motion = dict(zip(old_states, so_far.rhs("original_equations"), strict=True))
+    inverse = {e.lhs: e.rhs for e in so_far.step("original_states").equations}
+    rates = [_shorter(total_derivative(stated[s], motion).xreplace(inverse)) for s in symbols_of(model.states)]
+    equations = tuple(Equation(s.name, n.rate_of(s), f) for s, f in zip(symbols_of(model.states), rates, strict=True))
+    new, back = numeric([stated[s] for s in symbols_of(model.states)]), numeric(list(inverse.values()))
+    old_rates, found = numeric(list(motion.values())), numeric(rates)
+
+    def sides(point: Point) -> tuple[list[Any], list[Any]]:
+        """Rates of the new variables as the old ones move on along their own rates."""
+        here = {**point, **dict(zip(inverse, back(point), strict=True))}
+        slopes = dict(zip(old_states, old_rates(here), strict=True))
+
+        def moved(time: Any) -> list[Any]:
+            return new({**here, **{s: here[s] + slopes[s] * time for s in old_states}, t: here[t] + time})
+
+        return found(point), [mp.diff(lambda time, k=k: moved(time)[k], 0) for k in range(len(rates))]
+
+    symbols = {t, *stated}.union(*(e.free_symbols for e in (*motion.values(), *inverse.values(), *rates)))
+    check = compare("along the original motion", symbols, sides)
+    sources = ("deviations", "original_equations", "original_states")
+    return Step("deviation_equations", "chain rule", equations, sources, (check,))
+
+
+def linearisation(so_far: Derivation) -> Step:
+    """A and B: the exact equations differentiated by the deviations, at zero."""
+    model = _linearised(so_far)
+    states, controls = symbols_of(model.states), symbols_of(model.controls)
+    exact, constants = so_far.rhs("deviation_equations"), definitions_of(model)
+    rest = dict.fromkeys((*states, *controls), sp.Integer(0))
+    equations, pairs = [], []
+    for letter, columns in (("A", states), ("B", controls)):
+        for row, state in enumerate(states):
+            for column in columns:
+                entry = tidy(sp.simplify(sp.diff(exact[row], column).xreplace(rest).xreplace(constants)))
+                name = f"{letter}_{state.name}_{column.name}"
+                equations.append(Equation(name, sp.Symbol(name, real=True), entry))
+                pairs.append((row, column, entry))
+    rates = numeric([f.xreplace(constants) for f in exact])
+    entries = numeric([entry for *_, entry in pairs])
+
+    def sides(point: Point) -> tuple[list[Any], list[Any]]:
+        there = {**point, **rest}
+        return entries(there), [partial(rates, there, column)[row] for row, column, _ in pairs]
+
+    symbols = {*rest}.union(*(f.xreplace(constants).free_symbols for f in exact))
+    checks = (compare("numeric derivative", symbols, sides), _transformed(so_far, [entry for *_, entry in pairs]))
+    sources = ("deviation_equations", "definitions")
+    return Step("linearisation", "differentiate at zero", tuple(equations), sources, checks)
+
+
+def first_order(so_far: Derivation) -> Step:
+    """The linear equations x' = A x + B u."""
+    model = _linearised(so_far)
+    states, controls = symbols_of(model.states), symbols_of(model.controls)
+    entries = [e.rhs for e in so_far.step("linearisation").equations]
+    a = sp.Matrix(len(states), len(states), entries[: len(states) ** 2])
+    b = sp.Matrix(len(states), len(controls), entries[len(states) ** 2 :])
+    rates = a * sp.Matrix(states) + (b * sp.Matrix(controls) if controls else sp.zeros(len(states), 1))
+    equations = tuple(Equation(s.name, n.rate_of(s), f) for s, f in zip(states, rates, strict=True))
+    constants = definitions_of(model)
+    exact = [f.xreplace(constants) for f in so_far.rhs("deviation_equations")]
+    function, found, moving = numeric(exact), numeric(list(rates)), (*states, *controls)
+
+    def sides(point: Point) -> tuple[list[Any], list[Any]]:
+        """The exact rates along a ray through zero, differentiated there."""
+
+        def along(scale: Any) -> list[Any]:
+            return function({**point, **{s: point[s] * scale for s in moving}})
+
+        return found(point), [mp.diff(lambda scale, k=k: along(scale)[k], 0) for k in range(len(exact))]
+
+    check = compare("first order of the exact equations", {*moving}.union(*(f.free_symbols for f in exact)), sides)
+    return Step("first_order", "drop higher orders", equations, ("linearisation",), (check,))
+
+
+def _linearised(so_far: Derivation) -> Linearised:
+    model = so_far.model
+    if not isinstance(model, Linearised):
+        raise TypeError(f"{model.name} is not stated as a linearisation")
+    return model
+
+
+def _about(model: Linearised) -> dict[sp.Symbol, sp.Expr]:
+    """States and controls of the motion along the reference."""
+    symbols = (*symbols_of(model.of.states), *symbols_of(model.of.controls))
+    return {s: sp.sympify(model.about.get(s, 0)) for s in symbols}
+
+
+def _stated(model: Linearised) -> dict[sp.Symbol, sp.Expr]:
+    """The deviations in the order of states and controls."""
+    symbols = (*symbols_of(model.states), *symbols_of(model.controls))
+    return {s: sp.sympify(model.deviations[s]) for s in symbols if s in model.deviations}
+
+
+def _replaced(model: Linearised) -> tuple[sp.Symbol, ...]:
+    """The variables of the motion that deviations take the place of."""
+    kept = set(symbols_of(model.controls))
+    return (*symbols_of(model.of.states), *(u for u in symbols_of(model.of.controls) if u not in kept))
+
+
+def _defects(so_far: Derivation) -> list[sp.Expr]:
+    """What is left of the equations of motion when the reference is put into them, named constants kept."""
+    model = _linearised(so_far)
+    about, states = _about(model), symbols_of(model.of.states)
+    rates = so_far.rhs("original_equations").xreplace(about)
+    return [sp.diff(about[s], t) - f for s, f in zip(states, rates, strict=True)]
+
+
+def _transformed(so_far: Derivation, entries: list[sp.Expr]) -> Check:
+    """The same matrices by transforming the Jacobians of the original equations along the reference."""
+    model = _linearised(so_far)
+    constants, about, stated = definitions_of(model), _about(model), _stated(model)
+    states, old = symbols_of(model.states), sp.Matrix(symbols_of(model.of.states))
+    rates, controls = so_far.rhs("original_equations"), sp.Matrix(symbols_of(model.of.controls))
+    change = sp.Matrix([stated[s] for s in states]).jacobian(old)
+    along = dict(zip(old, rates, strict=True))
+    moved = (change * rates.jacobian(old) + total_derivative(change, along)).row_join(change * rates.jacobian(controls))
+    whole = sp.Matrix([*(stated[s] for s in states), *(stated.get(u, u) for u in symbols_of(model.controls))])
+    both = (moved * whole.jacobian([*old, *controls]).inv()).xreplace(about)
+    found = [*both[:, : len(states)], *both[:, len(states) :]]
+    return identity("transformed Jacobians", [(x - y).xreplace(constants) for x, y in zip(found, entries, strict=True)])
+
+
+def _shorter(expression: sp.Expr) -> sp.Expr:
+    """The shortest of some ways to write a rate."""
+    return min((expression, tidy(expression), sp.factor(expression)), key=sp.count_ops)
