@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from satsym.instance import weights
 from satsym.instance.resolve import known, quantity, time, value_of
 from satsym.instance.schema import GuessTable, LqrTable, SolverOptions
 from satsym.instance.types import Guess, LqrOptions
@@ -12,9 +13,7 @@ from satsym.status import BadInput
 from satsym.wording import shown
 
 Row = tuple[float, ...]
-Matrix = tuple[Row, ...]
-ROUNDING = 1e-12
-"""How far a matrix may be from symmetric, or below zero, relative to its largest entry."""
+Weights = Sequence[float | Sequence[float]]
 
 
 def solver(options: SolverOptions, spec: ProblemSpec) -> SolverOptions:
@@ -45,12 +44,22 @@ def lqr(table: LqrTable | None, spec: ProblemSpec) -> LqrOptions | None:
     horizon = None if table.horizon is None else time(table.horizon, "[lqr] horizon", spec)
     if horizon is not None and horizon <= 0:
         raise BadInput(f"[lqr] horizon: {shown(table.horizon)} is not positive; write a length of time, or remove it")
-    q, r = _matrix(table.Q, len(spec.states), "Q"), _matrix(table.R, len(inputs), "R")
-    if _smallest_eigenvalue(q) < -ROUNDING:
-        raise BadInput("[lqr] Q: not positive semidefinite, so cost has no lower bound; write weights of at least 0")
-    if _smallest_eigenvalue(r) <= ROUNDING:
-        raise BadInput("[lqr] R: not positive definite, so some input costs nothing; write weights above 0")
+    Q, R = _weights(table, spec, [spec.controls[spec.control_names.index(name)] for name in inputs])
+    q, r = weights.checked(Q, R, len(spec.states), len(inputs))
     return LqrOptions(Q=q, R=r, inputs=tuple(inputs), horizon=horizon)
+
+
+def _weights(table: LqrTable, spec: ProblemSpec, inputs: Sequence[Variable]) -> tuple[Weights, Weights]:
+    """Q and R as they were written, or from the deviations that are allowed."""
+    if table.allowed:
+        for name, given in (("Q", table.Q), ("R", table.R)):
+            if given is not None:
+                raise BadInput(f"[lqr] {name}: [lqr.allowed] gives the weights already; remove one of the two")
+        return weights.from_allowed(table.allowed, spec.states, inputs)
+    if table.Q is None or table.R is None:
+        name, of = ("Q", "states") if table.Q is None else ("R", "inputs")
+        raise BadInput(f"[lqr] {name}: missing; write the weights of the {of}, or allowed deviations in [lqr.allowed]")
+    return table.Q, table.R
 
 
 def guess(table: GuessTable, spec: ProblemSpec) -> Guess:
@@ -86,35 +95,3 @@ def _no_repetition(names: Sequence[str], key: str) -> None:
     for name in names:
         if names.count(name) > 1:
             raise BadInput(f"{key}: {shown(name)} stands there twice; name each once")
-
-
-def _matrix(rows: Sequence[float | Sequence[float]], size: int, name: str) -> Matrix:
-    """A symmetric matrix from its rows or its diagonal."""
-    wanted = f"write {size} numbers (the diagonal) or {size} rows of {size} numbers"
-    diagonal = [row for row in rows if not isinstance(row, Sequence)]
-    if len(rows) != size or len(diagonal) not in (0, size):
-        raise BadInput(f"[lqr] {name}: it has {len(rows)} entries of the wrong number or mixed kinds; {wanted}")
-    if diagonal:
-        return tuple(tuple(x if i == j else 0.0 for j in range(size)) for i, x in enumerate(diagonal))
-    matrix = tuple(tuple(row) for row in rows if isinstance(row, Sequence))
-    for i, row in enumerate(matrix):
-        if len(row) != size:
-            raise BadInput(f"[lqr] {name}: row {i + 1} has {len(row)} numbers; {wanted}")
-    limit = ROUNDING * _largest(matrix)
-    for i in range(size):
-        for j in range(i):
-            if not abs(matrix[i][j] - matrix[j][i]) <= limit:
-                raise BadInput(f"[lqr] {name}: not symmetric at row {i + 1}, column {j + 1}; write (A + A')/2")
-    return matrix
-
-
-def _largest(matrix: Matrix) -> float:
-    return max(abs(x) for row in matrix for x in row)
-
-
-def _smallest_eigenvalue(matrix: Matrix) -> float:
-    """Of the matrix scaled to a largest entry of 1."""
-    import numpy as np
-
-    scale = _largest(matrix) or 1.0
-    return float(np.linalg.eigvalsh([[x / scale for x in row] for row in matrix])[0])

@@ -45,8 +45,9 @@ class TimeTable(_Table, frozen=True):
 
 
 class LqrTable(_Table, frozen=True):
-    Q: Matrix
-    R: Matrix
+    Q: Matrix | None = None
+    R: Matrix | None = None
+    allowed: dict[str, Quantity] = {}
     inputs: Names | None = None
     horizon: Quantity | None = None
 

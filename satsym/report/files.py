@@ -22,6 +22,11 @@ def text(content: str) -> Content:
     return lambda stream: stream.write(content.encode())
 
 
+def binary(content: bytes) -> Content:
+    """Bytes as the content of a file."""
+    return lambda stream: stream.write(content)
+
+
 def trajectory(found: Solution | Flight) -> dict[str, Content]:
     """``trajectory.npz`` and ``trajectory.csv`` of a solution or a flight.
 

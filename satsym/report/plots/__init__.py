@@ -49,9 +49,5 @@ def save(result: Solution | Flight, folder: Path, formats: Sequence[str] = ("png
         for picture in pictures:
             page = picture(scene)
             if page is not None:
-                drawn |= {f"{picture.__name__}.{kind}": _content(style.rendered(page, kind)) for kind in formats}
+                drawn |= {f"{picture.__name__}.{kind}": files.binary(style.rendered(page, kind)) for kind in formats}
     return files.write(folder, drawn) if drawn else []
-
-
-def _content(picture: bytes) -> files.Content:
-    return lambda stream: stream.write(picture)

@@ -22,23 +22,21 @@ Entry = tuple[Any, str]
 
 def motion(scene: Scene, colour: str) -> list[Entry]:
     """The path itself, the reference and the motion without control."""
-    found = [(_line(color=colour, **style.MAIN), scene.name)]
+    found = [(line(color=colour, **style.MAIN), scene.name)]
     if scene.reference is not None:
-        found.append((_line(**style.REFERENCE), "reference"))
+        found.append((line(**style.REFERENCE), "reference"))
     if scene.free is not None:
-        found.append((_line(**style.FREE), "without control"))
+        found.append((line(**style.FREE), "without control"))
     return found
 
 
 def in_space(orbit: Orbit) -> list[Entry]:
     """What only pictures in space have."""
-    arrow = _line(
-        color=style.VERMILION, marker=r"$\rightarrow$", markersize=15.0, markeredgewidth=0.2, linestyle="none"
-    )
+    arrow = line(color=style.VERMILION, marker=r"$\rightarrow$", markersize=15.0, markeredgewidth=0.2, linestyle="none")
     found = [(arrow, "thrust")] if orbit.thrust is not None else []
-    found.append((_line(color=style.STATE, **style.START), "start"))
-    found.append((_line(color=style.STATE, **style.END), "end"))
-    found.append((_line(**style.ORIGIN), "origin"))
+    found.append((line(color=style.STATE, **style.START), "start"))
+    found.append((line(color=style.STATE, **style.END), "end"))
+    found.append((line(**style.ORIGIN), "origin"))
     return found
 
 
@@ -48,9 +46,9 @@ def on_axes(quantities: Iterable[Series], colour: str) -> list[Entry]:
 
     quantities, found = list(quantities), []
     if any(read(q).deviation for q in quantities):
-        found.append((_line(linestyle="none"), r"$\Delta$: minus reference"))
+        found.append((line(linestyle="none"), r"$\Delta$: minus reference"))
     if any(q.target is not None for q in quantities):
-        found.append((_line(**style.TARGET), "required end"))
+        found.append((line(**style.TARGET), "required end"))
     if any(q.active is not None for q in quantities):
         found.append((Patch(**style.FORBIDDEN), "not allowed"))
     if any(q.active is not None and q.active.any() for q in quantities):
@@ -66,7 +64,8 @@ def below(page: Figure, entries: list[Entry]) -> None:
         page.legend(handles, labels, loc="outside lower center", ncols=-(-len(entries) // rows))
 
 
-def _line(**look: Any) -> Any:
+def line(**look: Any) -> Any:
+    """What stands for a line or a marker in a legend."""
     from matplotlib.lines import Line2D
 
     return Line2D([], [], **(look | {"clip_on": True}))

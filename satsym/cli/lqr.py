@@ -1,0 +1,55 @@
+"""``satsym lqr``: the best linear feedback for quadratic costs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from satsym.cli.options import json_option, out_option, plot_option
+from satsym.cli.output import emit, emit_json, to_json
+from satsym.cli.saving import folder_for
+from satsym.status import ExitCode
+
+EXAMPLES = """\b
+Examples:
+  satsym lqr uny-lqr                    the gain of a thesis, with all it printed and more
+  satsym lqr geo-lqr --plot             geostationary, weights from allowed deviations, with pictures
+  satsym lqr clohessy_wiltshire         a model: all inputs, all weights 1"""
+
+
+@click.command(epilog=EXAMPLES)
+@click.argument("subject", metavar="X")
+@json_option
+@out_option
+@plot_option
+def lqr(subject: str, as_json: bool, out: Path | None, plot: bool) -> ExitCode:
+    """Find the gain that costs least: u = -K x for the deviation x.
+
+    X is an instance with an [lqr] table, or a model, whose weights are then all 1; shipped, or the path of one. The
+    cost is the integral of x'Qx + u'Ru, without a factor 1/2.
+    """
+    from satsym.analysis.feedback import designed
+    from satsym.cli.subject import find
+    from satsym.report.linear import regulator_object
+    from satsym.report.linear_text import regulator_text
+    from satsym.report.text import with_files
+
+    given = find(subject)
+    folder = folder_for(Path(subject).stem, out, plot)
+    design = designed(given)
+    result = regulator_object(design)
+    saved: list[Path] = []
+    if folder is not None:
+        from satsym.report import files
+
+        saved = files.write(folder, {"result.json": files.text(to_json(result))})
+        if plot:
+            from satsym.report.plots.systems import save_design
+
+            saved += save_design(design, folder)
+    if as_json:
+        emit_json(result)
+    else:
+        emit(with_files(regulator_text(design), saved))
+    return ExitCode.DONE

@@ -1,0 +1,111 @@
+"""The weights of a linear-quadratic regulator: matrices, diagonals, or the deviations that are allowed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+from satsym.instance.resolve import known, quantity
+from satsym.spec import Variable
+from satsym.status import BadInput
+from satsym.wording import shown
+
+Row = tuple[float, ...]
+Matrix = tuple[Row, ...]
+ROUNDING = 1e-12
+"""How far a matrix may be from symmetric, or below zero, relative to what its entries can be."""
+
+
+def checked(
+    Q: Sequence[float | Sequence[float]], R: Sequence[float | Sequence[float]], states: int, inputs: int
+) -> tuple[Matrix, Matrix]:
+    """Both weights as full matrices.
+
+    Parameters
+    ----------
+    Q, R
+        Rows, or the diagonal.
+    states, inputs
+        How many there are.
+
+    Raises
+    ------
+    BadInput
+        If a shape does not fit, a matrix is not symmetric, Q is indefinite or R is not positive definite.
+    """
+    q, r = _matrix(Q, states, "Q"), _matrix(R, inputs, "R")
+    if _smallest_eigenvalue(q) < -ROUNDING:
+        raise BadInput("[lqr] Q: not positive semidefinite, so cost has no lower bound; write weights of at least 0")
+    if _smallest_eigenvalue(r) <= ROUNDING:
+        raise BadInput("[lqr] R: not positive definite, so some input costs nothing; write weights above 0")
+    return q, r
+
+
+def from_allowed(
+    allowed: Mapping[str, float | str], states: Sequence[Variable], inputs: Sequence[Variable]
+) -> tuple[Row, Row]:
+    """Diagonals of Q and R by Bryson's rule: a weight of 1/d^2 where a deviation d is allowed.
+
+    Parameters
+    ----------
+    allowed
+        By name, in the unit of each or with its own; every input, and at least one state. The other states are not
+        weighed.
+
+    Raises
+    ------
+    BadInput
+        If a name is unknown or missing, or a deviation is not positive.
+    """
+    known(allowed, (*states, *inputs), "state or active input", "lqr.allowed")
+    for variable in inputs:
+        if variable.symbol not in allowed:
+            raise BadInput(f"[lqr.allowed] {variable.symbol}: missing; every active input needs an allowed deviation")
+    if not any(variable.symbol in allowed for variable in states):
+        raise BadInput("[lqr.allowed] no state has an allowed deviation, so there is nothing to do; add one")
+    return tuple(_weight(allowed, v) for v in states), tuple(_weight(allowed, v) for v in inputs)
+
+
+def _weight(allowed: Mapping[str, float | str], variable: Variable) -> float:
+    if variable.symbol not in allowed:
+        return 0.0
+    key, given = f"[lqr.allowed] {variable.symbol}", allowed[variable.symbol]
+    deviation = quantity(given, variable.unit, key)
+    if not 1e-100 < deviation < 1e100:
+        raise BadInput(f"{key}: {shown(given)} is no allowed deviation; write a positive one")
+    return 1.0 / deviation**2
+
+
+def _matrix(rows: Sequence[float | Sequence[float]], size: int, name: str) -> Matrix:
+    """A symmetric matrix from its rows or its diagonal."""
+    wanted = f"write {size} numbers (the diagonal) or {size} rows of {size} numbers"
+    diagonal = [row for row in rows if not isinstance(row, Sequence)]
+    if len(rows) != size or len(diagonal) not in (0, size):
+        raise BadInput(f"[lqr] {name}: it has {len(rows)} entries of the wrong number or mixed kinds; {wanted}")
+    if diagonal:
+        return tuple(tuple(x if i == j else 0.0 for j in range(size)) for i, x in enumerate(diagonal))
+    matrix = tuple(tuple(row) for row in rows if isinstance(row, Sequence))
+    for i, row in enumerate(matrix):
+        if len(row) != size:
+            raise BadInput(f"[lqr] {name}: row {i + 1} has {len(row)} numbers; {wanted}")
+    for i in range(size):
+        for j in range(i):
+            limit = ROUNDING * max(abs(matrix[i][j]), math.sqrt(abs(matrix[i][i]) * abs(matrix[j][j])))
+            if not abs(matrix[i][j] - matrix[j][i]) <= limit:
+                raise BadInput(f"[lqr] {name}: not symmetric at row {i + 1}, column {j + 1}; write (A + A')/2")
+    return matrix
+
+
+def _smallest_eigenvalue(matrix: Matrix) -> float:
+    """Of the matrix with its diagonal scaled to 1, which keeps the sign and does not depend on units."""
+    import numpy as np
+
+    values = np.array(matrix)
+    diagonal = np.diag(values)
+    if (diagonal <= 0.0).any():
+        # such a matrix is at best semidefinite, and then a zero on the diagonal has nothing but zeros in its row
+        at_best = (diagonal >= 0.0).all() and not values[diagonal == 0.0].any()
+        kept = values[diagonal > 0.0][:, diagonal > 0.0].tolist()
+        return min(0.0, _smallest_eigenvalue(kept) if kept else 0.0) if at_best else -1.0
+    unit = 1.0 / np.sqrt(diagonal)
+    return float(np.linalg.eigvalsh(values * np.outer(unit, unit))[0])

@@ -1,0 +1,92 @@
+"""The objects that ``satsym analyse --json`` and ``satsym lqr --json`` print."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from satsym.report.results import number
+
+if TYPE_CHECKING:
+    from satsym.analysis.feedback import Design
+    from satsym.analysis.linear import Array
+    from satsym.analysis.ranks import Reach
+    from satsym.analysis.routh import Routh
+    from satsym.analysis.structure import Analysis
+
+
+def analysis_object(found: Analysis, exact: Mapping[str, Any] | None) -> dict[str, Any]:
+    """What ``satsym analyse --json`` prints.
+
+    Parameters
+    ----------
+    exact
+        The same by exact reckoning, as strings; ``None`` where there is none.
+    """
+    system, about = found.about.system, found.about
+    return {
+        "equilibrium": dict(zip(system.states, map(number, about.point), strict=True)),
+        "A": rows(system.A),
+        "B": rows(system.B),
+        "C": rows(system.C),
+        "eigenvalues": [
+            {"value": complex_object(each.value), "algebraic": each.algebraic, "geometric": each.geometric}
+            for each in found.eigenvalues
+        ],
+        "jordan_blocks": [
+            {"eigenvalue": complex_object(each.value), "size": size}
+            for each in found.eigenvalues
+            for size in each.blocks
+        ],
+        "characteristic_polynomial": numbers(found.polynomial),
+        "routh": routh_object(found.routh),
+        "stability": {"verdict": found.stability.verdict, "reason": found.stability.reason},
+        "controllability": _reach(found.controllability, "by_input"),
+        "observability": _reach(found.observability, "by_output"),
+        "exact": exact,
+    }
+
+
+def regulator_object(design: Design) -> dict[str, Any]:
+    """What ``satsym lqr --json`` prints; ``cost_from_initial`` is ``None`` for a model as such."""
+    found, deviation = design.regulator, design.deviation
+    return {
+        "inputs": list(found.system.inputs),
+        "K": rows(found.K),
+        "P": rows(found.P),
+        "riccati_residual": number(found.residual),
+        "closed_loop_eigenvalues": [complex_object(value) for value in found.eigenvalues],
+        "characteristic_polynomial": numbers(found.polynomial),
+        "routh": routh_object(found.routh),
+        "cost_from_initial": None if deviation is None else number(found.cost(deviation)),
+    }
+
+
+def routh_object(found: Routh) -> dict[str, Any]:
+    """The Routh array."""
+    return {
+        "column": numbers(found.column),
+        "sign_changes": found.sign_changes,
+        "special_case": found.special_case,
+    }
+
+
+def complex_object(value: complex) -> dict[str, float | None]:
+    """A complex number."""
+    return {"re": number(value.real), "im": number(value.imag)}
+
+
+def rows(matrix: Array) -> list[list[float | None]]:
+    """A matrix, row by row."""
+    return [numbers(row) for row in matrix]
+
+
+def numbers(values: Iterable[float]) -> list[float | None]:
+    """Numbers, ``None`` for those that are not finite."""
+    return [number(value) for value in values]
+
+
+def _reach(found: Reach | None, key: str) -> dict[str, Any] | None:
+    if found is None:
+        return None
+    return {"rank": found.rank, key: {name: each.rank for name, each in found.alone.items()}}
