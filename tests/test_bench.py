@@ -133,6 +133,17 @@ def test_lost_rows_are_printed_as_lost(bench):
     assert "1 of 2 goals reached" in text
 
 
+def test_everyone_solves_the_same_riccati_equations(bench):
+    from satsym.analysis import batch
+
+    regulators = bench["regulators"]
+    A, Q, R = given = regulators.problems(5)
+    _, ours, _ = batch.solve(A, regulators.INPUT, Q, R)
+    theirs = np.array([regulators._scipy(*each) for each in zip(A, Q, R, strict=True)])
+    assert np.abs(ours / theirs - 1.0).max() < 1e-9
+    assert max(regulators.largest_residual(P, given) for P in (ours, theirs)) < regulators.WITHIN
+
+
 def test_the_machine_and_the_versions_are_named(bench):
     assert "numpy" in bench["machine"].described()
 

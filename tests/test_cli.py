@@ -19,7 +19,7 @@ from satsym.cli import main, output
 from satsym.instance import SolverOptions
 
 Run = Callable[..., tuple[int, str, str]]
-COMMANDS = "models instances solve simulate derive latex doctor".split()
+COMMANDS = "models instances solve simulate analyse lqr derive latex audit doctor".split()
 SOLUTION_KEYS = (
     "model instance method status message boundary_type objective t_final x_final costate_initial switching_times "
     "iterations wall_s certificate"
@@ -145,13 +145,13 @@ def test_tolerance_is_a_positive_number(run: Run, value: str) -> None:
 def test_methods_and_feedbacks_are_those_that_instances_and_solvers_know() -> None:
     from typing import get_args
 
+    from satsym.analysis import feedback
     from satsym.cli.simulate import FEEDBACKS
     from satsym.cli.solve import METHODS
     from satsym.instance.schema import Method
-    from satsym.solve import flight
 
     assert get_args(Method) == METHODS
-    assert flight.FEEDBACKS == FEEDBACKS
+    assert feedback.FEEDBACKS == FEEDBACKS
 
 
 # Lists

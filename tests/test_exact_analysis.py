@@ -464,6 +464,13 @@ def test_the_free_motion_is_that_of_clohessy_and_wiltshire():
     assert (found - sp.Matrix(known)).applyfunc(sp.expand).is_zero_matrix
 
 
+def test_models_derivations_and_matrices_can_be_analysed():
+    node = small("stable_node")
+    found = analyse(node)
+    assert analyse(node.model) == found
+    assert analyse(linear_system(found.system.a)).stability == found.stability
+
+
 def test_the_analysis_is_quick_and_can_be_printed():
     system = system_of(satellite())
     began = time.process_time()

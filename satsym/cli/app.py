@@ -12,10 +12,13 @@ from typing import Any
 import click
 
 from satsym import __version__
+from satsym.cli.analyse import analyse
+from satsym.cli.audit import audit
 from satsym.cli.derive import derive
 from satsym.cli.doctor import doctor
 from satsym.cli.instances import instances
 from satsym.cli.latex import latex
+from satsym.cli.lqr import lqr
 from satsym.cli.models import models
 from satsym.cli.output import complain, silence
 from satsym.cli.simulate import simulate
@@ -68,7 +71,7 @@ class Program(click.Group):
 
 @click.group(
     cls=Program,
-    commands=[models, instances, solve, simulate, derive, latex, doctor],
+    commands=[models, instances, solve, simulate, analyse, lqr, derive, latex, audit, doctor],
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog=OVERVIEW,
 )

@@ -73,14 +73,15 @@ def matrix_rows(address: str, name: str, matrix: Any, typeset: Typesetter) -> tu
     head, _, _ = name.partition(" = ")
     letter = head.lower() if head.isalpha() and len(head) == 1 else "m"
     written, named = fitted(cells, LINE - width(name) - 2.0, letter)
-    if written is not None and not (named and matrix.is_symmetric()):
+    mirrored = matrix.is_symmetric()
+    if written is not None and not (named and mirrored):
         places = [Row(f"{address}.{i}.{j}", plain(text), typeset.terms(matrix[i, j])) for text, (i, j) in named.items()]
         return [Row(address, plain(name), plain(array(written)))], places
     first, *rest = [
         Row(f"{address}.{i}.{j}", plain(_indexed(name, i, j)), typeset.terms(matrix[i, j]))
         for i in range(matrix.rows)
         for j in range(matrix.cols)
-        if not typeset.is_zero(matrix[i, j]) and not (matrix.is_symmetric() and j < i)
+        if not typeset.is_zero(matrix[i, j]) and not (mirrored and j < i)
     ]
     return [replace(first, address=address), *rest], []
 

@@ -1,0 +1,23 @@
+"""Published constants that number rows may use beside what the document states; each with its source."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Constant:
+    """A published value with its unit."""
+
+    quantity: str
+    source: str
+
+
+PUBLISHED = {
+    "mu_earth": Constant("398600.4418 km^3/s^2", "IERS Conventions (2010), table 1.1, geocentric, TCG-compatible"),
+    "R_earth": Constant("6378.137 km", "WGS 84 (NGA.STND.0036), equatorial radius"),
+    "sidereal_day": Constant("86164.0905 s", "Explanatory Supplement to the Astronomical Almanac (2013), mean"),
+    "c_light": Constant("299792458 m/s", "SI, exact"),
+    "g_standard": Constant("9.80665 m/s^2", "CGPM 1901, exact"),
+    "G_newton": Constant("6.67430e-11 m^3/kg/s^2", "CODATA 2018"),
+}

@@ -1,0 +1,50 @@
+"""A row with its verdict: what the audit answers.
+
+``confirmed``, ``misprint`` (right elsewhere in the document, or what follows does not use it), ``wrong`` (used by what
+follows, or a false claim), ``unsound`` (a right result by an invalid step), ``artefact`` (produced by the algorithm,
+not by the problem), ``unit error``, ``illegible``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias
+
+Verdict: TypeAlias = Literal["confirmed", "misprint", "wrong", "unsound", "artefact", "unit error", "illegible"]
+VERDICTS: tuple[Verdict, ...] = ("confirmed", "misprint", "wrong", "unsound", "artefact", "unit error", "illegible")
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A row with its verdict.
+
+    Attributes
+    ----------
+    document, item, part, kind, says, where
+        As the ledger has them.
+    printed
+        Verbatim.
+    derived
+        What is right.
+    diagnosis
+        A referee's sentences; empty for what is confirmed.
+    evidence
+        Measured numbers, and the command that recomputes them.
+    """
+
+    document: str
+    item: str
+    part: str
+    kind: str
+    says: str
+    where: str
+    printed: Any
+    derived: str
+    verdict: Verdict
+    diagnosis: str
+    evidence: str
+
+    @property
+    def key(self) -> str:
+        """Item and part."""
+        return f"{self.item} {self.part}".strip()

@@ -1,0 +1,99 @@
+"""One ledger from the first row to the last."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+from satsym.audit.ledger import Ledger, Row
+from satsym.audit.predicates import Question
+from satsym.status import BadInput
+from satsym.wording import printable
+
+if TYPE_CHECKING:
+    from satsym.audit.judge.bench import Bench
+    from satsym.audit.judged import Judged
+    from satsym.audit.outcome import Outcome
+
+
+def audit(ledger: Ledger, items: Sequence[str] = (), announce: Callable[[str], None] = lambda _: None) -> list[Judged]:
+    """Judge the rows of a ledger.
+
+    Parameters
+    ----------
+    ledger
+        As it was read.
+    items
+        Items, or items with their parts, to judge; all by default. Rows that bear on them are judged, too.
+    announce
+        Told what comes next.
+
+    Raises
+    ------
+    BadInput
+        If a row names what no derivation has, or is held against what it cannot be compared with.
+    """
+    from satsym.audit.judge.bench import Bench
+    from satsym.audit.verdict import verdicts
+
+    bench = Bench(ledger)
+    wanted = [row.key for row in ledger.rows if not items or row.table.item in items or row.key in items]
+    needed = _bearing(ledger.rows, wanted) if items else set(wanted)
+    rows = [row for row in ledger.rows if row.key in needed]
+    outcomes = []
+    for i, row in enumerate(rows, start=1):
+        announce(f"{ledger.document.key}: row {i} of {len(rows)}, {printable(row.key)}")
+        outcomes.append(_told(bench, row))
+    return verdicts(bench, outcomes, wanted)
+
+
+def _outcome(bench: Bench, row: Row) -> Outcome:
+    from satsym.audit.judge import formula, value
+    from satsym.audit.outcome import Outcome
+
+    if not row.table.legible:
+        return Outcome(row, None)
+    if row.asks is not None:
+        table, ledger = row.table, bench.ledger
+        inputs = {**ledger.inputs, **table.inputs}
+        found = row.asks(
+            Question(row.key, table.kind, table.printed, table.columns, inputs, table.scope, ledger.scopes)
+        )
+        return Outcome(
+            row,
+            found.holds,
+            found.derived,
+            sound=found.sound,
+            artefact=found.artefact,
+            unit=found.unit,
+            slip=found.slip,
+            remark=found.remark,
+            evidence=found.evidence,
+            command=found.command,
+        )
+    judges = {"number": value.number, "unit": value.unit}
+    return judges.get(row.table.kind, formula.judge)(bench, row)
+
+
+def _told(bench: Bench, row: Row) -> Outcome:
+    """The outcome of a row; what is wrong with the row is told with the line it stands in."""
+    try:
+        return _outcome(bench, row)
+    except BadInput as error:
+        path = printable(str(bench.ledger.path), 200)
+        raise BadInput(f"{path}:{row.line}: row {printable(row.key)}: {error}") from None
+
+
+def _bearing(rows: Sequence[Row], wanted: Sequence[str]) -> set[str]:
+    """Keys of rows that the verdicts of some rows depend on: what they use, what uses them, and the same target."""
+    by_key = {row.key: row for row in rows}
+    found = set(wanted)
+    for key in wanted:
+        row = by_key[key]
+        found.update(row.uses)
+        for other in rows:
+            if key in other.uses:
+                found.update([other.key, *other.uses])
+            if row.table.holds and other.table.holds == row.table.holds:
+                found.add(other.key)
+    return found

@@ -1,0 +1,108 @@
+"""The keys of a ledger and the type of each. Tables are strict: an unknown key is refused by name."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal, get_args
+
+import msgspec
+from msgspec import Meta
+
+from satsym.status import BadInput
+from satsym.wording import printable, shown, suggestion
+
+FORMAT = 1
+Kind = Literal["equation", "matrix", "number", "table", "algorithm", "claim", "unit"]
+
+Text = Annotated[str, Meta(description="text in quotes")]
+Texts = Annotated[tuple[str, ...], Meta(description='a list of texts, such as ["a", "b"]')]
+Formulas = Annotated[dict[str, str], Meta(description='a table of texts, such as x1 = "r"')]
+Printed = Annotated[
+    str | tuple[str | tuple[str, ...], ...],
+    Meta(description="what is printed, in quotes; for a matrix or a table a list of rows, each a list of texts"),
+]
+Whole = Annotated[int, Meta(ge=1, le=3000, description="a whole number")]
+Flag = Annotated[bool, Meta(description="true or false")]
+Number = Annotated[Literal[1], Meta(description="1")]
+
+
+class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What all tables of a ledger share."""
+
+
+class DocumentTable(Table, frozen=True):
+    """The document: ``numbers`` lists what it numbers, ``model`` is where bare names and units are looked up."""
+
+    key: Text
+    title: Text
+    authors: Text = ""
+    year: Whole | None = None
+    language: Text = "en"
+    numbers: Texts = ()
+    model: Text = ""
+
+
+class SymbolTable(Table, frozen=True):
+    """A symbol that no derivation has: its unit (empty where it is not known), and whether it is positive."""
+
+    unit: Text = ""
+    positive: Flag = False
+
+
+class RowTable(Table, frozen=True, rename={"follows": "from"}):
+    """One printed thing, and what it is held against."""
+
+    item: Text
+    kind: Kind
+    printed: Printed = ""
+    holds: Text = ""
+    part: Text = ""
+    where: Text = ""
+    says: Text = ""
+    original: Text = ""
+    scope: Text = "main"
+    follows: Text = ""
+    columns: Texts = ()
+    inputs: Formulas = {}
+    legible: Flag = True
+
+
+KINDS: tuple[str, ...] = get_args(Kind)
+_WORDS = {"kind": "one of " + ", ".join(f'"{kind}"' for kind in KINDS)}
+
+
+class WrongKey(BadInput):
+    """A key is unknown, missing or of the wrong type; ``key`` says which."""
+
+    def __init__(self, key: str, message: str) -> None:
+        super().__init__(f"{printable(key)}: {message}")
+        self.key = key
+
+
+def table(tree: Any, kind: type[Any]) -> Any:
+    """A table of the ledger, checked.
+
+    Raises
+    ------
+    WrongKey
+        For the first key that is unknown, missing, or of another type.
+    """
+    if not isinstance(tree, dict):
+        raise WrongKey("", f"got {shown(tree)}; write a table")
+    fields = {entry.encode_name: entry for entry in msgspec.structs.fields(kind)}
+    for key in tree:
+        if key not in fields:
+            raise WrongKey(key, f"unknown key; {suggestion(key, fields)}")
+    for key, entry in fields.items():
+        if entry.required and key not in tree:
+            raise WrongKey(key, f"missing; write {_wanted(key, entry.type)}")
+    for key, value in tree.items():
+        try:
+            msgspec.convert(value, fields[key].type)
+        except msgspec.ValidationError:
+            raise WrongKey(key, f"got {shown(value)}; write {_wanted(key, fields[key].type)}") from None
+    return msgspec.convert(tree, kind)
+
+
+def _wanted(key: str, kind: Any) -> str:
+    metas = (meta for part in (kind, *get_args(kind)) for meta in getattr(part, "__metadata__", ()))
+    return _WORDS.get(key) or next((str(meta.description) for meta in metas), "another value")

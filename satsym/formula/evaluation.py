@@ -1,0 +1,246 @@
+"""What a formula over derived and printed things means, in terms of a few operations that an engine provides.
+
+There are two engines: sympy's (:mod:`satsym.symbolic.operations`) and our own trees
+(:mod:`satsym.formula.calculus`). What is written here, products of matrices and the like, they share.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import Generic
+
+from satsym.formula.functions import OPERATIONS
+from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, Text, constant
+from satsym.formula.values import Kernel, Matrix, Relation, Roots, S, Sources, Value, plain, size_of, square, without
+from satsym.status import BadInput
+
+
+class Engine(ABC, Generic[S]):
+    """Evaluates formulas; the abstract methods are what two engines do differently."""
+
+    def __init__(self, sources: Sources[S]) -> None:
+        self._sources = sources
+
+    @abstractmethod
+    def number(self, value: Fraction) -> S:
+        """A number."""
+
+    @abstractmethod
+    def add(self, terms: Sequence[S]) -> S:
+        """A sum."""
+
+    @abstractmethod
+    def multiply(self, factors: Sequence[S]) -> S:
+        """A product."""
+
+    @abstractmethod
+    def power(self, base: S, exponent: Fraction) -> S:
+        """A power."""
+
+    @abstractmethod
+    def function(self, name: str, arguments: Sequence[S]) -> S:
+        """An elementary function."""
+
+    @abstractmethod
+    def derivative(self, expression: S, by: str) -> S:
+        """A partial derivative by a symbol."""
+
+    @abstractmethod
+    def substitute(self, expression: S, values: Mapping[str, S]) -> S:
+        """Symbols replaced, all at once."""
+
+    @abstractmethod
+    def determinant(self, matrix: Matrix[S]) -> S:
+        """The determinant of a square matrix."""
+
+    @abstractmethod
+    def rank(self, matrix: Matrix[S]) -> int:
+        """The rank at a generic point."""
+
+    def value(self, tree: Node | Equality) -> Value:
+        """What a formula means.
+
+        Raises
+        ------
+        BadInput
+            If it puts together what does not fit, such as matrices of different sizes.
+        """
+        if isinstance(tree, Equality):
+            return Relation(self.scalar(tree.lhs), self.scalar(tree.rhs))
+        if isinstance(tree, Num):
+            return self.number(tree.value)
+        if isinstance(tree, Sym):
+            return self._sources.name(tree.name)
+        if isinstance(tree, Text):
+            return self._sources.address(tree.value)
+        if isinstance(tree, Grid):
+            return self._grid(tree)
+        if isinstance(tree, Neg):
+            return self._scaled(self.number(Fraction(-1)), self.operand(tree.operand))
+        if isinstance(tree, Add):
+            return self._sum([self.operand(term) for term in tree.terms])
+        if isinstance(tree, Mul):
+            return self._product([self.operand(factor) for factor in tree.factors])
+        if isinstance(tree, Div):
+            inverse = self.power(self.scalar(tree.denominator), Fraction(-1))
+            return self._scaled(inverse, self.operand(tree.numerator))
+        if isinstance(tree, Pow):
+            return self._power(self.operand(tree.base), constant(tree.exponent) or Fraction(0))
+        return self._call(tree)
+
+    def scalar(self, tree: Node) -> S:
+        """The meaning of a formula that is no matrix; of an equation, its right-hand side."""
+        found = self.operand(tree)
+        if isinstance(found, Matrix | Roots | Kernel):
+            raise BadInput("a matrix stands where an expression is needed")
+        return found
+
+    def matrix(self, tree: Node) -> Matrix[S]:
+        """The meaning of a formula that is a matrix."""
+        found = self.operand(tree)
+        if not isinstance(found, Matrix):
+            raise BadInput("an expression stands where a matrix is needed")
+        return found
+
+    def characteristic(self, matrix: Matrix[S], variable: S) -> S:
+        """det(x I - A)."""
+        n = square(matrix)
+        minus = self.number(Fraction(-1))
+        rows = tuple(
+            tuple(
+                self.add([*([variable] if i == j else []), self.multiply([minus, matrix.rows[i][j]])]) for j in range(n)
+            )
+            for i in range(n)
+        )
+        return self.determinant(Matrix(rows))
+
+    def product(self, one: Matrix[S], other: Matrix[S]) -> Matrix[S]:
+        """The product of two matrices."""
+        if one.shape[1] != other.shape[0]:
+            raise BadInput(f"a product of a {size_of(one)} and a {size_of(other)} matrix")
+        columns = list(zip(*other.rows, strict=True))
+        return Matrix(
+            tuple(
+                tuple(self.add([self.multiply(pair) for pair in zip(row, column, strict=True)]) for column in columns)
+                for row in one.rows
+            )
+        )
+
+    def operand(self, tree: Node) -> Value:
+        """The meaning of a formula where a part of another stands: of an equation, its right-hand side."""
+        found = self.value(tree)
+        return found.rhs if isinstance(found, Relation) else found
+
+    def _grid(self, tree: Grid) -> Matrix[S]:
+        rows = [entry.entries if isinstance(entry, Grid) else (entry,) for entry in tree.entries]
+        if not rows or len({len(row) for row in rows}) > 1 or not rows[0]:
+            raise BadInput("the rows of a matrix differ in length")
+        return Matrix(tuple(tuple(self.scalar(entry) for entry in row) for row in rows))
+
+    def _sum(self, terms: Sequence[Value]) -> Value:
+        matrices = [term for term in terms if isinstance(term, Matrix)]
+        if not matrices:
+            return self.add([plain(term) for term in terms])
+        if len(matrices) < len(terms) or len({m.shape for m in matrices}) > 1:
+            raise BadInput("a sum of what differs in size")
+        m, n = matrices[0].shape
+        return Matrix(
+            tuple(tuple(self.add([term.rows[i][j] for term in matrices]) for j in range(n)) for i in range(m))
+        )
+
+    def _product(self, factors: Sequence[Value]) -> Value:
+        result: Value | None = None
+        for factor in factors:
+            if result is None:
+                result = factor if isinstance(factor, Matrix) else plain(factor)
+            elif isinstance(result, Matrix) and isinstance(factor, Matrix):
+                result = self.product(result, factor)
+            elif isinstance(result, Matrix):
+                result = self._scaled(plain(factor), result)
+            else:
+                result = self._scaled(result, factor)
+        assert result is not None
+        return result
+
+    def _scaled(self, factor: S, operand: Value) -> Value:
+        if isinstance(operand, Matrix):
+            return Matrix(tuple(tuple(self.multiply([factor, entry]) for entry in row) for row in operand.rows))
+        return self.multiply([factor, plain(operand)])
+
+    def _power(self, base: Value, exponent: Fraction) -> Value:
+        if not isinstance(base, Matrix):
+            return self.power(plain(base), exponent)
+        if exponent.denominator != 1 or exponent < 0:
+            raise BadInput("a matrix has whole powers from 0 up; write inverse(...)")
+        result = self.identity(square(base))
+        for _ in range(int(exponent)):
+            result = self.product(result, base)
+        return result
+
+    def identity(self, n: int) -> Matrix[S]:
+        """The identity matrix."""
+        one, zero = self.number(Fraction(1)), self.number(Fraction(0))
+        return Matrix(tuple(tuple(one if i == j else zero for j in range(n)) for i in range(n)))
+
+    def _call(self, tree: Call) -> Value:
+        operation = OPERATIONS.get(tree.function)
+        if operation is not None:
+            return operation(self, tree)
+        return self.function(tree.function, [self.scalar(argument) for argument in tree.arguments])
+
+    def relation(self, tree: Node) -> Relation[S]:
+        """The meaning of a formula that is an equation."""
+        found = self.value(tree)
+        if not isinstance(found, Relation):
+            raise BadInput("an expression stands where an equation is needed")
+        return found
+
+    def printed(self, key: str) -> Value:
+        """What a row prints."""
+        return self._sources.row(key)
+
+    def symbol(self, name: str) -> str:
+        """Our symbol of a name."""
+        return self._sources.symbol(name)
+
+    def at(self, address: str) -> Value:
+        """A derived thing; of an equation, its right-hand side."""
+        found = self._sources.address(address)
+        return found.rhs if isinstance(found, Relation) else found
+
+    def solution(self, expression: Value, by: str) -> S:
+        """The only root of what is linear in a symbol."""
+        if isinstance(expression, Matrix | Roots | Kernel):
+            raise BadInput("solve(...) takes an expression or an equation")
+        minus, zero = self.number(Fraction(-1)), self.number(Fraction(0))
+        if isinstance(expression, Relation):
+            expression = self.add([expression.lhs, self.multiply([minus, expression.rhs])])
+        slope = self.substitute(self.derivative(expression, by), {by: zero})
+        rest = self.substitute(expression, {by: zero})
+        self.require_linear(expression, slope, rest, by)
+        return self.multiply([minus, rest, self.power(slope, Fraction(-1))])
+
+    @abstractmethod
+    def require_linear(self, expression: S, slope: S, rest: S, by: str) -> None:
+        """Refuse what is not ``slope*by + rest`` with a slope other than zero."""
+
+    def inverse(self, matrix: Matrix[S]) -> Matrix[S]:
+        """By cofactors."""
+        n = square(matrix)
+        over = self.power(self.determinant(matrix), Fraction(-1))
+        return Matrix(
+            tuple(
+                tuple(
+                    self.multiply([self.number(Fraction((-1) ** (i + j))), over, self._cofactor(matrix, j, i)])
+                    for j in range(n)
+                )
+                for i in range(n)
+            )
+        )
+
+    def _cofactor(self, matrix: Matrix[S], i: int, j: int) -> S:
+        if matrix.shape == (1, 1):
+            return self.number(Fraction(1))
+        return self.determinant(without(matrix, i, j))

@@ -1,0 +1,284 @@
+"""The second engine: formulas evaluated exactly, with whole numbers modulo a prime, at random points.
+
+Two formulas that are equal by the laws of arithmetic, roots, angles and exponentials have equal values at every
+point. Two that differ agree at a random point with a probability of about their degree divided by the prime, 2e18
+(Schwartz 1980, Zippel 1979). Nothing is rounded, and nothing of sympy is used.
+
+The prime has two properties. One is that -1 has a root, so the imaginary unit is a number, and e^(ix) is one number
+from which the cosine and the sine follow. The other is that small primes have square roots. *Positive* is what has
+an odd order: among those each square root is unique, and the root of a product is the product of the roots, as for
+positive real numbers. Symbols are drawn positive or with a sign; a sum under a root is positive by chance only, and
+if it is not, another point is drawn.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Collection, Iterable
+from fractions import Fraction
+from typing import TypeAlias
+
+from satsym.formula.angles import HALF_TURNS, PARTS, Terms, terms_of
+from satsym.formula.tree import Add, Call, Div, Mul, Neg, Node, Num, Pow, Sym, constant
+from satsym.formula.writing import written
+
+PRIME = 2305843009139462809
+"""Below 2^61; PRIME - 1 = 2^3 * 3 * 17 * 5651576002792801."""
+POINTS = 12
+DRAWS = 400
+"""Points tried before it is said that there is none."""
+
+_TWO_PART, _THREE_PART = 8, 3
+_ODD = (PRIME - 1) // _TWO_PART
+_TO_POSITIVE = 24
+IMAGINARY = pow(29, (PRIME - 1) // 4, PRIME)
+"""A root of -1: 29 is no square."""
+
+
+class NoValue(Exception):
+    """The formula has no value at this point: a division by zero, or a root of what has none."""
+
+
+class Undecided(Exception):
+    """No point was found at which the formula has a value."""
+
+
+class Point:
+    """Random values of all symbols, made up as they are asked for.
+
+    Parameters
+    ----------
+    seed
+        The same seed gives the same point.
+    positive
+        Names of symbols that are positive.
+    strict
+        Whether roots of what is not positive have no value; otherwise the root of -1 is the imaginary unit.
+    """
+
+    def __init__(self, seed: str, positive: Collection[str] = (), strict: bool = True) -> None:
+        self._seed = seed
+        self._positive = positive
+        self.strict = strict
+        self._memory: dict[int, tuple[Node, int]] = {}
+
+    def value(self, node: Node) -> int:
+        """The value of a formula at this point.
+
+        Raises
+        ------
+        NoValue
+            If it has none here.
+        """
+        # by identity: an edited tree shares most of its parts with the original
+        known = self._memory.get(id(node))
+        if known is not None and known[0] is node:
+            return known[1]
+        value = self._value(node)
+        self._memory[id(node)] = (node, value)
+        return value
+
+    def _value(self, node: Node) -> int:
+        if isinstance(node, Num):
+            return node.value.numerator * _inverse(node.value.denominator) % PRIME
+        if isinstance(node, Sym):
+            return self.symbol(node.name)
+        if isinstance(node, Neg):
+            return -self.value(node.operand) % PRIME
+        if isinstance(node, Add):
+            return sum(map(self.value, node.terms)) % PRIME
+        if isinstance(node, Mul):
+            product = 1
+            for factor in node.factors:
+                product = product * self.value(factor) % PRIME
+            return product
+        if isinstance(node, Div):
+            return self.value(node.numerator) * _inverse(self.value(node.denominator)) % PRIME
+        if isinstance(node, Pow):
+            return self._power(self.value(node.base), constant(node.exponent))
+        if isinstance(node, Call):
+            return self.value_of_call(node)
+        raise NoValue(f"{type(node).__name__} is no formula")
+
+    def symbol(self, name: str) -> int:
+        """The value of a symbol."""
+        if name == "I":
+            return IMAGINARY
+        size = pow(self._random(name), _TO_POSITIVE, PRIME)
+        if name in self._positive or name == "pi" or self._random(f"{name} sign") % 2:
+            return size
+        return PRIME - size
+
+    def _random(self, what: str) -> int:
+        digest = hashlib.blake2b(f"{self._seed} {what}".encode(), digest_size=16).digest()
+        return int.from_bytes(digest) % (PRIME - 1) + 1
+
+    def _power(self, base: int, exponent: Fraction | None) -> int:
+        if exponent is None:
+            raise NoValue("an exponent is not a number")
+        if base == 0:
+            if exponent <= 0:
+                raise NoValue("zero to the power of zero, or less")
+            return 0
+        root, degree = base, exponent.denominator
+        while degree % 2 == 0:
+            root, degree = self._square_root(root), degree // 2
+        while degree % 3 == 0:
+            root, degree = self._cube_root(root), degree // 3
+        if degree > 1:
+            root = pow(root, pow(degree, -1, PRIME - 1), PRIME)
+        return pow(root, exponent.numerator, PRIME)
+
+    def _square_root(self, base: int) -> int:
+        unit, size = _split(base, _TWO_PART)
+        if unit != 1 and (self.strict or unit != PRIME - 1):
+            raise NoValue("the root of what is not positive")
+        root = pow(size, (_ODD + 1) // 2, PRIME)
+        return root if unit == 1 else root * IMAGINARY % PRIME
+
+    def _cube_root(self, base: int) -> int:
+        unit, size = _split(base, _THREE_PART)
+        if unit != 1:
+            raise NoValue("the cube root of what is not positive")
+        return pow(size, pow(3, -1, (PRIME - 1) // _THREE_PART), PRIME)
+
+    def value_of_call(self, node: Call) -> int:
+        """The value of a function of something."""
+        name = node.function
+        if name in ("sin", "cos", "tan"):
+            turn = self._exponential(terms_of(node.arguments[0]).times_i())
+            return _circular(name, turn)
+        if name == "exp":
+            return self._exponential(terms_of(node.arguments[0]))
+        if name in ("sinh", "cosh", "tanh"):
+            growth = self._exponential(terms_of(node.arguments[0]))
+            back = _inverse(growth)
+            sine, cosine = (growth - back) * _HALF % PRIME, (growth + back) * _HALF % PRIME
+            return {"sinh": sine, "cosh": cosine}.get(name) or sine * _inverse(cosine) % PRIME
+        arguments = [self.value(argument) for argument in node.arguments]
+        if name == "sqrt":
+            return self._power(arguments[0], Fraction(1, 2))
+        if name == "abs":
+            return self._size(arguments[0])
+        if name == "sign":
+            return arguments[0] * _inverse(self._size(arguments[0])) % PRIME
+        if name in ("min", "max"):
+            one, other = arguments
+            gap = self._size(one - other) * (1 if name == "max" else -1)
+            return (one + other + gap) * _HALF % PRIME
+        # any other function is known by its arguments alone
+        return self._random(f"{name}({','.join(map(str, arguments))})")
+
+    def _size(self, value: int) -> int:
+        return self._power(value * value % PRIME, Fraction(1, 2)) if value % PRIME else 0
+
+    def _exponential(self, terms: Terms) -> int:
+        """The exponential of a sum: a product of one number for each term, to the power of its coefficient."""
+        product = 1
+        for key, (real, imaginary) in terms.coefficients.items():
+            if key == HALF_TURNS:
+                if real or (2 * imaginary).denominator != 1:
+                    raise NoValue("an angle that is no multiple of a right one")
+                product = product * pow(IMAGINARY, int(2 * imaginary), PRIME) % PRIME
+                continue
+            for kind, share in (("grows", real * PARTS), ("turns", imaginary * PARTS)):
+                if share.denominator != 1:
+                    raise NoValue("an odd part of an angle")
+                if share:
+                    # what grows is positive, as the exponential of a real number is
+                    base = pow(self._random(f"{kind} {key}"), _TO_POSITIVE if kind == "grows" else 1, PRIME)
+                    product = product * pow(base, int(share), PRIME) % PRIME
+        return product
+
+
+Zero: TypeAlias = bool | None
+
+
+def vanishes(tree: Node, seed: str, positive: Collection[str] = (), points: int = POINTS) -> bool:
+    """Whether a formula is zero at random points.
+
+    Parameters
+    ----------
+    tree
+        The formula; usually a difference.
+    seed
+        Decides the points.
+    positive
+        Names of symbols that are positive.
+    points
+        How many points must agree.
+
+    Raises
+    ------
+    Undecided
+        If it has no value anywhere.
+    """
+    return all(value == 0 for value in values(tree, seed, positive, points))
+
+
+def values(tree: Node, seed: str, positive: Collection[str] = (), points: int = POINTS) -> Iterable[int]:
+    """Values at random points at which there is one; see :func:`vanishes`."""
+    for point in points_for((tree,), seed, positive, points):
+        yield point.value(tree)
+
+
+def points_for(trees: Iterable[Node], seed: str, positive: Collection[str] = (), count: int = POINTS) -> list[Point]:
+    """Points at which all of some formulas have values.
+
+    Raises
+    ------
+    Undecided
+        If there are not enough.
+    """
+    wanted = list(trees)
+    for strict in (True, False):
+        found: list[Point] = []
+        for draw in range(DRAWS):
+            point = Point(f"{seed} {draw}", positive, strict)
+            try:
+                for tree in wanted:
+                    point.value(tree)
+            except NoValue:
+                continue
+            found.append(point)
+            if len(found) == count:
+                return found
+    raise Undecided(f"no point at which {written(wanted[0])[:60]} has a value")
+
+
+_HALF = (PRIME + 1) // 2
+
+
+def _inverse(value: int) -> int:
+    if value % PRIME == 0:
+        raise NoValue("a division by zero")
+    return pow(value, -1, PRIME)
+
+
+def _split(value: int, part: int) -> tuple[int, int]:
+    """A number as the product of a root of unity of order `part` and of what has no such part."""
+    rest = (PRIME - 1) // part
+    unit = pow(value, rest * pow(rest, -1, part), PRIME)
+    return unit, value * pow(unit, -1, PRIME) % PRIME
+
+
+def _circular(name: str, turn: int) -> int:
+    """Cosine, sine or tangent from e^(ix)."""
+    back = _inverse(turn)
+    cosine = (turn + back) * _HALF % PRIME
+    sine = (turn - back) * _HALF % PRIME * _inverse(IMAGINARY) % PRIME
+    return {"cos": cosine, "sin": sine}[name] if name != "tan" else sine * _inverse(cosine) % PRIME
+
+
+def rank(rows: list[list[int]]) -> int:
+    """The rank of a matrix of numbers modulo the prime."""
+    rest, found = [list(row) for row in rows], 0
+    for column in range(len(rows[0]) if rows else 0):
+        pivot = next((row for row in rest if row[column] % PRIME), None)
+        if pivot is None:
+            continue
+        rest.remove(pivot)
+        found += 1
+        scale = pow(pivot[column], -1, PRIME)
+        rest = [[(e - row[column] * scale * p) % PRIME for e, p in zip(row, pivot, strict=True)] for row in rest]
+    return found

@@ -1,0 +1,142 @@
+"""Functions that formulas over derived and printed things may call; each derives, none holds an answer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+from satsym.formula.runge_kutta import classical_weights
+from satsym.formula.tree import Call, Grid, Node, Sym, Text, constant
+from satsym.formula.values import Kernel, Matrix, Relation, Roots, S, Value, plain, square, stacked, transposed, without
+from satsym.status import BadInput
+
+if TYPE_CHECKING:
+    from satsym.formula.evaluation import Engine
+
+
+def _symbol(engine: Engine[S], tree: Node) -> str:
+    if not isinstance(tree, Sym):
+        raise BadInput("a plain symbol is needed here")
+    return engine.symbol(tree.name)
+
+
+def _index(tree: Node, size: int) -> int:
+    value = constant(tree)
+    if value is None or value.denominator != 1 or not 1 <= value <= size:
+        raise BadInput(f"an index from 1 to {size} is needed here")
+    return int(value) - 1
+
+
+def _place(engine: Engine[S], tree: Call) -> tuple[Matrix[S], int, int]:
+    matrix = engine.matrix(tree.arguments[0])
+    return matrix, _index(tree.arguments[1], matrix.shape[0]), _index(tree.arguments[2], matrix.shape[1])
+
+
+def _row(engine: Engine[S], tree: Call) -> Value:
+    return engine.printed(" ".join(part.value for part in tree.arguments if isinstance(part, Text)))
+
+
+def _at(engine: Engine[S], tree: Call) -> Value:
+    (address,) = tree.arguments
+    return engine.at(address.value if isinstance(address, Text) else "")
+
+
+def _diff(engine: Engine[S], tree: Call) -> Value:
+    found = engine.operand(tree.arguments[0])
+    for by in [_symbol(engine, argument) for argument in tree.arguments[1:]]:
+        if isinstance(found, Matrix):
+            found = Matrix(tuple(tuple(engine.derivative(entry, by) for entry in row) for row in found.rows))
+        else:
+            found = engine.derivative(plain(found), by)
+    return found
+
+
+def _subs(engine: Engine[S], tree: Call) -> Value:
+    values = {engine.symbol(name): engine.scalar(value) for name, value in tree.named}
+    found = engine.value(tree.arguments[0])
+    if isinstance(found, Matrix):
+        return Matrix(tuple(tuple(engine.substitute(entry, values) for entry in row) for row in found.rows))
+    if isinstance(found, Relation):
+        return Relation(engine.substitute(found.lhs, values), engine.substitute(found.rhs, values))
+    return engine.substitute(plain(found), values)
+
+
+def _entry(engine: Engine[S], tree: Call) -> Value:
+    matrix, i, j = _place(engine, tree)
+    return matrix.rows[i][j]
+
+
+def _minor(engine: Engine[S], tree: Call) -> Value:
+    matrix, i, j = _place(engine, tree)
+    return without(matrix, i, j)
+
+
+def _zeros(engine: Engine[S], tree: Call) -> Value:
+    sizes = [_index(argument, 20) + 1 for argument in tree.arguments]
+    return Matrix(tuple((engine.number(Fraction(0)),) * sizes[-1] for _ in range(sizes[0])))
+
+
+def _eye(engine: Engine[S], tree: Call) -> Value:
+    return engine.identity(_index(tree.arguments[0], 20) + 1)
+
+
+def _reached(engine: Engine[S], tree: Call) -> Value:
+    a, b = map(engine.matrix, tree.arguments)
+    blocks = [b]
+    for _ in range(square(a) - 1):
+        blocks.append(engine.product(a, blocks[-1]))
+    return stacked(blocks, beside=True)
+
+
+def _observed(engine: Engine[S], tree: Call) -> Value:
+    a, c = map(engine.matrix, tree.arguments)
+    blocks = [c]
+    for _ in range(square(a) - 1):
+        blocks.append(engine.product(blocks[-1], a))
+    return stacked(blocks, beside=False)
+
+
+def _jacobian(engine: Engine[S], tree: Call) -> Value:
+    column, symbols = engine.matrix(tree.arguments[0]), tree.arguments[1]
+    names = [_symbol(engine, entry) for entry in (symbols.entries if isinstance(symbols, Grid) else (symbols,))]
+    if column.shape[1] != 1:
+        raise BadInput("jacobian(...) takes a column")
+    return Matrix(tuple(tuple(engine.derivative(row[0], name) for name in names) for row in column.rows))
+
+
+def _increment(engine: Engine[S], tree: Call) -> Value:
+    slopes = [engine.scalar(argument) for argument in tree.arguments]
+    weights = classical_weights()
+    return engine.add([engine.multiply([engine.number(w), k]) for w, k in zip(weights, slopes, strict=True)])
+
+
+OPERATIONS: Mapping[str, Callable[[Any, Call], Value]] = {
+    "row": _row,
+    "at": _at,
+    "lhs": lambda engine, tree: engine.relation(tree.arguments[0]).lhs,
+    "rhs": lambda engine, tree: engine.relation(tree.arguments[0]).rhs,
+    "diff": _diff,
+    "subs": _subs,
+    "solve": lambda engine, tree: engine.solution(engine.value(tree.arguments[0]), _symbol(engine, tree.arguments[1])),
+    "matrix": lambda engine, tree: engine.matrix(tree.arguments[0]),
+    "entry": _entry,
+    "minor": _minor,
+    "transpose": lambda engine, tree: transposed(engine.matrix(tree.arguments[0])),
+    "det": lambda engine, tree: engine.determinant(engine.matrix(tree.arguments[0])),
+    "rank": lambda engine, tree: engine.number(Fraction(engine.rank(engine.matrix(tree.arguments[0])))),
+    "inverse": lambda engine, tree: engine.inverse(engine.matrix(tree.arguments[0])),
+    "charpoly": lambda engine, tree: engine.characteristic(
+        engine.matrix(tree.arguments[0]), engine.scalar(tree.arguments[1])
+    ),
+    "eigenvalues": lambda engine, tree: Roots(engine.matrix(tree.arguments[0])),
+    "nullspace": lambda engine, tree: Kernel(engine.matrix(tree.arguments[0])),
+    "eye": _eye,
+    "zeros": _zeros,
+    "hstack": lambda engine, tree: stacked([engine.matrix(argument) for argument in tree.arguments], beside=True),
+    "vstack": lambda engine, tree: stacked([engine.matrix(argument) for argument in tree.arguments], beside=False),
+    "controllability": _reached,
+    "observability": _observed,
+    "jacobian": _jacobian,
+    "rk4_increment": _increment,
+}

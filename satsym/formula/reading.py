@@ -1,0 +1,292 @@
+"""The safe language: text from a file -> tree. Nothing is ever evaluated.
+
+The text is measured before Python's own parser sees it, so that no length, depth or tower of powers can hurt; what
+the parser gives back is translated node by node, and any kind of node, operator, name or function that is not
+listed here is refused.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import warnings
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import TypeAlias
+
+from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, Text, children, constant
+from satsym.status import BadInput
+from satsym.wording import printable, shown, suggestion
+
+MAX_LENGTH = 4000
+MAX_DEPTH = 50
+MAX_DIGITS = 30
+MAX_NAME = 40
+MAX_EXPONENT = 20
+MAX_DENOMINATOR = 12
+MAX_TERMS = 20_000
+"""Terms of a formula once multiplied out."""
+MAX_WEIGHT = 2000
+"""Digits of a number once multiplied out."""
+
+NAME = re.compile(r"[A-Za-z](?:_?[A-Za-z0-9])*_?\Z")
+Functions: TypeAlias = Mapping[str, tuple[int, int]]
+"""Name -> least and largest number of arguments."""
+
+FUNCTIONS: Functions = {
+    **dict.fromkeys("sin cos tan sqrt exp log abs sign asin acos atan sinh cosh tanh".split(), (1, 1)),
+    "atan2": (2, 2),
+    "min": (2, 2),
+    "max": (2, 2),
+}
+"""What a printed formula may call."""
+
+_FOREIGN = re.compile(r"""[^A-Za-z0-9_ .,+\-*/()\[\]='":@\n]""")
+_TOO_DEEP = f"brackets or signs are nested more than {MAX_DEPTH} deep; write it flatter"
+_QUOTED = re.compile(r"""'[ !-&(-\[\]-~]*'|"[ !#-\[\]-~]*\"""")
+"""Printable characters in quotes, without quotes and backslashes."""
+_SIGNS = re.compile(r"[-+](?:[ \n]*[-+]){3}")
+_LAMBDA, _STAND_IN = re.compile(r"\blambda\b"), "la__da"
+"""A Greek letter is a name here, though not in Python; what stands in for it is as long, and no name of its own."""
+_DECIMAL = re.compile(r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]{1,2})?")
+_DIGITS = re.compile(r"(?<![A-Za-z0-9_.])[0-9][0-9_]*|(?<=\.)[0-9_]+")
+_WORDS = {
+    ast.Attribute: "an attribute (a dot after a name)",
+    ast.Lambda: "lambda",
+    ast.Compare: "a comparison",
+    ast.BoolOp: "and/or",
+    ast.IfExp: "if/else",
+    ast.Subscript: "an index in brackets",
+    ast.NamedExpr: ":=",
+    ast.Starred: "a star",
+    ast.Tuple: "a tuple (a comma)",
+    ast.List: "a list",
+    ast.ListComp: "a comprehension",
+    ast.GeneratorExp: "a comprehension",
+    ast.JoinedStr: "a formatted text",
+    ast.Call: "calling what is not a plain name",
+}
+
+
+def expression(text: str, functions: Functions = FUNCTIONS, *, judging: bool = False) -> Node:
+    """Read one expression.
+
+    Parameters
+    ----------
+    text
+        Numbers, names, ``+ - * / **``, brackets and calls.
+    functions
+        Functions that may be called, each with the least and the largest number of its arguments.
+    judging
+        Whether lists, quoted texts, ``row['item']``, ``@`` and arguments by name are allowed, too: in what a
+        formula is held against, not in what is printed.
+
+    Raises
+    ------
+    BadInput
+        With the reason, and the column where there is one.
+    """
+    _measure(text, judging)
+    line = _LAMBDA.sub(_STAND_IN, text.strip().replace("\n", " "))
+    tree = _Reader(line, functions, judging).node(_parsed(line, text))
+    _weight(tree)
+    return tree
+
+
+def statement(text: str, functions: Functions = FUNCTIONS, *, judging: bool = False) -> Node | Equality:
+    """Read one expression, or an equality ``lhs = rhs`` of two.
+
+    Raises
+    ------
+    BadInput
+        As for :func:`expression`, or if there are several equality signs.
+    """
+    _measure(text, judging)
+    sides = _sides(text)
+    if len(sides) > 2:
+        raise BadInput("has several equality signs; write a row for each equality")
+    read = [expression(side, functions, judging=judging) for side in sides]
+    return read[0] if len(read) == 1 else Equality(read[0], read[1])
+
+
+def checked_name(name: str) -> str:
+    """The name, if it may stand in a formula.
+
+    Raises
+    ------
+    BadInput
+        If it is not letters, digits and single underscores.
+    """
+    if len(name) > MAX_NAME:
+        raise BadInput(f"the name {shown(name)} is longer than {MAX_NAME} characters")
+    if not NAME.match(name):
+        raise BadInput(f"{shown(name)} is not a name; use letters, digits and single underscores, no TeX")
+    return name
+
+
+def _measure(text: str, judging: bool) -> None:
+    if len(text) > MAX_LENGTH:
+        raise BadInput(f"longer than {MAX_LENGTH} characters; split it into parts")
+    if judging:
+        text = _QUOTED.sub("''", text)
+    foreign = _FOREIGN.search(text)
+    if foreign:
+        raise BadInput(f'the character "{printable(foreign[0])}" has no meaning here (column {foreign.start() + 1})')
+    depth = 0
+    for character in text:
+        depth += (character in "([") - (character in ")]")
+        if depth > MAX_DEPTH:
+            raise BadInput(_TOO_DEEP)
+    if _SIGNS.search(text) or text.count("**") > 200:
+        raise BadInput(_TOO_DEEP)
+    for digits in _DIGITS.findall(text):
+        if len(digits) > MAX_DIGITS:
+            raise BadInput(f"a number has more than {MAX_DIGITS} digits")
+
+
+def _sides(text: str) -> list[str]:
+    """The text between the equality signs that stand outside all brackets."""
+    sides, depth, start = [], 0, 0
+    for i, character in enumerate(text):
+        depth += (character in "([") - (character in ")]")
+        if character == "=" and depth == 0:
+            sides.append(text[start:i])
+            start = i + 1
+    return [*sides, text[start:]]
+
+
+def _parsed(line: str, text: str) -> ast.expr:
+    if not line:
+        raise BadInput("is empty; write a formula")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return ast.parse(line, mode="eval").body
+    except SyntaxError as error:
+        where = f" (column {error.offset})" if error.offset else ""
+        raise BadInput(f"{shown(text)} is not a formula{where}; write products with * and powers with **") from None
+    except (RecursionError, MemoryError, ValueError):
+        raise BadInput(_TOO_DEEP) from None
+
+
+class _Reader:
+    """Translates what Python's parser found, and refuses whatever is not listed."""
+
+    def __init__(self, text: str, functions: Functions, judging: bool) -> None:
+        self._text = text
+        self._functions = functions
+        self._judging = judging
+
+    def node(self, found: ast.expr, depth: int = 0) -> Node:
+        """The tree of a node of Python's."""
+        if depth > 2 * MAX_DEPTH:
+            raise BadInput(_TOO_DEEP)
+        if isinstance(found, ast.Constant):
+            return self._constant(found)
+        if isinstance(found, ast.Name):
+            return Sym(checked_name(found.id.replace(_STAND_IN, "lambda")))
+        if isinstance(found, ast.UnaryOp) and isinstance(found.op, ast.USub | ast.UAdd):
+            operand = self.node(found.operand, depth + 1)
+            return Neg(operand) if isinstance(found.op, ast.USub) else operand
+        if isinstance(found, ast.BinOp):
+            return self._power(found, depth) if isinstance(found.op, ast.Pow) else self._chain(found, depth)
+        if isinstance(found, ast.Call) and isinstance(found.func, ast.Name):
+            return self._call(found, found.func.id, depth)
+        if self._judging and isinstance(found, ast.List):
+            return Grid(tuple(self.node(entry, depth + 1) for entry in found.elts))
+        if self._judging and isinstance(found, ast.Subscript) and isinstance(found.value, ast.Name):
+            keys = found.slice.elts if isinstance(found.slice, ast.Tuple) else [found.slice]
+            return self._call(ast.Call(found.value, keys, []), found.value.id, depth)
+        what = _WORDS.get(type(found), f"this ({type(found).__name__})")
+        raise BadInput(f"{what} is not allowed here{_column(found)}")
+
+    def _constant(self, found: ast.Constant) -> Node:
+        if isinstance(found.value, str) and self._judging:
+            return Text(found.value)
+        text = self._text[found.col_offset : found.end_col_offset]
+        if not _DECIMAL.fullmatch(text):
+            raise BadInput(f"{printable(text)} is not a plain decimal number{_column(found)}")
+        return Num(Fraction(text))
+
+    def _chain(self, found: ast.BinOp, depth: int) -> Node:
+        """Sums and products; a long one leans to the left and is walked, so that its length is no depth."""
+        spine: list[ast.BinOp] = []
+        left: ast.expr = found
+        while isinstance(left, ast.BinOp) and not isinstance(left.op, ast.Pow):
+            spine.append(left)
+            left = left.left
+        result = self.node(left, depth + 1)
+        for link in reversed(spine):
+            result = self._joined(result, link, self.node(link.right, depth + 1))
+        return result
+
+    def _joined(self, left: Node, link: ast.BinOp, right: Node) -> Node:
+        if isinstance(link.op, ast.Add | ast.Sub):
+            term = Neg(right) if isinstance(link.op, ast.Sub) else right
+            return Add((*left.terms, term) if isinstance(left, Add) else (left, term))
+        if isinstance(left, Neg):  # -a*b is -(a*b)
+            return Neg(self._joined(left.operand, link, right))
+        if isinstance(link.op, ast.Div):
+            if constant(right) == 0:
+                raise BadInput(f"a division by zero{_column(link.right)}")
+            return Div(left, right)
+        if isinstance(link.op, ast.Mult) or (isinstance(link.op, ast.MatMult) and self._judging):
+            return Mul((*left.factors, right) if isinstance(left, Mul) else (left, right))
+        raise BadInput(f"only + - * / ** are known here{_column(link)}")
+
+    def _power(self, found: ast.BinOp, depth: int) -> Node:
+        base, exponent = self.node(found.left, depth + 1), self.node(found.right, depth + 1)
+        value = (
+            None if isinstance(found.right, ast.BinOp) and isinstance(found.right.op, ast.Pow) else constant(exponent)
+        )
+        if value is None:
+            raise BadInput(f"an exponent must be a number{_column(found.right)}; write exp(...) for powers of e")
+        if abs(value) > MAX_EXPONENT or value.denominator > MAX_DENOMINATOR:
+            raise BadInput(
+                f"the exponent {value} is out of range (-{MAX_EXPONENT} to {MAX_EXPONENT}){_column(found.right)}"
+            )
+        if value <= 0 and constant(base) == 0:
+            raise BadInput(f"zero to the power of {value}{_column(found)}")
+        return Pow(base, exponent)
+
+    def _call(self, found: ast.Call, name: str, depth: int) -> Node:
+        if name not in self._functions:
+            raise BadInput(
+                f"the function {shown(name)} is unknown{_column(found.func)}; {suggestion(name, self._functions)}"
+            )
+        if found.keywords and not self._judging:
+            raise BadInput(f"{name} takes no arguments by name{_column(found.func)}")
+        least, most = self._functions[name]
+        if not least <= len(found.args) <= most:
+            wanted = f"{least}" if least == most else f"{least} to {most}"
+            raise BadInput(f"{name} takes {wanted} arguments, not {len(found.args)}{_column(found.func)}")
+        positional = tuple(self.node(argument, depth + 1) for argument in found.args)
+        named = tuple((checked_name(k.arg or "**"), self.node(k.value, depth + 1)) for k in found.keywords)
+        return Call(name, positional, named)
+
+
+def _column(found: ast.expr) -> str:
+    return f" (column {found.col_offset + 1})" if hasattr(found, "col_offset") else ""
+
+
+def _weight(node: Node) -> tuple[int, int]:
+    """How many terms a tree has once multiplied out, and how many digits its longest number; both bounded above."""
+    parts = [_weight(child) for child in children(node)]
+    if isinstance(node, Num):
+        return 1, len(str(node.value.numerator)) + len(str(node.value.denominator))
+    terms, digits = 1, max((d for _, d in parts), default=1)
+    if isinstance(node, Add):
+        terms = sum(t for t, _ in parts)
+    elif isinstance(node, Mul | Div):
+        for t, _ in parts:
+            terms = min(terms * t, MAX_TERMS + 1)
+        digits = sum(d for _, d in parts)
+    elif isinstance(node, Pow):
+        exponent = max(abs(constant(node.exponent) or Fraction(1)), Fraction(1))
+        terms = int(min(parts[0][0] ** min(int(exponent) + 1, MAX_EXPONENT), MAX_TERMS + 1))
+        digits = int(parts[0][1] * exponent) + 1
+    elif parts:
+        terms = max(t for t, _ in parts)
+    if terms > MAX_TERMS or digits > MAX_WEIGHT:
+        raise BadInput("is too large once multiplied out; split it into parts, or use smaller exponents")
+    return terms, digits

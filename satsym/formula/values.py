@@ -1,0 +1,104 @@
+"""What formulas over derived and printed things may mean: scalars of either engine, matrices, equations."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Generic, TypeAlias, TypeVar
+
+from satsym.status import BadInput
+
+S = TypeVar("S")
+
+
+@dataclass(frozen=True)
+class Matrix(Generic[S]):
+    """Rows of scalars."""
+
+    rows: tuple[tuple[S, ...], ...]
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Numbers of rows and columns."""
+        return len(self.rows), len(self.rows[0])
+
+
+@dataclass(frozen=True)
+class Relation(Generic[S]):
+    """An equation between scalars."""
+
+    lhs: S
+    rhs: S
+
+
+@dataclass(frozen=True)
+class Roots(Generic[S]):
+    """The eigenvalues of a matrix, without an order."""
+
+    of: Matrix[S]
+
+
+@dataclass(frozen=True)
+class Kernel(Generic[S]):
+    """The null space of a matrix, whatever basis is chosen for it."""
+
+    of: Matrix[S]
+
+
+Value: TypeAlias = Any
+"""A scalar, a :class:`Matrix`, a :class:`Relation`, :class:`Roots` or a :class:`Kernel`."""
+
+
+@dataclass(frozen=True)
+class Sources(Generic[S]):
+    """Where values come from: names, addresses of derived things, and printed rows.
+
+    ``symbol`` gives our symbol for a name by which something is differentiated, or which is replaced.
+    """
+
+    name: Callable[[str], S]
+    address: Callable[[str], Value]
+    row: Callable[[str], Value]
+    symbol: Callable[[str], str] = str
+
+
+def without(matrix: Matrix[S], i: int, j: int) -> Matrix[S]:
+    """The matrix without a row and a column, counted from zero."""
+    return Matrix(
+        tuple(tuple(entry for k, entry in enumerate(row) if k != j) for h, row in enumerate(matrix.rows) if h != i)
+    )
+
+
+def stacked(matrices: Sequence[Matrix[S]], beside: bool) -> Matrix[S]:
+    """Matrices beside or below each other."""
+    if len({matrix.shape[0 if beside else 1] for matrix in matrices}) > 1:
+        raise BadInput("matrices that are put together differ in size")
+    if beside:
+        return Matrix(
+            tuple(tuple(e for row in rows for e in row) for rows in zip(*(m.rows for m in matrices), strict=True))
+        )
+    return Matrix(tuple(row for matrix in matrices for row in matrix.rows))
+
+
+def transposed(matrix: Matrix[S]) -> Matrix[S]:
+    """Rows as columns."""
+    return Matrix(tuple(zip(*matrix.rows, strict=True)))
+
+
+def plain(value: Value) -> Any:
+    """The value, if it is a scalar."""
+    if isinstance(value, Matrix | Roots | Kernel):
+        raise BadInput("a matrix stands where an expression is needed")
+    return value
+
+
+def square(matrix: Matrix[S]) -> int:
+    """The number of rows of a square matrix."""
+    if matrix.shape[0] != matrix.shape[1]:
+        raise BadInput(f"a {size_of(matrix)} matrix stands where a square one is needed")
+    return matrix.shape[0]
+
+
+def size_of(matrix: Matrix[S]) -> str:
+    """Rows by columns, for people."""
+    return "{} by {}".format(*matrix.shape)
