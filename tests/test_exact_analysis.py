@@ -208,7 +208,7 @@ def test_a_row_of_zeros_is_replaced_by_the_derivative_of_the_auxiliary_polynomia
 
 
 def test_a_zero_in_the_first_column_is_replaced_by_a_small_number():
-    """Ogata, Modern Control Engineering, section 5.6: s^5 + 2s^4 + ... is replaced by the classic s^4+s^3+2s^2+2s+5."""
+    """By hand: 2 - 5/epsilon is negative for small epsilon, which makes two changes of sign."""
     found = routh([1, 1, 2, 2, 5])
     epsilon = next(iter(found.column[2].free_symbols))
     assert found.column == (1, 1, epsilon, 2 - 5 / epsilon, 5)
@@ -451,7 +451,7 @@ def test_radial_thrust_alone_leaves_the_angular_momentum_as_it_is():
 
 
 def test_the_free_motion_is_that_of_clohessy_and_wiltshire():
-    """Their closed form, from the paper: x1 = (4 - 3 cos) x1(0) + sin/omega x2(0) + 2/omega (1 - cos) x4(0), ..."""
+    """The textbook closed form, column by column."""
     found = analyse(linear_system(SATELLITE)).exponential
     assert found is not None
     sine, cosine = sp.sin(omega * t), sp.cos(omega * t)

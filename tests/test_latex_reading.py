@@ -19,12 +19,17 @@ FUNCTIONS = {r"\cos": math.cos, r"\sin": math.sin, r"\tan": math.tan, r"\ln": ma
 LAYOUT = re.compile(r"\\(?:[bB]igg?[lr]|left|right|,|;)(?![A-Za-z])|\s+|&|\{\}(?=[+-])")
 
 
+def without_layout(tex: str) -> str:
+    """What is read, without sizes of parentheses and spaces of certain widths."""
+    return LAYOUT.sub(lambda m: " " if m[0].isspace() else "", tex)
+
+
 class Reader:
     """Values of the LaTeX that satsym writes, by the rules of school."""
 
     def __init__(self, values: Mapping[str, float]) -> None:
         """Take the value of each symbol, by its LaTeX."""
-        values = {"e": math.e, **values}
+        values = {"e": math.e} | {without_layout(name): value for name, value in values.items()}
         names = "|".join(re.escape(name) + r"(?![A-Za-z])" for name in sorted(values, key=len, reverse=True))
         commands = r"\\(?:[td]?frac|sqrt|cos|sin|tan|ln|cdot|max|min)(?![A-Za-z])|\\[{}]"
         self._token = re.compile(rf"({names or '(?!)'})|({commands})|(\d+(?:\.\d+)?)|([-+/^(){{}},])")
@@ -32,7 +37,7 @@ class Reader:
 
     def read(self, tex: str) -> float:
         """The value of an expression."""
-        text = LAYOUT.sub(lambda m: " " if m[0].isspace() else "", tex)
+        text = without_layout(tex)
         self._tokens = [m[0] for m in self._token.finditer(text)]
         assert "".join(self._tokens).replace(" ", "") == text.replace(" ", ""), tex
         self._next = 0
@@ -126,8 +131,8 @@ def assert_reads_back(derivation: Derivation, expression: sp.Expr) -> None:
     """In one piece, in terms, and in the pieces that lines may be broken between."""
     typeset, rng = Typesetter(derivation), random.Random(1)
     expression = sp.sympify(expression)
-    point = values_of(expression, rng)
-    reader = Reader({typeset.symbol(s.name): v for s, v in point.items()})
+    point = values_of(expression, rng) | {sp.I: 0.7}  # a factor i is read as any other factor
+    reader = Reader({typeset.symbol(s.name): v for s, v in point.items() if s.is_Symbol} | {"i": 0.7})
     expected = pytest.approx(value(expression, point), rel=1e-9, abs=1e-9)
     assert reader.read(typeset.tex(expression)) == expected
     for plus_first in (True, False):
@@ -147,7 +152,8 @@ def test_every_shipped_equation_reads_back_as_what_was_derived(subject: Problem)
     for step in derivation.steps:
         for equation in step.equations:
             assert_reads_back(derivation, equation.lhs)
-            assert_reads_back(derivation, equation.rhs)
+            for expression in equation.rhs if equation.rhs.is_Matrix else (equation.rhs,):
+                assert_reads_back(derivation, expression)
 
 
 STATES = tuple(Variable(name, latex) for name, latex in (("a", "a"), ("a_dot", r"\dot a"), ("b", r"\beta_1")))
