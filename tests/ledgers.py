@@ -54,6 +54,7 @@ d_lambda2 = "d_lambda_r_dot"
 d_lambda4 = "d_lambda_theta_dot"
 H = "H"
 p = "k"
+r = "r"
 
 [scope.deviations]
 extends = "main"

@@ -12,12 +12,13 @@ import pytest
 
 from satsym import audit as auditing
 from satsym.audit.diagnosis import Remedy, remedy
-from satsym.audit.edits import Change, in_exponent, times
+from satsym.audit.edits import Change, in_exponent
 from satsym.audit.judge.bench import Bench, Both, Formula
 from satsym.audit.judge.compare import plans
 from satsym.audit.judge.plan import Plan
 from satsym.audit.ledger import Row
 from satsym.audit.notation import Scope
+from satsym.audit.rewriting import times
 from satsym.formula.tree import (
     Add,
     Call,
@@ -265,14 +266,18 @@ def value(node: Node, at: dict[str, complex]) -> complex:
 
 
 def equivalent(subject: Subject, formula: Formula, rng: random.Random) -> bool:
-    """Whether a planted slip changes nothing: shown by numbers, at random values of all the document's symbols."""
+    """Whether a planted slip changes nothing: shown by numbers, at random values of all symbols.
+
+    An equation may be multiplied by what never vanishes: the quotient of old and new depends on positive symbols alone.
+    """
     meanings = subject.bench.meanings(subject.row)
     original = subject.row.printed
     assert original is not None
     names = sorted(set().union(*(symbols(meaning) for meaning in meanings.values())))
+    fixed = {name: complex(rng.uniform(0.5, 1.5)) for name in names if name in subject.bench.names.positive}
     ratios = []
     for _ in range(4):
-        ours = {name: complex(rng.uniform(0.5, 1.5)) for name in names}
+        ours = {name: complex(rng.uniform(0.5, 1.5)) for name in names} | fixed
         theirs = {name: value(meaning, ours) for name, meaning in meanings.items()}
         before, after = ([value(cell, theirs) for cell in cells(f)] for f in (original, formula))
         if isinstance(original, Equality):
@@ -285,7 +290,7 @@ def equivalent(subject: Subject, formula: Formula, rng: random.Random) -> bool:
             ratios.append(1.0 if abs(before[0] - after[0]) < 1e-9 * (1 + abs(before[0])) else math.inf)
         else:  # eigenvalues in any order, any basis of a null space: their plans prove it
             return True
-    return max(ratios) < math.inf and max(ratios) - min(ratios) < 1e-9 * max(ratios)
+    return 0 < max(ratios) < math.inf and max(ratios) - min(ratios) <= 1e-9 * max(ratios)
 
 
 def is_exact(found: Remedy | None) -> bool:

@@ -7,40 +7,20 @@ edits. Where nothing is found, the difference is all that can be said.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from satsym.audit.edits import Change, Edit, repeated_edits, single_edits
-from satsym.audit.judge.equations import Equal, Multiple
+from satsym.audit.judge.equations import Equal
 from satsym.audit.judge.plan import Never, Plan
-from satsym.audit.notation import CONSTANTS
+from satsym.audit.lacking import mended_terms
 from satsym.formula import field
-from satsym.formula.angles import terms_of
 from satsym.formula.bound import BoundPoint
-from satsym.formula.calculus import product, raised, total
-from satsym.formula.reading import NAME
-from satsym.formula.tree import (
-    ONE,
-    ZERO,
-    Add,
-    Div,
-    Mul,
-    Neg,
-    Node,
-    Num,
-    Path,
-    Sym,
-    children,
-    number,
-    replaced,
-    size,
-    symbols,
-)
+from satsym.formula.tree import Node, replaced
 from satsym.symbolic.formulas import NotAFormula
 
 PAIRS = 50
 """Pairs of edits that are proved, of those that pass at two points."""
-_LARGEST_TERM = 14
 _MOST_ENTRIES = 6
 
 
@@ -84,7 +64,7 @@ def _remedy(plan: Plan) -> Remedy | None:
     cells = wrong if isinstance(plan, Equal) else range(len(plan.printed))
     return (
         _single(plan, cells)
-        or _missing(plan, cells)
+        or _first(plan, mended_terms(plan, cells))
         or _entry(plan, cells)
         or _repeated(plan, cells)
         or _pair(plan, cells)
@@ -105,23 +85,24 @@ def _edits(plan: Plan, index: int) -> list[Edit]:
     return single_edits(plan.printed[index], plan.bench.scope(plan.row), plan.useful.__contains__)
 
 
-def _single(plan: Plan, indices: Sequence[int]) -> Remedy | None:
-    edits = [(i, edit) for i in indices for edit in _edits(plan, i)]
-    for i, edit in sorted(edits, key=lambda entry: entry[1].change):
+def _first(plan: Plan, edits: Iterable[tuple[int, Edit]]) -> Remedy | None:
+    """The first edit that puts everything right."""
+    for i, edit in edits:
         cells = _with(plan, i, edit.result)
         if plan.may_hold(cells) and plan.is_right(cells):
             return Remedy(((i, edit),), cells)
     return None
 
 
+def _single(plan: Plan, indices: Sequence[int]) -> Remedy | None:
+    edits = [(i, edit) for i in indices for edit in _edits(plan, i)]
+    return _first(plan, sorted(edits, key=lambda entry: entry[1].change))
+
+
 def _repeated(plan: Plan, indices: Sequence[int]) -> Remedy | None:
     """The same slip at several places of one cell."""
-    for i in indices:
-        for edit in repeated_edits(plan.printed[i], plan.bench.scope(plan.row), plan.useful.__contains__):
-            cells = _with(plan, i, edit.result)
-            if plan.may_hold(cells) and plan.is_right(cells):
-                return Remedy(((i, edit),), cells)
-    return None
+    letters, usable = plan.bench.scope(plan.row), plan.useful.__contains__
+    return _first(plan, ((i, edit) for i in indices for edit in repeated_edits(plan.printed[i], letters, usable)))
 
 
 def _entry(plan: Plan, indices: Sequence[int]) -> Remedy | None:
@@ -243,91 +224,3 @@ def _exchanges(m: int, n: int) -> Iterator[tuple[str, list[int]]]:
             order[a], order[b] = b, a
             one, other = (f"({k // n + 1}, {k % n + 1})" for k in (a, b))
             yield f"the entries {one} and {other} are exchanged", order
-
-
-def _missing(plan: Plan, indices: Sequence[int]) -> Remedy | None:
-    """One term that a sum lacks, or that is another than it ought to be, found from the difference."""
-    found: list[tuple[int, int, int, Edit]] = []
-    for i in indices:
-        for gap in () if isinstance(plan.printed[i], Num) else _gaps(plan, i):
-            for path, node, slope in _linear_places(plan.printed[i]):
-                for change, at, old, new, term in _mended(plan, gap, path, node, slope):
-                    edit = Edit(change, at, old, new, replaced(plan.printed[i], at, new))
-                    found.append((change, size(term), i, edit))
-    for *_, i, edit in sorted(found, key=lambda entry: entry[:3]):
-        cells = _with(plan, i, edit.result)
-        if plan.may_hold(cells) and plan.is_right(cells):
-            return Remedy(((i, edit),), cells)
-    return None
-
-
-def _mended(
-    plan: Plan, gap: Node, path: Path, node: Node, slope: Node
-) -> Iterator[tuple[Change, Path, Node, Node, Node]]:
-    """A sum with one more term, or with another one in the place of one of its terms; and that term."""
-    terms = node.terms if isinstance(node, Add) else () if node == ZERO else (node,)
-    term = _single_term(plan, gap, slope, ZERO)
-    if term is not None:
-        yield Change.MISSING_TERM, path, node, Add((*terms, term)) if terms else term, term
-    for k, other in enumerate(node.terms if isinstance(node, Add) else ()):
-        term = _single_term(plan, gap, slope, other)
-        if term is not None:
-            change = Change.FACTOR if _is_multiple(term, other) else Change.TERM
-            yield change, (*path, k), other, term, term
-
-
-def _is_multiple(term: Node, other: Node) -> bool:
-    """Whether two terms differ by a number alone."""
-    try:
-        return list(terms_of(Div(term, other)).coefficients) == [()]
-    except OverflowError:
-        return False
-
-
-def _gaps(plan: Plan, index: int) -> Iterator[Node]:
-    """What a cell lacks, in our names."""
-    if isinstance(plan, Equal):
-        yield plan.gap(index)
-    elif isinstance(plan, Multiple):
-        yield from plan.gaps(index)
-
-
-def _linear_places(formula: Node) -> Iterator[tuple[Path, Node, Node]]:
-    """Sums, and the whole, that the formula depends on linearly; each with its factor."""
-
-    def places(node: Node, path: Path, slope: Node) -> Iterator[tuple[Path, Node, Node]]:
-        if isinstance(node, Add) or not path:
-            yield path, node, slope
-        for k, child in enumerate(children(node)):
-            if isinstance(node, Add):
-                yield from places(child, (*path, k), slope)
-            elif isinstance(node, Neg):
-                yield from places(child, (*path, k), Neg(slope))
-            elif isinstance(node, Div) and k == 0:
-                yield from places(child, (*path, k), Div(slope, node.denominator))
-            elif isinstance(node, Mul):
-                rest = (*node.factors[:k], *node.factors[k + 1 :])
-                yield from places(child, (*path, k), Mul((slope, *rest)))
-
-    yield from places(formula, (), ONE)
-
-
-def _single_term(plan: Plan, gap: Node, slope: Node, beside: Node) -> Node | None:
-    """The gap over the slope, and a term that is there, if they make one short term in the document's symbols."""
-    try:
-        terms = terms_of(total([Div(gap, plan.normal(slope)), plan.normal(beside)])).coefficients
-    except OverflowError:
-        return None
-    if len(terms) != 1:
-        return None
-    ((key, (real, imaginary)),) = terms.items()
-    if imaginary or not all(NAME.match(name) for name, _ in key):
-        return None
-    above = [raised(Sym(name), power) for name, power in key if power > 0]
-    below = [raised(Sym(name), -power) for name, power in key if power < 0]
-    top = product([number(abs(real).numerator), *above])
-    bottom = product([number(real.denominator), *below])
-    term = top if bottom == ONE else Div(top, bottom)
-    printed = plan.bench.theirs(plan.row, Neg(term) if real < 0 else term)
-    known = {*plan.meanings, *CONSTANTS}
-    return printed if size(printed) <= _LARGEST_TERM and symbols(printed) <= known else None

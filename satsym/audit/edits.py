@@ -12,6 +12,7 @@ from fractions import Fraction
 from itertools import combinations
 from typing import Protocol
 
+from satsym.audit.rewriting import over_symbol, regrouped, shortened, times, times_symbol, without_factor
 from satsym.formula.tree import (
     ONE,
     Add,
@@ -40,14 +41,15 @@ class Change(IntEnum):
     FACTOR = 3
     EXPONENT = 4
     FUNCTION = 5
-    SYMBOL = 6
-    DROPPED_FACTOR = 7
-    DROPPED_TERM = 8
-    INVERTED = 9
-    MISSING_FACTOR = 10
-    MISSING_TERM = 11
-    TERM = 12
-    ENTRY = 13
+    BRACKET = 6
+    SYMBOL = 7
+    DROPPED_FACTOR = 8
+    DROPPED_TERM = 9
+    INVERTED = 10
+    MISSING_FACTOR = 11
+    MISSING_TERM = 12
+    TERM = 13
+    ENTRY = 14
 
 
 @dataclass(frozen=True)
@@ -132,7 +134,7 @@ def repeated_edits(formula: Node, letters: Letters, usable: Callable[[str], bool
     for factor in factors:
         places = [path for path, node in walk(formula) if isinstance(node, Mul) and factor in node.factors]
         for chosen in _choices(places):
-            yield _everywhere(Change.DROPPED_FACTOR, formula, chosen, factor, lambda node: _without(node, factor))  # noqa: B023
+            yield _everywhere(Change.DROPPED_FACTOR, formula, chosen, factor, lambda node: without_factor(node, factor))  # noqa: B023
 
 
 def _everywhere(change: Change, formula: Node, places: Sequence[Path], old: Node, rule: Callable[[Node], Node]) -> Edit:
@@ -146,13 +148,6 @@ def _choices(places: Sequence[Path]) -> Iterator[tuple[Path, ...]]:
     sizes = range(len(places), 1, -1) if len(places) <= _FEW else (len(places), len(places) - 1)
     for size in sizes:
         yield from combinations(places, size)
-
-
-def _without(node: Node, factor: Node) -> Node:
-    assert isinstance(node, Mul)
-    rest = list(node.factors)
-    rest.remove(factor)
-    return rest[0] if len(rest) == 1 else Mul(tuple(rest))
 
 
 def at(formula: Node, path: Path) -> Node:
@@ -195,7 +190,9 @@ def _changes(
     if isinstance(node, Call):
         for other in _FUNCTIONS.get(node.function, ()):
             yield Change.FUNCTION, Call(other, node.arguments, node.named)
-    yield from _dropped(node)
+    for is_term_gone, new in shortened(node):
+        yield (Change.DROPPED_TERM if is_term_gone else Change.DROPPED_FACTOR), new
+    yield from ((Change.BRACKET, new) for new in regrouped(node))
     if isinstance(node, Div):
         yield Change.INVERTED, Div(node.denominator, node.numerator)
     if is_term:
@@ -220,62 +217,6 @@ def _powers(node: Node, parent: Node | None) -> Iterator[tuple[Change, Node]]:
     elif isinstance(node, Sym | Call | Add) and not isinstance(parent, Pow):
         for power in (2, 3, -1):
             yield Change.EXPONENT, Pow(node, number(power))
-
-
-def _dropped(node: Node) -> Iterator[tuple[Change, Node]]:
-    if isinstance(node, Mul):
-        for i in range(len(node.factors)):
-            rest = (*node.factors[:i], *node.factors[i + 1 :])
-            yield Change.DROPPED_FACTOR, rest[0] if len(rest) == 1 else Mul(rest)
-    if isinstance(node, Div):
-        yield Change.DROPPED_FACTOR, node.numerator
-        yield Change.DROPPED_FACTOR, Div(ONE, node.denominator)
-    if isinstance(node, Add):
-        for i in range(len(node.terms)):
-            rest = (*node.terms[:i], *node.terms[i + 1 :])
-            yield Change.DROPPED_TERM, rest[0] if len(rest) == 1 else Add(rest)
-
-
-def times(node: Node, factor: Fraction) -> Node:
-    """A term with another numeric factor, written as people write it."""
-    if isinstance(node, Neg):
-        return Neg(times(node.operand, factor))
-    if isinstance(node, Num):
-        return number(node.value * factor)
-    if isinstance(node, Div):
-        above, below = times(node.numerator, Fraction(factor.numerator)), factor.denominator
-        return Div(above, node.denominator if below == 1 else times(node.denominator, Fraction(below)))
-    if isinstance(node, Mul) and (value := constant(node.factors[0])) is not None:
-        rest = node.factors[1:]
-        scaled = value * factor
-        if scaled == 1:
-            return rest[0] if len(rest) == 1 else Mul(rest)
-        return Mul((number(scaled), *rest))
-    if factor.numerator == 1 and factor.denominator != 1:
-        return Div(node, number(factor.denominator))
-    if factor == 1:
-        return node
-    return Mul((number(factor), *node.factors)) if isinstance(node, Mul) else Mul((number(factor), node))
-
-
-def times_symbol(node: Node, symbol: Sym) -> Node:
-    """A term with one more factor."""
-    if isinstance(node, Neg):
-        return Neg(times_symbol(node.operand, symbol))
-    if isinstance(node, Div):
-        return Div(times_symbol(node.numerator, symbol), node.denominator)
-    if isinstance(node, Num):
-        return symbol if node.value == 1 else Mul((node, symbol))
-    return Mul((*node.factors, symbol)) if isinstance(node, Mul) else Mul((node, symbol))
-
-
-def over_symbol(node: Node, symbol: Sym) -> Node:
-    """A term divided by one more factor."""
-    if isinstance(node, Neg):
-        return Neg(over_symbol(node.operand, symbol))
-    if isinstance(node, Div):
-        return Div(node.numerator, times_symbol(node.denominator, symbol))
-    return Div(node, symbol)
 
 
 def _near(value: Fraction) -> list[Fraction]:

@@ -38,7 +38,7 @@ def audit(ledger: Ledger, items: Sequence[str] = (), announce: Callable[[str], N
 
     bench = Bench(ledger)
     wanted = [row.key for row in ledger.rows if not items or row.table.item in items or row.key in items]
-    needed = _bearing(ledger.rows, wanted) if items else set(wanted)
+    needed = _bearing(bench, wanted) if items else set(wanted)
     rows = [row for row in ledger.rows if row.key in needed]
     outcomes = []
     for i, row in enumerate(rows, start=1):
@@ -84,16 +84,15 @@ def _told(bench: Bench, row: Row) -> Outcome:
         raise BadInput(f"{path}:{row.line}: row {printable(row.key)}: {error}") from None
 
 
-def _bearing(rows: Sequence[Row], wanted: Sequence[str]) -> set[str]:
+def _bearing(bench: Bench, wanted: Sequence[str]) -> set[str]:
     """Keys of rows that the verdicts of some rows depend on: what they use, what uses them, and the same target."""
-    by_key = {row.key: row for row in rows}
+    rows = bench.ledger.rows
     found = set(wanted)
-    for key in wanted:
-        row = by_key[key]
+    for row in (bench.rows[key] for key in wanted):
         found.update(row.uses)
         for other in rows:
-            if key in other.uses:
+            if row.key in other.uses:
                 found.update([other.key, *other.uses])
-            if row.table.holds and other.table.holds == row.table.holds:
+            if bench.same_target(row, other):
                 found.add(other.key)
     return found

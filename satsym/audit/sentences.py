@@ -18,6 +18,7 @@ _EDITS = {
     Change.FACTOR: "`{old}` should be `{new}`, a matter of a factor",
     Change.EXPONENT: "`{old}` should be `{new}`, a matter of an exponent",
     Change.FUNCTION: "`{old}` should be `{new}`",
+    Change.BRACKET: "the brackets of `{old}` are misplaced: it should be `{new}`",
     Change.SYMBOL: "`{old}` should be `{new}`",
     Change.DROPPED_FACTOR: "`{old}` should be `{new}`: a factor too many",
     Change.DROPPED_TERM: "`{old}` has a term too many: it should be `{new}`",
@@ -75,7 +76,7 @@ def carried_on(items: Sequence[str]) -> str:
 
 def not_carried_on(items: Sequence[str]) -> str:
     """Later formulas follow from the right one only."""
-    return f"It was not used: {_listed(items)} {'follows' if len(items) == 1 else 'follow'} from the right formula."
+    return f"{_listed(items)} {'follows' if len(items) == 1 else 'follow'} from the right formula, not from this one."
 
 
 def same_slip(items: Sequence[str]) -> str:

@@ -12,6 +12,8 @@ from satsym.audit.judged import Judged, Verdict
 from satsym.audit.ledger import Row
 from satsym.audit.outcome import Outcome
 from satsym.formula.values import Kernel, Roots
+from satsym.status import BadInput
+from satsym.wording import printable
 
 FORMULAS = ("equation", "matrix")
 """Kinds of rows that may be misprinted; a line of a program is executed, and a number is claimed."""
@@ -41,6 +43,7 @@ class _Context:
         self._bench = bench
         self._outcomes = outcomes
         self._right: dict[str, Formula] = {}
+        self._known: dict[tuple[str, tuple[str, ...]], bool] = {}
 
     def judged(self, outcome: Outcome) -> Judged:
         verdict, said = self._verdict(outcome)
@@ -91,12 +94,12 @@ class _Context:
 
     def _of_wrong_formula(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
         row = outcome.row
-        same = [o for o in self._outcomes.values() if o is not outcome and o.row.table.holds == row.table.holds]
+        same = [o for o in self._outcomes.values() if o is not outcome and self._bench.same_target(o.row, row)]
         right_elsewhere = [o.row.key for o in same if o.right]
         slips = [o.row.key for o in same if o.right is False and o.remedy and _same(o, outcome)]
         carried, mended = self._used_by(row)
         verdict: Verdict = "wrong" if carried and not right_elsewhere else "misprint"
-        source = row.uses if row.follows is not None and self._follows(row, {}) else []
+        source = self._wrong_among(row.uses) if row.follows is not None and self._follows(row, {}) else []
         return verdict, [
             outcome.remark,
             sentences.right_elsewhere(right_elsewhere) if right_elsewhere else "",
@@ -120,11 +123,25 @@ class _Context:
         return carried, mended
 
     def _follows_once_mended(self, row: Row) -> bool:
-        wrong = [key for key in row.uses if self._outcomes[key].plan is not None and not self._outcomes[key].right]
+        wrong = self._wrong_among(row.uses)
         return bool(wrong) and self._follows(row, {key: self._corrected(key) for key in wrong})
+
+    def _wrong_among(self, keys: Sequence[str]) -> list[str]:
+        """Formulas that differ from what they are held against."""
+        return [key for key in keys if self._outcomes[key].plan is not None and not self._outcomes[key].right]
 
     def _follows(self, row: Row, replacements: Mapping[str, Formula]) -> bool:
         """Whether a row follows from the rows it names, some of them replaced."""
+        asked = row.key, tuple(replacements)
+        if asked not in self._known:
+            try:
+                self._known[asked] = self._follows_from(row, replacements)
+            except BadInput as error:
+                path = printable(str(self._bench.ledger.path), 200)
+                raise BadInput(f"{path}:{row.line}: row {printable(row.key)}: from: {error}") from None
+        return self._known[asked]
+
+    def _follows_from(self, row: Row, replacements: Mapping[str, Formula]) -> bool:
         assert row.printed is not None
         value = self._bench.follows(row, replacements)
         if isinstance(value.trees, Roots | Kernel) and not isinstance(row.printed, tuple):

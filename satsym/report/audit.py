@@ -75,7 +75,8 @@ def _document(ledger: Ledger, judged: Sequence[Judged]) -> list[str]:
     lines += table([["item", "verdict", "what it is"], *([_short(r.key), r.verdict, _short(r.says)] for r in open_)])
     for row in open_:
         lines += ["", f"{_INDENT}{_short(row.key)}: {row.verdict}{f' ({row.where})' if row.where else ''}"]
-        lines += _wrapped(f"printed  {_flat(row.printed)}", 2)
+        if row.printed:
+            lines += _wrapped(f"printed  {_flat(row.printed)}", 2)
         if row.derived and row.derived not in row.diagnosis:
             lines += _wrapped(f"derived  {row.derived}", 2)
         lines += _wrapped(row.diagnosis, 2)

@@ -15,7 +15,7 @@ from satsym.status import BadInput
 
 FORMULAS = ("equation", "matrix", "algorithm")
 _CODE = re.compile(r"`([^`]*)`")
-_LONGEST_WORD = 24
+_LONGEST_WORD = 12
 
 
 def render(ledgers: Sequence[Ledger], judged: Mapping[str, Sequence[Judged]]) -> str:
@@ -59,7 +59,8 @@ def _section(ledger: Ledger, judged: Sequence[Judged]) -> str:
 def _remark(row: Judged) -> str:
     where = rf" ({escape(row.where)})" if row.where else ""
     lines = [rf"\paragraph{{{escape(row.key)}}} \emph{{{row.verdict}}}{where}. {escape(row.says)}"]
-    lines.append(_printed("Printed:", row, row.printed))
+    if row.printed:
+        lines.append(_printed("Printed:", row, row.printed))
     if row.derived and row.derived not in row.diagnosis:
         lines.append(_printed("Derived:", row, row.derived))
     lines.append(_sentence(row.diagnosis))
@@ -112,7 +113,7 @@ def _breakable(text: str) -> str:
     for word in text.split():
         escaped = escape(word)
         if len(word) > _LONGEST_WORD:
-            escaped = re.sub(r"(?<=[*/+=,;)])(?=[^\s}])", r"\\allowbreak{}", escaped)
+            escaped = re.sub(r"([*/+=,;)-]|\\_)(?=[^\s}])", r"\1\\allowbreak{}", escaped)
         words.append(escaped)
     before, after = (" " if text[k : k + 1].isspace() else "" for k in (0, len(text) - 1))
     return f"{before}{' '.join(words)}{after}"

@@ -211,10 +211,15 @@ def roots(polynomial: sp.Expr, by: sp.Symbol) -> list[sp.Expr]:
 
 
 def nonvanishing_quotient(one: sp.Expr, other: sp.Expr) -> sp.Expr | None:
-    """The quotient of two expressions, if its assumptions prove that it has one sign."""
+    """The quotient of two expressions, if it is made of positive symbols and has one sign.
+
+    A sum of squares of other symbols has one sign, too, but equations that differ by it differ for complex numbers.
+    """
     if is_zero(other) or is_zero(one):
         return None
     quotient = sp.factor(sp.cancel(sp.together(one / other)))
+    if not all(symbol.is_positive for symbol in quotient.free_symbols):
+        return None
     return quotient if quotient.is_positive or quotient.is_negative else None
 
 

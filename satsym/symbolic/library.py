@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache
+from functools import cache, cached_property
 from typing import TypeAlias
 
 import sympy as sp
@@ -74,7 +74,7 @@ class Names:
     symbols: Mapping[str, sp.Symbol]
     definitions: Mapping[str, sp.Expr]
 
-    @property
+    @cached_property
     def positive(self) -> frozenset[str]:
         """Names of positive symbols."""
         return frozenset(name for name, symbol in self.symbols.items() if symbol.is_positive)

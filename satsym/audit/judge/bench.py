@@ -45,6 +45,7 @@ class Bench:
         self.rows = {row.key: row for row in self.ledger.rows}
         self._meanings: dict[str, Mapping[str, Node]] = {}
         self._derived: dict[tuple[str, str], Both] = {}
+        self._targets: dict[str, Both] = {}
 
     def scope(self, row: Row) -> Scope:
         """The notation of a row."""
@@ -88,7 +89,33 @@ class Bench:
         """What a row is held against."""
         formula = row.holds
         assert formula is not None
-        return self._both(row, lambda engine: engine.value(formula), self._ours)
+        if row.key not in self._targets:
+            self._targets[row.key] = self._both(row, lambda engine: engine.value(formula), self._ours)
+        return self._targets[row.key]
+
+    def same_target(self, one: Row, other: Row) -> bool:
+        """Whether two rows are held against the same thing, by whatever name."""
+        if any(row.holds is None or row.printed is None for row in (one, other)):
+            return False
+        return one.table.holds == other.table.holds or bool(
+            (shared := self._telling(one)) and shared == self._telling(other)
+        )
+
+    def _telling(self, row: Row) -> str:
+        """The target as text, if it is particular enough that no other thing is likely to be the same.
+
+        A general statement, whose symbols stand for whole derived things, prints none of them.
+        """
+        meanings = self.scope(row).meanings
+        used = {name for cell in _cells(row.printed) for name in symbols(cell) if name in meanings}
+        if any(isinstance(part, Text) for name in used for _, part in walk(meanings[name])):
+            return ""
+        found = self.target(row)
+        trees, exact = found.trees, found.exact
+        if isinstance(trees, Relation) and isinstance(trees.lhs, Sym):
+            trees, exact = trees.rhs, exact.rhs
+        names = symbols(trees) if isinstance(trees, Node) else set()
+        return str(exact) if len(names) > 1 else ""
 
     def follows(self, row: Row, replacements: Replacements | None = None) -> Both:
         """What follows from the rows it is said to follow from."""
@@ -191,7 +218,7 @@ class Bench:
         if name not in shared.symbols and name not in shared.definitions and name not in ("I", "pi"):
             raise BadInput(
                 f"{shown(name)} is no name of {' or '.join(self.models) or 'a derivation'}; "
-                f"{suggestion(name, shared.symbols)} (a symbol of your own: [symbols])"
+                f"{suggestion(name, sorted(shared.symbols))} (a symbol of your own: [symbols])"
             )
         return shared.tree(name) if kind is Calculus else shared.expression(name)
 

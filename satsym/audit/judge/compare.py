@@ -68,7 +68,8 @@ def _of_relation(bench: Bench, row: Row, printed: Node | Equality, target: Both)
         if isinstance(meaning, Sym):
             solved = bench.solved(row, target, meaning.name)
             return found if solved is None else [Equal(bench, row, (printed.rhs,), ("",), (solved,)), *found]
-        if isinstance(relation.lhs, Sym):  # the notation defines the symbol, and so does the equation
+        defined = Equal(bench, row, (printed.lhs,), ("",), (rhs,)).may_hold((printed.lhs,))
+        if isinstance(relation.lhs, Sym) and defined:  # the notation defines the symbol as the equation does
             found.append(Equal(bench, row, (printed.rhs,), ("",), (rhs,)))
     return found
 
