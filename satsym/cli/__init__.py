@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
 
@@ -21,6 +22,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     int
         Exit code, see :class:`satsym.status.ExitCode`; 130 and 141 where the user or a closed pipe ended it.
     """
+    # Read when NumPy is loaded: on matrices as small as ours, threads cost several times what they save.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
         from satsym.cli.app import run
 

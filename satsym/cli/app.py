@@ -35,6 +35,7 @@ Start here:
   satsym instances                       what can be solved as it stands
   satsym solve soft-return --plot        solve one, with pictures
   satsym latex polar_orbit -o orbit.tex  typeset where it comes from
+  satsym audit its_thesis                judge a derivation that a thesis prints
 
 \b
 Exit codes: 0 done, 2 wrong usage, 3 bad input file, 4 no answer,
@@ -77,7 +78,7 @@ class Program(click.Group):
 )
 @click.version_option(__version__, message="satsym %(version)s")
 def program() -> None:
-    """Derive, solve and typeset satellite optimal control problems."""
+    """Derive, solve, typeset and audit satellite optimal control."""
 
 
 def run(argv: Sequence[str] | None = None) -> int:

@@ -28,9 +28,10 @@ Examples:
 def audit(
     ledgers: tuple[str, ...], as_json: bool, latex: Path | None, items: tuple[str, ...], coverage: bool, fresh: bool
 ) -> ExitCode:
-    """Judge what documents print: equations, matrices, numbers, tables, algorithms and claims.
+    """Judge what documents print.
 
-    LEDGER is a document that comes with satsym, or a TOML file that lists what a document prints and what each item
+    Equations, matrices, numbers, units, tables, algorithms and claims are held against what satsym derives. LEDGER is
+    a document that comes with satsym, or a TOML file that lists what a document prints and what each item
     is to be held against. Verdicts are computed, never read. The exit code is 0 whatever they are.
     """
     from satsym import audit as auditing
