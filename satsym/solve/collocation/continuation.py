@@ -137,7 +137,9 @@ def by_bound(problem: TwoPoint, curve: Path) -> list[Array]:
 
 
 def _violation(problem: TwoPoint, curve: Curve) -> float:
-    """By how much the control law without bounds leaves the control set."""
+    """By how much the control law without bounds leaves the control set; negative where there are none."""
+    if not np.isfinite(problem.instance.bounds).any():
+        return -np.inf
     tau = stage_times(curve.mesh, curve.order).ravel()
     law = problem.control(tau, curve.flat, curve.theta, bounded=False)
     return control_set.violation(problem.instance, law)

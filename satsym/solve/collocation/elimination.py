@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.floating[Any]]
 
 FEW = 128
-"""Unknowns up to which the system of the nodes is inverted."""
+"""Unknowns up to which the system of the nodes is left to NumPy."""
 
 
 class Blocks:
@@ -73,13 +73,15 @@ class Nodes:
     Raises
     ------
     numpy.linalg.LinAlgError
-        If it is singular.
+        If it is singular, here or when it is first solved.
     """
 
     def __init__(self, transition: Array, final: Array) -> None:
         count, n = transition.shape[:2]
         half, self._size = n // 2, n
+        self._whole: Array | None = None
         self._inverse: Array | None = None
+        self._fresh = True
         if n * (count + 1) <= FEW:
             whole = np.zeros((n * (count + 1), n * (count + 1)))
             whole[:half, :half] = np.eye(half)
@@ -88,7 +90,7 @@ class Nodes:
                 whole[rows, n * i : n * (i + 1)] = matrix
                 whole[rows, n * (i + 1) : n * (i + 2)] = -np.eye(n)
             whole[-half:, -n:] = final
-            self._inverse = np.linalg.inv(whole)
+            self._whole = whole
             return
         from scipy.linalg.lapack import dgbtrf
 
@@ -104,9 +106,17 @@ class Nodes:
             raise np.linalg.LinAlgError("singular")
 
     def solve(self, start: Array, between: Array, finish: Array) -> Array:
-        """Nodes for right-hand sides of the three kinds of rows, shape (N+1, 2n)."""
+        """Nodes for right-hand sides of the three kinds of rows, shape (N+1, 2n).
+
+        Few unknowns are solved for at once the first time, and from the second on with the inverse.
+        """
         right = np.concatenate([start, between.ravel(), finish])
-        if self._inverse is not None:
+        if self._whole is not None:
+            if self._fresh:
+                self._fresh = False
+                return np.linalg.solve(self._whole, right).reshape(-1, self._size)
+            if self._inverse is None:
+                self._inverse = np.linalg.inv(self._whole)
             return (self._inverse @ right).reshape(-1, self._size)
         from scipy.linalg.lapack import dgbtrs
 
