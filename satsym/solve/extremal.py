@@ -99,6 +99,9 @@ def _solution(
     if best.endless and instance.tf is None:
         costs = ", ".join(f"{value:.4g}" for value in best.endless)
         status, message = Status.NO_MINIMISER, f"more turns are always cheaper: the last three numbers cost {costs}"
+    u = problem.control(tau, scaled, path.theta)
+    if status in (Status.INFEASIBLE, Status.NO_MINIMISER):
+        z, u = np.full_like(z, np.nan), np.full_like(u, np.nan)  # what was tried on the way is no answer
     met = by_bound(problem, path) if status.answered else []
     return Solution(
         instance=instance,
@@ -108,7 +111,7 @@ def _solution(
         objective=extremal.cost if status.answered else float("nan"),
         times=instance.t0 + elapsed * tau,
         x=z[:n],
-        u=problem.control(tau, scaled, path.theta),
+        u=u,
         lam=z[n:],
         switching_times=tuple(_times(met, i, m, instance.t0, elapsed) for i in range(m)),
         iterations=extremal.iterations,

@@ -29,7 +29,7 @@ def save(result: Solution | Flight, folder: Path, formats: Sequence[str] = ("png
     list of Path
         What was written, the overview first. A picture that would show nothing is left out: ``orbit`` where the
         model has no position vector, ``controls`` where a flight has none, ``costates`` for a flight, ``invariants``
-        where the model has none, ``convergence`` for fewer than two iterations, and all but that where there is no
+        where the model has none, ``convergence`` for fewer than three iterations, and all but that where there is no
         trajectory.
 
     Raises

@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 
 def convergence(scene: Scene) -> Figure | None:
-    """Distance of the cost from its last value, and the residual, over the iterations; nothing for fewer than two."""
+    """Distance of the cost from its last value, and the residual, over the iterations; nothing for fewer than three."""
     history = scene.history
-    if len(history) < 2:
+    if len(history) < 3:
         return None
     page = style.titled(scene.title, style.WIDTH, 4.1)
     left, right = page.subplots(1, 2)
