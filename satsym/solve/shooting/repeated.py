@@ -1,4 +1,4 @@
-"""One instance solved again and again, for other initial states and parameters, in about a millisecond each."""
+"""One instance solved again and again, for other initial states and parameters, in a millisecond or two each."""
 
 from __future__ import annotations
 
