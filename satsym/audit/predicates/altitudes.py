@@ -10,19 +10,15 @@ from satsym.audit import quantities
 from satsym.audit.constants import PUBLISHED
 from satsym.audit.predicates import Finding, Question, predicate
 from satsym.audit.predicates.motion import stays_without_thrust
-from satsym.audit.predicates.orbits import synchronous_radius
+from satsym.audit.predicates.orbits import published, synchronous_radius
 from satsym.status import BadInput
 
 _OLD = 1e-3
 """Values of the constant of gravitation measured in the last hundred years differ by less than this."""
 
 
-def _published(name: str) -> float:
-    return quantities.in_base_units(PUBLISHED[name].quantity).value
-
-
 def _radii(altitudes: tuple[str, ...]) -> list[float]:
-    return [_published("R_earth") + quantities.in_base_units(altitude).value for altitude in altitudes]
+    return [published("R_earth") + quantities.in_base_units(altitude).value for altitude in altitudes]
 
 
 def _interval(printed: tuple[str, ...]) -> tuple[float, float]:
@@ -33,7 +29,7 @@ def _interval(printed: tuple[str, ...]) -> tuple[float, float]:
 
 
 def _period(radius: float) -> float:
-    return 2.0 * math.pi * math.sqrt(radius**3 / _published("mu_earth"))
+    return 2.0 * math.pi * math.sqrt(radius**3 / published("mu_earth"))
 
 
 @predicate
@@ -57,7 +53,7 @@ def periods(printed: tuple[str, ...], altitudes: tuple[str, ...]) -> Finding:
 def delays(printed: tuple[str, ...], altitudes: tuple[str, ...], legs: int) -> Finding:
     """Whether a satellite at either altitude, somewhere between overhead and the horizon, has a printed delay."""
     low, high = _interval(printed)
-    ground, light = _published("R_earth"), _published("c_light")
+    ground, light = published("R_earth"), published("c_light")
     found = [
         (legs * (radius - ground) / light, legs * math.sqrt(radius**2 - ground**2) / light)
         for radius in _radii(altitudes)
@@ -76,7 +72,7 @@ def delays(printed: tuple[str, ...], altitudes: tuple[str, ...], legs: int) -> F
 def visible(printed: str, altitudes: tuple[str, ...]) -> Finding:
     """Whether satellites at these altitudes, passing overhead, are above the horizon for that time or longer."""
     wanted, _ = _interval((printed,))
-    ground = _published("R_earth")
+    ground = published("R_earth")
     found = [_period(radius) * math.acos(ground / radius) / math.pi for radius in _radii(altitudes)]
     return Finding(
         min(found) >= wanted,
@@ -89,7 +85,7 @@ def visible(printed: str, altitudes: tuple[str, ...]) -> Finding:
 def stays_over(printed: str, above: bool = False) -> Finding:
     """Whether a satellite at that altitude (or 1000 km ``above`` it) keeps over its place on the equator."""
     higher = 1e6 if above else 0.0
-    radius, day = _radii((printed,))[0] + higher, _published("sidereal_day")
+    radius, day = _radii((printed,))[0] + higher, published("sidereal_day")
     number = quantities.printed_number(printed)
     half = float(number.half_unit) * quantities.scale(number.unit)
     drift, slack = (360.0 * (day / _period(r) - 1.0) for r in (radius, synchronous_radius() - half))
@@ -104,7 +100,7 @@ def stays_over(printed: str, above: bool = False) -> Finding:
 @predicate
 def sense_is_speed() -> Finding:
     """Whether the larger of two angular speeds always belongs to the orbit that goes round with the Earth."""
-    rate = {radius: math.sqrt(_published("mu_earth") / radius**3) for radius in _radii(("500 km", "35786 km"))}
+    rate = {radius: math.sqrt(published("mu_earth") / radius**3) for radius in _radii(("500 km", "35786 km"))}
     low, high = rate.values()
     orbits = [(low, math.pi), (high, 0.0)]  # a low orbit against the Earth's rotation, a high one with it
     momenta = [speed * math.cos(inclination) for speed, inclination in orbits]
@@ -146,8 +142,8 @@ def of_other_units(row: Question, constant: str, unit: str) -> Finding:
     if constant not in PUBLISHED:
         raise BadInput(f"of_other_units: no constant {constant}; the published ones are {', '.join(PUBLISHED)}")
     printed = quantities.printed_number(str(row.printed))
-    value = _published(constant) / quantities.scale(printed.unit)
-    other = _published(constant) / quantities.scale(unit)
+    value = published(constant) / quantities.scale(printed.unit)
+    other = published(constant) / quantities.scale(unit)
     near = abs(other / float(printed.value) - 1.0) < _OLD
     return Finding(
         abs(value - float(printed.value)) <= float(printed.half_unit),

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 
 import numpy as np
 
-from satsym.audit.predicates import Finding, Question, its_listing, predicate, reproduction
+from satsym.audit.predicates import Finding, Question, exact, its_listing, predicate, reproduction
 from satsym.audit.predicates.motion import solved
 
 _COUNTS = (100, 200, 400, 800)
@@ -20,34 +21,42 @@ _STEPS = 300
 
 
 @predicate
-def loop_begins() -> Finding:
-    """Whether the first values of err1 and err2 let the loop begin."""
-    first = its_listing.TOLERANCE + 1.0
-    return Finding(first > its_listing.TOLERANCE, f"err1 = err2 = {first:g} > tol", {"err1": first})
+def loop_begins(row: Question) -> Finding:
+    """Whether the printed first values let the loop begin, which asks that err1 and err2 be greater than tol."""
+    values: dict[str, float] = {}
+    for line in row.printed:
+        name, _, text = str(line).rstrip(";").partition("=")
+        values[name.strip()] = _number(text, values)
+    errors = {name: value for name, value in values.items() if name.startswith("err")}
+    return Finding(
+        bool(errors) and min(errors.values()) > values["tol"],
+        f"{', '.join(f'{name} = {value:g}' for name, value in errors.items())}; tol = {values['tol']:g}",
+        dict(values),
+    )
 
 
 @predicate
 def loop_ends_when_converged(instance: str) -> Finding:
     """Whether the loop ends where the controls change no more, and not before: executed from several guesses."""
     optimum = solved(instance).u
-    ends: list[tuple[float, int, float]] = []
+    ends: list[tuple[int, float, float]] = []
     for guess in (g for g in reproduction.GUESSES if g > 0.0):
         done = reproduction.run(10.0, 10.0, _STEPS, guess)
-        ends.append((guess, done.sweeps, abs(guess - done.u[0][0]) / done.u[0][0]))
+        off = float(np.abs(np.array(done.u)).max() - np.abs(optimum).max())
+        ends.append((done.sweeps, abs(guess - done.u[0][0]) / done.u[0][0], off))
     # a converged control: nothing changes
     settled = its_listing.error([(0.2, 0.2)] * (_STEPS + 1), [(0.2, 0.2)] * (_STEPS + 1), 0)
-    smallest = min(change for _, _, change in ends)
-    left = max(guess / 2.0 for guess, _, _ in ends)
+    smallest = min(change for _, change, _ in ends)
     holds = smallest <= its_listing.TOLERANCE and settled <= its_listing.TOLERANCE
     return Finding(
         holds,
-        f"it ends after {max(sweeps for _, sweeps, _ in ends)} sweep from every guess, although the controls changed "
+        f"it ends after {max(sweeps for sweeps, _, _ in ends)} sweep from every guess, although the controls changed "
         f"by {100.0 * smallest:.0f} % in it, and goes on where they change no more",
         {
             "guesses tried": len(ends),
             "smallest relative change at the end": smallest,
             "err1 where nothing changes": settled,
-            "largest distance from the optimum at the end": left - float(np.abs(optimum).max()),
+            "largest distance from the optimum at the end": max(off for _, _, off in ends),
         },
         remark="err1 and err2 are positive where the change is small, so the loop should go on while they are negative",
     )
@@ -122,13 +131,18 @@ def defined_before_use(row: Question) -> Finding:
 
 
 @predicate
-def index_runs_back() -> Finding:
-    """Whether j = (n + 1) - i goes from n down to 1."""
-    n = 7
-    indices = [(n + 1) - i for i in range(1, n + 1)]
-    return Finding(
-        indices == list(range(n, 0, -1)), "j goes from n down to 1", {"for n = 7": " ".join(map(str, indices))}
-    )
+def index_runs_back(row: Question) -> Finding:
+    """Whether the printed j goes from n down to 1 while i goes from 1 to n."""
+    n, text = 7, str(row.printed).partition("j=")[2].rstrip(";")
+    indices = [_number(text, {"n": n, "i": i}) for i in range(1, n + 1)]
+    listed = " ".join(f"{index:g}" for index in indices)
+    return Finding(indices == list(range(n, 0, -1)), f"for n = 7 j is {listed}", {"for n = 7": listed})
+
+
+def _number(text: str, values: Mapping[str, float]) -> float:
+    """What a printed right-hand side comes to."""
+    found = exact.expression(text.strip())
+    return float(found.subs({symbol: values[symbol.name] for symbol in found.free_symbols}))
 
 
 @predicate

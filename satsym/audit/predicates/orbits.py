@@ -20,15 +20,15 @@ _STILL = 1e-9
 """Degrees; less is rounding."""
 
 
-def _published(name: str) -> float:
+def published(name: str) -> float:
     """A published constant in SI units."""
     return quantities.in_base_units(PUBLISHED[name].quantity).value
 
 
 def synchronous_radius() -> float:
     """Radius (m) of a circular orbit whose period is the sidereal day."""
-    turn = _published("sidereal_day") / (2.0 * math.pi)
-    return (_published("mu_earth") * turn**2) ** (1.0 / 3.0)
+    turn = published("sidereal_day") / (2.0 * math.pi)
+    return (published("mu_earth") * turn**2) ** (1.0 / 3.0)
 
 
 @predicate
@@ -63,7 +63,7 @@ def signal_delay(printed: str, legs: str) -> Finding:
     legs
         How often the signal crosses between ground and satellite.
     """
-    radius, ground, light = synchronous_radius(), _published("R_earth"), _published("c_light")
+    radius, ground, light = synchronous_radius(), published("R_earth"), published("c_light")
     shortest = int(legs) * (radius - ground) / light
     longest = int(legs) * math.sqrt(radius**2 - ground**2) / light
     value = quantities.in_base_units(printed).value
@@ -77,7 +77,7 @@ def signal_delay(printed: str, legs: str) -> Finding:
 @predicate
 def satellites_needed(printed: str) -> Finding:
     """Whether so many geostationary satellites, and no fewer, see every point of the equator."""
-    half_width = math.degrees(math.acos(_published("R_earth") / synchronous_radius()))
+    half_width = math.degrees(math.acos(published("R_earth") / synchronous_radius()))
     needed = math.ceil(180.0 / half_width)
     return Finding(
         needed == int(printed),
@@ -97,7 +97,7 @@ def altitude_classes(bounds: tuple[str, ...]) -> Finding:
     bounds
         The printed altitudes between the classes, from the lowest.
     """
-    radius, mu = _published("R_earth"), _published("mu_earth")
+    radius, mu = published("R_earth"), published("mu_earth")
     heights = [quantities.in_base_units(bound).value for bound in bounds]
     last = quantities.printed_number(bounds[-1])
     margin = float(last.half_unit) * quantities.scale(last.unit)
@@ -114,7 +114,7 @@ def altitude_classes(bounds: tuple[str, ...]) -> Finding:
 @predicate
 def sees_everything() -> Finding:
     """Whether geostationary satellites, however many, see every point of the Earth."""
-    edge = math.acos(_published("R_earth") / synchronous_radius())
+    edge = math.acos(published("R_earth") / synchronous_radius())
     hidden = 1.0 - math.sin(edge)
     return Finding(
         hidden == 0.0,
@@ -127,8 +127,8 @@ def sees_everything() -> Finding:
 @predicate
 def weightless_place() -> Finding:
     """Whether gravity is absent on the geostationary orbit."""
-    gravity = _published("mu_earth") / synchronous_radius() ** 2
-    share = gravity / _published("g_standard")
+    gravity = published("mu_earth") / synchronous_radius() ** 2
+    share = gravity / published("g_standard")
     return Finding(
         gravity == 0.0,
         f"gravity there is {gravity:.3f} m/s^2, and it is what holds the satellite on its circle",
@@ -146,8 +146,8 @@ def reference_orbit_of_earth(row: Question, length: str, rate: str) -> Finding:
     values = {name: quantities.in_base_units(f"{value} {unit}").value
               for (name, value), unit in zip(row.printed, (length, rate), strict=True)}  # fmt: skip
     sigma, omega = values["sigma"], values["omega"]
-    share = sigma**3 * omega**2 / _published("mu_earth")
-    radius, turn = synchronous_radius(), _published("sidereal_day") / (2.0 * math.pi)
+    share = sigma**3 * omega**2 / published("mu_earth")
+    radius, turn = synchronous_radius(), published("sidereal_day") / (2.0 * math.pi)
     normalised = all(float(value) == 1.0 for _, value in row.printed)
     return Finding(
         abs(share - 1.0) < 0.01,

@@ -99,5 +99,5 @@ def _constant(trial: its_listing.Run, c1: float, c2: float, n: int, rule: str) -
 def agrees(value: float, printed: str) -> bool:
     """Whether a number is what is printed, give or take half a unit in the last place."""
     decimals = len(printed.partition(".")[2])
-    # a relative 1e-12 for values that lie half way and that rounding puts on one side or the other
+    # a little more, for values that lie half way and that rounding puts on one side or the other
     return abs(value - float(printed)) <= 0.5 * 10.0**-decimals * (1.0 + 1e-9)
