@@ -190,7 +190,6 @@ hanging = Linearised(
         ({"states": NEW[:1], "deviations": {d1: q1}}, "as many states and controls as pendulum has"),
         ({"states": PLANE, "deviations": {q1: q1, q2: q2}}, "'q1' is used twice"),
         ({"outputs": (Output(Variable("y1", "y_1"), d1),)}, "an output"),
-        ({"parameters": (Variable("gain", "K"),)}, "'gain' is needed by generated code"),
         ({"parameters": (Variable("routh_array", "K"),)}, "'routh_array' is given to something that is derived"),
     ],
 )

@@ -154,13 +154,6 @@ def test_a_direction_may_not_have_the_name_of_a_state() -> None:
     assert "'a'" in complaint(plane(directions={"a": Matrix([1, 0]), "e_b": Matrix([0, 1])}))
 
 
-@pytest.mark.parametrize("name", ["x", "u", "p", "lam", "nu", "final", "shape", "lambda", "np", "math", "out", "for"])
-def test_names_that_generated_code_needs_are_refused(name: str) -> None:
-    assert f"the name {name!r} is needed by generated code" in complaint(
-        first_order(parameters=(*PARAMETERS, Variable(name, name)))
-    )
-
-
 @pytest.mark.parametrize("name", ["2r", "r__dot", "", "r dot", "r;import os"])
 def test_a_variable_needs_a_name_that_is_one(name: str) -> None:
     with pytest.raises(ValueError, match="use a letter"):

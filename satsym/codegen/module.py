@@ -9,13 +9,13 @@ import sympy as sp
 from satsym.codegen import rk4
 from satsym.codegen.block import Assignment, build
 from satsym.codegen.emitter import Emitter
-from satsym.codegen.extremals import all_functions
 from satsym.codegen.functions import TUPLES, Function, Symbols, symbols
 from satsym.codegen.linear import linear_functions
+from satsym.codegen.naming import NEEDED, Code, code_of
 from satsym.codegen.printers import BatchPrinter, ScalarPrinter
 from satsym.spec import ProblemSpec, Variable
-from satsym.symbolic.algebra import definitions_of
 from satsym.symbolic.derivation import Derivation
+from satsym.symbolic.model import t
 
 
 def render(derivation: Derivation, source: str) -> str:
@@ -34,14 +34,14 @@ def render(derivation: Derivation, source: str) -> str:
         Straight-line Python that imports only ``math`` and ``numpy``; the same text for the same derivation,
         always.
     """
-    s, found = symbols(derivation), all_functions(derivation)
-    constants = list(definitions_of(derivation.model).items())
+    code = code_of(derivation)
+    s, constants = code.symbols, list(code.constants.items())
     parts = [
         _header(derivation, source),
         _literal(spec(derivation, source)),
-        *(_scalar_form(f, s, constants) for f in found),
-        *(rk4.source(loop) for loop in _loops(derivation, s, constants)),
-        *(_batch_form(f, s, constants) for f in found),
+        *(_scalar_form(f, s, constants) for f in code.functions),
+        *(rk4.source(loop) for loop in _loops(derivation, code, constants)),
+        *(_batch_form(f, s, constants) for f in code.functions),
     ]
     return "\n\n".join(parts)
 
@@ -62,7 +62,7 @@ def spec(derivation: Derivation, source: str) -> ProblemSpec:
         has_cost=problem is not None,
         has_terminal_cost=bool(problem and problem.terminal_cost != 0),
         has_reference=bool(model.reference),
-        autonomous=not any(e.has(symbols(derivation).t) for e in derivation.rhs("first_order")),
+        autonomous=not any(e.has(t) for e in derivation.rhs("first_order")),
         invariants=tuple(Variable(e.name, derivation.notation[e.name]) for e in conserved),
         multipliers=tuple(Variable(v.name, derivation.notation[v.name]) for v in symbols(derivation).nu),
         position=tuple(Variable(axis, axis) for axis in ("x", "y", "z")[: len(position)]),
@@ -105,7 +105,7 @@ def _straight_line(
     function: Function, s: Symbols, constants: Sequence[Assignment]
 ) -> tuple[list[Assignment], list[sp.Expr]]:
     """Assignments and outputs of a function under their final names."""
-    names = {symbol.name for a in function.arguments for symbol in s.of(a)} | {*function.arguments, "out", "np", "math"}
+    names = {symbol.name for a in function.arguments for symbol in s.of(a)} | NEEDED
     emit = Emitter(names)
     outputs = emit.inline(build(function.outputs, constants, ()), {}, function.hints)
     return emit.before + emit.lines, outputs
@@ -152,11 +152,11 @@ def _function(signature: str, summary: str, body: Sequence[str]) -> str:
     return "\n".join([f"def {signature}:", f'    """{summary}"""', *(f"    {line}" for line in body), ""])
 
 
-def _loops(derivation: Derivation, s: Symbols, constants: Sequence[Assignment]) -> list[rk4.Loop]:
+def _loops(derivation: Derivation, code: Code, constants: Sequence[Assignment]) -> list[rk4.Loop]:
     """The forward loop and, where there is a cost, the backward one."""
-    problem = derivation.problem
+    problem, s = derivation.problem, code.symbols
     fixed = {*s.p, *(c for c, _ in constants)}
-    running = [problem.running_cost] if problem else []
+    rates = [*derivation.rhs("first_order"), *([problem.running_cost] if problem else [])]
     forward = rk4.Loop(
         name="forward",
         summary="RK4 over the nodes from x0 at times[0]; returns the integral of the running cost."
@@ -171,7 +171,7 @@ def _loops(derivation: Derivation, s: Symbols, constants: Sequence[Assignment]) 
         nodes="x",
         mids="x_mid",
         given=(("u", "u_mid", s.u),),
-        rates=build([*derivation.rhs("first_order"), *running], constants, (fixed,)),
+        rates=build([code.renamed(e) for e in rates], constants, (fixed,)),
         sums=problem is not None,
     )
     if not problem:
@@ -190,7 +190,9 @@ def _loops(derivation: Derivation, s: Symbols, constants: Sequence[Assignment]) 
             nodes="lam",
             mids="lam_mid",
             given=(("x", "x_mid", s.x), ("u", "u_mid", s.u)),
-            rates=build(list(derivation.rhs("costate_equations")), constants, (fixed, {*s.x, *s.u, s.t})),
+            rates=build(
+                [code.renamed(e) for e in derivation.rhs("costate_equations")], constants, (fixed, {*s.x, *s.u, s.t})
+            ),
             sums=False,
         ),
     ]

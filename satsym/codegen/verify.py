@@ -16,10 +16,9 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from satsym.codegen.extremals import all_functions
-from satsym.codegen.functions import ARGUMENTS, TUPLES, Function, Symbols, symbols
+from satsym.codegen.functions import ARGUMENTS, TUPLES, Function, Symbols
+from satsym.codegen.naming import code_of
 from satsym.kernels import Kernels
-from satsym.symbolic.algebra import definitions_of
 from satsym.symbolic.checks import DIGITS, numeric
 from satsym.symbolic.derivation import Derivation, DerivationError
 
@@ -57,8 +56,8 @@ def verify(derivation: Derivation, kernels: Kernels) -> None:
     DerivationError
         Naming the first function that deviates, and by how much. Nothing must be written then.
     """
-    known, found = symbols(derivation), all_functions(derivation)
-    constants = definitions_of(derivation.model)
+    code = code_of(derivation)
+    known, found, constants = code.symbols, code.functions, code.constants
     rng = random.Random(derivation.name)
     places = [_arguments(known, derivation, rng) for _ in range(POINTS)]
     for function in found:
@@ -68,7 +67,7 @@ def verify(derivation: Derivation, kernels: Kernels) -> None:
     for name, (of, by, factor) in DERIVATIVES.items():
         if {name, of} <= names:
             _same_derivatives(derivation.name, kernels, (name, of, by, factor), found, places)
-    _same_loops(derivation, kernels, rng)
+    _same_loops(derivation, known, kernels, rng)
 
 
 def _arguments(known: Symbols, derivation: Derivation, rng: random.Random) -> Arguments:
@@ -147,8 +146,7 @@ def _stacked(argument: str, places: Sequence[Arguments]) -> Any:
     return tuple(values) if argument in TUPLES else values
 
 
-def _same_loops(derivation: Derivation, kernels: Kernels, rng: random.Random) -> None:
-    known = symbols(derivation)
+def _same_loops(derivation: Derivation, known: Symbols, kernels: Kernels, rng: random.Random) -> None:
     place = _arguments(known, derivation, rng)
     times = np.cumsum([0.3, 0.02, 0.03, 0.01])
     steps, m = len(times) - 1, len(known.u)

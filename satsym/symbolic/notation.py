@@ -36,15 +36,6 @@ FIXED = {
     JACOBI_INTEGRAL: r"\mathcal{J}",
 }
 
-PYTHON_NAMES = frozenset(
-    "and as assert async await break class continue def del elif else except finally for from global if import in "
-    "is lambda nonlocal not or pass raise return try while with None True False x u lam nu p bounds final out shape "
-    "times x0 lam_f x_mid u_mid lam_mid h i math np float len range gain riccati state_weight "
-    "control_weight original".split()
-)
-"""Names that generated code needs for itself."""
-
-
 def symbol(name: str, latex: str, notation: dict[str, str]) -> sp.Symbol:
     """A real symbol, entered into the notation."""
     notation[name] = latex
@@ -112,7 +103,7 @@ def begin(model: Model, problem: Problem | None) -> Derivation:
     Raises
     ------
     DerivationError
-        If two things have the same name, or one has a name that generated code needs.
+        If two things have the same name.
     """
     variables = list(variables_of(model))
     if problem:
@@ -178,6 +169,4 @@ def _refuse_clashes(variables: Iterable[Variable], derived: Collection[str]) -> 
             raise DerivationError(f"the name {name!r} is used twice; choose another for one of the two")
         if name in derived:
             raise DerivationError(f"the name {name!r} is given to something that is derived; choose another")
-        if name in PYTHON_NAMES:
-            raise DerivationError(f"the name {name!r} is needed by generated code; choose another")
         seen.add(name)

@@ -1,0 +1,88 @@
+"""The names that symbols have inside generated functions.
+
+A function names the components of its arguments as the derivation does: ``r, r_dot = x``. A Cartesian model has a
+coordinate that is itself called x, another a parameter called ``lambda``: inside the code, and only there, what would
+clash with an argument or with Python is called ``x_value``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from keyword import kwlist
+from typing import TypeVar
+
+import sympy as sp
+
+from satsym.codegen.extremals import all_functions
+from satsym.codegen.functions import ARGUMENTS, Function, Symbols, symbols
+from satsym.symbolic.algebra import definitions_of
+from satsym.symbolic.derivation import Derivation
+
+NEEDED = (
+    frozenset(ARGUMENTS) | frozenset(kwlist) | frozenset("math np float len range out shape times x0 lam_f i".split())
+)
+"""What generated code calls by these names itself; the midpoints of loops are ``x_mid`` and the like."""
+
+Expression = TypeVar("Expression", sp.Expr, sp.Matrix)
+
+
+@dataclass(frozen=True)
+class Code:
+    """What a module is written from, under the names it has there.
+
+    Attributes
+    ----------
+    symbols
+        Behind each argument.
+    functions
+        Of the module, in its order.
+    constants
+        Defined constants and their values.
+    names
+        Symbol of the derivation -> symbol of the code, where they differ.
+    """
+
+    symbols: Symbols
+    functions: tuple[Function, ...]
+    constants: Mapping[sp.Symbol, sp.Expr]
+    names: Mapping[sp.Symbol, sp.Symbol]
+
+    def renamed(self, expression: Expression) -> Expression:
+        """An expression of the derivation as the code has it."""
+        return expression.xreplace(dict(self.names))
+
+
+def code_of(derivation: Derivation) -> Code:
+    """What the module of a derivation is written from."""
+    found, constants = symbols(derivation), definitions_of(derivation.model)
+    names = _names(derivation, {s for argument in ARGUMENTS for s in found.of(argument)} | set(constants))
+    return Code(
+        Symbols(**{f.name: _renamed(getattr(found, f.name), names) for f in fields(found)}),
+        tuple(replace(f, value=f.value.xreplace(names)) for f in all_functions(derivation)),
+        {names.get(s, s): value.xreplace(names) for s, value in constants.items()},
+        names,
+    )
+
+
+def _names(derivation: Derivation, present: set[sp.Symbol]) -> dict[sp.Symbol, sp.Symbol]:
+    taken = NEEDED | {s.name for s in present} | {f"{group}_mid" for group in ARGUMENTS}
+    clashing = sorted((s for s in present if s.name != "t" and _clashes(s.name)), key=lambda s: s.name)
+    names: dict[sp.Symbol, sp.Symbol] = {}
+    for symbol in clashing:
+        name = f"{symbol.name}_value"
+        while name in taken:
+            name += "_too"
+        names[symbol] = sp.Symbol(name, **symbol.assumptions0)
+        taken |= {name}
+    return names
+
+
+def _clashes(name: str) -> bool:
+    return name in NEEDED or name.removesuffix("_mid") in ARGUMENTS
+
+
+def _renamed(
+    group: sp.Symbol | tuple[sp.Symbol, ...], names: Mapping[sp.Symbol, sp.Symbol]
+) -> sp.Symbol | tuple[sp.Symbol, ...]:
+    return tuple(names.get(s, s) for s in group) if isinstance(group, tuple) else names.get(group, group)
