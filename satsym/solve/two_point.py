@@ -102,7 +102,8 @@ def _accurate(problem: TwoPoint, start: Start, limits: Limits, report: Report) -
     tolerance = problem.instance.solver.tolerance
     free = problem.widened(float("inf"))
     refined = refine(free, start.found.curve, tolerance, known=start.found.linearised)
-    report(_cost(free, refined), refined.error)
+    cost = _cost(free, refined)
+    report(cost, refined.error)
     steps = start.steps + refined.iterations
     bounded = tighten(problem, refined.curve, STAGES, limits)
     if bounded.iterations:
@@ -111,13 +112,14 @@ def _accurate(problem: TwoPoint, start: Start, limits: Limits, report: Report) -
             return outside(problem, refined.curve, bounded, steps, limits)
         refined = refine(problem, bounded.curve, tolerance, keep_nodes=True)
         steps += refined.iterations
-        report(_cost(problem, refined), refined.error)
+        cost = _cost(problem, refined)
+        report(cost, refined.error)
     intervals = len(refined.curve.mesh) - 1
     if not refined.converged:
         message = f"the estimated error stays at {refined.error:.0e} on {intervals} intervals"
         return unfinished(problem, refined.curve, message, steps, limits)
     message = f"estimated error {refined.error:.0e} on {intervals} intervals"
-    return Extremal(problem, refined.curve, _cost(problem, refined), Status.CONVERGED, message, steps)
+    return Extremal(problem, refined.curve, cost, Status.CONVERGED, message, steps)
 
 
 def _cost(problem: TwoPoint, refined: Refined) -> float:

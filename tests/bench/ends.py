@@ -7,11 +7,13 @@ is paid once beforehand (building, compiling) is noted beside.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from math import pi
 from time import perf_counter
 from typing import Any
 
 import numpy as np
+from msgspec import structs
 from peers import Missing
 from rows import Goal, Row, Table, missing
 from timing import interleaved
@@ -20,6 +22,9 @@ START, END, T_FINAL = np.array([1.1, 0.0, 0.0, 0.9]), np.array([1.0, 0.0, 2 * pi
 COSTATES = np.array([0.13817547355, 0.02984866111, -0.00567694889, 0.08773937141])
 """Pinned: computed by other programs, to the digits given."""
 
+DEGREE, INTERVALS = 5, 10
+"""Of CasADi's collocation."""
+
 WITHIN = 1e-9
 OURS = "satsym, collocation"
 COMPILED = "satsym, shooting, with numba"
@@ -27,11 +32,12 @@ Solver = Callable[[], np.ndarray]
 
 
 def satsym() -> Solver:
-    """The shipped instance, without its certificate."""
+    """The shipped instance, without its certificate, at as many points of time as CasADi's program has."""
     from satsym.instance import load
     from satsym.solve import two_point
 
     case = load("return-to-orbit")
+    case = replace(case, solver=structs.replace(case.solver, steps=DEGREE * INTERVALS))
     return lambda: two_point.solve(case).lam[:, 0]
 
 
@@ -85,7 +91,7 @@ def casadi() -> Solver:
         import casadi as ca
     except ImportError:
         raise Missing("casadi is not installed (the bench extra has it)") from None
-    degree, intervals = 5, 10
+    degree, intervals = DEGREE, INTERVALS
     h = T_FINAL / intervals
     x, u = ca.SX.sym("x", 4), ca.SX.sym("u", 2)
     rhs = ca.vertcat(x[1], x[0] * x[3] ** 2 - 1 / x[0] ** 2 + u[0], x[3], (u[1] - 2 * x[1] * x[3]) / x[0])
@@ -109,7 +115,7 @@ def casadi() -> Solver:
     inner = [
         START + (END - START) * ((k + t) / intervals)
         for k in range(intervals)
-        for t in ca.collocation_points(5, "legendre")
+        for t in ca.collocation_points(degree, "legendre")
     ]
     guess = np.concatenate([line.ravel(), np.concatenate(inner), np.zeros(2 * degree * intervals)])
 

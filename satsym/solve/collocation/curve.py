@@ -124,18 +124,18 @@ class Step:
 
     def size(self, curve: Curve) -> float:
         """Largest change: states relative to their size (at least one), costates relative to theirs."""
-        n = len(curve.nodes) // 2
-        x = max(1.0, np.abs(curve.nodes[:n]).max(), np.abs(curve.stages[:n]).max())
-        lam = max(np.abs(curve.nodes[n:]).max(), np.abs(curve.stages[n:]).max(), SMALL)
-        theta = np.abs(self.theta) / np.maximum(np.abs(curve.theta), 1e-300) if len(self.theta) else np.zeros(1)
-        parts = (
-            np.abs(self.nodes[:n]).max() / x,
-            np.abs(self.stages[:n]).max() / x,
-            np.abs(self.nodes[n:]).max() / lam,
-            np.abs(self.stages[n:]).max() / lam,
-            theta[-1],
-        )
-        return float(max(parts))
+        sizes = np.maximum(_largest(curve.nodes, curve.stages), (1.0, SMALL))
+        found = (_largest(self.nodes, self.stages) / sizes).max()
+        if len(self.theta):
+            found = np.maximum(found, abs(self.theta[-1]) / max(abs(curve.theta[-1]), 1e-300))
+        return float(found)
+
+
+def _largest(nodes: Array, stages: Array) -> Array:
+    """The largest state and the largest costate."""
+    both = np.concatenate([nodes, stages.reshape(len(stages), -1)], axis=1)
+    largest: Array = np.abs(both).reshape(2, -1).max(axis=1)
+    return largest
 
 
 def stage_times(mesh: Array, order: int) -> Array:

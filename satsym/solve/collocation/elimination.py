@@ -83,12 +83,8 @@ class Nodes:
         self._inverse: Array | None = None
         self._fresh = True
         if n * (count + 1) <= FEW:
-            whole = np.zeros((n * (count + 1), n * (count + 1)))
-            whole[:half, :half] = np.eye(half)
-            for i, matrix in enumerate(transition):
-                rows = slice(half + n * i, half + n * (i + 1))
-                whole[rows, n * i : n * (i + 1)] = matrix
-                whole[rows, n * (i + 1) : n * (i + 2)] = -np.eye(n)
+            whole = _without_transitions(half, count).copy()
+            whole.reshape(-1)[_places(half, count)] = transition
             whole[-half:, -n:] = final
             self._whole = whole
             return
@@ -122,6 +118,25 @@ class Nodes:
 
         nodes, _ = dgbtrs(self._factors, *self._band, right, self._pivots)
         return nodes.reshape(-1, self._size)
+
+
+@lru_cache
+def _without_transitions(half: int, count: int) -> Array:
+    """The whole matrix, all transitions and final rows left out."""
+    n, size = 2 * half, 2 * half * (count + 1)
+    whole = np.zeros((size, size))
+    whole[:half, :half] = np.eye(half)
+    whole[half : size - half, n:] = -np.eye(size - n)
+    return whole
+
+
+@lru_cache
+def _places(half: int, count: int) -> NDArray[np.intp]:
+    """Where the transitions lie in it, as it is stored, shape (N, 2n, 2n)."""
+    n, size = 2 * half, 2 * half * (count + 1)
+    interval, row, column = np.ogrid[:count, :n, :n]
+    places: NDArray[np.intp] = (half + n * interval + row) * size + n * interval + column
+    return places
 
 
 @lru_cache

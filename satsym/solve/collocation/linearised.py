@@ -42,7 +42,7 @@ class Linearised:
         self.system, self._blocks, self._response = system, blocks, response
         self._residual, self._local_step = residual, local
         self._extra = extra.reshape(system.intervals, -1, system.order, system.rows)
-        by_theta = np.einsum("j,ieja->iae", system.scheme.end, self._extra)
+        by_theta = (system.scheme.end @ self._extra).swapaxes(1, 2)
         self.matching = Matching(transition, by_theta, residual.finish_by_end, residual.finish_by_theta)
 
     def step(self, residual: Residual) -> Step:

@@ -130,13 +130,17 @@ class TwoPoint:
 
     def rates(self, tau: Array, z: Array, theta: Array) -> Array:
         """dz/dt, shape (2n, N), at ``tau`` (N,) and ``z`` (2n, N)."""
-        rates: Array = self.instance.model.canonical_batch(*self._arguments(tau, z, theta), self.bounds)
-        return rates / self.scale.both
+        rates = np.empty(z.shape)  # given, so that kernels need not find out shapes and types
+        self.instance.model.canonical_batch(*self._arguments(tau, z, theta), self.bounds, out=rates)
+        rates /= self.scale.both
+        return rates
 
     def jacobian(self, tau: Array, z: Array, theta: Array) -> Array:
         """The rates by z, shape (2n, 2n, N)."""
-        slopes: Array = self.instance.model.canonical_jacobian_batch(*self._arguments(tau, z, theta), self.bounds)
-        return slopes * self.scale.ratio
+        slopes = np.empty((len(z), *z.shape))
+        self.instance.model.canonical_jacobian_batch(*self._arguments(tau, z, theta), self.bounds, out=slopes)
+        slopes *= self.scale.ratio
+        return slopes
 
     def drift(self, tau: Array, z: Array, theta: Array) -> Array | float:
         """The rates by explicit time, shape (2n, N)."""
@@ -189,8 +193,7 @@ class TwoPoint:
         slopes = np.array(self.instance.model.boundary_jacobian(*arguments)).reshape(
             len(residual) + 1 - self.free_time, -1
         )
-        columns = np.concatenate([self.scale.both[:, 0], np.full(q, self.scale.cost), [1.0]])
-        scaled = slopes[rows] * columns / self._row_scale[:, None]
+        scaled = slopes[rows] * self._slope_scale
         by_theta = scaled[:, 2 * n : 2 * n + e] if self.free_time else scaled[:, 2 * n : 2 * n + q]
         return residual / self._row_scale, scaled[:, : 2 * n], by_theta
 
@@ -199,6 +202,12 @@ class TwoPoint:
         """Which states have their end given or on the reference, shape (n,)."""
         n = self.states
         return np.array(self.final[:n]) + np.array(self.final[n : 2 * n]) > 0
+
+    @cached_property
+    def _slope_scale(self) -> Array:
+        multipliers = np.full(self.unknowns - self.free_time, self.scale.cost)
+        columns: Array = np.concatenate([self.scale.both[:, 0], multipliers, [1.0]])
+        return columns / self._row_scale[:, None]
 
     @cached_property
     def _row_scale(self) -> Array:

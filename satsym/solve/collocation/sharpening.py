@@ -83,10 +83,13 @@ def sharpen(curve: Curve, linearised: Linearised, tolerance: float) -> Sharpened
                 return None
             size = before
             break
-        fine = fine.moved(step, 1.0)
-        if size < max(CONTRACTION * tolerance, ROUNDING) or size > CONTRACTION * before:
+        fine, contraction = fine.moved(step, 1.0), size / before
+        if contraction > CONTRACTION:
             break
-        before = size
+        # Corrections keep shrinking by the same factor: from the second on, each foretells the next.
+        before, size = size, size * contraction if np.isfinite(before) else size
+        if size < max(CONTRACTION * tolerance, ROUNDING):
+            break
     omitted = _omitted(fine)
     return Sharpened(_without_rounding(fine), max(size, float(omitted.max())), omitted)
 

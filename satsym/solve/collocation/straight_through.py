@@ -36,7 +36,7 @@ def straight_through(start: Curve, system: System, limits: Limits) -> Found | No
         Who watches.
     """
     problem, curve = system.problem, start
-    before, steps = float("inf"), 0
+    before, steps, cost = float("inf"), 0, 0.0
     while steps < FEW:
         steps += 1
         residual, jacobian = system.residual(curve), system.jacobian(curve)
@@ -47,9 +47,9 @@ def straight_through(start: Curve, system: System, limits: Limits) -> Found | No
             size = step.size(moved)
             if not size < before or within_domain(problem, curve, step) < 1.0:
                 return None
-            curve = moved
+            curve, cost = moved, system.cost(moved)
             if limits.watch:
-                limits.watch(system.cost(curve) * problem.scale.cost, size)
+                limits.watch(cost * problem.scale.cost, size)
             if size < NEAR:
                 break
             before = size / 2.0
@@ -63,4 +63,4 @@ def straight_through(start: Curve, system: System, limits: Limits) -> Found | No
         return None
     if not minimum or system.largest_turn(curve, jacobian) > meshes.COARSEST:
         return None
-    return Found(curve, "minimum", system.cost(curve), steps, False, linearised)
+    return Found(curve, "minimum", cost, steps, False, linearised)

@@ -108,9 +108,9 @@ class System:
     def largest_turn(self, curve: Curve, jacobian: Array) -> float:
         """The largest angle that the fastest mode of the motion passes in one interval, in radians."""
         n = self.problem.states
-        speed = np.abs(np.linalg.eigvals(jacobian[:n, :n].transpose(2, 0, 1))).max(axis=1)
-        by_interval = speed.reshape(self.intervals, self.order).max(axis=1)
-        return float((by_interval * self.widths).max()) * self.problem.elapsed(curve.theta)
+        at_middles = jacobian[:n, :n, self.order // 2 :: self.order]
+        speed = np.abs(np.linalg.eigvals(at_middles.transpose(2, 0, 1))).max(axis=1)
+        return float((speed * self.widths).max()) * self.problem.elapsed(curve.theta)
 
     def linearised(self, curve: Curve, residual: Residual, jacobian: Array) -> Linearised:
         """Eliminate the stages and factor what remains.
@@ -121,14 +121,14 @@ class System:
             If the equations are singular here.
         """
         n, s, count, e = self.rows, self.order, self.intervals, self.problem.unknowns
-        elapsed = self.problem.elapsed(curve.theta)
-        by_stage = jacobian.reshape(n, n, count, s).transpose(2, 0, 3, 1)
-        matrix = ((-elapsed) * self._matrix[:, :, None, :, None] * by_stage[:, None]).reshape(count, s * n, s * n)
-        diagonal = np.arange(s * n)
-        matrix[:, diagonal, diagonal] += 1.0
+        by_stage = np.ascontiguousarray(jacobian.reshape(n, n, count, s).transpose(2, 0, 3, 1))
+        grown = (-self.problem.elapsed(curve.theta)) * self._matrix
+        matrix = (grown[:, :, None, :, None] * by_stage[:, None]).reshape(count, s * n, s * n)
+        matrix.reshape(count, -1)[:, :: s * n + 1] += 1.0
         blocks = Blocks(matrix)
-        right = np.zeros((count, n + 1 + e, s * n))
-        right[:, :n] = np.tile(np.eye(n), s)
+        right = np.zeros((count, n + 1 + e, s, n))
+        right[:, np.arange(n), :, np.arange(n)] = 1.0
+        right = right.reshape(count, n + 1 + e, s * n)
         right[:, n] = residual.by_interval
         if self.problem.free_time:
             right[:, -1] = self._by_duration(curve, residual).transpose(1, 2, 0).reshape(count, -1)
