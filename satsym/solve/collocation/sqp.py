@@ -37,6 +37,9 @@ variation is positive is taken. One is Newton, zero Gauss-Newton, whose quadrati
 
 SHORTEST = 1e-6
 SUFFICIENT = 1e-4
+CORRECTED = 4
+"""Shares of a step that are tried with a second-order correction as well."""
+
 OUTGROWN = "the curve outgrew its mesh"
 PROBE = 1e-6
 """Step with which the slope of the cost along a direction is measured."""
@@ -131,30 +134,70 @@ def minimise(
             return Found(curve, _kind(system, curve), system.cost(curve), iteration + 1, hard)
         close = newton and size < CLOSE and share == 1.0
         penalty = _raised(penalty, _multipliers(curve, step, n, len(violated)))
-        share = within_domain(problem, curve, step)
-        ahead = curve.moved(step, PROBE)
-        slope = float((system.cost(ahead) - cost) / PROBE - penalty @ violated)
-        merit, tried = float(cost + penalty @ violated), 0
-        while True:
-            trial = curve.moved(step, share)
-            trial_residual = system.residual(trial)
-            enough = merit + SUFFICIENT * share * min(slope, 0.0) + 1e-9 * abs(merit)
-            measured = _measured(system, trial, trial_residual, penalty)
-            if measured <= enough or close:
-                break
-            if tried < 4:
-                corrected = _corrected(system, curve, trial, trial_residual, linearised)
-                if corrected is not None:
-                    corrected_residual = system.residual(corrected)
-                    if _measured(system, corrected, corrected_residual, penalty) <= enough:
-                        trial, trial_residual = corrected, corrected_residual
-                        break
-            tried, share, hard = tried + 1, share / 2.0, True
-            if share < SHORTEST:
-                return Found(curve, "no descent", cost, iteration, True)
-        curve, residual = trial, trial_residual
+        at = _Merit(system, curve, cost, violated, penalty, linearised, step)
+        found = _searched(at, within_domain(problem, curve, step), whole=close)
+        if found is None:
+            return Found(curve, "no descent", cost, iteration, True)
+        curve, residual, share, halved = found
+        hard = hard or halved
         cost, violated = system.cost(curve), system.infeasibility(residual)
     return Found(curve, f"no convergence in {most} steps", cost, most, True)
+
+
+@dataclass(frozen=True, eq=False)
+class _Merit:
+    """A curve from which a step is to be taken, and the exact penalty function by which it is measured."""
+
+    system: System
+    curve: Curve
+    cost: float
+    violated: Array
+    penalty: Array
+    linearised: Linearised
+    step: Step
+
+    @property
+    def value(self) -> float:
+        """Of the penalty function, at the curve."""
+        return float(self.cost + self.penalty @ self.violated)
+
+    def slope(self) -> float:
+        """Its derivative along the step."""
+        ahead = self.curve.moved(self.step, PROBE)
+        return float((self.system.cost(ahead) - self.cost) / PROBE - self.penalty @ self.violated)
+
+    def measured(self, curve: Curve, residual: Residual) -> float:
+        """Its value at another curve; infinite where it is not a number."""
+        value = self.system.cost(curve) + self.penalty @ self.system.infeasibility(residual)
+        return float(value) if np.isfinite(value) else float("inf")
+
+
+def _searched(at: _Merit, share: float, whole: bool) -> tuple[Curve, Residual, float, bool] | None:
+    """The curve after the largest share of the step that descends, its residual, the share, and whether it was halved.
+
+    Parameters
+    ----------
+    at
+        From where.
+    share
+        To begin with.
+    whole
+        Whether that is taken as it is.
+    """
+    slope, value, tried = min(at.slope(), 0.0), at.value, 0
+    while share >= SHORTEST:
+        trial = at.curve.moved(at.step, share)
+        residual = at.system.residual(trial)
+        enough = value + SUFFICIENT * share * slope + 1e-9 * abs(value)
+        if whole or at.measured(trial, residual) <= enough:
+            return trial, residual, share, tried > 0
+        corrected = _corrected(at.system, at.curve, trial, residual, at.linearised) if tried < CORRECTED else None
+        if corrected is not None:
+            residual = at.system.residual(corrected)
+            if at.measured(corrected, residual) <= enough:
+                return corrected, residual, share, tried > 0
+        tried, share = tried + 1, share / 2.0
+    return None
 
 
 def _direction(
@@ -204,13 +247,6 @@ def _raised(penalty: Array, multipliers: Array) -> Array:
         np.where(penalty > 10.0 * multipliers, 4.0 * multipliers, penalty),
     )
     return found
-
-
-def _measured(system: System, curve: Curve, residual: Residual, penalty: Array) -> float:
-    """The penalty function: cost plus weighted violation; infinite where it is not a number."""
-    with np.errstate(all="ignore"):
-        value = system.cost(curve) + penalty @ system.infeasibility(residual)
-    return float(value) if np.isfinite(value) else float("inf")
 
 
 def _corrected(system: System, curve: Curve, trial: Curve, residual: Residual, linearised: Linearised) -> Curve | None:
