@@ -242,6 +242,11 @@ def test_a_symbolic_array_decides_where_signs_are_certain():
     assert routh([1, b, k]).right is None
 
 
+def test_routh_with_a_small_number_beside_a_parameter():
+    found = routh([1, 0, 0, 0, -(sp.Symbol("k", positive=True) ** 2)])  # roots of k, i times it, and minus both
+    assert (found.right, found.axis, found.left) == (1, 2, 1)
+
+
 def test_no_routh_array_without_a_first_coefficient():
     with pytest.raises(ValueError, match="first coefficient is not zero"):
         routh([0, 1, 2])

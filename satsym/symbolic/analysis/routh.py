@@ -135,7 +135,7 @@ class _Array:
             above, line = lines[-2:]
             padded = [*line, self.domain.zero]
             lines.append([(line[0] * above[k] - above[0] * padded[k]) / line[0] for k in range(1, len(above))])
-        scale, factor = self.domain.convert(scale), divisor.rep.to_list()[::2]
+        scale, factor = self._convert(scale), divisor.rep.to_list()[::2]
         shown = [[scale * e for e in self._product(line, factor)] for line in lines]
         self.lines += shown[bool(self.lines) :]
         return scale * lines[-1][0]
@@ -143,12 +143,12 @@ class _Array:
     def replace_row_of_zeros(self, divisor: sp.Poly, multiplier: Any) -> None:
         """Note that the derivative of ``multiplier * divisor`` takes the place of a row of zeros."""
         self.special_cases.append(ZERO_ROW)
-        shown = self.expressions([multiplier * self.domain.convert(c) for c in divisor.rep.to_list()])
+        shown = self.expressions([multiplier * self._convert(c) for c in divisor.rep.to_list()])
         self.auxiliary.append(tuple(shown))
 
     def expressions(self, line: Sequence[Any], width: int = 0) -> list[sp.Expr]:
         """The elements as expressions, filled up with zeros to a width."""
-        found = [self.field.shown(self.domain.to_sympy(self.domain.convert(e))) for e in line]
+        found = [self.field.shown(self.domain.to_sympy(self._convert(e))) for e in line]
         return found + [sp.Integer(0)] * (width - len(found))
 
     def _with_small_number(self, lines: list[list[Any]]) -> list[list[Any]]:
@@ -158,7 +158,7 @@ class _Array:
         self.small.append(small(len(self.small) + 1))
         self.special_cases.append(ZERO_ELEMENT)
         self.domain = self.extension
-        lines = [[self.domain.convert(e) for e in line] for line in lines]
+        lines = [[self._convert(e) for e in line] for line in lines]
         lines[-1][0] = self.domain.from_sympy(self.small[-1])
         return lines
 
@@ -166,8 +166,15 @@ class _Array:
         found = [self.domain.zero] * (len(line) + len(factor) - 1)
         for i, a in enumerate(line):
             for j, b in enumerate(factor):
-                found[i + j] += a * self.domain.convert(b)
+                found[i + j] += a * self._convert(b)
         return found
+
+    def _convert(self, element: Any) -> Any:
+        """An element in the present domain; sympy itself finds no way from a field of fractions into one over it."""
+        base = self.field.domain
+        if self.domain is self.extension and base.is_FractionField and getattr(element, "field", None) == base.field:
+            return self.extension.field.ground_new(element)
+        return self.domain.convert(element)
 
 
 def _symmetric_part(polynomial: sp.Poly) -> sp.Poly:
