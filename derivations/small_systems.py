@@ -1,12 +1,12 @@
-"""Small systems of plain numbers, such as textbooks show methods on; the last one varies with time.
+"""Small systems of plain numbers, such as textbooks show methods on; one varies with time, two have singular arcs.
 
-The first three are examples 2.8 (both systems) and 2.9, the last one is example 2.7 of the thesis that the ledger
+The first three are examples 2.8 (both systems) and 2.9, the fourth is example 2.7 of the thesis that the ledger
 uny_thesis is about.
 """
 
 from sympy import cos, sin
 
-from satsym.symbolic import FirstOrder, Linearised, Output, Variable, symbols_of, t
+from satsym.symbolic import FirstOrder, Linearised, Output, Problem, Variable, symbols_of, t
 
 STATES = tuple(Variable(f"x{k}", f"x_{k}", meaning=f"state {k}") for k in (1, 2, 3))
 DEVIATIONS = tuple(Variable(f"z{k}", f"z_{k}", meaning=f"deviation of state {k}") for k in (1, 2))
@@ -67,4 +67,31 @@ time_varying = Linearised(
     outputs=(Output(SIGNAL, explicit_time.outputs[0].value),),
 )
 
-PROBLEMS = (saddle, stable_node, three_modes, explicit_time, time_varying)
+singular_regulator = Problem(
+    name="singular_regulator",
+    title="Least square deviation, at no cost of the control",
+    # Full control towards zero, where it stays on an arc of order one.
+    model=FirstOrder(
+        name="integrator", title="A rate", states=STATES[:1], controls=(CONTROL,), parameters=(), rates={x1: u1}
+    ),
+    running_cost=x1**2 / 2,
+    control_set="box",
+)
+
+van_der_pol = Problem(
+    name="van_der_pol",
+    title="Damping of Van der Pol's oscillator, at no cost of the control",
+    # The usual example of a bang-singular optimum: x(0) = (0, 1), |u1| <= 1, t_f = 4.
+    model=FirstOrder(
+        name="oscillator",
+        title="Van der Pol's oscillator",
+        states=STATES[:2],
+        controls=(CONTROL,),
+        parameters=(),
+        rates={x1: x2, x2: -x1 + x2 * (1 - x1**2) + u1},
+    ),
+    running_cost=(x1**2 + x2**2) / 2,
+    control_set="box",
+)
+
+PROBLEMS = (saddle, stable_node, three_modes, explicit_time, time_varying, singular_regulator, van_der_pol)

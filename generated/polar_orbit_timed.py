@@ -49,6 +49,7 @@ MODEL = {
         {'symbol': 'y', 'latex': 'y'},
     ),
     'multipliers': (),
+    'keplerian': True,
 }
 
 
@@ -144,6 +145,26 @@ def position(t, x, p):
     return (
         r*math.cos(theta),
         r*math.sin(theta),
+    )
+
+
+def inertial_state(t, x, p):
+    """Position and velocity along inertial axes, three numbers each, and the gravitational parameter."""
+    r, r_dot, theta, theta_dot = x
+    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    cos_theta = math.cos(theta)
+    cos_theta_r = cos_theta*r
+    sin_theta = math.sin(theta)
+    r_sin_theta = r*sin_theta
+    mu = omega*omega*sigma*sigma*sigma
+    return (
+        cos_theta_r,
+        r_sin_theta,
+        0.0,
+        cos_theta*r_dot - r_sin_theta*theta_dot,
+        cos_theta_r*theta_dot + r_dot*sin_theta,
+        0.0,
+        mu,
     )
 
 
@@ -814,6 +835,28 @@ def position_batch(t, x, p, out=None):
         out = np.empty((2, *shape), np.result_type(float, t, x, *p))
     out[0] = r*np.cos(theta)
     out[1] = r*np.sin(theta)
+    return out
+
+
+def inertial_state_batch(t, x, p, out=None):
+    """Position and velocity along inertial axes, three numbers each, and the gravitational parameter. Batch form."""
+    r, r_dot, theta, theta_dot = x
+    sigma, omega, c1, c2, k1, k2, k3, k4, c0 = p
+    if out is None:
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
+        out = np.empty((7, *shape), np.result_type(float, t, x, *p))
+    cos_theta = np.cos(theta)
+    cos_theta_r = cos_theta*r
+    sin_theta = np.sin(theta)
+    r_sin_theta = r*sin_theta
+    mu = omega*omega*sigma*sigma*sigma
+    out[0] = cos_theta_r
+    out[1] = r_sin_theta
+    out[2] = 0.0
+    out[3] = cos_theta*r_dot - r_sin_theta*theta_dot
+    out[4] = cos_theta_r*theta_dot + r_dot*sin_theta
+    out[5] = 0.0
+    out[6] = mu
     return out
 
 

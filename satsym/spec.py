@@ -17,6 +17,11 @@ FORMAT = 1
 ControlSet = Literal["free", "box", "ball"]
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
 _OF_LINEAR_MODELS = ("outputs", "linear")
+_OF_VARIABLES = (
+    *("states", "controls", "parameters", "invariants", "position", "multipliers", "outputs"),
+    *("quantities", "balances"),
+)
+_UNLESS_DEFAULT = (*_OF_LINEAR_MODELS, "keplerian", "switching", "coordinates", "velocities", "quantities", "balances")
 
 
 @dataclass(frozen=True)
@@ -75,6 +80,16 @@ class ProblemSpec:
         Of a linear model: what is measured. Empty where nothing is, or the model is not linear.
     linear
         Names of the functions that only linear models have; empty where the model is not linear.
+    keplerian
+        Whether the motion without control was proved to be Kepler's: acceleration -mu r/|r|^3 with a constant mu.
+    switching
+        Whether every control enters the Hamiltonian affinely (apart from its magnitude), within a box.
+    coordinates, velocities
+        States q and v of a motion that is separable, see :attr:`separable`; empty where it is not.
+    quantities
+        What is derived along a motion besides, such as the power of a motor.
+    balances
+        What changes only by something from outside, whatever the controls do, such as an angular momentum.
     """
 
     name: str
@@ -93,6 +108,17 @@ class ProblemSpec:
     multipliers: tuple[Variable, ...] = ()
     outputs: tuple[Variable, ...] = ()
     linear: tuple[str, ...] = ()
+    keplerian: bool = False
+    switching: bool = False
+    coordinates: tuple[str, ...] = ()
+    velocities: tuple[str, ...] = ()
+    quantities: tuple[Variable, ...] = ()
+    balances: tuple[Variable, ...] = ()
+
+    @property
+    def separable(self) -> bool:
+        """Whether the motion without control is q' = v, v' = a(q), with a potential; it then has a symplectic loop."""
+        return bool(self.coordinates)
 
     @property
     def state_names(self) -> tuple[str, ...]:
@@ -114,7 +140,7 @@ class ProblemSpec:
         return {"format": FORMAT} | {
             f.name: tuple(map(_stated, value)) if isinstance(value := getattr(self, f.name), tuple) else value
             for f in fields(self)
-            if f.name not in _OF_LINEAR_MODELS or getattr(self, f.name)
+            if f.name not in _UNLESS_DEFAULT or getattr(self, f.name)
         }
 
     @classmethod
@@ -130,8 +156,8 @@ class ProblemSpec:
         if stated.pop("format", None) != FORMAT:
             raise ValueError(f"written in another format than {FORMAT}")
         try:
-            for key in ("states", "controls", "parameters", "invariants", "position", "multipliers", "outputs"):
-                entries = stated[key] if key not in _OF_LINEAR_MODELS else stated.get(key, ())
+            for key in _OF_VARIABLES:
+                entries = stated[key] if key not in _UNLESS_DEFAULT else stated.get(key, ())
                 stated[key] = tuple(Variable(**entry) for entry in entries)
             return cls(**stated)
         except (KeyError, TypeError) as error:

@@ -6,7 +6,8 @@ megabyte of anything. Nothing of it reaches a message except through here.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import itertools
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 
 LIMIT = 60
@@ -42,6 +43,9 @@ def shown(value: object) -> str:
 MOST_NAMES = 12
 """Known names that a message lists."""
 
+LONGEST_LIST = 140
+"""Characters that it takes for them; one name is listed however long it is."""
+
 
 def suggestion(name: str, known: Iterable[str]) -> str:
     """What to write instead of an unknown name: the nearest known one, else what there is."""
@@ -49,5 +53,11 @@ def suggestion(name: str, known: Iterable[str]) -> str:
     near = get_close_matches(name[:LIMIT], known, n=1)
     if near:
         return f'did you mean "{near[0]}"?'
-    more = ", ..." if len(known) > MOST_NAMES else ""
-    return f"known here: {', '.join(known[:MOST_NAMES])}{more}" if known else "remove it, nothing may stand here"
+    return f"known here: {some(known)}" if known else "remove it, nothing may stand here"
+
+
+def some(known: Sequence[str]) -> str:
+    """Known names, as many as a message has room for."""
+    ends = itertools.accumulate(len(name) + 2 for name in known[:MOST_NAMES])
+    count = max(1, sum(end <= LONGEST_LIST for end in ends))
+    return ", ".join(known[:count]) + (", ..." if len(known) > count else "")

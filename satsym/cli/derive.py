@@ -46,7 +46,7 @@ def derive(files: tuple[str, ...], out: Path | None, check: bool) -> ExitCode:
     if not check:
         check_writable(folder)
     with live() as line, explained():
-        rendered = artefacts.render(paths, lambda name: line.show(f"deriving {name} ..."))
+        rendered = artefacts.render(paths, lambda name: line.show(f"derived {name} ..."))
     if check:
         return _compare(artefacts.differences(rendered, folder, whole), folder, _command(files, out))
     changed = {name: text for name, text in rendered.items() if not _holds(folder / name, text)}

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from satsym.cli.output import emit, live
 from satsym.status import ExitCode
+
+if TYPE_CHECKING:
+    from satsym.symbolic.model import Convention
 
 EXAMPLES = r"""
 Examples:
@@ -25,7 +29,12 @@ Examples:
     "--lang", "language", type=click.Choice(("en", "id")), default="en", help="Language of the text.", show_default=True
 )
 @click.option("--fragment", is_flag=True, help="Without a preamble, to be included.")
-def latex(name: str, output: Path | None, language: str, fragment: bool) -> ExitCode:
+@click.option(
+    "--convention",
+    type=click.Choice(("minimum", "maximum")),
+    help="Whether H is to be minimised or maximised; as the derivation file says unless given.",
+)
+def latex(name: str, output: Path | None, language: str, fragment: bool, convention: Convention | None) -> ExitCode:
     """Typeset a derivation.
 
     NAME is a shipped model (`satsym models` lists them) or a derivation file. It is derived anew, and each step is
@@ -35,10 +44,11 @@ def latex(name: str, output: Path | None, language: str, fragment: bool) -> Exit
     from satsym.report import latex as typesetting
     from satsym.report.files import write_text
     from satsym.symbolic import derive
+    from satsym.symbolic.convention import in_convention
 
     with live() as line, explained():
         line.show(f"deriving {name} ...")
-        derivation = derive(find(name))
+        derivation = derive(in_convention(find(name), convention))
     text = typesetting.render(derivation, language=language, standalone=not fragment)
     if output is None:
         emit(text)

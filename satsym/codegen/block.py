@@ -112,6 +112,8 @@ class _Cheapened:
         if not expression.args:
             return expression
         args = [self.apply(a) for a in expression.args]
+        if isinstance(expression, sp.Abs):
+            return self._take(sp.Abs(self._of_either_sign(args[0])))
         if isinstance(expression, PROJECTIONS):
             return self._take(expression.func(*(a if a.is_Symbol else self._take(a) for a in args)))
         if not expression.is_Pow:
@@ -131,6 +133,14 @@ class _Cheapened:
         if exponent <= LARGEST_PRODUCT or base.is_Number:
             return base**exponent
         return self._power(self._take(base**2), exponent // 2) * base ** (exponent % 2)
+
+    def _of_either_sign(self, part: sp.Expr) -> sp.Expr:
+        """A name that nothing is assumed of, as it is of others, where a sign matters."""
+        if part.is_Symbol and not part.name.startswith("_cheap"):
+            return part
+        symbol = sp.Symbol(f"_signed{len(self.assignments)}", real=True)
+        self.assignments.append((symbol, part))
+        return symbol
 
     def _take(self, part: sp.Expr) -> sp.Expr:
         if part.is_Number:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import sympy as sp
 
+from satsym.codegen import switching
 from satsym.codegen.functions import Function, Symbols, functions, symbols
 from satsym.codegen.linear import linear_functions
 from satsym.symbolic import notation as n
@@ -23,16 +24,14 @@ def all_functions(derivation: Derivation) -> list[Function]:
 
 def extremal_functions(derivation: Derivation, s: Symbols) -> list[Function]:
     """The canonical system and the boundary residual, each with its derivatives."""
-    law = dict(zip(s.u, derivation.rhs("control_law"), strict=True))
-    z = sp.Matrix([*s.x, *s.lam])
-    rates = sp.Matrix([*derivation.rhs("first_order"), *derivation.rhs("costate_equations")]).xreplace(law)
-    h = derivation.equation("hamiltonian.H").rhs.xreplace(law)
+    z, (rates, h) = sp.Matrix([*s.x, *s.lam]), _under_the_law(derivation, s)
     ends = _ends(derivation, len(s.x)).xreplace({n.HAMILTONIAN: h})
     unknown = sp.Matrix([*z, *s.nu, s.t])
+    smoothed = " of the smoothed companion" if switching.switches(derivation) else ""
     return [
         Function(
             "canonical",
-            "Rates of change of states and costates under the control law.",
+            f"Rates of change of states and costates under the control law{smoothed}.",
             ("t", "x", "lam", "p", "bounds"),
             rates,
             "vector",
@@ -41,14 +40,14 @@ def extremal_functions(derivation: Derivation, s: Symbols) -> list[Function]:
             "canonical_jacobian",
             "The canonical rates by states and costates, row by row.",
             ("t", "x", "lam", "p", "bounds"),
-            rates.jacobian(z),
+            switching.printable(rates.jacobian(z)),
             "matrix",
         ),
         Function(
             "canonical_drift",
             "The canonical rates by explicit time.",
             ("t", "x", "lam", "p", "bounds"),
-            rates.diff(s.t),
+            switching.printable(rates.diff(s.t)),
             "vector",
         ),
         Function(
@@ -62,10 +61,20 @@ def extremal_functions(derivation: Derivation, s: Symbols) -> list[Function]:
             "boundary_jacobian",
             "The boundary residuals by states, costates, multipliers and final time, row by row.",
             ("t", "x", "lam", "nu", "p", "bounds", "final"),
-            ends.jacobian(unknown),
+            switching.printable(ends.jacobian(unknown)),
             "matrix",
         ),
     ]
+
+
+def _under_the_law(derivation: Derivation, s: Symbols) -> tuple[sp.Matrix, sp.Expr]:
+    """Rates of states and costates, and H; those of the smoothed companion where the law itself jumps."""
+    if switching.switches(derivation):
+        companion = switching.companion(derivation)
+        return companion.rates, companion.hamiltonian
+    law = dict(zip(s.u, derivation.rhs("control_law"), strict=True))
+    rates = sp.Matrix([*derivation.rhs("first_order"), *derivation.rhs("costate_equations")])
+    return rates.xreplace(law), derivation.equation("hamiltonian.H").rhs.xreplace(law)
 
 
 def _ends(derivation: Derivation, states: int) -> sp.Matrix:

@@ -6,12 +6,16 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from satsym.spec import names
+from satsym.codegen import switching
+from satsym.spec import Variable, names
+from satsym.symbolic.attraction import inertial_state, strength_of
 from satsym.symbolic.control_sets import bounds
 from satsym.symbolic.derivation import Derivation
+from satsym.symbolic.gyrostat import resolved
 from satsym.symbolic.linear_notation import matrix_symbols
 from satsym.symbolic.model import Linearised, symbols_of, t
 from satsym.symbolic.notation import costate_of, given, multipliers, on_reference, target
+from satsym.symbolic.switching_notation import COMPANION
 
 ARGUMENTS = tuple("t x original u lam nu gain riccati state_weight control_weight p bounds final".split())
 """Names of arguments, in the order in which every function takes those it has."""
@@ -90,7 +94,7 @@ def symbols(derivation: Derivation) -> Symbols:
         lam=tuple(costate_of(s) for s in states) if problem else (),
         nu=multipliers(problem) if problem else (),
         p=symbols_of(model.parameters),
-        bounds=symbols_of(bounds(problem.control_set, model.controls)) if problem else (),
+        bounds=symbols_of(_bounds(derivation)),
         final=tuple(kind(s) for kind in (given, on_reference, target) for s in states) if problem else (),
         original=symbols_of(model.of.states) if isinstance(model, Linearised) else (),
         gain=tuple(matrix_symbols("K", m, n)),
@@ -118,7 +122,27 @@ def functions(derivation: Derivation) -> list[Function]:
     position = getattr(derivation.model, "position", None)
     if position is not None:
         found.append(_vector("position", "Inertial components of the position vector.", "t x p", position))
+    strength = strength_of(derivation)
+    if strength is not None:
+        summary = "Position and velocity along inertial axes, three numbers each, and the gravitational parameter."
+        found.append(_vector("inertial_state", summary, "t x p", inertial_state(derivation.model, strength)))
+    if "quantities" in derivation:
+        known = resolved(derivation.step("quantities").equations)
+        summary = "What is derived along the motion besides."
+        found.append(_vector("quantities", summary, "t x u p", sp.Matrix(list(known.values()))))
+    if "balance" in derivation:
+        kept, rates = derivation.step("momenta").equations[-1:], derivation.step("balance").equations
+        pairs = sp.Matrix([side for e, rate in zip(kept, rates, strict=True) for side in (e.rhs, rate.rhs)])
+        summary = "What changes only from outside, each with its rate of change."
+        found.append(_vector("balances", summary, "t x u p", pairs))
     return found + (_cost_functions(derivation) if derivation.problem else [])
+
+
+def _bounds(derivation: Derivation) -> tuple[Variable, ...]:
+    """What the argument ``bounds`` holds."""
+    problem = derivation.problem
+    found = bounds(problem.control_set, derivation.model.controls) if problem else ()
+    return found + (COMPANION if switching.switches(derivation) else ())
 
 
 def _cost_functions(derivation: Derivation) -> list[Function]:
@@ -126,7 +150,6 @@ def _cost_functions(derivation: Derivation) -> list[Function]:
     assert problem is not None
     n = len(derivation.model.states)
     conditions = derivation.step("boundary_conditions").equations
-    h_u = [e.rhs for e in derivation.step("stationarity").equations if e.lhs == 0]
     return [
         _scalar("running_cost", "Integrand L of the cost.", "t x u p", problem.running_cost),
         _scalar("terminal_cost", "Terminal cost S.", "t x p", problem.terminal_cost),
@@ -137,6 +160,34 @@ def _cost_functions(derivation: Derivation) -> list[Function]:
             sp.Matrix([e.rhs for e in conditions[n : 2 * n]]),
         ),
         _scalar("hamiltonian", "H = L + lam' f.", "t x u lam p", derivation.equation("hamiltonian.H").rhs),
+        *(_switching_laws(derivation) if switching.switches(derivation) else _regular_law(derivation)),
+        _vector(
+            "costate_rate",
+            "Rates of change of the costates, -H_x.",
+            "t x u lam p",
+            derivation.rhs("costate_equations"),
+        ),
+    ]
+
+
+def _switching_laws(derivation: Derivation) -> list[Function]:
+    return [
+        *(
+            Function(f.name, f.summary, tuple(f.arguments.split()), f.value, "vector", f.hints)
+            for f in switching.vectors(derivation)
+        ),
+        _matrix(
+            "extremal_jacobian",
+            "Rates of states and costates by states and costates, row by row, the controls being held.",
+            "t x u lam p",
+            switching.extremal_jacobian(derivation),
+        ),
+    ]
+
+
+def _regular_law(derivation: Derivation) -> list[Function]:
+    h_u = [e.rhs for e in derivation.step("stationarity").equations if e.lhs == 0]
+    return [
         _vector("stationarity", "H_u.", "t x u lam p", sp.Matrix(h_u)),
         _matrix(
             "control_hessian",
@@ -151,12 +202,6 @@ def _cost_functions(derivation: Derivation) -> list[Function]:
             derivation.rhs("control_law"),
             "vector",
             names(derivation.model.controls),
-        ),
-        _vector(
-            "costate_rate",
-            "Rates of change of the costates, -H_x.",
-            "t x u lam p",
-            derivation.rhs("costate_equations"),
         ),
     ]
 

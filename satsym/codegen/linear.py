@@ -13,7 +13,7 @@ from satsym.symbolic.analysis import matrix_exponential, routh, spectrum
 from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.linear import analysable, coefficients_of, system_of
 from satsym.symbolic.linear_notation import matrix_symbols
-from satsym.symbolic.lqr import MOST_INPUTS, inverse, riccati_operator
+from satsym.symbolic.lqr import MOST_INPUTS, MOST_STATES, inverse, riccati_operator
 from satsym.symbolic.model import Linearised
 
 
@@ -75,7 +75,7 @@ def _constant(derivation: Derivation) -> list[Function]:
         summary = "Eigenvalues of A: rows of a real and an imaginary part."
         found.append(_of_parameters("eigenvalues", summary, "p", sp.Matrix(n, 2, parts)))
         found.append(_of_parameters("transition_matrix", "e^(At), row by row.", "t p", sp.Matrix(exponential)))
-    return found + (_feedback(derivation) if system.inputs else [])
+    return found + (_feedback(derivation) if system.inputs and len(system.states) <= MOST_STATES else [])
 
 
 def _feedback(derivation: Derivation) -> list[Function]:

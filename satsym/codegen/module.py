@@ -6,16 +6,18 @@ from collections.abc import Sequence
 
 import sympy as sp
 
-from satsym.codegen import rk4
+from satsym.codegen import rk4, symplectic
 from satsym.codegen.block import Assignment, build
 from satsym.codegen.emitter import Emitter
 from satsym.codegen.functions import TUPLES, Function, Symbols, symbols
 from satsym.codegen.linear import linear_functions
 from satsym.codegen.naming import NEEDED, Code, code_of
 from satsym.codegen.printers import BatchPrinter, ScalarPrinter
+from satsym.codegen.switching import switches
 from satsym.spec import ProblemSpec, Variable
-from satsym.symbolic.derivation import Derivation
-from satsym.symbolic.model import t
+from satsym.symbolic.attraction import strength_of
+from satsym.symbolic.derivation import Derivation, Equation
+from satsym.symbolic.model import t, variables_of
 
 
 def render(derivation: Derivation, source: str) -> str:
@@ -36,11 +38,13 @@ def render(derivation: Derivation, source: str) -> str:
     """
     code = code_of(derivation)
     s, constants = code.symbols, list(code.constants.items())
+    parts_of_motion = symplectic.split(derivation)
     parts = [
         _header(derivation, source),
         _literal(spec(derivation, source)),
         *(_scalar_form(f, s, constants) for f in code.functions),
         *(rk4.source(loop) for loop in _loops(derivation, code, constants)),
+        *([symplectic.source(code, parts_of_motion, constants)] if parts_of_motion else []),
         *(_batch_form(f, s, constants) for f in code.functions),
     ]
     return "\n\n".join(parts)
@@ -68,7 +72,25 @@ def spec(derivation: Derivation, source: str) -> ProblemSpec:
         position=tuple(Variable(axis, axis) for axis in ("x", "y", "z")[: len(position)]),
         outputs=tuple(o.variable for o in model.outputs) if (linear := linear_functions(derivation)) else (),
         linear=tuple(f.name for f in linear),
+        keplerian=strength_of(derivation) is not None,
+        switching=switches(derivation),
+        coordinates=tuple(q.name for q in parts.coordinates) if (parts := symplectic.split(derivation)) else (),
+        velocities=tuple(v.name for v in parts.velocities) if parts else (),
+        quantities=_quantities(derivation),
+        balances=tuple(Variable(e.name, derivation.notation[e.name]) for e in _balances(derivation)),
     )
+
+
+def _quantities(derivation: Derivation) -> tuple[Variable, ...]:
+    """The variables behind the equations of the step that derived them."""
+    if "quantities" not in derivation:
+        return ()
+    declared = {v.symbol: v for v in variables_of(derivation.model)}
+    return tuple(declared[e.name] for e in derivation.step("quantities").equations)
+
+
+def _balances(derivation: Derivation) -> Sequence[Equation]:
+    return derivation.step("balance").equations if "balance" in derivation else ()
 
 
 def _header(derivation: Derivation, source: str) -> str:
@@ -156,7 +178,7 @@ def _loops(derivation: Derivation, code: Code, constants: Sequence[Assignment]) 
     """The forward loop and, where there is a cost, the backward one."""
     problem, s = derivation.problem, code.symbols
     fixed = {*s.p, *(c for c, _ in constants)}
-    rates = [*derivation.rhs("first_order"), *([problem.running_cost] if problem else [])]
+    rates = [*derivation.rhs("first_order"), *([sp.sympify(problem.running_cost)] if problem else [])]
     forward = rk4.Loop(
         name="forward",
         summary="RK4 over the nodes from x0 at times[0]; returns the integral of the running cost."

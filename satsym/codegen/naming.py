@@ -17,6 +17,7 @@ import sympy as sp
 from satsym.codegen.extremals import all_functions
 from satsym.codegen.functions import ARGUMENTS, Function, Symbols, symbols
 from satsym.symbolic.algebra import definitions_of
+from satsym.symbolic.convention import is_minimum
 from satsym.symbolic.derivation import Derivation
 
 NEEDED = (
@@ -55,6 +56,8 @@ class Code:
 
 def code_of(derivation: Derivation) -> Code:
     """What the module of a derivation is written from."""
+    if not is_minimum(derivation):
+        raise ValueError(f"{derivation.name}: kernels are generated from the minimum form of a problem")
     found, constants = symbols(derivation), definitions_of(derivation.model)
     names = _names(derivation, {s for argument in ARGUMENTS for s in found.of(argument)} | set(constants))
     return Code(

@@ -95,6 +95,24 @@ class ScalarPrinter(_Printer):
         s, limit = (self._print(a) for a in expr.args)
         return f"0.0 if {s} <= {limit}*{limit} else -0.5*{limit}/({s}*math.sqrt({s}))"
 
+    def _print_Switch(self, expr: Any) -> str:
+        slope, weight, lower, upper = (self._print(a) for a in expr.args)
+        middle = f"0.5*({lower} + {upper})"
+        if expr.args[1].is_zero:
+            return f"{lower} if {slope} > 0.0 else {upper} if {slope} < 0.0 else {middle}"
+        rest = f"{lower} if {lower} > 0.0 else {upper} if {upper} < 0.0 else 0.0"
+        rest = rest if expr.args[1].is_Number else f"{middle} if {weight} <= 0.0 else {rest}"
+        return f"{lower} if {slope} > {weight} else {upper} if {slope} < -{weight} else {rest}"
+
+    def _print_Shrink(self, expr: Any) -> str:
+        value, width = (self._print(a) for a in expr.args)
+        return f"{value} - {width} if {value} > {width} else {value} + {width} if {value} < -{width} else 0.0"
+
+    def _print_Side(self, expr: Any) -> str:
+        value, width = (self._print(a) for a in expr.args)
+        below = "0.0" if expr.args[1].is_zero else f"-{width}"
+        return f"1.0 if {value} > {width} else -1.0 if {value} < {below} else 0.0"
+
 
 class BatchPrinter(_Printer):
     """Arrays and ``np``, real or complex."""
@@ -119,6 +137,29 @@ class BatchPrinter(_Printer):
     def _print_Inside(self, expr: Any) -> str:
         value, lower, upper = (self._print(a) for a in expr.args)
         return f"np.heaviside({value} - {lower}, 1.0)*np.heaviside({upper} - {value}, 1.0)"
+
+    def _print_Abs(self, expr: Any) -> str:
+        value = self._print(expr.args[0])
+        return f"np.maximum({value}, -{value})"  # np.abs of a complex step would be its modulus
+
+    def _print_Switch(self, expr: Any) -> str:
+        slope, weight, lower, upper = (self._print(a) for a in expr.args)
+        rest = f"0.5*({lower} + {upper})"
+        if not expr.args[1].is_zero:
+            least = f"np.minimum(np.maximum({lower}, 0.0), {upper})"
+            weighs = f"np.heaviside({weight}, 0.0)"
+            rest = least if expr.args[1].is_Number else f"({weighs}*{least} + (1.0 - {weighs})*{rest})"
+        above, below = f"np.heaviside({slope} - {weight}, 0.0)", f"np.heaviside(-{slope} - {weight}, 0.0)"
+        return f"{above}*{lower} + {below}*{upper} + (1.0 - {above} - {below})*{rest}"
+
+    def _print_Shrink(self, expr: Any) -> str:
+        value, width = (self._print(a) for a in expr.args)
+        return f"np.maximum({value} - {width}, 0.0) + np.minimum({value} + {width}, 0.0)"
+
+    def _print_Side(self, expr: Any) -> str:
+        value, width = (self._print(a) for a in expr.args)
+        beyond = "" if expr.args[1].is_zero else f" - {width}"
+        return f"np.heaviside({value}{beyond}, 0.0) - np.heaviside(-{value}{beyond}, 0.0)"
 
     def _print_ShortenSlope(self, expr: Any) -> str:
         s, limit = (self._print(a) for a in expr.args)

@@ -16,11 +16,14 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
+from satsym.codegen import symplectic
 from satsym.codegen.functions import ARGUMENTS, TUPLES, Function, Symbols
 from satsym.codegen.naming import code_of
 from satsym.kernels import Kernels
+from satsym.kernels.composition import weights
 from satsym.symbolic.checks import DIGITS, numeric
 from satsym.symbolic.derivation import Derivation, DerivationError
+from satsym.symbolic.model import symbols_of
 
 POINTS = 12
 LIMIT = 1e-12
@@ -28,7 +31,7 @@ LIMIT = 1e-12
 
 COMPLEX_STEP = 1e-30
 
-DERIVATIVES = {
+DERIVATIVES: dict[str, tuple[str | tuple[str, ...], tuple[str, ...], float]] = {
     "jacobian_x": ("dynamics", ("x",), 1.0),
     "jacobian_u": ("dynamics", ("u",), 1.0),
     "state_matrix": ("dynamics", ("x",), 1.0),
@@ -38,11 +41,12 @@ DERIVATIVES = {
     "stationarity": ("hamiltonian", ("u",), 1.0),
     "costate_rate": ("hamiltonian", ("x",), -1.0),
     "control_hessian": ("stationarity", ("u",), 1.0),
+    "extremal_jacobian": (("dynamics", "costate_rate"), ("x", "lam"), 1.0),
     "canonical_jacobian": ("canonical", ("x", "lam"), 1.0),
     "canonical_drift": ("canonical", ("t",), 1.0),
     "boundary_jacobian": ("boundary", ("x", "lam", "nu", "t"), 1.0),
 }
-"""Function -> (function it is a derivative of, by which arguments, factor)."""
+"""Function -> (function it is a derivative of, or several below each other; by which arguments; factor)."""
 
 Arguments = dict[str, Any]
 Array = NDArray[np.floating[Any]]
@@ -65,8 +69,9 @@ def verify(derivation: Derivation, kernels: Kernels) -> None:
         _same_values(derivation.name, kernels, function, exact, known, places)
     names = {f.name for f in found}
     for name, (of, by, factor) in DERIVATIVES.items():
-        if {name, of} <= names:
-            _same_derivatives(derivation.name, kernels, (name, of, by, factor), found, places)
+        functions = (of,) if isinstance(of, str) else of
+        if {name, *functions} <= names:
+            _same_derivatives(derivation.name, kernels, (name, functions, by, factor), found, places)
     _same_loops(derivation, known, kernels, rng)
 
 
@@ -80,7 +85,8 @@ def _arguments(known: Symbols, derivation: Derivation, rng: random.Random) -> Ar
     place: Arguments = {a: tuple(map(draw, known.of(a))) for a in ARGUMENTS if a != "t"}
     if derivation.problem and derivation.problem.control_set == "box":
         m = len(known.u)
-        place["bounds"] = tuple(-abs(b) for b in place["bounds"][:m]) + tuple(abs(b) for b in place["bounds"][m:])
+        lower, upper, companion = (place["bounds"][i:k] for i, k in ((0, m), (m, 2 * m), (2 * m, None)))
+        place["bounds"] = (*(-abs(b) for b in lower), *map(abs, (*upper, *companion)))
     return place | {"t": draw(known.t)}
 
 
@@ -109,24 +115,24 @@ def _same_values(
 def _same_derivatives(
     model: str,
     kernels: Kernels,
-    relation: tuple[str, str, tuple[str, ...], float],
+    relation: tuple[str, tuple[str, ...], tuple[str, ...], float],
     found: Sequence[Function],
     places: Sequence[Arguments],
 ) -> None:
     name, of, by, factor = relation
     signature = {f.name: f.arguments for f in found}
-    arguments = {a: _stacked(a, places) for a in {*signature[name], *signature[of]}}
+    arguments = {a: _stacked(a, places) for f in (name, *of) for a in signature[f]}
     derived = getattr(kernels, f"{name}_batch")(*(arguments[a] for a in signature[name]))
     slopes = []
     for argument in by:
         for moved in _moved(arguments[argument]):
             stepped = {**arguments, argument: moved}
-            values = getattr(kernels, f"{of}_batch")(*(stepped[a] for a in signature[of]))
-            slopes.append(np.imag(values) / COMPLEX_STEP)
+            values = [getattr(kernels, f"{f}_batch")(*(stepped[a] for a in signature[f])) for f in of]
+            slopes.append(np.imag(values[0] if len(of) == 1 else np.concatenate(values)) / COMPLEX_STEP)
     if not slopes:  # a model without controls
         return
     columns = np.stack(slopes, axis=-2)
-    _refuse(model, f"{name} (as derivative of {of})", derived.reshape(columns.shape), factor * columns)
+    _refuse(model, f"{name} (as derivative of {' and '.join(of)})", derived.reshape(columns.shape), factor * columns)
 
 
 def _moved(values: Any) -> Iterator[Any]:
@@ -163,6 +169,9 @@ def _same_loops(derivation: Derivation, known: Symbols, kernels: Kernels, rng: r
     x, x_mid, total = kernels.forward(times, place["x"], u, u_mid, p)
     n = len(known.x)
     _refuse(derivation.name, "forward", np.hstack([x, x_mid]), np.hstack([y[:n], y_mid[:n]]))
+    if kernels.spec.separable:
+        found = kernels.symplectic(times, place["x"], p)
+        _refuse(derivation.name, "symplectic", found, _kicked(derivation, kernels, times, place))
     if not costs:
         return
     _refuse(derivation.name, "forward (cost)", [total], [y[n, -1]])
@@ -191,6 +200,23 @@ def _plain_rk4(
         middles.append((here + there) / 2 + h / 8 * (k1 - rates(t + h, there, given[:, i + 1])))
         y.append(there)
     return np.array(y).T, np.array(middles).T
+
+
+def _kicked(derivation: Derivation, kernels: Kernels, times: Array, place: Arguments) -> Array:
+    """Kicks of the velocities and drifts of the coordinates in turn, by the rates without control."""
+    parts, states = symplectic.split(derivation), symbols_of(derivation.model.states)
+    assert parts is not None
+    moved, kicked = (np.isin(states, group) for group in (parts.coordinates, parts.velocities))
+    kicks, drifts = weights()
+    coast = (0.0,) * len(kernels.spec.controls)
+    y = [np.array(place["x"])]
+    for i, h in enumerate(np.diff(times)):
+        now = y[-1]
+        for kick, drift in zip(kicks, [*drifts, 0.0], strict=True):
+            now = now + kick * h * kicked * kernels.dynamics(times[i], now, coast, place["p"])
+            now = now + drift * h * moved * kernels.dynamics(times[i], now, coast, place["p"])
+        y.append(now)
+    return np.array(y).T
 
 
 def _refuse(model: str, what: str, found: Any, expected: Any) -> None:

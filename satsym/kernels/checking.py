@@ -112,6 +112,11 @@ def _fault(spec: ProblemSpec) -> str:
         return "a cost and no control set, or the reverse"
     if not spec.states:
         return "no states"
+    if spec.switching and spec.control_set != "box":
+        return "controls that switch, and no box for them"
+    halves = (*spec.coordinates, *spec.velocities)
+    if halves and (len(spec.coordinates) != len(spec.velocities) or sorted(halves) != sorted(spec.state_names)):
+        return "coordinates and velocities that are not its states"
     if set(spec.linear) - set(LINEAR):
         return "functions of linear models that none has"
     groups = (

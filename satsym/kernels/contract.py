@@ -47,6 +47,9 @@ _MOTION = {
 _REFERENCE = {"reference": _signature("t p", "n")}
 _INVARIANTS = {"invariants": _signature("t x p", "i")}
 _POSITION = {"position": _signature("t x p", "q")}
+_QUANTITIES = {"quantities": _signature("t x u p", "a")}
+_BALANCES = {"balances": _signature("t x u p", "y")}
+_KEPLERIAN = {"inertial_state": _signature("t x p", "s")}
 _COST = {
     "running_cost": _signature("t x u p"),
     "terminal_cost": _signature("t x p"),
@@ -62,6 +65,18 @@ _COST = {
     "boundary": _signature("t x lam nu p bounds final", "e"),
     "boundary_jacobian": _signature("t x lam nu p bounds final", "ev"),
 }
+_OF_REGULAR_LAWS = ("stationarity", "control_hessian")
+_SWITCHING = {
+    "switching_function": _signature("t x lam p", "m"),
+    "switching_rate": _signature("t x u lam p", "m"),
+    "magnitude_weight": _signature("t x p", "m"),
+    "extremal_jacobian": _signature("t x u lam p", "zz"),
+}
+"""What a problem has, in place of the former, whose Hamiltonian is linear in the controls and their magnitudes.
+
+Its ``canonical`` functions and ``boundary`` are those of the smoothed companion, see
+:mod:`satsym.codegen.switching`.
+"""
 LINEAR = {
     "state_matrix": _of_parameters("t p", "nn"),
     "input_matrix": _of_parameters("t p", "nm"),
@@ -87,8 +102,9 @@ Eigenvalues are rows of a real and an imaginary part.
 
 _FORWARD = {"forward": _signature("times x0 u u_mid p x x_mid")}
 _BACKWARD = {"backward": _signature("times lam_f x x_mid u u_mid p lam lam_mid")}
+_SYMPLECTIC = {"symplectic": _signature("times x0 p x")}
 
-LOOPS = _FORWARD | _BACKWARD
+LOOPS = _FORWARD | _BACKWARD | _SYMPLECTIC
 """Trajectory loops. Their controls, states and costates are tables: a sequence over time for each component."""
 
 
@@ -98,26 +114,35 @@ def pointwise(spec: ProblemSpec) -> dict[str, Signature]:
     found |= _REFERENCE if spec.has_reference else {}
     found |= _INVARIANTS if spec.invariants else {}
     found |= _POSITION if spec.position else {}
+    found |= _KEPLERIAN if spec.keplerian else {}
+    found |= _QUANTITIES if spec.quantities else {}
+    found |= _BALANCES if spec.balances else {}
     found |= {name: LINEAR[name] for name in spec.linear}
-    return found | (_COST if spec.has_cost else {})
+    found |= _COST if spec.has_cost else {}
+    if spec.switching:
+        found = {name: signature for name, signature in found.items() if name not in _OF_REGULAR_LAWS} | _SWITCHING
+    return found
 
 
 def loops(spec: ProblemSpec) -> dict[str, Signature]:
     """Signatures of the trajectory loops that a model with this description has."""
-    return LOOPS if spec.has_cost else _FORWARD
+    return _FORWARD | (_BACKWARD if spec.has_cost else {}) | (_SYMPLECTIC if spec.separable else {})
 
 
 def sizes(spec: ProblemSpec) -> dict[str, int]:
     """What each letter counts.
 
-    States (n), controls (m), parameters (k), bounds (b), invariants (i), position components (q), constraints at the
+    States (n), controls (m), parameters (k), bounds (b; with the smoothing, and the share of the weights of magnitudes,
+    of the companion of a switching problem), invariants (i), position components (q), constraints at the
     final time (c), choices and targets there (f), states and costates (z), residuals at the final time (e) and
-    unknowns there (v); outputs (o), coefficients of the characteristic polynomial (g), parts of a complex number (w).
+    unknowns there (v); outputs (o), coefficients of the characteristic polynomial (g), parts of a complex number (w);
+    position, velocity and gravitational parameter in space (s); quantities (a), balances with their rates (y).
     """
     n, m, c = len(spec.states), len(spec.controls), len(spec.multipliers)
     counts = {"n": n, "m": m, "k": len(spec.parameters), "i": len(spec.invariants), "q": len(spec.position), "c": c}
-    counts["b"] = {"box": 2 * m, "ball": 1}.get(spec.control_set or "free", 0)
-    counts |= {"o": len(spec.outputs), "g": n + 1, "w": 2}
+    counts["b"] = {"box": 2 * m, "ball": 1}.get(spec.control_set or "free", 0) + 2 * spec.switching
+    counts |= {"o": len(spec.outputs), "g": n + 1, "w": 2, "s": 7}
+    counts |= {"a": len(spec.quantities), "y": 2 * len(spec.balances)}
     return counts | {"f": 3 * n, "z": 2 * n, "e": n + c + 1, "v": 2 * n + c + 1}
 
 

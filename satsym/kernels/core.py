@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -13,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from satsym.kernels.contract import LOOPS
 from satsym.spec import ProblemSpec
+from satsym.status import BadInput
 
 Array = NDArray[np.float64]
 Backend = Literal["python", "numba"]
@@ -29,8 +31,8 @@ The last comes from complex numbers, which Python makes of fractional powers of 
 class Kernels:
     """A model that solvers can call.
 
-    Every generated function is an attribute (``kernels.dynamics(t, x, u, p)``), with the loops ``forward``
-    and ``backward`` wrapped for arrays; ``functions`` holds the loops as they were generated.
+    Every generated function is an attribute (``kernels.dynamics(t, x, u, p)``), with the loops ``forward``,
+    ``backward`` and ``symplectic`` wrapped for arrays; ``functions`` holds the loops as they were generated.
 
     Attributes
     ----------
@@ -143,6 +145,45 @@ class Kernels:
         )
         return lam, lam_mid
 
+    def symplectic(self, times: ArrayLike, x0: Sequence[float], p: Sequence[float]) -> Array:
+        """Integrate the states without control by kicks and drifts: sixth order, symplectic for constant steps.
+
+        Parameters
+        ----------
+        times
+            Nodes, shape (N+1,); they may run backward.
+        x0, p
+            As in :meth:`forward`.
+
+        Returns
+        -------
+        array of shape (n, N+1)
+            States at nodes; nan (or inf) beyond the point where they cease to be finite.
+
+        Raises
+        ------
+        BadInput
+            If the model has no such loop: ``spec.separable`` says whether.
+        """
+        self.require_separable()
+        nodes, steps = _nodes(times)
+        start, numbers = _numbers(x0, len(self.spec.states), "x0"), _numbers(p, len(self.spec.parameters), "p")
+        loop, nan = self.functions["symplectic"], float("nan")
+        if self.backend == "numba":
+            x = np.full((len(start), steps + 1), nan)
+            loop(nodes, start, numbers, tuple(x))
+            return x
+        rows = tuple([nan] * (steps + 1) for _ in start)
+        with suppress(*_ARITHMETIC):
+            loop(nodes.tolist(), start, numbers, rows)
+        return _real(rows)
+
+    def require_separable(self) -> None:
+        """Raise BadInput unless the model has a symplectic loop."""
+        if not self.spec.separable:
+            reason = "its accelerations do not depend on coordinates alone, by a potential; use RK4"
+            raise BadInput(f"{self.spec.name}: no symplectic integrator: {reason}")
+
     def in_domain(self, x: ArrayLike) -> bool:
         """Whether the states that must be positive are so, at every node of ``x``, shape (n,) or (n, N+1)."""
         rows = np.asarray(x, dtype=float)
@@ -157,6 +198,30 @@ class Kernels:
             If numba is not installed.
         """
         return self if self.backend == "numba" else self._compiled
+
+    def block_step(self, symplectic: bool = False) -> Function:
+        """Steps for the columns of arrays, by RK4 or by kicks and drifts, see :mod:`satsym.kernels.blocks`.
+
+        Raises
+        ------
+        BadInput
+            If the kernels were not compiled.
+        """
+        if self.backend != "numba":
+            raise BadInput(f"{self.spec.name}: no block step without compiling: take compiled() first")
+        return self._block_kicks if symplectic else self._block_rk4
+
+    @cached_property
+    def _block_rk4(self) -> Function:
+        from satsym.kernels import blocks
+
+        return blocks.rk4(self.functions["dynamics"], self.spec)
+
+    @cached_property
+    def _block_kicks(self) -> Function:
+        from satsym.kernels import blocks
+
+        return blocks.kicks_and_drifts(self.functions["dynamics"], self.spec)
 
     @cached_property
     def _compiled(self) -> Kernels:

@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Callable, Iterable, Mapping
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
+from multiprocessing import get_context
 from pathlib import Path
+from typing import Any
 
 from satsym.report.files import write_text
 
 SUFFIXES = (".py", ".tex")
 KEPT = "__init__.py"
 """The one file of the generated folder that people write."""
+
+FEW = 6
+"""Problems up to which less one process derives them all."""
 
 
 def render(paths: Iterable[Path], announce: Callable[[str], None] = lambda name: None) -> dict[str, str]:
@@ -21,7 +29,7 @@ def render(paths: Iterable[Path], announce: Callable[[str], None] = lambda name:
     paths
         Derivation files.
     announce
-        Told the name of each problem before it is derived.
+        Told the name of each problem once it is derived.
 
     Returns
     -------
@@ -35,21 +43,42 @@ def render(paths: Iterable[Path], announce: Callable[[str], None] = lambda name:
     DerivationError
         If something cannot be derived, or what was generated deviates from it.
     """
+    from satsym.symbolic import loader
+
+    jobs = [(path, problem.name) for path in paths for problem in loader.load(path)]
+    rendered: dict[str, str] = {}
+    with _workers(len(jobs)) as each:
+        for (_, name), texts in zip(jobs, each(_rendered, jobs), strict=True):
+            announce(name)
+            rendered |= texts
+    return rendered
+
+
+@contextmanager
+def _workers(jobs: int) -> Iterator[Callable[..., Iterator[Any]]]:
+    """A map over processes, one for each processor; few jobs are not worth the time that processes take to begin."""
+    if jobs < FEW or (os.cpu_count() or 1) < 2:
+        yield map
+        return
+    with ProcessPoolExecutor(min(jobs, os.cpu_count() or 1), get_context("spawn")) as pool:
+        yield pool.map
+
+
+def _rendered(job: tuple[Path, str]) -> dict[str, str]:
+    """The two files of one problem."""
     from satsym import kernels
     from satsym.codegen import module, verify
     from satsym.report import latex
     from satsym.symbolic import derive, loader
+    from satsym.symbolic.convention import in_convention, is_minimum
 
-    rendered: dict[str, str] = {}
-    for path in paths:
-        for problem in loader.load(path):
-            announce(problem.name)
-            derivation = derive(problem)
-            text = module.render(derivation, _source(path))
-            verify.verify(derivation, kernels.from_text(text, f"{problem.name}.py"))
-            rendered[f"{problem.name}.py"] = text
-            rendered[f"{problem.name}.tex"] = latex.render(derivation)
-    return rendered
+    path, name = job
+    problem = next(problem for problem in loader.load(path) if problem.name == name)
+    derivation = derive(problem)
+    in_minimum_form = derivation if is_minimum(derivation) else derive(in_convention(problem, "minimum"))
+    text = module.render(in_minimum_form, _source(path))
+    verify.verify(in_minimum_form, kernels.from_text(text, f"{name}.py"))
+    return {f"{name}.py": text, f"{name}.tex": latex.render(derivation)}
 
 
 def differences(rendered: Mapping[str, str], folder: Path, whole: bool) -> list[str]:

@@ -10,7 +10,7 @@ from satsym.report.equations import LINE, Row, array, display
 from satsym.report.texts import Texts
 from satsym.report.width import width
 from satsym.spec import Variable
-from satsym.symbolic import Derivation, Linearised, Newton
+from satsym.symbolic import ClosedLoop, Derivation, Gyrostat, Linearised, Newton, Reduced, Scaled
 from satsym.symbolic import notation as n
 from satsym.symbolic.control_sets import bounds
 from satsym.symbolic.terms import Term, joined, plain
@@ -27,10 +27,12 @@ class Part:
 
 def statement(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
     """The whole of it."""
-    parts = [
-        part(derivation, texts, typeset)
-        for part in (_cost, _control_set, _constraints, _quantities, _definitions, _physics, _linearised, _outputs)
-    ]
+    kinds = (
+        *(_cost, _control_set, _constraints),
+        *(_quantities, _definitions),
+        *(_physics, _turning, _motion_of, _linearised, _outputs),
+    )
+    parts = [part(derivation, texts, typeset) for part in kinds]
     return Part(
         tuple(paragraph for part in parts for paragraph in part.paragraphs),
         {thing: ends for part in parts for thing, ends in part.ends.items()},
@@ -170,6 +172,36 @@ def _linearised(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Pa
     ]
     text = texts.get("statement", "linearised", name=tex.name(model.of.name), title=tex.escape(model.of.title))
     return Part((f"{text}\n{display(rows)}",), {"reference": (rows[0].address, rows[-1].address)})
+
+
+def _turning(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
+    """Bodies that turn about one axis, and the torques on them."""
+    model = derivation.model
+    if not isinstance(model, Gyrostat):
+        return Part()
+    rows: dict[str, list[Row]] = {"bodies": [], "torques": []}
+    for name, (inertia, spin) in model.bodies.items():
+        label = rf"\mathrm{{{name}}}"
+        rows["bodies"] += [
+            Row(_address(derivation, f"inertia.{name}"), plain(f"I_{{{label}}}"), typeset.terms(inertia)),
+            Row(_address(derivation, f"rate.{name}"), plain(rf"\omega_{{{label}}}"), typeset.terms(spin)),
+        ]
+        if name in model.torques:
+            row = Row(
+                _address(derivation, f"torque.{name}"), plain(f"T_{{{label}}}"), typeset.terms(model.torques[name])
+            )
+            rows["torques"].append(row)
+    text = texts.get("statement", "bodies")
+    ends = {thing: (found[0].address, found[-1].address) for thing, found in rows.items() if found}
+    return Part((f"{text}\n{display([*rows['bodies'], *rows['torques']])}",), ends)
+
+
+def _motion_of(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
+    """Which model's motion it is."""
+    model = derivation.model
+    if not isinstance(model, Scaled | Reduced | ClosedLoop):
+        return Part()
+    return Part((texts.get("statement", "motion_of", name=tex.name(model.of.name), title=tex.escape(model.of.title)),))
 
 
 def _outputs(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:

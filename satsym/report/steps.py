@@ -10,6 +10,7 @@ from satsym.report.equations import Row, columns, display
 from satsym.report.matrices import matrix_rows, with_matrices
 from satsym.report.texts import Texts
 from satsym.symbolic import Conclusion, Derivation, Equation, Step
+from satsym.symbolic.convention import worded
 from satsym.symbolic.terms import plain
 from satsym.symbolic.typeset import Typesetter
 
@@ -139,7 +140,8 @@ def _at_the_end(context: Context, step: Step) -> Shown:
 
 def _boundary_conditions(context: Context, step: Step) -> Shown:
     """Initial state, final costates and final time apart, then the boundary types in words."""
-    texts = context.texts
+    texts, problem = context.texts, context.derivation.problem
+    assert problem is not None
     states = [v.symbol for v in context.derivation.model.states]
     start, end = context.typeset.at("t_0"), context.typeset.at("t_f")
     groups: dict[str, list[Row]] = {"initial": [], "costates": [], "final_time": [], "": []}
@@ -149,13 +151,15 @@ def _boundary_conditions(context: Context, step: Step) -> Shown:
         groups[group].append(_row(context, step, e, typeset=start if group == "initial" else end))
     parts = []
     for group, rows in groups.items():
-        parts += [texts.get("groups", group)] if group and rows else []
+        heading = group if group == "initial" else worded(group, problem)
+        parts += [texts.get("groups", heading)] if group and rows else []
         parts += [display(rows)] if rows else []
     numbers = {group: numbers_of(rows[0].address, rows[-1].address) for group, rows in groups.items() if rows}
-    types = [texts.get("boundary", key, **numbers) for key in ("none", "time", "state", "curve", "both")]
+    curve = worded("curve", problem)
+    types = [texts.get("boundary", key, **numbers) for key in ("none", "time", "state", curve, "both")]
     items = "\n".join(rf"  \item {text}" for text in types)
     parts.append(f"{texts.get('boundary', 'intro')}\n\\begin{{enumerate}}\\satsymtogether\n{items}\n\\end{{enumerate}}")
-    if context.derivation.problem and context.derivation.problem.terminal_constraints:
+    if problem.terminal_constraints:
         parts.append(texts.get("boundary", "constraints"))
     rows = [row for group in groups.values() for row in group]
     return Shown("\n".join(parts), rows[0].address, rows[-1].address)

@@ -15,12 +15,14 @@ import sympy as sp
 
 from satsym.spec import ControlSet, Variable
 from satsym.symbolic.derivation import DerivationError
+from satsym.symbolic.switches import MPMATH_SWITCHES, SWITCHES
 
 
 class Clip(sp.Function):
     """``Clip(value, lower, upper)``: the nearest point of an interval."""
 
     nargs = 3
+    is_real = True
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
         """By the value: one inside, zero outside. The limits are constants."""
@@ -57,7 +59,7 @@ class ShortenSlope(sp.Function):
     nargs = 2
 
 
-PROJECTIONS = (Clip, Inside, Shorten, ShortenSlope)
+PROJECTIONS = (Clip, Inside, Shorten, ShortenSlope, *SWITCHES)
 
 
 def _clip(value: Any, lower: Any, upper: Any) -> Any:
@@ -77,6 +79,7 @@ def _shorten_slope(norm_squared: Any, limit: Any) -> Any:
 
 
 MPMATH_FUNCTIONS = {"Clip": _clip, "Inside": _inside, "Shorten": _shorten, "ShortenSlope": _shorten_slope}
+MPMATH_FUNCTIONS |= MPMATH_SWITCHES
 
 
 def bounds(control_set: ControlSet, controls: Sequence[Variable]) -> tuple[Variable, ...]:

@@ -8,6 +8,7 @@ from typing import Any
 import sympy as sp
 
 from satsym.symbolic import notation as n
+from satsym.symbolic import rotation_declared
 from satsym.symbolic.algebra import definitions_of
 from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.model import FirstOrder, Linearised, Model, Newton, Problem, symbols_of
@@ -33,6 +34,7 @@ def refuse_misfits(model: Model, problem: Problem | None) -> None:
         raise DerivationError(f"{model.name}: give one rate for each state, no more, no less")
     if isinstance(model, Linearised):
         _refuse_misfit_of_linearised(model)
+    rotation_declared.refuse_misfits(model)
     if model.reference and set(states) != set(model.reference):
         odd = sorted(s.name for s in set(states) ^ set(model.reference))
         raise DerivationError(
@@ -90,6 +92,7 @@ def refuse_foreign_symbols(derivation: Derivation) -> None:
         refuse(f"the motion {model.of.name}", _stated(model.of), constants | old)
     else:
         refuse("an output", [o.value for o in model.outputs], everything)
+    rotation_declared.refuse_foreign(model, refuse)
     for state, curve in model.reference.items():
         refuse(f"the reference of {state}", [curve], constants)
     if isinstance(model, FirstOrder):
@@ -103,7 +106,9 @@ def refuse_foreign_symbols(derivation: Derivation) -> None:
         for name, force in model.forces.items():
             refuse(f"the force {name!r}", force, everything)
     if problem:
-        refuse("the running cost", [problem.running_cost], everything)
+        stated = [*getattr(model, "quantities", ()), *getattr(getattr(model, "of", None), "quantities", ())]
+        derived = set(symbols_of(o.variable for o in stated))
+        refuse("the running cost", [problem.running_cost], everything | derived)
         refuse("the terminal cost", [problem.terminal_cost], motion)
         refuse("a terminal constraint", problem.terminal_constraints, motion)
 

@@ -7,7 +7,7 @@ from typing import Any, TypeAlias
 
 import sympy as sp
 
-from satsym.symbolic import control_sets
+from satsym.symbolic import control_sets, switches
 
 Dimension: TypeAlias = Mapping[str, sp.Expr]
 """Exact exponents of base dimensions, without zeros; empty for plain numbers."""
@@ -16,7 +16,7 @@ Known: TypeAlias = Mapping[str, Dimension | None]
 """Name of a symbol -> its dimension; ``None`` for zero, which has every dimension."""
 
 PLAIN: Dimension = {}
-_SAME = (sp.Add, sp.Max, sp.Min, control_sets.Clip)
+_SAME = (sp.Add, sp.Max, sp.Min, control_sets.Clip, switches.Shrink)
 """What needs arguments of one dimension and returns it."""
 
 
@@ -60,6 +60,10 @@ def dimension_of(expression: Any, known: Known) -> Dimension | None:
         return power_of(dimension_of(e.base, known), e.exp)
     if isinstance(e, sp.Abs):
         return dimension_of(e.args[0], known)
+    if isinstance(e, switches.Switch):
+        slope, weight, *limits = e.args
+        _common((slope, weight), known)
+        return _common(limits, known)
     if isinstance(e, sp.Piecewise):
         for comparison in e.atoms(sp.core.relational.Relational):
             _common(comparison.args, known)

@@ -13,7 +13,7 @@ import sympy as sp
 
 from satsym import units
 from satsym.status import BadInput
-from satsym.symbolic import control_sets, linear_dimensions
+from satsym.symbolic import control_sets, linear_dimensions, rotation_dimensions, switching_dimensions
 from satsym.symbolic import notation as n
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Step
 from satsym.symbolic.dimension_algebra import (
@@ -27,6 +27,7 @@ from satsym.symbolic.dimension_algebra import (
     written,
 )
 from satsym.symbolic.model import FirstOrder, Newton, Problem, symbols_of, variables_of
+from satsym.symbolic.rotation_models import Scaled
 
 AGREEMENT = "dimensions agree"
 """The claim of the check that every step gets."""
@@ -74,8 +75,10 @@ def declared(derivation: Derivation) -> Known:
     if isinstance(model, Newton):
         _enter_mechanics(known, model, require)
     linear_dimensions.declare(known, model, require)
+    rotation_dimensions.declare(known, model, require)
     if derivation.problem:
         _enter_cost(known, derivation.problem, require)
+        rotation_dimensions.of_effort(known, model)
     else:
         linear_dimensions.declare_results(known, model)
     return known
@@ -127,6 +130,10 @@ def _enter_mechanics(known: dict[str, Dimension | None], model: Newton, require:
         place = require("the position", component, place)
     velocity = over(place, second)
     acceleration = over(velocity, second)
+    known[n.DISTANCE.name], known[n.OUTER.name] = place, product((place, place))
+    known[n.SPEED.name], known[n.ECCENTRICITY_ALONG.name] = velocity, place
+    known[n.ALONG.name] = known[n.MOMENTUM.name] = product((place, velocity))
+    known.update(dict.fromkeys((s.name for s in (n.IDENTITY, n.ECCENTRICITY, n.ECCENTRICITY_VECTOR)), PLAIN))
     vectors = (n.POSITION, n.VELOCITY, n.ACCELERATION, n.FORCE)
     known.update(zip((v.name for v in vectors), (place, velocity, acceleration, acceleration), strict=True))
     for name, force in model.forces.items():
@@ -152,6 +159,7 @@ def _enter_cost(known: dict[str, Dimension | None], problem: Problem, require: R
         known[n.given(state).name] = known[n.on_reference(state).name] = PLAIN
     for multiplier, constraint in zip(n.multipliers(problem), problem.terminal_constraints, strict=True):
         known[multiplier.name] = over(total, require("a terminal constraint", constraint))
+    switching_dimensions.declare(known, problem, running)
     for a in problem.model.controls:
         for b in problem.model.controls:
             known[f"H_{a.symbol}_{b.symbol}"] = over(over(running, known[a.symbol]), known[b.symbol])
@@ -167,7 +175,7 @@ def _of_variables(derivation: Derivation) -> dict[str, Dimension | None]:
         known: dict[str, Dimension | None] = {v.symbol: of_unit(v.unit) for v in variables}
     except BadInput as error:
         raise DerivationError(f"{derivation.name}: {error}") from None
-    second = {"[time]": sp.Integer(1)} if any(known.values()) else PLAIN
+    second = {"[time]": sp.Integer(1)} if any(known.values()) and not isinstance(model, Scaled) else PLAIN
     return known | {n.TIME.name: second, n.FINAL_TIME.name: second}
 
 

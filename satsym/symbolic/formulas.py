@@ -12,6 +12,7 @@ import sympy as sp
 from satsym.formula.tree import Add, Call, Div, Mul, Neg, Node, Num, Pow, Sym, constant, number
 from satsym.symbolic.checks import points
 from satsym.symbolic.control_sets import Clip, Shorten
+from satsym.symbolic.switches import Shrink, Switch, by_signs
 
 _FUNCTIONS: dict[str, Callable[..., sp.Expr]] = {
     "sin": sp.sin,
@@ -103,6 +104,8 @@ def to_tree(expression: Any) -> Node:
     if isinstance(e, Shorten):
         norm_squared, limit = map(to_tree, e.args)
         return Call("min", (Num(Fraction(1)), Div(limit, Call("sqrt", (norm_squared,)))))
+    if isinstance(e, Switch | Shrink):
+        return to_tree(by_signs(e))
     if isinstance(e, sp.Min | sp.Max):
         first, *rest = map(to_tree, sorted(e.args, key=lambda argument: not argument.is_number))
         for other in rest:
@@ -131,8 +134,10 @@ def rational(value: Fraction) -> sp.Rational:
 
 def plain(expression: sp.Expr) -> sp.Expr:
     """The expression with what control sets need written by minima, as people print it."""
-    return expression.replace(Clip, lambda value, lower, upper: sp.Min(upper, sp.Max(lower, value))).replace(
-        Shorten, lambda square, limit: sp.Min(1, limit / sp.sqrt(square))
+    return (
+        by_signs(expression)
+        .replace(Clip, lambda value, lower, upper: sp.Min(upper, sp.Max(lower, value)))
+        .replace(Shorten, lambda square, limit: sp.Min(1, limit / sp.sqrt(square)))
     )
 
 

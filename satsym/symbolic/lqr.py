@@ -29,6 +29,8 @@ from satsym.symbolic.numeric_matrices import entries, numeric_matrix, sign_funct
 
 MOST_INPUTS = 3
 """With more, the inverse of R is no longer worth writing out."""
+MOST_STATES = 4
+"""With more, Riccati's equation has more entries than anyone reads: 21 for six states."""
 
 
 def riccati_operator(
@@ -134,7 +136,7 @@ def stabilisable(system: LinearSystem) -> bool:
 
 
 def _applies(so_far: Derivation) -> bool:
-    few = 1 <= len(so_far.model.controls) <= MOST_INPUTS
+    few = 1 <= len(so_far.model.controls) <= MOST_INPUTS and len(so_far.model.states) <= MOST_STATES
     return few and analysable(so_far) and any(entry != 0 for entry in system_of(so_far).b)
 
 

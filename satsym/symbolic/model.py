@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from typing import Literal
 
 import sympy as sp
 
 from satsym.spec import ControlSet, Variable
+
+Convention = Literal["minimum", "maximum"]
+"""Of Pontryagin's principle: H = lambda' f + L is minimised, or H = lambda' f - L is maximised."""
 
 t = sp.Symbol("t", real=True)
 """Time. In a terminal cost it stands for the final time."""
@@ -62,6 +66,10 @@ class Model:
     definitions: tuple[Definition, ...] = ()
     reference: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     outputs: tuple[Output, ...] = ()
+
+    def brings(self) -> tuple[Variable, ...]:
+        """Variables that a kind of model has besides."""
+        return ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -148,6 +156,10 @@ class Problem:
     control_set
         ``"free"``, ``"box"`` (each control between its bounds) or ``"ball"`` (a bound on the norm); the
         numbers belong to the instance.
+    convention
+        In which of the two conventions of Pontryagin's principle the derivation is printed: ``"minimum"`` or
+        ``"maximum"``. The controls are the same, the costates change their sign; kernels always have those of
+        the minimum convention.
     """
 
     name: str
@@ -157,6 +169,7 @@ class Problem:
     terminal_cost: sp.Expr = sp.Integer(0)
     terminal_constraints: tuple[sp.Expr, ...] = ()
     control_set: ControlSet = "free"
+    convention: Convention = "minimum"
 
 
 def variables_of(model: Model) -> tuple[Variable, ...]:
@@ -166,4 +179,6 @@ def variables_of(model: Model) -> tuple[Variable, ...]:
     if isinstance(model, Linearised):
         kept = {v.symbol for v in model.controls}
         found += [*model.of.states, *(v for v in model.of.controls if v.symbol not in kept)]
+    kept = {v.symbol for v in found}
+    found += [v for v in model.brings() if v.symbol not in kept]
     return tuple(found)

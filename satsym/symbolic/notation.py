@@ -7,17 +7,32 @@ from collections.abc import Collection, Iterable
 import sympy as sp
 
 from satsym.spec import Variable
-from satsym.symbolic import control_sets, linear_notation
+from satsym.symbolic import control_sets, linear_notation, rotation_notation, switching_notation
 from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.model import Linearised, Model, Newton, Problem, symbols_of, variables_of
 
 TIME, FINAL_TIME = sp.Symbol("t", real=True), sp.Symbol("t_f", real=True)
 HAMILTONIAN, MINIMISED = sp.Symbol("H", real=True), sp.Symbol("H_star", real=True)
 POSITION, VELOCITY, ACCELERATION, FORCE = (sp.Symbol(f"{name}_vector") for name in ("r", "v", "a", "F"))
+DISTANCE = sp.Symbol("r_norm", positive=True)
+OUTER, IDENTITY = sp.Symbol("r_outer"), sp.Symbol("identity")
+JACOBIAN, GRADIENT = sp.Symbol("jacobian_blocks"), sp.Symbol("gravity_gradient")
+PULL, SPEED = sp.Symbol("a_norm", positive=True), sp.Symbol("v_norm", positive=True)
+ALONG, MOMENTUM = sp.Symbol("r_along_v", real=True), sp.Symbol("angular_momentum_norm", positive=True)
+ECCENTRICITY_VECTOR, ECCENTRICITY = sp.Symbol("eccentricity_vector"), sp.Symbol("eccentricity", positive=True)
+ECCENTRICITY_ALONG = sp.Symbol("eccentricity_along_r", real=True)
 RUNNING_COST, TERMINAL_COST = sp.Symbol("L", real=True), sp.Symbol("S", real=True)
 RESIDUAL_TIME = sp.Symbol("residual_t_f", real=True)
 ENERGY, ANGULAR_MOMENTUM = sp.Symbol("energy", real=True), sp.Symbol("angular_momentum", real=True)
 JACOBI_INTEGRAL = sp.Symbol("jacobi_integral", real=True)
+AXES = ("x", "y", "z")
+"""Names of inertial components, in the order of the position vector."""
+
+
+def component_of_angular_momentum(axis: str) -> sp.Symbol:
+    """The symbol for the angular momentum about an inertial axis."""
+    return sp.Symbol(f"angular_momentum_{axis}", real=True)
+
 
 FIXED = {
     TIME: "t",
@@ -28,13 +43,27 @@ FIXED = {
     VELOCITY: r"\mathbf{v}",
     ACCELERATION: r"\mathbf{a}",
     FORCE: r"\mathbf{F}",
+    DISTANCE: r"|\mathbf{r}|",
+    OUTER: r"\mathbf{r} \mathbf{r}^{\mathsf{T}}",
+    IDENTITY: "I",
+    JACOBIAN: "A",
+    GRADIENT: "G",
+    PULL: r"|\mathbf{a}|",
+    SPEED: r"|\mathbf{v}|",
+    ALONG: r"(\mathbf{r} \cdot \mathbf{v})",
+    MOMENTUM: r"|\boldsymbol{\ell}|",
+    ECCENTRICITY_VECTOR: r"\mathbf{e}",
+    ECCENTRICITY: r"|\mathbf{e}|",
+    ECCENTRICITY_ALONG: r"\mathbf{e} \cdot \mathbf{r}",
     RUNNING_COST: "L",
     TERMINAL_COST: "S",
     RESIDUAL_TIME: "B_{t_f}",
     ENERGY: r"\mathcal{E}",
     ANGULAR_MOMENTUM: r"\ell",
     JACOBI_INTEGRAL: r"\mathcal{J}",
+    **{component_of_angular_momentum(axis): rf"\ell_{axis}" for axis in AXES},
 }
+
 
 def symbol(name: str, latex: str, notation: dict[str, str]) -> sp.Symbol:
     """A real symbol, entered into the notation."""
@@ -128,6 +157,7 @@ def begin(model: Model, problem: Problem | None) -> Derivation:
     for k, multiplier in enumerate(multipliers(problem) if problem else (), start=1):
         notation[multiplier.name] = rf"\nu_{{{k}}}"
         notation[residual_of(multiplier).name] = rf"B_{{\psi_{{{k}}}}}"
+    notation |= switching_notation.names(problem) if problem else {}
     for control in model.controls:
         notation[f"{control.symbol}_star"] = rf"{control.latex}^*"
         notation[f"{control.symbol}_hat"] = rf"\hat {control.latex}"
@@ -138,6 +168,7 @@ def begin(model: Model, problem: Problem | None) -> Derivation:
         for name in model.directions:
             notation[name] = rf"\mathbf{{e}}_{{{_subscript(name, latex)}}}"
             notation[f"d_{name}"] = rf"\dot{{\mathbf{{e}}}}_{{{_subscript(name, latex)}}}"
+    notation |= rotation_notation.names(model) | (rotation_notation.of_effort(model) if problem else {})
     _refuse_clashes(variables, {*notation, *_entries(model)})
     return Derivation(model, problem, results | notation | {v.symbol: v.latex for v in variables})
 

@@ -2,31 +2,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import TypeAlias
 
+import sympy as sp
+
 from satsym.symbolic import (
+    attraction,
+    closed_loop,
+    conic,
     dimensions,
+    effort,
+    gyrostat,
     linearised,
     lqr,
     mechanics,
     motion,
     outputs,
+    point_steps,
     pontryagin,
+    reduced,
+    scaled,
+    singular,
     stability_steps,
+    step_answers,
     structure_steps,
+    switching,
     transversality,
 )
 from satsym.symbolic.declared import refuse_foreign_symbols, refuse_misfits
 from satsym.symbolic.derivation import Derivation, DerivationError, Step
 from satsym.symbolic.model import FirstOrder, Linearised, Model, Newton, Problem
 from satsym.symbolic.notation import begin
+from satsym.symbolic.rotation_models import ClosedLoop, Gyrostat, Reduced, Scaled
 
 MaybeStep: TypeAlias = Callable[[Derivation], Step | None]
 """A step function; ``None`` from it means that the step does not apply to this model."""
-
-ANY_MOTION: tuple[MaybeStep, ...] = (motion.reference, motion.conserved, motion.linearisation)
 
 NEWTON_MOTION: tuple[MaybeStep, ...] = (
     mechanics.unit_vectors,
@@ -52,8 +64,55 @@ LINEARISED_MOTION: tuple[MaybeStep, ...] = (
     linearised.first_order,
 )
 
-NEWTON: tuple[MaybeStep, ...] = (*NEWTON_MOTION, *ANY_MOTION)
-FIRST_ORDER: tuple[MaybeStep, ...] = (*FIRST_ORDER_MOTION, *ANY_MOTION)
+NEWTON: tuple[MaybeStep, ...] = (
+    *NEWTON_MOTION,
+    attraction.central_attraction,
+    motion.reference,
+    motion.conserved,
+    conic.conic,
+    motion.linearisation,
+    attraction.gravity_gradient,
+    point_steps.no_equilibrium,
+    point_steps.point_spectrum,
+)
+GYROSTAT_MOTION: tuple[MaybeStep, ...] = (
+    gyrostat.momenta,
+    gyrostat.euler,
+    gyrostat.first_order,
+    gyrostat.balance,
+    gyrostat.quantities,
+)
+
+SCALED_MOTION: tuple[MaybeStep, ...] = (
+    linearised.original_equations,
+    scaled.scales,
+    scaled.original_states,
+    scaled.first_order,
+    scaled.quantities,
+)
+
+REDUCED_MOTION: tuple[MaybeStep, ...] = (
+    linearised.original_equations,
+    reduced.special_case,
+    reduced.first_order,
+    reduced.quantities,
+)
+
+CLOSED_LOOP: tuple[MaybeStep, ...] = (
+    linearised.original_equations,
+    closed_loop.small_motions,
+    closed_loop.control_law,
+    closed_loop.transfer_functions,
+    closed_loop.poles_and_zeros,
+    closed_loop.critical_damping,
+    step_answers.step_response,
+    step_answers.control_response,
+    step_answers.extremes,
+    closed_loop.first_order,
+    motion.linearisation,
+)
+
+FIRST_ORDER: tuple[MaybeStep, ...] = (*FIRST_ORDER_MOTION, motion.reference, motion.linearisation)
 LINEARISED: tuple[MaybeStep, ...] = LINEARISED_MOTION
 OUTPUTS: tuple[MaybeStep, ...] = (outputs.output_matrix, outputs.output_equations)
 
@@ -67,7 +126,24 @@ MINIMUM_PRINCIPLE: tuple[MaybeStep, ...] = (
     pontryagin.costate_equations,
     pontryagin.boundary_conditions,
     transversality.boundary_residual,
+    effort.exact_differential,
+    effort.least_effort,
 )
+
+SWITCHING_PRINCIPLE: tuple[MaybeStep, ...] = (
+    pontryagin.hamiltonian,
+    switching.switching_function,
+    switching.control_law,
+    switching.smoothed_law,
+    pontryagin.state_equations,
+    pontryagin.costate_equations,
+    switching.switching_rate,
+    singular.singular_arcs,
+    singular.generalised_legendre_clebsch,
+    pontryagin.boundary_conditions,
+    transversality.boundary_residual,
+)
+"""Where H is linear in the controls and their magnitudes."""
 
 LINEAR: tuple[MaybeStep, ...] = (
     stability_steps.stability,
@@ -90,11 +166,16 @@ MODEL_STEPS: dict[type[Model], tuple[MaybeStep, ...]] = {
     Newton: NEWTON,
     FirstOrder: FIRST_ORDER,
     Linearised: LINEARISED,
+    Gyrostat: (*GYROSTAT_MOTION, motion.reference, motion.linearisation),
+    Scaled: (*SCALED_MOTION, motion.reference, motion.linearisation),
+    Reduced: (*REDUCED_MOTION, motion.reference, motion.linearisation),
+    ClosedLoop: CLOSED_LOOP,
 }
 MOTION_STEPS: dict[type[Model], tuple[MaybeStep, ...]] = {
     Newton: NEWTON_MOTION,
     FirstOrder: FIRST_ORDER_MOTION,
     Linearised: LINEARISED_MOTION,
+    Gyrostat: GYROSTAT_MOTION,
 }
 """As far as the first-order form: what a linearisation needs of the motion."""
 
@@ -131,13 +212,40 @@ def _derived(model: Model, problem: Problem | None, lists: Mapping[type[Model], 
     refuse_misfits(model, problem)
     derivation = begin(model, problem)
     refuse_foreign_symbols(derivation)
-    if isinstance(model, Linearised):
+    if isinstance(model, Linearised | Scaled | Reduced | ClosedLoop):
         derivation = replace(derivation, original=_derived(model.of, None, MOTION_STEPS))
     known = dimensions.declared(derivation)
-    further = (*OUTPUTS, *(MINIMUM_PRINCIPLE if problem else LINEAR)) if lists is MODEL_STEPS else ()
-    for step_function in (*steps, *further):
+    derivation, known = _taken(derivation, known, steps)
+    derivation = _with_quantities(derivation)
+    if lists is MODEL_STEPS:
+        derivation, _ = _taken(derivation, known, (*OUTPUTS, *_principle(derivation)))
+    return derivation
+
+
+def _with_quantities(derivation: Derivation) -> Derivation:
+    """The same, the cost in terms of states and controls where it names quantities that were derived."""
+    problem = derivation.problem
+    if problem is None or "quantities" not in derivation:
+        return derivation
+    known = gyrostat.resolved(derivation.step("quantities").equations)
+    cost = sp.sympify(problem.running_cost).xreplace(known)
+    return replace(derivation, problem=replace(problem, running_cost=cost))
+
+
+def _principle(motion_derived: Derivation) -> tuple[MaybeStep, ...]:
+    """What follows from the motion: the principle that suits the cost, or linear theory where there is none."""
+    if motion_derived.problem is None:
+        return LINEAR
+    return SWITCHING_PRINCIPLE if switching.applies(motion_derived) else MINIMUM_PRINCIPLE
+
+
+def _taken(
+    derivation: Derivation, known: dimensions.Known, steps: Iterable[MaybeStep]
+) -> tuple[Derivation, dimensions.Known]:
+    """The derivation and the dimensions after some more steps."""
+    for step_function in steps:
         step = step_function(derivation)
         if step is not None:
             derivation = derivation.extended(replace(step, checks=(*step.checks, dimensions.agreement(known, step))))
             known = dimensions.extended(known, step)
-    return derivation
+    return derivation, known

@@ -14,6 +14,7 @@ from satsym.symbolic import control_sets
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import gradient, tidy
 from satsym.symbolic.checks import DIGITS, Point, compare, identity, never_below, numeric, partial
+from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
 from satsym.symbolic.model import Problem, symbols_of, t
 
@@ -27,18 +28,21 @@ def costates(so_far: Derivation) -> tuple[sp.Symbol, ...]:
 
 
 def hamiltonian(so_far: Derivation) -> Step:
-    """H = L + lambda' f."""
+    """H = lambda' f + L, or lambda' f - L with the maximum convention."""
     problem, lam = _problem(so_far), sp.Matrix(costates(so_far))
     f = so_far.rhs("first_order")
-    h = tidy(problem.running_cost) + (lam.T * f)[0]
+    h = sign(problem) * tidy(problem.running_cost) + (lam.T * f)[0]
     value, parts = numeric([h]), numeric([problem.running_cost, *f])
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
         cost, *rates = parts(point)
-        return value(point), [cost + sum(point[costate] * rate for costate, rate in zip(lam, rates, strict=True))]
+        return value(point), [
+            sign(problem) * cost + sum(point[costate] * rate for costate, rate in zip(lam, rates, strict=True))
+        ]
 
-    check = compare("sum of parts", h.free_symbols | {*lam}, sides)
-    return Step("hamiltonian", "definition of H", (Equation("H", n.HAMILTONIAN, h),), ("first_order", "cost"), (check,))
+    check = compare(worded("sum of parts", problem), h.free_symbols | {*lam}, sides)
+    rule = worded("definition of H", problem)
+    return Step("hamiltonian", rule, (Equation("H", n.HAMILTONIAN, h),), ("first_order", "cost"), (check,))
 
 
 def stationarity(so_far: Derivation) -> Step:
@@ -64,7 +68,7 @@ def stationarity(so_far: Derivation) -> Step:
 
 def second_derivative(so_far: Derivation) -> Step:
     """H_uu, and that it is positive definite (the strict Legendre-Clebsch condition)."""
-    controls = symbols_of(so_far.model.controls)
+    problem, controls = _problem(so_far), symbols_of(so_far.model.controls)
     h = so_far.equation("hamiltonian.H").rhs
     hessian = _hessian(so_far)
     equations = tuple(
@@ -77,17 +81,18 @@ def second_derivative(so_far: Derivation) -> Step:
         for j, b in enumerate(controls)
         if i == j or hessian[i, j] != 0
     )
-    minors = [hessian[:k, :k].det() for k in range(1, len(controls) + 1)]
+    minors = [(sign(problem) * hessian[:k, :k]).det() for k in range(1, len(controls) + 1)]
     leading = numeric(minors)
-    positive = never_below("positive minors", h.free_symbols, lambda point, rng: leading(point))
+    positive = never_below(worded("positive minors", problem), h.free_symbols, lambda point, rng: leading(point))
     if not positive.passed or any(sp.simplify(m).is_positive is False for m in minors):
         raise DerivationError(
-            f"{so_far.name}: H_uu is not positive definite, so H has no minimum in the controls "
+            f"{so_far.name}: H_uu is not {'positive' if sign(problem) > 0 else 'negative'} definite, so H has no "
+            f"{problem.convention} in the controls "
             "(weights have to be declared positive)"
         )
     return Step(
         "second_derivative",
-        "second derivative by controls",
+        worded("second derivative by controls", problem),
         equations,
         ("stationarity",),
         (_numeric_gradient_of(gradient(h, controls), controls, list(hessian.T)), positive),
@@ -111,16 +116,18 @@ def control_law(so_far: Derivation) -> Step:
         law = chosen(point)
         best = value({**point, **dict(zip(controls, law, strict=True))})[0]
         return control_sets.slacks(problem.control_set, point, limits, law) + [
-            value({**point, **dict(zip(controls, rival, strict=True))})[0] - best
+            sign(problem) * (value({**point, **dict(zip(controls, rival, strict=True))})[0] - best)
             for rival in control_sets.admissible(problem.control_set, point, limits, len(controls), rng, COMPETITORS)
         ]
 
-    check = never_below("cheapest admissible", h.free_symbols | {*limits, *controls}, margins)
-    return Step("control_law", f"project on {problem.control_set}", equations, ("second_derivative",), (check,))
+    claim, rule = (worded(key, problem) for key in ("cheapest admissible", f"project on {problem.control_set}"))
+    check = never_below(claim, h.free_symbols | {*limits, *controls}, margins)
+    return Step("control_law", rule, equations, ("second_derivative",), (check,))
 
 
 def minimised_hamiltonian(so_far: Derivation) -> Step:
-    """H* = H at the unconstrained minimiser (the arcs on which no bound is active)."""
+    """H* = H at the unconstrained minimiser (the arcs on which no bound is active), or the maximiser."""
+    problem = _problem(so_far)
     controls = symbols_of(so_far.model.controls)
     h = so_far.equation("hamiltonian.H").rhs
     hats = {u: so_far.equation(f"stationarity.{u.name}_hat").rhs for u in controls}
@@ -132,7 +139,8 @@ def minimised_hamiltonian(so_far: Derivation) -> Step:
 
     check = compare("H at the minimiser", h.free_symbols, sides)
     equation = Equation("H_star", n.MINIMISED, h_star)
-    return Step("minimised_hamiltonian", "substitute controls", (equation,), ("hamiltonian", "control_law"), (check,))
+    name = "minimised_hamiltonian" if problem.convention == "minimum" else "maximised_hamiltonian"
+    return Step(name, worded("substitute controls", problem), (equation,), ("hamiltonian", "control_law"), (check,))
 
 
 def state_equations(so_far: Derivation) -> Step:
@@ -181,8 +189,8 @@ def boundary_conditions(so_far: Derivation) -> Step:
     *s_x, s_t = (tidy(g) for g in gradient(s, (*states, t)))
     equations = (
         *(Equation(x.name, x, n.initial(x)) for x in states),
-        *(Equation(costate.name, costate, g) for costate, g in zip(lam, s_x, strict=True)),
-        Equation("final_time", n.HAMILTONIAN + s_t, sp.Integer(0)),
+        *(Equation(costate.name, costate, sign(problem) * g) for costate, g in zip(lam, s_x, strict=True)),
+        Equation("final_time", n.HAMILTONIAN + sign(problem) * s_t, sp.Integer(0)),
     )
     slope = numeric([*s_x, s_t])
     cost = numeric([s])
@@ -191,7 +199,8 @@ def boundary_conditions(so_far: Derivation) -> Step:
         s.free_symbols | {*states, t},
         lambda point: (slope(point), [partial(cost, point, symbol)[0] for symbol in (*states, t)]),
     )
-    return Step("boundary_conditions", "transversality", equations, ("hamiltonian", "cost"), (check,))
+    rule = worded("transversality", problem)
+    return Step("boundary_conditions", rule, equations, ("hamiltonian", "cost"), (check,))
 
 
 def _problem(so_far: Derivation) -> Problem:

@@ -14,6 +14,7 @@ from typing import Any
 import sympy as sp
 from sympy.printing.latex import LatexPrinter
 
+from satsym.symbolic.levels import extreme, levels, size
 from satsym.symbolic.products import Product, base, exponent, is_negative, spread, take_apart
 from satsym.symbolic.terms import Piece, Term, joined
 
@@ -231,19 +232,29 @@ class Printer(LatexPrinter):
 
     def _print_Clip(self, expr: sp.Expr, exp: str | None = None) -> str:
         value, lower, upper = map(self._print, expr.args)
-        return _extreme(r"\max", lower, _extreme(r"\min", upper, value))
+        return extreme(r"\max", lower, extreme(r"\min", upper, value))
+
+    def _print_Switch(self, expr: sp.Expr, exp: str | None = None) -> str:
+        reverse = expr.args[0].could_extract_minus_sign()
+        slope, weight, low, high = expr.args
+        value, *others = map(self._print, (-slope if reverse else slope, weight, low, high))
+        return levels(value, others[0], others[1], others[2], reverse)
+
+    def _print_Shrink(self, expr: sp.Expr, exp: str | None = None) -> str:
+        value, width = map(self._print, expr.args)
+        return rf"\mathcal{{S}}_{{{width}}}({value})"
 
     def _print_Shorten(self, expr: sp.Expr, exp: str | None = None) -> str:
         norm_squared, limit = expr.args
         with self._inside():
             ratio = rf"\frac{{{self._print(limit)}}}{{\sqrt{{{self._print(norm_squared)}}}}}"
-        return _extreme(r"\min", "1", ratio)
+        return extreme(r"\min", "1", ratio)
 
     # sizes
 
     def _parentheses(self, content: str) -> tuple[str, str]:
-        size = "" if self._small else _size(content)
-        return (f"{size}l(", f"{size}r)") if size else ("(", ")")
+        bigger = "" if self._small else size(content)
+        return (f"{bigger}l(", f"{bigger}r)") if bigger else ("(", ")")
 
     def _enclosed(self, content: str) -> str:
         opening, closing = self._parentheses(content)
@@ -268,20 +279,6 @@ def _plus_first(summands: Sequence[sp.Expr]) -> list[sp.Expr]:
 
 def _whole(negative: bool, tex: str, names: frozenset[str]) -> Term:
     return Term(negative, tex, (Piece(tex),), names)
-
-
-def _extreme(operator: str, first: str, second: str) -> str:
-    size = _size(first + second)
-    left, right = (rf"{size}l\{{", rf"{size}r\}}") if size else (r"\{", r"\}")
-    return operator + left + first + r",\, " + second + right
-
-
-def _size(content: str) -> str:
-    """Command for delimiters around the content: empty for ordinary ones."""
-    for inner, outer in ((r"\bigg", r"\Bigg"), (r"\Bigg", r"\Bigg"), (r"\Big", r"\bigg"), (r"\frac", r"\Big")):
-        if inner in content:
-            return outer
-    return r"\big" if "(" in content else ""
 
 
 def _names(expression: sp.Expr) -> frozenset[str]:

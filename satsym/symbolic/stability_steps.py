@@ -167,7 +167,9 @@ def _count(of: Spectrum, found: RouthArray) -> Check:
             tiny = {s: mp.mpf(10) ** (-DIGITS * 4**k) for k, s in enumerate(small)}
             signs = [mp.sign(value) for value in values({**point, **tiny})]
         changes = sum(a != b for a, b in pairwise(signs))
-        right, axis = right_half_plane(polynomial(point))
+        with mp.workdps(4 * DIGITS):  # the roots of a multiple factor are worth a fraction of the coefficients' digits
+            coefficients = polynomial(point)
+        right, axis = right_half_plane(coefficients)
         known = [] if found.right is None else [(found.right, right), (found.axis, axis)]
         return [changes, *(a for a, _ in known)], [right, *(b for _, b in known)]
 

@@ -21,6 +21,7 @@ import sympy as sp
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import gradient, tidy
 from satsym.symbolic.checks import DIGITS, Point, compare, numeric
+from satsym.symbolic.convention import sign
 from satsym.symbolic.derivation import Check, Derivation, Equation, Step
 from satsym.symbolic.model import symbols_of, t
 
@@ -50,8 +51,9 @@ def boundary_residual(so_far: Derivation) -> Step:
         rho * sp.diff(c, t) * TIME_VARIATION + (1 - g - rho) * dx
         for g, rho, c, dx in zip(given, on_reference, curve, free, strict=True)
     ]
-    variation = (n.HAMILTONIAN + slope_t) * TIME_VARIATION + sum(
-        ((slope - costate) * move for slope, costate, move in zip(slopes, lam, moves, strict=True)), sp.Integer(0)
+    variation = (n.HAMILTONIAN + sign(problem) * slope_t) * TIME_VARIATION + sum(
+        ((sign(problem) * slope - costate) * move for slope, costate, move in zip(slopes, lam, moves, strict=True)),
+        sp.Integer(0),
     )
     ends = [
         g * (x - goal) + rho * (x - c)
@@ -71,7 +73,7 @@ def boundary_residual(so_far: Derivation) -> Step:
         "collect variations",
         equations,
         ("boundary_conditions",),
-        (_first_variation(states, lam, weighted, curve, equations),),
+        (_first_variation(states, lam, sign(problem) * weighted, curve, equations),),
     )
 
 

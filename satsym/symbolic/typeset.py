@@ -7,7 +7,7 @@ from typing import Any
 
 import sympy as sp
 
-from satsym.symbolic import linear_notation
+from satsym.symbolic import linear_notation, switching_notation
 from satsym.symbolic import notation as n
 from satsym.symbolic.analysis.spectrum import LAMBDA
 from satsym.symbolic.derivation import Derivation, Equation, Step
@@ -123,6 +123,7 @@ def _ranks(derivation: Derivation) -> dict[str, tuple[Kind, int]]:
         (Kind.CONSTANT, [m.name for m in n.multipliers(derivation.problem)] if derivation.problem else []),
         (Kind.CONSTANT, [v.symbol for v in (*model.parameters, *(d.variable for d in model.definitions))]),
         (Kind.CONSTANT, [] if derivation.problem else list(linear_notation.weights(model))),
+        (Kind.CONSTANT, switching_notation.constants(model)),
         (Kind.COSTATE, [n.costate_of(s).name for s in states]),
         (Kind.MOTION, [*original, *(s.name for s in states)]),
         (Kind.ACCELERATION, accelerations),

@@ -1,0 +1,62 @@
+"""Hill's equations: a satellite near a circular orbit, in axes that turn with the reference point, in and out of plane.
+
+The axes point outwards, ahead, and along the normal of the orbit. In the plane the equations are those of
+clohessy_wiltshire, which come from polar coordinates.
+"""
+
+from sympy import Matrix, cos, sin, sqrt
+
+from satsym.symbolic import Definition, Linearised, Newton, Output, Variable, symbols_of, t
+
+WAYS = ("outwards", "ahead", "along the normal")
+ORIGINAL = tuple(Variable(q, q, "km", f"position {way}") for q, way in zip("xyz", WAYS, strict=True))
+ORIGINAL += tuple(Variable(f"{q.symbol}_dot", rf"\dot {q.latex}", "km/s", f"rate of {q.symbol}") for q in ORIGINAL)
+STATES = tuple(
+    Variable(q, rf"\{q}", "km", f"deviation {way}") for q, way in zip(("xi", "eta", "zeta"), WAYS, strict=True)
+)
+STATES += tuple(Variable(f"{q.symbol}_dot", rf"\dot{q.latex}", "km/s", f"rate of {q.symbol}") for q in STATES)
+CONTROLS = tuple(Variable(f"u{k}", f"u_{k}", "km/s**2", f"thrust per unit mass {way}") for k, way in enumerate(WAYS, 1))
+PARAMETERS = (
+    Variable("sigma", r"\sigma", "km", "radius of the reference orbit", 1.0, positive=True),
+    Variable("omega", r"\omega", "rad/s", "angular velocity of the reference orbit", 1.0, positive=True),
+)
+MU = Variable("mu", r"\mu", "km**3/s**2", "gravitational parameter", positive=True)
+DISTANCE = Variable("y1", "y_1", "km", "deviation of the distance from the centre")
+HEIGHT = Variable("y2", "y_2", "km", "distance from the plane of the reference orbit")
+
+x, y, z, x_dot, y_dot, z_dot = symbols_of(ORIGINAL)
+sigma, omega, mu = symbols_of((*PARAMETERS, MU))
+
+axes = Matrix([[cos(omega * t), -sin(omega * t), 0], [sin(omega * t), cos(omega * t), 0], [0, 0, 1]])
+place = Matrix([x, y, z])
+distance = sqrt(place.dot(place))
+
+turning = Newton(
+    name="two_body_turning",
+    title="Two-body motion in turning axes",
+    states=ORIGINAL,
+    controls=CONTROLS,
+    parameters=PARAMETERS,
+    definitions=(Definition(MU, sigma**3 * omega**2),),
+    coordinates={x: x_dot, y: y_dot, z: z_dot},
+    directions={f"e_{q}": axes[:, k] for k, q in enumerate("xyz")},
+    position=axes * place,
+    forces={"gravity": -mu / distance**3 * axes * place, "thrust": axes * Matrix(symbols_of(CONTROLS))},
+)
+
+about = {x: sigma, y: 0, z: 0, x_dot: 0, y_dot: 0, z_dot: 0}
+
+hill = Linearised(
+    name="hill",
+    title="Hill's equations: motion near a circular orbit, in and out of its plane",
+    of=turning,
+    about=about,
+    states=STATES,
+    controls=CONTROLS,
+    parameters=PARAMETERS,
+    definitions=turning.definitions,
+    deviations={new: old - value for new, (old, value) in zip(symbols_of(STATES), about.items(), strict=True)},
+    outputs=(Output(DISTANCE, distance), Output(HEIGHT, z)),
+)
+
+PROBLEMS = (hill,)

@@ -1,0 +1,39 @@
+"""A body that a centre of attraction pulls, in Cartesian coordinates along fixed axes, with thrust in any direction.
+
+Everything is per unit mass. The centre stays where it is: the body's own mass is small, or mu is that of both.
+"""
+
+from sympy import Matrix, eye
+
+from satsym.symbolic import Newton, Variable, symbols_of
+
+STATES = (
+    Variable("x", "x", "km", "first component of the position"),
+    Variable("y", "y", "km", "second component of the position"),
+    Variable("z", "z", "km", "third component of the position"),
+    Variable("v_x", "v_x", "km/s", "first component of the velocity"),
+    Variable("v_y", "v_y", "km/s", "second component of the velocity"),
+    Variable("v_z", "v_z", "km/s", "third component of the velocity"),
+)
+CONTROLS = tuple(Variable(f"a_{q}", f"a_{q}", "km/s**2", f"thrust per unit mass along {q}") for q in "xyz")
+MU = Variable("mu", r"\mu", "km**3/s**2", "gravitational parameter of the centre", 1.0, positive=True)
+
+x, y, z, v_x, v_y, v_z = symbols_of(STATES)
+(mu,) = symbols_of((MU,))
+
+r = Matrix([x, y, z])
+thrust = Matrix(symbols_of(CONTROLS))
+
+two_body = Newton(
+    name="two_body",
+    title="Two-body motion in Cartesian coordinates",
+    states=STATES,
+    controls=CONTROLS,
+    parameters=(MU,),
+    coordinates={x: v_x, y: v_y, z: v_z},
+    directions={f"e_{q}": eye(3)[:, k] for k, q in enumerate("xyz")},
+    position=r,
+    forces={"gravity": -mu * r / r.norm() ** 3, "thrust": thrust},
+)
+
+PROBLEMS = (two_body,)

@@ -1,0 +1,90 @@
+"""Functions of problems whose Hamiltonian is linear in the controls: what switches them, and their companion.
+
+The exact law jumps, so the canonical system is generated for the smoothed companion, whose law is continuous. The
+companion has ``smoothing / 2`` times the squared controls more in its cost, and of the weights of magnitudes only a
+share. Both numbers follow the bounds of the box in ``bounds``; with a vanishing smoothing (1e-200, say) and a share of
+one it is the problem itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import sympy as sp
+
+from satsym.spec import names
+from satsym.symbolic import notation as n
+from satsym.symbolic.derivation import Derivation
+from satsym.symbolic.model import symbols_of
+from satsym.symbolic.pontryagin import costates
+from satsym.symbolic.switches import Side
+from satsym.symbolic.switching import parts, written_out
+
+STEP = "switching_function"
+"""The step that only derivations of such problems have."""
+
+
+def switches(derivation: Derivation) -> bool:
+    """Whether the Hamiltonian is linear in the controls and their magnitudes."""
+    return STEP in derivation
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A function of one point in time: name, first line of its docstring, arguments, value, names of the outputs."""
+
+    name: str
+    summary: str
+    arguments: str
+    value: sp.Matrix
+    hints: tuple[str, ...] = ()
+
+
+def vectors(derivation: Derivation) -> list[Entry]:
+    """Switching functions, their rates, weights of magnitudes and the exact law, a component for each control."""
+    found = parts(derivation)
+    controls = names(derivation.model.controls)
+    rates = [derivation.equation(f"switching_rate.{u}").rhs for u in controls]
+    return [
+        Entry("switching_function", "What multiplies each control in H.", "t x lam p", sp.Matrix(found.switching)),
+        Entry("switching_rate", "Its rates of change along an extremal.", "t x u lam p", sp.Matrix(rates)),
+        Entry("magnitude_weight", "Weights of |u| in the cost.", "t x p", sp.Matrix(found.weights)),
+        Entry(
+            "control_law",
+            "The controls that minimise H over the box.",
+            "t x lam p bounds",
+            sp.Matrix(written_out(derivation, derivation.rhs("control_law"))),
+            controls,
+        ),
+    ]
+
+
+def extremal_jacobian(derivation: Derivation) -> sp.Matrix:
+    """Derivatives of the rates of states and costates by states and costates, the controls being held."""
+    z = [*symbols_of(derivation.model.states), *costates(derivation)]
+    return sp.Matrix([*derivation.rhs("first_order"), *derivation.rhs("costate_equations")]).jacobian(z)
+
+
+@dataclass(frozen=True)
+class Companion:
+    """The smoothed companion with its law put in: rates of states and costates, and its Hamiltonian."""
+
+    rates: sp.Matrix
+    hamiltonian: sp.Expr
+
+
+def companion(derivation: Derivation) -> Companion:
+    """The companion of a switching problem."""
+    controls = symbols_of(derivation.model.controls)
+    stated = {e.name: e.rhs for e in derivation.step("smoothed_law").equations}
+    h, *laws = written_out(derivation, [stated["H"], *(stated[u.name] for u in controls)])
+    h = h.xreplace({n.HAMILTONIAN: derivation.equation("hamiltonian.H").rhs})
+    law = dict(zip(controls, laws, strict=True))
+    costate_rates = [-sp.diff(h, x) for x in symbols_of(derivation.model.states)]
+    rates = sp.Matrix([*derivation.rhs("first_order"), *costate_rates])
+    return Companion(rates.xreplace(law), h.xreplace(law))
+
+
+def printable(matrix: sp.Matrix) -> sp.Matrix:
+    """Expressions without the sign function, which is the side of a strip of no width."""
+    return matrix.replace(sp.sign, lambda value: Side(value, sp.Integer(0)))

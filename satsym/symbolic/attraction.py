@@ -1,0 +1,163 @@
+"""Attraction by a fixed centre, recognised in what was derived: Kepler's law, and the gradient of gravity.
+
+Nothing here is told which force gravity is. The sum of the forces without control is compared with the position, and
+what is found must hold identically.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from satsym.symbolic import notation as n
+from satsym.symbolic.algebra import definitions_of, total_derivative
+from satsym.symbolic.checks import Point, compare, identity, numeric, partial
+from satsym.symbolic.derivation import Derivation, Equation, Step
+from satsym.symbolic.model import Model, Newton, symbols_of
+
+
+@dataclass(frozen=True)
+class Attraction:
+    """An uncontrolled acceleration -k r / |r|^3.
+
+    Attributes
+    ----------
+    strength
+        k: a positive function of parameters and named constants.
+    distance
+        |r|, by the coordinates.
+    """
+
+    strength: sp.Expr
+    distance: sp.Expr
+
+
+def uncontrolled_force(model: Newton) -> sp.Matrix:
+    """The sum of the forces per unit mass where every control is zero, by inertial components."""
+    coast = dict.fromkeys(symbols_of(model.controls), sp.Integer(0))
+    return sum(model.forces.values(), sp.zeros(len(model.position), 1)).xreplace(coast)
+
+
+def inertial_velocity(model: Newton) -> sp.Matrix:
+    """The rate of change of the position vector, by inertial components."""
+    return model.position.applyfunc(lambda c: total_derivative(c, model.coordinates))
+
+
+def central_attraction(so_far: Derivation) -> Step | None:
+    """That the motion without control is Kepler's: acceleration -k r / |r|^3 with a constant k."""
+    model = so_far.model
+    if not isinstance(model, Newton) or (found := recognised(model)) is None:
+        return None
+    law = -found.strength * n.POSITION / n.DISTANCE**3
+    force, place, size = uncontrolled_force(model), model.position, numeric([found.distance])
+    law_by_components = [law.xreplace({n.POSITION: c, n.DISTANCE: found.distance}) for c in place]
+    proof = identity("points to the centre", [f - c for f, c in zip(force, law_by_components, strict=True)])
+    derived = inertial_accelerations(so_far)
+    accelerations, strength, components = map(numeric, (derived, [found.strength], list(place)))
+
+    def sides(point: Point) -> tuple[list[Any], list[Any]]:
+        """The equations of motion carry the position along: its second derivative, against the law."""
+        (k,), (distance,) = strength(point), size(point)
+        return accelerations(point), [-k * c / distance**3 for c in components(point)]
+
+    symbols = set(symbols_of(model.states)) | {n.TIME} | found.strength.free_symbols | force.free_symbols
+    symbols |= place.free_symbols.union(*(a.free_symbols for a in derived))
+    equations = (
+        Equation("distance", n.DISTANCE, found.distance),
+        Equation("law", n.ACCELERATION, law),
+    )
+    checks = (proof, compare("along the equations of motion", symbols, sides))
+    return Step("central_attraction", "attraction", equations, ("position", "forces", "first_order"), checks)
+
+
+def gravity_gradient(so_far: Derivation) -> Step | None:
+    """The blocks of the Jacobian along inertial axes: A = (0, I; G, 0), with G = k (3 r r' / |r|^5 - I / |r|^3).
+
+    G is read off the derived entries: one number each that multiplies r r' and I, as functions of the distance alone.
+    """
+    model, strength = so_far.model, strength_of(so_far)
+    if not isinstance(model, Newton) or strength is None:
+        return None
+    place = model.position
+    if not place.jacobian(list(model.coordinates)).is_Identity:
+        return None
+    still, carried, gradient, damping = jacobian_blocks(so_far)
+    if len(place) < 2 or not (still.is_zero_matrix and carried.is_Identity and damping.is_zero_matrix):
+        return None
+    distance = so_far.equation("central_attraction.distance").rhs
+    outer = sp.simplify(gradient[0, 1] / (place[0] * place[1]))
+    rest = sp.simplify(gradient[0, 0] - outer * place[0] ** 2)
+    by_distance = [e.xreplace({distance**2: n.DISTANCE**2}) for e in (outer, rest)]
+    if any(e.has(*place) for e in by_distance):
+        return None
+    whole = sp.expand((by_distance[0] * n.OUTER + by_distance[1] * n.IDENTITY) / strength)
+    entries = by_distance[0] * place * place.T + by_distance[1] * sp.eye(len(place))
+    back = entries.xreplace({n.DISTANCE: distance})
+    force = numeric(list(uncontrolled_force(model)))
+    slopes = numeric(list(back))
+
+    def sides(point: Point) -> tuple[list[Any], list[Any]]:
+        columns = [partial(force, point, q) for q in model.coordinates]
+        return slopes(point), [column[row] for row in range(len(place)) for column in columns]
+
+    checks = (
+        identity("entry by entry", gradient - back),
+        compare("numeric gradient of the force", set(model.coordinates) | back.free_symbols, sides),
+    )
+    equations = (
+        Equation("A", n.JACOBIAN, sp.ImmutableMatrix([[0, n.IDENTITY], [n.GRADIENT, 0]])),
+        Equation("G", n.GRADIENT, strength * whole),
+    )
+    return Step("gravity_gradient", "blocks", equations, ("linearisation", "central_attraction"), checks)
+
+
+def jacobian_blocks(so_far: Derivation) -> list[sp.Matrix]:
+    """Without control: the rates of coordinates and of velocities, each by coordinates and by velocities."""
+    model = so_far.model
+    assert isinstance(model, Newton)
+    coast = dict.fromkeys(symbols_of(model.controls), sp.Integer(0))
+    entries = {e.name: e.rhs.xreplace(coast) for e in so_far.step("linearisation").equations}
+    groups = (list(model.coordinates), list(model.coordinates.values()))
+    return [
+        sp.Matrix([[entries[f"A_{row.name}_{column.name}"] for column in columns] for row in rows])
+        for rows in groups
+        for columns in groups
+    ]
+
+
+def strength_of(so_far: Derivation) -> sp.Expr | None:
+    """k of the law that was derived; ``None`` where the uncontrolled motion is not Kepler's."""
+    if "central_attraction" not in so_far:
+        return None
+    law = so_far.equation("central_attraction.law").rhs
+    return -law.coeff(n.POSITION) * n.DISTANCE**3
+
+
+def inertial_state(model: Model, strength: sp.Expr) -> sp.Matrix:
+    """Position, velocity and k as one column of seven; components that a plane or a line has not are zero."""
+    assert isinstance(model, Newton)
+    missing = sp.zeros(len(n.AXES) - len(model.position), 1)
+    return sp.Matrix.vstack(model.position, missing, inertial_velocity(model), missing, sp.Matrix([strength]))
+
+
+def recognised(model: Newton) -> Attraction | None:
+    """The attraction, if the force is one; that it is so identically is for the step to prove."""
+    place, force = model.position, uncontrolled_force(model)
+    distance = sp.sqrt(sp.simplify(place.dot(place)))
+    strength = sp.simplify(-force.dot(place) * distance)
+    moving = {n.TIME, *symbols_of(model.states)}
+    if strength.free_symbols & moving or not strength.xreplace(definitions_of(model)).is_positive:
+        return None
+    across = [sp.simplify(f * distance**3 + strength * c) for f, c in zip(force, place, strict=True)]
+    return None if any(across) else Attraction(strength, distance)
+
+
+def inertial_accelerations(so_far: Derivation) -> list[sp.Expr]:
+    """The second derivative of the position along the first-order equations without control."""
+    model = so_far.model
+    assert isinstance(model, Newton)
+    coast = dict.fromkeys(symbols_of(model.controls), sp.Integer(0))
+    rates = dict(zip(symbols_of(model.states), so_far.rhs("first_order").xreplace(coast), strict=True))
+    return [total_derivative(total_derivative(c, rates), rates) for c in model.position]

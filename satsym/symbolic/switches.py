@@ -1,0 +1,96 @@
+"""What minimises a Hamiltonian that is linear in a control, and in its magnitude, over an interval.
+
+Of ``slope * u + weight * |u|`` on ``lower <= u <= upper`` the minimiser jumps where the slope passes ``weight`` or
+``-weight``. With ``smoothing / 2 * u**2`` added it is the clipped ``-Shrink(slope, weight) / smoothing``.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import mpmath as mp
+import sympy as sp
+
+
+class Switch(sp.Function):
+    """``Switch(slope, weight, lower, upper)``: the minimiser of ``slope * u + weight * |u|`` on an interval.
+
+    Where all of an interval minimises, it is the value of least magnitude; without a weight, the midpoint.
+    """
+
+    nargs = 4
+    is_real = True
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """Zero, except where it jumps, where it has no derivative. The limits are constants."""
+        if argindex > 2:
+            raise sp.ArgumentIndexError(self, argindex)
+        return sp.Integer(0)
+
+
+class Shrink(sp.Function):
+    """``Shrink(value, width)``: the value brought nearer to zero by the width, zero if it is not farther away."""
+
+    nargs = 2
+    is_real = True
+
+    @classmethod
+    def eval(cls, value: sp.Expr, width: sp.Expr) -> sp.Expr | None:
+        """The value itself where the width is zero."""
+        return value if width.is_zero else None
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """One by the value outside the width, zero inside; by the width the sign of the value, reversed."""
+        side = Side(*self.args)
+        return side**2 if argindex == 1 else -side
+
+
+class Side(sp.Function):
+    """``Side(value, width)``: one above the width, minus one below ``-width``, zero between."""
+
+    nargs = 2
+    is_real = True
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """Zero, except where it jumps, where it has no derivative."""
+        return sp.Integer(0)
+
+
+SWITCHES = (Switch, Shrink, Side)
+
+
+def by_signs(expression: sp.Expr) -> sp.Expr:
+    """The expression with signs, minima and maxima in place of switches, as people print laws.
+
+    Right at a threshold the sign is zero, and a switch with a weight halfway between two of its levels.
+    """
+
+    def switch(slope: sp.Expr, weight: sp.Expr, lower: sp.Expr, upper: sp.Expr) -> sp.Expr:
+        above, below = (1 + sp.sign(slope - weight)) / 2, (1 - sp.sign(slope + weight)) / 2
+        least = 0 if weight.is_zero else (1 - above - below) * sp.Min(upper, sp.Max(lower, 0))
+        return above * lower + below * upper + least
+
+    def shrink(value: sp.Expr, width: sp.Expr) -> sp.Expr:
+        return sp.Max(value - width, 0) + sp.Min(value + width, 0)
+
+    return expression.replace(Switch, switch).replace(Shrink, shrink)
+
+
+def _switch(slope: Any, weight: Any, lower: Any, upper: Any) -> Any:
+    if slope > weight:
+        return lower
+    if slope < -weight:
+        return upper
+    return max(lower, min(mp.mpf(0), upper)) if weight > 0 else (lower + upper) / 2
+
+
+def _side(value: Any, width: Any) -> Any:
+    return mp.mpf(int(value > width) - int(value < -width))
+
+
+def _shrink(value: Any, width: Any) -> Any:
+    side = _side(value, width)
+    return side * side * value - side * width
+
+
+MPMATH_SWITCHES = {"Switch": _switch, "Shrink": _shrink, "Side": _side}

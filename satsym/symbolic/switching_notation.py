@@ -1,0 +1,141 @@
+"""Symbols of problems whose Hamiltonian is linear in the controls, and how they are typeset."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import sympy as sp
+
+from satsym.spec import Variable
+from satsym.symbolic.model import Model, Problem, symbols_of
+
+UNSWITCHED = sp.Symbol("H_0", real=True)
+"""The part of H without controls."""
+
+SMOOTHING = sp.Symbol("smoothing", positive=True)
+"""The weight of u^2 / 2 in the smoothed companion."""
+
+SHARE = sp.Symbol("magnitude_share", real=True)
+"""The share of the weights of magnitudes that counts in the smoothed companion."""
+
+COMPANION = (
+    Variable(SMOOTHING.name, r"\varepsilon", meaning="weight of u^2 / 2 in the smoothed companion", positive=True),
+    Variable(SHARE.name, r"\kappa", meaning="share of the weights of magnitudes that counts in it"),
+)
+"""What follows the bounds of the box in the ``bounds`` argument of the kernels of a switching problem."""
+
+SMOOTHED = sp.Symbol("H_smoothed", real=True)
+"""H of the smoothed companion."""
+
+
+def switching_of(control: sp.Symbol) -> sp.Symbol:
+    """The switching function of a control: what multiplies it in H."""
+    return sp.Symbol(f"switching_{control.name}", real=True)
+
+
+def derivative_of(control: sp.Symbol, order: int, suffix: str = "") -> sp.Symbol:
+    """A time derivative of the switching function."""
+    return sp.Symbol(f"switching_{control.name}{suffix}_{order}", real=True)
+
+
+def weight_of(control: sp.Symbol) -> sp.Symbol:
+    """The weight of a control's magnitude in the cost."""
+    return sp.Symbol(f"magnitude_weight_{control.name}", real=True)
+
+
+def smoothed(control: sp.Symbol) -> sp.Symbol:
+    """The control of the smoothed companion."""
+    return sp.Symbol(f"{control.name}_smoothed", real=True)
+
+
+def singular(control: sp.Symbol, suffix: str = "") -> sp.Symbol:
+    """The control on a singular arc."""
+    return sp.Symbol(f"{control.name}_singular{suffix}", real=True)
+
+
+def kelley(control: sp.Symbol, suffix: str = "") -> sp.Symbol:
+    """What must not be negative on a singular arc (not positive where H is maximised)."""
+    return sp.Symbol(f"kelley_{control.name}{suffix}", real=True)
+
+
+def drift_bracket(control: sp.Symbol) -> sp.Symbol:
+    """The Poisson bracket of H_0 and the switching function."""
+    return sp.Symbol(f"bracket_H_0_{control.name}", real=True)
+
+
+def bracket(by: sp.Symbol, control: sp.Symbol) -> sp.Symbol:
+    """The Poisson bracket of the switching functions of two controls."""
+    return sp.Symbol(f"bracket_{by.name}_{control.name}", real=True)
+
+
+def weight_bracket(by: sp.Symbol, control: sp.Symbol) -> sp.Symbol:
+    """The Poisson bracket of the weight of one control's magnitude and the switching function of another."""
+    return sp.Symbol(f"bracket_weight_{by.name}_{control.name}", real=True)
+
+
+def magnitudes(controls: Sequence[sp.Symbol]) -> dict[sp.Expr, sp.Symbol]:
+    """Each |u|, and a symbol of its own for it."""
+    return {sp.Abs(u): sp.Dummy(f"magnitude_{u.name}", real=True) for u in controls}
+
+
+def is_affine(expressions: Sequence[sp.Expr], controls: Sequence[sp.Symbol]) -> bool:
+    """Whether expressions are affine in the controls and their magnitudes."""
+    stands_for = magnitudes(controls)
+    entries = [*controls, *stands_for.values()]
+    for expression in expressions:
+        plain = sp.sympify(expression).xreplace(stands_for)
+        slopes = [sp.diff(plain, v) for v in entries]
+        if any(
+            slope.free_symbols & set(entries) and sp.simplify(slope).free_symbols & set(entries) for slope in slopes
+        ):
+            return False
+    return True
+
+
+def constants(model: Model) -> list[str]:
+    """Names of what stands in front of costates and controls."""
+    return [SMOOTHING.name, SHARE.name, *(weight_of(u).name for u in symbols_of(model.controls))]
+
+
+BRANCHES = ("", "_positive", "_negative")
+"""Singular arcs of a control without a weight, and with one on which the control is positive, and negative."""
+
+
+def names(problem: Problem) -> dict[str, str]:
+    """Names and LaTeX of what the derivation of a switching problem may introduce.
+
+    Empty where the running cost already shows that the Hamiltonian is not linear in the controls.
+    """
+    model = problem.model
+    controls = symbols_of(model.controls)
+    if not is_affine([problem.running_cost], controls):
+        return {}
+    latex = {u: v.latex for u, v in zip(controls, model.controls, strict=True)}
+    sigma = {u: rf"\sigma_{{{tex}}}" if len(controls) > 1 else r"\sigma" for u, tex in latex.items()}
+    weight = {u: rf"w_{{{tex}}}" if len(controls) > 1 else "w" for u, tex in latex.items()}
+    found = {UNSWITCHED.name: "H_0", SMOOTHED.name: r"H_\varepsilon"} | {v.symbol: v.latex for v in COMPANION}
+    marks = dict(zip(BRANCHES, ("", "+", "-"), strict=True))
+    for u in controls:
+        found[switching_of(u).name], found[weight_of(u).name] = sigma[u], weight[u]
+        found[f"d_{switching_of(u).name}"] = _dotted(sigma[u], 1)
+        found[smoothed(u).name] = rf"{latex[u]}^{{\varepsilon}}"
+        found[drift_bracket(u).name] = rf"\{{H_0, {sigma[u]}\}}"
+        for by in controls:
+            found[bracket(by, u).name] = rf"\{{{sigma[by]}, {sigma[u]}\}}"
+            found[weight_bracket(by, u).name] = rf"\{{{weight[by]}, {sigma[u]}\}}"
+        for branch, mark in marks.items():
+            found[singular(u, branch).name] = rf"{latex[u]}^{{\mathrm{{s}}{mark}}}"
+            index = f"_{{{latex[u]}}}" if len(controls) > 1 else ""
+            found[kelley(u, branch).name] = f"K{index}" + (f"^{mark}" if mark else "")
+            for order in range(1, 2 * len(model.states) + 1):
+                found[derivative_of(u, order, branch).name] = _dotted(sigma[u], order, mark)
+    return found
+
+
+def _dotted(sigma: str, order: int, mark: str = "") -> str:
+    """A time derivative, with dots as far as they can be read."""
+    head, _, index = sigma.partition("_")
+    index = f"_{index}" if index else ""
+    if order <= 2:
+        return rf"\{'d' * order}ot{head}{index}" + (f"^{mark}" if mark else "")
+    return rf"{head}{index}^{{{mark}({order})}}"
