@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
@@ -153,3 +154,40 @@ def test_paid_once_and_commands_are_timed_in_fresh_interpreters(bench):
     startup, commands = bench["startup"].startup(rounds=1), bench["commands"].commands(rounds=1)
     for table in (startup, commands):
         assert all(row.least or row.note.startswith("not timed") for row in table.rows)
+
+
+@pytest.mark.parametrize(
+    ("maker", "effort"),
+    [
+        (lambda m: m._steps("python", "RK4"), 400),
+        (lambda m: m._steps("numba", "RK4"), 400),
+        (lambda m: m._steps("numba", "symplectic"), 60),
+        (lambda m: m._dop853, 1e-8),
+        (lambda m: m._heyoka(), 1e-8),
+    ],
+    ids=["RK4, NumPy", "RK4, numba", "symplectic", "SciPy", "heyoka"],
+)
+def test_every_means_of_flying_orbits_arrives_where_the_closed_form_does_and_nearer_with_more_effort(
+    bench, maker, effort: float
+):
+    orbits = bench["orbits"]
+    try:
+        method = maker(orbits)
+    except bench["peers"].Missing as error:
+        pytest.skip(str(error))
+    on = orbits.orbits(8)
+    rough, fine = (on.error(method(on, e)) for e in (effort, 2 * effort if effort > 1.0 else effort / 100))
+    assert 1e-13 < fine < 0.3 * rough < 1e-5
+
+
+def test_the_effort_that_is_timed_is_just_enough(bench):
+    orbits = bench["orbits"]
+    on, method = orbits.orbits(8), orbits._steps("python", "RK4")
+    steps = orbits._enough(method, on, integer=True)
+    assert on.error(method(on, steps)) <= orbits.WANTED < on.error(method(on, int(steps / 1.1)))
+
+
+def test_where_heyoka_is_missing_the_table_says_so(bench, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setitem(sys.modules, "heyoka", None)
+    with pytest.raises(bench["peers"].Missing, match="heyoka is not installed"):
+        bench["orbits"]._heyoka()

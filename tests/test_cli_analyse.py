@@ -25,7 +25,7 @@ Run = Callable[..., tuple[int, str, str]]
 
 ANALYSIS_KEYS = (
     "equilibrium A B C eigenvalues jordan_blocks characteristic_polynomial routh stability controllability "
-    "observability exact"
+    "observability exact orbit point floquet"
 ).split()
 REGULATOR_KEYS = (
     "inputs K P riccati_residual closed_loop_eigenvalues characteristic_polynomial routh cost_from_initial"

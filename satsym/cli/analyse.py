@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from satsym.cli.options import json_option, out_option, plot_option
 from satsym.cli.output import emit, emit_json, in_colour, to_json
 from satsym.cli.saving import folder_for
-from satsym.status import ExitCode
+from satsym.status import BadInput, ExitCode
+
+if TYPE_CHECKING:
+    from satsym.analysis.orbits.survey import Survey
+    from satsym.analysis.structure import Analysis
+    from satsym.instance import Instance
+    from satsym.kernels import Kernels
 
 EXAMPLES = """\b
 Examples:
+  satsym analyse itb-earth --plot       an orbit: its kind, its monodromy matrix, what its stability means
   satsym analyse clohessy_wiltshire     a satellite near a circular orbit
   satsym analyse soft-return-geo        a nonlinear model, near its reference, in kilometres and seconds
   satsym analyse uny-lqr --plot         with pictures, into results/uny-lqr"""
@@ -24,35 +32,65 @@ Examples:
 @out_option
 @plot_option
 def analyse(subject: str, as_json: bool, out: Path | None, plot: bool) -> ExitCode:
-    """Tell what a model does near its reference or an equilibrium.
+    """Tell what a model does near its reference or an equilibrium, and an orbit about a centre.
 
     X is a shipped model or instance, or the path of one. Eigenvalues with their Jordan blocks, stability with its
     reason, the Routh array, and how much of the state the inputs move and the outputs show: by numbers, and exactly
-    where the model is linear.
+    where the model is linear. Of an instance that starts on an orbit: its elements and kind, the eigenvalues at the
+    start and why they decide nothing, its monodromy matrix and Floquet multipliers.
     """
-    from satsym.analysis.structure import analyse as analysed
     from satsym.cli.exact import exact
     from satsym.cli.subject import find
     from satsym.report.linear import analysis_object
-    from satsym.report.linear_text import analysis_text
+    from satsym.report.orbit import orbit_object
     from satsym.report.text import with_files
 
     given = find(subject)
     folder = folder_for(Path(subject).stem, out, plot)
-    found = analysed(given)
+    found, orbit = _analysed(given)
     saved: list[Path] = []
     if as_json or folder is not None:
-        result = analysis_object(found, exact(found.about.model))
+        result = analysis_object(found, exact(found.about.model) if found else None) | orbit_object(orbit)
     if folder is not None:
         from satsym.report import files
 
         saved = files.write(folder, {"result.json": files.text(to_json(result))})
         if plot:
-            from satsym.report.plots.systems import save_analysis
+            from satsym.report.plots.systems import save_analysis, save_orbit
 
-            saved += save_analysis(found, folder)
+            saved += save_analysis(found, folder) if found else []
+            saved += save_orbit(orbit, folder) if orbit else []
     if as_json:
         emit_json(result)
     else:
-        emit(with_files(analysis_text(found, in_colour()), saved))
+        emit(with_files(_text(found, orbit), saved))
     return ExitCode.DONE
+
+
+def _analysed(given: Kernels | Instance) -> tuple[Analysis | None, Survey | None]:
+    """The linear analysis, and that of the orbit; one of them may be missing.
+
+    A body that is only attracted rests nowhere, so that without a reference there is nothing to linearise about.
+    """
+    from satsym.analysis.orbits.survey import survey
+    from satsym.analysis.structure import analyse as analysed
+    from satsym.kernels import Kernels
+
+    spec = given.spec if isinstance(given, Kernels) else given.model.spec
+    if isinstance(given, Kernels):
+        if spec.keplerian and not spec.has_reference:
+            raise BadInput(
+                f"{spec.name}: has no equilibrium and no reference, and a model as such starts on no orbit; write an "
+                "instance with its initial state"
+            )
+        return analysed(given), None
+    orbit = survey(given) if spec.keplerian else None
+    return analysed(given) if orbit is None or spec.has_reference else None, orbit
+
+
+def _text(found: Analysis | None, orbit: Survey | None) -> str:
+    from satsym.report.linear_text import analysis_text
+    from satsym.report.orbit_text import orbit_text
+
+    parts = [analysis_text(found, in_colour())] if found else []
+    return "\n\n".join(parts + ([orbit_text(orbit, in_colour())] if orbit else []))

@@ -12,27 +12,36 @@ if TYPE_CHECKING:
     from satsym.analysis.linear import Array
     from satsym.analysis.ranks import Reach
     from satsym.analysis.routh import Routh
+    from satsym.analysis.spectrum import Eigenvalue
     from satsym.analysis.structure import Analysis
 
 
-def analysis_object(found: Analysis, exact: Mapping[str, Any] | None) -> dict[str, Any]:
-    """What ``satsym analyse --json`` prints.
+ANALYSIS = (
+    *("equilibrium", "A", "B", "C", "eigenvalues", "jordan_blocks", "characteristic_polynomial", "routh", "stability"),
+    *("controllability", "observability", "exact"),
+)
+"""The keys of an analysis, all ``None`` where there is nothing to linearise about."""
+
+
+def analysis_object(found: Analysis | None, exact: Mapping[str, Any] | None) -> dict[str, Any]:
+    """What ``satsym analyse --json`` prints; :mod:`satsym.report.orbit` has what it adds of an orbit.
 
     Parameters
     ----------
+    found
+        ``None`` for a motion that is near no reference and no equilibrium.
     exact
         The same by exact reckoning, as strings; ``None`` where there is none.
     """
+    if found is None:
+        return dict.fromkeys(ANALYSIS)
     system, about = found.about.system, found.about
     return {
         "equilibrium": dict(zip(system.states, map(number, about.point), strict=True)),
         "A": rows(system.A),
         "B": rows(system.B),
         "C": rows(system.C),
-        "eigenvalues": [
-            {"value": complex_object(each.value), "algebraic": each.algebraic, "geometric": each.geometric}
-            for each in found.eigenvalues
-        ],
+        "eigenvalues": [eigenvalue_object(each) for each in found.eigenvalues],
         "jordan_blocks": [
             {"eigenvalue": complex_object(each.value), "size": size}
             for each in found.eigenvalues
@@ -69,6 +78,11 @@ def routh_object(found: Routh) -> dict[str, Any]:
         "sign_changes": found.sign_changes,
         "special_case": found.special_case,
     }
+
+
+def eigenvalue_object(found: Eigenvalue) -> dict[str, Any]:
+    """An eigenvalue with its multiplicities."""
+    return {"value": complex_object(found.value), "algebraic": found.algebraic, "geometric": found.geometric}
 
 
 def complex_object(value: complex) -> dict[str, float | None]:

@@ -35,13 +35,13 @@ def analysis_text(found: Analysis, colour: bool = False) -> str:
         verdict = f"\x1b[{31 if verdict == UNSTABLE else 32}m{verdict}\x1b[0m"
     header = ("eigenvalue", "algebraic", "geometric", "Jordan blocks")
     eigenvalues = [
-        (_number(each.value), str(each.algebraic), str(each.geometric), ", ".join(map(str, each.blocks)))
+        (complex_number(each.value), str(each.algebraic), str(each.geometric), ", ".join(map(str, each.blocks)))
         for each in found.eigenvalues
     ]
     return joined(
         [
             [about.model.spec.title, f"{about.model.spec.name}, {_where(about)}: {verdict}"],
-            _wrapped(found.stability.reason),
+            wrapped(found.stability.reason),
             _point(about),
             _matrix("A", system.A, system.states, system.states),
             _matrix("B", system.B, system.states, system.inputs),
@@ -62,7 +62,7 @@ def regulator_text(design: Design) -> str:
     facts = [("Riccati residual", figure(found.residual, 2))]
     if design.deviation is not None:
         facts.append(("cost from the initial state", figure(found.cost(design.deviation), 10)))
-    eigenvalues = [(_number(value),) for value in found.eigenvalues]
+    eigenvalues = [(complex_number(value),) for value in found.eigenvalues]
     return joined(
         [
             [design.title, f"{name}, model {about.model.spec.name}: u = -K x for {over}"],
@@ -113,7 +113,7 @@ def _polynomial(what: str, coefficients: Array, array: Routh) -> list[str]:
     says = f"{count} change{'s' * (count != 1)} of sign: {count or 'no'} root{'s' * (count != 1)} on the right"
     axis = f", {array.on_axis} on the imaginary axis" if array.on_axis else ""
     met = f" (met: {array.special_case})" if array.special_case else ""
-    return _wrapped(f"{what}: {written.replace('+ -', '- ')}") + _wrapped(f"Routh column: {column}; {says}{axis}{met}")
+    return wrapped(f"{what}: {written.replace('+ -', '- ')}") + wrapped(f"Routh column: {column}; {says}{axis}{met}")
 
 
 def _reach(word: str, verb: str, kind: str, found: Reach | None, n: int) -> list[str]:
@@ -123,14 +123,15 @@ def _reach(word: str, verb: str, kind: str, found: Reach | None, n: int) -> list
         f"{name} alone {each.rank}" + (f" (not the mode s = {_modes(each)})" if each.lost else "")
         for name, each in found.alone.items()
     ]
-    return _wrapped(f"{word}: rank {found.rank} of {n}; {verb}: " + ", ".join(alone))
+    return wrapped(f"{word}: rank {found.rank} of {n}; {verb}: " + ", ".join(alone))
 
 
 def _modes(found: Reach) -> str:
     return ", ".join(shown(each.value) for each in found.lost if each.value.imag >= 0.0)
 
 
-def _number(value: complex) -> str:
+def complex_number(value: complex) -> str:
+    """A complex number as tables show it."""
     if value.imag == 0.0:
         return figure(value.real, 10)
     if value.real == 0.0:
@@ -139,5 +140,6 @@ def _number(value: complex) -> str:
     return f"{figure(value.real, 10)} {sign} {figure(abs(value.imag), 10)}i"
 
 
-def _wrapped(text: str) -> list[str]:
+def wrapped(text: str) -> list[str]:
+    """A paragraph, its first line less indented than the others."""
     return textwrap.wrap(text, WIDTH, initial_indent="  ", subsequent_indent="    ", break_on_hyphens=False)

@@ -13,6 +13,7 @@ from commands import commands
 from ends import ends
 from loops import sweeps, trajectories
 from machine import described
+from orbits import many as orbits
 from regulators import many, one
 from startup import startup
 
@@ -21,7 +22,7 @@ def main() -> None:
     """Run every subject; exit code 0 whatever was reached, for a busy machine is no fault of the code."""
     start = perf_counter()
     print(described(), flush=True)
-    print(rows.text([trajectories(), sweeps(), commands(), startup(), ends(), one(), many()]))
+    print(rows.text([trajectories(), sweeps(), commands(), startup(), ends(), one(), many(), orbits()]))
     print(f"{perf_counter() - start:.0f} s")
 
 

@@ -12,6 +12,8 @@ _SECONDS |= {"d": 86400.0, "day": 86400.0, "year": 31557600.0, "yr": 31557600.0}
 _READABLE = (("s", 600.0), ("min", 7200.0), ("h", 4 * 86400.0), ("day", 3 * 31557600.0), ("year", math.inf))
 """Units of time, and the length in seconds from which the next one reads better."""
 _LENGTHS = frozenset("m km cm mm au AU astronomical_unit ft mile nautical_mile".split())
+ASTRONOMICAL_UNIT = 149_597_870_700.0
+"""In metres, by definition (IAU 2012, resolution B2)."""
 _RAISED = str.maketrans("+-0123456789", "⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _POWER = re.compile(r"(?:\*\*|\^)\s*([+-]?\d+)")
@@ -76,18 +78,31 @@ def time_scale(units: Iterable[str], span: float) -> tuple[float, str]:
     -------
     (1.0, "1") where the model counts time in no unit that is known here, or in several.
     """
-    found = {name for unit in units for name in _NAME.findall(unit) if name in _SECONDS}
-    if len(found) != 1:
+    own = time_unit(units)
+    if own == "1":
         return 1.0, "1"
-    (own,) = found
     readable = next(unit for unit, limit in _READABLE if span * _SECONDS[own] < limit or limit == math.inf)
     return _SECONDS[readable] / _SECONDS[own], own if _SECONDS[own] == _SECONDS[readable] else readable
+
+
+def time_unit(units: Iterable[str]) -> str:
+    """The one unit of time in the units of a model's variables, ``"1"`` where it is not clear."""
+    found = {name for unit in units for name in _NAME.findall(unit) if name in _SECONDS}
+    return found.pop() if len(found) == 1 else "1"
 
 
 def length_unit(units: Iterable[str]) -> str:
     """The one unit of length among the units of a model's states, ``"1"`` where it is not clear."""
     found = _LENGTHS.intersection(units)
     return next(iter(found)) if len(found) == 1 else "1"
+
+
+def length_scale(unit: str, size: float) -> tuple[float, str]:
+    """Number of units of length in the unit that reads best for a size, and that unit: AU between planets."""
+    metres = {"m": 1.0, "km": 1e3}.get(unit)
+    if metres is None or not math.isfinite(size) or size * metres < 0.1 * ASTRONOMICAL_UNIT:
+        return 1.0, unit
+    return ASTRONOMICAL_UNIT / metres, "AU"
 
 
 def shortened(text: str, limit: int) -> str:

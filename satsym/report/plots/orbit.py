@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.report.plots import curves, style
-from satsym.report.plots.display import exponent_for, formula, labelled, length_unit
+from satsym.report.plots.display import exponent_for, formula, labelled, length_scale, length_unit
 from satsym.report.plots.reading import BURIED, within_reach
 from satsym.report.plots.scene import Scene
+from satsym.report.plots.views import View, views
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -64,37 +65,45 @@ class Orbit:
             curves.relative(free, reference) if free is not None and reference is not None else None,
         )
 
+    @property
+    def views(self) -> list[View]:
+        """From where to look at it, the most telling view first."""
+        return views([c for c in (self.path, self.reference, self.free) if c is not None], self.labels)
 
-def in_space(axes: Axes, orbit: Orbit, across: int = 0, up: int = 1) -> None:
-    """Draw the path in a plane of coordinates, at equal scales."""
-    pick = [across, up]
-    curve, others = orbit.path[pick], [c[pick] for c in (orbit.reference, orbit.free) if c is not None]
+
+def in_space(axes: Axes, orbit: Orbit, view: View) -> None:
+    """Draw the path in a plane, at equal scales."""
+    seen, drawn = view.axes, [c for c in (orbit.reference, orbit.free) if c is not None]
+    curve, others = seen @ orbit.path, [seen @ c for c in drawn]
     low, high = _box(curve, [*others, np.zeros((2, 1))])
     centre, half = 0.5 * (low + high), 0.5 * float((high - low).max())
-    names = [orbit.labels[i] for i in pick]
+    names = list(view.labels)
     datum: Array = np.zeros((2, 1))
     if half < BURIED * np.abs(centre).max():
         # far from the origin ticks would need many digits
         datum = curve[:, np.isfinite(curve).all(axis=0)][:, :1]
         names = [f"{name}$\\,-\\,${name}$(t_0)$" for name in names]
     centre, curve = centre - datum[:, 0], curve - datum
-    exponent = exponent_for(float(np.abs(centre).max()) + half)
-    scale = 10.0**-exponent
+    furthest = float(np.abs(centre).max()) + half
+    factor, unit = length_scale(orbit.unit, furthest)
+    exponent = exponent_for(furthest / factor)
+    scale = 10.0**-exponent / factor
     axes.set_aspect("equal")
+    axes.set_title(view.title)
     axes.set_xlim((centre[0] - half) * scale, (centre[0] + half) * scale)
     axes.set_ylim((centre[1] - half) * scale, (centre[1] + half) * scale)
     if orbit.reference is not None:
-        axes.plot(*((_once(orbit.reference[pick]) - datum) * scale), **style.REFERENCE)
+        axes.plot(*((_once(seen @ orbit.reference) - datum) * scale), **style.REFERENCE)
     if orbit.free is not None:
-        axes.plot(*((orbit.free[pick] - datum) * scale), **style.FREE)
+        axes.plot(*((seen @ orbit.free - datum) * scale), **style.FREE)
     if orbit.thrust is not None:
-        _arrows(axes, curve * scale, orbit.thrust[pick], LONGEST * 2.0 * half * scale)
+        _arrows(axes, curve * scale, seen @ orbit.thrust, LONGEST * 2.0 * half * scale)
     axes.plot(*(curve * scale), color=style.STATE, **style.MAIN)
     if not datum.any():
         axes.plot([0.0], [0.0], **style.ORIGIN)
     _ends(axes, *(curve * scale))
-    axes.set_xlabel(labelled(names[0], orbit.unit, exponent))
-    axes.set_ylabel(labelled(names[1], orbit.unit, exponent))
+    axes.set_xlabel(labelled(names[0], unit, exponent))
+    axes.set_ylabel(labelled(names[1], unit, exponent))
     _few_ticks(axes)
 
 

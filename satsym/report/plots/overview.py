@@ -48,10 +48,10 @@ def _split(part: Figure | SubFigure, shape: tuple[int, int], **ratios: Any) -> t
 
 def _space(part: SubFigure, shown: orbit.Orbit) -> None:
     if shown.relative is None:
-        orbit.in_space(part.subplots(), shown)
+        orbit.in_space(part.subplots(), shown, shown.views[0])
         return
     above, below = part.subplots(2, 1, height_ratios=[1.75, 1.0])
-    orbit.in_space(above, shown)
+    orbit.in_space(above, shown, shown.views[0])
     orbit.from_reference(below, shown)
 
 

@@ -20,15 +20,15 @@ def orbit(scene: Scene) -> Figure | None:
     shown = space.Orbit.of(scene)
     if shown is None:
         return None
-    planes = [(0, 1)] if len(shown.path) == 2 else [(0, 1), (0, 2), (1, 2)]
-    panels = len(planes) + (shown.relative is not None)
+    views = shown.views
+    panels = len(views) + (shown.relative is not None)
     rows, columns = -(-panels // 2), min(panels, 2)
     page = style.titled(
         scene.title, 0.72 * style.WIDTH if columns == 1 else style.WIDTH, 1.2 + (6.0 if columns == 1 else 4.6) * rows
     )
     grid = page.add_gridspec(rows, columns)
-    for i, plane in enumerate(planes):
-        space.in_space(page.add_subplot(grid[i]), shown, *plane)
+    for i, view in enumerate(views):
+        space.in_space(page.add_subplot(grid[i]), shown, view)
     if shown.relative is not None:
         beside = page.add_subplot(grid[panels - 1])
         beside.set_box_aspect(1.0)

@@ -1,4 +1,4 @@
-"""Eigenvalues in the complex plane, of the open and the closed loop."""
+"""Eigenvalues in the complex plane, of the open and the closed loop, and at a point of an orbit."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from satsym.analysis.feedback import Design
+    from satsym.analysis.orbits.survey import Survey
     from satsym.analysis.spectrum import Eigenvalue
     from satsym.analysis.structure import Analysis
 
@@ -37,6 +38,13 @@ CLOSED: dict[str, Any] = {
     "linestyle": "none",
     "zorder": 3.5,
     "clip_on": False,
+}
+EXACT: dict[str, Any] = {
+    "color": style.VERMILION,
+    "marker": "+",
+    "markersize": 14.0,
+    "linestyle": "none",
+    "zorder": 3.5,
 }
 MARGIN = 1.25
 """Half the width of the axes, relative to the eigenvalue that is furthest from zero."""
@@ -71,8 +79,24 @@ def of_design(design: Design) -> Figure:
     return page
 
 
-def _plane(axes: Axes, spec: ProblemSpec, values: list[complex]) -> float:
-    """Draw the plane with its stable half, and give the model's units of time in that of the axes."""
+def of_point(found: Survey) -> Figure:
+    """The eigenvalues at the start of an orbit, beside their closed form, and the verdict of the rule of the signs."""
+    case, point = found.case, found.point
+    page = style.titled(case.title or case.name, SIDE, SIDE + 0.5)
+    axes = page.subplots()
+    axes.set_title(f'the rule says "{point.rule_verdict}" of every orbit: no point of one is an equilibrium')
+    factor = _plane(axes, case.model.spec, point.closed_form.tolist(), 'the rule: "stable"')
+    axes.plot(point.eigenvalues.real * factor, point.eigenvalues.imag * factor, **OPEN)
+    axes.plot(point.closed_form.real * factor, point.closed_form.imag * factor, **EXACT)
+    for value in (point.closed_form[1], point.closed_form[3]):
+        axes.annotate("2-fold", (0.0, value.imag * factor), (12.0, -3.0), textcoords="offset points", color=style.SOFT)
+    closed_form = r"$\pm\sqrt{2\mu/r^3}$ and twice $\pm i\sqrt{\mu/r^3}$"
+    legend.below(page, [(legend.line(**OPEN), "computed"), (legend.line(**EXACT), closed_form)])
+    return page
+
+
+def _plane(axes: Axes, spec: ProblemSpec, values: list[complex], left: str = "stable") -> float:
+    """Draw the plane with its left half named, and give the model's units of time in that of the axes."""
     furthest = float(np.abs(values).max()) or 1.0
     units = (v.unit for v in (*spec.states, *spec.controls, *spec.parameters))
     factor, unit = display.time_scale(units, 2.0 * np.pi / furthest)
@@ -83,7 +107,7 @@ def _plane(axes: Axes, spec: ProblemSpec, values: list[complex]) -> float:
     axes.axvspan(-reach, 0.0, color=style.GREEN, alpha=0.07, linewidth=0.0, zorder=1.0)
     axes.axvline(0.0, color=style.INK, linewidth=1.1, zorder=2.0)
     axes.axhline(0.0, color=style.GREY, linewidth=0.8, zorder=1.9)
-    axes.text(-0.97 * reach, -0.97 * reach, "stable", color=style.GREEN, fontsize=10.0)
+    axes.text(-0.97 * reach, -0.97 * reach, left, color=style.GREEN, fontsize=10.0)
     per_time = "" if unit == "1" else f"1/{unit}"
     axes.set_xlabel(display.labelled(r"$\mathrm{Re}\,s$", per_time or "1"))
     axes.set_ylabel(display.labelled(r"$\mathrm{Im}\,s$", per_time or "1"))

@@ -1,4 +1,4 @@
-"""Pictures of an analysis and of a regulator: eigenvalues, phase portraits, responses, how far a law works."""
+"""Pictures of an analysis, an orbit and a regulator: eigenvalues, phase portraits, responses, how far a law works."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from satsym.analysis.feedback import Design
+    from satsym.analysis.orbits.survey import Survey
     from satsym.analysis.structure import Analysis
 
 
@@ -36,6 +37,18 @@ def save_analysis(found: Analysis, folder: Path, formats: Sequence[str] = ("png"
     return _save(
         {"eigenvalues": lambda: plane.of_analysis(found), "phase": lambda: phase.portrait(found)}, folder, formats
     )
+
+
+def save_orbit(found: Survey, folder: Path, formats: Sequence[str] = ("png",)) -> list[Path]:
+    """Draw an orbit: ``orbit``, ``point`` (eigenvalues at its start) and, of a closed one, ``multipliers``."""
+    from satsym.report.plots import conics, plane, unit_circle
+
+    pictures: dict[str, Callable[[], Figure | None]] = {
+        "orbit": lambda: conics.page(found),
+        "point": lambda: plane.of_point(found),
+        "multipliers": lambda: unit_circle.page(found),
+    }
+    return _save(pictures, folder, formats)
 
 
 def save_design(design: Design, folder: Path, formats: Sequence[str] = ("png",)) -> list[Path]:

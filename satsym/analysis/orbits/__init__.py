@@ -1,0 +1,1 @@
+"""Orbits about one centre of attraction: the closed form, integrators held against it, elements and stability."""

@@ -1,0 +1,230 @@
+"""Elements of an orbit: its size, shape and attitude, from a position and a velocity.
+
+Energy and the deviation from a circle are differences that may cancel; the first is therefore computed with 32 digits,
+and the eccentricity from its components along and across the radius, which do not suffer near a parabola. Angles that
+mean nothing are ``None``, those that are counted from something that is not there are counted from what is (see
+:class:`Elements`). Formulas: Battin, An Introduction to the Mathematics and Methods of Astrodynamics, chapter 3.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from satsym.analysis.orbits import double_double as dd
+from satsym.analysis.orbits.conic import TOLERANCE, Conic, classify
+from satsym.analysis.orbits.states import Array, States, checked
+from satsym.status import BadInput
+
+REACH = 100.0
+"""Decades on both sides of 1 within which lengths, speeds and times must lie, so that their squares are floats."""
+
+
+@dataclass(frozen=True, eq=False)
+class Elements:
+    """An orbit about one centre, in the units of the position, the velocity and mu it was computed from.
+
+    Attributes
+    ----------
+    position, velocity, mu
+        The start, shape (3,) each, and the gravitational parameter.
+    conic
+        See :mod:`satsym.analysis.orbits.conic`.
+    eccentricity, parameter
+        Eccentricity, and semi-latus rectum.
+    energy
+        Per unit mass.
+    angular_momentum
+        Per unit mass, shape (3,).
+    semi_major_axis
+        Negative on a hyperbola, ``None`` on a parabola.
+    periapsis, apoapsis
+        Distances from the centre; the latter ``None`` where there is none.
+    period
+        ``None`` where nothing returns: on parabolas, hyperbolas and rectilinear orbits.
+    excess_speed
+        That remains at infinity; ``None`` on a bound orbit.
+    inclination
+        To the plane of the first two axes, from 0 to pi, so that retrograde orbits are above pi/2.
+    node
+        Longitude of the ascending node, ``None`` on an equatorial orbit.
+    periapsis_argument
+        From the node, along the motion; on an equatorial orbit from the first axis. ``None`` on a circle.
+    true_anomaly
+        Of the start, from the periapsis; on a circle from the node, or where there is none from the first axis.
+    towards, ahead, normal
+        Unit vectors, shape (3,): to where the true anomaly is zero, along the motion there, and of the plane.
+
+    On a rectilinear orbit all angles are ``None``, and ``towards`` points to the start.
+    """
+
+    position: Array
+    velocity: Array
+    mu: float
+    conic: Conic
+    eccentricity: float
+    parameter: float
+    energy: float
+    angular_momentum: Array
+    semi_major_axis: float | None
+    periapsis: float
+    apoapsis: float | None
+    period: float | None
+    excess_speed: float | None
+    inclination: float | None
+    node: float | None
+    periapsis_argument: float | None
+    true_anomaly: float | None
+    towards: Array
+    ahead: Array
+    normal: Array
+
+    @property
+    def bound(self) -> bool:
+        """Whether the distance stays bounded."""
+        return self.apoapsis is not None
+
+    @property
+    def distance(self) -> float:
+        """Of the start from the centre."""
+        return float(np.linalg.norm(self.position))
+
+    @property
+    def mean_motion(self) -> float | None:
+        """Mean angular velocity, ``None`` where nothing returns."""
+        return None if self.period is None else 2.0 * np.pi / self.period
+
+
+def elements(position: ArrayLike, velocity: ArrayLike, mu: float) -> Elements:
+    """The elements of one orbit.
+
+    Parameters
+    ----------
+    position, velocity
+        Shape (3,), along inertial axes from the centre, in any consistent units.
+    mu
+        Gravitational parameter of the centre.
+
+    Raises
+    ------
+    BadInput
+        If the position is the centre itself, mu is not positive, or a number is not finite or too large for floats.
+    """
+    given = checked(position, velocity, mu, 0.0)
+    if given.shape:
+        raise BadInput(f"position, velocity, mu: {given.mu.size} orbits; give one")
+    states, (length,), (speed,) = given.scaled()
+    scalars = _scalars(states)
+    with np.errstate(over="ignore", divide="ignore"):
+        sizes = np.log10([length, speed, length / speed])
+    if not (np.isfinite(list(scalars.values())).all() and (np.abs(sizes) < REACH).all()):
+        raise BadInput("position, velocity, mu: beyond the range of floats; check the units")
+    binding, momentum, radius, gravity = (scalars[name] for name in ("binding", "momentum", "radius", "mu"))
+    along = momentum * scalars["rate"] / (gravity * radius)  # e sin(true anomaly)
+    share = scalars["parameter"] / radius - 1.0  # e cos(true anomaly)
+    eccentricity = float(np.hypot(along, share))
+    conic = classify(eccentricity, 0.5 * binding * radius / gravity, scalars["sine"])
+    parabolic = abs(0.5 * binding * radius / gravity) <= TOLERANCE
+    if conic is Conic.RECTILINEAR:
+        eccentricity = 1.0
+    axis = None if parabolic else gravity / binding * length
+    bound = axis is not None and axis > 0.0
+    closed = conic in (Conic.CIRCLE, Conic.ELLIPSE)
+    angles = _Attitude.of(states, conic, float(np.arctan2(along, share)))
+    return Elements(
+        position=given.position[:, 0],
+        velocity=given.velocity[:, 0],
+        mu=float(given.mu[0]),
+        conic=conic,
+        eccentricity=eccentricity,
+        parameter=float(scalars["parameter"] * length),
+        energy=float(-0.5 * binding * speed**2),
+        angular_momentum=_momentum(states) * (length * speed),
+        semi_major_axis=None if axis is None else float(axis),
+        periapsis=0.0 if conic is Conic.RECTILINEAR else float(scalars["parameter"] / (1.0 + eccentricity) * length),
+        apoapsis=float(axis * (1.0 + eccentricity)) if bound and axis is not None else None,
+        period=float(2.0 * np.pi * gravity / binding**1.5 * (length / speed)) if closed else None,
+        excess_speed=None if bound else 0.0 if parabolic else float(np.sqrt(-binding) * speed),
+        inclination=angles.inclination,
+        node=angles.node,
+        periapsis_argument=angles.periapsis,
+        true_anomaly=angles.anomaly,
+        towards=angles.towards,
+        ahead=np.cross(angles.normal, angles.towards),
+        normal=angles.normal,
+    )
+
+
+def _scalars(states: States) -> dict[str, float]:
+    """What the shape follows from; ``binding`` is 2 mu/r - v^2, ``rate`` the scalar product of radius and velocity."""
+    r, v, mu = states.position[:, 0], states.velocity[:, 0], states.mu[0]
+    with np.errstate(all="ignore"):
+        radius = dd.root(dd.dot(r, r))
+        binding = dd.add(dd.divide((2.0 * mu, np.float64(0.0)), radius), dd.negative(dd.dot(v, v)))
+        momentum, speed = np.linalg.norm(_momentum(states)), np.linalg.norm(v)
+        return {
+            "mu": float(mu),
+            "radius": float(radius[0]),
+            "binding": float(binding[0]),
+            "rate": float(dd.dot(r, v)[0]),
+            "momentum": float(momentum),
+            "parameter": float(momentum**2 / mu),
+            "sine": float(momentum / (radius[0] * speed)) if speed else 0.0,
+        }
+
+
+def _momentum(states: States) -> Array:
+    with np.errstate(all="ignore"):
+        return dd.cross(states.position[:, 0], states.velocity[:, 0])
+
+
+@dataclass(frozen=True, eq=False)
+class _Attitude:
+    inclination: float | None
+    node: float | None
+    periapsis: float | None
+    anomaly: float | None
+    towards: Array
+    normal: Array
+
+    @classmethod
+    def of(cls, states: States, conic: Conic, anomaly: float) -> _Attitude:
+        """From the true anomaly, which a circle does not have."""
+        outward = states.position[:, 0] / np.linalg.norm(states.position[:, 0])
+        if conic is Conic.RECTILINEAR:
+            return cls(None, None, None, None, outward, _across(outward))
+        momentum = _momentum(states)
+        normal = momentum / np.linalg.norm(momentum)
+        tilt = float(np.hypot(normal[0], normal[1]))
+        equatorial = tilt <= TOLERANCE
+        first = np.array([1.0, 0.0, 0.0]) if equatorial else np.array([-normal[1], normal[0], 0.0]) / tilt
+        second = np.cross(normal, first)
+        sideways = np.cross(normal, outward)
+        if conic is Conic.CIRCLE:
+            towards, anomaly = first, float(np.arctan2(outward @ second, outward @ first))
+        else:
+            towards = np.cos(anomaly) * outward - np.sin(anomaly) * sideways
+        return cls(
+            float(np.arctan2(tilt, normal[2])),
+            None if equatorial else _turn(np.arctan2(normal[0], -normal[1])),
+            None if conic is Conic.CIRCLE else _turn(np.arctan2(towards @ second, towards @ first)),
+            _turn(anomaly),
+            towards,
+            normal,
+        )
+
+
+def _turn(angle: float) -> float:
+    """The angle from 0 to 2 pi."""
+    found = float(angle) % (2.0 * np.pi)
+    return 0.0 if found == 2.0 * np.pi else found
+
+
+def _across(direction: Array) -> Array:
+    """Some unit vector at right angles: where there is no plane, any will do."""
+    other = np.zeros(3)
+    other[int(np.argmin(np.abs(direction)))] = 1.0
+    found = np.cross(direction, other)
+    return np.asarray(found / np.linalg.norm(found))

@@ -1,0 +1,155 @@
+"""Floquet multipliers of an orbit: what they are, what computed ones resolve, and what stability follows.
+
+All six multipliers of a closed orbit are exactly 1, with one Jordan block of size 2 (see
+:mod:`satsym.analysis.orbits.monodromy`). An eigenvalue with such a block moves by the square root of a change of its
+matrix, so computed multipliers scatter about 1 by some 1e-6, and may fall outside the unit circle.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from satsym.analysis.orbits.conic import Conic
+from satsym.analysis.orbits.elements import Elements
+from satsym.analysis.orbits.monodromy import Monodromy, monodromy
+from satsym.analysis.orbits.point import Complex
+from satsym.analysis.orbits.rotating import TurningAxes, turning_axes
+from satsym.solve.integrate import NotFinite
+
+COMPUTED, NO_PERIOD, COLLISION, NOT_RESOLVED = "computed", "no period", "collision", "not resolved"
+VERDICT = "Lyapunov unstable, orbitally stable"
+FASTER = 1e-6
+"""Share of the speed by which the neighbour is faster that notes speak of."""
+LOST = 1e-3
+"""Errors of a monodromy matrix above this, relative to its growth, leave nothing to be told from it."""
+_LEAVING = (
+    "Neighbours leave in other directions and at other speeds, so that distances from them grow in proportion to time."
+)
+_ON_THE_BORDER = (
+    "Neighbours are ellipses, which come back, or hyperbolas, which leave faster: distances from them grow beyond "
+    "all bounds."
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Floquet:
+    """What one revolution makes of neighbouring motions.
+
+    Attributes
+    ----------
+    status
+        ``"computed"``; or why there is nothing: ``"no period"``, ``"collision"``, ``"not resolved"``.
+    orbit
+        Whose neighbours they are.
+    monodromy
+        ``None`` unless computed, as are all other numbers here.
+    multipliers
+        Its eigenvalues, shape (6,).
+    turning
+        Hill's equations, where the orbit is nearly circular.
+    """
+
+    status: str
+    orbit: Elements
+    monodromy: Monodromy | None
+    multipliers: Complex | None
+    turning: TurningAxes | None
+
+    @property
+    def verdict(self) -> str | None:
+        """Of a closed orbit, computed or not, for it follows from the closed form."""
+        return None if self.orbit.period is None else VERDICT
+
+    @property
+    def scatter(self) -> float | None:
+        """Largest distance of a computed multiplier from 1."""
+        return None if self.multipliers is None else float(np.abs(self.multipliers - 1.0).max())
+
+    @property
+    def expected_scatter(self) -> float | None:
+        """Up to which the error of the matrix may scatter them: the root of error times growth."""
+        return None if self.monodromy is None else float(np.sqrt(self.monodromy.error * self.monodromy.growth))
+
+    @property
+    def lag(self) -> float | None:
+        """Distance by which a neighbour faster at the start by the share ``FASTER`` falls behind in a revolution."""
+        orbit = self.orbit
+        if orbit.period is None or orbit.semi_major_axis is None:
+            return None
+        speed = float(np.linalg.norm(orbit.velocity))
+        return FASTER * speed**3 * 3.0 * orbit.period * orbit.semi_major_axis / orbit.mu
+
+    @property
+    def note(self) -> str:
+        """What the verdict means, and what the numbers cannot show; or why there are none."""
+        if self.status == COLLISION:
+            return (
+                "The motion is along a line and meets the centre, where its equations end: it has no period, hence no "
+                "monodromy matrix and no multipliers."
+            )
+        if self.status == NO_PERIOD:
+            return (
+                f"{_called(self.orbit)} does not close: without a period there is no monodromy matrix, and there are "
+                f"no multipliers. {_LEAVING if self.orbit.excess_speed else _ON_THE_BORDER}"
+            )
+        closed = (
+            "All six multipliers of a closed orbit are exactly 1, for its neighbours are closed too: M - I = "
+            "-(dT/dE) f (grad E)' has rank one and its square is zero, which makes one Jordan block of size 2 beside "
+            "four of size 1."
+        )
+        return f"{closed} {self._resolved} {self._meaning}"
+
+    @property
+    def _resolved(self) -> str:
+        if self.scatter is None or self.expected_scatter is None or self.monodromy is None:
+            return (
+                f"The orbit passes the centre so closely (at {self._share:.3g} of its semi-major axis) that an "
+                "integrated M is lost in rounding: none is shown."
+            )
+        return (
+            "Computed, multipliers in such a block scatter by the root of the error of M: here by "
+            f"{self.scatter:.2g}, where an error of {self.monodromy.error:.2g} allows {self.expected_scatter:.2g}. So "
+            "they do not show on which side of the unit circle they lie; that they are on it follows from the "
+            "structure of M."
+        )
+
+    @property
+    def _share(self) -> float:
+        assert self.orbit.semi_major_axis is not None
+        return self.orbit.periapsis / self.orbit.semi_major_axis
+
+    @property
+    def _meaning(self) -> str:
+        return (
+            "The block means: a neighbour with another energy has another period and falls behind or gets ahead, in "
+            "each revolution by as much again. In Lyapunov's sense the orbit is therefore unstable, though distances "
+            "grow along the track alone and in proportion to time, not exponentially as a positive eigenvalue would "
+            "have it. As a curve the neighbour's orbit stays as near as it began: the orbit is orbitally stable."
+        )
+
+
+def floquet(orbit: Elements) -> Floquet:
+    """The multipliers of an orbit, or why it has none; see :class:`Floquet`."""
+    if orbit.period is None:
+        falls = orbit.conic is Conic.RECTILINEAR and (orbit.bound or float(orbit.position @ orbit.velocity) < 0.0)
+        return Floquet(COLLISION if falls else NO_PERIOD, orbit, None, None, None)
+    turning = turning_axes(orbit)
+    try:
+        found = monodromy(orbit)
+    except NotFinite:
+        return Floquet(NOT_RESOLVED, orbit, None, None, turning)
+    if not found.error <= LOST * found.growth:
+        return Floquet(NOT_RESOLVED, orbit, None, None, turning)
+    return Floquet(COMPUTED, orbit, found, _in_order(np.linalg.eigvals(found.matrix).astype(complex)), turning)
+
+
+def _in_order(values: Complex) -> Complex:
+    """Farthest outside the unit circle first, conjugates together."""
+    order = sorted(values.tolist(), key=lambda value: (-abs(value), value.real, -value.imag))
+    return np.array(order)
+
+
+def _called(orbit: Elements) -> str:
+    return f"A {orbit.conic.value} orbit" if orbit.conic is Conic.RECTILINEAR else f"A {orbit.conic.value}"

@@ -1,0 +1,132 @@
+"""The monodromy matrix of a closed orbit: what a revolution makes of small deviations.
+
+In Cartesian coordinates, with f the rates of change and E the energy per unit mass, it is exactly
+
+    M = I - (dT/dE) f (grad E)',    T = 2 pi sqrt(a^3/mu),    dT/dE = 3 T a/mu,
+
+for every neighbour is closed too and merely comes too early or too late (differentiate phi(T(E(x)), x) = x). The matrix
+M - I has rank one, and because E is conserved, (grad E)' f = 0, its square is zero. Here M is integrated; the formula
+tells its error.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from satsym import kernels
+from satsym.analysis.linear import Array
+from satsym.analysis.orbits.conic import Conic
+from satsym.analysis.orbits.elements import Elements
+from satsym.analysis.orbits.point import CARTESIAN
+from satsym.analysis.orbits.variational import transition
+
+SYMPLECTIC = np.block([[np.zeros((3, 3)), np.eye(3)], [-np.eye(3), np.zeros((3, 3))]])
+"""J: positions and velocities per unit mass are canonical."""
+
+
+@dataclass(frozen=True, eq=False)
+class Monodromy:
+    """An integrated monodromy matrix, in units of length and speed in which the orbit is of size one.
+
+    Attributes
+    ----------
+    start
+        State that the revolution starts from and comes back to, shape (6,).
+    matrix
+        Shape (6, 6).
+    exact
+        What the formula gives for it.
+    units
+        Of the three positions and the three velocities, powers of two, shape (6,).
+    """
+
+    start: Array
+    matrix: Array
+    exact: Array
+    units: Array
+
+    @property
+    def original(self) -> Array:
+        """The matrix in the units of the orbit."""
+        return np.asarray(self.matrix * self.units[:, None] / self.units)
+
+    @property
+    def determinant(self) -> float:
+        """1 for a motion whose rates have no divergence."""
+        return float(np.linalg.det(self.matrix))
+
+    @property
+    def symplectic_defect(self) -> float:
+        """Largest entry of M'JM - J, relative to the square of the largest of M; zero for a Hamiltonian motion."""
+        left = self.matrix.T @ SYMPLECTIC @ self.matrix - SYMPLECTIC
+        return float(np.abs(left).max() / np.abs(self.matrix).max() ** 2)
+
+    @property
+    def growth(self) -> float:
+        """Norm of M - I: how much a deviation grows in a revolution, and again in each that follows."""
+        return _norm(self.exact - np.eye(6))
+
+    @property
+    def error(self) -> float:
+        """Norm of the difference from the formula."""
+        return _norm(self.matrix - self.exact)
+
+    @property
+    def second_singular(self) -> float:
+        """Second singular value of M - I relative to the first: zero where the rank is one."""
+        values = np.linalg.svd(self.matrix - np.eye(6), compute_uv=False)
+        return float(values[1] / values[0])
+
+    @property
+    def square(self) -> float:
+        """Norm of (M - I)^2 relative to the square of the norm of M - I: zero where it is nilpotent."""
+        rest = self.matrix - np.eye(6)
+        return _norm(rest @ rest) / _norm(rest) ** 2
+
+
+def monodromy(orbit: Elements, from_apoapsis: bool = True) -> Monodromy:
+    """Integrate the variational equations of a closed orbit over one revolution.
+
+    Parameters
+    ----------
+    orbit
+        A circle or an ellipse.
+    from_apoapsis
+        Whether the revolution starts at the apoapsis and not at the orbit's own start. The matrices are similar; at
+        apoapsis deviations grow least, so that least is lost in rounding. A circle has no apoapsis.
+
+    Raises
+    ------
+    ValueError
+        If the orbit is not closed.
+    satsym.solve.integrate.NotFinite
+        If it passes the centre too closely to be integrated.
+    """
+    if orbit.period is None or orbit.semi_major_axis is None:
+        raise ValueError(f"a {orbit.conic.value} has no monodromy matrix")
+    length = float(np.exp2(np.rint(np.log2(orbit.semi_major_axis))))
+    speed = float(np.exp2(np.rint(0.5 * np.log2(orbit.mu / orbit.semi_major_axis))))
+    units = np.repeat([length, speed], 3)
+    apoapsis = from_apoapsis and orbit.conic is not Conic.CIRCLE
+    start = (_at_apoapsis(orbit) if apoapsis else np.concatenate([orbit.position, orbit.velocity])) / units
+    mu, period = orbit.mu / length / speed**2, orbit.period * (speed / length)
+    _, matrix = transition(kernels.load(CARTESIAN), (mu,), start, period)
+    return Monodromy(start * units, matrix, _exact(start, mu, period, orbit.semi_major_axis / length), units)
+
+
+def _exact(start: Array, mu: float, period: float, axis: float) -> Array:
+    pull = mu * start[:3] / np.linalg.norm(start[:3]) ** 3
+    rates, gradient = np.concatenate([start[3:], -pull]), np.concatenate([pull, start[3:]])
+    return np.asarray(np.eye(6) - 3.0 * period * axis / mu * np.outer(rates, gradient))
+
+
+def _at_apoapsis(orbit: Elements) -> Array:
+    assert orbit.apoapsis is not None
+    speed = np.linalg.norm(orbit.angular_momentum) / orbit.apoapsis
+    return np.concatenate([-orbit.apoapsis * orbit.towards, -speed * orbit.ahead])
+
+
+def _norm(matrix: Array) -> float:
+    return float(np.linalg.norm(matrix, 2))

@@ -1,0 +1,129 @@
+"""Eigenvalues of the Jacobian at a point of an orbit, the rule of signs applied to them, and what that can tell.
+
+The rule is that of a paper (the ledger ``itb_eigen``): its program calls an orbit stable if
+``all(e.real <= 0 for e in eigenvalues)``, its conclusion if all real parts are negative, and unstable if one is
+positive. A point of an orbit is no equilibrium, so neither has a ground; both are computed here to be looked at.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym import kernels
+from satsym.analysis.equilibrium import jacobians
+from satsym.analysis.linear import Array
+from satsym.analysis.orbits.elements import Elements
+from satsym.analysis.orbits.states import checked
+from satsym.instance import Instance
+
+Complex = NDArray[np.complex128]
+STABLE, UNSTABLE = "stable", "unstable"
+CARTESIAN = "two_body"
+"""The model whose generated Jacobian is that of the paper."""
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """What the Jacobian at a point of an orbit has for eigenvalues, and what is made of them.
+
+    Attributes
+    ----------
+    distance
+        From the centre.
+    eigenvalues
+        Of the generated Jacobian in Cartesian coordinates, computed, shape (6,).
+    closed_form
+        The same exactly, up to rounding: sqrt(2 mu/r^3), minus that, and sqrt(-mu/r^3) of either sign, twice.
+    own
+        Eigenvalues of the model's Jacobian in its own coordinates, where they are not Cartesian; else ``None``.
+    """
+
+    distance: float
+    eigenvalues: Complex
+    closed_form: Complex
+    own: Complex | None
+
+    @property
+    def deviation(self) -> float:
+        """Of the computed eigenvalues from the closed form, relative to the largest."""
+        return float(np.abs(self.eigenvalues - self.closed_form).max() / np.abs(self.closed_form).max())
+
+    @property
+    def rule_verdict(self) -> str:
+        """``"stable"`` or ``"unstable"`` by the rule of the paper's program."""
+        return rule(self.eigenvalues)
+
+    @property
+    def conclusion_verdict(self) -> str | None:
+        """The same by the paper's conclusion, ``None`` where it decides nothing."""
+        return rule_of_the_conclusion(self.eigenvalues)
+
+    @property
+    def own_verdict(self) -> str | None:
+        """What the rule of the program says of the model's own coordinates."""
+        return None if self.own is None else rule(self.own)
+
+    @property
+    def note(self) -> str:
+        """What can be told from the eigenvalues, and what cannot."""
+        found = (
+            "They are \N{PLUS-MINUS SIGN}sqrt(2 mu/r^3) and, twice, \N{PLUS-MINUS SIGN}i sqrt(mu/r^3): they depend on "
+            "the distance r alone, not on the velocity. One of them is positive at every distance, so that the rule "
+            "calls every orbit unstable, whether circle, ellipse, parabola or hyperbola: it tells nothing apart. Their "
+            "sum is zero, so that they never are all negative, as the paper's conclusion asks. No point of an orbit is "
+            "an equilibrium: what eigenvalues say of equilibria does not apply."
+        )
+        if self.own is None:
+            return found
+        same = "calls the same orbit stable" if self.own_verdict == STABLE else "happens to say the same"
+        return (
+            f"{found} In the model's own coordinates the eigenvalues at this point are others, and the rule {same}: "
+            "away from equilibria they depend on the choice of coordinates, and stability does not."
+        )
+
+
+def rule(eigenvalues: Iterable[complex]) -> str:
+    """The verdict of the paper's program."""
+    return STABLE if all(e.real <= 0 for e in eigenvalues) else UNSTABLE
+
+
+def rule_of_the_conclusion(eigenvalues: Iterable[complex]) -> str | None:
+    """The verdict of the paper's conclusion, which leaves out that the largest real part is zero."""
+    largest = max(e.real for e in eigenvalues)
+    return UNSTABLE if largest > 0 else STABLE if largest < 0 else None
+
+
+def at_start(case: Instance, orbit: Elements) -> Point:
+    """Analyse the initial state of an instance of a Keplerian model.
+
+    Parameters
+    ----------
+    case
+        Whose own Jacobian is taken, too.
+    orbit
+        Its orbit, whose start is that state in Cartesian coordinates.
+    """
+    scaled, (length,), (speed,) = checked(orbit.position, orbit.velocity, orbit.mu, 0.0).scaled()
+    start = np.concatenate([scaled.position[:, 0], scaled.velocity[:, 0]])
+    A, _ = jacobians(kernels.load(CARTESIAN), (float(scaled.mu[0]),), 0.0, start)
+    pull = scaled.mu[0] / np.linalg.norm(scaled.position[:, 0]) ** 3
+    rate = speed / length
+    own = None
+    cartesian = (*orbit.position, *orbit.velocity), (*orbit.position[:2], *orbit.velocity[:2])
+    if case.initial not in cartesian:
+        at = np.array(case.initial)
+        own = _eigenvalues(jacobians(case.model, case.parameters, case.t0, at)[0])
+    swing = np.sqrt(pull) * 1j
+    closed_form = np.array([np.sqrt(2.0 * pull), swing, swing, -swing, -swing, -np.sqrt(2.0 * pull)])
+    return Point(orbit.distance, _eigenvalues(A) * rate, closed_form * rate, own)
+
+
+def _eigenvalues(A: Array) -> Complex:
+    """The largest real part first, then the largest imaginary part, real parts being the same within rounding."""
+    values = np.linalg.eigvals(A).astype(complex)
+    size = np.abs(values).max() or 1.0
+    return np.asarray(values[np.lexsort((-values.imag, -np.round(values.real / size, 9)))])

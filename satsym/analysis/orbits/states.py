@@ -1,0 +1,115 @@
+"""States of many orbits, read from what a caller gave, and in units in which their numbers are of size one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from satsym.status import BadInput
+
+Array: TypeAlias = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class States:
+    """Starts and durations of N motions, flat.
+
+    Attributes
+    ----------
+    position, velocity
+        Shape (3, N).
+    mu, duration
+        Shape (N,).
+    shape
+        That the caller's arrays have behind their first axis, once broadcast.
+    """
+
+    position: Array
+    velocity: Array
+    mu: Array
+    duration: Array
+    shape: tuple[int, ...]
+
+    def part(self, chosen: Any) -> States:
+        """Some of the columns."""
+        arrays = (self.position[:, chosen], self.velocity[:, chosen], self.mu[chosen], self.duration[chosen])
+        return States(*arrays, self.shape)
+
+    def scaled(self) -> tuple[States, Array, Array]:
+        """The same in units of length and speed that are powers of two, which is exact; and those units.
+
+        Positions are then of size one, and so is mu, save for a factor of four.
+        """
+        _, length = np.frexp(np.abs(self.position).max(axis=0))
+        _, gravity = np.frexp(self.mu)
+        speed = (gravity - length) // 2
+        with np.errstate(over="ignore", invalid="ignore"):  # the result then says so
+            states = States(
+                self.position * np.ldexp(1.0, -length),
+                self.velocity * np.ldexp(1.0, -speed),
+                self.mu * np.ldexp(1.0, -length - 2 * speed),
+                self.duration * np.ldexp(1.0, speed - length),
+                self.shape,
+            )
+            return states, np.ldexp(1.0, length), np.ldexp(1.0, speed)
+
+
+def checked(position: ArrayLike, velocity: ArrayLike, mu: ArrayLike, duration: ArrayLike) -> States:
+    """What a caller gave, flat and of one size.
+
+    Raises
+    ------
+    BadInput
+        Where it cannot be the start of a motion; see :func:`satsym.analysis.orbits.kepler.propagate`.
+    """
+    given = {"position": position, "velocity": velocity, "mu": mu, "duration": duration}
+    arrays = {name: _numbers(name, value) for name, value in given.items()}
+    for name in ("position", "velocity"):
+        if arrays[name].shape[:1] != (3,):
+            raise BadInput(f"{name}: has shape {arrays[name].shape}; give three components along the first axis")
+    vectors = [arrays[name] for name in ("position", "velocity")]
+    scalars = [arrays[name] for name in ("mu", "duration")]
+    try:
+        shape = np.broadcast_shapes(*(a.shape[1:] for a in vectors), *(a.shape for a in scalars))
+    except ValueError:
+        raise BadInput(
+            f"position, velocity, mu, duration: shapes {', '.join(str(a.shape) for a in arrays.values())} do not "
+            "broadcast behind the three components; give as many of each, or one for all"
+        ) from None
+    r, v = (_stretched(a, shape) for a in vectors)
+    m, dt = (np.broadcast_to(a, shape).reshape(-1) for a in scalars)
+    for name, values in (("position", r), ("velocity", v), ("mu", m), ("duration", dt)):
+        bad = ~np.isfinite(values)
+        refuse_first(bad.any(axis=0) if bad.ndim > 1 else bad, shape, f"{name} is not finite; give numbers")
+    refuse_first(m <= 0.0, shape, "mu is not positive; give the gravitational parameter of the centre")
+    refuse_first((r == 0.0).all(axis=0), shape, "position is the centre itself; start somewhere else")
+    return States(r, v, m, dt, shape)
+
+
+def refuse_first(bad: Any, shape: tuple[int, ...], fault: str) -> None:
+    """Raise BadInput for the first column that is bad, naming its index in the caller's shape; ``bad`` is (N,)."""
+    if not bad.any():
+        return
+    index = tuple(int(i) for i in np.unravel_index(int(np.argmax(bad)), shape)) if shape else ()
+    where = f"index {index[0] if len(index) == 1 else index}: " if index else ""
+    raise BadInput(f"{where}{fault}")
+
+
+def _numbers(name: str, value: ArrayLike) -> Array:
+    try:
+        array = np.asarray(value)
+        if array.dtype.kind not in "iuf":
+            raise TypeError
+    except (TypeError, ValueError):
+        raise BadInput(f"{name}: not an array of real numbers; give floats") from None
+    return array.astype(np.float64)
+
+
+def _stretched(vector: Array, shape: tuple[int, ...]) -> Array:
+    """Shape (3, N), from three components with fewer axes than ``shape`` behind them."""
+    lead = vector.shape[1:]
+    filled = vector.reshape(3, *(1,) * (len(shape) - len(lead)), *lead)
+    return np.ascontiguousarray(np.broadcast_to(filled, (3, *shape)).reshape(3, -1))

@@ -1,0 +1,196 @@
+"""Instances side by side on one page: what they share over time, their totals, and the law's range."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from satsym.report import files
+from satsym.report.plots import display, legend, style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from satsym.analysis.comparison import Case
+    from satsym.spec import Variable
+
+COLOURS = (style.INK, style.BLUE, style.VERMILION, style.GREEN, style.PURPLE, style.GREY)
+DASHES: tuple[Any, ...] = ("-", "-", (0, (6, 2)), (0, (3, 1.5)), (0, (1, 1.2)), "-.")
+SHOWN = 1.12
+"""Times of the longest transition that are shown."""
+COMMANDS = (0.25, 0.5, 1.0, 2.0, 4.0)
+DAMPINGS = (0.2, 5.0)
+"""Shares of the instance's own, in a range."""
+
+
+def save(cases: Sequence[Case], folder: Path, formats: Sequence[str] = ("png",)) -> list[Path]:
+    """Draw the page ``comparison``.
+
+    Raises
+    ------
+    BadInput
+        If the folder cannot be written to.
+    """
+    with style.applied():
+        drawn = page(cases)
+        content = {f"comparison.{kind}": files.binary(style.rendered(drawn, kind)) for kind in formats}
+    return files.write(folder, content)
+
+
+def page(cases: Sequence[Case]) -> Figure:
+    """All of it, for the cases that have answers."""
+    answered = [case for case in cases if case.answered]
+    names = _shared(answered)
+    law = next((case for case in answered if case.instance.classical and case.instance.classical.damping), None)
+    rows = -(-len(names) // 2) + 1 + (law is not None)
+    title = ", ".join(case.instance.name for case in cases)
+    figure = style.titled(title, style.WIDTH, 0.9 + 2.35 * rows)
+    grid = figure.add_gridspec(rows, 2)
+    for k, variable in enumerate(names):
+        last = k == len(names) - 1 and k % 2 == 0
+        place = grid[k // 2, :] if last else grid[k // 2, k % 2]
+        _over_time(figure.add_subplot(place), answered, variable)
+    below = -(-len(names) // 2)
+    _totals(figure, grid, below, answered)
+    if law is not None:
+        _range(figure, grid, below + 1, law)
+    entries = [
+        (legend.line(color=COLOURS[k % 6], linestyle=DASHES[k % 6], linewidth=2.0), case.instance.name)
+        for k, case in enumerate(answered)
+    ]
+    legend.below(figure, entries)
+    return figure
+
+
+def _shared(cases: Sequence[Case]) -> list[Variable]:
+    """States, controls and limited quantities that all cases have, those that follow a command or are limited first."""
+    every = [
+        {
+            v.symbol: v
+            for v in (*c.instance.model.spec.states, *c.instance.model.spec.controls, *c.instance.model.spec.quantities)
+        }
+        for c in cases
+    ]
+    spec = cases[0].instance.model.spec
+    limited = [name for case in cases for name in case.instance.limits]
+    wanted = dict.fromkeys([spec.states[0].symbol, *spec.control_names, *(v.symbol for v in spec.states), *limited])
+    return [every[0][name] for name in wanted if all(name in each for each in every)]
+
+
+def _over_time(axes: Axes, cases: Sequence[Case], variable: Variable) -> None:
+    end = SHOWN * max(case.metrics["transition_time"] for case in cases)
+    units = [v.unit for v in (*cases[0].instance.model.spec.states, *cases[0].instance.model.spec.controls)]
+    factor, unit = display.time_scale(units, end)
+    most = max(float(np.abs(case.signal(variable.symbol)).max()) for case in cases)
+    exponent = display.exponent_for(most)
+    for k, case in enumerate(cases):
+        times = case.times - case.times[0]
+        values = case.signal(variable.symbol)
+        times, values = np.append(times, end), np.append(values, values[-1] if case.how == "classical" else np.nan)
+        axes.plot(
+            times[times <= end] / factor,
+            values[times <= end] / 10.0**exponent,
+            color=COLOURS[k % 6],
+            linestyle=DASHES[k % 6],
+            linewidth=1.8,
+            drawstyle="default",
+            zorder=3.0 + 0.1 * k,
+        )
+    limit = max((case.instance.limits.get(variable.symbol, 0.0) for case in cases), default=0.0)
+    if 0.0 < limit < 2.0 * most:
+        for edge in (-limit, limit):
+            axes.axhline(edge / 10.0**exponent, **style.BOUND)
+    axes.axhline(0.0, color=style.GREY, linewidth=0.8, zorder=1.9)
+    axes.set_xlim(0.0, end / factor)
+    axes.set_title(display.shortened(variable.meaning, 62))
+    sudden = [(case.instance.name, case.metrics.get("impulse", 0.0)) for case in cases]
+    if variable in cases[0].instance.model.spec.controls and any(impulse for _, impulse in sudden):
+        # an impulse has no height to be drawn
+        said = [f"{name} begins with an impulse of {impulse:.3g}" for name, impulse in sudden if impulse]
+        axes.text(0.98, 0.93, "\n".join(said), transform=axes.transAxes, ha="right", va="top", fontsize=8.5)
+    axes.set_xlabel(display.labelled("$t$", unit))
+    axes.set_ylabel(display.labelled(display.formula(variable.latex, variable.symbol), variable.unit, exponent))
+
+
+def _totals(figure: Figure, grid: Any, row: int, cases: Sequence[Case]) -> None:
+    from satsym.analysis.performance import SETTLED
+
+    control = cases[0].instance.model.spec.controls[0]
+    unit = "" if control.unit == "1" else f"{control.unit}*s"
+    bars = (("transition_time", "transition time", "s"), (f"{control.symbol}_total", "total impulse", unit))
+    for column, (key, title, unit) in enumerate(bars):
+        axes = figure.add_subplot(grid[row, column])
+        values = [case.metrics[key] for case in cases]
+        places = np.arange(len(cases))[::-1]
+        axes.barh(places, values, height=0.62, color=[COLOURS[k % 6] for k in range(len(cases))], zorder=2.5)
+        for place, value, case in zip(places, values, cases, strict=True):
+            sudden = abs(case.metrics.get("impulse", 0.0)) if key != "transition_time" else 0.0
+            said = f" {value:.4g}" + (f", of which {sudden:.4g} at once" if sudden else "")
+            if key == "transition_time" and case.how == "classical":
+                said += f", until within {SETTLED:.0%}"
+            axes.text(value, place, said, va="center", ha="left", fontsize=9.0, color=style.INK)
+        axes.set_yticks([])
+        axes.set_xlim(0.0, 1.6 * max(values))
+        axes.grid(axis="y", visible=False)
+        axes.set_title(title)
+        axes.set_xlabel(display.labelled("", unit) if unit else "")
+
+
+def _range(figure: Figure, grid: Any, row: int, case: Case) -> None:
+    """Largest torque and largest limited signal over damping, a line for each command."""
+    from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
+
+    from satsym.analysis.comparison import ranged
+
+    options, spec = case.instance.classical, case.instance.model.spec
+    assert options is not None
+    assert options.damping is not None
+    dampings = options.damping * np.geomspace(*DAMPINGS, 25)
+    commands = [share * options.command for share in COMMANDS]
+    over = ranged(case.instance, dampings.tolist(), commands)
+    control = spec.controls[0]
+    name = next((n for n in case.instance.limits if n in over.peaks), spec.state_names[-1])
+    watched = next(v for v in spec.states if v.symbol == name)
+    shades = np.linspace(0.25, 1.0, len(commands))
+    panels = (
+        (over.control_peak, control, f"largest {display.formula(control.latex, control.symbol)} after the step"),
+        (over.peaks[name], watched, f"largest {display.formula(watched.latex, name)}"),
+    )
+    for column, (values, variable, title) in enumerate(panels):
+        axes = figure.add_subplot(grid[row, column])
+        for j, (command, shade) in enumerate(zip(commands, shades, strict=True)):
+            axes.loglog(over.dampings, values[:, j], color=style.BLUE, alpha=float(shade), linewidth=1.6)
+            axes.annotate(
+                f"{command:.3g}",
+                (over.dampings[-1], values[-1, j]),
+                fontsize=8.0,
+                va="center",
+                xytext=(3, 0),
+                textcoords="offset points",
+                color=style.SOFT,
+                annotation_clip=False,
+            )
+        limit = case.instance.limits.get(variable.symbol)
+        if limit:
+            axes.axhline(limit, color=style.ALARM, linewidth=1.2, linestyle=(0, (4, 2)))
+            axes.annotate(
+                "limit",
+                (over.dampings[0], limit),
+                fontsize=8.0,
+                xytext=(2, 2),
+                textcoords="offset points",
+                color=style.ALARM,
+            )
+        here = list(COMMANDS).index(1.0)
+        value = float(np.interp(options.damping, over.dampings, values[:, here]))
+        axes.plot([options.damping], [value], color=style.INK, **style.START)
+        axes.set_title(f"{title}, by damping and command")
+        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.xaxis.set_major_formatter(FormatStrFormatter("%g"))
+        axes.xaxis.set_minor_formatter(NullFormatter())
+        axes.set_xlabel(display.labelled("damping", "1/s"))
+        axes.set_ylabel(display.labelled(display.formula(variable.latex, variable.symbol), variable.unit))

@@ -1,0 +1,82 @@
+"""From where a path in space is looked at: along the axes, and at right angles to the plane that it lies in."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.floating[Any]]
+FLAT = 1e-6
+"""How far from a plane through the origin, relative to its size, a path is taken to lie in it."""
+ROUND = 1e-3
+"""Relative variation of the distance below which a path has no nearest point worth looking for."""
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """A picture plane.
+
+    Attributes
+    ----------
+    axes
+        Two orthonormal vectors, rightwards and upwards in the picture, shape (2, 2 or 3).
+    labels
+        What they are called.
+    title
+        What the picture shows, where the labels do not say it.
+    """
+
+    axes: Array
+    labels: tuple[str, str]
+    title: str = ""
+
+
+def views(curves: Sequence[Array], labels: Sequence[str]) -> list[View]:
+    """The views that show some curves fully, the most telling first.
+
+    Parameters
+    ----------
+    curves
+        Shape (2 or 3, N) each, the path first; columns that are not finite do not count.
+    labels
+        Names of the components.
+
+    Returns
+    -------
+    For curves in a plane of two coordinates that plane alone; for those in another plane through the origin that
+    plane, and then, as for all others, the three planes of coordinates.
+    """
+    size = len(labels)
+    unit = np.eye(size)
+    pairs = [(0, 1)] if size == 2 else [(0, 1), (0, 2), (1, 2)]
+    planes = [View(unit[list(pair)], (labels[pair[0]], labels[pair[1]])) for pair in pairs]
+    path = curves[0][:, np.isfinite(curves[0]).all(axis=0)]
+    points = np.hstack([curve[:, np.isfinite(curve).all(axis=0)] for curve in curves])
+    whole = float(np.abs(points).max(initial=0.0))
+    if size == 2 or whole == 0.0:
+        return planes[:1]
+    for plane in planes:
+        if np.abs(points - plane.axes.T @ plane.axes @ points).max() <= FLAT * whole:
+            return [plane]
+    _, spread, directions = np.linalg.svd(points @ points.T / whole**2)
+    depth = float(np.abs(directions[2] @ points).max())
+    if depth > FLAT * whole or spread[1] <= FLAT**2 * spread[0]:
+        return planes
+    return [_along_normal(path, directions[2]), *planes]
+
+
+def _along_normal(path: Array, normal: Array) -> View:
+    """The plane of a path, turned so that the motion goes round against the clock."""
+    turning = np.cross(path[:, :-1], path[:, 1:], axis=0) @ np.ones(path.shape[1] - 1)
+    normal = normal if turning @ normal >= 0.0 else -normal
+    distance = np.linalg.norm(path, axis=0)
+    near = bool(distance.max() - distance.min() > ROUND * distance.max())
+    first = path[:, int(distance.argmin()) if near else 0]
+    first = first - (first @ normal) * normal
+    first = first / np.linalg.norm(first)
+    towards = "towards the nearest point" if near else "towards the start"
+    return View(np.vstack([first, np.cross(normal, first)]), (towards, "at right angles"), "in the plane of the motion")

@@ -1,0 +1,162 @@
+"""Many motions of one model at once: steps on arrays, a column for each motion.
+
+NumPy runs the generated batch form on blocks of columns, with buffers that are used again. Kernels that were compiled
+run the generated scalar form instead, as the inner loop over the columns of a block, which the compiler turns into
+vector instructions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from satsym.kernels import Kernels
+from satsym.kernels.blocks import pairs
+from satsym.kernels.composition import weights
+from satsym.solution import Array
+from satsym.status import BadInput
+from satsym.wording import shown, suggestion
+
+METHODS = ("RK4", "symplectic")
+
+BLOCK = 8192
+"""Columns at a time: few enough that their buffers stay in the cache, many enough that calls do not count."""
+COMPILED_BLOCK = 512
+"""The same for compiled code, to which calls cost nothing."""
+
+
+def fly(
+    kernels: Kernels,
+    times: ArrayLike,
+    x0: ArrayLike,
+    p: Sequence[ArrayLike],
+    steps: int,
+    u: ArrayLike | None = None,
+    method: str = "RK4",
+) -> Array:
+    """States of many motions at given times, with equal steps between each two of them.
+
+    Parameters
+    ----------
+    kernels
+        Of the model; ``kernels.compiled()`` for compiled code, which waits for its compiler the first time.
+    times
+        When states are wanted, shape (K,): the first is that of ``x0``. They may run backward.
+    x0
+        Starts, shape (n, N).
+    p
+        Parameters, in the model's order; each a number or an array of shape (N,).
+    steps
+        Number of steps between two times.
+    u
+        Constant controls, shape (m,) or (m, N); none by default.
+    method
+        One of :data:`METHODS`. ``"symplectic"``: kicks and drifts of sixth order, twelve evaluations a step, for
+        separable models without control.
+
+    Returns
+    -------
+    array of shape (n, K, N)
+        Beyond a singularity nan or inf.
+
+    Raises
+    ------
+    BadInput
+        For arrays of other shapes, numbers that are not finite, no step, or a method that is not the model's.
+    """
+    spec = kernels.spec
+    nodes, start = np.asarray(times, float), np.asarray(x0, float)
+    if nodes.ndim != 1 or not len(nodes):
+        raise BadInput(f"times: has shape {nodes.shape}; give a list of times")
+    if start.ndim != 2 or len(start) != len(spec.states):
+        raise BadInput(f"x0: has shape {start.shape}; give a row for each of the {len(spec.states)} states")
+    if steps < 1:
+        raise BadInput(f"steps: {steps}; take at least one between two times")
+    count = start.shape[1]
+    parameters = _rows("p", p, len(spec.parameters), count)
+    controls = _rows("u", np.zeros(len(spec.controls)) if u is None else u, len(spec.controls), count)
+    for name, rows in (("times", nodes), ("x0", start), ("p", parameters), ("u", controls)):
+        if not np.isfinite(rows).all():
+            raise BadInput(f"{name}: not finite; give numbers")
+    if method not in METHODS:
+        raise BadInput(f"method: {shown(method)}; {suggestion(method, METHODS)}")
+    symplectic, compiled = method == "symplectic", kernels.backend == "numba"
+    if symplectic:
+        kernels.require_separable()
+        if controls.any():
+            raise BadInput(f"u: the symplectic method is for motions without control; take RK4 for {spec.name}")
+    arrays = _Kicks if symplectic else _RungeKutta
+    advance = kernels.block_step(symplectic) if compiled else arrays(kernels).advance
+    x = np.empty((len(start), len(nodes), count))
+    with np.errstate(all="ignore"):
+        for begin in range(0, count, COMPILED_BLOCK if compiled else BLOCK):
+            part = slice(begin, begin + (COMPILED_BLOCK if compiled else BLOCK))
+            y = start[:, part].copy()
+            given = [np.ascontiguousarray(rows[:, part]) for rows in (controls, parameters)]
+            x[:, 0, part] = y
+            for k in range(1, len(nodes)):
+                advance(nodes[k - 1], (nodes[k] - nodes[k - 1]) / steps, steps, y, *given)
+                x[:, k, part] = y
+    return x
+
+
+class _RungeKutta:
+    """RK4 with the generated batch form; buffers for one size of block."""
+
+    def __init__(self, kernels: Kernels) -> None:
+        self.dynamics = kernels.functions["dynamics_batch"]
+        self.slope: Array = np.empty((0, 0))
+        self.stage = self.total = self.slope
+
+    def advance(self, t: float, h: float, steps: int, y: Array, u: Array, p: Array) -> None:
+        """So many steps of size h from t, in place."""
+        if self.slope.shape != y.shape:
+            self.slope, self.stage, self.total = (np.empty(y.shape) for _ in range(3))
+        slope, stage, total, f, parameters = self.slope, self.stage, self.total, self.dynamics, tuple(p)
+        for i in range(steps):
+            now = t + i * h
+            f(now, y, u, parameters, out=total)
+            np.multiply(total, 0.5 * h, out=stage)
+            for share in (0.5, 1.0):  # the second and third slopes; each leads on from the start
+                stage += y
+                f(now + 0.5 * h, stage, u, parameters, out=slope)
+                np.multiply(slope, 2.0, out=stage)
+                total += stage
+                np.multiply(slope, share * h, out=stage)
+            stage += y
+            f(now + h, stage, u, parameters, out=slope)
+            total += slope
+            total *= h / 6.0
+            y += total
+
+
+class _Kicks:
+    """Kicks and drifts with the generated batch form."""
+
+    def __init__(self, kernels: Kernels) -> None:
+        self.dynamics = kernels.functions["dynamics_batch"]
+        self.coordinates, self.velocities = np.array(pairs(kernels.spec)).T
+        kicks, drifts = weights()
+        self.weights = tuple(zip(kicks, [*drifts, 0.0], strict=True))
+
+    def advance(self, t: float, h: float, steps: int, y: Array, u: Array, p: Array) -> None:
+        """So many steps of size h, in place."""
+        slope, q, v, parameters = np.empty(y.shape), self.coordinates, self.velocities, tuple(p)
+        for _ in range(steps):
+            for kick, drift in self.weights:
+                self.dynamics(t, y, u, parameters, out=slope)
+                y[v] += (kick * h) * slope[v]
+                y[q] += (drift * h) * y[v]
+
+
+def _rows(name: str, values: ArrayLike | Sequence[ArrayLike], count: int, columns: int) -> Array:
+    """A row for each component, shape (count, columns)."""
+    try:
+        rows = [np.broadcast_to(np.asarray(row, float), columns) for row in values]  # type: ignore[union-attr]
+    except (TypeError, ValueError):
+        raise BadInput(f"{name}: not a number or an array of {columns} for each component") from None
+    if len(rows) != count:
+        raise BadInput(f"{name}: {len(rows)} components; the model has {count}")
+    return np.array(rows).reshape(count, columns)
