@@ -69,7 +69,7 @@ class Certificate:
     hamiltonian_drift
         Largest change of H along the flow, relative; ``None`` where time is explicit.
     legendre_clebsch
-        Smallest eigenvalue of H_uu.
+        Smallest eigenvalue of H_uu; for controls that switch that of its generalisation on singular arcs, NaN without.
     conjugate_time
         The first one, or ``None``.
     checks
@@ -99,7 +99,7 @@ class Solution:
     objective
         The cost J; NaN where there is none.
     times
-        Nodes, shape (N+1,).
+        Nodes, shape (N+1,). Where a control jumps, the time occurs twice: the end of one arc and the start of the next.
     x, u, lam
         States (n, N+1), controls (m, N+1) and costates (n, N+1) at the nodes.
     switching_times
@@ -151,7 +151,7 @@ class Flight:
     times, x, u
         As in :class:`Solution`.
     invariants
-        By name; only the motion without control has any.
+        By name: of the motion without control, and balances that hold under every control.
     metrics
         Numbers that describe the flight, by name.
     """

@@ -364,7 +364,7 @@ def test_the_time_limit_is_kept(name, seconds):
     ("changed", "words"),
     [
         ({"method": "sweep"}, "a free final time cannot be swept for"),
-        ({"method": "bang-bang"}, "is not available"),
+        ({"method": "bang-bang"}, "is for controls that enter without a square"),
     ],
 )
 def test_methods_that_do_not_fit_are_refused(changed, words):

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from satsym.status import BadInput
-from satsym.wording import printable, shown, suggestion
+from satsym.wording import printable, shown, some, suggestion
 
 SHIPPED = Path(__file__).parent.parent / "instances"
 MAX_BYTES = 1_000_000
@@ -98,7 +98,7 @@ def _text(path: Path) -> str:
         if not path.is_file():
             # also a device or a pipe, which might never end
             what = "is not a regular file" if path.exists() else "no such file"
-            raise BadInput(f"{what}; give the path of a TOML file, or one of {', '.join(shipped())}")
+            raise BadInput(f"{what}; give the path of a TOML file, or one of {some(shipped())}")
         with path.open("rb") as stream:
             data = stream.read(MAX_BYTES + 1)
     except (OSError, ValueError) as error:

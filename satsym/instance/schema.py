@@ -28,6 +28,10 @@ Matrix = Annotated[
     list[float | list[float]], Meta(description="a list of rows of numbers, or the list of the diagonal's numbers")
 ]
 Series = Annotated[float | str | list[float | str], Meta(description="a number, or a list of numbers over time")]
+Gains = Annotated[
+    tuple[float, float],
+    Meta(description="two numbers, the gain of the rate and that of the angle, such as [13.56, 0.0678]"),
+]
 Method = Literal["auto", "sweep", "collocation", "shooting", "linear", "bang-bang"]
 Backend = Literal["auto", "python", "numba"]
 Count = Annotated[int, Meta(ge=1, le=10**7, description="a whole number from 1 to 10000000")]
@@ -50,6 +54,14 @@ class LqrTable(_Table, frozen=True):
     allowed: dict[str, Quantity] = {}
     inputs: Names | None = None
     horizon: Quantity | None = None
+
+
+class ClassicalTable(_Table, frozen=True):
+    follows: Name
+    command: Quantity
+    damping: Quantity | None = None
+    gains: Gains | None = None
+    differentiator: Quantity = 0.0
 
 
 class GuessTable(_Table, frozen=True):
@@ -102,6 +114,8 @@ class InstanceFile(_Table, frozen=True):
     lqr: LqrTable | None = None
     solver: SolverOptions = SolverOptions()
     guess: GuessTable = GuessTable()
+    classical: ClassicalTable | None = None
+    limits: dict[str, Quantity] = {}
 
 
 def check(tree: dict[str, Any]) -> InstanceFile:

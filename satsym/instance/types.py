@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 
 Row = tuple[float, ...]
 
+UNSMOOTHED = (1e-100, 1.0)
+"""What ends the bounds of a switching problem: a smoothing that is none, and all of the weight of |u|."""
+
 
 @dataclass(frozen=True)
 class LqrOptions:
@@ -35,6 +38,31 @@ class LqrOptions:
     R: tuple[Row, ...]
     inputs: tuple[str, ...]
     horizon: float | None = None
+
+
+@dataclass(frozen=True)
+class ClassicalOptions:
+    """A linear law that follows a command from time t0 on.
+
+    Parameters
+    ----------
+    follows
+        Name of the state that follows.
+    command
+        Its value from then on, in the model's unit.
+    damping
+        Both poles of the loop lie at its negative; ``None`` where `gains` are given.
+    gains
+        Of the rate and of the state; ``None`` where they follow from `damping`.
+    differentiator
+        Time constant of the circuit that measures the rate; 0 for an ideal one.
+    """
+
+    follows: str
+    command: float
+    damping: float | None
+    gains: tuple[float, float] | None
+    differentiator: float
 
 
 @dataclass(frozen=True)
@@ -80,6 +108,9 @@ class Instance:
         Radius of the ball of controls; infinite where there is none.
     solver, lqr, guess
         Options; `lqr` is ``None`` where the instance has none.
+    classical, limits
+        A law that follows a command, if there is one; and the largest magnitude that is allowed of states and of
+        derived quantities, by name.
     """
 
     name: str
@@ -98,6 +129,8 @@ class Instance:
     solver: SolverOptions
     lqr: LqrOptions | None
     guess: Guess
+    classical: ClassicalOptions | None = None
+    limits: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def boundary_type(self) -> int:
@@ -114,5 +147,5 @@ class Instance:
         """The control set as generated functions take it: lower and upper bounds, the radius, or nothing."""
         kind = self.model.spec.control_set
         if kind == "box":
-            return self.lower + self.upper
+            return self.lower + self.upper + (UNSMOOTHED if self.model.spec.switching else ())
         return (self.max_norm,) if kind == "ball" else ()

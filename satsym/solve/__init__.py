@@ -15,15 +15,16 @@ if TYPE_CHECKING:
 
 __all__ = ["simulate", "solve"]
 
-METHODS = ("sweep", "collocation", "shooting", "linear")
+METHODS = ("sweep", "collocation", "shooting", "linear", "bang-bang")
 """What is available of what an instance may name."""
 
 
 def solve(instance: Instance, progress: Progress | None = None) -> Solution:
-    """Solve an instance by the method it names and certify the answer; by default that is collocation.
+    """Solve an instance by the method it names and certify the answer.
 
-    Where it finds nothing and no final state is given, the sweep is tried as well. The sweep is as accurate as its
-    steps allow; a certificate asks for more, so its answers have none.
+    By default that is collocation, or exact arcs where controls switch between their bounds. Where collocation
+    finds nothing and no final state is given, the sweep is tried as well. The sweep is as accurate as its steps
+    allow; a certificate asks for more, so its answers have none.
 
     Parameters
     ----------
@@ -43,6 +44,8 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     if method not in ("auto", *METHODS):
         available = " or ".join(f'"{name}"' for name in ("auto", *METHODS))
         raise BadInput(f'{instance.name}: solver.method: "{method}" is not available; use {available}')
+    if spec.switching != (method == "bang-bang") and method != "auto":
+        raise BadInput(f"{instance.name}: solver.method: {_unfit(spec.switching, method)}")
     if method == "sweep" and instance.tf is None:
         raise BadInput(f'{instance.name}: time.tf: a free final time cannot be swept for; use method "collocation"')
     if method == "sweep" and instance.final:
@@ -55,10 +58,19 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         return _swept(instance, progress)
     from satsym.solve.certificate import certify
 
+    if method == "auto" and spec.switching:
+        method = "bang-bang"
     solution = _solver(method)(instance, progress)
     if method == "auto" and not solution.status.answered and not instance.final and instance.tf is not None:
         return _swept(instance, progress)
     return replace(solution, certificate=certify(solution))
+
+
+def _unfit(switching: bool, method: str) -> str:
+    """Why a method is not one for such controls, and which is."""
+    if switching:
+        return f'the controls enter without a square and switch, which "{method}" cannot find; use "bang-bang"'
+    return '"bang-bang" is for controls that enter without a square; use "collocation"'
 
 
 def _solver(method: str) -> Callable[[Instance, Progress | None], Solution]:
@@ -71,6 +83,10 @@ def _solver(method: str) -> Callable[[Instance, Progress | None], Solution]:
         from satsym.solve import linear
 
         return linear.solve
+    if method == "bang-bang":
+        from satsym.solve.switching import solving
+
+        return solving.solve
     from satsym.solve import two_point
 
     return two_point.solve

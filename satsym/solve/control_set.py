@@ -68,8 +68,8 @@ def excess(instance: Instance, unbounded: Array, widening: float = 0.0) -> Array
     """
     kind, limits = instance.model.spec.control_set, widened(instance, widening)
     if kind == "box":
-        m = len(limits) // 2
-        return np.concatenate([unbounded - _column(limits[:m]), unbounded - _column(limits[m:])])
+        m = len(unbounded)
+        return np.concatenate([unbounded - _column(limits[:m]), unbounded - _column(limits[m : 2 * m])])
     if kind == "ball":
         return (np.linalg.norm(unbounded, axis=0) - limits[0])[None, :]
     return np.empty((0, unbounded.shape[1]))
@@ -89,7 +89,8 @@ def widened(instance: Instance, by: float) -> tuple[float, ...]:
     """The ``bounds`` argument of kernels with every bound moved outwards, in the controls' units."""
     kind = instance.model.spec.control_set
     if kind == "box":
-        return (*(low - by for low in instance.lower), *(high + by for high in instance.upper))
+        kept = instance.bounds[2 * len(instance.lower) :]  # the smoothing of a switching problem
+        return (*(low - by for low in instance.lower), *(high + by for high in instance.upper), *kept)
     return (instance.max_norm + by,) if kind == "ball" else ()
 
 

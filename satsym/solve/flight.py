@@ -10,6 +10,7 @@ from satsym.grid import Grid
 from satsym.instance import Instance
 from satsym.solution import Array, Flight, Invariant
 from satsym.solve import closed_loop, control_set
+from satsym.solve.balances import balances
 from satsym.solve.closed_loop import Law
 from satsym.status import BadInput, Status
 
@@ -75,7 +76,7 @@ def simulate(instance: Instance, law: Law | None = None) -> Flight:
         times=times,
         x=x,
         u=u,
-        invariants=_invariants(instance, times, x) if not u.any() else {},
+        invariants=(_invariants(instance, times, x) if not u.any() else {}) | balances(instance, times, x, u),
         metrics=_metrics(instance, x) | {"steps": float(steps), "estimated_error": error},
     )
 

@@ -33,6 +33,11 @@ def certify(solution: Solution) -> Certificate | None:
     """
     if not solution.status.answered:
         return None
+    if solution.instance.model.spec.switching:
+        from satsym.solve.certificate import switching
+
+        with np.errstate(all="ignore"):
+            return switching.certify(solution)
     solution = revolutions.as_stated(solution)
     with np.errstate(all="ignore"):
         recomputed = flow(solution)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from satsym.instance import Instance
 from satsym.solve import control_set
+from satsym.solve.switching.companion import sloping, smoothed_cost, smoothed_law
 
 Array = NDArray[np.floating[Any]]
 
@@ -123,10 +124,10 @@ class TwoPoint:
         """The duration."""
         return float(theta[-1]) if self.free_time else self.duration
 
-    def _arguments(self, tau: Array, z: Array, theta: Array) -> tuple[object, ...]:
+    def _arguments(self, tau: Array, z: Array, theta: Array) -> tuple[Array, Array, Array, tuple[float, ...]]:
         t = self.instance.t0 + self.elapsed(theta) * tau
         physical = z * self.scale.both
-        return t, physical[: self.states], physical[self.states :], self.instance.parameters
+        return t, physical[: self.states], sloping(self.instance, physical[self.states :]), self.instance.parameters
 
     def rates(self, tau: Array, z: Array, theta: Array) -> Array:
         """dz/dt, shape (2n, N), at ``tau`` (N,) and ``z`` (2n, N)."""
@@ -153,6 +154,9 @@ class TwoPoint:
         """The integrand of the cost under the control law, scaled, shape (N,)."""
         t, x, lam, p = self._arguments(tau, z, theta)
         model = self.instance.model
+        if model.spec.switching:
+            u = smoothed_law(self.instance, self.bounds, t, x, lam)
+            return smoothed_cost(self.instance, self.bounds, t, x, u) / self.scale.cost
         u = model.control_law_batch(t, x, lam, p, self.bounds)
         return np.asarray(model.running_cost_batch(t, x, u, p)) / self.scale.cost
 
@@ -165,6 +169,9 @@ class TwoPoint:
     def control(self, tau: Array, z: Array, theta: Array, bounded: bool = True) -> Array:
         """The control law, in the model's units, shape (m, N)."""
         bounds = self.bounds if bounded else control_set.without_bounds(self.instance)
+        if self.instance.model.spec.switching:
+            t, x, lam, _ = self._arguments(tau, z, theta)
+            return smoothed_law(self.instance, bounds, t, x, lam)
         law: Array = self.instance.model.control_law_batch(*self._arguments(tau, z, theta), bounds)
         return law
 

@@ -10,11 +10,15 @@ from numpy.typing import NDArray
 from satsym.instance import Instance
 from satsym.solve import control_set
 from satsym.solve.collocation.problem import Scale, TwoPoint
+from satsym.solve.switching.companion import sloping
 
 Array = NDArray[np.floating[Any]]
 
 POINTS = 9
 """Points of the straight line at which sizes and responses are looked at."""
+
+NO_SLOPE = 1e-40
+"""Of costates that are none, see :func:`satsym.solve.switching.companion.sloping`."""
 
 NEGLIGIBLE = 1e-3
 """A state this much smaller along the way than what it does to the others is scaled by the latter."""
@@ -67,9 +71,9 @@ def _scale(instance: Instance, start: Array, end: Array, duration: float) -> Sca
     path = start[:, None] + (end - start)[:, None] * np.linspace(0.0, 1.0, POINTS)
     times = instance.t0 + duration * np.linspace(0.0, 1.0, POINTS)
     free = control_set.without_bounds(instance)
-    slopes = np.abs(model.canonical_jacobian_batch(times, path, np.zeros_like(path), instance.parameters, free)).max(
-        axis=2
-    )
+    none = sloping(instance, np.zeros_like(path))
+    slopes = np.abs(model.canonical_jacobian_batch(times, path, none, instance.parameters, free)).max(axis=2)
+    slopes[slopes < NO_SLOPE] = 0.0
     size = np.abs(path).max(axis=1)
     for j in range(n):
         through = [

@@ -126,9 +126,9 @@ class System:
         matrix = (grown[:, :, None, :, None] * by_stage[:, None]).reshape(count, s * n, s * n)
         matrix.reshape(count, -1)[:, :: s * n + 1] += 1.0
         blocks = Blocks(matrix)
-        right = np.zeros((count, n + 1 + e, s, n))
-        right[:, np.arange(n), :, np.arange(n)] = 1.0
-        right = right.reshape(count, n + 1 + e, s * n)
+        by_stages = np.zeros((count, n + 1 + e, s, n))
+        by_stages[:, np.arange(n), :, np.arange(n)] = 1.0
+        right: Array = by_stages.reshape(count, n + 1 + e, s * n)
         right[:, n] = residual.by_interval
         if self.problem.free_time:
             right[:, -1] = self._by_duration(curve, residual).transpose(1, 2, 0).reshape(count, -1)

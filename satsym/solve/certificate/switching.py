@@ -1,0 +1,209 @@
+"""The certificate of exact arcs: the extremal again by other means, strict switching, second variation, competitors."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.solution import Certificate, Check, Solution
+from satsym.solve.certificate import conditions
+from satsym.solve.certificate.convexity import convex
+from satsym.solve.certificate.end_switches import with_end_switches
+from satsym.solve.certificate.flow import Flow
+from satsym.solve.certificate.replay import Replay, replay
+from satsym.solve.certificate.switching_rivals import needles, other_starts
+from satsym.solve.certificate.switching_variation import variation
+from satsym.solve.switching.newton import switching
+from satsym.solve.switching.structure import SINGULAR
+
+Array = NDArray[np.floating[Any]]
+
+RESIDUAL, DEFECT, STATIONARY, DRIFT, TIMES = 1e-9, 1e-7, 1e-8, 1e-9, 1e-9
+"""Largest boundary residual, defect, violation of the minimum of H, change of H and of switching times, relative."""
+
+DEARER = 1e-9
+"""Relative margin by which a competitor may seem cheaper: its own error."""
+
+STRICT = 1e-6
+"""Least rate of a switching function at a switch, relative to its size over the duration; least distance between
+switches and least distance of a switching function from its zero elsewhere, relative as well."""
+
+CLOSE = 0.01
+"""Share of the duration around a switch within which a switching function may be as small as it likes."""
+
+CURVED = 1e-7
+"""Least relative curvature in the switching times."""
+
+
+def certify(solution: Solution) -> Certificate:
+    """Certify exact arcs; see :func:`satsym.solve.certificate.certify`."""
+    again = replay(solution)
+    if again is None:
+        missing = float("nan")
+        check = Check("flow from the initial costates is finite", 1.0, 0.0)
+        return Certificate("failed", missing, missing, missing, None, missing, None, (check,))
+    first = _first_order(solution, again)
+    second = _sufficient(solution, again) if all(c.passed for c in first) else []
+    verdict = "failed" if not second else "certified" if all(c.passed for c in second) else "extremal only"
+    measured = {c.name: c.value for c in (*first, *second)}
+    return Certificate(
+        verdict=verdict,
+        boundary_residual=measured["boundary residual"],
+        dynamics_defect=measured["dynamics defect"],
+        stationarity=measured["stationarity"],
+        hamiltonian_drift=measured.get("hamiltonian drift"),
+        legendre_clebsch=_legendre(again),
+        conjugate_time=None,
+        checks=(*first, *second),
+    )
+
+
+def _first_order(solution: Solution, again: Replay) -> list[Check]:
+    instance, n = solution.instance, len(solution.instance.initial)
+    flow = Flow(again.times, again.z[:n], again.z[n:], np.zeros(0))
+    checks = [
+        Check("boundary residual", conditions.boundary_residual(solution, flow), RESIDUAL),
+        Check("dynamics defect", conditions.dynamics_defect(solution, flow), DEFECT),
+        Check("switching times", _moved(solution, again), TIMES),
+        Check("stationarity", _excess(solution), STATIONARY),
+        Check("outside the domain", float(not instance.model.in_domain(again.z[:n])), 0.0),
+    ]
+    if any(piece.field.singular is not None for piece in again.pieces):
+        checks.append(Check("switching function on singular arcs", _off_singular(again), STATIONARY))
+    if instance.model.spec.autonomous:
+        checks.append(Check("hamiltonian drift", _drift(solution, again), DRIFT))
+    return checks
+
+
+def _sufficient(solution: Solution, again: Replay) -> list[Check]:
+    """Each is a deficit that must not be positive."""
+    extended = with_end_switches(again, _along(again)[0])
+    rates, gap, distance = _strictness(again, extended)
+    checks = [
+        Check("switching is not strict", float(not rates > STRICT), 0.0),
+        Check("switches coincide", float(not gap > STRICT), 0.0),
+        Check("switching function vanishes on an arc", float(not distance > STRICT), 0.0),
+    ]
+    if any(SINGULAR in piece.field.levels for piece in again.pieces):
+        checks.append(Check("generalised legendre-clebsch", float(not _legendre(again) > 0.0), 0.0))
+        checks.append(Check("no proof of a minimum along singular arcs: not convex", float(not convex(solution)), 0.0))
+    else:
+        second = variation(solution.instance, extended)
+        flat = second is None or not second.curvature > CURVED
+        checks.append(Check("second variation in the switching times", float(flat), 0.0))
+    for name, rival in (("perturbed switching times", needles), ("other starts", other_starts)):
+        dearer = rival(solution)
+        if math.isfinite(dearer):
+            checks.append(Check(f"cheaper by: {name}", max(0.0, -dearer), DEARER))
+    return checks
+
+
+def _moved(solution: Solution, again: Replay) -> float:
+    """Largest change of a switching time relative to the duration; infinite where their numbers differ."""
+    lasting = float(solution.times[-1] - solution.times[0])
+    worst = 0.0
+    for control, times in enumerate(solution.switching_times):
+        found = again.switching_times(control)
+        if len(found) != len(times):
+            return float("inf")
+        worst = max([worst, *(abs(a - b) / lasting for a, b in zip(found, times, strict=True))])
+    return worst
+
+
+def _excess(solution: Solution) -> float:
+    """By how much H exceeds its minimum over the box at most, relative to the terms it consists of."""
+    instance, model = solution.instance, solution.instance.model
+    p, u = instance.parameters, solution.u
+    sigma = np.asarray(model.switching_function_batch(solution.times, solution.x, solution.lam, p))
+    weight = np.asarray(model.magnitude_weight_batch(solution.times, solution.x, p))
+    low, high = (np.array(bounds)[:, None] for bounds in (instance.lower, instance.upper))
+    rest = np.minimum(np.maximum(0.0, low), high)
+    least = np.min([sigma * v + weight * np.abs(v) for v in np.broadcast_arrays(low, high, rest, u)[:3]], axis=0)
+    outside = np.maximum(np.maximum(low - u, u - high), 0.0).max(initial=0.0)
+    excess = (sigma * u + weight * np.abs(u) - least).max(initial=0.0)
+    rates = model.dynamics_batch(solution.times, solution.x, u, p)
+    terms = float(np.abs(solution.lam * rates).sum(axis=0).max())
+    return float(excess / max(terms, 1e-300) + outside)
+
+
+def _off_singular(again: Replay) -> float:
+    """Largest switching function on singular arcs, where it is to vanish, relative to its size elsewhere."""
+    sizes, _ = _along(again)
+    worst = 0.0
+    for piece in again.pieces:
+        control, field = piece.field.singular, piece.field
+        if control is not None:
+            inside = (again.times >= piece.start) & (again.times <= piece.end)
+            x, lam = again.z[: field.n, inside], again.z[field.n :, inside]
+            sigma = field.model.switching_function_batch(again.times[inside], x, lam, field.p)[control]
+            worst = max(worst, float(np.abs(sigma).max(initial=0.0)) / sizes[control])
+    return worst
+
+
+def _drift(solution: Solution, again: Replay) -> float:
+    """Largest change of H along the replay, relative to the terms it consists of."""
+    instance, n = solution.instance, len(solution.instance.initial)
+    x, lam = again.z[:n], again.z[n:]
+    h = np.asarray(instance.model.hamiltonian_batch(again.times, x, again.u, lam, instance.parameters))
+    rates = instance.model.dynamics_batch(again.times, x, again.u, instance.parameters)
+    terms = float(np.abs(lam * rates).sum(axis=0).max())
+    return float(np.abs(h - h[0]).max() / max(terms, float(np.abs(h).max()), 1e-300))
+
+
+def _legendre(again: Replay) -> float:
+    """The least generalised Legendre-Clebsch expression on singular arcs; NaN without any."""
+    values = [
+        piece.field.legendre(t, z.tolist())
+        for piece in again.pieces
+        if piece.field.singular is not None
+        for t, z in ((piece.start, piece.before), (piece.end, piece.after))
+    ]
+    return min(values, default=float("nan"))
+
+
+def _strictness(again: Replay, extended: Replay) -> tuple[float, float, float]:
+    """Least rate of a switching function at a switch, least time between switches, and least distance elsewhere."""
+    pieces = extended.pieces
+    start, end = pieces[0].start, pieces[-1].end
+    lasting = end - start
+    sizes, marks = _along(again)
+    switches = [piece for piece in again.pieces if piece.switched is not None]
+    rates = [float("inf")]
+    for k, piece in enumerate(pieces[:-1]):
+        control = piece.switched
+        assert control is not None
+        if SINGULAR in (piece.field.levels[control], pieces[k + 1].field.levels[control]):
+            continue
+        for field in (piece.field, pieces[k + 1].field):
+            _, rate = switching(field, piece.end, piece.after.tolist(), control)
+            rates.append(abs(rate) * lasting / sizes[control])
+    gaps = np.diff([start, *(piece.end for piece in switches), end]) / lasting
+    distances = [float("inf")]
+    for control, (times, margin) in enumerate(marks):
+        own = extended.switching_times(control)
+        away = np.min([np.abs(times - t) for t in own], axis=0) if own else np.full(len(times), np.inf)
+        far = (away > CLOSE * lasting) & np.isfinite(margin)
+        distances.append(float((margin[far] / sizes[control]).min(initial=np.inf)))
+    return min(rates), float(gaps.min()), min(distances)
+
+
+def _along(again: Replay) -> tuple[list[float], list[tuple[Array, Array]]]:
+    """Sizes of the switching functions, and their distances from the values at which they would switch."""
+    pieces = again.pieces
+    n, model, p = pieces[0].field.n, pieces[0].field.model, pieces[0].field.p
+    sigma = np.asarray(model.switching_function_batch(again.times, again.z[:n], again.z[n:], p))
+    weight = np.broadcast_to(model.magnitude_weight_batch(again.times, again.z[:n], p), sigma.shape)
+    sizes = [max(float((np.abs(s) + w).max()), 1e-300) for s, w in zip(sigma, weight, strict=True)]
+    singular = np.zeros(sigma.shape, bool)
+    for piece in pieces:
+        if piece.field.singular is not None:
+            singular[piece.field.singular] |= (again.times >= piece.start) & (again.times <= piece.end)
+    marks = []
+    for i, (s, w) in enumerate(zip(sigma, weight, strict=True)):
+        equal = pieces[0].field.instance.lower[i] == pieces[0].field.instance.upper[i]
+        margin = np.abs(np.abs(s) - w)
+        marks.append((again.times, np.where(singular[i] | equal, np.inf, margin)))
+    return sizes, marks

@@ -1,0 +1,1 @@
+"""Control-affine problems in a box: bang-bang, three-level and singular arcs with exact switching times."""

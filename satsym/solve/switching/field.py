@@ -1,0 +1,152 @@
+"""The extremal equations with each control at its level, and derivatives of switching functions."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+from satsym.solve.switching.structure import LOWER, SINGULAR, UPPER
+
+Array = NDArray[np.floating[Any]]
+
+NUDGE = 1e-30
+"""Imaginary step of derivatives: exact, for nothing is subtracted."""
+
+DIFFERENCE, TINY = 1e-5, 1e-12
+"""Relative step of central differences, and what counts as nothing."""
+
+
+class Field:
+    """Rates of states and costates while every control keeps its level.
+
+    Parameters
+    ----------
+    instance
+        Model, parameters and bounds.
+    levels
+        One for each control. At most one of them is singular: it keeps the switching function at zero.
+    """
+
+    def __init__(self, instance: Instance, levels: tuple[int, ...]) -> None:
+        self.instance, self.levels = instance, levels
+        self.model, self.p, self.n = instance.model, instance.parameters, len(instance.initial)
+        self.held = tuple(
+            high if level == UPPER else low if level == LOWER else min(max(0.0, low), high)
+            for level, low, high in zip(levels, instance.lower, instance.upper, strict=True)
+        )
+        self.singular = levels.index(SINGULAR) if SINGULAR in levels else None
+
+    def control(self, t: float, z: list[float]) -> tuple[float, ...]:
+        """The controls, shape (m,)."""
+        if self.singular is None:
+            return self.held
+        base, slope = self._accelerations(np.array([t]), np.array(z)[:, None])
+        value = float(-base[0] / slope[0]) if slope[0] else math.nan
+        if not math.isfinite(value):
+            raise ArithmeticError("the second derivative of the switching function does not determine the control")
+        return self._with(value)
+
+    def rates(self, t: float, z: list[float]) -> list[float]:
+        """dz/dt, 2n numbers."""
+        x, lam, u = z[: self.n], z[self.n :], self.control(t, z)
+        return [*self.model.dynamics(t, x, u, self.p), *self.model.costate_rate(t, x, u, lam, self.p)]
+
+    def jacobian(self, t: float, z: list[float]) -> Array:
+        """The rates by z, shape (2n, 2n)."""
+        x, lam, u = z[: self.n], z[self.n :], self.control(t, z)
+        size = 2 * self.n
+        held: Array = np.array(self.model.extremal_jacobian(t, x, u, lam, self.p)).reshape(size, size)
+        if self.singular is None:
+            return held
+        by_control = np.concatenate([self._column(t, x, u), -self.gradient(t, z, self.singular)[: self.n]])
+        return held + np.outer(by_control, self._feedback_slope(t, z))
+
+    def along(self, t: Array, z: Array) -> tuple[Array, Array]:
+        """Controls (m, N) and rates (2n, N) at many points at once."""
+        x, lam = z[: self.n], z[self.n :]
+        u = np.empty((len(self.held), z.shape[1]))
+        u[:] = np.array(self.held)[:, None]
+        if self.singular is not None:
+            base, slope = self._accelerations(t, z)
+            u[self.singular] = -base / slope
+        found = np.empty_like(z)  # given, so that kernels need not find out shapes
+        self.model.dynamics_batch(t, x, u, self.p, out=found[: self.n])
+        self.model.costate_rate_batch(t, x, u, lam, self.p, out=found[self.n :])
+        return u, found
+
+    def gradient(self, t: float, z: list[float], control: int) -> Array:
+        """A switching function by states and costates, shape (2n,).
+
+        By the states it is what the control does to the costates, taken with both signs so that a weight of |u|
+        falls out; by the costates what it does to the states.
+        """
+        x, lam = z[: self.n], z[self.n :]
+        unit = [float(i == control) for i in range(len(self.held))]
+        there = self.model.costate_rate(t, x, unit, lam, self.p)
+        back = self.model.costate_rate(t, x, [-value for value in unit], lam, self.p)
+        by_state = [(b - a) / 2.0 for a, b in zip(there, back, strict=True)]
+        return np.array([*by_state, *self._column(t, x, self.held, control)])
+
+    def weight(self, t: float, z: list[float], control: int) -> float:
+        """The weight of the magnitude of a control."""
+        return float(self.model.magnitude_weight(t, z[: self.n], self.p)[control])
+
+    def weight_gradient(self, t: float, z: list[float], control: int) -> tuple[Array, float]:
+        """That weight by states and costates, shape (2n,), and its rate along the extremal."""
+        f = self.model.dynamics(t, z[: self.n], self.control(t, z), self.p)
+        steps = np.concatenate([np.eye(self.n), np.array(f)[:, None]], axis=1)
+        x = np.array(z[: self.n])[:, None] + 1j * NUDGE * steps
+        times = t + 1j * NUDGE * np.append(np.zeros(self.n), 1.0)
+        found = np.broadcast_to(self.model.magnitude_weight_batch(times, x, self.p)[control], times.shape).imag / NUDGE
+        return np.concatenate([found[:-1], np.zeros(self.n)]), float(found[-1])
+
+    def rate_gradient(self, t: float, z: list[float], control: int) -> Array:
+        """The rate of a switching function by states and costates, shape (2n,)."""
+        columns = np.array(z)[:, None] + 1j * NUDGE * np.eye(2 * self.n)
+        u = np.repeat(np.array(self.control(t, z), dtype=complex)[:, None], 2 * self.n, axis=1)
+        x, lam = columns[: self.n], columns[self.n :]
+        rates = self.model.switching_rate_batch(np.full(2 * self.n, t), x, u, lam, self.p)
+        return np.asarray(rates[control].imag / NUDGE)
+
+    def legendre(self, t: float, z: list[float]) -> float:
+        """The generalised Legendre-Clebsch expression of the singular control; positive where it is strict."""
+        return -float(self._accelerations(np.array([t]), np.array(z)[:, None])[1][0])
+
+    def _with(self, value: float) -> tuple[float, ...]:
+        assert self.singular is not None
+        return (*self.held[: self.singular], value, *self.held[self.singular + 1 :])
+
+    def _column(self, t: float, x: list[float], u: tuple[float, ...], control: int | None = None) -> Array:
+        """What a control does to the rates of the states, shape (n,)."""
+        which = self.singular if control is None else control
+        return np.array(self.model.jacobian_u(t, x, u, self.p)).reshape(self.n, -1)[:, which]
+
+    def _accelerations(self, t: Array, z: Array) -> tuple[Array, Array]:
+        """Second derivative of the switching function in time without the singular control, and by that control.
+
+        The rate of the switching function, differentiated along the extremal by an imaginary step.
+        """
+        assert self.singular is not None
+        ends = []
+        for value in (0.0, 1.0):
+            u = np.repeat(np.array(self._with(value))[:, None], z.shape[1], axis=1)
+            x, lam = z[: self.n], z[self.n :]
+            f = np.asarray(self.model.dynamics_batch(t, x, u, self.p))
+            g = np.asarray(self.model.costate_rate_batch(t, x, u, lam, self.p))
+            ahead = (t + 1j * NUDGE, x + 1j * NUDGE * f, u, lam + 1j * NUDGE * g)
+            ends.append(np.asarray(self.model.switching_rate_batch(*ahead, self.p))[self.singular].imag / NUDGE)
+        return ends[0], ends[1] - ends[0]
+
+    def _feedback_slope(self, t: float, z: list[float]) -> Array:
+        """The singular control by states and costates, shape (2n,), by central differences."""
+        here = np.array(z)
+        halves = here.reshape(2, -1)
+        width = DIFFERENCE * np.maximum(np.abs(halves), 1e-3 * np.abs(halves).max(axis=1, keepdims=True) + TINY).ravel()
+        columns = here[:, None] + np.concatenate([np.diag(width), -np.diag(width)], axis=1)
+        base, slope = self._accelerations(np.full(columns.shape[1], t), columns)
+        ahead, behind = (-base / slope).reshape(2, -1)
+        return np.asarray((ahead - behind) / (2.0 * width))

@@ -1,0 +1,66 @@
+"""Instances that are no switching problem that could be solved, each refused in a line."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from satsym.instance import Instance
+from satsym.status import BadInput
+
+
+def refuse(instance: Instance) -> None:
+    """Look at an instance before anything is solved.
+
+    Raises
+    ------
+    BadInput
+        If a bound is missing, if nothing costs anything, or if the motion starts where it is to end.
+    """
+    if instance.solver.free_angles:
+        raise BadInput(
+            f'{instance.name}: [solver] free_angles: method "bang-bang" does not compare turns; give the final angle '
+            "that is meant, and remove it"
+        )
+    names = instance.model.spec.control_names
+    for name, low, high in zip(names, instance.lower, instance.upper, strict=True):
+        if not np.isfinite([low, high]).all():
+            raise BadInput(
+                f"{instance.name}: [control] {name}: this control enters without a square, so it needs both bounds; "
+                f"write {name} = [lower, upper]"
+            )
+    if instance.tf is not None and _free_of_charge(instance):
+        raise BadInput(
+            f'{instance.name}: [time] tf: with a given final time no control costs more than another; write tf = "free"'
+        )
+    if instance.tf is None and instance.final and _there(instance):
+        raise BadInput(
+            f"{instance.name}: [initial]: the motion starts where it is to end, so the best final time is none at "
+            "all; move the start, or give a final time"
+        )
+
+
+def _free_of_charge(instance: Instance) -> bool:
+    """Whether neither control nor state cost anything, as far as random states show."""
+    model, p, n = instance.model, instance.parameters, len(instance.initial)
+    rng = np.random.default_rng(0)
+    assert instance.tf is not None
+    x = np.array(instance.initial)[:, None] * rng.uniform(0.5, 2.0, (n, 20))
+    t = rng.uniform(instance.t0, instance.tf, 20)
+    none, u = np.zeros((n, 20)), np.array(instance.upper)[:, None] * rng.uniform(0.0, 1.0, (len(instance.upper), 20))
+    ends = [model.terminal_gradient(instance.tf, tuple(column), p) for column in x.T]
+    costs = (
+        model.switching_function_batch(t, x, none, p),
+        model.magnitude_weight_batch(t, x, p),
+        model.costate_rate_batch(t, x, u, none, p),
+        ends,
+    )
+    return not any(np.any(cost) for cost in costs)
+
+
+def _there(instance: Instance) -> bool:
+    """Whether every given final state is the initial one."""
+    for name, x in zip(instance.model.spec.state_names, instance.initial, strict=True):
+        wanted = instance.final.get(name)
+        if isinstance(wanted, str) or (wanted is not None and abs(wanted - x) > 1e-12 * max(abs(wanted), abs(x))):
+            return False
+    return True

@@ -1,0 +1,252 @@
+"""Method "bang-bang": from a cold start to exact arcs and switching times."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from itertools import chain
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+from satsym.solution import Iteration, Progress, Solution
+from satsym.solve.integrate import NotFinite
+from satsym.solve.iteration import Limits
+from satsym.solve.switching import homotopy, least_effort
+from satsym.solve.switching.attempt import Exact, attempt
+from satsym.solve.switching.least_time import least_time
+from satsym.solve.switching.newton import switching
+from satsym.solve.switching.recognition import Guess, Sample, guess, inside, sample
+from satsym.solve.switching.refusals import refuse
+from satsym.solve.switching.structure import LOWER, REST, Structure
+from satsym.solve.switching.variants import neighbours
+from satsym.status import Status
+
+Array = NDArray[np.floating[Any]]
+
+ENOUGH = 1e-9
+"""By this share of it a given time may fall short of the least."""
+
+STEADY = 0.5
+"""Share of the time off the bounds that is left after smoothing less, where that time is a singular arc's."""
+
+
+def solve(instance: Instance, progress: Progress | None = None) -> Solution:
+    """Solve a switching problem.
+
+    Parameters
+    ----------
+    instance
+        Of a model whose controls enter the Hamiltonian affinely, with both bounds for each.
+    progress
+        Called after each step of the continuation, and each attempt at exact arcs.
+
+    Returns
+    -------
+    Solution
+        Times hold each switching time twice: the last instant of one arc and the first of the next.
+
+    Raises
+    ------
+    BadInput
+        If a bound is missing, or the motion starts where it is to end.
+    """
+    refuse(instance)
+    began = time.perf_counter()
+    history: list[Iteration] = []
+
+    def watch(objective: float, residual: float) -> None:
+        if np.isnan(objective) and history:  # not known on the way to exact arcs: the last that was
+            objective = history[-1].objective
+        history.append(Iteration(len(history), objective, residual))
+        if progress:
+            progress(history[-1])
+
+    limits = Limits(instance.solver.max_iterations or 500, began + instance.solver.max_seconds, watch)
+    with np.errstate(all="ignore"):
+        found = _found(instance, limits)
+        if isinstance(found, homotopy.Stopped):
+            found = _by_least_time(instance, found, limits)
+        if isinstance(found, homotopy.Stopped):
+            return _none(instance, found, tuple(history), began)
+        return _solution(instance, *found, tuple(history), began)
+
+
+def _by_least_time(
+    instance: Instance, stopped: homotopy.Stopped, limits: Limits
+) -> tuple[Exact, str] | homotopy.Stopped:
+    """What the least time says: that the given time is too short, or a structure where it is hardly longer."""
+    hurried = least_time(instance) if instance.tf is not None and instance.final and not limits.expired else None
+    found = _found(hurried, limits) if hurried is not None else stopped
+    if isinstance(found, homotopy.Stopped) or instance.tf is None:
+        return stopped
+    exact, _ = found
+    least, given = exact.refined.at.end - instance.t0, instance.tf - instance.t0
+    name = exact.refined.structure.name
+    if least > given * (1.0 + ENOUGH):
+        message = f"the least time to the given end is {least:.10g} (structure {name}), and only {given:.10g} is given"
+        return replace(stopped, status=Status.INFEASIBLE, message=message)
+    near = attempt(instance, _relaxed(instance, exact), limits) if least < given else None
+    if near is not None:
+        return near, "the structure of the least time"
+    alone = ", and at that only one control arrives, whatever it costs" if given <= least * (1.0 + ENOUGH) else ""
+    message = f"{stopped.message}; the least time to the given end is {least:.10g} (structure {name}){alone}"
+    return replace(stopped, message=message)
+
+
+def others(instance: Instance, limits: Limits) -> list[Exact]:
+    """Extremals from the quick starts for a free final time, most of them one and the same."""
+    found = []
+    for near in least_effort.quick(instance, limits):
+        exact = _first_of(instance, _signs(instance, near), limits, thorough=False)
+        if exact:
+            found.append(exact)
+    return found
+
+
+def _signs(instance: Instance, near: least_effort.Smoothed) -> Guess:
+    """The structure of a motion of least effort, as its signs show it."""
+    seen = sample(near.problem, near.curve)
+    first = guess(instance, replace(seen, weight=0.0 * seen.weight))
+    return replace(first, costates=first.costates * near.scaled)
+
+
+def _found(instance: Instance, limits: Limits) -> tuple[Exact, str] | homotopy.Stopped:
+    """Exact arcs and how they were found, or why there are none."""
+    if instance.tf is not None and (exact := attempt(instance, _resting(instance), limits)):
+        return exact, "rest"
+    if instance.tf is None:
+        for near in chain(least_effort.quick(instance, limits), least_effort.shortening(instance, limits)):
+            exact = _first_of(instance, _signs(instance, near), limits, thorough=True)
+            if exact:
+                return exact, "the signs of least effort"
+    before: Sample | None = None
+    last = None
+    try:
+        for level, near in enumerate(homotopy.path(instance, limits)):
+            seen, last = sample(near.problem, near.curve), near
+            for candidate in _candidates(instance, seen, before):
+                exact = _first_of(instance, candidate, limits, thorough=level % 4 == 3)
+                if exact:
+                    return exact, f"the companion smoothed by {near.problem.bounds[-2]:.1e}"
+            before = seen
+            if limits.expired:
+                break
+    except homotopy.Stopped as stopped:
+        last_seen = stopped
+    except (np.linalg.LinAlgError, ArithmeticError, NotFinite) as error:
+        last_seen = homotopy.Stopped(Status.NOT_CONVERGED, f"no smoothed solution was found ({error})")
+    else:
+        assert last is not None
+        message = "no structure that was recognised in smoothed solutions satisfies the minimum principle"
+        last_seen = homotopy.Stopped(Status.NOT_CONVERGED, message, last.problem, last.curve)
+    if limits.expired:
+        return replace(last_seen, status=Status.TIME_LIMIT, message=f"time was up: {last_seen.message}")
+    return last_seen
+
+
+def _resting(instance: Instance) -> Guess:
+    """No control at all, nor costates: the answer where |u| costs and the motion arrives by itself."""
+    weights = instance.model.magnitude_weight(instance.t0, instance.initial, instance.parameters)
+    levels = tuple((REST if weight > 0.0 else LOWER,) for weight in weights)
+    end = instance.t0 if instance.tf is None else instance.tf
+    return Guess(Structure(levels), np.zeros(0), np.zeros(len(instance.initial)), end)
+
+
+def _relaxed(instance: Instance, hurried: Exact) -> Guess:
+    """The structure of the least time with a short rest at each switch, where |u| costs and there is some time left."""
+    at, structure = hurried.refined.at, hurried.refined.structure
+    assert instance.tf is not None
+    spare = ((instance.tf - at.end) * (instance.tf - instance.t0)) ** 0.5 / max(structure.switches, 1)
+    levels, times, rates = [], [], []
+    weights = instance.model.magnitude_weight(instance.t0, instance.initial, instance.parameters)
+    for arc in hurried.refined.arcs:
+        if arc.event is not None:
+            _, rate = switching(arc.field, arc.end, arc.after.tolist(), arc.event.control)
+            rates.append(2.0 * weights[arc.event.control] / max(abs(rate) * spare, 1e-300))
+    for row, own, weight in zip(structure.levels, structure.by_control(at.times), weights, strict=True):
+        if weight > 0.0:
+            levels.append((row[0], *(level for after in row[1:] for level in (REST, after))))
+            times += [t + k * spare for t in own.tolist() for k in (-0.5, 0.5)]
+        else:
+            levels.append(row)
+            times += own.tolist()
+    factor = float(np.mean(rates)) if rates else 1.0
+    return Guess(Structure(tuple(levels)), np.array(times), factor * at.costates, instance.tf)
+
+
+def _first_of(instance: Instance, first: Guess, limits: Limits, thorough: bool) -> Exact | None:
+    """The guess made exact, or, with more effort, one with an arc less or more."""
+    for one in chain((first,), neighbours(instance, first, limits) if thorough else ()):
+        exact = attempt(instance, one, limits)
+        if exact or limits.expired:
+            return exact
+    return None
+
+
+def _candidates(instance: Instance, seen: Sample, before: Sample | None) -> list[Guess]:
+    """Structures of a smoothed extremal, the likeliest first."""
+    plain = guess(instance, seen)
+    free = inside(instance, seen)
+    if before is None or not free.any():
+        return [plain]
+    was = inside(instance, before)
+    steady = [_time(seen, now) >= STEADY * _time(before, then) for now, then in zip(free, was, strict=True)]
+    singular = free & np.array(steady)[:, None]
+    if not singular.any():
+        return [plain]
+    return [guess(instance, seen, singular), plain]
+
+
+def _time(seen: Sample, where: NDArray[np.bool_]) -> float:
+    return float(np.trapezoid(where.astype(float), seen.times))
+
+
+def _solution(instance: Instance, exact: Exact, way: str, history: tuple[Iteration, ...], began: float) -> Solution:
+    at, structure, trajectory = exact.refined.at, exact.refined.structure, exact.trajectory
+    nodes = np.linspace(instance.t0, at.end, instance.solver.steps + 1)
+    times, z, u = trajectory.grid(nodes)
+    n = len(instance.initial)
+    status = Status.CONVERGED if instance.model.in_domain(z[:n]) else Status.LEFT_DOMAIN
+    plural = "" if structure.switches == 1 else "es"
+    message = (
+        f"structure {structure.name}, {structure.switches} switch{plural}, residual {exact.refined.residual:.0e}, "
+        f"from {way}"
+    )
+    return Solution(
+        instance=instance,
+        method="bang-bang",
+        status=status,
+        message=message,
+        objective=trajectory.cost(instance),
+        times=times,
+        x=z[:n],
+        u=u,
+        lam=z[n:],
+        switching_times=tuple(tuple(own.tolist()) for own in structure.by_control(at.times)),
+        iterations=exact.iterations,
+        history=history,
+        wall_s=time.perf_counter() - began,
+    )
+
+
+def _none(instance: Instance, stopped: homotopy.Stopped, history: tuple[Iteration, ...], began: float) -> Solution:
+    n, m = len(instance.initial), len(instance.lower)
+    end = instance.tf if instance.tf is not None else instance.t0 + 1.0
+    return Solution(
+        instance=instance,
+        method="bang-bang",
+        status=stopped.status,
+        message=stopped.message,
+        objective=float("nan"),
+        times=np.array([instance.t0, end]),
+        x=np.full((n, 2), np.nan),
+        u=np.full((m, 2), np.nan),
+        lam=np.full((n, 2), np.nan),
+        switching_times=((),) * m,
+        iterations=len(history),
+        history=history,
+        wall_s=time.perf_counter() - began,
+    )

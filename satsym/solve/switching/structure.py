@@ -1,0 +1,96 @@
+"""The structure of controls in a box: the levels that each takes one after the other, and when it switches."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.floating[Any]]
+
+LOWER, REST, UPPER, SINGULAR = -1, 0, 1, 2
+"""Levels: on a bound, at the admissible value of least magnitude, or as the singular condition has it."""
+
+NAMES = {LOWER: "-", REST: "0", UPPER: "+", SINGULAR: "s"}
+
+
+@dataclass(frozen=True)
+class Event:
+    """One control's passage from a level to the next.
+
+    Attributes
+    ----------
+    time
+        When.
+    control
+        Which control.
+    number
+        How many of its switches were before.
+    column
+        Place of the time among those of all controls, one control after the other.
+    """
+
+    time: float
+    control: int
+    number: int
+    column: int
+
+
+@dataclass(frozen=True)
+class Structure:
+    """Levels of each control in order of time; a control with k switches has k + 1."""
+
+    levels: tuple[tuple[int, ...], ...]
+
+    @property
+    def switches(self) -> int:
+        """Of all controls."""
+        return sum(len(row) - 1 for row in self.levels)
+
+    @property
+    def name(self) -> str:
+        """For messages: ``+-`` or ``-0+ | +-``."""
+        return " | ".join("".join(NAMES[level] for level in row) for row in self.levels)
+
+    def by_control(self, times: Array) -> list[Array]:
+        """The times of each control, from those of all."""
+        ends = np.cumsum([len(row) - 1 for row in self.levels])
+        return np.split(np.asarray(times, dtype=float), ends[:-1])
+
+    def events(self, times: Array) -> list[Event]:
+        """All switches in the order in which they are passed.
+
+        Those of one control keep their order even where their times, on the way to a solution, do not.
+        """
+        keyed: list[tuple[float, int, Event]] = []
+        column = 0
+        for control, own in enumerate(self.by_control(times)):
+            latest = -np.inf
+            for number, time in enumerate(own.tolist()):
+                latest = max(latest, time)
+                keyed.append((latest, column, Event(time, control, number, column)))
+                column += 1
+        return [event for _, _, event in sorted(keyed, key=lambda entry: entry[:2])]
+
+    def with_levels(self, control: int, row: tuple[int, ...]) -> Structure:
+        """With other levels of one control."""
+        return Structure((*self.levels[:control], row, *self.levels[control + 1 :]))
+
+    def without_arc(self, control: int, arc: int) -> tuple[Structure, list[int]]:
+        """Without one arc of a control, and the columns of the times that are left.
+
+        Neighbours at the same level become one.
+        """
+        row = self.levels[control]
+        first = sum(len(other) - 1 for other in self.levels[:control])
+        gone = {arc - 1 if arc == len(row) - 1 else arc}
+        kept = [*row[:arc], *row[arc + 1 :]]
+        if 0 < arc < len(row) - 1 and row[arc - 1] == row[arc + 1]:
+            gone, kept = {arc - 1, arc}, [*row[:arc], *row[arc + 2 :]]
+        return self.with_levels(control, tuple(kept)), [c for c in range(self.switches) if c - first not in gone]
+
+    def durations(self, times: Array, start: float, end: float) -> list[Array]:
+        """Lengths of the arcs of each control."""
+        return [np.diff([start, *own, end]) for own in self.by_control(times)]

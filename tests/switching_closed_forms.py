@@ -1,0 +1,60 @@
+"""What is known in closed form about a body on a line with bounded acceleration."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Known:
+    """An optimum.
+
+    Attributes
+    ----------
+    cost, duration
+        Its cost and how long it takes.
+    switches
+        When the control changes.
+    levels
+        Its values one after the other.
+    """
+
+    cost: float
+    duration: float
+    switches: tuple[float, ...]
+    levels: tuple[float, ...]
+
+
+def least_time(q: float, v: float) -> Known:
+    """To rest at the origin with |u| <= 1.
+
+    Above the curve q = -v|v|/2, on which one arc leads to the origin, the control is -1 until the curve is met.
+    There q + v t - t^2/2 = (v - t)^2/2, so t = v + s with s = sqrt(q + v^2/2), and s more to the origin. Below, by
+    symmetry, with the signs changed.
+    """
+    side = 1.0 if q + v * abs(v) / 2.0 > 0.0 else -1.0
+    s = math.sqrt(side * q + v * v / 2.0)
+    first = side * v + s
+    return Known(first + s, first + s, (first,), (-side, side))
+
+
+def least_fuel(q: float, v: float, duration: float) -> Known | None:
+    """To rest at the origin in a given time with |u| <= 1: a burn, a coast, and a burn the other way.
+
+    A first burn of -1 for a time a leaves the velocity v - a = -b, which the last burn takes off in a time b. The
+    way is q + v a - a^2/2 - b (T - a - b) - b^2/2 = 0, a quadratic equation for a. By symmetry for the other sign.
+    ``None`` where no such control arrives, or not this kind of control is the best.
+    """
+    for side in (1.0, -1.0):
+        x, w = side * q, side * v
+        # with b = a - w:  a^2 - (T + w) a + x + w T + w^2/2 = 0
+        half = (duration + w) / 2.0
+        root = half * half - (x + w * duration + w * w / 2.0)
+        if root <= 0.0:
+            continue
+        a = half - math.sqrt(root)
+        b = a - w
+        if a > 0.0 and b > 0.0 and a + b < duration:
+            return Known(a + b, duration, (a, duration - b), (-side, 0.0, side))
+    return None
