@@ -19,7 +19,7 @@ from satsym.cli import main, output
 from satsym.instance import SolverOptions
 
 Run = Callable[..., tuple[int, str, str]]
-COMMANDS = "models instances solve simulate analyse lqr derive latex audit doctor".split()
+COMMANDS = "models instances solve simulate compare analyse lqr derive latex audit doctor".split()
 SOLUTION_KEYS = (
     "model instance method status message boundary_type objective t_final x_final costate_initial switching_times "
     "iterations wall_s certificate"
@@ -515,6 +515,7 @@ def test_derivation_is_typeset(run: Run, derivation: Path, tmp_path: Path) -> No
     assert (tmp_path / "walk.tex").read_text(encoding="utf-8") == out
     assert "\\begin{document}" not in run("latex", derivation, "--fragment")[1]
     assert run("latex", derivation, "--lang", "id")[1] != out
+    assert "- L$" in run("latex", derivation, "--convention", "maximum")[1]
 
 
 @pytest.mark.parametrize("name", ["polar_orbits", "none.py", "walking.py:none"])

@@ -17,7 +17,7 @@ from satsym.solve import simulate as fly
 from satsym.solve.closed_loop import Law
 from satsym.status import BadInput
 
-FEEDBACKS = ("none", "lqr")
+FEEDBACKS = ("none", "lqr", "classical")
 """Control laws that a simulation can follow."""
 
 GAINS_PER_TIME = 50.0
@@ -74,13 +74,14 @@ def designed(subject: Kernels | Instance) -> Design:
         raise BadInput(f"{subject.name}: {error}") from None
 
 
-def simulate(instance: Instance, feedback: str = "none") -> Flight:
+def simulate(instance: Instance, feedback: str | None = None) -> Flight:
     """Simulate an instance under a feedback.
 
     Parameters
     ----------
     feedback
-        ``"none"``, or ``"lqr"`` for the gain that the instance's [lqr] table asks for.
+        ``"none"``, ``"lqr"`` for the gain that the instance's [lqr] table asks for, or ``"classical"`` for the law of
+        its [classical] table; by default the last where there is such a table, and else none.
 
     Returns
     -------
@@ -93,10 +94,16 @@ def simulate(instance: Instance, feedback: str = "none") -> Flight:
     BadInput
         If there is no such feedback, or the instance does not suit it.
     """
+    if feedback is None:
+        feedback = "classical" if instance.classical else "none"
     if feedback not in FEEDBACKS:
         raise BadInput(f"--feedback {feedback}: unknown; this model has {', '.join(FEEDBACKS)}")
     if feedback == "none":
         return fly(instance)
+    if feedback == "classical":
+        from satsym.analysis import classical
+
+        return classical.simulate(instance)
     design = designed(instance)
     about, found = design.about, design.regulator
     flight = fly(instance, law(about, found))

@@ -14,6 +14,7 @@ import click
 from satsym import __version__
 from satsym.cli.analyse import analyse
 from satsym.cli.audit import audit
+from satsym.cli.compare import compare
 from satsym.cli.derive import derive
 from satsym.cli.doctor import doctor
 from satsym.cli.instances import instances
@@ -72,7 +73,7 @@ class Program(click.Group):
 
 @click.group(
     cls=Program,
-    commands=[models, instances, solve, simulate, analyse, lqr, derive, latex, audit, doctor],
+    commands=[models, instances, solve, simulate, compare, analyse, lqr, derive, latex, audit, doctor],
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog=OVERVIEW,
 )

@@ -11,25 +11,30 @@ from satsym.cli.output import complain, emit, emit_json, in_colour
 from satsym.cli.saving import folder_for, save
 from satsym.status import ExitCode
 
-FEEDBACKS = ("none", "lqr")
+FEEDBACKS = ("none", "lqr", "classical")
 """Control laws to fly with; here once more, because ``--help`` loads no solver."""
 
 EXAMPLES = """\b
 Examples:
   satsym simulate its-thesis            where the satellite goes if nobody steers it
   satsym simulate its-thesis --plot     with pictures, into results/its-thesis
-  satsym simulate geo-lqr --feedback lqr    the nonlinear motion under the linear law"""
+  satsym simulate geo-lqr --feedback lqr    the nonlinear motion under the linear law
+  satsym simulate lapan-classical       a pitch manoeuvre under the law that it states"""
 
 
 @click.command(epilog=EXAMPLES)
 @subject_argument
 @click.option(
-    "--feedback", type=click.Choice(FEEDBACKS), default="none", metavar="LAW", help=f"One of: {', '.join(FEEDBACKS)}."
+    "--feedback",
+    type=click.Choice(FEEDBACKS),
+    default=None,
+    metavar="LAW",
+    help=f"One of: {', '.join(FEEDBACKS)}; by default classical where the instance states such a law, else none.",
 )
 @json_option
 @out_option
 @plot_option
-def simulate(subject: str, feedback: str, as_json: bool, out: Path | None, plot: bool) -> ExitCode:
+def simulate(subject: str, feedback: str | None, as_json: bool, out: Path | None, plot: bool) -> ExitCode:
     """Follow the motion under a control law.
 
     X is a shipped instance (`satsym instances` lists them) or the path of a TOML file. The motion is followed from

@@ -69,6 +69,12 @@ def solve(
     folder = folder_for(case.name, out, plot)
     with live() as line:
         solution = solvers.solve(case, progress=lambda iteration: line.show(progress_line(iteration)))
+    if case.limits:
+        from dataclasses import replace
+
+        from satsym.analysis.comparison import limits_passed
+
+        solution = replace(solution, message=limits_passed(solution) or solution.message)
     result = solution_object(solution)
     saved = save(folder, solution, result, plot)
     if as_json:

@@ -18,7 +18,13 @@ _GREEK = frozenset(
     "omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega".split()
 )
 _ACCENTS = {"dot": r"\dot", "ddot": r"\ddot", "hat": r"\hat", "bar": r"\bar", "vector": r"\vec"}
-_FUNCTIONS = {"asin": "arcsin", "acos": "arccos", "atan": "arctan", "atan2": "operatorname{atan2}"}
+_FUNCTIONS = {
+    "asin": "arcsin",
+    "acos": "arccos",
+    "atan": "arctan",
+    "atan2": "operatorname{atan2}",
+    "norm": "operatorname{norm}",
+}
 _BASE = re.compile(r"([A-Za-z]+?)([0-9]+[A-Za-z0-9]*)?\Z")
 _SUM, _PRODUCT, _ATOM = range(3)
 

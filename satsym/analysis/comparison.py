@@ -1,0 +1,187 @@
+"""Several ways to do the same, each flown or solved as its instance says, and described by the same numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from satsym.analysis import classical
+from satsym.analysis.signals import excesses, spans_of, totals
+from satsym.instance import Instance
+from satsym.solution import Array, Solution
+from satsym.solve import solve
+from satsym.status import BadInput
+
+SAMPLES = 2000
+"""Of the linear motion of a range."""
+LONG = 16.0
+"""Time over which a range follows it, in units of 1 over the damping."""
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """One of them.
+
+    Attributes
+    ----------
+    instance, how
+        What it was, and the law or the solver.
+    answered, verdict, message
+        Whether there is an answer, what its certificate says (``None`` for a flight), and a sentence on both and on
+        limits that were passed.
+    times, x, u
+        Nodes (N+1,), states (n, N+1) and controls (m, N+1).
+    switching_times
+        Times at which controls jump.
+    metrics
+        By name; empty where there is no answer.
+    """
+
+    instance: Instance
+    how: str
+    answered: bool
+    verdict: str | None
+    message: str
+    times: Array
+    x: Array
+    u: Array
+    switching_times: tuple[float, ...]
+    metrics: dict[str, float]
+
+    def signal(self, name: str) -> Array:
+        """A state, a control or a derived quantity over the nodes, by name."""
+        spec = self.instance.model.spec
+        if name in spec.state_names:
+            return self.x[spec.state_names.index(name)]
+        if name in spec.control_names:
+            return self.u[spec.control_names.index(name)]
+        place = [v.symbol for v in spec.quantities].index(name)
+        found: Array = self.instance.model.quantities_batch(self.times, self.x, self.u, self.instance.parameters)[place]
+        return found
+
+
+def compare(instances: Sequence[Instance], progress: Callable[[str], None] = lambda name: None) -> list[Case]:
+    """Fly or solve each instance.
+
+    Parameters
+    ----------
+    instances
+        Their models have the same controls, and begin with the same states.
+    progress
+        Told the name of each before its turn.
+
+    Raises
+    ------
+    BadInput
+        If they do not suit each other, or one states neither a law nor a cost.
+    """
+    first = instances[0].model.spec
+    for other in instances[1:]:
+        spec = other.model.spec
+        shared = min(len(spec.states), len(first.states))
+        if spec.controls != first.controls or spec.states[:shared] != first.states[:shared]:
+            raise BadInput(
+                f"{other.name}: its model {spec.name} has other states or controls than {first.name}, that of "
+                f"{instances[0].name}; compare instances of one system"
+            )
+    found = []
+    for instance in instances:
+        progress(instance.name)
+        found.append(_flown(instance) if instance.classical else _solved(instance))
+    return found
+
+
+def _flown(instance: Instance) -> Case:
+    flight = classical.simulate(instance)
+    metrics = flight.metrics
+    if flight.status.answered:
+        metrics = {"transition_time": metrics["settling_time"]} | metrics
+    answered, none = flight.status.answered, ()
+    return Case(instance, "classical", answered, None, flight.message, flight.times, flight.x, flight.u, none, metrics)
+
+
+def _solved(instance: Instance) -> Case:
+    solution = solve(instance)
+    answered, times = solution.status.answered, solution.times
+    switches = tuple(sorted(s for each in solution.switching_times for s in each))
+    metrics = _of_solution(instance, solution, switches) if answered else {}
+    beyond = excesses(instance, metrics)
+    return Case(
+        instance=instance,
+        how=solution.method,
+        answered=answered,
+        verdict=solution.certificate.verdict if solution.certificate else None,
+        message=beyond or solution.message,
+        times=times,
+        x=solution.x,
+        u=solution.u,
+        switching_times=switches,
+        metrics=metrics,
+    )
+
+
+def _of_solution(instance: Instance, solution: Solution, switches: Sequence[float]) -> dict[str, float]:
+    spans = spans_of(instance, solution.times, solution.x, solution.u, switches)
+    duration = float(solution.times[-1] - solution.times[0])
+    return {"transition_time": duration} | totals(instance, spans)
+
+
+def limits_passed(solution: Solution) -> str:
+    """A sentence on each limit of its instance that a solution goes beyond; empty where it keeps all."""
+    if not solution.instance.limits or not solution.status.answered:
+        return ""
+    switches = [s for each in solution.switching_times for s in each]
+    return excesses(solution.instance, _of_solution(solution.instance, solution, switches))
+
+
+@dataclass(frozen=True, eq=False)
+class Range:
+    """How the classical law does for other dampings and commands.
+
+    Attributes
+    ----------
+    dampings, commands
+        Shapes (K,) and (L,).
+    control_peak, impulse
+        Of the control: largest magnitude after the step, and integral at the step; shape (K, L).
+    peaks
+        Name of a state -> its largest magnitude, shape (K, L).
+    """
+
+    dampings: Array
+    commands: Array
+    control_peak: Array
+    impulse: Array
+    peaks: Mapping[str, Array]
+
+
+def ranged(instance: Instance, dampings: Sequence[float], commands: Sequence[float]) -> Range:
+    """The linear motion under the law of an instance, for other dampings and commands.
+
+    Raises
+    ------
+    BadInput
+        If the instance states no law with a damping, or one of these is not positive.
+    """
+    options = instance.classical
+    if options is None or options.damping is None:
+        raise BadInput(f"{instance.name}: [classical] damping: missing; a range of it needs one to begin with")
+    if not all(d > 0.0 and math.isfinite(d) for d in dampings):
+        raise BadInput(f"{instance.name}: a range of dampings must be positive")
+    spec, shape = instance.model.spec, (len(dampings), len(commands))
+    control, impulse = np.empty(shape), np.empty(shape)
+    peaks = {name: np.empty(shape) for name in spec.state_names}
+    initial = np.array(instance.initial)
+    for i, damping in enumerate(dampings):
+        times = np.linspace(0.0, LONG / damping, SAMPLES)
+        for j, command in enumerate(commands):
+            case = replace(instance, classical=replace(options, damping=damping, command=command))
+            loop = classical.loop(case)
+            z = loop.linear(initial, times)
+            control[i, j], impulse[i, j] = np.abs(loop.control(z)).max(), loop.impulse
+            for k, name in enumerate(spec.state_names):
+                peaks[name][i, j] = np.abs(z[k]).max()
+    return Range(np.array(dampings), np.array(commands), control, impulse, peaks)

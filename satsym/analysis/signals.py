@@ -1,0 +1,188 @@
+"""Totals over a motion, whichever law it was under: impulse, effort, largest and last values, and what limits allow."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from itertools import pairwise
+
+import numpy as np
+
+from satsym.instance import Instance
+from satsym.solution import Array
+
+POINTS = 6
+"""Of Gauss in each interval between nodes."""
+
+
+@dataclass(frozen=True, eq=False)
+class Span:
+    """A part of a motion over which its controls are smooth.
+
+    Attributes
+    ----------
+    times
+        Nodes between which to integrate, shape (M,).
+    x, u
+        States (n, K) and controls (m, K) at times, shape (K,), within.
+    """
+
+    times: Array
+    x: Callable[[Array], Array]
+    u: Callable[[Array], Array]
+
+
+def totals(instance: Instance, spans: Sequence[Span], impulse: float = 0.0) -> dict[str, float]:
+    """Numbers that describe a motion.
+
+    Parameters
+    ----------
+    spans
+        Its parts in order.
+    impulse
+        Integral of the first control over the moment at which the motion begins, which `spans` leave out.
+
+    Returns
+    -------
+    dict
+        ``impulse`` as given; of each control ``_total``, the integral over its magnitude, the impulse included,
+        ``_peak`` without it, and ``_effort``, the integral over its square; of each state and derived quantity
+        ``_peak`` and ``_final``; and of each derived quantity in watts ``_energy``, its integral. With an impulse,
+        effort and energy are infinite.
+    """
+    spec = instance.model.spec
+    found: dict[str, float] = {"impulse": impulse}
+    spent = np.sum([_integral(span, partial(_magnitudes, span)) for span in spans], axis=0)
+    effort = np.sum([_integral(span, partial(_squares, span)) for span in spans], axis=0)
+    controls = np.max([_peaks(span, span.u) for span in spans], axis=0)
+    for k, name in enumerate(spec.control_names):
+        found[f"{name}_total"] = float(spent[k]) + (abs(impulse) if k == 0 else 0.0)
+        found[f"{name}_peak"] = float(controls[k])
+        found[f"{name}_effort"] = float("inf") if impulse and k == 0 else float(effort[k])
+    groups = ((spec.states, lambda s: s.x), (spec.quantities, lambda s: lambda t: _quantities(instance, s, t)))
+    for variables, signals in groups:
+        peaks = np.max([_peaks(span, signals(span)) for span in spans], axis=0)
+        last = signals(spans[-1])(spans[-1].times[-1:])[:, 0]
+        for variable, peak, value in zip(variables, peaks, last, strict=True):
+            found |= {f"{variable.symbol}_peak": float(peak), f"{variable.symbol}_final": float(value)}
+    for k, variable in enumerate(spec.quantities):
+        if variable.unit == "W":
+            used = sum(_integral(span, partial(_one, instance, span, k))[0] for span in spans)
+            found[f"{variable.symbol}_energy"] = float("inf") if impulse else float(used)
+    return found
+
+
+def excesses(instance: Instance, metrics: dict[str, float]) -> str:
+    """A sentence on each limit that a motion goes beyond; empty where it keeps all."""
+    variables = {v.symbol: v for v in (*instance.model.spec.states, *instance.model.spec.quantities)}
+    found = [
+        f"{name} reaches {peak:.6g} {variables[name].unit}, past its limit of {limit:.6g}"
+        for name, limit in instance.limits.items()
+        if (peak := metrics.get(f"{name}_peak", 0.0)) > limit
+    ]
+    return "; ".join(found)
+
+
+def spans_of(instance: Instance, times: Array, x: Array, u: Array, switches: Sequence[float]) -> list[Span]:
+    """Parts of a solution between the times at which its controls meet or leave bounds, or jump.
+
+    States are interpolated by cubics with the exact slopes; controls by straight lines between the nodes, and up to the
+    ends of each part from within it.
+    """
+    borders = [times[0], *sorted({s for s in switches if times[0] < s < times[-1]}), times[-1]]
+    spans = []
+    for a, b in pairwise(borders):
+        margin = 1e-9 * (times[-1] - times[0])
+        inside = np.flatnonzero((times > a + margin) & (times < b - margin))
+        if len(inside) < 2:
+            inside = np.arange(max(np.searchsorted(times, a) - 1, 0), min(np.searchsorted(times, b) + 1, len(times)))
+        nodes = np.concatenate([[a], times[inside][(times[inside] > a) & (times[inside] < b)], [b]])
+        spans.append(Span(nodes, _states(times, x), _controls(times[inside], u[:, inside])))
+    return spans
+
+
+def _states(times: Array, x: Array) -> Callable[[Array], Array]:
+    from scipy.interpolate import CubicSpline
+
+    kept = np.concatenate([[True], np.diff(times) > 0.0])
+    spline = CubicSpline(times[kept], x[:, kept], axis=1)
+    return lambda t: spline(t)
+
+
+def _controls(times: Array, u: Array) -> Callable[[Array], Array]:
+    """Straight lines between nodes, the first and the last of them going on."""
+
+    def at(t: Array) -> Array:
+        k = np.clip(np.searchsorted(times, t) - 1, 0, len(times) - 2)
+        share = (t - times[k]) / (times[k + 1] - times[k])
+        found: Array = u[:, k] + share * (u[:, k + 1] - u[:, k])
+        return found
+
+    return at
+
+
+def _quantities(instance: Instance, span: Span, times: Array) -> Array:
+    if not instance.model.spec.quantities:
+        return np.empty((0, len(times)))
+    found: Array = instance.model.quantities_batch(times, span.x(times), span.u(times), instance.parameters)
+    return found
+
+
+def _one(instance: Instance, span: Span, k: int, times: Array) -> Array:
+    return _quantities(instance, span, times)[k : k + 1]
+
+
+def _magnitudes(span: Span, times: Array) -> Array:
+    found: Array = np.abs(span.u(times))
+    return found
+
+
+def _squares(span: Span, times: Array) -> Array:
+    found: Array = span.u(times) ** 2
+    return found
+
+
+def _peaks(span: Span, signals: Callable[[Array], Array]) -> Array:
+    """The largest magnitude of each signal: at a node, or near the largest one by search."""
+    from scipy.optimize import minimize_scalar
+
+    values = np.abs(signals(span.times))
+    found = values.max(axis=1, initial=0.0)
+    for k, row in enumerate(values):
+        place = int(row.argmax())
+        if 0 < place < len(row) - 1:
+            near = span.times[place - 1], span.times[place + 1]
+            best = minimize_scalar(
+                lambda t, k=k: -float(abs(signals(np.array([t]))[k, 0])),
+                bounds=near,
+                method="bounded",
+                options={"xatol": 1e-9 * near[1]},
+            )
+            found[k] = max(found[k], -best.fun)
+    return found
+
+
+def _integral(span: Span, function: Callable[[Array], Array]) -> Array:
+    """By Gauss between the nodes, which are joined by the zeros of the controls."""
+    nodes = np.unique(np.concatenate([span.times, _zeros(span)]))
+    places, weights = np.polynomial.legendre.leggauss(POINTS)
+    half = np.diff(nodes) / 2.0
+    at = (nodes[:-1] + half)[:, None] + half[:, None] * places
+    values = function(at.ravel()).reshape(-1, *at.shape)
+    total: Array = (values * weights * half[:, None]).sum(axis=(1, 2))
+    return total
+
+
+def _zeros(span: Span) -> list[float]:
+    """Times at which a control changes its sign."""
+    from scipy.optimize import brentq
+
+    u = span.u(span.times)
+    found = []
+    for row, values in enumerate(u):
+        for k in np.flatnonzero(values[:-1] * values[1:] < 0.0):
+            found.append(
+                brentq(lambda t, r=row: float(span.u(np.array([t]))[r, 0]), *span.times[k : k + 2], xtol=1e-13)
+            )
+    return found
