@@ -7,16 +7,17 @@ edits. Where nothing is found, the difference is all that can be said.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from satsym.audit.edits import Change, Edit, repeated_edits, single_edits
 from satsym.audit.judge.equations import Equal
 from satsym.audit.judge.plan import Never, Plan
 from satsym.audit.lacking import mended_terms
+from satsym.audit.rewriting import over_symbol, times_symbol
 from satsym.formula import field
 from satsym.formula.bound import BoundPoint
-from satsym.formula.tree import Node, replaced
+from satsym.formula.tree import Node, Sym, replaced
 from satsym.symbolic.formulas import NotAFormula
 
 PAIRS = 50
@@ -68,6 +69,7 @@ def _remedy(plan: Plan) -> Remedy | None:
         or _entry(plan, cells)
         or _repeated(plan, cells)
         or _pair(plan, cells)
+        or _edit_and_factor(plan, cells)
     )
 
 
@@ -168,6 +170,46 @@ def _effect(
         )
     except field.NoValue:
         return None
+
+
+def _edit_and_factor(plan: Plan, indices: Sequence[int]) -> Remedy | None:
+    """An edit of one cell after which nothing but a symbol is lacking, as a factor or below the line.
+
+    The symbol is told from the quotient of what the cell ought to be and what it is after the edit.
+    """
+    if not isinstance(plan, Equal) or len(indices) != 1:
+        return None
+    (i,) = indices
+    try:
+        aims = [point.base.value(plan.targets[i]) for point in plan.points]
+        known = {name: [point.symbol(name) for point in plan.points] for name in sorted(plan.useful)}
+    except (field.NoValue, field.Undecided):
+        return None
+    for edit in sorted(_edits(plan, i), key=lambda edit: edit.change):
+        try:
+            values = [point.value(edit.result) for point in plan.points]
+        except field.NoValue:
+            continue
+        for name, sizes in known.items():
+            factored = _missing_factor(aims, values, sizes)
+            right = factored(edit.result, Sym(name)) if factored else edit.result
+            cells = _with(plan, i, right)
+            if factored and plan.is_right(cells):
+                second = Edit(Change.MISSING_FACTOR, (), edit.result, right, right)
+                return Remedy(((i, edit), (i, second)), cells)
+    return None
+
+
+def _missing_factor(
+    aims: Sequence[int], values: Sequence[int], sizes: Sequence[int]
+) -> Callable[[Node, Sym], Node] | None:
+    """How values become what they ought to be with one more factor of these sizes, point by point; if they do."""
+    found = list(zip(aims, values, sizes, strict=True))
+    if all((aim - value * factor) % field.PRIME == 0 for aim, value, factor in found):
+        return times_symbol
+    if all((aim * factor - value) % field.PRIME == 0 for aim, value, factor in found):
+        return over_symbol
+    return None
 
 
 def _entry_by_entry(plan: Equal, wrong: Sequence[int]) -> Remedy | None:

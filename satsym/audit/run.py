@@ -56,8 +56,9 @@ def _outcome(bench: Bench, row: Row) -> Outcome:
     if row.asks is not None:
         table, ledger = row.table, bench.ledger
         inputs = {**ledger.inputs, **table.inputs}
+        document = {key: other.table.printed for key, other in bench.rows.items()}
         found = row.asks(
-            Question(row.key, table.kind, table.printed, table.columns, inputs, table.scope, ledger.scopes)
+            Question(row.key, table.kind, table.printed, table.columns, inputs, table.scope, ledger.scopes, document)
         )
         return Outcome(
             row,

@@ -62,6 +62,14 @@ def _subs(engine: Engine[S], tree: Call) -> Value:
     return engine.substitute(plain(found), values)
 
 
+def _norm(engine: Engine[S], tree: Call) -> Value:
+    column = engine.matrix(tree.arguments[0])
+    if column.shape[1] != 1:
+        raise BadInput("norm(...) takes a column")
+    squares = [engine.power(row[0], Fraction(2)) for row in column.rows]
+    return engine.power(engine.add(squares), Fraction(1, 2))
+
+
 def _entry(engine: Engine[S], tree: Call) -> Value:
     matrix, i, j = _place(engine, tree)
     return matrix.rows[i][j]
@@ -120,6 +128,7 @@ OPERATIONS: Mapping[str, Callable[[Any, Call], Value]] = {
     "subs": _subs,
     "solve": lambda engine, tree: engine.solution(engine.value(tree.arguments[0]), _symbol(engine, tree.arguments[1])),
     "matrix": lambda engine, tree: engine.matrix(tree.arguments[0]),
+    "norm": _norm,
     "entry": _entry,
     "minor": _minor,
     "transpose": lambda engine, tree: transposed(engine.matrix(tree.arguments[0])),

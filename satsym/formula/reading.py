@@ -38,8 +38,11 @@ FUNCTIONS: Functions = {
     "atan2": (2, 2),
     "min": (2, 2),
     "max": (2, 2),
+    "norm": (1, 1),  # of a column
 }
 """What a printed formula may call."""
+_OF_LIBRARIES = {"np.sqrt": "sqrt", "np.linalg.norm": "norm"}
+"""What printed programs call some of them."""
 
 _FOREIGN = re.compile(r"""[^A-Za-z0-9_ .,+\-*/()\[\]='":@\n]""")
 _TOO_DEEP = f"brackets or signs are nested more than {MAX_DEPTH} deep; write it flatter"
@@ -190,8 +193,10 @@ class _Reader:
             return Neg(operand) if isinstance(found.op, ast.USub) else operand
         if isinstance(found, ast.BinOp):
             return self._power(found, depth) if isinstance(found.op, ast.Pow) else self._chain(found, depth)
-        if isinstance(found, ast.Call) and isinstance(found.func, ast.Name):
-            return self._call(found, found.func.id, depth)
+        if isinstance(found, ast.Call):
+            called = self._text[found.func.col_offset : found.func.end_col_offset]
+            if isinstance(found.func, ast.Name) or called in _OF_LIBRARIES:
+                return self._call(found, _OF_LIBRARIES.get(called, called), depth)
         if self._judging and isinstance(found, ast.List):
             return Grid(tuple(self.node(entry, depth + 1) for entry in found.elts))
         if self._judging and isinstance(found, ast.Subscript) and isinstance(found.value, ast.Name):

@@ -14,6 +14,8 @@ from satsym.status import BadInput
 from satsym.symbolic import formulas, library
 
 _ROUNDING = 1e-12
+_ZEROS = 6
+"""Digits that claim nothing and are written all the same, before a power of ten is."""
 
 
 def number(bench: Bench, row: Row) -> Outcome:
@@ -65,7 +67,8 @@ def _rounded(value: float, printed: quantities.PrintedNumber) -> str:
     """The value with one digit more than is printed."""
     step = printed.half_unit * 2 / 10
     if step >= 1:
-        return f"{value:.0f}"
+        digits = len(str(int(abs(value) / step)))
+        return f"{value:.0f}" if digits + _ZEROS >= len(str(int(abs(value)))) else f"{value:.{digits}g}"
     places = 0
     while Fraction(1, 10**places) > step:
         places += 1

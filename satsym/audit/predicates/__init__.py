@@ -68,6 +68,8 @@ class Question:
         Numbers with their units that the document, or the row, states.
     scope, scopes
         Name of the notation of the row, and all of them.
+    document
+        What each row of the document prints, by its key.
     """
 
     item: str
@@ -77,6 +79,7 @@ class Question:
     inputs: Mapping[str, str]
     scope: str
     scopes: Mapping[str, Scope]
+    document: Mapping[str, Any] = field(default_factory=dict)
 
 
 Predicate: TypeAlias = Callable[..., Finding]
