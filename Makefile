@@ -7,7 +7,7 @@ PIP    := $(BIN)/python -m pip install -qq --disable-pip-version-check
 # Each recipe says itself what the user needs to know; errors of the tools come through (pip -qq: errors only).
 .SILENT:
 .NOTPARALLEL:
-.PHONY: help demo test lint format derive check-derive bench bench-returns clean
+.PHONY: help demo test lint format derive check-derive bench bench-returns bench-drift clean
 
 help:  ## list the targets
 	grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /|/' | awk -F'|' '{printf "  make %-14s %s\n", $$1, $$2}'
@@ -44,6 +44,9 @@ bench: $(VENV)/installed-bench  ## time satsym beside its peers
 
 bench-returns: $(VENV)/installed-bench  ## solve 12,000 random returns to an orbit (takes hours)
 	$(BIN)/python tests/bench/returns.py
+
+bench-drift: $(VENV)/installed-bench  ## follow orbits for 10,000 revolutions by each propagator (takes minutes)
+	$(BIN)/python tests/bench/drift.py
 
 clean:  ## remove the environment, results and caches
 	rm -rf $(VENV) results build *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis
