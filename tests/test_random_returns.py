@@ -2,16 +2,37 @@
 
 from __future__ import annotations
 
+import time
+from itertools import islice
+
+import numpy as np
 import pytest
 
 from satsym.solve import two_point
 from satsym.solve.certificate import certify, conditions
 from satsym.solve.certificate.flow import flow
+from satsym.solve.collocation.arclength import extremals
+from satsym.solve.collocation.cold_start import cold_start
+from satsym.solve.collocation.newton import newton
+from satsym.solve.collocation.path_of_ends import along_ends, ending
+from satsym.solve.collocation.problem import TwoPoint
+from satsym.solve.collocation.refinement import refine
+from satsym.solve.collocation.scaling import two_point as to_scaled
+from satsym.solve.collocation.second_variation import negative_directions
+from satsym.solve.iteration import Limits
 from satsym.status import Status
 from tests.samples import EASY, HARD, Population
 
 CHUNK, WHOLE = 50, 5
 """Cases of a test, and how many of them share one whole certificate: competitors take longer than solving."""
+
+SECONDS = 60.0
+
+
+def scaled(number: int) -> TwoPoint:
+    case = HARD.case(number)
+    assert case.tf is not None
+    return to_scaled(case, case.tf).widened(float("inf"))
 
 
 @pytest.mark.slow
@@ -37,3 +58,46 @@ def check(population: Population, first: int) -> None:
             certificate = certify(found)
             assert certificate is not None
             assert certificate.verdict == "certified", (number, certificate)
+
+
+def test_final_angle_is_moved_to_where_other_ways_do_not_lead() -> None:
+    """Five turns around, inwards from far out: found in four seconds after the other ways took thirty in vain."""
+    problem = scaled(1704)
+    limits = Limits(500, time.perf_counter() + SECONDS)
+    found = along_ends(problem, limits, lambda easier: cold_start(easier, limits).found)
+    assert found is not None
+    assert found.minimum
+    refined = refine(problem, found.curve, 1e-10)
+    assert refined.converged
+    x = refined.curve.nodes[:4] * problem.scale.state[:, None]
+    assert x[:, 0] == pytest.approx(problem.instance.initial, abs=1e-9)
+    assert x[:, -1] == pytest.approx(list(problem.instance.final.values()), abs=1e-9)
+    assert x[0].min() > 0.0
+
+
+def test_extremals_are_followed_round_a_fold() -> None:
+    """Where the minima of this return end, they meet extremals with one negative direction, which lead back."""
+    wanted = scaled(1206)
+    angle = wanted.instance.final["theta"]
+    assert isinstance(angle, float)
+
+    def at(share: float) -> TwoPoint:
+        return ending(wanted, {"theta": angle + 0.5 * (1.0 - share)})
+
+    found = cold_start(at(0.0), Limits(500, time.perf_counter() + SECONDS)).found
+    assert found.minimum
+    points = list(islice(extremals(at, found.curve), 12))
+    shares = np.array([point.share for point in points])
+    fold = int(shares.argmax())
+    assert 0 < fold < len(points) - 1
+    assert shares[fold] < 1.0
+    assert (np.diff(shares[: fold + 1]) > 0.0).all()
+    assert (np.diff(shares[fold:]) < 0.0).all()
+    directions = [negative_directions(p.problem, p.curve, p.linearised.matching) for p in points]
+    assert set(directions[:fold]) == {0}
+    assert set(directions[fold + 1 :]) == {1}
+    for point in (points[0], points[fold], points[-1]):
+        outcome = newton(point.system, point.curve)
+        assert outcome is not None
+        assert outcome.converged
+        assert outcome.curve.nodes == pytest.approx(point.curve.nodes, rel=1e-4, abs=1e-4)

@@ -5,7 +5,7 @@ motion without control), then the minimisation from there. Where neither
 walks straight through, the second way decides as well: from a motion that needs no control at all and ends where it
 should, the initial state is moved to the given one, each problem starting from the last. The cheaper minimum
 stands. Where neither way arrives, the duration is halved until the straight line leads to a minimum, and lengthened
-from there.
+from there; at last the final angles are left free and then moved to where they should be.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from satsym.solve.collocation import paths
 from satsym.solve.collocation.curve import Curve
 from satsym.solve.collocation.gauss import STAGES
 from satsym.solve.collocation.path_of_durations import along_durations
+from satsym.solve.collocation.path_of_ends import along_ends
 from satsym.solve.collocation.path_of_problems import along_problems, geometric, straight
 from satsym.solve.collocation.problem import TwoPoint
 from satsym.solve.collocation.sqp import OUTGROWN, Found, minimise
@@ -37,7 +38,7 @@ STRAIGHT_THROUGH = 15
 TOLERANCES = (3e-2, 1e-3, 1e-7)
 """Sizes of the last step after which the mesh is laid anew; the last one ends the minimisation."""
 
-LAST = ("straight path of problems", "path of durations")
+LAST = ("straight path of problems", "path of durations", "path of ends")
 """Ways that are tried only if the others led nowhere."""
 
 
@@ -50,7 +51,7 @@ class Start:
     found
         The cheapest minimum, or the last attempt.
     way
-        ``"straight line"``, ``"path of problems"``, ``"path of durations"`` or ``"none"``.
+        ``"straight line"``, ``"path of problems"``, one of those in ``LAST``, or ``"none"``.
     steps
         Steps of all attempts.
     minima
@@ -86,6 +87,7 @@ def cold_start(problem: TwoPoint, limits: Limits, quick: bool = False) -> Start:
         ("path of problems", lambda: along_problems(free, geometric, limits)),
         ("straight path of problems", lambda: along_problems(free, straight, limits)),
         ("path of durations", lambda: along_durations(free, STAGES, limits, from_line)),
+        ("path of ends", lambda: along_ends(free, limits, lambda easier: cold_start(easier, limits).found)),
     ]
 
     minima: dict[str, Found] = {}

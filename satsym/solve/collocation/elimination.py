@@ -1,7 +1,7 @@
 """The two linear systems of a collocation step: the stages of each interval, and the nodes between the intervals.
 
-Small ones are left to NumPy: SciPy's LAPACK is quicker from the second right-hand side on and for many intervals, but
-loading it takes longer than solving a usual problem.
+Small ones are left to NumPy: SciPy's LAPACK is quicker for several right-hand sides and for many intervals, but loading
+it takes longer than solving a usual problem.
 """
 
 from __future__ import annotations
@@ -13,6 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.floating[Any]]
+
+AT_ONCE = 2
+"""Times that the stages are solved for without keeping factors."""
 
 FEW = 128
 """Unknowns up to which the system of the nodes is left to NumPy."""
@@ -30,20 +33,20 @@ class Blocks:
     def __init__(self, matrices: Array) -> None:
         self._matrices = matrices
         self._factors: list[tuple[Array, Array]] | None = None
-        self._fresh = True
+        self._solved = 0
 
     def solve(self, right: Array) -> Array:
         """Solutions for right-hand sides, both of shape (N, columns, k): a column of the system is a row here.
 
-        The first time they are solved for at once; after that factors are kept.
+        The first times they are solved for at once; after that factors are kept.
 
         Raises
         ------
         numpy.linalg.LinAlgError
             If a matrix is singular.
         """
-        if self._fresh:
-            self._fresh = False
+        if self._solved < AT_ONCE:
+            self._solved += 1
             solutions: Array = np.linalg.solve(self._matrices, right.swapaxes(1, 2)).swapaxes(1, 2)
             return solutions
         from scipy.linalg.lapack import dgetrf, dgetrs

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from satsym.solve.collocation import mesh as meshes
 from satsym.solve.collocation import paths
-from satsym.solve.collocation.curve import Curve
+from satsym.solve.collocation.arclength import Point
+from satsym.solve.collocation.curve import Curve, Step
 from satsym.solve.collocation.descent import descended
 from satsym.solve.collocation.gauss import STAGES
 from satsym.solve.collocation.problem import TwoPoint
@@ -47,12 +48,15 @@ def along_problems(problem: TwoPoint, between: Between, limits: Limits) -> Found
     curve = paths.curve(problem, coasting)
     away, home = coasting(np.zeros(1))[:, 0], problem.initial
     at, move, steps = 0.0, FIRST_MOVE, 0
-    tangent: tuple[Array, Array] | None = None
+    tangent: Step | None = None
+
+    def path(share: float) -> TwoPoint:
+        return problem.starting_at(between(away, home, share))
+
     while steps < MOST_STEPS and move >= SMALLEST_MOVE and not limits.expired:
         there = min(1.0, at + move)
-        moved = problem.starting_at(between(away, home, there))
         guess = _predicted(problem, curve, tangent, there - at)
-        system = System(moved, curve.mesh, STAGES)
+        system = System(path(there), curve.mesh, STAGES)
         last = there == 1.0
         found = minimise(
             system, guess, limits, 1e-7 if last else 1e-3, (6 if move > 0.03 else 14) + 4 * last, meshes.COARSEST
@@ -66,7 +70,7 @@ def along_problems(problem: TwoPoint, between: Between, limits: Limits) -> Found
             at, curve = there, found.curve
             if last:
                 return replace(found, iterations=steps, hard=True)
-            tangent = _tangent(moved, curve, lambda share: between(away, home, share), at)
+            tangent = _tangent(Point(path, at, curve))
             mesh = meshes.laid(problem, curve)
             if abs(len(mesh) - len(curve.mesh)) > 0.15 * len(curve.mesh):
                 curve, tangent = curve.on(mesh, STAGES), None
@@ -93,30 +97,16 @@ def straight(a: Array, b: Array, share: float) -> Array:
     return a + (b - a) * share
 
 
-def _predicted(problem: TwoPoint, curve: Curve, tangent: tuple[Array, Array] | None, move: float) -> Curve:
+def _predicted(problem: TwoPoint, curve: Curve, tangent: Step | None, move: float) -> Curve:
     if tangent is None:
         return curve
-    ahead = replace(curve, nodes=curve.nodes + move * tangent[0], stages=curve.stages + move * tangent[1])
+    ahead = curve.moved(tangent, move)
     falls = any((ahead.stages[i] < 0.5 * curve.stages[i]).any() for i in problem.positive)
     return curve if falls else ahead
 
 
-def _tangent(problem: TwoPoint, curve: Curve, start: Callable[[float], Array], at: float) -> tuple[Array, Array] | None:
-    """How the extremal changes with the share of the way."""
-    ahead = min(at + 1e-4, 1.0)
-    slope = (start(ahead) - start(at)) / (ahead - at)
-    system = System(problem, curve.mesh, curve.order)
-    residual = system.residual(curve)
+def _tangent(point: Point) -> Step | None:
     try:
-        linearised = system.linearised(curve, residual, system.jacobian(curve))
+        return point.response()
     except np.linalg.LinAlgError:
         return None
-    zero = replace(
-        residual,
-        stages=np.zeros_like(residual.stages),
-        ends=np.zeros_like(residual.ends),
-        start=-slope,
-        finish=np.zeros_like(residual.finish),
-    )
-    step = linearised.step(zero)
-    return step.nodes, step.stages

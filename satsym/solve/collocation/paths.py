@@ -19,7 +19,7 @@ Array = NDArray[np.floating[Any]]
 States = Callable[[Array], Array]
 """Scaled states, shape (n, M), at M times tau in [0, 1]."""
 
-POINTS = 21
+POINTS = 41
 """Points of a path at which the mesh is laid."""
 
 STEPS = 4000

@@ -131,14 +131,14 @@ class TwoPoint:
 
     def rates(self, tau: Array, z: Array, theta: Array) -> Array:
         """dz/dt, shape (2n, N), at ``tau`` (N,) and ``z`` (2n, N)."""
-        rates = np.empty(z.shape)  # given, so that kernels need not find out shapes and types
+        rates = np.empty(z.shape, z.dtype)  # given, so that kernels need not find out shapes and types
         self.instance.model.canonical_batch(*self._arguments(tau, z, theta), self.bounds, out=rates)
         rates /= self.scale.both
         return rates
 
     def jacobian(self, tau: Array, z: Array, theta: Array) -> Array:
         """The rates by z, shape (2n, 2n, N)."""
-        slopes = np.empty((len(z), *z.shape))
+        slopes = np.empty((len(z), *z.shape), z.dtype)
         self.instance.model.canonical_jacobian_batch(*self._arguments(tau, z, theta), self.bounds, out=slopes)
         slopes *= self.scale.ratio
         return slopes
