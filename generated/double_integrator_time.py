@@ -31,6 +31,10 @@ MODEL = {
     'position': (),
     'multipliers': (),
     'switching': True,
+    'switching_curve': (
+        'q',
+        'q_dot',
+    ),
 }
 
 
@@ -157,6 +161,75 @@ def extremal_jacobian(t, x, u, lam, p):
         -1.0,
         0.0,
     )
+
+
+def beyond_switching_curve(t, x, p, bounds, final):
+    """How far the position lies beyond the switching curve of least time."""
+    q, q_dot = x
+    u1_min, u1_max, smoothing, magnitude_share = bounds
+    given_q, given_q_dot, on_reference_q, on_reference_q_dot, target_q, target_q_dot = final
+    inv_u1_max = 1.0/u1_max
+    inv_u1_min = 1.0/u1_min
+    w = q_dot - target_q_dot
+    Abs_w = math.fabs(w)
+    return q - target_q - 0.25*(q_dot + target_q_dot)*(w*(inv_u1_max + inv_u1_min) - Abs_w*(inv_u1_max - inv_u1_min))
+
+
+def feedback_law(t, x, p, bounds, final):
+    """The controls of least time, by the side of the switching curve."""
+    q, q_dot = x
+    u1_min, u1_max, smoothing, magnitude_share = bounds
+    given_q, given_q_dot, on_reference_q, on_reference_q_dot, target_q, target_q_dot = final
+    w = q_dot - target_q_dot
+    Abs_w = math.fabs(w)
+    inv_u1_max = 1.0/u1_max
+    inv_u1_min = 1.0/u1_min
+    w_2 = inv_u1_max - inv_u1_min
+    w_3 = -w*(inv_u1_max + inv_u1_min)
+    w_4 = 0.25*q_dot + 0.25*target_q_dot
+    w_5 = target_q - q
+    w_6 = -w_4*(-Abs_w*w_2 - w_3) - w_5
+    w_7 = 1.0 if w_6 > 0.0 else -1.0 if w_6 < 0.0 else 0.0
+    w_8 = 1.0 if w > 0.0 else -1.0 if w < 0.0 else 0.0
+    w_9 = w_7 + w_8*(1.0 - w_7*w_7)
+    u1 = u1_min if w_9 > 0.0 else u1_max if w_9 < 0.0 else 0.5*(u1_min + u1_max)
+    return (
+        u1,
+    )
+
+
+def transition_time(t, x, p, bounds, final):
+    """How long the change of position takes from rest to rest."""
+    q, q_dot = x
+    u1_min, u1_max, smoothing, magnitude_share = bounds
+    given_q, given_q_dot, on_reference_q, on_reference_q_dot, target_q, target_q_dot = final
+    inv_u1_min = 1.0/u1_min
+    inv_u1_max = 1.0/u1_max
+    w = 2.0*inv_u1_max - 2.0*inv_u1_min
+    sqrt_w = math.sqrt(w)
+    w_2 = q - target_q
+    Abs_w_2 = math.fabs(w_2)
+    sqrt_Abs_w_2 = math.sqrt(Abs_w_2)
+    return sqrt_Abs_w_2*sqrt_w
+
+
+def first_arc_time(t, x, p, bounds, final):
+    """How long the first arc of it takes."""
+    q, q_dot = x
+    u1_min, u1_max, smoothing, magnitude_share = bounds
+    given_q, given_q_dot, on_reference_q, on_reference_q_dot, target_q, target_q_dot = final
+    inv_u1_min = 1.0/u1_min
+    inv_u1_max = 1.0/u1_max
+    w = 2.0*inv_u1_max - 2.0*inv_u1_min
+    sqrt_w = math.sqrt(w)
+    w_2 = q - target_q
+    Abs_w_2 = math.fabs(w_2)
+    sqrt_Abs_w_2 = math.sqrt(Abs_w_2)
+    w_3 = u1_max - u1_min
+    inv_w_3 = 1.0/w_3
+    w_4 = -w_2
+    w_5 = 1.0 if w_4 > 0.0 else -1.0 if w_4 < 0.0 else 0.0
+    return sqrt_Abs_w_2*sqrt_w*(0.5 - 0.5*inv_w_3*w_5*(u1_max + u1_min))
 
 
 def costate_rate(t, x, u, lam, p):
@@ -496,6 +569,89 @@ def extremal_jacobian_batch(t, x, u, lam, p, out=None):
     out[3, 1] = 0.0
     out[3, 2] = -1.0
     out[3, 3] = 0.0
+    return out
+
+
+def beyond_switching_curve_batch(t, x, p, bounds, final, out=None):
+    """How far the position lies beyond the switching curve of least time. Batch form."""
+    q, q_dot = x
+    u1_min, u1_max, smoothing, magnitude_share = bounds
+    given_q, given_q_dot, on_reference_q, on_reference_q_dot, target_q, target_q_dot = final
+    if out is None:
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
+        out = np.empty(shape, np.result_type(float, t, x, *p, *bounds, *final))
+    inv_u1_max = 1.0/u1_max
+    inv_u1_min = 1.0/u1_min
+    w = q_dot - target_q_dot
+    Abs_w = np.maximum(w, -w)
+    out[...] = q - target_q - 0.25*(q_dot + target_q_dot)*(w*(inv_u1_max + inv_u1_min) - Abs_w*(inv_u1_max - inv_u1_min))
+    return out
+
+
+def feedback_law_batch(t, x, p, bounds, final, out=None):
+    """The controls of least time, by the side of the switching curve. Batch form."""
+    q, q_dot = x
+    u1_min, u1_max, smoothing, magnitude_share = bounds
+    given_q, given_q_dot, on_reference_q, on_reference_q_dot, target_q, target_q_dot = final
+    if out is None:
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
+        out = np.empty((1, *shape), np.result_type(float, t, x, *p, *bounds, *final))
+    w = q_dot - target_q_dot
+    Abs_w = np.maximum(w, -w)
+    inv_u1_max = 1.0/u1_max
+    inv_u1_min = 1.0/u1_min
+    w_2 = inv_u1_max - inv_u1_min
+    w_3 = -w*(inv_u1_max + inv_u1_min)
+    w_4 = 0.25*q_dot + 0.25*target_q_dot
+    w_5 = target_q - q
+    w_6 = -w_4*(-Abs_w*w_2 - w_3) - w_5
+    w_7 = np.heaviside(w_6, 0.0) - np.heaviside(-w_6, 0.0)
+    w_8 = np.heaviside(w, 0.0) - np.heaviside(-w, 0.0)
+    w_9 = w_7 + w_8*(1.0 - w_7*w_7)
+    u1 = np.heaviside(w_9 - 0.0, 0.0)*u1_min + np.heaviside(-w_9 - 0.0, 0.0)*u1_max + (1.0 - np.heaviside(w_9 - 0.0, 0.0) - np.heaviside(-w_9 - 0.0, 0.0))*0.5*(u1_min + u1_max)
+    out[0] = u1
+    return out
+
+
+def transition_time_batch(t, x, p, bounds, final, out=None):
+    """How long the change of position takes from rest to rest. Batch form."""
+    q, q_dot = x
+    u1_min, u1_max, smoothing, magnitude_share = bounds
+    given_q, given_q_dot, on_reference_q, on_reference_q_dot, target_q, target_q_dot = final
+    if out is None:
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
+        out = np.empty(shape, np.result_type(float, t, x, *p, *bounds, *final))
+    inv_u1_min = 1.0/u1_min
+    inv_u1_max = 1.0/u1_max
+    w = 2.0*inv_u1_max - 2.0*inv_u1_min
+    sqrt_w = np.sqrt(w)
+    w_2 = q - target_q
+    Abs_w_2 = np.maximum(w_2, -w_2)
+    sqrt_Abs_w_2 = np.sqrt(Abs_w_2)
+    out[...] = sqrt_Abs_w_2*sqrt_w
+    return out
+
+
+def first_arc_time_batch(t, x, p, bounds, final, out=None):
+    """How long the first arc of it takes. Batch form."""
+    q, q_dot = x
+    u1_min, u1_max, smoothing, magnitude_share = bounds
+    given_q, given_q_dot, on_reference_q, on_reference_q_dot, target_q, target_q_dot = final
+    if out is None:
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
+        out = np.empty(shape, np.result_type(float, t, x, *p, *bounds, *final))
+    inv_u1_min = 1.0/u1_min
+    inv_u1_max = 1.0/u1_max
+    w = 2.0*inv_u1_max - 2.0*inv_u1_min
+    sqrt_w = np.sqrt(w)
+    w_2 = q - target_q
+    Abs_w_2 = np.maximum(w_2, -w_2)
+    sqrt_Abs_w_2 = np.sqrt(Abs_w_2)
+    w_3 = u1_max - u1_min
+    inv_w_3 = 1.0/w_3
+    w_4 = -w_2
+    w_5 = np.heaviside(w_4, 0.0) - np.heaviside(-w_4, 0.0)
+    out[...] = sqrt_Abs_w_2*sqrt_w*(0.5 - 0.5*inv_w_3*w_5*(u1_max + u1_min))
     return out
 
 

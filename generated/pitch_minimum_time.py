@@ -45,6 +45,10 @@ MODEL = {
         {'symbol': 'voltage', 'latex': 'V', 'unit': 'V', 'meaning': 'voltage across the motor'},
         {'symbol': 'power', 'latex': 'P', 'unit': 'W', 'meaning': 'electrical power of the motor'},
     ),
+    'switching_curve': (
+        'theta',
+        'theta_dot',
+    ),
 }
 
 
@@ -212,6 +216,79 @@ def extremal_jacobian(t, x, u, lam, p):
         -1.0,
         0.0,
     )
+
+
+def beyond_switching_curve(t, x, p, bounds, final):
+    """How far the position lies beyond the switching curve of least time."""
+    theta, theta_dot = x
+    I_y, I_wy, nominal_speed, R_a, K_t, K_m = p
+    wheel_torque_min, wheel_torque_max, smoothing, magnitude_share = bounds
+    given_theta, given_theta_dot, on_reference_theta, on_reference_theta_dot, target_theta, target_theta_dot = final
+    inv_wheel_torque_max = 1.0/wheel_torque_max
+    inv_wheel_torque_min = 1.0/wheel_torque_min
+    w = target_theta_dot - theta_dot
+    Abs_w = math.fabs(w)
+    return theta - 0.25*I_y*(target_theta_dot + theta_dot)*(-Abs_w*(inv_wheel_torque_max - inv_wheel_torque_min) - w*(inv_wheel_torque_max + inv_wheel_torque_min)) - target_theta
+
+
+def feedback_law(t, x, p, bounds, final):
+    """The controls of least time, by the side of the switching curve."""
+    theta, theta_dot = x
+    I_y, I_wy, nominal_speed, R_a, K_t, K_m = p
+    wheel_torque_min, wheel_torque_max, smoothing, magnitude_share = bounds
+    given_theta, given_theta_dot, on_reference_theta, on_reference_theta_dot, target_theta, target_theta_dot = final
+    w = target_theta_dot - theta_dot
+    Abs_w = math.fabs(w)
+    inv_wheel_torque_max = 1.0/wheel_torque_max
+    inv_wheel_torque_min = 1.0/wheel_torque_min
+    w_2 = inv_wheel_torque_max - inv_wheel_torque_min
+    w_3 = -w
+    w_4 = -w_3*(inv_wheel_torque_max + inv_wheel_torque_min)
+    w_5 = 0.25*I_y*(target_theta_dot + theta_dot)
+    w_6 = target_theta - theta
+    w_7 = -w_5*(-Abs_w*w_2 - w_4) - w_6
+    w_8 = 1.0 if w_7 > 0.0 else -1.0 if w_7 < 0.0 else 0.0
+    w_9 = 1.0 if w_3 > 0.0 else -1.0 if w_3 < 0.0 else 0.0
+    w_10 = w_8 + w_9*(1.0 - w_8*w_8)
+    wheel_torque = wheel_torque_min if w_10 > 0.0 else wheel_torque_max if w_10 < 0.0 else 0.5*(wheel_torque_min + wheel_torque_max)
+    return (
+        wheel_torque,
+    )
+
+
+def transition_time(t, x, p, bounds, final):
+    """How long the change of position takes from rest to rest."""
+    theta, theta_dot = x
+    I_y, I_wy, nominal_speed, R_a, K_t, K_m = p
+    wheel_torque_min, wheel_torque_max, smoothing, magnitude_share = bounds
+    given_theta, given_theta_dot, on_reference_theta, on_reference_theta_dot, target_theta, target_theta_dot = final
+    inv_wheel_torque_min = 1.0/wheel_torque_min
+    inv_wheel_torque_max = 1.0/wheel_torque_max
+    w = 2.0*I_y*inv_wheel_torque_max - 2.0*I_y*inv_wheel_torque_min
+    sqrt_w = math.sqrt(w)
+    w_2 = target_theta - theta
+    Abs_w_2 = math.fabs(w_2)
+    sqrt_Abs_w_2 = math.sqrt(Abs_w_2)
+    return sqrt_Abs_w_2*sqrt_w
+
+
+def first_arc_time(t, x, p, bounds, final):
+    """How long the first arc of it takes."""
+    theta, theta_dot = x
+    I_y, I_wy, nominal_speed, R_a, K_t, K_m = p
+    wheel_torque_min, wheel_torque_max, smoothing, magnitude_share = bounds
+    given_theta, given_theta_dot, on_reference_theta, on_reference_theta_dot, target_theta, target_theta_dot = final
+    inv_wheel_torque_min = 1.0/wheel_torque_min
+    inv_wheel_torque_max = 1.0/wheel_torque_max
+    w = 2.0*I_y*inv_wheel_torque_max - 2.0*I_y*inv_wheel_torque_min
+    sqrt_w = math.sqrt(w)
+    w_2 = target_theta - theta
+    Abs_w_2 = math.fabs(w_2)
+    sqrt_Abs_w_2 = math.sqrt(Abs_w_2)
+    w_3 = wheel_torque_max - wheel_torque_min
+    inv_w_3 = 1.0/w_3
+    w_4 = 1.0 if w_2 > 0.0 else -1.0 if w_2 < 0.0 else 0.0
+    return sqrt_Abs_w_2*sqrt_w*(0.5 - 0.5*inv_w_3*w_4*(wheel_torque_max + wheel_torque_min))
 
 
 def costate_rate(t, x, u, lam, p):
@@ -610,6 +687,93 @@ def extremal_jacobian_batch(t, x, u, lam, p, out=None):
     out[3, 1] = 0.0
     out[3, 2] = -1.0
     out[3, 3] = 0.0
+    return out
+
+
+def beyond_switching_curve_batch(t, x, p, bounds, final, out=None):
+    """How far the position lies beyond the switching curve of least time. Batch form."""
+    theta, theta_dot = x
+    I_y, I_wy, nominal_speed, R_a, K_t, K_m = p
+    wheel_torque_min, wheel_torque_max, smoothing, magnitude_share = bounds
+    given_theta, given_theta_dot, on_reference_theta, on_reference_theta_dot, target_theta, target_theta_dot = final
+    if out is None:
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
+        out = np.empty(shape, np.result_type(float, t, x, *p, *bounds, *final))
+    inv_wheel_torque_max = 1.0/wheel_torque_max
+    inv_wheel_torque_min = 1.0/wheel_torque_min
+    w = target_theta_dot - theta_dot
+    Abs_w = np.maximum(w, -w)
+    out[...] = theta - 0.25*I_y*(target_theta_dot + theta_dot)*(-Abs_w*(inv_wheel_torque_max - inv_wheel_torque_min) - w*(inv_wheel_torque_max + inv_wheel_torque_min)) - target_theta
+    return out
+
+
+def feedback_law_batch(t, x, p, bounds, final, out=None):
+    """The controls of least time, by the side of the switching curve. Batch form."""
+    theta, theta_dot = x
+    I_y, I_wy, nominal_speed, R_a, K_t, K_m = p
+    wheel_torque_min, wheel_torque_max, smoothing, magnitude_share = bounds
+    given_theta, given_theta_dot, on_reference_theta, on_reference_theta_dot, target_theta, target_theta_dot = final
+    if out is None:
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
+        out = np.empty((1, *shape), np.result_type(float, t, x, *p, *bounds, *final))
+    w = target_theta_dot - theta_dot
+    Abs_w = np.maximum(w, -w)
+    inv_wheel_torque_max = 1.0/wheel_torque_max
+    inv_wheel_torque_min = 1.0/wheel_torque_min
+    w_2 = inv_wheel_torque_max - inv_wheel_torque_min
+    w_3 = -w
+    w_4 = -w_3*(inv_wheel_torque_max + inv_wheel_torque_min)
+    w_5 = 0.25*I_y*(target_theta_dot + theta_dot)
+    w_6 = target_theta - theta
+    w_7 = -w_5*(-Abs_w*w_2 - w_4) - w_6
+    w_8 = np.heaviside(w_7, 0.0) - np.heaviside(-w_7, 0.0)
+    w_9 = np.heaviside(w_3, 0.0) - np.heaviside(-w_3, 0.0)
+    w_10 = w_8 + w_9*(1.0 - w_8*w_8)
+    wheel_torque = np.heaviside(w_10 - 0.0, 0.0)*wheel_torque_min + np.heaviside(-w_10 - 0.0, 0.0)*wheel_torque_max + (1.0 - np.heaviside(w_10 - 0.0, 0.0) - np.heaviside(-w_10 - 0.0, 0.0))*0.5*(wheel_torque_min + wheel_torque_max)
+    out[0] = wheel_torque
+    return out
+
+
+def transition_time_batch(t, x, p, bounds, final, out=None):
+    """How long the change of position takes from rest to rest. Batch form."""
+    theta, theta_dot = x
+    I_y, I_wy, nominal_speed, R_a, K_t, K_m = p
+    wheel_torque_min, wheel_torque_max, smoothing, magnitude_share = bounds
+    given_theta, given_theta_dot, on_reference_theta, on_reference_theta_dot, target_theta, target_theta_dot = final
+    if out is None:
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
+        out = np.empty(shape, np.result_type(float, t, x, *p, *bounds, *final))
+    inv_wheel_torque_min = 1.0/wheel_torque_min
+    inv_wheel_torque_max = 1.0/wheel_torque_max
+    w = 2.0*I_y*inv_wheel_torque_max - 2.0*I_y*inv_wheel_torque_min
+    sqrt_w = np.sqrt(w)
+    w_2 = target_theta - theta
+    Abs_w_2 = np.maximum(w_2, -w_2)
+    sqrt_Abs_w_2 = np.sqrt(Abs_w_2)
+    out[...] = sqrt_Abs_w_2*sqrt_w
+    return out
+
+
+def first_arc_time_batch(t, x, p, bounds, final, out=None):
+    """How long the first arc of it takes. Batch form."""
+    theta, theta_dot = x
+    I_y, I_wy, nominal_speed, R_a, K_t, K_m = p
+    wheel_torque_min, wheel_torque_max, smoothing, magnitude_share = bounds
+    given_theta, given_theta_dot, on_reference_theta, on_reference_theta_dot, target_theta, target_theta_dot = final
+    if out is None:
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
+        out = np.empty(shape, np.result_type(float, t, x, *p, *bounds, *final))
+    inv_wheel_torque_min = 1.0/wheel_torque_min
+    inv_wheel_torque_max = 1.0/wheel_torque_max
+    w = 2.0*I_y*inv_wheel_torque_max - 2.0*I_y*inv_wheel_torque_min
+    sqrt_w = np.sqrt(w)
+    w_2 = target_theta - theta
+    Abs_w_2 = np.maximum(w_2, -w_2)
+    sqrt_Abs_w_2 = np.sqrt(Abs_w_2)
+    w_3 = wheel_torque_max - wheel_torque_min
+    inv_w_3 = 1.0/w_3
+    w_4 = np.heaviside(w_2, 0.0) - np.heaviside(-w_2, 0.0)
+    out[...] = sqrt_Abs_w_2*sqrt_w*(0.5 - 0.5*inv_w_3*w_4*(wheel_torque_max + wheel_torque_min))
     return out
 
 

@@ -31,6 +31,10 @@ MODEL = {
     'position': (),
     'multipliers': (),
     'switching': True,
+    'switching_curve': (
+        'X1',
+        'X2',
+    ),
 }
 
 
@@ -157,6 +161,75 @@ def extremal_jacobian(t, x, u, lam, p):
         -1.0,
         0.0,
     )
+
+
+def beyond_switching_curve(t, x, p, bounds, final):
+    """How far the position lies beyond the switching curve of least time."""
+    X1, X2 = x
+    U_min, U_max, smoothing, magnitude_share = bounds
+    given_X1, given_X2, on_reference_X1, on_reference_X2, target_X1, target_X2 = final
+    inv_U_max = 1.0/U_max
+    inv_U_min = 1.0/U_min
+    w = X2 - target_X2
+    Abs_w = math.fabs(w)
+    return X1 - target_X1 - 0.25*(X2 + target_X2)*(w*(inv_U_max + inv_U_min) - Abs_w*(inv_U_max - inv_U_min))
+
+
+def feedback_law(t, x, p, bounds, final):
+    """The controls of least time, by the side of the switching curve."""
+    X1, X2 = x
+    U_min, U_max, smoothing, magnitude_share = bounds
+    given_X1, given_X2, on_reference_X1, on_reference_X2, target_X1, target_X2 = final
+    w = X2 - target_X2
+    Abs_w = math.fabs(w)
+    inv_U_max = 1.0/U_max
+    inv_U_min = 1.0/U_min
+    w_2 = inv_U_max - inv_U_min
+    w_3 = -w*(inv_U_max + inv_U_min)
+    w_4 = 0.25*X2 + 0.25*target_X2
+    w_5 = target_X1 - X1
+    w_6 = -w_4*(-Abs_w*w_2 - w_3) - w_5
+    w_7 = 1.0 if w_6 > 0.0 else -1.0 if w_6 < 0.0 else 0.0
+    w_8 = 1.0 if w > 0.0 else -1.0 if w < 0.0 else 0.0
+    w_9 = w_7 + w_8*(1.0 - w_7*w_7)
+    U = U_min if w_9 > 0.0 else U_max if w_9 < 0.0 else 0.5*(U_min + U_max)
+    return (
+        U,
+    )
+
+
+def transition_time(t, x, p, bounds, final):
+    """How long the change of position takes from rest to rest."""
+    X1, X2 = x
+    U_min, U_max, smoothing, magnitude_share = bounds
+    given_X1, given_X2, on_reference_X1, on_reference_X2, target_X1, target_X2 = final
+    inv_U_min = 1.0/U_min
+    inv_U_max = 1.0/U_max
+    w = 2.0*inv_U_max - 2.0*inv_U_min
+    sqrt_w = math.sqrt(w)
+    w_2 = X1 - target_X1
+    Abs_w_2 = math.fabs(w_2)
+    sqrt_Abs_w_2 = math.sqrt(Abs_w_2)
+    return sqrt_Abs_w_2*sqrt_w
+
+
+def first_arc_time(t, x, p, bounds, final):
+    """How long the first arc of it takes."""
+    X1, X2 = x
+    U_min, U_max, smoothing, magnitude_share = bounds
+    given_X1, given_X2, on_reference_X1, on_reference_X2, target_X1, target_X2 = final
+    inv_U_min = 1.0/U_min
+    inv_U_max = 1.0/U_max
+    w = 2.0*inv_U_max - 2.0*inv_U_min
+    sqrt_w = math.sqrt(w)
+    w_2 = X1 - target_X1
+    Abs_w_2 = math.fabs(w_2)
+    sqrt_Abs_w_2 = math.sqrt(Abs_w_2)
+    w_3 = U_max - U_min
+    inv_w_3 = 1.0/w_3
+    w_4 = -w_2
+    w_5 = 1.0 if w_4 > 0.0 else -1.0 if w_4 < 0.0 else 0.0
+    return sqrt_Abs_w_2*sqrt_w*(0.5 - 0.5*inv_w_3*w_5*(U_max + U_min))
 
 
 def costate_rate(t, x, u, lam, p):
@@ -496,6 +569,89 @@ def extremal_jacobian_batch(t, x, u, lam, p, out=None):
     out[3, 1] = 0.0
     out[3, 2] = -1.0
     out[3, 3] = 0.0
+    return out
+
+
+def beyond_switching_curve_batch(t, x, p, bounds, final, out=None):
+    """How far the position lies beyond the switching curve of least time. Batch form."""
+    X1, X2 = x
+    U_min, U_max, smoothing, magnitude_share = bounds
+    given_X1, given_X2, on_reference_X1, on_reference_X2, target_X1, target_X2 = final
+    if out is None:
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
+        out = np.empty(shape, np.result_type(float, t, x, *p, *bounds, *final))
+    inv_U_max = 1.0/U_max
+    inv_U_min = 1.0/U_min
+    w = X2 - target_X2
+    Abs_w = np.maximum(w, -w)
+    out[...] = X1 - target_X1 - 0.25*(X2 + target_X2)*(w*(inv_U_max + inv_U_min) - Abs_w*(inv_U_max - inv_U_min))
+    return out
+
+
+def feedback_law_batch(t, x, p, bounds, final, out=None):
+    """The controls of least time, by the side of the switching curve. Batch form."""
+    X1, X2 = x
+    U_min, U_max, smoothing, magnitude_share = bounds
+    given_X1, given_X2, on_reference_X1, on_reference_X2, target_X1, target_X2 = final
+    if out is None:
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
+        out = np.empty((1, *shape), np.result_type(float, t, x, *p, *bounds, *final))
+    w = X2 - target_X2
+    Abs_w = np.maximum(w, -w)
+    inv_U_max = 1.0/U_max
+    inv_U_min = 1.0/U_min
+    w_2 = inv_U_max - inv_U_min
+    w_3 = -w*(inv_U_max + inv_U_min)
+    w_4 = 0.25*X2 + 0.25*target_X2
+    w_5 = target_X1 - X1
+    w_6 = -w_4*(-Abs_w*w_2 - w_3) - w_5
+    w_7 = np.heaviside(w_6, 0.0) - np.heaviside(-w_6, 0.0)
+    w_8 = np.heaviside(w, 0.0) - np.heaviside(-w, 0.0)
+    w_9 = w_7 + w_8*(1.0 - w_7*w_7)
+    U = np.heaviside(w_9 - 0.0, 0.0)*U_min + np.heaviside(-w_9 - 0.0, 0.0)*U_max + (1.0 - np.heaviside(w_9 - 0.0, 0.0) - np.heaviside(-w_9 - 0.0, 0.0))*0.5*(U_min + U_max)
+    out[0] = U
+    return out
+
+
+def transition_time_batch(t, x, p, bounds, final, out=None):
+    """How long the change of position takes from rest to rest. Batch form."""
+    X1, X2 = x
+    U_min, U_max, smoothing, magnitude_share = bounds
+    given_X1, given_X2, on_reference_X1, on_reference_X2, target_X1, target_X2 = final
+    if out is None:
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
+        out = np.empty(shape, np.result_type(float, t, x, *p, *bounds, *final))
+    inv_U_min = 1.0/U_min
+    inv_U_max = 1.0/U_max
+    w = 2.0*inv_U_max - 2.0*inv_U_min
+    sqrt_w = np.sqrt(w)
+    w_2 = X1 - target_X1
+    Abs_w_2 = np.maximum(w_2, -w_2)
+    sqrt_Abs_w_2 = np.sqrt(Abs_w_2)
+    out[...] = sqrt_Abs_w_2*sqrt_w
+    return out
+
+
+def first_arc_time_batch(t, x, p, bounds, final, out=None):
+    """How long the first arc of it takes. Batch form."""
+    X1, X2 = x
+    U_min, U_max, smoothing, magnitude_share = bounds
+    given_X1, given_X2, on_reference_X1, on_reference_X2, target_X1, target_X2 = final
+    if out is None:
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
+        out = np.empty(shape, np.result_type(float, t, x, *p, *bounds, *final))
+    inv_U_min = 1.0/U_min
+    inv_U_max = 1.0/U_max
+    w = 2.0*inv_U_max - 2.0*inv_U_min
+    sqrt_w = np.sqrt(w)
+    w_2 = X1 - target_X1
+    Abs_w_2 = np.maximum(w_2, -w_2)
+    sqrt_Abs_w_2 = np.sqrt(Abs_w_2)
+    w_3 = U_max - U_min
+    inv_w_3 = 1.0/w_3
+    w_4 = -w_2
+    w_5 = np.heaviside(w_4, 0.0) - np.heaviside(-w_4, 0.0)
+    out[...] = sqrt_Abs_w_2*sqrt_w*(0.5 - 0.5*inv_w_3*w_5*(U_max + U_min))
     return out
 
 

@@ -21,7 +21,10 @@ _OF_VARIABLES = (
     *("states", "controls", "parameters", "invariants", "position", "multipliers", "outputs"),
     *("quantities", "balances"),
 )
-_UNLESS_DEFAULT = (*_OF_LINEAR_MODELS, "keplerian", "switching", "coordinates", "velocities", "quantities", "balances")
+_UNLESS_DEFAULT = (
+    *(*_OF_LINEAR_MODELS, "keplerian", "switching", "coordinates", "velocities", "quantities", "balances"),
+    "switching_curve",
+)
 
 
 @dataclass(frozen=True)
@@ -90,6 +93,9 @@ class ProblemSpec:
         What is derived along a motion besides, such as the power of a motor.
     balances
         What changes only by something from outside, whatever the controls do, such as an angular momentum.
+    switching_curve
+        Names of position and rate where the control of least time follows from the side of a curve on which they lie;
+        empty where there is no such curve in closed form.
     """
 
     name: str
@@ -114,6 +120,7 @@ class ProblemSpec:
     velocities: tuple[str, ...] = ()
     quantities: tuple[Variable, ...] = ()
     balances: tuple[Variable, ...] = ()
+    switching_curve: tuple[str, ...] = ()
 
     @property
     def separable(self) -> bool:

@@ -17,7 +17,7 @@ from satsym.solve import simulate as fly
 from satsym.solve.closed_loop import Law
 from satsym.status import BadInput
 
-FEEDBACKS = ("none", "lqr", "classical")
+FEEDBACKS = ("none", "lqr", "classical", "switching", "pulses")
 """Control laws that a simulation can follow."""
 
 GAINS_PER_TIME = 50.0
@@ -80,8 +80,10 @@ def simulate(instance: Instance, feedback: str | None = None) -> Flight:
     Parameters
     ----------
     feedback
-        ``"none"``, ``"lqr"`` for the gain that the instance's [lqr] table asks for, or ``"classical"`` for the law of
-        its [classical] table; by default the last where there is such a table, and else none.
+        ``"none"``, ``"lqr"`` for the gain that the instance's [lqr] table asks for, ``"classical"`` for the law of
+        its [classical] table, or with the deadband of its [switching] table ``"switching"`` for least time by the
+        switching curve, and ``"pulses"`` for least time by the position alone. By default ``"classical"`` where there
+        is such a table, and else none.
 
     Returns
     -------
@@ -104,6 +106,14 @@ def simulate(instance: Instance, feedback: str | None = None) -> Flight:
         from satsym.analysis import classical
 
         return classical.simulate(instance)
+    if feedback == "switching":
+        from satsym.analysis import relay
+
+        return relay.simulate(instance)
+    if feedback == "pulses":
+        from satsym.analysis import pulses
+
+        return pulses.simulate(instance)
     design = designed(instance)
     about, found = design.about, design.regulator
     flight = fly(instance, law(about, found))

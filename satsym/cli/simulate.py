@@ -11,7 +11,7 @@ from satsym.cli.output import complain, emit, emit_json, in_colour
 from satsym.cli.saving import folder_for, save
 from satsym.status import ExitCode
 
-FEEDBACKS = ("none", "lqr", "classical")
+FEEDBACKS = ("none", "lqr", "classical", "switching", "pulses")
 """Control laws to fly with; here once more, because ``--help`` loads no solver."""
 
 EXAMPLES = """\b
@@ -19,7 +19,9 @@ Examples:
   satsym simulate its-thesis            where the satellite goes if nobody steers it
   satsym simulate its-thesis --plot     with pictures, into results/its-thesis
   satsym simulate geo-lqr --feedback lqr    the nonlinear motion under the linear law
-  satsym simulate lapan-classical       a pitch manoeuvre under the law that it states"""
+  satsym simulate lapan-classical       a pitch manoeuvre under the law that it states
+  satsym simulate lapan-minimum-time --feedback switching    the same in least time, by the switching curve
+  satsym simulate lapan-minimum-time --feedback pulses       the same by a sensor of the position alone"""
 
 
 @click.command(epilog=EXAMPLES)

@@ -182,6 +182,10 @@ def _switching_laws(derivation: Derivation) -> list[Function]:
             "t x u lam p",
             switching.extremal_jacobian(derivation),
         ),
+        *(
+            Function(f.name, f.summary, tuple(f.arguments.split()), f.value, "vector" if f.hints else "scalar", f.hints)
+            for f in switching.curve(derivation)
+        ),
     ]
 
 

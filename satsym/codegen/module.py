@@ -18,6 +18,7 @@ from satsym.spec import ProblemSpec, Variable
 from satsym.symbolic.attraction import strength_of
 from satsym.symbolic.derivation import Derivation, Equation
 from satsym.symbolic.model import t, variables_of
+from satsym.symbolic.switching_curve import states_of
 
 
 def render(derivation: Derivation, source: str) -> str:
@@ -74,6 +75,7 @@ def spec(derivation: Derivation, source: str) -> ProblemSpec:
         linear=tuple(f.name for f in linear),
         keplerian=strength_of(derivation) is not None,
         switching=switches(derivation),
+        switching_curve=states_of(derivation) or (),
         coordinates=tuple(q.name for q in parts.coordinates) if (parts := symplectic.split(derivation)) else (),
         velocities=tuple(v.name for v in parts.velocities) if parts else (),
         quantities=_quantities(derivation),

@@ -14,11 +14,13 @@ import sympy as sp
 
 from satsym.spec import names
 from satsym.symbolic import notation as n
+from satsym.symbolic import switching_curve
 from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.model import symbols_of
 from satsym.symbolic.pontryagin import costates
 from satsym.symbolic.switches import Side
 from satsym.symbolic.switching import parts, written_out
+from satsym.symbolic.switching_notation import BEYOND, ON_CURVE, SIDE, TRANSITION
 
 STEP = "switching_function"
 """The step that only derivations of such problems have."""
@@ -56,6 +58,39 @@ def vectors(derivation: Derivation) -> list[Entry]:
             sp.Matrix(written_out(derivation, derivation.rhs("control_law"))),
             controls,
         ),
+    ]
+
+
+def curve(derivation: Derivation) -> list[Entry]:
+    """Functions of the switching curve, where there is one: the law of the state, and changes of position from rest."""
+    if switching_curve.STEP not in derivation:
+        return []
+    arguments, (control,) = "t x p bounds final", names(derivation.model.controls)
+    stated = {e.name: e.rhs for e in derivation.step(switching_curve.STEP).equations}
+    beyond = stated["beyond"].xreplace({ON_CURVE: stated["curve"]})
+    law = stated[control].xreplace({SIDE: stated["side"]}).xreplace({BEYOND: beyond})
+    first = stated["first"].xreplace({TRANSITION: stated["duration"]})
+    return [
+        Entry(
+            "beyond_switching_curve",
+            "How far the position lies beyond the switching curve of least time.",
+            arguments,
+            printable(sp.Matrix([beyond])),
+        ),
+        Entry(
+            "feedback_law",
+            "The controls of least time, by the side of the switching curve.",
+            arguments,
+            printable(sp.Matrix([law])),
+            (control,),
+        ),
+        Entry(
+            "transition_time",
+            "How long the change of position takes from rest to rest.",
+            arguments,
+            printable(sp.Matrix([stated["duration"]])),
+        ),
+        Entry("first_arc_time", "How long the first arc of it takes.", arguments, printable(sp.Matrix([first]))),
     ]
 
 

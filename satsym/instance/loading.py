@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from satsym.instance import files, resolve
 from satsym.instance.options import guess, lqr, solver
-from satsym.instance.pointing import classical, limits
+from satsym.instance.pointing import classical, deadband, limits
 from satsym.instance.schema import InstanceFile, check
 from satsym.instance.types import Instance
 from satsym.status import BadInput
@@ -83,4 +83,5 @@ def _resolve(path: Path, file: InstanceFile, model: Kernels) -> Instance:
         guess=guess(file.guess, spec),
         classical=classical(file.classical, spec),
         limits=limits(file.limits, spec),
+        deadband=deadband(file.switching, spec),
     )

@@ -1,11 +1,11 @@
-"""The tables [classical] and [limits] of an instance, checked against its model."""
+"""The tables [classical], [switching] and [limits] of an instance, checked against its model."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
 from satsym.instance.resolve import known, quantity, time, value_of
-from satsym.instance.schema import ClassicalTable
+from satsym.instance.schema import ClassicalTable, SwitchingTable
 from satsym.instance.types import ClassicalOptions
 from satsym.spec import ProblemSpec
 from satsym.status import BadInput
@@ -67,6 +67,31 @@ def limits(table: Mapping[str, float | str], spec: ProblemSpec) -> dict[str, flo
             raise BadInput(
                 f"[limits] {name}: {shown(table[name])} is not positive; write the largest magnitude allowed"
             )
+    return found
+
+
+def deadband(table: SwitchingTable | None, spec: ProblemSpec) -> float | None:
+    """The error of the position that a switching feedback allows.
+
+    Raises
+    ------
+    BadInput
+        If the model has no switching curve, or the deadband is not positive.
+    """
+    if table is None:
+        return None
+    if not spec.switching_curve:
+        raise BadInput(
+            f"[switching] model {spec.name} has no switching curve in closed form, as problems of least time with "
+            "two integrators have; leave the table out"
+        )
+    position = spec.states[spec.state_names.index(spec.switching_curve[0])]
+    found = quantity(table.deadband, position.unit, "[switching] deadband")
+    if found <= 0.0:
+        raise BadInput(
+            f"[switching] deadband: {shown(table.deadband)} is not positive; "
+            f"write the error of {position.symbol} that is allowed"
+        )
     return found
 
 

@@ -64,6 +64,10 @@ class ClassicalTable(_Table, frozen=True):
     differentiator: Quantity = 0.0
 
 
+class SwitchingTable(_Table, frozen=True):
+    deadband: Quantity
+
+
 class GuessTable(_Table, frozen=True):
     state: dict[str, Series] = {}
     costate: dict[str, Series] = {}
@@ -116,6 +120,7 @@ class InstanceFile(_Table, frozen=True):
     guess: GuessTable = GuessTable()
     classical: ClassicalTable | None = None
     limits: dict[str, Quantity] = {}
+    switching: SwitchingTable | None = None
 
 
 def check(tree: dict[str, Any]) -> InstanceFile:

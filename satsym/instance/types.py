@@ -111,6 +111,8 @@ class Instance:
     classical, limits
         A law that follows a command, if there is one; and the largest magnitude that is allowed of states and of
         derived quantities, by name.
+    deadband
+        Error of the position that a switching feedback allows, if it is stated.
     """
 
     name: str
@@ -131,6 +133,7 @@ class Instance:
     guess: Guess
     classical: ClassicalOptions | None = None
     limits: Mapping[str, float] = field(default_factory=dict)
+    deadband: float | None = None
 
     @property
     def boundary_type(self) -> int:

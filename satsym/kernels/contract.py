@@ -77,6 +77,13 @@ _SWITCHING = {
 Its ``canonical`` functions and ``boundary`` are those of the smoothed companion, see
 :mod:`satsym.codegen.switching`.
 """
+_CURVE = {
+    "beyond_switching_curve": _signature("t x p bounds final"),
+    "feedback_law": _signature("t x p bounds final", "m"),
+    "transition_time": _signature("t x p bounds final"),
+    "first_arc_time": _signature("t x p bounds final"),
+}
+"""What a problem of least time has besides whose switching curve is known in closed form."""
 LINEAR = {
     "state_matrix": _of_parameters("t p", "nn"),
     "input_matrix": _of_parameters("t p", "nm"),
@@ -121,6 +128,7 @@ def pointwise(spec: ProblemSpec) -> dict[str, Signature]:
     found |= _COST if spec.has_cost else {}
     if spec.switching:
         found = {name: signature for name, signature in found.items() if name not in _OF_REGULAR_LAWS} | _SWITCHING
+        found |= _CURVE if spec.switching_curve else {}
     return found
 
 

@@ -90,7 +90,7 @@ def extended(known: Known, step: Step) -> Known:
     for equation in step.equations:
         if equation.lhs.is_Symbol and equation.lhs.name not in found and not equation.rhs.is_Matrix:
             try:
-                found[equation.lhs.name] = dimension_of(_right_side(step, equation.rhs), known)
+                found[equation.lhs.name] = dimension_of(_right_side(step, equation.rhs), found)
             except Disagreement:
                 continue  # the check counts it
     return found

@@ -29,6 +29,7 @@ from satsym.symbolic import (
     step_answers,
     structure_steps,
     switching,
+    switching_curve,
     transversality,
 )
 from satsym.symbolic.declared import refuse_foreign_symbols, refuse_misfits
@@ -142,6 +143,7 @@ SWITCHING_PRINCIPLE: tuple[MaybeStep, ...] = (
     singular.generalised_legendre_clebsch,
     pontryagin.boundary_conditions,
     transversality.boundary_residual,
+    switching_curve.switching_curve,
 )
 """Where H is linear in the controls and their magnitudes."""
 

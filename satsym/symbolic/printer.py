@@ -240,6 +240,10 @@ class Printer(LatexPrinter):
         value, *others = map(self._print, (-slope if reverse else slope, weight, low, high))
         return levels(value, others[0], others[1], others[2], reverse)
 
+    def _print_sign(self, expr: sp.Expr, exp: str | None = None) -> str:
+        raised = rf"^{{{exp}}}" if exp else ""
+        return rf"\operatorname{{sgn}}{raised}{self._enclosed(self._print(expr.args[0]))}"
+
     def _print_Shrink(self, expr: sp.Expr, exp: str | None = None) -> str:
         value, width = map(self._print, expr.args)
         return rf"\mathcal{{S}}_{{{width}}}({value})"

@@ -5,6 +5,7 @@ Everything starts from rest. The derivative of a step is an impulse; an ideal di
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import pairwise
 from typing import Any
 
@@ -148,17 +149,16 @@ def _transformed(so_far: Derivation, answers: dict[sp.Symbol, tuple[sp.Expr, sp.
     gains = {e.lhs: e.rhs for e in so_far.step("critical_damping").equations}
     images = [(_transfer(so_far, x) * command / s).xreplace(gains).xreplace(dict(model.where)) for x in answers]
     expected = numeric(images)
-    values, impulses = numeric([v for _, v in answers.values()]), numeric([i for i, _ in answers.values()])
+    values, impulses = [numeric([v]) for _, v in answers.values()], numeric([i for i, _ in answers.values()])
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
         here = {**point, s: abs(point[s]) + 1}
         places = [0, *(k / (here[s] + here[damping]) for k in (2, 10, 40)), mp.inf]
 
-        def image(k: int) -> Any:
-            return mp.quad(lambda time: mp.exp(-here[s] * time) * values({**here, SECONDS: time})[k], places)
+        def image(value: Callable[[Point], list[Any]]) -> Any:
+            return mp.quad(lambda time: mp.exp(-here[s] * time) * value({**here, SECONDS: time})[0], places)
 
-        sudden = impulses(here)
-        return [sudden[k] + image(k) for k in range(len(answers))], expected(here)
+        return [i + image(value) for i, value in zip(impulses(here), values, strict=True)], expected(here)
 
     symbols = set().union(*(e.free_symbols for e in images), *(v.free_symbols for _, v in answers.values())) - {SECONDS}
     return compare("Laplace integral", symbols | {s, damping}, sides)

@@ -27,6 +27,18 @@ COMPANION = (
 SMOOTHED = sp.Symbol("H_smoothed", real=True)
 """H of the smoothed companion."""
 
+ON_CURVE = sp.Symbol("position_on_switching_curve", real=True)
+"""The position of the switching curve at the rate of a state."""
+
+BEYOND = sp.Symbol("beyond_switching_curve", real=True)
+"""How far the position lies beyond the switching curve."""
+
+SIDE = sp.Symbol("side_of_switching_curve", real=True)
+"""On which side of the switching curve a state lies, or the sign of its arc where it lies on it."""
+
+TRANSITION, FIRST_ARC = sp.Symbol("transition_time", positive=True), sp.Symbol("first_arc_time", positive=True)
+"""Durations of a change of position from rest to rest in least time, and of its first arc."""
+
 
 def switching_of(control: sp.Symbol) -> sp.Symbol:
     """The switching function of a control: what multiplies it in H."""
@@ -114,6 +126,8 @@ def names(problem: Problem) -> dict[str, str]:
     sigma = {u: rf"\sigma_{{{tex}}}" if len(controls) > 1 else r"\sigma" for u, tex in latex.items()}
     weight = {u: rf"w_{{{tex}}}" if len(controls) > 1 else "w" for u, tex in latex.items()}
     found = {UNSWITCHED.name: "H_0", SMOOTHED.name: r"H_\varepsilon"} | {v.symbol: v.latex for v in COMPANION}
+    found |= {ON_CURVE.name: r"x_{\mathrm{c}}", BEYOND.name: r"\Delta", SIDE.name: "s"}
+    found |= {TRANSITION.name: "T", FIRST_ARC.name: "T_1"}
     marks = dict(zip(BRANCHES, ("", "+", "-"), strict=True))
     for u in controls:
         found[switching_of(u).name], found[weight_of(u).name] = sigma[u], weight[u]
