@@ -24,7 +24,7 @@ class Iteration:
     number
         From 0, the starting point.
     objective
-        The cost there.
+        The cost there; NaN where it is not known, as on the way to exact arcs.
     residual
         How far the optimality conditions are from holding, relative to the size of the control.
     """

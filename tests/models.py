@@ -17,10 +17,20 @@ q, w, k = symbols_of(Variable(name, name) for name in "qwk")
 
 def build(folder: Path, problem: Problem, instance_text: str) -> Instance:
     """Derive and generate a problem into a folder, write an instance beside it, and read that."""
-    (folder / f"{problem.name}.py").write_text(module.render(derive(problem), "a test"), encoding="utf-8")
+    (folder / f"{problem.name}.py").write_text(_rendered(problem), encoding="utf-8")
     path = folder / f"case_{problem.name}.toml"
     path.write_text(f'model = "./{problem.name}"\n{instance_text}', encoding="utf-8")
     return instance.load(path)
+
+
+_RENDERED: dict[int, tuple[Problem, str]] = {}
+"""Generated text by the identity of its problem, which is kept so that no other gets it: deriving takes a while."""
+
+
+def _rendered(problem: Problem) -> str:
+    if id(problem) not in _RENDERED:
+        _RENDERED[id(problem)] = problem, module.render(derive(problem), "a test")
+    return _RENDERED[id(problem)][1]
 
 
 def scalar(name: str, rate: Expr, running_cost: Expr, terminal_cost: Expr, control_set: ControlSet) -> Problem:

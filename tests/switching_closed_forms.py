@@ -1,9 +1,28 @@
-"""What is known in closed form about a body on a line with bounded acceleration."""
+"""What is known in closed form about a body on a line with bounded acceleration; its shipped instances, changed."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from satsym import instance
+from satsym.instance import Instance
+
+TIME, FUEL = "double-integrator-time", "double-integrator-fuel"
+
+
+def case(name: str, **changes: Any) -> Instance:
+    """A shipped instance with other numbers."""
+    return replace(instance.load(name), **changes)
+
+
+def starts(count: int) -> list[tuple[float, float]]:
+    """Random initial states."""
+    rows: list[list[float]] = np.random.default_rng(7).uniform(-5.0, 5.0, (1000, 2)).tolist()
+    return [(q, v) for q, v in rows[:count]]
 
 
 @dataclass(frozen=True)

@@ -102,6 +102,14 @@ def test_a_control_that_does_not_minimise_h_fails(returned: Solution) -> None:
     assert not {c.name: c.passed for c in certificate.checks}["stationarity"]
 
 
+@pytest.mark.parametrize("factor", [0.9, 1.0 + 1e-6])
+def test_a_stated_cost_that_is_not_that_of_the_motion_fails(returned: Solution, factor: float) -> None:
+    certificate = certify(replace(returned, objective=factor * returned.objective))
+    assert certificate is not None
+    assert certificate.verdict == "failed"
+    assert [c.name for c in certificate.checks if not c.passed] == ["cost"]
+
+
 def test_what_did_not_converge_has_no_certificate(returned: Solution) -> None:
     assert certify(replace(returned, status=Status.NOT_CONVERGED)) is None
 

@@ -8,7 +8,7 @@ import sympy as sp
 from scipy.integrate import solve_ivp
 
 from satsym import kernels
-from satsym.symbolic import Derivation, attraction, derive, loader, symbols_of, t
+from satsym.symbolic import Derivation, attraction, library, loader, symbols_of, t
 from satsym.symbolic.algebra import definitions_of
 from satsym.symbolic.analysis import analyse
 from satsym.symbolic.linear import system_of
@@ -22,7 +22,7 @@ IN_PLANE, OUT_OF_PLANE = [0, 3, 1, 4], [2, 5]
 
 @pytest.fixture(scope="module")
 def hill() -> Derivation:
-    return derive(HILL)
+    return library.derivation("hill")
 
 
 def test_equations_are_those_of_the_textbook(hill: Derivation) -> None:

@@ -17,6 +17,7 @@ from satsym.symbolic import (
     Reduced,
     Scaled,
     derive,
+    library,
     loader,
 )
 
@@ -25,17 +26,17 @@ PROBLEMS = {p.name: p for p in loader.load(loader.find("pitch_wheel"))}
 
 @pytest.fixture(scope="module")
 def wheel() -> Derivation:
-    return derive(PROBLEMS["pitch_wheel"])
+    return library.derivation("pitch_wheel")
 
 
 @pytest.fixture(scope="module")
 def loop() -> Derivation:
-    return derive(PROBLEMS["pitch_classical"])
+    return library.derivation("pitch_classical")
 
 
 @pytest.fixture(scope="module")
 def energy() -> Derivation:
-    return derive(PROBLEMS["pitch_scaled_energy"])
+    return library.derivation("pitch_scaled_energy")
 
 
 def symbols(derivation: Derivation) -> dict[str, sp.Symbol]:

@@ -14,6 +14,7 @@ from satsym import instance
 from satsym.analysis import comparison
 from satsym.cli import main
 from satsym.instance import Instance
+from satsym.report.plots import comparison as plots
 from satsym.solution import Solution
 from satsym.solve import solve
 from satsym.status import BadInput, Status
@@ -166,6 +167,23 @@ def test_compare_prints_a_table_and_draws_a_page(tmp_path: Path, capsys: pytest.
     found = json.loads(capsys.readouterr().out)
     assert [each["instance"] for each in found["instances"]] == names
     assert found["metrics"]["power_energy"]["lapan-classical"] is None  # an impulse takes infinite energy
+
+
+def test_a_law_that_does_not_settle_is_drawn_beside_others(
+    compared: list[comparison.Case], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    slow = replace(compared[0].instance, tf=200.0)
+    cases = [*comparison.compare([slow]), compared[1]]
+    assert math.isnan(cases[0].metrics["transition_time"])
+    monkeypatch.setattr(plots, "_range", lambda *_: None)  # takes long, and is drawn elsewhere
+    page = plots.page(cases)
+    assert page is not None
+    assert any(text.get_text() == " not settled" for axes in page.axes for text in axes.texts)
+    assert page.axes[0].get_xlim()[1] == pytest.approx(plots.SHOWN * 200.0)
+
+
+def test_without_any_answer_nothing_is_drawn(compared: list[comparison.Case], tmp_path: Path) -> None:
+    assert plots.save([replace(compared[1], answered=False)], tmp_path) == []
 
 
 def test_a_solved_manoeuvre_past_the_limit_of_the_wheel_says_so() -> None:

@@ -7,21 +7,27 @@ impulse of the step: the states jump at the beginning.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from satsym.analysis.performance import performance
-from satsym.analysis.signals import Span, totals
+from satsym.analysis.signals import Span, excesses, totals
 from satsym.grid import Grid
 from satsym.instance import Instance
 from satsym.solution import Array, Flight
 from satsym.solve.balances import balances
 from satsym.status import BadInput, Status
 
+if TYPE_CHECKING:
+    from scipy.integrate import OdeSolution
+
 TOLERANCE = 1e-13
 """Of each step of the integration, relative to the size of each state."""
+MOST_STEPS = 10_000
+"""As many times as the fastest motion of the loop may decay to 1/e in the time that is flown."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +64,11 @@ class Loop:
     matrix: Array
     offset: Array
 
+    @property
+    def fastest(self) -> float:
+        """The largest magnitude of the loop's poles."""
+        return float(np.abs(np.linalg.eigvals(self.matrix)).max())
+
     def control(self, z: Array) -> Array:
         """The control at states (with the measured error), shape (n,) or (n, M)."""
         error = self.command - z[self.follows]
@@ -79,11 +90,11 @@ class Loop:
         size = len(self.offset)
         whole = np.zeros((size + 1, size + 1))
         whole[:size, :size], whole[:size, size] = self.matrix, self.offset
-        here = np.append(self.start(initial), 1.0)
-        step, found = expm(whole * (times[-1] - times[0]) / (len(times) - 1)), np.empty((len(times), size + 1))
-        for k in range(len(times)):
-            found[k], here = here, step @ here
-        return found.T[:size]
+        later = expm(whole * (times[-1] - times[0]) / (len(times) - 1))
+        found = np.append(self.start(initial), 1.0)[:, None]
+        while found.shape[1] < len(times):  # as many again, so much later
+            found, later = np.hstack([found, later @ found]), later @ later
+        return found[:size, : len(times)]
 
 
 def loop(instance: Instance) -> Loop:
@@ -139,11 +150,16 @@ def simulate(instance: Instance) -> Flight:
     Raises
     ------
     BadInput
-        If there is no such law, or no final time.
+        If there is no such law, no final time, or one that is very long for so fast a loop.
     """
     if instance.tf is None:
         raise BadInput(f"{instance.name}: time.tf: a simulation needs a number, not a free final time")
     found, spec = loop(instance), instance.model.spec
+    if found.fastest * (instance.tf - instance.t0) > MOST_STEPS:
+        raise BadInput(
+            f"{instance.name}: [classical]: the loop's shortest time constant, {1.0 / found.fastest:.3g}, is too short "
+            f"to be followed until {instance.tf:.6g}; give an earlier time.tf, or a slower law or differentiator"
+        )
     n = len(spec.states)
     times = Grid.uniform(instance.t0, instance.tf, instance.solver.steps).nodes
     initial = np.array(instance.initial)
@@ -152,8 +168,8 @@ def simulate(instance: Instance) -> Flight:
     x, u = z[:n], found.control(z)[None]
     metrics: dict[str, float] = {"gain_rate": found.gains[0], "gain_state": found.gains[1]}
     if status is Status.CONVERGED:
-        span = Span(times, lambda t: dense(t)[:n], lambda t: found.control(dense(t))[None])
-        metrics |= performance(times, span.x, found.follows, float(initial[found.follows]), found.command)
+        span = Span(np.union1d(times, dense.ts), lambda t: dense(t)[:n], lambda t: found.control(dense(t))[None])
+        metrics |= performance(span.times, span.x, found.follows, float(initial[found.follows]), found.command)
         metrics |= totals(instance, [span], found.impulse)
     return Flight(
         instance=instance,
@@ -198,8 +214,8 @@ def _linear(
     return {"matrix": matrix, "offset": offset}
 
 
-def _flown(instance: Instance, found: Loop, times: Array, start: Array) -> tuple[Array, Callable[[Array], Array]]:
-    """The motion at the nodes, and between them."""
+def _flown(instance: Instance, found: Loop, times: Array, start: Array) -> tuple[Array, OdeSolution]:
+    """The motion at the nodes, and between them, with the steps that were taken."""
     from scipy.integrate import solve_ivp
 
     n, f, p = len(instance.model.spec.states), instance.model.dynamics, instance.parameters
@@ -211,8 +227,9 @@ def _flown(instance: Instance, found: Loop, times: Array, start: Array) -> tuple
             return change
         return np.append(change, (found.command - z[found.follows] - z[-1]) / found.differentiator)
 
-    sizes = np.maximum(np.abs(start), abs(found.command) * np.maximum(np.abs(found.matrix).max(axis=1), 1e-300))
-    step = (times[-1] - times[0]) / (len(times) - 1)
+    largest = max(abs(found.command), abs(start[found.follows]))
+    sizes = np.maximum(np.abs(start), largest * np.abs(found.matrix).max(axis=1))
+    sizes[sizes == 0.0] = 1.0
     with np.errstate(all="ignore"):
         run = solve_ivp(
             rates,
@@ -223,7 +240,7 @@ def _flown(instance: Instance, found: Loop, times: Array, start: Array) -> tuple
             dense_output=True,
             rtol=TOLERANCE,
             atol=TOLERANCE * sizes,
-            max_step=step,
+            max_step=1.0 / found.fastest,  # so that what lies between the steps is as accurate
         )
     z = np.full((len(start), len(times)), np.nan)
     z[:, : run.y.shape[1]] = run.y
@@ -233,6 +250,8 @@ def _flown(instance: Instance, found: Loop, times: Array, start: Array) -> tuple
 def _message(instance: Instance, status: Status, metrics: dict[str, float]) -> str:
     if status is not Status.CONVERGED:
         return f"the motion is not finite: {status.advice}"
-    from satsym.analysis.signals import excesses
-
-    return excesses(instance, metrics) or "followed by small steps of order eight"
+    law = instance.classical
+    assert law is not None
+    unsettled = math.isnan(metrics.get("settling_time", 0.0))
+    said = [excesses(instance, metrics), f"{law.follows} has not settled by the final time" if unsettled else ""]
+    return "; ".join(filter(None, said)) or "followed by small steps of order eight"

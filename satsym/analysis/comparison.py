@@ -98,7 +98,7 @@ def _flown(instance: Instance) -> Case:
     flight = classical.simulate(instance)
     metrics = flight.metrics
     if flight.status.answered:
-        metrics = {"transition_time": metrics["settling_time"]} | metrics
+        metrics = {"transition_time": metrics.get("settling_time", math.nan)} | metrics
     answered, none = flight.status.answered, ()
     return Case(instance, "classical", answered, None, flight.message, flight.times, flight.x, flight.u, none, metrics)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -33,6 +34,7 @@ class Span:
     u: Callable[[Array], Array]
 
 
+@np.errstate(over="ignore", invalid="ignore")  # numbers out of range are reported as such
 def totals(instance: Instance, spans: Sequence[Span], impulse: float = 0.0) -> dict[str, float]:
     """Numbers that describe a motion.
 
@@ -52,24 +54,30 @@ def totals(instance: Instance, spans: Sequence[Span], impulse: float = 0.0) -> d
         effort and energy are infinite.
     """
     spec = instance.model.spec
+    m, powers = len(spec.controls), [k for k, variable in enumerate(spec.quantities) if variable.unit == "W"]
+
+    def signals(span: Span, times: Array) -> Array:
+        """Controls, states and derived quantities, one below the other."""
+        x, u = span.x(times), span.u(times)
+        return np.concatenate([u, x, _quantities(instance, times, x, u)])
+
+    def integrands(span: Span, times: Array) -> Array:
+        x, u = span.x(times), span.u(times)
+        return np.concatenate([np.abs(u), u**2, _quantities(instance, times, x, u)[powers]])
+
+    spent = np.sum([_integral(span, partial(integrands, span)) for span in spans], axis=0)
+    peaks = np.max([_peaks(span, partial(signals, span)) for span in spans], axis=0)
+    last = signals(spans[-1], spans[-1].times[-1:])[:, 0]
     found: dict[str, float] = {"impulse": impulse}
-    spent = np.sum([_integral(span, partial(_magnitudes, span)) for span in spans], axis=0)
-    effort = np.sum([_integral(span, partial(_squares, span)) for span in spans], axis=0)
-    controls = np.max([_peaks(span, span.u) for span in spans], axis=0)
     for k, name in enumerate(spec.control_names):
-        found[f"{name}_total"] = float(spent[k]) + (abs(impulse) if k == 0 else 0.0)
-        found[f"{name}_peak"] = float(controls[k])
-        found[f"{name}_effort"] = float("inf") if impulse and k == 0 else float(effort[k])
-    groups = ((spec.states, lambda s: s.x), (spec.quantities, lambda s: lambda t: _quantities(instance, s, t)))
-    for variables, signals in groups:
-        peaks = np.max([_peaks(span, signals(span)) for span in spans], axis=0)
-        last = signals(spans[-1])(spans[-1].times[-1:])[:, 0]
-        for variable, peak, value in zip(variables, peaks, last, strict=True):
-            found |= {f"{variable.symbol}_peak": float(peak), f"{variable.symbol}_final": float(value)}
-    for k, variable in enumerate(spec.quantities):
-        if variable.unit == "W":
-            used = sum(_integral(span, partial(_one, instance, span, k))[0] for span in spans)
-            found[f"{variable.symbol}_energy"] = float("inf") if impulse else float(used)
+        at_once = impulse if k == 0 else 0.0
+        found[f"{name}_total"] = float(spent[k]) + abs(at_once)
+        found[f"{name}_peak"] = float(peaks[k])
+        found[f"{name}_effort"] = math.inf if at_once else float(spent[m + k])
+    for k, variable in enumerate((*spec.states, *spec.quantities), m):
+        found |= {f"{variable.symbol}_peak": float(peaks[k]), f"{variable.symbol}_final": float(last[k])}
+    for used, k in zip(spent[2 * m :], powers, strict=True):
+        found[f"{spec.quantities[k].symbol}_energy"] = math.inf if impulse else float(used)
     return found
 
 
@@ -122,24 +130,10 @@ def _controls(times: Array, u: Array) -> Callable[[Array], Array]:
     return at
 
 
-def _quantities(instance: Instance, span: Span, times: Array) -> Array:
+def _quantities(instance: Instance, times: Array, x: Array, u: Array) -> Array:
     if not instance.model.spec.quantities:
         return np.empty((0, len(times)))
-    found: Array = instance.model.quantities_batch(times, span.x(times), span.u(times), instance.parameters)
-    return found
-
-
-def _one(instance: Instance, span: Span, k: int, times: Array) -> Array:
-    return _quantities(instance, span, times)[k : k + 1]
-
-
-def _magnitudes(span: Span, times: Array) -> Array:
-    found: Array = np.abs(span.u(times))
-    return found
-
-
-def _squares(span: Span, times: Array) -> Array:
-    found: Array = span.u(times) ** 2
+    found: Array = instance.model.quantities_batch(times, x, u, instance.parameters)
     return found
 
 

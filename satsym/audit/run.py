@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from satsym.audit.ledger import Ledger, Row
-from satsym.audit.predicates import Question
+from satsym.audit.predicates import Question, Told
 from satsym.status import BadInput
 from satsym.wording import printable
 
@@ -56,7 +56,7 @@ def _outcome(bench: Bench, row: Row) -> Outcome:
     if row.asks is not None:
         table, ledger = row.table, bench.ledger
         inputs = {**ledger.inputs, **table.inputs}
-        document = {key: other.table.printed for key, other in bench.rows.items()}
+        document = Told("row", {key: other.table.printed for key, other in bench.rows.items()})
         found = row.asks(
             Question(row.key, table.kind, table.printed, table.columns, inputs, table.scope, ledger.scopes, document)
         )

@@ -60,7 +60,7 @@ def comparison_text(cases: Sequence[Case], over: Range | None = None) -> str:
     """The metrics side by side, what is to be said of each case, and a range if there is one."""
     names = [case.instance.name for case in cases]
     rows = [
-        (key, *("" if value is None else figure(value, 8) for value in values), _unit(cases, key))
+        (key, *("" if value is None else figure(value, 8) for value in values), unit_of(cases, key))
         for key, values in metrics_of(cases).items()
     ]
     said = [
@@ -95,7 +95,7 @@ def _range(case: Case, over: Range) -> list[str]:
     ]
 
 
-def _unit(cases: Sequence[Case], key: str) -> str:
+def unit_of(cases: Sequence[Case], key: str) -> str:
     """The unit of a metric, after its variable and what it is of it."""
     if key in ("transition_time", "first_reached", "settling_time"):
         return "s" if any(v.unit != "1" for v in cases[0].instance.model.spec.states) else ""

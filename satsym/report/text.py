@@ -94,7 +94,7 @@ def with_files(text: str, saved: Sequence[Path]) -> str:
 
 def progress_line(iteration: Iteration) -> str:
     """One iteration of a solver, for the live line."""
-    return f"iteration {iteration.number}   J {iteration.objective:.8g}   residual {iteration.residual:.1e}"
+    return f"iteration {iteration.number}   J {figure(iteration.objective, 8)}   residual {iteration.residual:.1e}"
 
 
 def _certificate(certificate: Certificate) -> list[str]:

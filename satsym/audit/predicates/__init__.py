@@ -16,7 +16,7 @@ from typing import Any, TypeAlias, TypeVar
 
 from satsym.audit.notation import Scope
 from satsym.status import BadInput
-from satsym.wording import suggestion
+from satsym.wording import shown, suggestion
 
 
 @dataclass(frozen=True)
@@ -54,6 +54,17 @@ class Finding:
     unit: bool = False
     slip: bool = False
     remark: str = ""
+
+
+class Told(dict[str, Any]):
+    """What a document tells, by name; to ask for something else is a mistake of the ledger, told in a line."""
+
+    def __init__(self, what: str, values: Mapping[str, Any]) -> None:
+        super().__init__(values)
+        self.what = what
+
+    def __missing__(self, name: str) -> Any:
+        raise BadInput(f"there is no {self.what} called {shown(name)}; {suggestion(name, self)}")
 
 
 @dataclass(frozen=True)

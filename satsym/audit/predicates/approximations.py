@@ -30,7 +30,7 @@ def nearly(row: Question, address: str, meanings: tuple[str, ...], within: str) 
     gap = float(ratio.xreplace({s: values.get(s.name, 1.0) for s in ratio.free_symbols})) - 1.0
     same = exact.same(*both)
     return Finding(
-        abs(gap) <= float(within),
+        abs(gap) <= exact.share(within),
         f"exactly it is {both[0].factor()}" + ("" if same else f", less by {gap:.2g} of it"),
         {"relative difference": gap},
         sound=same,

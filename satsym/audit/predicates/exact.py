@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, TypeAlias
 
 from satsym.formula import reading
 from satsym.formula.tree import Equality
 from satsym.status import BadInput
+from satsym.wording import shown, suggestion
 
 Expression: TypeAlias = Any
 """An expression of sympy's, which no module of the audit imports by name."""
@@ -19,6 +20,49 @@ def expression(text: str) -> Expression:
 
     found = reading.statement(text)
     return formulas.from_tree(found.rhs if isinstance(found, Equality) else found, formulas.symbol)
+
+
+def number(found: Expression, values: Mapping[str, float]) -> float:
+    """The value of an expression.
+
+    Raises
+    ------
+    BadInput
+        If there is no number for one of its letters.
+    """
+    unknown = sorted(s.name for s in found.free_symbols if s.name not in values)
+    if unknown:
+        raise BadInput(f"no number for {shown(unknown[0])}; {suggestion(unknown[0], values)}")
+    return float(found.xreplace({s: values[s.name] for s in found.free_symbols}))
+
+
+def share(text: str) -> float:
+    """A plain number that an argument is written as.
+
+    Raises
+    ------
+    BadInput
+        If it is none.
+    """
+    try:
+        return float(text)
+    except ValueError:
+        raise BadInput(f"{shown(text)} is no number; write one such as '0.1'") from None
+
+
+def letters(*found: Expression, needed: Sequence[str]) -> dict[str, Expression]:
+    """The letters of expressions, by name.
+
+    Raises
+    ------
+    BadInput
+        If one that is needed stands in none of them.
+    """
+    place = {s.name: s for e in found for s in e.free_symbols}
+    for name in needed:
+        if name not in place:
+            raise BadInput(f"the letter {shown(name)} does not stand there; {suggestion(name, place)}")
+    return place
 
 
 def matrix(rows: Sequence[str | Sequence[str]]) -> list[list[Expression]]:

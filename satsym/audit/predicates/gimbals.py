@@ -99,7 +99,7 @@ def gimbal_term(row: Question, axis: str, term: str) -> Finding:
     printed = exact.expression(str(row.printed))
     worst = 0.0
     for values in _drawn():
-        said = float(printed.xreplace({s: values[s.name] for s in printed.free_symbols}))
+        said = exact.number(printed, values)
         worst = max(worst, abs(said - _coefficient(axis, term, values)))
     return Finding(
         worst < _EQUAL,

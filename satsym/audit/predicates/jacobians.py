@@ -95,7 +95,8 @@ def derivative_is(row: Question, model: str) -> Finding:
     which rrT is the outer product, r the length, and one the identity. Where the formula is the derivative by what is
     left when a dot is taken away, it is a slip.
     """
-    of, by, formula = map(str, row.printed)
+    listed = not isinstance(row.printed, str) and len(row.printed) == 3
+    of, by, formula = map(str, row.printed) if listed else ("",) * 3
     groups = {"r": slice(0, 3), "v": slice(3, 6), "r_dot": slice(3, 6)}
     if of != "v_dot" or by not in groups:
         raise BadInput("derivative_is: print v_dot, then r, r_dot or v, then a formula")

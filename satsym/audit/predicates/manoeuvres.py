@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from satsym.audit import quantities
-from satsym.audit.predicates import Finding, Question, predicate
+from satsym.audit.predicates import Finding, Question, exact, predicate
 from satsym.audit.predicates.pitch_axis import (
     Array,
     Flight,
@@ -125,16 +125,16 @@ def wave_arrives(row: Question, rate: str) -> Finding:
     rate
         Of the satellite when it begins, which a sensor of position does not tell, as a share of its largest later.
     """
-    values = numbers(row)
+    values, begun = numbers(row), exact.share(rate)
     torque = largest_torques(values)["for the printed time"]
     largest = torque * least_time(values, torque) / 2.0 / values["I_y"]
-    flight = switched(values, torque, float(rate) * largest)
+    flight = switched(values, torque, begun * largest)
     angle, end_rate, _ = flight.end
     return Finding(
         abs(angle / values["P_c"] - 1.0) < _SAME and abs(end_rate) < _SAME * largest,
         f"it ends at {angle / values['P_c']:.6g} of the command with {end_rate / largest:.3g} of its largest rate",
         {"angle in the end, rad": angle, "rate in the end, rad/s": end_rate},
-        remark=f"here it began with {float(rate):g} of that rate, and the wave cannot take that away: when to switch "
+        remark=f"here it began with {begun:g} of that rate, and the wave cannot take that away: when to switch "
         "depends on the rate as well",
     )
 
@@ -151,8 +151,8 @@ def never_desaturates(row: Question, torque: str, share: str) -> Finding:
     outside = quantities.in_base_units(torque).value
     held = derivation("pitch_wheel").equation("momenta.angular_momentum").rhs
     slope = next(held.diff(s) for s in held.free_symbols if s.name == "wheel_speed")
-    drift = abs(outside / float(slope.xreplace({s: values[s.name] for s in slope.free_symbols})))
-    hours = float(share) * values["nominal"] / drift / 3600.0 if drift else float("inf")
+    drift = abs(outside / exact.number(slope, values))
+    hours = exact.share(share) * values["nominal"] / drift / 3600.0 if drift else float("inf")
     return Finding(
         hours == float("inf"),
         f"the wheel takes up all that outer torques add to the angular momentum: {torque} alone bring it to its limit "

@@ -43,7 +43,7 @@ def _hamiltonian(problem: str) -> Callable[..., float]:
 
 
 def _numbers(found: exact.Expression, **values: float) -> float:
-    return float(found.xreplace({s: values[s.name] for s in found.free_symbols}))
+    return exact.number(found, values)
 
 
 @predicate
@@ -81,7 +81,7 @@ def costate_solves(row: Question, rate: str, solution: str) -> Finding:
         Rows with the rate of P2, in P1 and U, and with P2 itself, in tau, C1, C2 and U.
     """
     wanted, found = (exact.expression(str(row.document[key])) for key in (rate, solution))
-    place = {s.name: s for s in found.free_symbols | wanted.free_symbols}
+    place = exact.letters(found, wanted, needed=("tau", "P1", "C1"))
     still = found.diff(place["tau"]) - wanted.xreplace({place["P1"]: place["C1"]})
     moving = found.diff(place["U"]) if "U" in place else 0 * found
     return Finding(
@@ -220,7 +220,7 @@ def nonlinear_switches_not(row: Question, hamiltonian: str) -> Finding:
         inside += 0 < int(np.argmax(values)) < len(_CONTROLS) - 1
         convex_inside += 0 < int(np.argmax(values + 2.0 * _CONTROLS**2)) < len(_CONTROLS) - 1
     found = exact.expression(str(row.document[hamiltonian]))
-    place = next(s for s in found.free_symbols if s.name == "U")
+    place = exact.letters(found, needed=("U",))["U"]
     bend = found.diff(place, 2)
     turned = _numbers(bend, C_p=0.5, tau=4.0)
     return Finding(
@@ -238,7 +238,7 @@ def nonlinear_switches_not(row: Question, hamiltonian: str) -> Finding:
 def setting_to_zero_maximises(row: Question, hamiltonian: str) -> Finding:
     """Whether dH/dU = 0 gives the largest of a printed H at all times."""
     found = exact.expression(str(row.document[hamiltonian]))
-    place = next(s for s in found.free_symbols if s.name == "U")
+    place = exact.letters(found, needed=("U",))["U"]
     bend = found.diff(place, 2)
     signs = {tau: _numbers(bend, C_p=0.5, tau=tau) for tau in (0.0, 1.0, 2.0, 3.0)}
     return Finding(

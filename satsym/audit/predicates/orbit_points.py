@@ -29,6 +29,8 @@ _SAME = 1e-9
 
 def _orbit(name: str) -> tuple[Instance, Elements]:
     case = instance.load(name)
+    if not case.model.spec.keplerian:
+        raise BadInput(f"{shown(name)} is no motion about a centre; name an instance such as itb-earth")
     state = case.model.inertial_state(case.t0, case.initial, case.parameters)
     return case, elements(state[:3], state[3:6], state[6])
 
@@ -47,8 +49,8 @@ def has_equilibrium(model: str) -> Finding:
 
     pull = derivation(model).equation("no_equilibrium.acceleration").rhs
     return Finding(
-        not pull.is_positive,
-        f"the acceleration is {pull} at every distance, and never zero",
+        None if pull.is_positive is None else not pull.is_positive,
+        f"the acceleration is {pull} at every distance" + (", and never zero" if pull.is_positive else ""),
         {"acceleration": str(pull)},
         f"satsym derive {model}",
         remark="so no point of an orbit is an equilibrium, and what is said of equilibria does not apply to it",

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from satsym import kernels
 from satsym.audit import quantities
-from satsym.audit.predicates import Question
+from satsym.audit.predicates import Question, Told, exact
 
 Array = NDArray[np.float64]
 Numbers = Mapping[str, float]
@@ -22,6 +22,7 @@ _LONG = 32.0
 """How long the classical law is followed, in units of 1/E."""
 _NODES = 1001
 _MODEL = "pitch_wheel"
+_STATED = "number in [inputs]"
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,8 @@ class Flight:
 
 def numbers(row: Question) -> dict[str, float]:
     """The document's numbers in base units, by the names that derivations have for them."""
-    return {name: quantities.in_base_units(text).value for name, text in row.inputs.items()}
+    stated = {name: quantities.in_base_units(text).value for name, text in row.inputs.items()}
+    return Told(_STATED, stated)
 
 
 def derived(address: str, values: Numbers) -> float:
@@ -50,7 +52,7 @@ def derived(address: str, values: Numbers) -> float:
 
     name, _, where = address.partition(":")
     found = derivation(name).equation(where).rhs
-    return float(found.xreplace({s: values[s.name] for s in found.free_symbols}))
+    return exact.number(found, values)
 
 
 def fly(values: Numbers, pieces: list[tuple[float, Callable[[float, Array], float]]], start: Array) -> Flight:
@@ -94,7 +96,7 @@ def classical(values: Numbers, filtered: float = 0.0) -> Flight:
 
 @cache
 def _classical(items: tuple[tuple[str, float], ...], filtered: float) -> Flight:
-    values = dict(items)
+    values = Told(_STATED, dict(items))
     duration = _LONG / values["E"]
     e, command = values["E"], values["P_c"]
     k1, k2 = (derived(f"pitch_classical:critical_damping.{name}", values) for name in ("K1", "K2"))

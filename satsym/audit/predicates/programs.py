@@ -41,9 +41,13 @@ def printed_program(row: Question, key: str | tuple[str, ...]) -> Program:
     for name in (key,) if isinstance(key, str) else key:
         lines = row.document.get(name)
         if not isinstance(lines, tuple) or not lines:
-            raise BadInput(f"no row {shown(name)} prints a program; {suggestion(name, row.document)}")
+            raise BadInput(f"no row {shown(name)} prints a program; {suggestion(name, _programs(row))}")
         found += map(str, lines)
     return programs.read(found)
+
+
+def _programs(row: Question) -> list[str]:
+    return [key for key, printed in row.document.items() if isinstance(printed, tuple)]
 
 
 def lines_of(row: Question) -> list[str]:

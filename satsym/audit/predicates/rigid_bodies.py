@@ -33,7 +33,7 @@ def mode_rate(row: Question) -> Finding:
         root = complex(-zeta * w, w * np.sqrt(1.0 - zeta**2))
         motion = [(root**k * np.exp(root * time)).real for k in range(3)]
         values = dict(zip(("eta", "eta_dot", "eta_ddot"), motion, strict=True)) | {"zeta": zeta, "w_n": w}
-        worst = max(worst, abs(float(printed.xreplace({s: values[s.name] for s in printed.free_symbols}))))
+        worst = max(worst, abs(exact.number(printed, values)))
     return Finding(worst < _SAME, f"it vanishes but for {worst:.0e}", {"largest value": worst})
 
 
@@ -46,5 +46,5 @@ def transform_of_step(row: Question) -> Finding:
     for s, step in ((0.5, 0.025), (2.0, 1.3)):
         found = quad(lambda t, s=s, step=step: step * np.exp(-s * t), 0.0, np.inf)[0]
         values = {"s": s, "P_c": step}
-        worst = max(worst, abs(found - float(printed.xreplace({x: values[x.name] for x in printed.free_symbols}))))
+        worst = max(worst, abs(found - exact.number(printed, values)))
     return Finding(worst < _SAME, f"the same but for {worst:.0e}", {"largest difference": worst})

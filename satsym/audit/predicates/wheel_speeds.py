@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from satsym.audit import quantities
@@ -65,7 +63,7 @@ def wheel_stays(row: Question, law: str, share: str) -> Finding:
     """Whether the wheel's speed stays within a share of its nominal one."""
     values = numbers(row)
     worst = max(float(np.abs(flight.speed).max()) for flight in _flown(law, values).values())
-    limit = float(share) * values["nominal"]
+    limit = exact.share(share) * values["nominal"]
     return Finding(
         worst <= limit, f"it deviates by up to {worst:.3g} rad/s of {limit:.3g} rad/s", {"largest deviation": worst}
     )
@@ -92,7 +90,7 @@ def settled_by(row: Question, printed: str, band: str) -> Finding:
     values = numbers(row)
     until, step = quantities.in_base_units(printed).value, values["P_c"]
     flight = classical(values)
-    off = np.abs(flight.angle / step - 1.0) > float(band)
+    off = np.abs(flight.angle / step - 1.0) > exact.share(band)
     settled = float(flight.times[np.flatnonzero(off)[-1]])
     first = derived("pitch_classical:extremes.first_reached", values)
     beyond, highest = (derived(f"pitch_classical:extremes.{name}", values) for name in ("overshoot", "highest_at"))
@@ -100,7 +98,7 @@ def settled_by(row: Question, printed: str, band: str) -> Finding:
     return Finding(
         settled <= until,
         f"after {first:.4g} s it passes the command at {rate:.2g} rad/s, is {100.0 * beyond:.3g} % beyond it after "
-        f"{highest:.4g} s, and stays within {100.0 * float(band):g} % from about {settled:.0f} s on",
+        f"{highest:.4g} s, and stays within {100.0 * exact.share(band):g} % from about {settled:.0f} s on",
         {"first at the command, s": first, "overshoot": beyond, "settled, s": settled},
         "satsym simulate lapan-classical",
         remark="what is printed is when the angle first equals the command, not when the manoeuvre is over",
@@ -112,7 +110,7 @@ def largest_torque(row: Question) -> Finding:
     """Whether a printed formula is the largest torque of the classical law, whose differentiator sees a step."""
     values = numbers(row)
     formula = exact.expression(str(row.printed))
-    said = float(formula.xreplace({s: values[s.name] for s in formula.free_symbols}))
+    said = exact.number(formula, values)
     k1 = derived("pitch_classical:critical_damping.K1", values)
     k2 = derived("pitch_classical:critical_damping.K2", values)
     start = {f: (k2 + k1 / f) * values["P_c"] for f in _FILTERS}  # nothing has moved yet
@@ -146,14 +144,14 @@ def is_integral(row: Question, rate: str, speed: str) -> Finding:
         Keys of rows; the impulse is written ``delta`` in the first.
     """
     slope, whole = (exact.expression(str(row.document[key])) for key in (rate, speed))
-    place: dict[str, Any] = {s.name: s for s in slope.free_symbols | whole.free_symbols}
+    place = exact.letters(slope, whole, needed=("delta", "t"))
     smooth, impulse = slope.xreplace({place["delta"]: 0}), slope.diff(place["delta"])
     same_rate = exact.same(whole.diff(place["t"]), smooth)
     first = whole.xreplace({place["t"]: 0 * place["t"]})
     same_start = exact.same(first, impulse)
     values = numbers(row)
-    off = [_value(e, values | {"t": 1.0 / values["E"]}) for e in (whole.diff(place["t"]), smooth)]
-    begun = [_value(e, values) for e in (first, impulse)]
+    off = [exact.number(e, values | {"t": 1.0 / values["E"]}) for e in (whole.diff(place["t"]), smooth)]
+    begun = [exact.number(e, values) for e in (first, impulse)]
     summed = begun[1] + _summed(smooth, values)
     return Finding(
         same_rate and same_start,
@@ -165,13 +163,9 @@ def is_integral(row: Question, rate: str, speed: str) -> Finding:
     )
 
 
-def _value(found: exact.Expression, values: dict[str, float]) -> float:
-    return float(found.xreplace({s: values[s.name] for s in found.free_symbols}))
-
-
 def _summed(found: exact.Expression, values: dict[str, float]) -> float:
     """An integral over time, by quadrature."""
     from scipy.integrate import quad
 
     end = _LONG / values["E"]
-    return float(quad(lambda t: _value(found, values | {"t": t}), 0.0, end, epsabs=1e-12, points=[0.1 * end])[0])
+    return float(quad(lambda t: exact.number(found, values | {"t": t}), 0.0, end, epsabs=1e-12, points=[0.1 * end])[0])

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from satsym.report import files
+from satsym.report.comparison import unit_of
 from satsym.report.plots import display, legend, style
 
 if TYPE_CHECKING:
@@ -37,13 +38,17 @@ def save(cases: Sequence[Case], folder: Path, formats: Sequence[str] = ("png",))
     """
     with style.applied():
         drawn = page(cases)
+        if drawn is None:
+            return []
         content = {f"comparison.{kind}": files.binary(style.rendered(drawn, kind)) for kind in formats}
     return files.write(folder, content)
 
 
-def page(cases: Sequence[Case]) -> Figure:
-    """All of it, for the cases that have answers."""
+def page(cases: Sequence[Case]) -> Figure | None:
+    """All of it, for the cases that have answers; nothing where there are none."""
     answered = [case for case in cases if case.answered]
+    if not answered:
+        return None
     names = _shared(answered)
     law = next((case for case in answered if case.instance.classical and case.instance.classical.damping), None)
     rows = -(-len(names) // 2) + 1 + (law is not None)
@@ -82,7 +87,7 @@ def _shared(cases: Sequence[Case]) -> list[Variable]:
 
 
 def _over_time(axes: Axes, cases: Sequence[Case], variable: Variable) -> None:
-    end = SHOWN * max(case.metrics["transition_time"] for case in cases)
+    end = SHOWN * max(_until(case) for case in cases)
     units = [v.unit for v in (*cases[0].instance.model.spec.states, *cases[0].instance.model.spec.controls)]
     factor, unit = display.time_scale(units, end)
     most = max(float(np.abs(case.signal(variable.symbol)).max()) for case in cases)
@@ -90,14 +95,12 @@ def _over_time(axes: Axes, cases: Sequence[Case], variable: Variable) -> None:
     for k, case in enumerate(cases):
         times = case.times - case.times[0]
         values = case.signal(variable.symbol)
-        times, values = np.append(times, end), np.append(values, values[-1] if case.how == "classical" else np.nan)
         axes.plot(
-            times[times <= end] / factor,
-            values[times <= end] / 10.0**exponent,
+            times / factor,
+            values / 10.0**exponent,
             color=COLOURS[k % 6],
             linestyle=DASHES[k % 6],
             linewidth=1.8,
-            drawstyle="default",
             zorder=3.0 + 0.1 * k,
         )
     limit = max((case.instance.limits.get(variable.symbol, 0.0) for case in cases), default=0.0)
@@ -110,31 +113,39 @@ def _over_time(axes: Axes, cases: Sequence[Case], variable: Variable) -> None:
     sudden = [(case.instance.name, case.metrics.get("impulse", 0.0)) for case in cases]
     if variable in cases[0].instance.model.spec.controls and any(impulse for _, impulse in sudden):
         # an impulse has no height to be drawn
-        said = [f"{name} begins with an impulse of {impulse:.3g}" for name, impulse in sudden if impulse]
+        of = display.unit_text(unit_of(cases, "impulse"))
+        said = [f"{name} begins with an impulse of {impulse:.3g} {of}".rstrip() for name, impulse in sudden if impulse]
         axes.text(0.98, 0.93, "\n".join(said), transform=axes.transAxes, ha="right", va="top", fontsize=8.5)
     axes.set_xlabel(display.labelled("$t$", unit))
     axes.set_ylabel(display.labelled(display.formula(variable.latex, variable.symbol), variable.unit, exponent))
+
+
+def _until(case: Case) -> float:
+    """How long its transition takes, or all of its time where that is not known."""
+    found = case.metrics["transition_time"]
+    return found if np.isfinite(found) else float(case.times[-1] - case.times[0])
 
 
 def _totals(figure: Figure, grid: Any, row: int, cases: Sequence[Case]) -> None:
     from satsym.analysis.performance import SETTLED
 
     control = cases[0].instance.model.spec.controls[0]
-    unit = "" if control.unit == "1" else f"{control.unit}*s"
-    bars = (("transition_time", "transition time", "s"), (f"{control.symbol}_total", "total impulse", unit))
-    for column, (key, title, unit) in enumerate(bars):
-        axes = figure.add_subplot(grid[row, column])
+    bars = (("transition_time", "transition time"), (f"{control.symbol}_total", "total impulse"))
+    for column, (key, title) in enumerate(bars):
+        axes, unit = figure.add_subplot(grid[row, column]), unit_of(cases, key)
         values = [case.metrics[key] for case in cases]
         places = np.arange(len(cases))[::-1]
-        axes.barh(places, values, height=0.62, color=[COLOURS[k % 6] for k in range(len(cases))], zorder=2.5)
+        axes.barh(
+            places, np.nan_to_num(values), height=0.62, color=[COLOURS[k % 6] for k in range(len(cases))], zorder=2.5
+        )
         for place, value, case in zip(places, values, cases, strict=True):
             sudden = abs(case.metrics.get("impulse", 0.0)) if key != "transition_time" else 0.0
-            said = f" {value:.4g}" + (f", of which {sudden:.4g} at once" if sudden else "")
+            said = f" {value:.4g}" + (f", {sudden:.4g} at once" if sudden else "")
             if key == "transition_time" and case.how == "classical":
-                said += f", until within {SETTLED:.0%}"
-            axes.text(value, place, said, va="center", ha="left", fontsize=9.0, color=style.INK)
+                said = f"{said}, until within {SETTLED:.0%}" if np.isfinite(value) else " not settled"
+            axes.text(np.nan_to_num(value), place, said, va="center", ha="left", fontsize=9.0, color=style.INK)
         axes.set_yticks([])
-        axes.set_xlim(0.0, 1.6 * max(values))
+        axes.set_xlim(0.0, 1.6 * np.nanmax(values, initial=0.0) or 1.0)
         axes.grid(axis="y", visible=False)
         axes.set_title(title)
         axes.set_xlabel(display.labelled("", unit) if unit else "")

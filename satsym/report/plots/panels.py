@@ -34,16 +34,17 @@ def small_multiples(
 ) -> None:
     """Draw quantities, each in its colour, in rows over a common time; a last one that is alone fills its row."""
     rows = -(-len(quantities) // columns)
+    wide_end = columns > 1 and len(quantities) % columns == 1
     grid = part.add_gridspec(rows, columns)
     for i, (quantity, colour) in enumerate(quantities):
         row, column = divmod(i, columns)
         alone = i == len(quantities) - 1 and column == 0
         axes = part.add_subplot(grid[row, :] if alone else grid[row, column])
         against_time(axes, scene, quantity, colour, title)
-        if row < rows - 1:
-            axes.tick_params(labelbottom=False)
-        else:
+        if row == rows - 1:
             axes.set_xlabel(labelled("$t$", scene.time_unit))
+        elif row < rows - 2 or not wide_end:  # the axes below have the same ticks at the same places
+            axes.tick_params(labelbottom=False)
     part.align_ylabels()
 
 

@@ -17,6 +17,10 @@ RESOLVED = 1e-9
 """Smallest singular value, relative to the largest, of a field whose determinant has a sign that can be trusted."""
 
 
+CANCELLED = 1e-4
+"""Share of the products of states and costates below which a cost is what is left of larger terms."""
+
+
 def boundary_residual(solution: Solution, flow: Flow) -> float:
     """Largest residual at the right end of the flow, each relative to the size of what it compares.
 
@@ -55,15 +59,22 @@ def dynamics_defect(solution: Solution, flow: Flow) -> float:
 
     Sizes as :func:`typical` has them. Compared at those nodes of the solver that are stations, and at the ends.
     """
-    here = np.searchsorted(solution.times, flow.times)
-    here = np.clip(here, 0, len(solution.times) - 1)
-    same = np.abs(solution.times[here] - flow.times) <= 1e-12 * max(abs(float(flow.times[-1])), 1e-300)
+    here = np.clip(np.searchsorted(flow.times, solution.times), 1, len(flow.times) - 1)
+    here -= solution.times - flow.times[here - 1] < flow.times[here] - solution.times
+    same = np.abs(flow.times[here] - solution.times) <= 1e-12 * max(abs(float(flow.times[-1])), 1e-300)
     state, costate = typical(solution)
     parts = [
-        (np.abs(mine[:, same] - theirs[:, here[same]]).max(axis=1) / size).max()
+        (np.abs(mine[:, here[same]] - theirs[:, same]).max(axis=1) / size).max()
         for mine, theirs, size in ((flow.x, solution.x, state), (flow.lam, solution.lam, costate))
     ]
     return float(max(parts))
+
+
+def off_cost(solution: Solution, flow: Flow) -> float:
+    """Difference of the stated cost from that along the flow, relative to it; what cancels counts as a share of H."""
+    state, costate = typical(solution)
+    size = max(abs(flow.cost), CANCELLED * float(state @ costate), 1e-300)
+    return float(abs(flow.cost - solution.objective) / size)
 
 
 def stationarity(solution: Solution) -> float:

@@ -37,12 +37,15 @@ class Flow:
         States and costates there, shapes (n, K).
     field
         Their derivatives by the initial costates, shape (K, 2n, n).
+    cost
+        Of the whole motion, the terminal cost included.
     """
 
     times: Array
     x: Array
     lam: Array
     field: Array
+    cost: float
 
 
 def flow(solution: Solution) -> Flow | None:
@@ -58,12 +61,14 @@ def flow(solution: Solution) -> Flow | None:
     def rates(t: float, y: Array) -> Array:
         x, lam = tuple(y[:n].tolist()), tuple(y[n : 2 * n].tolist())
         slopes = np.array(model.canonical_jacobian(t, x, lam, p, bounds)).reshape(2 * n, 2 * n)
-        neighbours = slopes @ y[2 * n :].reshape(2 * n, n)
-        return np.concatenate([model.canonical(t, x, lam, p, bounds), neighbours.ravel()])
+        neighbours = slopes @ y[2 * n : -1].reshape(2 * n, n)
+        cost = model.running_cost(t, x, model.control_law(t, x, lam, p, bounds), p)
+        return np.concatenate([model.canonical(t, x, lam, p, bounds), neighbours.ravel(), [cost]])
 
-    values = np.concatenate([instance.initial, solution.lam[:, 0], by_costates.ravel()])
+    values = np.concatenate([instance.initial, solution.lam[:, 0], by_costates.ravel(), [0.0]])
     # The field may grow without bound; what matters is its direction, so its own size is what errors are held to.
-    scale = np.concatenate([sizes, np.full(2 * n * n, 1e-3) * np.outer(sizes, 1.0 / sizes[n:]).ravel()])
+    fields = np.full(2 * n * n, 1e-3) * np.outer(sizes, 1.0 / sizes[n:]).ravel()
+    scale = np.concatenate([sizes, fields, [sizes[:n] @ sizes[n:]]])
     found = [values]
     try:
         for piece in integrate(rates, stations, values, TOLERANCE, scale):
@@ -71,7 +76,9 @@ def flow(solution: Solution) -> Flow | None:
     except (NotFinite, ZeroDivisionError, OverflowError, ValueError):
         return None
     table = np.array(found)
-    return Flow(stations, table[:, :n].T, table[:, n : 2 * n].T, table[:, 2 * n :].reshape(-1, 2 * n, n))
+    x, lam, field = table[:, :n].T, table[:, n : 2 * n].T, table[:, 2 * n : -1].reshape(-1, 2 * n, n)
+    cost = float(table[-1, -1]) + float(model.terminal_cost(end, tuple(x[:, -1].tolist()), p))
+    return Flow(stations, x, lam, field, cost)
 
 
 def typical(solution: Solution) -> tuple[Array, Array]:

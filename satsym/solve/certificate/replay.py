@@ -26,7 +26,6 @@ Array = NDArray[np.floating[Any]]
 
 TOLERANCE = 5e-14
 MOST_SWITCHES = 200
-STATIONS = 64
 POLISHED = 6
 """Newton steps to the time of a switch."""
 
@@ -70,13 +69,16 @@ class Replay:
     pieces
         Its arcs.
     times, z, u
-        Stations, those of the solver's nodes among them: shapes (K,), (2n, K), (m, K).
+        The solver's nodes, and the ends of the arcs: shapes (K,), (2n, K), (m, K).
+    cost
+        Of the motion, the terminal cost included.
     """
 
     pieces: list[Piece]
     times: Array
     z: Array
     u: Array
+    cost: float
 
     def switching_times(self, control: int) -> list[float]:
         """Of one control."""
@@ -93,20 +95,21 @@ def replay(solution: Solution) -> Replay | None:
     settled = [all(k != SINGULAR for *_, k in stated[i]) and undecided(solution, i) for i in range(len(stated))]
     levels = _first_levels(instance, stated, settled, z, t, end)
     stations = np.unique(solution.times)
-    stations = stations[:: max(1, len(stations) // STATIONS)]
     pieces: list[Piece] = []
     rows: list[tuple[Array, Array, Array]] = []
+    cost = 0.0
     try:
         while len(pieces) <= MOST_SWITCHES:
             field = Field(instance, levels)
             piece, levels = _piece(stated, settled, field, t, end, z, sizes)
             pieces.append(piece)
-            inside = stations[(stations > t) & (stations < piece.end)]
-            rows.append(_stations(piece, inside, sizes))
-            t, z = piece.end, piece.after
+            row, added = _stations(piece, stations, sizes)
+            rows.append(row)
+            t, z, cost = piece.end, piece.after, cost + added
             if piece.switched is None:
                 times, values, controls = (np.concatenate(part, axis=-1) for part in zip(*rows, strict=True))
-                return Replay(pieces, times, values, controls)
+                cost += float(instance.model.terminal_cost(t, z[: len(instance.initial)].tolist(), instance.parameters))
+                return Replay(pieces, times, values, controls, cost)
     except (ArithmeticError, ValueError):
         return None
     return None
@@ -253,24 +256,23 @@ def _integrated(
     return last[:rows], last[rows:].reshape(rows, rows) if transition else np.zeros(0)
 
 
-def _stations(piece: Piece, times: Array, sizes: Array) -> tuple[Array, Array, Array]:
-    """The arc at its ends and at times between."""
+def _stations(piece: Piece, nodes: Array, sizes: Array) -> tuple[tuple[Array, Array, Array], float]:
+    """The arc at its ends and at the nodes between, as SciPy interpolates its steps; and its running cost."""
     from scipy.integrate import solve_ivp
 
-    values = [piece.before]
-    at = piece.start
-    for time in times:
-        found = solve_ivp(
-            lambda t, y: piece.field.rates(t, y.tolist()),
-            (at, float(time)),
-            values[-1],
-            method="DOP853",
-            rtol=TOLERANCE,
-            atol=TOLERANCE * sizes,
-        )
-        values.append(found.y[:, -1])
-        at = float(time)
-    values.append(piece.after)
-    all_times = np.concatenate([[piece.start], times, [piece.end]])
-    z = np.stack(values, axis=1)
-    return all_times, z, piece.field.along(all_times, z)[0]
+    field, rows = piece.field, len(piece.before)
+    times = np.concatenate([[piece.start], nodes[(nodes > piece.start) & (nodes < piece.end)], [piece.end]])
+
+    def rates(t: float, y: Array) -> list[float]:
+        z = y[:rows].tolist()
+        return [*field.rates(t, z), field.model.running_cost(t, z[: field.n], field.control(t, z), field.p)]
+
+    z, cost = np.stack([piece.before, piece.after], axis=1)[:, [0] * (len(times) - 1) + [1]], 0.0
+    if piece.end > piece.start:
+        start, scale = np.append(piece.before, 0.0), np.append(sizes, sizes[: field.n] @ sizes[field.n :])
+        ends = (piece.start, piece.end)
+        found = solve_ivp(rates, ends, start, method="DOP853", t_eval=times, rtol=TOLERANCE, atol=TOLERANCE * scale)
+        if found.status != 0:
+            raise ArithmeticError(found.message)
+        z[:, 1:-1], cost = found.y[:rows, 1:-1], float(found.y[rows, -1])
+    return (times, z, field.along(times, z)[0]), cost

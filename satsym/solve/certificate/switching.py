@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.instance import Instance
 from satsym.solution import Certificate, Check, Solution
 from satsym.solve.certificate import conditions
 from satsym.solve.certificate.convexity import convex
@@ -21,8 +22,9 @@ from satsym.solve.switching.structure import SINGULAR
 
 Array = NDArray[np.floating[Any]]
 
-RESIDUAL, DEFECT, STATIONARY, DRIFT, TIMES = 1e-9, 1e-7, 1e-8, 1e-9, 1e-9
-"""Largest boundary residual, defect, violation of the minimum of H, change of H and of switching times, relative."""
+RESIDUAL, DEFECT, STATIONARY, DRIFT, TIMES, COST = 1e-9, 1e-7, 1e-8, 1e-9, 1e-9, 1e-8
+"""Largest boundary residual, defect, violation of the minimum of H, change of H, of switching times and of the cost,
+relative."""
 
 DEARER = 1e-9
 """Relative margin by which a competitor may seem cheaper: its own error."""
@@ -63,12 +65,13 @@ def certify(solution: Solution) -> Certificate:
 
 def _first_order(solution: Solution, again: Replay) -> list[Check]:
     instance, n = solution.instance, len(solution.instance.initial)
-    flow = Flow(again.times, again.z[:n], again.z[n:], np.zeros(0))
+    flow = Flow(again.times, again.z[:n], again.z[n:], np.zeros(0), again.cost)
     checks = [
         Check("boundary residual", conditions.boundary_residual(solution, flow), RESIDUAL),
         Check("dynamics defect", conditions.dynamics_defect(solution, flow), DEFECT),
         Check("switching times", _moved(solution, again), TIMES),
         Check("stationarity", _excess(solution), STATIONARY),
+        Check("cost", conditions.off_cost(solution, flow), COST),
         Check("outside the domain", float(not instance.model.in_domain(again.z[:n])), 0.0),
     ]
     if any(piece.field.singular is not None for piece in again.pieces):
@@ -124,9 +127,13 @@ def _excess(solution: Solution) -> float:
     least = np.min([sigma * v + weight * np.abs(v) for v in np.broadcast_arrays(low, high, rest, u)[:3]], axis=0)
     outside = np.maximum(np.maximum(low - u, u - high), 0.0).max(initial=0.0)
     excess = (sigma * u + weight * np.abs(u) - least).max(initial=0.0)
-    rates = model.dynamics_batch(solution.times, solution.x, u, p)
-    terms = float(np.abs(solution.lam * rates).sum(axis=0).max())
-    return float(excess / max(terms, 1e-300) + outside)
+    return float(excess / max(_terms(instance, solution.times, solution.x, solution.lam, u), 1e-300) + outside)
+
+
+def _terms(instance: Instance, t: Array, x: Array, lam: Array, u: Array) -> float:
+    """The largest sum of the terms that H consists of beside the running cost."""
+    rates = instance.model.dynamics_batch(t, x, u, instance.parameters)
+    return float(np.abs(lam * rates).sum(axis=0).max())
 
 
 def _off_singular(again: Replay) -> float:
@@ -148,8 +155,7 @@ def _drift(solution: Solution, again: Replay) -> float:
     instance, n = solution.instance, len(solution.instance.initial)
     x, lam = again.z[:n], again.z[n:]
     h = np.asarray(instance.model.hamiltonian_batch(again.times, x, again.u, lam, instance.parameters))
-    rates = instance.model.dynamics_batch(again.times, x, again.u, instance.parameters)
-    terms = float(np.abs(lam * rates).sum(axis=0).max())
+    terms = _terms(instance, again.times, x, lam, again.u)
     return float(np.abs(h - h[0]).max() / max(terms, float(np.abs(h).max()), 1e-300))
 
 

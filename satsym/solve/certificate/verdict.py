@@ -14,8 +14,8 @@ from satsym.solve.certificate.flow import Flow, flow
 from satsym.solve.certificate.neighbours import neighbours
 from satsym.solve.collocation.scaling import final_argument
 
-RESIDUAL, DEFECT, STATIONARY, DRIFT = 1e-9, 1e-7, 1e-8, 1e-9
-"""Largest boundary residual, defect, violation of stationarity and change of H."""
+RESIDUAL, DEFECT, STATIONARY, DRIFT, COST = 1e-9, 1e-7, 1e-8, 1e-9, 1e-8
+"""Largest boundary residual, defect, violation of stationarity, change of H and error of the stated cost."""
 
 DEARER = 1e-9
 """Relative margin by which a competitor may seem cheaper: its own error."""
@@ -65,6 +65,7 @@ def _first_order(solution: Solution, recomputed: Flow) -> list[Check]:
         Check("boundary residual", conditions.boundary_residual(solution, recomputed), RESIDUAL),
         Check("dynamics defect", conditions.dynamics_defect(solution, recomputed), DEFECT),
         Check("stationarity", conditions.stationarity(solution), STATIONARY),
+        Check("cost", conditions.off_cost(solution, recomputed), COST),
         Check("outside the domain", float(not model.in_domain(recomputed.x)), 0.0),
     ]
     drift = conditions.hamiltonian_drift(solution, recomputed)

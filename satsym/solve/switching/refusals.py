@@ -14,7 +14,8 @@ def refuse(instance: Instance) -> None:
     Raises
     ------
     BadInput
-        If a bound is missing, if nothing costs anything, or if the motion starts where it is to end.
+        If a bound is missing, if no control is left to choose, if nothing costs anything, or if the motion starts
+        where it is to end.
     """
     if instance.solver.free_angles:
         raise BadInput(
@@ -28,6 +29,11 @@ def refuse(instance: Instance) -> None:
                 f"{instance.name}: [control] {name}: this control enters without a square, so it needs both bounds; "
                 f"write {name} = [lower, upper]"
             )
+    if instance.lower == instance.upper:
+        raise BadInput(
+            f"{instance.name}: [control]: no control has any room between its bounds, so there is nothing to choose; "
+            "widen one of them"
+        )
     if instance.tf is not None and _free_of_charge(instance):
         raise BadInput(
             f'{instance.name}: [time] tf: with a given final time no control costs more than another; write tf = "free"'

@@ -58,8 +58,6 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     history: list[Iteration] = []
 
     def watch(objective: float, residual: float) -> None:
-        if np.isnan(objective) and history:  # not known on the way to exact arcs: the last that was
-            objective = history[-1].objective
         history.append(Iteration(len(history), objective, residual))
         if progress:
             progress(history[-1])
