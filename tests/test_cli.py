@@ -255,7 +255,8 @@ def test_options_replace_those_of_the_instance(run: Run, case: Path, monkeypatch
 
 
 def test_no_answer_is_4_and_prints_the_object_all_the_same(run: Run, case: Path, tmp_path: Path) -> None:
-    case.write_text(INSTANCE.replace("r = 1.1", "r = 1e-3"), encoding="utf-8")
+    hopeless = INSTANCE.replace("r = 1.1", "r = 1e-3") + "[solver]\nmax_seconds = 0.5\n"
+    case.write_text(hopeless, encoding="utf-8")
     code, out, err = run("solve", case, "--json", "--out", tmp_path / "out")
     found = json.loads(out)
     assert (code, err) == (4, "")

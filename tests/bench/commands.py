@@ -34,8 +34,8 @@ class Trial:
     processor: float
 
 
-def commands(rounds: int = 3) -> Table:
-    """Wall time of the command line, interpreter and all."""
+def commands(rounds: int = 3, long: bool = True) -> Table:
+    """Wall time of the command line, interpreter and all; with or without what takes many seconds."""
     satsym = Path(sysconfig.get_path("scripts")) / "satsym"
     title = "3. The command line, wall time; the fastest run counts, for other programs can only add to it"
     if not satsym.exists():
@@ -48,6 +48,8 @@ def commands(rounds: int = 3) -> Table:
             "satsym derive --out FOLDER": Command((str(satsym), "derive", "--out", folder), 10.0),
             "python -c pass (for comparison)": Command((sys.executable, "-c", "pass"), None),
         }
+        if not long:
+            listed = {name: command for name, command in listed.items() if "derive" not in name}
         tried = {name: _tried(command.arguments) for name, command in listed.items()}
         actions = {name: _action(command.arguments) for name, command in listed.items() if not tried[name].failure}
         samples = interleaved(actions, rounds, least=0.0, clock=perf_counter)
