@@ -2,7 +2,8 @@
 
 `make bench-returns` takes all 10,000 easy and 2,000 hard ones in two processes, which is a matter of hours;
 `python tests/bench/returns.py hard 100` the first hundred hard ones. Easy ones are solved and integrated again, hard
-ones certified as well; `eight` compares hard ones with the best that eight other starts lead to.
+ones certified as well; `eight` compares hard ones with the best that eight other starts lead to. What is done is
+kept below results/returns/: the same command goes on where it was broken off.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
 
@@ -20,6 +21,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import numpy as np
+import records
 from samples import EASY, HARD
 
 from satsym.instance import Instance
@@ -36,6 +38,7 @@ from satsym.solve.iteration import Limits
 POPULATIONS = {"easy": EASY, "hard": HARD, "eight": HARD}
 WORKERS = min(2, os.cpu_count() or 1)
 STEPS, SECONDS = 100, 30.0
+CHUNK = 5
 DEARER = 1e-4
 """Relative difference of costs that counts: those of the eight starts are as rough as their meshes."""
 
@@ -104,16 +107,28 @@ def _bent(line: Callable[[np.ndarray], np.ndarray], waves: int, bend: float, tau
     return states
 
 
+def recorded(path: Path) -> list[Outcome]:
+    """The outcomes of cases looked at before."""
+    return [
+        Outcome(int(row["number"]), row["fault"], *(float(row[name]) for name in ("residual", "seconds", "ratio")))
+        for row in records.read(path)
+    ]
+
+
 def run(what: str, count: int) -> None:
     """Solve the first cases in two processes, and print what came of it."""
-    outcomes: list[Outcome] = []
+    path = records.place(what)
+    outcomes = [outcome for outcome in recorded(path) if outcome.number < count]
+    left = sorted(set(range(count)) - {outcome.number for outcome in outcomes})
     with ProcessPoolExecutor(WORKERS) as pool:
-        for outcome in pool.map(partial(solved, what), range(count), chunksize=10):
+        for outcome in pool.map(partial(solved, what), left, chunksize=CHUNK):
             outcomes.append(outcome)
-            if outcome.fault:
-                print(f"{what} {outcome.number}: {outcome.fault}", flush=True)
+            records.add(path, asdict(outcome))
             if sys.stderr.isatty():
                 print(f"\r{what}: {len(outcomes)} of {count}", end="", file=sys.stderr, flush=True)
+    for outcome in outcomes:
+        if outcome.fault:
+            print(f"{what} {outcome.number}: {outcome.fault}")
     seconds = np.array([o.seconds for o in outcomes])
     residuals = np.array([o.residual for o in outcomes])
     faultless = sum(not o.fault for o in outcomes)
