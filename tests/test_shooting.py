@@ -16,18 +16,15 @@ from satsym import instance
 from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solve import shooting, solve, two_point
-from satsym.solve.certificate import certify
 from satsym.solve.certificate.conditions import boundary_residual
 from satsym.solve.certificate.flow import flow
 from satsym.solve.collocation import paths
 from satsym.solve.collocation.scaling import two_point as scaled
 from satsym.solve.iteration import Limits
-from satsym.solve.shooting import Repeated
 from satsym.solve.shooting.arcs import Arcs
 from satsym.solve.shooting.newton import doubled, newton
 from satsym.solve.shooting.solving import from_nothing
-from satsym.status import BadInput, Status
-from tests.cases import with_parameters
+from satsym.status import Status
 from tests.samples import EASY, HARD, Population
 from tests.test_floors import run_satsym
 from tests.test_two_point import missed
@@ -208,87 +205,9 @@ def test_no_compiler_is_started_for_one_solve(tmp_path: Path):
     assert not loaded & {"numba", "sympy", "matplotlib"}
 
 
-@pytest.fixture(scope="module")
-def repeated() -> Repeated:
-    pytest.importorskip("numba")
-    return Repeated(instance.load("return-to-orbit"))
-
-
-@pytest.fixture(scope="module")
-def bounded() -> Repeated:
-    pytest.importorskip("numba")
-    return Repeated(instance.load("return-to-orbit-005"))
-
-
-def matches(answer: Any, other: Solution) -> None:
-    assert answer.status is Status.CONVERGED
-    assert answer.objective == pytest.approx(other.objective, rel=1e-10)
-    assert answer.lam[:, 0] == pytest.approx(other.lam[:, 0], abs=1e-10 * np.abs(other.lam[:, 0]).max())
-    assert answer.times[-1] == pytest.approx(other.times[-1], rel=1e-11)
-
-
-@pytest.mark.parametrize("cold", [False, True])
-def test_the_same_again_with_other_initial_states(repeated: Repeated, bounded: Repeated, cold: bool):
-    rng = np.random.default_rng(7)
-    for machine, name, size in ((repeated, "return-to-orbit", 0.05), (bounded, "return-to-orbit-005", 0.005)):
-        case = instance.load(name)
-        for _ in range(3):
-            initial = tuple((np.array(case.initial) + size * rng.uniform(-1.0, 1.0, 4)).tolist())
-            answer = machine.solve(initial=initial, cold=cold)
-            assert answer.way == ("straight line" if cold else "last answer")
-            matches(answer, two_point.solve(replace(case, initial=initial)))
-
-
-def test_the_same_again_with_other_parameters(repeated: Repeated):
-    case = with_parameters(instance.load("return-to-orbit"), c2=3.0)
-    matches(repeated.solve(parameters=case.parameters), two_point.solve(case))
-
-
-def test_an_answer_can_be_had_in_full(bounded: Repeated):
-    answer = bounded.solve(initial=(1.101, 0.0, 0.0, 0.901))
-    found = bounded.solution(answer)
-    assert found.objective == pytest.approx(answer.objective, rel=1e-11)
-    assert len(found.switching_times[1]) == 1
-    certificate = certify(found)
-    assert certificate is not None
-    assert certificate.verdict == "certified"
-
-
-def test_a_start_too_far_away_is_a_cold_one(repeated: Repeated):
-    far = (2.2, 0.2, -1.0, 0.25)
-    answer = repeated.solve(initial=far)
-    matches(answer, two_point.solve(replace(instance.load("return-to-orbit"), initial=far)))
-    assert answer.way in ("straight line", "cold start")
-
-
-def test_no_answer_is_none(bounded: Repeated):
-    answer = bounded.solve(initial=(1.3, 0.0, 0.0, 0.9))
-    assert not answer.status.answered
-    assert np.isnan(answer.objective)
-    with pytest.raises(ValueError, match="no answer"):
-        bounded.solution(answer)
-    assert bounded.solve().status is Status.CONVERGED
-
-
-def test_numbers_must_be_as_many_as_the_model_has(repeated: Repeated):
-    with pytest.raises(ValueError, match="initial must hold 4 numbers, not 3"):
-        repeated.solve(initial=(1.0, 0.0, 0.0))
-
-
-def test_turns_are_not_looked_for_again_and_again():
-    with pytest.raises(BadInput, match="free_angles"):
-        Repeated(options(instance.load("return-to-orbit"), free_angles=("theta",)))
-
-
-def test_all_of_it_works_without_a_compiler():
-    machine = Repeated(instance.load("return-to-orbit-006"), compiled=False)
-    answer = machine.solve(initial=(1.09, 0.01, 0.0, 0.9))
-    assert answer.way == "cold start"
-    matches(answer, two_point.solve(replace(instance.load("return-to-orbit-006"), initial=(1.09, 0.01, 0.0, 0.9))))
-
-
-def test_compiled_arcs_are_the_same_arcs(repeated: Repeated):
+def test_compiled_arcs_are_the_same_arcs():
     """On a kink the law has two derivatives, and which of them a first stage takes is a matter of rounding."""
+    pytest.importorskip("numba")
     cases = [straight("return-to-orbit", 5, 3, compiled) for compiled in (False, True)]
     for (plain, fast), close in ((cases, 1e-12), ([held(compiled) for compiled in (False, True)], 1e-4)):
         (ends, transition), (others, other_transition) = plain.variations(), fast.variations()
@@ -297,8 +216,9 @@ def test_compiled_arcs_are_the_same_arcs(repeated: Repeated):
         assert fast.cost() == pytest.approx(plain.cost(), rel=1e-12)
 
 
-def test_compiled_arcs_need_no_node_where_a_bound_is_met(bounded: Repeated):
+def test_compiled_arcs_need_no_node_where_a_bound_is_met():
     """A step ends at the kink, so the order is kept; the other arcs lose it."""
+    pytest.importorskip("numba")
     solved = held(False)
     whole = {"mesh": solved.mesh[[0, -1]], "nodes": solved.nodes[:, [0, -1]], "steps": 40}
     size = np.abs(solved.nodes).max(axis=1)
@@ -307,22 +227,9 @@ def test_compiled_arcs_need_no_node_where_a_bound_is_met(bounded: Repeated):
     assert off[0].max() > 1e-7
 
 
-def test_an_instance_may_ask_for_compiled_kernels(repeated: Repeated):
-    matches(
-        shot(options(instance.load("return-to-orbit-006"), backend="numba")), shot(instance.load("return-to-orbit-006"))
-    )
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("name", "nudge"), [("return-to-orbit-ball", 0.002), ("ends-4-rendezvous", 0.05), ("return-to-geo", 0.1)]
-)
-def test_other_models_compile_as_well(name: str, nudge: float):
+def test_an_instance_may_ask_for_compiled_kernels():
     pytest.importorskip("numba")
-    case = instance.load(name)
-    machine = Repeated(case)
-    for sign in (1.0, -1.0):
-        initial = (case.initial[0] + sign * nudge, *case.initial[1:])
-        answer = machine.solve(initial=initial)
-        assert answer.way == "last answer"
-        matches(answer, two_point.solve(replace(case, initial=initial)))
+    case = instance.load("return-to-orbit-006")
+    plain, fast = shot(case), shot(options(case, backend="numba"))
+    assert fast.objective == pytest.approx(plain.objective, rel=1e-12)
+    assert fast.lam[:, 0] == pytest.approx(plain.lam[:, 0], abs=1e-11)

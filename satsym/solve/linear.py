@@ -157,8 +157,8 @@ def _linear(problem: TwoPoint) -> bool:
         symbols = [*names, *(f"the costate of {name}" for name in names)]
         raise _refusal(problem.instance, f"how the rate of {symbols[row]} follows {symbols[column]} depends on both")
     extra = rng.standard_normal((2, problem.unknowns))
-    ends = [problem.boundary(place[:, -1], theta) for place, theta in zip(places, extra, strict=True)]
-    if not all(np.allclose(a, b, SAME, SAME) for a, b in zip(ends[0][1:], ends[1][1:], strict=True)):
+    ends = [problem.boundary_slopes(place[:, -1], theta) for place, theta in zip(places, extra, strict=True)]
+    if not all(np.allclose(a, b, SAME, SAME) for a, b in zip(*ends, strict=True)):
         raise _refusal(problem.instance, "its terminal cost is not quadratic, or a terminal constraint is not linear")
     return True
 

@@ -42,7 +42,7 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     """
 
     def method(one: Instance, limits: Limits, report: Report, effort: bool) -> Extremal:
-        return from_cold_start(one, limits, report, effort, _accurate)
+        return from_cold_start(one, limits, report, effort, accurate)
 
     return solved(instance, progress, "collocation", method)
 
@@ -98,7 +98,8 @@ def outside(problem: TwoPoint, path: Path, bounded: Bounded, steps: int, limits:
     return Extremal(problem, path, float("inf"), Status.INFEASIBLE, f"{found.message}; {message}", steps)
 
 
-def _accurate(problem: TwoPoint, start: Start, limits: Limits, report: Report) -> Extremal:
+def accurate(problem: TwoPoint, start: Start, limits: Limits, report: Report) -> Extremal:
+    """From an extremal of low order without bounds to an accurate one within them, by collocation."""
     tolerance = problem.instance.solver.tolerance
     free = problem.widened(float("inf"))
     refined = refine(free, start.found.curve, tolerance, known=start.found.linearised)

@@ -171,7 +171,7 @@ class Point:
     def response(self) -> Step:
         """The change of the extremal by the share of the way: only what is given at the ends changes."""
         there = self.at(self.share + AHEAD)
-        finish, _, _ = there.boundary(self.curve.nodes[:, -1], self.curve.theta)
+        finish = there.boundary(self.curve.nodes[:, -1], self.curve.theta)
         nothing = np.zeros_like(self.residual.ends)
         slope = replace(
             self.residual,

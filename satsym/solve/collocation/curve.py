@@ -73,18 +73,14 @@ class Curve:
         return self.stages.reshape(len(self.stages), -1)
 
     def __call__(self, tau: Array) -> Array:
-        """Values at increasing ``tau`` in [0, 1], shape (2n, M)."""
+        """Values at ``tau`` in [0, 1], shape (2n, M)."""
         tau = np.asarray(tau, dtype=float)
         interval = np.clip(np.searchsorted(self.mesh, tau, side="right") - 1, 0, len(self.mesh) - 2)
         local = 2 * (tau - self.mesh[interval]) / np.diff(self.mesh)[interval] - 1
         known = np.concatenate([self.nodes[:, :-1, None], self.stages], axis=2)
         coefficients = known.transpose(1, 0, 2) @ scheme(self.order).coefficients.T
-        table = legendre.legvander(local, self.order).T
-        values = np.empty((len(self.nodes), len(tau)))
-        first = np.searchsorted(interval, np.arange(len(self.mesh)))
-        for i in np.flatnonzero(np.diff(first)):
-            part = slice(first[i], first[i + 1])
-            values[:, part] = coefficients[i] @ table[:, part]
+        table = legendre.legvander(local, self.order)
+        values: Array = (coefficients[interval] @ table[:, :, None])[..., 0].T
         return values
 
     def on(self, mesh: Array, order: int) -> Curve:

@@ -256,7 +256,7 @@ class _Search:
         if start.way == "none":
             return None
         free, curve = self.problem(duration), start.found.curve
-        residual, _, _ = free.boundary(curve.nodes[:, -1], np.append(curve.theta, duration))
+        residual = free.boundary(curve.nodes[:, -1], np.append(curve.theta, duration))
         idle = curve.flat.copy()
         idle[fixed.states :] = 0.0
         tau = stage_times(curve.mesh, curve.order).ravel()

@@ -33,17 +33,14 @@ class Linearised:
         self,
         system: System,
         blocks: Blocks,
+        matching: Matching,
         response: Array,
-        transition: Array,
+        extra: Array,
         residual: Residual,
         local: Array,
-        extra: Array,
     ) -> None:
-        self.system, self._blocks, self._response = system, blocks, response
-        self._residual, self._local_step = residual, local
-        self._extra = extra.reshape(system.intervals, -1, system.order, system.rows)
-        by_theta = (system.scheme.end @ self._extra).swapaxes(1, 2)
-        self.matching = Matching(transition, by_theta, residual.finish_by_end, residual.finish_by_theta)
+        self.system, self.matching, self._blocks, self._response = system, matching, blocks, response
+        self._extra, self._residual, self._local_step = extra, residual, local
 
     def step(self, residual: Residual) -> Step:
         """The Newton correction for a residual."""

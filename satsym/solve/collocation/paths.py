@@ -41,7 +41,11 @@ def coasting_to_the_end(problem: TwoPoint) -> States | None:
 def curve(problem: TwoPoint, path: States) -> Curve:
     """A path as a curve without costates, on a mesh that resolves it."""
     tau = np.linspace(0.0, 1.0, POINTS)
-    mesh = meshes.along(problem, tau, path(tau), problem.theta)
+    return on(problem, path, meshes.along(problem, tau, path(tau), problem.theta))
+
+
+def on(problem: TwoPoint, path: States, mesh: Array) -> Curve:
+    """A path as a curve without costates on a mesh, shape (N+1,)."""
     n, at = problem.states, stage_times(mesh, STAGES)
     nodes, stages = np.zeros((2 * n, len(mesh))), np.zeros((2 * n, *at.shape))
     nodes[:n], stages[:n] = path(mesh), path(at.ravel()).reshape(n, *at.shape)

@@ -175,8 +175,8 @@ class TwoPoint:
         law: Array = self.instance.model.control_law_batch(*self._arguments(tau, z, theta), bounds)
         return law
 
-    def boundary(self, end: Array, theta: Array) -> tuple[Array, Array, Array]:
-        """Residuals at the right end with their derivatives, scaled.
+    def boundary(self, end: Array, theta: Array) -> Array:
+        """Residuals at the right end, scaled, shape (n + e,).
 
         Parameters
         ----------
@@ -184,25 +184,26 @@ class TwoPoint:
             z at the end, shape (2n,).
         theta
             Extra unknowns, shape (e,).
-
-        Returns
-        -------
-        residual, by_end, by_theta : arrays of shapes (n + e,), (n + e, 2n), (n + e, e)
         """
+        residual = np.array(self.instance.model.boundary(*self._at_the_end(end, theta)))
+        return residual[: len(self._row_scale)] / self._row_scale
+
+    def boundary_slopes(self, end: Array, theta: Array) -> tuple[Array, Array]:
+        """Derivatives of the former by ``end`` and ``theta``, shapes (n + e, 2n) and (n + e, e)."""
         n, e = self.states, self.unknowns
+        slopes = np.array(self.instance.model.boundary_jacobian(*self._at_the_end(end, theta)))
+        # The kernel has a row and a column for the duration, free or not.
+        shown = slopes.reshape(n + e + 1 - self.free_time, -1)[: n + e, : 2 * n + e]
+        scaled = shown * self._slope_scale[:, : 2 * n + e]
+        return scaled[:, : 2 * n], scaled[:, 2 * n :]
+
+    def _at_the_end(self, end: Array, theta: Array) -> tuple[Any, ...]:
+        """Arguments of the boundary functions."""
+        n, multipliers = self.states, self.unknowns - self.free_time
+        physical = (end * self.scale.both[:, 0]).tolist()
         tf = self.instance.t0 + self.elapsed(theta)
-        physical = end * self.scale.both[:, 0]
-        q = e - self.free_time
-        x, lam, nu = tuple(physical[:n].tolist()), tuple(physical[n:].tolist()), tuple(theta[:q] * self.scale.cost)
-        arguments = (tf, x, lam, nu, self.instance.parameters, self.bounds, self.final)
-        rows = slice(0, n + e)
-        residual = np.array(self.instance.model.boundary(*arguments))[rows]
-        slopes = np.array(self.instance.model.boundary_jacobian(*arguments)).reshape(
-            len(residual) + 1 - self.free_time, -1
-        )
-        scaled = slopes[rows] * self._slope_scale
-        by_theta = scaled[:, 2 * n : 2 * n + e] if self.free_time else scaled[:, 2 * n : 2 * n + q]
-        return residual / self._row_scale, scaled[:, : 2 * n], by_theta
+        nu = tuple((theta[:multipliers] * self.scale.cost).tolist())
+        return tf, tuple(physical[:n]), tuple(physical[n:]), nu, self.instance.parameters, self.bounds, self.final
 
     @cached_property
     def fixed(self) -> NDArray[np.bool_]:

@@ -52,7 +52,7 @@ def _at_the_end(problem: TwoPoint, path: Path, slope: Array) -> int:
     free = np.flatnonzero(~problem.fixed)
     if not len(free):
         return 0
-    _, by_end, _ = problem.boundary(path.nodes[:, -1], path.theta)
+    by_end, _ = problem.boundary_slopes(path.nodes[:, -1], path.theta)
     # Rows of free states read lambda - S_x - nu' psi_x, so minus their derivative is the Hessian of S + nu' psi.
     pivot = (-by_end[:n, :n] - slope)[np.ix_(free, free)]
     constraints = problem.unknowns - problem.free_time

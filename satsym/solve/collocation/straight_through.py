@@ -47,7 +47,9 @@ def straight_through(start: Curve, system: System, limits: Limits) -> Found | No
             size = step.size(moved)
             if not size < before or within_domain(problem, curve, step) < 1.0:
                 return None
-            curve, cost = moved, system.cost(moved)
+            curve = moved
+            if limits.watch or size < NEAR:
+                cost = system.cost(curve)
             if limits.watch:
                 limits.watch(cost * problem.scale.cost, size)
             if size < NEAR:

@@ -15,6 +15,7 @@ from satsym.solve.collocation.curve import Curve, stage_times
 from satsym.solve.collocation.elimination import Blocks
 from satsym.solve.collocation.gauss import Scheme, scheme
 from satsym.solve.collocation.linearised import Linearised
+from satsym.solve.collocation.matching import Matching
 from satsym.solve.collocation.problem import TwoPoint
 
 Array = NDArray[np.floating[Any]]
@@ -32,8 +33,6 @@ class Residual:
         z_{i+1} minus the end of the interval's polynomial, shape (2n, N).
     start, finish
         At the boundary, shapes (n,) and (n + e,).
-    finish_by_end, finish_by_theta
-        Derivatives of the latter.
     rates
         A F(Z), shape (2n, N, s): the change of the stages by the duration, apart from explicit time.
     """
@@ -42,8 +41,6 @@ class Residual:
     ends: Array
     start: Array
     finish: Array
-    finish_by_end: Array
-    finish_by_theta: Array
     rates: Array
 
     @property
@@ -78,14 +75,11 @@ class System:
         rates = problem.rates(self.tau, curve.flat, theta).reshape(shape)
         grown = self.widths[:, None] * (rates @ self.scheme.matrix.T)
         differences = curve.stages - curve.nodes[:, :-1, None]
-        finish, by_end, by_theta = problem.boundary(curve.nodes[:, -1], theta)
         return Residual(
             stages=differences - problem.elapsed(theta) * grown,
             ends=curve.nodes[:, 1:] - curve.nodes[:, :-1] - differences @ self.scheme.end,
             start=curve.nodes[: problem.states, 0] - problem.initial,
-            finish=finish,
-            finish_by_end=by_end,
-            finish_by_theta=by_theta,
+            finish=problem.boundary(curve.nodes[:, -1], theta),
             rates=grown,
         )
 
@@ -136,7 +130,10 @@ class System:
         response = solved[:, :n]
         transition = np.einsum("j,ibja->iab", self.scheme.end, response.reshape(count, n, s, n))
         transition[:, np.arange(n), np.arange(n)] += 1.0 - self.scheme.end.sum()
-        return Linearised(self, blocks, response, transition, residual, solved[:, n], solved[:, n + 1 :])
+        extra = solved[:, n + 1 :].reshape(count, e, s, n)
+        by_theta = (self.scheme.end @ extra).swapaxes(1, 2)
+        matching = Matching(transition, by_theta, *self.problem.boundary_slopes(curve.nodes[:, -1], curve.theta))
+        return Linearised(self, blocks, matching, response, extra, residual, solved[:, n])
 
     def _by_duration(self, curve: Curve, residual: Residual) -> Array:
         """Minus the derivative of the stage residuals by the duration, shape (2n, N, s)."""

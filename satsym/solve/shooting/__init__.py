@@ -7,7 +7,6 @@ only where to start (Stoer and Bulirsch, Introduction to Numerical Analysis, 7.3
 
 from __future__ import annotations
 
-from satsym.solve.shooting.repeated import Answer, Repeated
 from satsym.solve.shooting.solving import solve
 
-__all__ = ["Answer", "Repeated", "solve"]
+__all__ = ["solve"]

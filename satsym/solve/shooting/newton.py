@@ -65,22 +65,18 @@ class Residual:
         Where each arc ends, less where the next one begins, shape (N, 2n).
     start, finish
         Residuals at the boundary, shapes (n,) and (n + e,).
-    finish_by_end, finish_by_theta
-        Derivatives of the latter.
     """
 
     defects: Array
     start: Array
     finish: Array
-    finish_by_end: Array
-    finish_by_theta: Array
 
 
 def residual(arcs: Arcs, ends: Array) -> Residual:
     """The residual of arcs with their ends, shape (2n, N)."""
     problem, nodes = arcs.problem, arcs.nodes
     start = nodes[: problem.states, 0] - problem.initial
-    return Residual((ends - nodes[:, 1:]).T, start, *problem.boundary(nodes[:, -1], arcs.theta))
+    return Residual((ends - nodes[:, 1:]).T, start, problem.boundary(nodes[:, -1], arcs.theta))
 
 
 def linearised(arcs: Arcs) -> tuple[Matching, Residual]:
@@ -94,7 +90,7 @@ def linearised(arcs: Arcs) -> tuple[Matching, Residual]:
     ends, transition = arcs.variations()
     wrong = residual(arcs, ends)
     by_theta = arcs.by_theta(ends, transition)
-    return Matching(transition, by_theta, wrong.finish_by_end, wrong.finish_by_theta), wrong
+    return Matching(transition, by_theta, *arcs.problem.boundary_slopes(arcs.nodes[:, -1], arcs.theta)), wrong
 
 
 def newton(arcs: Arcs, limits: Limits) -> Outcome:

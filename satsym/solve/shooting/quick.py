@@ -76,7 +76,8 @@ def _correction(arcs: Arcs) -> tuple[Array, Array]:
         problem.bounds,
         problem.scale.both[:, 0],
     )
-    residual, by_end, by_theta = problem.boundary(arcs.nodes[:, -1], arcs.theta)
+    end = arcs.nodes[:, -1], arcs.theta
+    residual, (by_end, by_theta) = problem.boundary(*end), problem.boundary_slopes(*end)
     slopes = by_end @ field[-1]
     matrix = np.concatenate([slopes[:, :n], by_theta], axis=1)
     matrix[:, len(matrix) - problem.free_time :] += slopes[:, n:-1]

@@ -11,15 +11,10 @@ import numpy as np
 
 from satsym.instance import Instance
 from satsym.solution import Array, Solution
-from satsym.solve.collocation import paths
-from satsym.solve.collocation.problem import TwoPoint
-from satsym.solve.collocation.second_variation import negative_directions
 from satsym.solve.extremal import Extremal, Report, solved
 from satsym.solve.iteration import Limits
-from satsym.solve.shooting.arcs import Arcs
-from satsym.solve.shooting.newton import linearised
-from satsym.solve.shooting.quick import quick_newton
-from satsym.solve.shooting.solving import ACCURACY, converged, extremal, from_nothing
+from satsym.solve.repeated.by_collocation import ByCollocation
+from satsym.solve.repeated.means import Means
 from satsym.status import BadInput, Status
 
 
@@ -54,14 +49,14 @@ class Answer:
 class Repeated:
     """An instance to be solved many times, with other initial states or parameters.
 
-    Making it solves the instance once, from a cold start, and compiles its functions, which takes seconds. From then
-    on it starts from the last answer, or from a straight line, and only if neither leads to an extremal from a
-    cold start. Without numba (extra ``fast``) every start is a cold one, and nothing is compiled.
+    Making it solves the instance once, from a cold start. From then on it starts from the last answer, or from a
+    straight line, and only if neither leads to an extremal from a cold start. With numba (extra ``fast``) that is
+    shooting with compiled functions, and compiling takes seconds; without it collocation, which keeps scales and mesh.
 
     Parameters
     ----------
     instance
-        What is solved, by shooting. Given final states, the final time and bounds stay as they are.
+        What is solved. Given final states, the final time and bounds stay as they are.
     compiled
         Whether to compile; by default wherever numba is installed.
 
@@ -94,10 +89,9 @@ class Repeated:
             raise BadInput(
                 f"{instance.name}: [solver] free_angles: turns are not looked for again and again; remove it"
             )
-        self._compiled = find_spec("numba") is not None if compiled is None else compiled
-        self._case = replace(instance, model=instance.model.compiled()) if self._compiled else instance
-        self._good: Arcs | None = None
-        self._steps = 1
+        compiled = find_spec("numba") is not None if compiled is None else compiled
+        self._means = _shooting() if compiled else ByCollocation()
+        self._case = replace(instance, model=instance.model.compiled()) if compiled else instance
         self.answer = self.solve(cold=True)
 
     def solve(
@@ -130,12 +124,10 @@ class Repeated:
         )
         limits = Limits(case.solver.max_iterations or 500, time.perf_counter() + case.solver.max_seconds)
         with np.errstate(all="ignore"):
-            found, way = self._found(case, limits, cold)
-            self.answer = _answer(found, way)
-        if found.status.answered and isinstance(found.path, Arcs):
-            self._good = found.path
-            if way == "cold start":
-                self._steps = max(found.path.steps // 2, 1)
+            near = None if cold else self._means.near(case, limits)
+            straight = None if near else self._means.straight(case, limits)
+            found = near or straight or self._means.cold(case, limits)
+        self.answer = _answer(found, "last answer" if near else "straight line" if straight else "cold start")
         return self.answer
 
     def solution(self, answer: Answer) -> Solution:
@@ -150,38 +142,16 @@ class Repeated:
             raise ValueError(f"no answer: {answer.message}")
 
         def method(instance: Instance, limits: Limits, report: Report, effort: bool) -> Extremal:
-            return extremal(answer.extremal.problem, answer.extremal.path, limits, report)
+            return self._means.full(answer.extremal, limits, report)
 
-        return solved(answer.extremal.problem.instance, None, "shooting", method)
+        return solved(answer.extremal.problem.instance, None, self._means.name, method)
 
-    def _found(self, case: Instance, limits: Limits, cold: bool) -> tuple[Extremal, str]:
-        """An extremal, or why there is none, and from where it was found."""
-        if self._compiled and self._good is not None:
-            problem = replace(self._good.problem, instance=case)
-            near = None if cold else self._near(problem, self._good)
-            if near:
-                return converged(*near), "last answer"
-            straight = None if problem.free_time else self._straight(problem, self._good)
-            if straight:
-                return converged(*straight), "straight line"
-        return from_nothing(case, limits, lambda *_: None, True), "cold start"
 
-    def _near(self, problem: TwoPoint, start: Arcs) -> tuple[Arcs, float, int] | None:
-        """The extremal near the arcs of a neighbouring problem, with its error and the iterations."""
-        tolerance = min(ACCURACY, problem.instance.solver.tolerance)
-        arcs, error, iterations = quick_newton(replace(start, problem=problem, steps=self._steps), tolerance)
-        sound = error <= tolerance and (arcs.nodes[list(problem.positive)] > 0.0).all()
-        return (arcs, error, iterations) if sound else None
+def _shooting() -> Means:
+    """Imported late: it needs SciPy, which takes longer to load than most instances to solve."""
+    from satsym.solve.repeated.by_shooting import ByShooting
 
-    def _straight(self, problem: TwoPoint, like: Arcs) -> tuple[Arcs, float, int] | None:
-        """The extremal to which a straight line leads, if that leads to a minimum without bounds at once."""
-        free = problem.widened(float("inf"))
-        states = paths.first(free)(like.mesh)
-        start = replace(like, nodes=np.append(states, np.zeros_like(states), axis=0), theta=free.theta)
-        found = self._near(free, start)
-        if found is None or not _minimum(found[0]):
-            return None
-        return self._near(problem, found[0]) if np.isfinite(problem.bounds).any() else found
+    return ByShooting()
 
 
 def _answer(found: Extremal, way: str) -> Answer:
@@ -197,14 +167,6 @@ def _answer(found: Extremal, way: str) -> Answer:
         way=way,
         extremal=found,
     )
-
-
-def _minimum(arcs: Arcs) -> bool:
-    """Whether an extremal is a strict local minimum without bounds."""
-    try:
-        return negative_directions(arcs.problem, arcs, linearised(arcs)[0]) == 0
-    except np.linalg.LinAlgError:
-        return False
 
 
 def _numbers(given: Sequence[float] | None, own: tuple[float, ...], name: str) -> tuple[float, ...]:

@@ -1,0 +1,83 @@
+"""Again and again by collocation: scales and mesh are kept, Newton's method starts from the last curve."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from satsym.instance import Instance
+from satsym.solve import two_point
+from satsym.solve.collocation import mesh as meshes
+from satsym.solve.collocation import paths
+from satsym.solve.collocation.cold_start import Start
+from satsym.solve.collocation.curve import Curve
+from satsym.solve.collocation.gauss import STAGES
+from satsym.solve.collocation.newton import newton
+from satsym.solve.collocation.problem import TwoPoint
+from satsym.solve.collocation.refinement import NEAR
+from satsym.solve.collocation.second_variation import negative_directions
+from satsym.solve.collocation.sqp import Found
+from satsym.solve.collocation.straight_through import straight_through
+from satsym.solve.collocation.system import System
+from satsym.solve.extremal import Extremal, Report
+from satsym.solve.iteration import Limits
+from satsym.solve.repeated.means import silent
+
+
+class ByCollocation:
+    """See :class:`satsym.solve.repeated.means.Means`; nothing is compiled."""
+
+    name = "collocation"
+
+    def __init__(self) -> None:
+        self._good: tuple[TwoPoint, Curve] | None = None
+
+    def near(self, case: Instance, limits: Limits) -> Extremal | None:
+        """The extremal near the last good one, bounds brought in again."""
+        if self._good is None:
+            return None
+        problem, curve = replace(self._good[0], instance=case), self._good[1]
+        free = problem.widened(float("inf"))
+        system = System(free, curve.mesh, STAGES)
+        outcome = newton(system, curve, tolerance=NEAR)
+        if outcome is None or not outcome.converged or not outcome.curve.in_domain(free.positive):
+            return None
+        try:
+            least = negative_directions(free, outcome.curve, outcome.linearised.matching) == 0
+        except np.linalg.LinAlgError:
+            return None
+        turn = system.largest_turn(outcome.curve, system.jacobian(outcome.curve))
+        if not least or turn > meshes.COARSEST:
+            return None
+        cost = system.cost(outcome.curve)
+        found = Found(outcome.curve, "minimum", cost, outcome.iterations, False, outcome.linearised)
+        return self._sound(problem, found, limits)
+
+    def straight(self, case: Instance, limits: Limits) -> Extremal | None:
+        """Newton's method from the straight line, on the mesh of the last good curve."""
+        if self._good is None or case.tf is None:
+            return None
+        problem, mesh = replace(self._good[0], instance=case), self._good[1].mesh
+        free = problem.widened(float("inf"))
+        found = straight_through(paths.on(free, paths.first(free), mesh), System(free, mesh, STAGES), limits)
+        return self._sound(problem, found, limits) if found else None
+
+    def cold(self, case: Instance, limits: Limits) -> Extremal:
+        """A cold start, with a mesh and scales of its own."""
+        return two_point.from_cold_start(case, limits, silent, True, self._accurate)
+
+    def full(self, found: Extremal, limits: Limits, report: Report) -> Extremal:
+        """Nothing is missing."""
+        return found
+
+    def _sound(self, problem: TwoPoint, found: Found, limits: Limits) -> Extremal | None:
+        start = Start(found, "last answer", found.iterations, {})
+        extremal = self._accurate(problem, start, limits, silent)
+        return extremal if extremal.status.answered else None
+
+    def _accurate(self, problem: TwoPoint, start: Start, limits: Limits, report: Report) -> Extremal:
+        extremal = two_point.accurate(problem, start, limits, report)
+        if extremal.status.answered:
+            self._good = problem, start.found.curve
+        return extremal
