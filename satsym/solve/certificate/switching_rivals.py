@@ -1,4 +1,4 @@
-"""Competitors of exact arcs: other switching times with a short arc put in, and extremals from other starts."""
+"""Competitors of exact arcs: other switching times, with a short arc put in or not, and extremals from other starts."""
 
 from __future__ import annotations
 
@@ -80,32 +80,32 @@ def needles(solution: Solution) -> float:
     own = flown(base, float(solution.times[-1]))
     if own is None or (count == 0 and len(wanted)):
         return float("inf")
+    still, loose = np.zeros(count), count > len(wanted)
     for _ in range(RIVALS):
-        needle = _needle(solution, base, switches, rng, lasting)
-        if needle is None:
-            continue
-        cost = _corrected(needle, switches, float(solution.times[-1]), lasting, free, flown)
-        cheapest = min(cheapest, cost)
+        rivals = [(_needle(solution, base, switches, rng, lasting), still)]
+        if loose:  # the end does not fix all times
+            rivals.append((base, np.array([rng.choice((-1.0, 1.0)) * rng.uniform(*SHORT) * lasting for _ in still])))
+        for plan, shift in rivals:
+            if plan is not None:
+                cost = _corrected(plan, switches, shift, float(solution.times[-1]), lasting, free, flown)
+                cheapest = min(cheapest, cost)
     scale = max(abs(own[0]), 1e-300)
     return margin(cheapest, own[0], coarse=1e-12) if scale > 0.0 else float("inf")
 
 
 def other_starts(solution: Solution) -> float:
-    """How much dearer the cheapest extremal from other starts is, for free final times."""
+    """How much dearer the cheapest extremal from other starts is; infinite where there are none."""
     from satsym.solve.switching.solving import others
 
     instance = solution.instance
-    if instance.tf is not None:
-        return float("inf")
     limits = Limits(500, time.perf_counter() + SECONDS)
     with np.errstate(all="ignore"):
-        costs = [found.trajectory.cost(instance) for found in others(instance, limits)]
+        costs = [float(found.trajectory.cost(instance)) for found in others(instance, limits)]
     return margin(min(costs, default=float("inf")), solution.objective, coarse=1e-9)
 
 
-def _corrected(plan: Plan, switches: Array, end: float, lasting: float, free: bool, flown: Any) -> float:
-    """The cost once the end is as given, by moving the switching times; infinite where that fails."""
-    shift = np.zeros(len(switches) + free)
+def _corrected(plan: Plan, switches: Array, shift: Array, end: float, lasting: float, free: bool, flown: Any) -> float:
+    """The cost once the end is as given, by moving the switching times further; infinite where that fails."""
 
     def at(shift: Array) -> Any:
         moved = plan.moved(switches, shift[: len(switches)], end + (float(shift[-1]) if free else 0.0))

@@ -14,13 +14,13 @@ from satsym.instance import Instance
 from satsym.solution import Iteration, Progress, Solution
 from satsym.solve.integrate import NotFinite
 from satsym.solve.iteration import Limits
-from satsym.solve.switching import homotopy, least_effort
+from satsym.solve.switching import held, homotopy, least_effort
 from satsym.solve.switching.attempt import Exact, attempt
 from satsym.solve.switching.least_time import least_time
 from satsym.solve.switching.newton import switching
 from satsym.solve.switching.recognition import Guess, Sample, guess, inside, sample
 from satsym.solve.switching.refusals import refuse
-from satsym.solve.switching.structure import LOWER, REST, Structure
+from satsym.solve.switching.structure import REST, Structure
 from satsym.solve.switching.variants import neighbours
 from satsym.status import Status
 
@@ -95,13 +95,12 @@ def _by_least_time(
 
 
 def others(instance: Instance, limits: Limits) -> list[Exact]:
-    """Extremals from the quick starts for a free final time, most of them one and the same."""
-    found = []
-    for near in least_effort.quick(instance, limits):
-        exact = _first_of(instance, _signs(instance, near), limits, thorough=False)
-        if exact:
-            found.append(exact)
-    return found
+    """Extremals from the quick starts for a free final time or free ends, most of them one and the same."""
+    starts = held.guesses(instance)
+    if instance.tf is None:
+        starts = (_signs(instance, near) for near in least_effort.quick(instance, limits))
+    exact = (_first_of(instance, start, limits, thorough=False) for start in starts)
+    return [one for one in exact if one]
 
 
 def _signs(instance: Instance, near: least_effort.Smoothed) -> Guess:
@@ -113,13 +112,16 @@ def _signs(instance: Instance, near: least_effort.Smoothed) -> Guess:
 
 def _found(instance: Instance, limits: Limits) -> tuple[Exact, str] | homotopy.Stopped:
     """Exact arcs and how they were found, or why there are none."""
-    if instance.tf is not None and (exact := attempt(instance, _resting(instance), limits)):
+    resting = _resting(instance)
+    if resting and (exact := attempt(instance, resting, limits)):
         return exact, "rest"
     if instance.tf is None:
         for near in chain(least_effort.quick(instance, limits), least_effort.shortening(instance, limits)):
             exact = _first_of(instance, _signs(instance, near), limits, thorough=True)
             if exact:
                 return exact, "the signs of least effort"
+    if instance.tf is not None and (free := others(instance, limits)):
+        return min(free, key=lambda one: one.trajectory.cost(instance)), "controls held at a bound"
     before: Sample | None = None
     last = None
     try:
@@ -145,12 +147,13 @@ def _found(instance: Instance, limits: Limits) -> tuple[Exact, str] | homotopy.S
     return last_seen
 
 
-def _resting(instance: Instance) -> Guess:
-    """No control at all, nor costates: the answer where |u| costs and the motion arrives by itself."""
+def _resting(instance: Instance) -> Guess | None:
+    """No control at all, nor costates, where every |u| costs: the answer if the motion arrives by itself."""
     weights = instance.model.magnitude_weight(instance.t0, instance.initial, instance.parameters)
-    levels = tuple((REST if weight > 0.0 else LOWER,) for weight in weights)
-    end = instance.t0 if instance.tf is None else instance.tf
-    return Guess(Structure(levels), np.zeros(0), np.zeros(len(instance.initial)), end)
+    if instance.tf is None or not all(weight > 0.0 for weight in weights):
+        return None
+    rest = Structure(((REST,),) * len(weights))
+    return Guess(rest, np.zeros(0), np.zeros(len(instance.initial)), instance.tf)
 
 
 def _relaxed(instance: Instance, hurried: Exact) -> Guess:
