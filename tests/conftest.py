@@ -8,6 +8,10 @@ from pathlib import Path
 import hypothesis
 import pytest
 
+from tests.faults import found, ledger, noted, verdicts
+
+__all__ = ["found", "ledger", "noted", "verdicts"]
+
 # The same examples on every run, and no deadline: two busy cores make any single example slow.
 hypothesis.settings.register_profile("satsym", deadline=None, derandomize=True)
 hypothesis.settings.load_profile("satsym")

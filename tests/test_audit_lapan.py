@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import tomllib
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,45 +11,14 @@ import scipy.optimize
 import scipy.signal
 import sympy as sp
 
-from satsym import audit
-from satsym.audit import cache
+from tests.faults import assert_all_reached
 
 I_Y, I_WY, E, P_C, NOMINAL = 678.0, 0.09, 0.01, 0.025, 2 * math.pi * 1000 / 60
 K1, K2 = 2 * E * I_Y, E**2 * I_Y
 t, e, p, iy, iw = sp.symbols("t E P_c I_y I_wy", positive=True)
 u, tau, c1, c2, cp, x2 = sp.symbols("U tau C1 C2 C_p X2", real=True)
 pytestmark = pytest.mark.slow  # the whole ledger is judged, unless it is in the cache
-FOUND: set[str] = set()
-"""Keys of rows that some test here reaches."""
-RAN: set[str] = set()
-
-
-@pytest.fixture(autouse=True)
-def _noted(request):
-    RAN.add(request.node.originalname)
-
-
-@pytest.fixture(scope="module")
-def verdicts():
-    judged = cache.audit(audit.read(audit.locate("lapan_pitch")))
-    return {f"{row.item} {row.part}".strip(): row.verdict for row in judged}
-
-
-@pytest.fixture(scope="module")
-def ledger():
-    return tomllib.loads(Path(audit.locate("lapan_pitch")).read_text(encoding="utf-8"))
-
-
-@pytest.fixture
-def found(verdicts):
-    """Holds rows against the verdict that the test has reached."""
-
-    def check(verdict, *keys):
-        for key in keys:
-            FOUND.add(key)
-            assert verdicts[key] == verdict, key
-
-    return check
+DOCUMENT = "lapan_pitch"
 
 
 def two_bodies(torque, times, start=(0.0, 0.0)):
@@ -385,8 +352,5 @@ def test_outer_torques_load_the_wheel_whatever_the_law(found):
     found("wrong", "conclusions desaturation")
 
 
-def test_every_verdict_other_than_confirmed_is_reached_here(verdicts):
-    if {name for name in globals() if name.startswith("test_")} - RAN:
-        pytest.skip("needs all other tests of this file to have run before it, in one process")
-    left = {key for key, verdict in verdicts.items() if verdict not in ("confirmed", "illegible")} - FOUND
-    assert not left
+def test_every_verdict_other_than_confirmed_is_reached_here(request, verdicts):
+    assert_all_reached(request, verdicts)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import tomllib
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,8 +11,7 @@ import scipy.integrate
 import scipy.linalg
 import sympy as sp
 
-from satsym import audit
-from satsym.audit import cache
+from tests.faults import assert_all_reached
 
 MU, R_EARTH, LIGHT, DAY = 398600.4418, 6378.137, 299792.458, 86164.0905  # km, s
 A1 = np.array([[0.0, 1, 0, 0], [3, 0, 0, 2], [0, 0, 0, 1], [0, -2, 0, 0]])
@@ -28,37 +25,7 @@ P_PRINTED = np.array(
     ]
 )
 pytestmark = pytest.mark.slow  # the whole ledger is judged, unless it is in the cache
-FOUND: set[str] = set()
-"""Keys of rows that some test here reaches."""
-RAN: set[str] = set()
-
-
-@pytest.fixture(autouse=True)
-def _noted(request):
-    RAN.add(request.node.originalname)
-
-
-@pytest.fixture(scope="module")
-def verdicts():
-    judged = cache.audit(audit.read(audit.locate("uny_thesis")))
-    return {f"{row.item} {row.part}".strip(): row.verdict for row in judged}
-
-
-@pytest.fixture(scope="module")
-def ledger():
-    return tomllib.loads(Path(audit.locate("uny_thesis")).read_text(encoding="utf-8"))
-
-
-@pytest.fixture
-def found(verdicts):
-    """Holds rows against the verdict that the test has reached."""
-
-    def check(verdict, *keys):
-        for key in keys:
-            FOUND.add(key)
-            assert verdicts[key] == verdict, key
-
-    return check
+DOCUMENT = "uny_thesis"
 
 
 def period(altitude):
@@ -444,8 +411,5 @@ def test_listings_of_maple(found, ledger):
     found("wrong", "appendix 4 eigvals")
 
 
-def test_every_verdict_other_than_confirmed_is_reached_here(verdicts):
-    if {name for name in globals() if name.startswith("test_")} - RAN:
-        pytest.skip("needs all other tests of this file to have run before it, in one process")
-    left = {key for key, verdict in verdicts.items() if verdict not in ("confirmed", "illegible")} - FOUND
-    assert not left
+def test_every_verdict_other_than_confirmed_is_reached_here(request, verdicts):
+    assert_all_reached(request, verdicts)

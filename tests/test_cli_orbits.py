@@ -15,33 +15,13 @@ from satsym.cli import main
 from satsym.report.linear import ANALYSIS
 from satsym.report.orbit_text import orbit_text
 from satsym.report.plots import conics, plane, style, unit_circle
+from tests.cases import two_body_case
 from tests.test_floors import run_satsym
 
 ORBIT = "conic eccentricity semi_major_axis period energy angular_momentum".split()
 POINT = "eigenvalues rule_verdict note".split()
 FLOQUET = "multipliers determinant verdict note".split()
 ASTRONOMICAL_UNIT = 149_597_870.7  # km
-
-START = """
-model = "two_body"
-[parameters]
-mu = {mu}
-[initial]
-x = {x}
-y = 0.0
-z = 0.0
-v_x = {v_x}
-v_y = {v_y}
-v_z = 0.0
-[time]
-tf = 20.0
-"""
-
-
-def written(folder: Path, mu: str = "1.0", x: str = "1.0", v_x: str = "0.0", v_y: str = "1.0") -> Path:
-    path = folder / "start.toml"
-    path.write_text(START.format(mu=mu, x=x, v_x=v_x, v_y=v_y), encoding="utf-8")
-    return path
 
 
 def analysed(subject: str | Path, capsys: pytest.CaptureFixture[str], *options: str) -> tuple[int, str, str]:
@@ -147,7 +127,7 @@ def test_the_kind_is_coloured_by_whether_it_closes() -> None:
 @pytest.mark.parametrize(
     ("changed", "complaint"),
     [
-        ({"x": "0.0"}, "start: [initial]: position is the centre itself; start somewhere else"),
+        ({"x": "0.0"}, "case: [initial]: position is the centre itself; start somewhere else"),
         ({"mu": "0.0"}, "[parameters] mu: 0 is outside the domain of mu"),
         ({"mu": "-1.0"}, "[parameters] mu: -1 is outside the domain of mu"),
         ({"x": "nan"}, "[initial] x: the number is nan"),
@@ -159,7 +139,7 @@ def test_the_kind_is_coloured_by_whether_it_closes() -> None:
 def test_bad_input_ends_with_exit_3_and_one_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], changed: dict[str, str], complaint: str
 ) -> None:
-    code, out, err = analysed(written(tmp_path, **changed), capsys)
+    code, out, err = analysed(two_body_case(tmp_path, tf=20.0, **changed), capsys)
     assert (code, out) == (3, "")
     assert complaint in err
     assert err.count("\n") == 1
@@ -178,7 +158,7 @@ def test_bad_input_ends_with_exit_3_and_one_line(
 def test_borders_and_collisions_are_answers_not_errors(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], changed: dict[str, str], conic: str, status: str
 ) -> None:
-    path = written(tmp_path, **changed)
+    path = two_body_case(tmp_path, tf=20.0, **changed)
     code, out, err = analysed(path, capsys, "--json")
     found = json.loads(out)
     assert (code, err) == (0, "")
@@ -189,7 +169,9 @@ def test_borders_and_collisions_are_answers_not_errors(
 
 @pytest.mark.parametrize("v_y", ["0.0", "1.0"])
 def test_pictures_go_where_they_are_asked_for(v_y: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    code, out, err = analysed(written(tmp_path, v_y=v_y), capsys, "--plot", "--out", str(tmp_path / "out"))
+    code, out, err = analysed(
+        two_body_case(tmp_path, tf=20.0, v_y=v_y), capsys, "--plot", "--out", str(tmp_path / "out")
+    )
     assert (code, err) == (0, "")
     closes = {"multipliers.png"} if v_y == "1.0" else set()
     assert {file.name for file in (tmp_path / "out").iterdir()} == {"orbit.png", "point.png", "result.json"} | closes
@@ -238,7 +220,7 @@ def test_an_escape_is_drawn_with_what_is_flown_of_it() -> None:
 
 
 def test_asymptotes_are_where_the_hyperbola_goes(tmp_path: Path) -> None:
-    found = survey(instance.load(written(tmp_path, v_y="2.0")))
+    found = survey(instance.load(two_body_case(tmp_path, tf=20.0, v_y="2.0")))
     rays = conics.Drawn.of(found).asymptotes
     far = 1e6 * found.elements.periapsis
     curve = conics._open(found.elements, far)

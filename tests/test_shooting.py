@@ -106,7 +106,7 @@ def test_newton_comes_from_a_straight_line():
 def held(compiled: bool) -> Arcs:
     """Solved arcs along which the second control is at its bound for a while, which a node ends."""
     problem = straight("return-to-orbit-005", 6, 3, compiled).problem
-    found = from_nothing(instance.load("return-to-orbit-005"), LIMITS, lambda *_: None, True).path
+    found = from_nothing(instance.load("return-to-orbit-005"), LIMITS, True).path
     assert isinstance(found, Arcs)
     return replace(found, problem=replace(found.problem, instance=problem.instance), steps=3)
 

@@ -14,12 +14,9 @@ from satsym.solve import revolutions
 from satsym.solve.collocation.continuation import by_bound
 from satsym.solve.collocation.curve import Path
 from satsym.solve.collocation.problem import TwoPoint
-from satsym.solve.iteration import Limits
+from satsym.solve.iteration import Limits, watched
 from satsym.solve.revolutions import TURN, Best
 from satsym.status import Status
-
-Report = Callable[[float, float], None]
-"""Told cost and residual after each phase."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +45,7 @@ class Extremal:
     iterations: int
 
 
-Method = Callable[[Instance, Limits, Report, bool], Extremal]
+Method = Callable[[Instance, Limits, bool], Extremal]
 """From an instance to an extremal; the last argument says whether with great effort."""
 
 
@@ -67,18 +64,10 @@ def solved(instance: Instance, progress: Progress | None, name: str, method: Met
         Finds an extremal; warnings about arithmetic are off while it does.
     """
     began = time.perf_counter()
-    history: list[Iteration] = []
-
-    def watch(objective: float, residual: float) -> None:
-        history.append(Iteration(len(history), objective, residual))
-        if progress:
-            progress(history[-1])
-
-    limits = Limits(instance.solver.max_iterations or 500, began + instance.solver.max_seconds, watch)
-
+    limits, history = watched(instance, progress)
     with np.errstate(all="ignore"):
         best = revolutions.cheapest(
-            instance, limits, lambda one, effort: method(one, limits, watch, effort), lambda found: found.cost
+            instance, limits, lambda one, effort: method(one, limits, effort), lambda found: found.cost
         )
         return _solution(instance, name, best, tuple(history), began)
 

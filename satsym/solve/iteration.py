@@ -7,10 +7,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
+from satsym.instance import Instance
 from satsym.solution import Iteration, Progress
 from satsym.status import Status
 
 State = TypeVar("State")
+
+MOST = 500
+"""Iterations where an instance sets no limit."""
 
 
 class Method(Protocol[State]):
@@ -47,10 +51,28 @@ class Limits:
     deadline: float
     watch: Callable[[float, float], None] | None = None
 
+    def tell(self, cost: float, residual: float) -> None:
+        """Tell who watches, if anyone does."""
+        if self.watch:
+            self.watch(cost, residual)
+
     @property
     def expired(self) -> bool:
         """Whether the time is over."""
         return time.perf_counter() > self.deadline
+
+
+def watched(instance: Instance, progress: Progress | None) -> tuple[Limits, list[Iteration]]:
+    """The limits that an instance sets, counted from now, and the history that is written by whoever tells them."""
+    history: list[Iteration] = []
+
+    def watch(objective: float, residual: float) -> None:
+        history.append(Iteration(len(history), objective, residual))
+        if progress:
+            progress(history[-1])
+
+    deadline = time.perf_counter() + instance.solver.max_seconds
+    return Limits(instance.solver.max_iterations or MOST, deadline, watch), history
 
 
 @dataclass(frozen=True)

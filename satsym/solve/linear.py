@@ -19,7 +19,7 @@ from satsym.solution import Progress, Solution
 from satsym.solve import control_set
 from satsym.solve.collocation.problem import TwoPoint
 from satsym.solve.collocation.scaling import two_point
-from satsym.solve.extremal import Extremal, Report, solved
+from satsym.solve.extremal import Extremal, solved
 from satsym.solve.iteration import Limits
 from satsym.solve.shooting.arcs import MOST_STEPS, Arcs, sufficient
 from satsym.solve.shooting.newton import doubled, linearised, residual
@@ -114,7 +114,7 @@ class Exponential(Arcs):
         return flows
 
 
-def _extremal(instance: Instance, limits: Limits, report: Report, effort: bool) -> Extremal:
+def _extremal(instance: Instance, limits: Limits, effort: bool) -> Extremal:
     if instance.tf is None:
         raise _refusal(instance, "its final time is free")
     problem = two_point(instance, instance.tf - instance.t0)
@@ -137,7 +137,7 @@ def _extremal(instance: Instance, limits: Limits, report: Report, effort: bool) 
     if control_set.violation(instance, problem.control(tau, arcs(tau), arcs.theta, bounded=False)) > 0.0:
         raise _refusal(instance, "bounds on its control are met")
     cost = arcs.cost() * problem.scale.cost
-    report(cost, error)
+    limits.tell(cost, error)
     kind = "matrix exponentials" if isinstance(arcs, Exponential) else "variational equations"
     message = f"closed form by {kind} on {len(arcs.widths)} arcs, estimated error {error:.0e}"
     return Extremal(problem, arcs, cost, Status.CONVERGED, message, 1)

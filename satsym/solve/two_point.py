@@ -16,12 +16,12 @@ from satsym.solve.collocation.problem import TwoPoint
 from satsym.solve.collocation.refinement import Refined, refine
 from satsym.solve.collocation.scaling import two_point
 from satsym.solve.collocation.system import System
-from satsym.solve.extremal import Extremal, Report, solved
+from satsym.solve.extremal import Extremal, solved
 from satsym.solve.iteration import Limits
 from satsym.solve.nearest import nearest
 from satsym.status import Status
 
-Accurate = Callable[[TwoPoint, Start, Limits, Report], Extremal]
+Accurate = Callable[[TwoPoint, Start, Limits], Extremal]
 """From an extremal of low order without bounds to an accurate one within them."""
 
 
@@ -41,20 +41,20 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         With status ``converged`` when the estimated error is within the instance's tolerance.
     """
 
-    def method(one: Instance, limits: Limits, report: Report, effort: bool) -> Extremal:
-        return from_cold_start(one, limits, report, effort, accurate)
+    def method(one: Instance, limits: Limits, effort: bool) -> Extremal:
+        return from_cold_start(one, limits, effort, accurate)
 
     return solved(instance, progress, "collocation", method)
 
 
-def from_cold_start(instance: Instance, limits: Limits, report: Report, effort: bool, accurate: Accurate) -> Extremal:
+def from_cold_start(instance: Instance, limits: Limits, effort: bool, accurate: Accurate) -> Extremal:
     """Find an extremal of low order without bounds from nothing, its duration where that is free, and make it accurate.
 
     Parameters
     ----------
     instance
         What is solved.
-    limits, report
+    limits
         When to stop, and who is told the cost of what was found.
     effort
         Whether free durations are looked for with great effort.
@@ -72,7 +72,7 @@ def from_cold_start(instance: Instance, limits: Limits, report: Report, effort: 
         problem, start, way = chosen.problem.widened(0.0), chosen.start, f", {chosen.message}"
         if not chosen.status.answered:
             return Extremal(problem, start.found.curve, float("inf"), chosen.status, chosen.message, start.steps)
-    found = accurate(problem, start, limits, report)
+    found = accurate(problem, start, limits)
     if not found.status.answered:
         return found
     return replace(found, message=f"{found.message}, from the {start.way}{way}")
@@ -98,13 +98,13 @@ def outside(problem: TwoPoint, path: Path, bounded: Bounded, steps: int, limits:
     return Extremal(problem, path, float("inf"), Status.INFEASIBLE, f"{found.message}; {message}", steps)
 
 
-def accurate(problem: TwoPoint, start: Start, limits: Limits, report: Report) -> Extremal:
+def accurate(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
     """From an extremal of low order without bounds to an accurate one within them, by collocation."""
     tolerance = problem.instance.solver.tolerance
     free = problem.widened(float("inf"))
     refined = refine(free, start.found.curve, tolerance, known=start.found.linearised)
     cost = _cost(free, refined)
-    report(cost, refined.error)
+    limits.tell(cost, refined.error)
     steps = start.steps + refined.iterations
     bounded = tighten(problem, refined.curve, STAGES, limits)
     if bounded.iterations:
@@ -114,7 +114,7 @@ def accurate(problem: TwoPoint, start: Start, limits: Limits, report: Report) ->
         refined = refine(problem, bounded.curve, tolerance, keep_nodes=True)
         steps += refined.iterations
         cost = _cost(problem, refined)
-        report(cost, refined.error)
+        limits.tell(cost, refined.error)
     intervals = len(refined.curve.mesh) - 1
     if not refined.converged:
         message = f"the estimated error stays at {refined.error:.0e} on {intervals} intervals"

@@ -127,8 +127,7 @@ def minimise(
             return Found(curve, "not finite", cost, iteration, True)
         if limits.expired:
             return Found(curve, "time was up", cost, iteration, True)
-        if limits.watch:
-            limits.watch(cost * problem.scale.cost, size)
+        limits.tell(cost * problem.scale.cost, size)
         if size < tolerance and (newton or first):
             curve = curve.moved(step, 1.0)
             return Found(curve, _kind(system, curve), system.cost(curve), iteration + 1, hard)

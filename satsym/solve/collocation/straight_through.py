@@ -50,8 +50,7 @@ def straight_through(start: Curve, system: System, limits: Limits) -> Found | No
             curve = moved
             if limits.watch or size < NEAR:
                 cost = system.cost(curve)
-            if limits.watch:
-                limits.watch(cost * problem.scale.cost, size)
+                limits.tell(cost * problem.scale.cost, size)
             if size < NEAR:
                 break
             before = size / 2.0

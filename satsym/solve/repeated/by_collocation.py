@@ -20,9 +20,8 @@ from satsym.solve.collocation.second_variation import negative_directions
 from satsym.solve.collocation.sqp import Found
 from satsym.solve.collocation.straight_through import straight_through
 from satsym.solve.collocation.system import System
-from satsym.solve.extremal import Extremal, Report
+from satsym.solve.extremal import Extremal
 from satsym.solve.iteration import Limits
-from satsym.solve.repeated.means import silent
 
 
 class ByCollocation:
@@ -65,19 +64,19 @@ class ByCollocation:
 
     def cold(self, case: Instance, limits: Limits) -> Extremal:
         """A cold start, with a mesh and scales of its own."""
-        return two_point.from_cold_start(case, limits, silent, True, self._accurate)
+        return two_point.from_cold_start(case, limits, True, self._accurate)
 
-    def full(self, found: Extremal, limits: Limits, report: Report) -> Extremal:
+    def full(self, found: Extremal, limits: Limits) -> Extremal:
         """Nothing is missing."""
         return found
 
     def _sound(self, problem: TwoPoint, found: Found, limits: Limits) -> Extremal | None:
         start = Start(found, "last answer", found.iterations, {})
-        extremal = self._accurate(problem, start, limits, silent)
+        extremal = self._accurate(problem, start, limits)
         return extremal if extremal.status.answered else None
 
-    def _accurate(self, problem: TwoPoint, start: Start, limits: Limits, report: Report) -> Extremal:
-        extremal = two_point.accurate(problem, start, limits, report)
+    def _accurate(self, problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
+        extremal = two_point.accurate(problem, start, limits)
         if extremal.status.answered:
             self._good = problem, start.found.curve
         return extremal

@@ -10,9 +10,8 @@ from satsym.instance import Instance
 from satsym.solve.collocation import paths
 from satsym.solve.collocation.problem import TwoPoint
 from satsym.solve.collocation.second_variation import negative_directions
-from satsym.solve.extremal import Extremal, Report
+from satsym.solve.extremal import Extremal
 from satsym.solve.iteration import Limits
-from satsym.solve.repeated.means import silent
 from satsym.solve.shooting.arcs import Arcs
 from satsym.solve.shooting.newton import linearised
 from satsym.solve.shooting.quick import quick_newton
@@ -53,14 +52,14 @@ class ByShooting:
 
     def cold(self, case: Instance, limits: Limits) -> Extremal:
         """A cold start, which also decides on arcs and steps."""
-        found = from_nothing(case, limits, silent, True)
+        found = from_nothing(case, limits, True)
         if found.status.answered and isinstance(found.path, Arcs):
             self._good, self._steps = found.path, max(found.path.steps // 2, 1)
         return found
 
-    def full(self, found: Extremal, limits: Limits, report: Report) -> Extremal:
+    def full(self, found: Extremal, limits: Limits) -> Extremal:
         """With nodes where bounds are met: compiled arcs step onto these times, but do not tell them."""
-        return extremal(found.problem, found.path, limits, report)
+        return extremal(found.problem, found.path, limits)
 
     def _shot(self, problem: TwoPoint, start: Arcs) -> Shot | None:
         """Newton on arcs of a neighbouring problem."""

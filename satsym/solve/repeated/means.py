@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from satsym.instance import Instance
-from satsym.solve.extremal import Extremal, Report
+from satsym.solve.extremal import Extremal
 from satsym.solve.iteration import Limits
 
 
@@ -23,9 +23,5 @@ class Means(Protocol):
     def cold(self, case: Instance, limits: Limits) -> Extremal:
         """What comes of a cold start."""
 
-    def full(self, found: Extremal, limits: Limits, report: Report) -> Extremal:
+    def full(self, found: Extremal, limits: Limits) -> Extremal:
         """An extremal that was found, with everything an answer in full has."""
-
-
-def silent(objective: float, residual: float) -> None:
-    """Nobody watches."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from satsym.instance import Instance
 from satsym.solution import Array, Solution
-from satsym.solve.extremal import Extremal, Report, solved
+from satsym.solve.extremal import Extremal, solved
 from satsym.solve.iteration import Limits
 from satsym.solve.repeated.by_collocation import ByCollocation
 from satsym.solve.repeated.means import Means
@@ -141,8 +141,8 @@ class Repeated:
         if not answer.status.answered:
             raise ValueError(f"no answer: {answer.message}")
 
-        def method(instance: Instance, limits: Limits, report: Report, effort: bool) -> Extremal:
-            return self._means.full(answer.extremal, limits, report)
+        def method(instance: Instance, limits: Limits, effort: bool) -> Extremal:
+            return self._means.full(answer.extremal, limits)
 
         return solved(answer.extremal.problem.instance, None, self._means.name, method)
 

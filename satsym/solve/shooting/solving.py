@@ -13,7 +13,7 @@ from satsym.solve.collocation.continuation import kinks, through, tighten
 from satsym.solve.collocation.curve import Path
 from satsym.solve.collocation.gauss import STAGES
 from satsym.solve.collocation.problem import TwoPoint
-from satsym.solve.extremal import Extremal, Report, solved
+from satsym.solve.extremal import Extremal, solved
 from satsym.solve.iteration import Limits
 from satsym.solve.shooting.arcs import Arcs, sufficient
 from satsym.solve.shooting.newton import Outcome, doubled, newton
@@ -61,12 +61,12 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     return solved(instance, progress, "shooting", from_nothing)
 
 
-def from_nothing(instance: Instance, limits: Limits, report: Report, effort: bool) -> Extremal:
+def from_nothing(instance: Instance, limits: Limits, effort: bool) -> Extremal:
     """The extremal to which a cold start leads; see :func:`satsym.solve.two_point.from_cold_start`."""
-    return from_cold_start(instance, limits, report, effort, _accurate)
+    return from_cold_start(instance, limits, effort, _accurate)
 
 
-def extremal(problem: TwoPoint, start: Path, limits: Limits, report: Report) -> Extremal:
+def extremal(problem: TwoPoint, start: Path, limits: Limits) -> Extremal:
     """The extremal within bounds that is near a path of states and costates.
 
     Nodes are put on the kinks that bounds cause, until these stand still; then the error decides on the steps.
@@ -77,7 +77,7 @@ def extremal(problem: TwoPoint, start: Path, limits: Limits, report: Report) -> 
         What is solved.
     start
         Where to start.
-    limits, report
+    limits
         When to stop, and who is told the cost of what was found.
     """
     tolerance, accuracy = problem.instance.solver.tolerance, ACCURACY
@@ -94,7 +94,7 @@ def extremal(problem: TwoPoint, start: Path, limits: Limits, report: Report) -> 
         before, met = met, kinks(problem, path)
         if len(met) == len(before) and np.abs(met - before).max(initial=0.0) < STILL:
             arcs, error = doubled(outcome.arcs, outcome.matching)
-            report(arcs.cost() * problem.scale.cost, error)
+            limits.tell(arcs.cost() * problem.scale.cost, error)
             if error <= tolerance and not problem.instance.model.in_domain(arcs.course[1]):
                 why = "the extremal leaves the domain"
                 return Extremal(problem, arcs, float("inf"), Status.LEFT_DOMAIN, why, total)
@@ -112,13 +112,13 @@ def converged(arcs: Arcs, error: float, iterations: int) -> Extremal:
     return Extremal(problem, arcs, arcs.cost() * problem.scale.cost, Status.CONVERGED, message, iterations)
 
 
-def _accurate(problem: TwoPoint, start: Start, limits: Limits, report: Report) -> Extremal:
+def _accurate(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
     """From an extremal of low order without bounds to an accurate one within them."""
     bounded = tighten(problem, start.found.curve, STAGES, limits)
     steps = start.steps + bounded.iterations
     if bounded.reached < 1.0:
         return outside(problem, bounded.curve, bounded, steps, limits)
-    found = extremal(problem, bounded.curve, limits, report)
+    found = extremal(problem, bounded.curve, limits)
     return replace(found, iterations=steps + found.iterations)
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from satsym.instance import Instance
 from satsym.solution import Iteration, Progress, Solution
 from satsym.solve.integrate import NotFinite
-from satsym.solve.iteration import Limits
+from satsym.solve.iteration import Limits, watched
 from satsym.solve.switching import held, homotopy, least_effort
 from satsym.solve.switching.attempt import Exact, attempt
 from satsym.solve.switching.least_time import least_time
@@ -55,14 +55,7 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     """
     refuse(instance)
     began = time.perf_counter()
-    history: list[Iteration] = []
-
-    def watch(objective: float, residual: float) -> None:
-        history.append(Iteration(len(history), objective, residual))
-        if progress:
-            progress(history[-1])
-
-    limits = Limits(instance.solver.max_iterations or 500, began + instance.solver.max_seconds, watch)
+    limits, history = watched(instance, progress)
     with np.errstate(all="ignore"):
         found = _found(instance, limits)
         if isinstance(found, homotopy.Stopped):
