@@ -6,10 +6,9 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from satsym.solve.collocation.gauss import interpolation, scheme
+from satsym.solve.collocation.gauss import interpolation, lagrange, scheme
 
 Array = NDArray[np.floating[Any]]
 
@@ -76,11 +75,9 @@ class Curve:
         """Values at ``tau`` in [0, 1], shape (2n, M)."""
         tau = np.asarray(tau, dtype=float)
         interval = np.clip(np.searchsorted(self.mesh, tau, side="right") - 1, 0, len(self.mesh) - 2)
-        local = 2 * (tau - self.mesh[interval]) / np.diff(self.mesh)[interval] - 1
-        known = np.concatenate([self.nodes[:, :-1, None], self.stages], axis=2)
-        coefficients = known.transpose(1, 0, 2) @ scheme(self.order).coefficients.T
-        table = legendre.legvander(local, self.order)
-        values: Array = (coefficients[interval] @ table[:, :, None])[..., 0].T
+        table = lagrange(self.order, (tau - self.mesh[interval]) / np.diff(self.mesh)[interval])
+        known = np.concatenate([self.nodes[:, :-1, None], self.stages], axis=2).transpose(1, 0, 2)
+        values: Array = (known[interval] @ table[:, :, None])[..., 0].T
         return values
 
     def on(self, mesh: Array, order: int) -> Curve:

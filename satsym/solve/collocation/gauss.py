@@ -33,6 +33,8 @@ class Scheme:
         ``weights @ inverse``: from differences at the stages to the difference at the end.
     coefficients
         From values at 0 and at the stages to Legendre coefficients on [-1, 1], shape (s + 1, s + 1).
+    barycentric
+        Weights of Lagrange's formula through 0 and the stages, shape (s + 1,).
     """
 
     nodes: Array
@@ -41,6 +43,7 @@ class Scheme:
     inverse: Array
     end: Array
     coefficients: Array
+    barycentric: Array
 
     @property
     def stages(self) -> int:
@@ -51,7 +54,21 @@ class Scheme:
 @lru_cache
 def interpolation(stages: int, onto: int) -> Array:
     """From values at 0 and at the stages of a scheme to those at the stages of another, shape (onto, stages + 1)."""
-    table: Array = legendre.legvander(2 * scheme(onto).nodes - 1, stages) @ scheme(stages).coefficients
+    return lagrange(stages, scheme(onto).nodes)
+
+
+def lagrange(stages: int, places: Array) -> Array:
+    """From values at 0 and at the stages to those at places in [0, 1], shape (M, stages + 1).
+
+    By the second barycentric formula (Berrut and Trefethen, Barycentric Lagrange Interpolation, 2004).
+    """
+    own = scheme(stages)
+    off = places[:, None] - np.concatenate([[0.0], own.nodes])
+    there = off == 0.0
+    table: Array = own.barycentric / np.where(there, 1.0, off)
+    known = there.any(axis=1)
+    table[known] = there[known]
+    table /= table.sum(axis=1, keepdims=True)
     return table
 
 
@@ -64,6 +81,7 @@ def scheme(stages: int) -> Scheme:
     matrix = np.array(integrals).T @ to_coefficients / 2
     inverse = np.linalg.inv(matrix)
     with_start = np.concatenate([[-1.0], x])
+    distances = with_start[:, None] - with_start + np.eye(stages + 1)
     return Scheme(
         nodes=(x + 1) / 2,
         weights=w / 2,
@@ -71,4 +89,5 @@ def scheme(stages: int) -> Scheme:
         inverse=inverse,
         end=w / 2 @ inverse,
         coefficients=np.linalg.inv(legendre.legvander(with_start, stages)),
+        barycentric=1.0 / distances.prod(axis=1),
     )
