@@ -126,3 +126,13 @@ def test_metrics_are_extremes_and_the_final_distance_from_the_reference():
 def test_a_free_final_time_cannot_be_flown():
     with pytest.raises(BadInput, match=r"time\.tf"):
         simulate(replace(from_start(1.1, 0.0, 0.0, 0.9), tf=None))
+
+
+def test_a_flight_ends_when_its_time_is_up():
+    """What was flown until then is shown, with the error it has."""
+    case = from_start(1.0, 0.0, 0.0, 0.5, steps=100, max_seconds=1e-6)
+    flight = simulate(case)
+    assert flight.status is Status.TIME_LIMIT
+    assert "max_seconds" in flight.message
+    assert flight.metrics["steps"] == 200
+    assert flight.metrics["estimated_error"] > case.solver.tolerance

@@ -12,6 +12,7 @@ from satsym.solution import Array, Flight, Invariant
 from satsym.solve import closed_loop, control_set
 from satsym.solve.balances import balances
 from satsym.solve.closed_loop import Law
+from satsym.solve.iteration import Limits, watched
 from satsym.status import BadInput, Status
 
 RICHARDSON = 2.0**4 - 1.0
@@ -67,13 +68,14 @@ def simulate(instance: Instance, law: Law | None = None) -> Flight:
     if instance.tf is None:
         raise BadInput(f"{instance.name}: time.tf: a simulation needs a number, not a free final time")
     times = Grid.uniform(instance.t0, instance.tf, instance.solver.steps).nodes
+    limits, _ = watched(instance, None)
     if law is None:
-        x, steps, error = _uncontrolled(instance)
-        u, status = np.repeat(_control(instance), len(times), axis=1), _status(instance, x, error)
+        x, steps, error = _uncontrolled(instance, limits)
+        u, left = np.repeat(_control(instance), len(times), axis=1), False
     else:
-        run, error = _controlled(instance, law, times)
-        x, u, steps = run.x, run.u, run.steps
-        status = Status.LEFT_DOMAIN if run.left_domain else _status(instance, x, error)
+        run, error = _controlled(instance, law, times, limits)
+        x, u, steps, left = run.x, run.u, run.steps, run.left_domain
+    status = Status.LEFT_DOMAIN if left else _status(instance, x, error, limits)
     return Flight(
         instance=instance,
         feedback=law.name if law else "none",
@@ -92,7 +94,7 @@ def _control(instance: Instance) -> Array:
     return control_set.project(instance, np.zeros((len(instance.model.spec.controls), 1)))
 
 
-def _uncontrolled(instance: Instance) -> tuple[Array, int, float]:
+def _uncontrolled(instance: Instance, limits: Limits) -> tuple[Array, int, float]:
     """States at the nodes by RK4, halving the step until two runs agree; steps; and the estimated error."""
     coarse_steps, sufficient = instance.solver.steps, MARGIN * instance.solver.tolerance
     steps, x, error = coarse_steps, _fly(instance, coarse_steps), float("nan")
@@ -104,15 +106,17 @@ def _uncontrolled(instance: Instance) -> tuple[Array, int, float]:
             error = _difference(coarse, x[:, ::2], _rounding(instance, x, steps) / sufficient) / RICHARDSON
         if error <= sufficient or error > instance.solver.tolerance * FASTEST ** np.log2(most / steps):
             break
+        if limits.expired:
+            break
     return x[:, :: steps // coarse_steps], steps, error
 
 
-def _controlled(instance: Instance, law: Law, times: Array) -> tuple[closed_loop.Run, float]:
+def _controlled(instance: Instance, law: Law, times: Array, limits: Limits) -> tuple[closed_loop.Run, float]:
     """The motion under a law, with smaller tolerances until two runs agree; and the estimated error."""
     sufficient = MARGIN * instance.solver.tolerance
     tolerance, error = sufficient, float("nan")
     run = closed_loop.fly(instance, law, times, tolerance)
-    while not error <= sufficient and tolerance > LEAST_TOLERANCE and np.isfinite(run.x).all():
+    while not error <= sufficient and tolerance > LEAST_TOLERANCE and np.isfinite(run.x).all() and not limits.expired:
         tolerance, coarse = max(SHARPER * tolerance, LEAST_TOLERANCE), run
         run = closed_loop.fly(instance, law, times, tolerance)
         error = _difference(coarse.x, run.x) / GAINED
@@ -146,17 +150,21 @@ def _difference(coarse: Array, fine: Array, least: Array | float = 0.0) -> float
         return float((np.abs(coarse - fine) / size).max())
 
 
-def _status(instance: Instance, x: Array, error: float) -> Status:
+def _status(instance: Instance, x: Array, error: float, limits: Limits) -> Status:
     if not np.isfinite(x).all():
         return Status.NON_FINITE
     if not instance.model.in_domain(x):
         return Status.LEFT_DOMAIN
-    return Status.CONVERGED if error <= instance.solver.tolerance else Status.NOT_CONVERGED
+    if error <= instance.solver.tolerance:
+        return Status.CONVERGED
+    return Status.TIME_LIMIT if limits.expired else Status.NOT_CONVERGED
 
 
 def _message(status: Status, error: float, steps: int) -> str:
     if status is Status.CONVERGED:
         return f"two runs, one of them with fewer steps, agree to {error:.0e}"
+    if status is Status.TIME_LIMIT:
+        return f"time was up: {steps} steps leave an estimated error of {error:.0e}; {status.advice}"
     if status is Status.NOT_CONVERGED:
         return f"even {steps} steps leave an estimated error of {error:.0e}: the motion comes close to a singularity"
     return f"the motion is not finite: {status.advice}" if status is Status.NON_FINITE else status.advice
