@@ -103,6 +103,14 @@ def test_hardly_more_than_the_least_time_leaves_a_short_coast() -> None:
     assert found.switching_times[0] == pytest.approx(known.switches, abs=1e-9)
 
 
+def test_a_control_that_only_pushes_away_is_infeasible_and_the_nearest_end_is_told() -> None:
+    # With u >= 1/2 for 3 s from q = 1 nothing ends below q = 1 + 9/4, or slower than 3/2.
+    found = solving.solve(case(FUEL, initial=(1.0, 0.0), tf=3.0, lower=(0.5,)))
+    assert found.status is Status.INFEASIBLE
+    assert "misses q by 3.25, q_dot by 1.5" in found.message
+    assert not np.isfinite(found.x).any()
+
+
 @pytest.mark.parametrize("share", [0.5, 0.99])
 def test_a_given_time_below_the_least_is_infeasible_and_the_least_is_told(share: float) -> None:
     least = least_time(3.0, -1.0).duration

@@ -14,6 +14,7 @@ from satsym.instance import Instance
 from satsym.solution import Iteration, Progress, Solution
 from satsym.solve.integrate import NotFinite
 from satsym.solve.iteration import Limits, watched
+from satsym.solve.nearest import nearest
 from satsym.solve.switching import held, homotopy, least_effort
 from satsym.solve.switching.attempt import Exact, attempt
 from satsym.solve.switching.least_time import least_time
@@ -61,7 +62,7 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         if isinstance(found, homotopy.Stopped):
             found = _by_least_time(instance, found, limits)
         if isinstance(found, homotopy.Stopped):
-            return _none(instance, found, tuple(history), began)
+            return _none(instance, _out_of_reach(found, limits), tuple(history), began)
         return _solution(instance, *found, tuple(history), began)
 
 
@@ -85,6 +86,16 @@ def _by_least_time(
     alone = ", and at that only one control arrives, whatever it costs" if given <= least * (1.0 + ENOUGH) else ""
     message = f"{stopped.message}; the least time to the given end is {least:.10g} (structure {name}){alone}"
     return replace(stopped, message=message)
+
+
+def _out_of_reach(stopped: homotopy.Stopped, limits: Limits) -> homotopy.Stopped:
+    """Why there is no answer: where the final time is given, perhaps that no control arrives."""
+    if stopped.status is not Status.NOT_CONVERGED or stopped.problem is None or stopped.curve is None:
+        return stopped
+    near = nearest(stopped.problem, stopped.curve, limits)
+    if near is None or near.arrives or limits.expired:
+        return stopped
+    return replace(stopped, status=Status.INFEASIBLE, message=f"{near.message}; {stopped.message}")
 
 
 def others(instance: Instance, limits: Limits) -> list[Exact]:
