@@ -66,27 +66,16 @@ def fly(
     BadInput
         For arrays of other shapes, numbers that are not finite, no step, or a method that is not the model's.
     """
-    spec = kernels.spec
-    nodes, start = np.asarray(times, float), np.asarray(x0, float)
-    if nodes.ndim != 1 or not len(nodes):
-        raise BadInput(f"times: has shape {nodes.shape}; give a list of times")
-    if start.ndim != 2 or len(start) != len(spec.states):
-        raise BadInput(f"x0: has shape {start.shape}; give a row for each of the {len(spec.states)} states")
+    nodes, start, parameters, controls = _checked(kernels, times, x0, p, u)
     if steps < 1:
         raise BadInput(f"steps: {steps}; take at least one between two times")
-    count = start.shape[1]
-    parameters = _rows("p", p, len(spec.parameters), count)
-    controls = _rows("u", np.zeros(len(spec.controls)) if u is None else u, len(spec.controls), count)
-    for name, rows in (("times", nodes), ("x0", start), ("p", parameters), ("u", controls)):
-        if not np.isfinite(rows).all():
-            raise BadInput(f"{name}: not finite; give numbers")
     if method not in METHODS:
         raise BadInput(f"method: {shown(method)}; {suggestion(method, METHODS)}")
-    symplectic, compiled = method == "symplectic", kernels.backend == "numba"
+    count, symplectic, compiled = start.shape[1], method == "symplectic", kernels.backend == "numba"
     if symplectic:
         kernels.require_separable()
         if controls.any():
-            raise BadInput(f"u: the symplectic method is for motions without control; take RK4 for {spec.name}")
+            raise BadInput(f"u: the symplectic method is for motions without control; take RK4 for {kernels.spec.name}")
     arrays = _Kicks if symplectic else _RungeKutta
     advance = kernels.block_step(symplectic) if compiled else arrays(kernels).advance
     x = np.empty((len(start), len(nodes), count))
@@ -100,6 +89,25 @@ def fly(
                 advance(nodes[k - 1], (nodes[k] - nodes[k - 1]) / steps, steps, y, *given)
                 x[:, k, part] = y
     return x
+
+
+def _checked(
+    kernels: Kernels, times: ArrayLike, x0: ArrayLike, p: Sequence[ArrayLike], u: ArrayLike | None
+) -> tuple[Array, Array, Array, Array]:
+    """Times, starts, parameters and controls, a column for each motion."""
+    spec = kernels.spec
+    nodes, start = np.asarray(times, float), np.asarray(x0, float)
+    if nodes.ndim != 1 or not len(nodes):
+        raise BadInput(f"times: has shape {nodes.shape}; give a list of times")
+    if start.ndim != 2 or len(start) != len(spec.states):
+        raise BadInput(f"x0: has shape {start.shape}; give a row for each of the {len(spec.states)} states")
+    parameters = _rows("p", p, len(spec.parameters), start.shape[1])
+    idle = np.zeros(len(spec.controls)) if u is None else u
+    controls = _rows("u", idle, len(spec.controls), start.shape[1])
+    for name, rows in (("times", nodes), ("x0", start), ("p", parameters), ("u", controls)):
+        if not np.isfinite(rows).all():
+            raise BadInput(f"{name}: not finite; give numbers")
+    return nodes, start, parameters, controls
 
 
 class _RungeKutta:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solve.certificate.flow import typical
+from satsym.solve.certificate.next_switch import TOLERANCE, integrated, next_switch
 from satsym.solve.certificate.stated_arcs import Stated, arcs, undecided
 from satsym.solve.switching.field import Field
 from satsym.solve.switching.newton import switching
@@ -24,10 +25,7 @@ from satsym.solve.switching.structure import REST, SINGULAR
 
 Array = NDArray[np.floating[Any]]
 
-TOLERANCE = 5e-14
 MOST_SWITCHES = 200
-POLISHED = 6
-"""Newton steps to the time of a switch."""
 
 TOUCHING = 1e-4
 """A change of sign so shortly before a singular arc, as a share of the arc before it, is where its zero is touched."""
@@ -146,12 +144,12 @@ def _piece(
         if (settled[i] or SINGULAR in (now[2], after[2])) and now[1] > start + 1e-12 * (end - start)
     ]
     until, switched, level = min(known, default=(end, None, None))
-    met = _first_switch(field, settled, start, until, z, sizes)
+    met = next_switch(field, settled, start, until, z, sizes)
     touching = met is not None and met[1] == switched and until - met[0] < TOUCHING * (until - start)
     if met is not None and not touching:
         until, switched = met
         level = None
-    after, transition = _integrated(field, start, until, z, sizes)
+    after, transition = integrated(field, start, until, z, sizes)
     piece = Piece(field, start, until, z, after, switched, transition)
     if switched is None:
         return piece, field.levels
@@ -161,99 +159,6 @@ def _piece(
         weight = field.weight(until, after.tolist(), switched)
         level = int(best_levels(field.instance, switched, np.array([ahead]), np.array([weight]))[0])
     return piece, (*field.levels[:switched], level, *field.levels[switched + 1 :])
-
-
-def _first_switch(
-    field: Field, settled: list[bool], start: float, end: float, z: Array, sizes: Array
-) -> tuple[float, int] | None:
-    """When, and of which control, the next change of sign is."""
-    from scipy.integrate import solve_ivp
-
-    span, n = end - start, field.n
-    marks: list[tuple[int, float]] = []
-    for i, level in enumerate(field.levels):
-        if settled[i] or level == SINGULAR or field.instance.lower[i] == field.instance.upper[i]:
-            continue
-        weighs = field.weight(start, z.tolist(), i) > 0.0
-        marks += [(i, side) for side in ((-1.0, 1.0) if weighs else (0.0,))]
-
-    def gone(i: int, side: float, t: float, y: list[float]) -> tuple[float, float]:
-        """How far a switching function is from a value at which it switches, and the rate of that."""
-        sigma, rate = switching(field, t, y, i)
-        if side == 0.0:
-            return sigma, rate
-        return sigma - side * field.weight(t, y, i), rate - side * field.weight_gradient(t, y, i)[1]
-
-    def event(i: int, side: float) -> Any:
-        now, rate = gone(i, side, start, z.tolist())
-        size = max(float(np.abs(field.gradient(start, z.tolist(), i)) @ sizes), 1e-300)
-        sign = np.sign(now) if abs(now) > 1e-9 * size else np.sign(rate)
-
-        def value(t: float, y: Array) -> float:
-            if t - start < 1e-9 * span:  # leaving the switch that began this arc
-                return float(sign)
-            sigma = field.model.switching_function(t, y[:n].tolist(), y[n:].tolist(), field.p)[i]
-            return float(sigma - side * field.weight(t, y.tolist(), i) if side else sigma)
-
-        value.terminal = True  # type: ignore[attr-defined]
-        return value
-
-    if not marks or span <= 0.0:
-        return None
-    found = solve_ivp(
-        lambda t, y: field.rates(t, y.tolist()),
-        (start, end),
-        z,
-        method="DOP853",
-        rtol=TOLERANCE,
-        atol=TOLERANCE * sizes,
-        events=[event(i, side) for i, side in marks],
-        max_step=span / 16.0,
-    )
-    if found.status != 1:
-        if found.status < 0:
-            raise ArithmeticError(found.message)
-        return None
-    which = next(k for k, times in enumerate(found.t_events) if len(times))
-    (control, side), time = marks[which], float(found.t_events[which][0])
-    for _ in range(POLISHED):  # SciPy finds events on an interpolant that is less accurate than its steps
-        y, _ = _integrated(field, start, time, z, sizes, transition=False)
-        value, rate = gone(control, side, time, y.tolist())
-        if rate == 0.0 or abs(value) > abs(rate) * 1e-3 * span:
-            break
-        correction = value / rate
-        time -= correction
-        if abs(correction) <= 1e-15 * max(abs(time), span):
-            break
-    return (time, control) if time < end else None
-
-
-def _integrated(
-    field: Field, start: float, end: float, z: Array, sizes: Array, transition: bool = True
-) -> tuple[Array, Array]:
-    """States and costates at the end of a piece, and their derivatives by those at its start."""
-    from scipy.integrate import solve_ivp
-
-    rows = len(z)
-
-    def rates(t: float, y: Array) -> Array:
-        here = y[:rows].tolist()
-        if not transition:
-            return np.array(field.rates(t, here))
-        matrix = field.jacobian(t, here) @ y[rows:].reshape(rows, rows)
-        return np.concatenate([field.rates(t, here), matrix.ravel()])
-
-    y, scale = z, sizes
-    if transition:
-        y = np.concatenate([z, np.eye(rows).ravel()])
-        scale = np.concatenate([sizes, np.outer(sizes, 1.0 / sizes).ravel()])
-    if end <= start:
-        return z, np.eye(rows)
-    found = solve_ivp(rates, (start, end), y, method="DOP853", rtol=TOLERANCE, atol=TOLERANCE * scale)
-    if found.status != 0:
-        raise ArithmeticError(found.message)
-    last = found.y[:, -1]
-    return last[:rows], last[rows:].reshape(rows, rows) if transition else np.zeros(0)
 
 
 def _stations(piece: Piece, nodes: Array, sizes: Array) -> tuple[tuple[Array, Array, Array], float]:
