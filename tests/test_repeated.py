@@ -97,6 +97,37 @@ def test_numbers_must_be_as_many_as_the_model_has(pair: Pair):
         pair.plain.solve(initial=(1.0, 0.0, 0.0))
 
 
+@pytest.mark.parametrize(
+    ("initial", "complaint"),
+    [
+        ((-1.0, 0.0, 0.0, 1.0), r"\[initial\] r: .* outside the domain"),
+        ((0.0, 0.0, 0.0, 1.0), r"\[initial\] r: .* outside the domain"),
+        ((1.0, 0.0, float("nan"), 1.0), r"\[initial\] theta: nan is not finite"),
+        ((1.0, 0.0, 0.0, float("inf")), r"\[initial\] theta_dot: inf is not finite"),
+    ],
+)
+def test_numbers_that_are_none_are_refused_and_leave_the_machine_as_it_was(
+    pair: Pair, initial: tuple[float, ...], complaint: str
+):
+    before = pair.plain.solve()
+    with pytest.raises(BadInput, match=complaint):
+        pair.plain.solve(initial=initial)
+    matches(pair.plain.solve(), pair.solve(instance.load("return-to-orbit")))
+    assert before.objective == pytest.approx(pair.plain.answer.objective, rel=1e-12)
+
+
+def test_numbers_beyond_arithmetic_are_an_answer_with_a_status(pair: Pair):
+    answer = pair.plain.solve(initial=(1e30, 0.0, 0.0, 1.0))
+    assert answer.status is Status.NON_FINITE
+    assert pair.plain.solve().status is Status.CONVERGED
+
+
+@pytest.mark.parametrize("name", ["double-integrator-time", "double-integrator-fuel", "lapan-minimum-time"])
+def test_controls_that_switch_are_refused(name: str):
+    with pytest.raises(BadInput, match="switch"):
+        Repeated(instance.load(name))
+
+
 def test_turns_are_not_looked_for_again_and_again():
     case = instance.load("return-to-orbit")
     with pytest.raises(BadInput, match="free_angles"):

@@ -12,8 +12,8 @@ from satsym.instance import Instance
 from satsym.solution import Array, Iteration, Progress, Solution
 from satsym.solve import revolutions
 from satsym.solve.collocation.continuation import by_bound
-from satsym.solve.collocation.curve import Path
-from satsym.solve.collocation.problem import TwoPoint
+from satsym.solve.collocation.curve import Curve, Path
+from satsym.solve.collocation.problem import Scale, TwoPoint
 from satsym.solve.iteration import Limits, watched
 from satsym.solve.revolutions import TURN, Best
 from satsym.status import Status
@@ -49,6 +49,20 @@ Method = Callable[[Instance, Limits, bool], Extremal]
 """From an instance to an extremal; the last argument says whether with great effort."""
 
 
+ARITHMETIC = (np.linalg.LinAlgError, ArithmeticError)
+"""What numbers beyond all bounds end in."""
+
+
+def without_numbers(instance: Instance, error: Exception) -> Extremal:
+    """No answer, because arithmetic failed on the way."""
+    n, duration = len(instance.initial), 1.0 if instance.tf is None else instance.tf - instance.t0
+    problem = TwoPoint(instance, (0.0,) * 3 * n, duration, Scale(np.ones(n), 1.0))
+    nothing = np.full((2 * n, 2), np.nan)
+    path = Curve(np.array([0.0, 1.0]), nothing, nothing[:, :1, None], problem.theta)
+    message = f"arithmetic fails on the way ({error})"
+    return Extremal(problem, path, float("inf"), Status.NON_FINITE, message, 0)
+
+
 def solved(instance: Instance, progress: Progress | None, name: str, method: Method) -> Solution:
     """Solve an instance by a method, with the cheapest number of turns.
 
@@ -65,10 +79,15 @@ def solved(instance: Instance, progress: Progress | None, name: str, method: Met
     """
     began = time.perf_counter()
     limits, history = watched(instance, progress)
+
+    def guarded(one: Instance, effort: bool) -> Extremal:
+        try:
+            return method(one, limits, effort)
+        except ARITHMETIC as error:
+            return without_numbers(one, error)
+
     with np.errstate(all="ignore"):
-        best = revolutions.cheapest(
-            instance, limits, lambda one, effort: method(one, limits, effort), lambda found: found.cost
-        )
+        best = revolutions.cheapest(instance, limits, guarded, lambda found: found.cost)
         return _solution(instance, name, best, tuple(history), began)
 
 
@@ -89,7 +108,7 @@ def _solution(
         costs = ", ".join(f"{value:.4g}" for value in best.endless)
         status, message = Status.NO_MINIMISER, f"more turns are always cheaper: the last three numbers cost {costs}"
     u = problem.control(tau, scaled, path.theta)
-    if status in (Status.INFEASIBLE, Status.NO_MINIMISER):
+    if status in (Status.INFEASIBLE, Status.NO_MINIMISER, Status.NON_FINITE):
         z, u = np.full_like(z, np.nan), np.full_like(u, np.nan)  # what was tried on the way is no answer
     met = by_bound(problem, path) if status.answered else []
     return Solution(

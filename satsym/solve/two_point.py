@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
+
 from satsym.instance import Instance
 from satsym.solution import Progress, Solution
 from satsym.solve.collocation.cold_start import Start, cold_start
@@ -20,6 +22,9 @@ from satsym.solve.extremal import Extremal, solved
 from satsym.solve.iteration import Limits
 from satsym.solve.nearest import nearest
 from satsym.status import Status
+
+ROUNDING = 1e-12
+"""An estimated error below this can hardly be made smaller."""
 
 Accurate = Callable[[TwoPoint, Start, Limits], Extremal]
 """From an extremal of low order without bounds to an accurate one within them."""
@@ -86,20 +91,33 @@ def unfinished(problem: TwoPoint, path: Path, message: str, steps: int, limits: 
 
 
 def outside(problem: TwoPoint, path: Path, bounded: Bounded, steps: int, limits: Limits) -> Extremal:
-    """No extremal within the bounds: whether the end can be reached at all, or how far bounds could be brought in."""
-    if bounded.reached == 1.0:
-        return unfinished(problem, path, "the times at which bounds are met do not settle", steps, limits)
-    message = f"bounds could be brought in only {bounded.reached:.0%} of the way from where they do not bind"
-    found = nearest(problem, path, limits)
-    if found is None or limits.expired:
-        return unfinished(problem, path, message, steps, limits)
-    if found.arrives:
-        return unfinished(problem, path, f"{message}, though the end can be reached", steps, limits)
-    return Extremal(problem, path, float("inf"), Status.INFEASIBLE, f"{found.message}; {message}", steps)
+    """No extremal within the bounds, and how far these could be brought in."""
+    message = "the times at which bounds are met do not settle"
+    if bounded.reached < 1.0:
+        message = f"bounds could be brought in only {bounded.reached:.0%} of the way from where they do not bind"
+    return unfinished(problem, path, message, steps, limits)
+
+
+def explained(found: Extremal, limits: Limits) -> Extremal:
+    """What was found; where bounds are in the way of an answer, whether the end can be reached at all."""
+    problem = found.problem
+    if found.status is not Status.NOT_CONVERGED or not np.isfinite(problem.bounds).any():
+        return found
+    near = nearest(problem, found.path, limits)
+    if near is None or limits.expired:
+        return found
+    if near.arrives:
+        return replace(found, message=f"{found.message}, though the end can be reached")
+    return replace(found, status=Status.INFEASIBLE, message=f"{near.message}; {found.message}")
 
 
 def accurate(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
     """From an extremal of low order without bounds to an accurate one within them, by collocation."""
+    return explained(within(problem, start, limits), limits)
+
+
+def within(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
+    """The same, without asking why where there is none."""
     tolerance = problem.instance.solver.tolerance
     free = problem.widened(float("inf"))
     refined = refine(free, start.found.curve, tolerance, known=start.found.linearised)
@@ -118,6 +136,8 @@ def accurate(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
     intervals = len(refined.curve.mesh) - 1
     if not refined.converged:
         message = f"the estimated error stays at {refined.error:.0e} on {intervals} intervals"
+        if refined.error < ROUNDING:
+            message += ", which rounding leaves: raise [solver] tolerance"
         return unfinished(problem, refined.curve, message, steps, limits)
     message = f"estimated error {refined.error:.0e} on {intervals} intervals"
     return Extremal(problem, refined.curve, cost, Status.CONVERGED, message, steps)

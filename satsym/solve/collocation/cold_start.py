@@ -1,7 +1,7 @@
 """From nothing to an extremal: a straight line where that goes straight, else a path of easier problems.
 
-First Newton's method from the straight line in the state space (or, where nothing is asked of the end, from the
-motion without control), then the minimisation from there. Where neither
+First Newton's method from what is guessed, or from the straight line in the state space (or, where nothing is asked of
+the end, from the motion without control), then the minimisation from there. Where neither
 walks straight through, the second way decides as well: from a motion that needs no control at all and ends where it
 should, the initial state is moved to the given one, each problem starting from the last. The cheaper minimum
 stands. Where neither way arrives, the duration is halved until the straight line leads to a minimum, and lengthened
@@ -51,7 +51,7 @@ class Start:
     found
         The cheapest minimum, or the last attempt.
     way
-        ``"straight line"``, ``"path of problems"``, one of those in ``LAST``, or ``"none"``.
+        ``"guess"`` or ``"straight line"``, ``"path of problems"``, one of those in ``LAST``, or ``"none"``.
     steps
         Steps of all attempts.
     minima
@@ -77,13 +77,14 @@ def cold_start(problem: TwoPoint, limits: Limits, quick: bool = False) -> Start:
         Try the first way only.
     """
     free = problem.widened(float("inf"))
-    line = paths.curve(free, paths.first(free))
+    line, guess = paths.start(free), problem.instance.guess
+    begin = "guess" if guess.state or guess.costate else "straight line"
 
     def from_line(problem: TwoPoint) -> Found:
         return from_path(problem, paths.first(problem), limits)
 
     ways: list[tuple[str, Callable[[], Found | None]]] = [
-        ("straight line", lambda: straight_through(line, System(free, line.mesh, STAGES), limits) or from_line(free)),
+        (begin, lambda: straight_through(line, System(free, line.mesh, STAGES), limits) or from_line(free)),
         ("path of problems", lambda: along_problems(free, geometric, limits)),
         ("straight path of problems", lambda: along_problems(free, straight, limits)),
         ("path of durations", lambda: along_durations(free, STAGES, limits, from_line)),

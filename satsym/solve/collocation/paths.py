@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -27,9 +27,38 @@ STEPS = 4000
 
 
 def first(problem: TwoPoint) -> States:
-    """Where to begin: on the straight line to the end, or where that is free without control."""
+    """Where to begin: as guessed, else on the straight line to the end, or where that is free without control."""
     coasting = None if problem.fixed.any() else _coasting(problem, problem.initial, backwards=False)
-    return coasting or _line(problem)
+    path = coasting or _line(problem)
+    guessed, names = problem.instance.guess.state, problem.instance.model.spec.state_names
+    if not guessed:
+        return path
+
+    def overlaid(tau: Array) -> Array:
+        states = path(tau)
+        for name, values in guessed.items():
+            states[names.index(name)] = _series(values, tau) / problem.scale.state[names.index(name)]
+        return states
+
+    return overlaid
+
+
+def start(problem: TwoPoint) -> Curve:
+    """Where to begin as a curve, with the costates that are guessed."""
+    begun, n = curve(problem, first(problem)), problem.states
+    times = stage_times(begun.mesh, STAGES)
+    for name, values in problem.instance.guess.costate.items():
+        i = n + problem.instance.model.spec.state_names.index(name)
+        unit = problem.scale.both[i, 0]
+        begun.nodes[i] = _series(values, begun.mesh) / unit
+        begun.stages[i] = _series(values, times.ravel()).reshape(times.shape) / unit
+    return begun
+
+
+def _series(values: Sequence[float], tau: Array) -> Array:
+    """Values evenly spaced over [0, 1], straight lines between."""
+    found: Array = np.interp(tau, np.linspace(0.0, 1.0, len(values)), values)
+    return found
 
 
 def coasting_to_the_end(problem: TwoPoint) -> States | None:

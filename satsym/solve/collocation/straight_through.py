@@ -29,7 +29,7 @@ def straight_through(start: Curve, system: System, limits: Limits) -> Found | No
     Parameters
     ----------
     start
-        A guess without costates.
+        A guess, mostly without costates.
     system
         Collocation equations of a problem without bounds, on the guess's mesh and with its stages.
     limits

@@ -64,7 +64,11 @@ class ByCollocation:
 
     def cold(self, case: Instance, limits: Limits) -> Extremal:
         """A cold start, with a mesh and scales of its own."""
-        return two_point.from_cold_start(case, limits, True, self._accurate)
+
+        def accurate(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
+            return two_point.explained(self._within(problem, start, limits), limits)
+
+        return two_point.from_cold_start(case, limits, True, accurate)
 
     def full(self, found: Extremal, limits: Limits) -> Extremal:
         """Nothing is missing."""
@@ -72,11 +76,11 @@ class ByCollocation:
 
     def _sound(self, problem: TwoPoint, found: Found, limits: Limits) -> Extremal | None:
         start = Start(found, "last answer", found.iterations, {})
-        extremal = self._accurate(problem, start, limits)
+        extremal = self._within(problem, start, limits)
         return extremal if extremal.status.answered else None
 
-    def _accurate(self, problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
-        extremal = two_point.accurate(problem, start, limits)
+    def _within(self, problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
+        extremal = two_point.within(problem, start, limits)
         if extremal.status.answered:
             self._good = problem, start.found.curve
         return extremal

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
@@ -10,11 +9,13 @@ from importlib.util import find_spec
 import numpy as np
 
 from satsym.instance import Instance
+from satsym.instance.resolve import value_of
 from satsym.solution import Array, Solution
-from satsym.solve.extremal import Extremal, solved
-from satsym.solve.iteration import Limits
+from satsym.solve.extremal import ARITHMETIC, Extremal, solved, without_numbers
+from satsym.solve.iteration import Limits, watched
 from satsym.solve.repeated.by_collocation import ByCollocation
 from satsym.solve.repeated.means import Means
+from satsym.spec import Variable
 from satsym.status import BadInput, Status
 
 
@@ -68,7 +69,8 @@ class Repeated:
     Raises
     ------
     BadInput
-        If the model has no cost, angles are to count modulo a turn, or numba is asked for and not installed.
+        If the model has no cost, its controls switch, angles are to count modulo a turn, or numba is asked for and
+        not installed.
 
     Examples
     --------
@@ -84,6 +86,11 @@ class Repeated:
         if not instance.model.spec.has_cost:
             raise BadInput(
                 f"{instance.name}: model {instance.model.spec.name} has no cost, so there is nothing to solve"
+            )
+        if instance.model.spec.switching:
+            raise BadInput(
+                f"{instance.name}: the controls of {instance.model.spec.name} switch, which cannot be solved again "
+                "and again; solve each instance by itself"
             )
         if instance.solver.free_angles:
             raise BadInput(
@@ -110,25 +117,42 @@ class Repeated:
         -------
         Answer
             The extremal near the last answer; or, from a straight line or a cold start, near a strict local minimum
-            of the problem without bounds.
+            of the problem without bounds. Only :func:`certify` tells whether it is a minimum within them.
 
         Raises
         ------
         ValueError
             If there are not as many numbers as states or parameters.
+        BadInput
+            If one of them is not finite or outside its domain.
         """
+        spec = self._case.model.spec
         case = replace(
             self._case,
-            initial=_numbers(initial, self._case.initial, "initial"),
-            parameters=_numbers(parameters, self._case.parameters, "parameters"),
+            initial=_numbers(initial, self._case.initial, spec.states, "initial"),
+            parameters=_numbers(parameters, self._case.parameters, spec.parameters, "parameters"),
         )
-        limits = Limits(case.solver.max_iterations or 500, time.perf_counter() + case.solver.max_seconds)
+        limits, _ = watched(case, None)
         with np.errstate(all="ignore"):
-            near = None if cold else self._means.near(case, limits)
-            straight = None if near else self._means.straight(case, limits)
-            found = near or straight or self._means.cold(case, limits)
-        self.answer = _answer(found, "last answer" if near else "straight line" if straight else "cold start")
+            self.answer = _answer(*self._found(case, limits, cold))
         return self.answer
+
+    def _found(self, case: Instance, limits: Limits, cold: bool) -> tuple[Extremal, str]:
+        """An extremal, or why there is none, and from where it was found."""
+        quick = {"last answer": self._means.near, "straight line": self._means.straight}
+        for way, attempt in quick.items():
+            if cold and way == "last answer":
+                continue
+            try:
+                found = attempt(case, limits)
+            except ARITHMETIC:
+                continue
+            if found:
+                return found, way
+        try:
+            return self._means.cold(case, limits), "cold start"
+        except ARITHMETIC as error:
+            return without_numbers(case, error), "cold start"
 
     def solution(self, answer: Answer) -> Solution:
         """All of an answer, with times of switching, as other solvers give it; takes as long as they do.
@@ -169,9 +193,17 @@ def _answer(found: Extremal, way: str) -> Answer:
     )
 
 
-def _numbers(given: Sequence[float] | None, own: tuple[float, ...], name: str) -> tuple[float, ...]:
+def _numbers(
+    given: Sequence[float] | None, own: tuple[float, ...], variables: Sequence[Variable], name: str
+) -> tuple[float, ...]:
     if given is None:
         return own
     if len(given) != len(own):
         raise ValueError(f"{name} must hold {len(own)} numbers, not {len(given)}")
-    return tuple(map(float, given))
+    return tuple(_number(float(value), v, f"[{name}] {v.symbol}") for value, v in zip(given, variables, strict=True))
+
+
+def _number(value: float, variable: Variable, key: str) -> float:
+    if not np.isfinite(value):
+        raise BadInput(f"{key}: {value} is not finite; give a number")
+    return value_of(variable, value, key)

@@ -18,7 +18,7 @@ from satsym.solve.iteration import Limits
 from satsym.solve.shooting.arcs import Arcs, sufficient
 from satsym.solve.shooting.newton import Outcome, doubled, newton
 from satsym.solve.shooting.runge_kutta import ORDER
-from satsym.solve.two_point import from_cold_start, outside, unfinished
+from satsym.solve.two_point import explained, from_cold_start, outside, unfinished
 from satsym.status import Status
 
 ACCURACY = 1e-11
@@ -117,8 +117,8 @@ def _accurate(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
     bounded = tighten(problem, start.found.curve, STAGES, limits)
     steps = start.steps + bounded.iterations
     if bounded.reached < 1.0:
-        return outside(problem, bounded.curve, bounded, steps, limits)
-    found = extremal(problem, bounded.curve, limits)
+        return explained(outside(problem, bounded.curve, bounded, steps, limits), limits)
+    found = explained(extremal(problem, bounded.curve, limits), limits)
     return replace(found, iterations=steps + found.iterations)
 
 
