@@ -132,8 +132,8 @@ def integrated(
         here = y[:rows].tolist()
         if not transition:
             return np.array(field.rates(t, here))
-        matrix = field.jacobian(t, here) @ y[rows:].reshape(rows, rows)
-        return np.concatenate([field.rates(t, here), matrix.ravel()])
+        now, slopes = field.linearised(t, here)
+        return np.concatenate([now, (slopes @ y[rows:].reshape(rows, rows)).ravel()])
 
     y, scale = z, sizes
     if transition:

@@ -16,8 +16,9 @@ Array = NDArray[np.floating[Any]]
 NUDGE = 1e-30
 """Imaginary step of derivatives: exact, for nothing is subtracted."""
 
-DIFFERENCE, TINY = 1e-5, 1e-12
-"""Relative step of central differences, and what counts as nothing."""
+STENCIL = ((-2.0, 1.0 / 12.0), (-1.0, -2.0 / 3.0), (1.0, 2.0 / 3.0), (2.0, -1.0 / 12.0))
+SHIFT = 1e-3
+"""Places and weights of a central difference of fourth order, and its step as a share of the duration."""
 
 
 class Field:
@@ -55,15 +56,20 @@ class Field:
         x, lam, u = z[: self.n], z[self.n :], self.control(t, z)
         return [*self.model.dynamics(t, x, u, self.p), *self.model.costate_rate(t, x, u, lam, self.p)]
 
-    def jacobian(self, t: float, z: list[float]) -> Array:
-        """The rates by z, shape (2n, 2n)."""
+    def linearised(self, t: float, z: list[float]) -> tuple[Array, Array]:
+        """dz/dt, shape (2n,), and its derivatives by z, shape (2n, 2n)."""
         x, lam, u = z[: self.n], z[self.n :], self.control(t, z)
-        size = 2 * self.n
-        held: Array = np.array(self.model.extremal_jacobian(t, x, u, lam, self.p)).reshape(size, size)
+        rates = np.array([*self.model.dynamics(t, x, u, self.p), *self.model.costate_rate(t, x, u, lam, self.p)])
+        held = np.array(self.model.extremal_jacobian(t, x, u, lam, self.p)).reshape(2 * self.n, 2 * self.n)
         if self.singular is None:
-            return held
-        by_control = np.concatenate([self._column(t, x, u), -self.gradient(t, z, self.singular)[: self.n]])
-        return held + np.outer(by_control, self._feedback_slope(t, z))
+            return rates, held
+        # The control keeps the second derivative of the switching function at zero: the gradient of the first
+        # derivative times the rates, and what time does besides.
+        gradient = self.gradient(t, z, self.singular)
+        by_control = np.concatenate([gradient[self.n :], -gradient[: self.n]])
+        by_point = self._rate_gradient(t, z, u, self.singular)
+        slope = (self._turning(t, z, u, rates) + by_point @ held) / -(by_point @ by_control)
+        return rates, held + np.outer(by_control, slope)
 
     def along(self, t: Array, z: Array) -> tuple[Array, Array]:
         """Controls (m, N) and rates (2n, N) at many points at once."""
@@ -106,11 +112,7 @@ class Field:
 
     def rate_gradient(self, t: float, z: list[float], control: int) -> Array:
         """The rate of a switching function by states and costates, shape (2n,)."""
-        columns = np.array(z)[:, None] + 1j * NUDGE * np.eye(2 * self.n)
-        u = np.repeat(np.array(self.control(t, z), dtype=complex)[:, None], 2 * self.n, axis=1)
-        x, lam = columns[: self.n], columns[self.n :]
-        rates = self.model.switching_rate_batch(np.full(2 * self.n, t), x, u, lam, self.p)
-        return np.asarray(rates[control].imag / NUDGE)
+        return self._rate_gradient(t, z, self.control(t, z), control)
 
     def legendre(self, t: float, z: list[float]) -> float:
         """The generalised Legendre-Clebsch expression of the singular control; positive where it is strict."""
@@ -131,22 +133,54 @@ class Field:
         The rate of the switching function, differentiated along the extremal by an imaginary step.
         """
         assert self.singular is not None
-        ends = []
-        for value in (0.0, 1.0):
-            u = np.repeat(np.array(self._with(value))[:, None], z.shape[1], axis=1)
-            x, lam = z[: self.n], z[self.n :]
-            f = np.asarray(self.model.dynamics_batch(t, x, u, self.p))
-            g = np.asarray(self.model.costate_rate_batch(t, x, u, lam, self.p))
-            ahead = (t + 1j * NUDGE, x + 1j * NUDGE * f, u, lam + 1j * NUDGE * g)
-            ends.append(np.asarray(self.model.switching_rate_batch(*ahead, self.p))[self.singular].imag / NUDGE)
-        return ends[0], ends[1] - ends[0]
+        count = z.shape[1]
+        u = np.repeat(np.array([self._with(0.0), self._with(1.0)]).T, count, axis=1)
+        times, both = np.concatenate([t, t]), np.concatenate([z, z], axis=1)
+        x, lam = both[: self.n], both[self.n :]
+        f = np.asarray(self.model.dynamics_batch(times, x, u, self.p))
+        g = np.asarray(self.model.costate_rate_batch(times, x, u, lam, self.p))
+        ahead = (times + 1j * NUDGE, x + 1j * NUDGE * f, u, lam + 1j * NUDGE * g)
+        found = np.asarray(self.model.switching_rate_batch(*ahead, self.p))[self.singular].imag / NUDGE
+        return found[:count], found[count:] - found[:count]
 
-    def _feedback_slope(self, t: float, z: list[float]) -> Array:
-        """The singular control by states and costates, shape (2n,), by central differences."""
+    def _rate_gradient(self, t: float, z: list[float], u: tuple[float, ...], control: int) -> Array:
+        """The same under given controls."""
+        columns = np.array(z)[:, None] + 1j * NUDGE * np.eye(2 * self.n)
+        held = np.repeat(np.array(u, dtype=complex)[:, None], 2 * self.n, axis=1)
+        x, lam = columns[: self.n], columns[self.n :]
+        rates = self.model.switching_rate_batch(np.full(2 * self.n, t), x, held, lam, self.p)
+        return np.asarray(rates[control].imag / NUDGE)
+
+    def _turning(self, t: float, z: list[float], u: tuple[float, ...], rates: Array) -> Array:
+        """How that gradient changes along the extremal, shape (2n,).
+
+        It consists of first derivatives that were generated, so that an imaginary step along the motion gives its
+        change to the last digits, which an integrator that is to find so many asks for. Only how the effect of the
+        control depends on time explicitly, which it seldom does, takes a difference besides.
+        """
         here = np.array(z)
-        halves = here.reshape(2, -1)
-        width = DIFFERENCE * np.maximum(np.abs(halves), 1e-3 * np.abs(halves).max(axis=1, keepdims=True) + TINY).ravel()
-        columns = here[:, None] + np.concatenate([np.diag(width), -np.diag(width)], axis=1)
-        base, slope = self._accelerations(np.full(columns.shape[1], t), columns)
-        ahead, behind = (-base / slope).reshape(2, -1)
-        return np.asarray((ahead - behind) / (2.0 * width))
+        gradient, curvature, f, held = self._derivatives(t + 1j * NUDGE, here + 1j * NUDGE * rates, u)
+        by_motion = (curvature @ f + gradient @ held).imag / NUDGE
+        _, curvature, _, _ = self._derivatives(t + 1j * NUDGE, here.astype(complex), u)
+        by_time = curvature.imag @ rates / NUDGE
+        end = self.instance.tf if self.instance.tf is not None else self.instance.t0 + max(1.0, abs(t))
+        shift = SHIFT * (end - self.instance.t0)
+        for place, weight in STENCIL:
+            gradient, *_ = self._derivatives(t + place * shift + 1j * NUDGE, here.astype(complex), u)
+            by_time += weight / shift * gradient.imag / NUDGE
+        return np.asarray(by_motion + by_time)
+
+    def _derivatives(self, t: complex, z: Array, u: tuple[float, ...]) -> tuple[Array, Array, Array, Array]:
+        """First and second derivatives of the switching function, rates and their derivatives, at a complex point."""
+        assert self.singular is not None
+        n, unit = self.n, np.zeros(len(u))
+        unit[self.singular] = 1.0
+        controls = np.stack([np.array(u), unit, -unit], axis=1)
+        times, x, lam = np.full(3, t), np.repeat(z[:n, None], 3, axis=1), np.repeat(z[n:, None], 3, axis=1)
+        f = np.asarray(self.model.dynamics_batch(times, x, controls, self.p))[:, 0]
+        g = np.asarray(self.model.costate_rate_batch(times, x, controls, lam, self.p))
+        held = np.asarray(self.model.extremal_jacobian_batch(times, x, controls, lam, self.p))
+        column = np.asarray(self.model.jacobian_u_batch(times, x, controls, self.p))[:, self.singular, 0]
+        by_control = (held[:, :, 1] - held[:, :, 2]) / 2.0
+        gradient = np.concatenate([(g[:, 2] - g[:, 1]) / 2.0, column])
+        return gradient, np.concatenate([-by_control[n:], by_control[:n]]), np.concatenate([f, g[:, 0]]), held[:, :, 0]

@@ -148,9 +148,8 @@ def _piece(
         return integrate(rates, np.array([start, end]), z, tolerance, sizes, WHOLE)[0].end, np.zeros(0)
 
     def both(t: float, y: Array) -> Array:
-        here = y[:rows].tolist()
-        matrix = field.jacobian(t, here) @ y[rows:].reshape(rows, rows)
-        return np.concatenate([field.rates(t, here), matrix.ravel()])
+        now, slopes = field.linearised(t, y[:rows].tolist())
+        return np.concatenate([now, (slopes @ y[rows:].reshape(rows, rows)).ravel()])
 
     values = np.concatenate([z, np.eye(rows).ravel()])
     scale = np.concatenate([sizes, ROUGHLY * np.outer(sizes, 1.0 / sizes).ravel()])
