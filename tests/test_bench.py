@@ -98,7 +98,7 @@ def test_a_missing_peer_is_said_with_its_reason(bench):
     assert (list(runners), reasons) == (["a"], {"b": "it is not here"})
     rows = bench["rows"]
     table = rows.Table("title", "seconds", (rows.missing("b", reasons["b"]),))
-    assert "not timed: it is not here" in rows.text([table])
+    assert "not timed: it is not here" in rows.text(table)
 
 
 def test_variants_take_turns_and_short_ones_are_repeated(bench):
@@ -129,9 +129,9 @@ def test_ratios_are_formed_pair_by_pair(bench):
 def test_lost_rows_are_printed_as_lost(bench):
     rows = bench["rows"]
     won, lost = rows.Goal("at least 3 x", 3.5, 3.0, least=True), rows.Goal("at most 1.2 x", 1.37, 1.2)
-    text = rows.text([rows.Table("1. A subject", "seconds", (rows.Row("ours", 1.0, 2.0, 1.0, (won, lost), "noted"),))])
-    assert "at least 3 x: reached (3.5); at most 1.2 x: NOT REACHED (1.37); noted" in text
-    assert "1 of 2 goals reached" in text
+    table = rows.Table("1. A subject", "seconds", (rows.Row("ours", 1.0, 2.0, 1.0, (won, lost), "noted"),))
+    assert "at least 3 x: reached (3.5); at most 1.2 x: NOT REACHED (1.37); noted" in rows.text(table)
+    assert rows.summary([table, table]) == "2 of 4 goals reached"
 
 
 def test_everyone_solves_the_same_riccati_equations(bench):

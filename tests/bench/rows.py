@@ -73,21 +73,25 @@ def missing(name: str, reason: str) -> Row:
     return Row(name, note=f"not timed: {reason}")
 
 
-def text(tables: Iterable[Table]) -> str:
-    """All tables below one another, in columns of equal width, and how many goals were reached."""
-    tables = list(tables)
-    widest = max((len(row.name) for table in tables for row in table.rows), default=0)
-    lines = []
-    for table in tables:
-        heads = f"  {table.unit:<{widest}}  {'fastest':>9}  {'median':>9}  {'ratio':>7}  what must be reached"
-        lines += ["", table.title, heads]
-        for row in table.rows:
-            cells = [_number(row.least, 9), _number(row.middle, 9), _number(row.ratio, 7)]
-            said = [_verdict(goal) for goal in row.goals] + ([row.note] if row.note else [])
-            lines.append("  ".join([f"  {row.name:<{widest}}", *cells, "; ".join(said)]).rstrip())
-    goals = [goal for table in tables for row in table.rows for goal in row.goals]
-    lines += ["", f"{sum(goal.reached for goal in goals)} of {len(goals)} goals reached"]
+WIDEST = 46
+"""Columns of the names, in every table."""
+
+
+def text(table: Table) -> str:
+    """A table in columns."""
+    heads = f"  {table.unit:<{WIDEST}}  {'fastest':>9}  {'median':>9}  {'ratio':>7}  what must be reached"
+    lines = ["", table.title, heads]
+    for row in table.rows:
+        cells = [_number(row.least, 9), _number(row.middle, 9), _number(row.ratio, 7)]
+        said = [_verdict(goal) for goal in row.goals] + ([row.note] if row.note else [])
+        lines.append("  ".join([f"  {row.name:<{WIDEST}}", *cells, "; ".join(said)]).rstrip())
     return "\n".join(lines)
+
+
+def summary(tables: Iterable[Table]) -> str:
+    """How many goals were reached."""
+    goals = [goal for table in tables for row in table.rows for goal in row.goals]
+    return f"{sum(goal.reached for goal in goals)} of {len(goals)} goals reached"
 
 
 def _verdict(goal: Goal) -> str:

@@ -17,13 +17,17 @@ from orbits import many as orbits
 from regulators import many, one
 from startup import startup
 
+SUBJECTS = (trajectories, sweeps, commands, startup, ends, one, many, orbits)
+
 
 def main() -> None:
     """Run every subject; exit code 0 whatever was reached, for a busy machine is no fault of the code."""
-    start = perf_counter()
+    start, tables = perf_counter(), []
     print(described(), flush=True)
-    print(rows.text([trajectories(), sweeps(), commands(), startup(), ends(), one(), many(), orbits()]))
-    print(f"{perf_counter() - start:.0f} s")
+    for subject in SUBJECTS:
+        tables.append(subject())
+        print(rows.text(tables[-1]), flush=True)
+    print(f"\n{rows.summary(tables)}, {perf_counter() - start:.0f} s")
 
 
 if __name__ == "__main__":
