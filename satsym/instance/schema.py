@@ -86,7 +86,7 @@ class SolverOptions(_Table, frozen=True):
     steps
         Steps of the grid, from 2.
     max_seconds, max_iterations
-        When to give up; ``None`` leaves the number of iterations to the method.
+        When to give up; the latter counts sweeps, other methods know by themselves how many steps make sense.
     free_angles
         States whose final value counts modulo a turn.
     relaxation

@@ -16,7 +16,7 @@ Array = NDArray[np.floating[Any]]
 NUDGE = 1e-30
 """Imaginary step of derivatives: exact, for nothing is subtracted."""
 
-STENCIL = ((-2.0, 1.0 / 12.0), (-1.0, -2.0 / 3.0), (1.0, 2.0 / 3.0), (2.0, -1.0 / 12.0))
+PLACES, WEIGHTS = np.array([-2.0, -1.0, 1.0, 2.0]), np.array([1.0, -8.0, 8.0, -1.0]) / 12.0
 SHIFT = 1e-3
 """Places and weights of a central difference of fourth order, and its step as a share of the duration."""
 
@@ -67,9 +67,8 @@ class Field:
         # derivative times the rates, and what time does besides.
         gradient = self.gradient(t, z, self.singular)
         by_control = np.concatenate([gradient[self.n :], -gradient[: self.n]])
-        by_point = self._rate_gradient(t, z, u, self.singular)
-        slope = (self._turning(t, z, u, rates) + by_point @ held) / -(by_point @ by_control)
-        return rates, held + np.outer(by_control, slope)
+        by_point, turning = self._rate_gradient(t, z, u, rates)
+        return rates, held - np.outer(by_control, (turning + by_point @ held) / (by_point @ by_control))
 
     def along(self, t: Array, z: Array) -> tuple[Array, Array]:
         """Controls (m, N) and rates (2n, N) at many points at once."""
@@ -112,7 +111,11 @@ class Field:
 
     def rate_gradient(self, t: float, z: list[float], control: int) -> Array:
         """The rate of a switching function by states and costates, shape (2n,)."""
-        return self._rate_gradient(t, z, self.control(t, z), control)
+        columns = np.array(z)[:, None] + 1j * NUDGE * np.eye(2 * self.n)
+        u = np.repeat(np.array(self.control(t, z), dtype=complex)[:, None], 2 * self.n, axis=1)
+        x, lam = columns[: self.n], columns[self.n :]
+        rates = self.model.switching_rate_batch(np.full(2 * self.n, t), x, u, lam, self.p)
+        return np.asarray(rates[control].imag / NUDGE)
 
     def legendre(self, t: float, z: list[float]) -> float:
         """The generalised Legendre-Clebsch expression of the singular control; positive where it is strict."""
@@ -143,44 +146,42 @@ class Field:
         found = np.asarray(self.model.switching_rate_batch(*ahead, self.p))[self.singular].imag / NUDGE
         return found[:count], found[count:] - found[:count]
 
-    def _rate_gradient(self, t: float, z: list[float], u: tuple[float, ...], control: int) -> Array:
-        """The same under given controls."""
-        columns = np.array(z)[:, None] + 1j * NUDGE * np.eye(2 * self.n)
-        held = np.repeat(np.array(u, dtype=complex)[:, None], 2 * self.n, axis=1)
-        x, lam = columns[: self.n], columns[self.n :]
-        rates = self.model.switching_rate_batch(np.full(2 * self.n, t), x, held, lam, self.p)
-        return np.asarray(rates[control].imag / NUDGE)
-
-    def _turning(self, t: float, z: list[float], u: tuple[float, ...], rates: Array) -> Array:
-        """How that gradient changes along the extremal, shape (2n,).
+    def _rate_gradient(
+        self, t: float, z: list[float], u: tuple[float, ...], rates: Array
+    ) -> tuple[Array, Array]:
+        """That of the singular control, and how it changes along the extremal, shapes (2n,).
 
         It consists of first derivatives that were generated, so that an imaginary step along the motion gives its
         change to the last digits, which an integrator that is to find so many asks for. Only how the effect of the
         control depends on time explicitly, which it seldom does, takes a difference besides.
         """
-        here = np.array(z)
-        gradient, curvature, f, held = self._derivatives(t + 1j * NUDGE, here + 1j * NUDGE * rates, u)
-        by_motion = (curvature @ f + gradient @ held).imag / NUDGE
-        _, curvature, _, _ = self._derivatives(t + 1j * NUDGE, here.astype(complex), u)
-        by_time = curvature.imag @ rates / NUDGE
-        end = self.instance.tf if self.instance.tf is not None else self.instance.t0 + max(1.0, abs(t))
-        shift = SHIFT * (end - self.instance.t0)
-        for place, weight in STENCIL:
-            gradient, *_ = self._derivatives(t + place * shift + 1j * NUDGE, here.astype(complex), u)
-            by_time += weight / shift * gradient.imag / NUDGE
-        return np.asarray(by_motion + by_time)
-
-    def _derivatives(self, t: complex, z: Array, u: tuple[float, ...]) -> tuple[Array, Array, Array, Array]:
-        """First and second derivatives of the switching function, rates and their derivatives, at a complex point."""
         assert self.singular is not None
-        n, unit = self.n, np.zeros(len(u))
+        n, unit, here = self.n, np.zeros(len(u)), np.array(z)
         unit[self.singular] = 1.0
-        controls = np.stack([np.array(u), unit, -unit], axis=1)
-        times, x, lam = np.full(3, t), np.repeat(z[:n, None], 3, axis=1), np.repeat(z[n:, None], 3, axis=1)
+        x, lam = np.split(np.repeat((here + 1j * NUDGE * rates)[:, None], 3, axis=1), 2)
+        controls, times = np.stack([np.array(u), unit, -unit], axis=1), np.full(3, t + 1j * NUDGE)
         f = np.asarray(self.model.dynamics_batch(times, x, controls, self.p))[:, 0]
         g = np.asarray(self.model.costate_rate_batch(times, x, controls, lam, self.p))
-        held = np.asarray(self.model.extremal_jacobian_batch(times, x, controls, lam, self.p))
+        slopes = np.asarray(self.model.extremal_jacobian_batch(times, x, controls, lam, self.p))
         column = np.asarray(self.model.jacobian_u_batch(times, x, controls, self.p))[:, self.singular, 0]
-        by_control = (held[:, :, 1] - held[:, :, 2]) / 2.0
+        by_control = (slopes[:, :, 1] - slopes[:, :, 2]) / 2.0
+        curvature = np.concatenate([-by_control[n:], by_control[:n]])
         gradient = np.concatenate([(g[:, 2] - g[:, 1]) / 2.0, column])
-        return gradient, np.concatenate([-by_control[n:], by_control[:n]]), np.concatenate([f, g[:, 0]]), held[:, :, 0]
+        found = curvature @ np.concatenate([f, g[:, 0]]) + gradient @ slopes[:, :, 0]
+        end = self.instance.tf if self.instance.tf is not None else self.instance.t0 + max(1.0, abs(t))
+        steps = SHIFT * (end - self.instance.t0) * PLACES
+        explicit = self._by_time(t + steps, here[:, None] + steps * rates[:, None])
+        if not explicit.any():
+            return found.real, found.imag / NUDGE
+        by_time = self._by_time(np.array([t]), here[:, None])[:, 0]
+        return found.real + by_time, found.imag / NUDGE + explicit @ WEIGHTS / (steps[-1] - steps[-2])
+
+    def _by_time(self, t: Array, z: Array) -> Array:
+        """The gradient of the singular control's switching function by explicit time, shape (2n, N)."""
+        assert self.singular is not None
+        x, lam, times = z[: self.n].astype(complex), z[self.n :].astype(complex), t + 1j * NUDGE
+        unit = np.zeros((len(self.held), len(t)))
+        unit[self.singular] = 1.0
+        there, back = (np.asarray(self.model.costate_rate_batch(times, x, k * unit, lam, self.p)) for k in (1.0, -1.0))
+        column = np.broadcast_to(self.model.jacobian_u_batch(times, x, unit, self.p), (self.n, len(unit), len(t)))
+        return np.concatenate([(back - there).imag / 2.0, column[:, self.singular].imag]) / NUDGE
