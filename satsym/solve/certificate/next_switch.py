@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,9 +25,16 @@ AT_ONCE = 1e-9
 """Share of the time that is left within which a switch is the one that began the arc; and share of its size at which a
 switching function counts as zero there."""
 
+TOUCHED = 1e-11
+"""Share of its size by which a switching function has to be beyond a zero, if it is not only touched."""
+
 AT_THE_END = 1e-12
 """Share of the time within which a switch before the end is rounding: a costate that vanishes at the end does so there
 to the last digits only."""
+
+
+class OutOfTime(Exception):
+    """An integration takes longer than it may."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,16 +53,22 @@ class Mark:
         weight, (_, growth) = self.field.weight(t, y, self.control), self.field.weight_gradient(t, y, self.control)
         return sigma - self.side * weight, rate - self.side * growth
 
-    def event(self, start: float, span: float, z: Array, sizes: Array) -> Any:
-        """For SciPy: a change of sign, away from the switch that began the arc."""
+    def size(self, t: float, z: Array, sizes: Array) -> float:
+        """That of the switching function."""
+        return max(float(np.abs(self.field.gradient(t, z.tolist(), self.control)) @ sizes), 1e-300)
+
+    def sign(self, start: float, z: Array, sizes: Array) -> float:
+        """That of the gap at the start of an arc, or right after it."""
         now, rate = self.gap(start, z.tolist())
-        size = max(float(np.abs(self.field.gradient(start, z.tolist(), self.control)) @ sizes), 1e-300)
-        sign = np.sign(now) if abs(now) > AT_ONCE * size else np.sign(rate)
+        return float(np.sign(now) if abs(now) > AT_ONCE * self.size(start, z, sizes) else np.sign(rate))
+
+    def event(self, start: float, span: float, sign: float) -> Any:
+        """For SciPy: a change of sign, away from the switch that began the arc."""
         field, n, side, control = self.field, self.field.n, self.side, self.control
 
         def value(t: float, y: Array) -> float:
             if t - start < AT_ONCE * span:
-                return float(sign)
+                return sign
             sigma = field.model.switching_function(t, y[:n].tolist(), y[n:].tolist(), field.p)[control]
             return float(sigma - side * field.weight(t, y.tolist(), control) if side else sigma)
 
@@ -62,7 +77,7 @@ class Mark:
 
 
 def next_switch(
-    field: Field, settled: list[bool], start: float, end: float, z: Array, sizes: Array
+    field: Field, settled: list[bool], start: float, end: float, z: Array, sizes: Array, deadline: float
 ) -> tuple[float, int] | None:
     """When, and of which control, the next change of sign is.
 
@@ -70,29 +85,42 @@ def next_switch(
     ------
     ArithmeticError
         If SciPy cannot integrate so far.
+    OutOfTime
+        If that is not done by the deadline.
     """
-    from scipy.integrate import solve_ivp
-
     span, marks = end - start, _marks(field, settled, start, z)
     if not marks or span <= 0.0:
         return None
-    found = solve_ivp(
+    signs = [mark.sign(start, z, sizes) for mark in marks]
+    crossings = [mark.event(start, span, sign) for mark, sign in zip(marks, signs, strict=True)]
+    turns = [lambda t, y, mark=mark: mark.gap(t, y.tolist())[1] for mark in marks]
+    found = solved(
         lambda t, y: field.rates(t, y.tolist()),
         (start, end),
         z,
-        method="DOP853",
-        rtol=TOLERANCE,
-        atol=TOLERANCE * sizes,
-        events=[mark.event(start, span, z, sizes) for mark in marks],
+        sizes,
+        deadline,
+        events=[*crossings, *turns],
         max_step=span / 16.0,
     )
-    if found.status < 0:
-        raise ArithmeticError(found.message)
+    # A step over two changes of sign shows none; but the gap turns between them.
+    between = [
+        float(t)
+        for mark, sign, times, points in zip(
+            marks, signs, found.t_events[len(marks) :], found.y_events[len(marks) :], strict=True
+        )
+        for t, y in zip(times, points, strict=True)
+        if t - start > AT_ONCE * span and sign * mark.gap(t, y.tolist())[0] < -TOUCHED * mark.size(t, y, sizes)
+    ]
+    if between and min(between) < float(found.t[-1]):
+        earlier = next_switch(field, settled, start, min(between), z, sizes, deadline)
+        if earlier is not None:
+            return earlier
     if found.status == 0:
         return None
-    which = next(k for k, times in enumerate(found.t_events) if len(times))
-    time = _polished(marks[which], start, float(found.t_events[which][0]), span, z, sizes)
-    return (time, marks[which].control) if end - time > AT_THE_END * span else None
+    which = next(k for k, times in enumerate(found.t_events[: len(marks)]) if len(times))
+    when = _polished(marks[which], start, float(found.t_events[which][0]), span, z, sizes, deadline)
+    return (when, marks[which].control) if end - when > AT_THE_END * span else None
 
 
 def _marks(field: Field, settled: list[bool], start: float, z: Array) -> list[Mark]:
@@ -106,26 +134,25 @@ def _marks(field: Field, settled: list[bool], start: float, z: Array) -> list[Ma
     return marks
 
 
-def _polished(mark: Mark, start: float, time: float, span: float, z: Array, sizes: Array) -> float:
+def _polished(mark: Mark, start: float, guess: float, span: float, z: Array, sizes: Array, deadline: float) -> float:
     """The time by Newton's method: SciPy finds events on an interpolant that is less accurate than its steps."""
+    at = guess
     for _ in range(POLISHED):
-        y, _ = integrated(mark.field, start, time, z, sizes, transition=False)
-        value, rate = mark.gap(time, y.tolist())
+        y, _ = integrated(mark.field, start, at, z, sizes, deadline, transition=False)
+        value, rate = mark.gap(at, y.tolist())
         if rate == 0.0 or abs(value) > abs(rate) * 1e-3 * span:
             break
         correction = value / rate
-        time -= correction
-        if abs(correction) <= 1e-15 * max(abs(time), span):
+        at -= correction
+        if abs(correction) <= 1e-15 * max(abs(at), span):
             break
-    return time
+    return at
 
 
 def integrated(
-    field: Field, start: float, end: float, z: Array, sizes: Array, transition: bool = True
+    field: Field, start: float, end: float, z: Array, sizes: Array, deadline: float, transition: bool = True
 ) -> tuple[Array, Array]:
     """States and costates at the end of a piece, and their derivatives by those at its start."""
-    from scipy.integrate import solve_ivp
-
     rows = len(z)
 
     def rates(t: float, y: Array) -> Array:
@@ -141,8 +168,46 @@ def integrated(
         scale = np.concatenate([sizes, np.outer(sizes, 1.0 / sizes).ravel()])
     if end <= start:
         return z, np.eye(rows)
-    found = solve_ivp(rates, (start, end), y, method="DOP853", rtol=TOLERANCE, atol=TOLERANCE * scale)
-    if found.status != 0:
-        raise ArithmeticError(found.message)
-    last = found.y[:, -1]
+    last = solved(rates, (start, end), y, scale, deadline).y[:, -1]
     return last[:rows], last[rows:].reshape(rows, rows) if transition else np.zeros(0)
+
+
+def solved(
+    rates: Callable[[float, Array], Sequence[float] | Array],
+    ends: tuple[float, float],
+    start: Array,
+    scale: Array,
+    deadline: float,
+    **options: Any,
+) -> Any:
+    """What SciPy finds with as many digits as it can.
+
+    Parameters
+    ----------
+    rates, ends, start
+        What is integrated, from when to when, and from where.
+    scale
+        Typical sizes.
+    deadline
+        On the clock of ``time.perf_counter``.
+    options
+        Others of SciPy.
+
+    Raises
+    ------
+    ArithmeticError
+        If SciPy cannot integrate so far.
+    OutOfTime
+        If it is not done by the deadline: rates that are not as smooth as the tolerance asks make steps tiny.
+    """
+    from scipy.integrate import solve_ivp
+
+    def timed(t: float, y: Array) -> Sequence[float] | Array:
+        if time.perf_counter() > deadline:
+            raise OutOfTime
+        return rates(t, y)
+
+    found = solve_ivp(timed, ends, start, method="DOP853", rtol=TOLERANCE, atol=TOLERANCE * scale, **options)
+    if found.status < 0:
+        raise ArithmeticError(found.message)
+    return found

@@ -6,6 +6,7 @@ integrates, which the solver does not use. Only where singular arcs begin and en
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -16,8 +17,9 @@ from numpy.typing import NDArray
 from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solve.certificate.flow import typical
-from satsym.solve.certificate.next_switch import TOLERANCE, integrated, next_switch
+from satsym.solve.certificate.next_switch import integrated, next_switch, solved
 from satsym.solve.certificate.stated_arcs import Stated, arcs, undecided
+from satsym.solve.switching.failures import FAILURES
 from satsym.solve.switching.field import Field
 from satsym.solve.switching.newton import switching
 from satsym.solve.switching.recognition import levels as best_levels
@@ -26,6 +28,9 @@ from satsym.solve.switching.structure import REST, SINGULAR
 Array = NDArray[np.floating[Any]]
 
 MOST_SWITCHES = 200
+
+SECONDS = 30.0
+"""That it may take."""
 
 TOUCHING = 1e-4
 """A change of sign so shortly before a singular arc, as a share of the arc before it, is where its zero is touched."""
@@ -83,32 +88,39 @@ class Replay:
         return [piece.end for piece in self.pieces if piece.switched == control]
 
 
-def replay(solution: Solution) -> Replay | None:
-    """Integrate again; ``None`` where the motion is not finite or switches without end."""
+def replay(solution: Solution, seconds: float = SECONDS) -> Replay | None:
+    """Integrate again; ``None`` where the motion is not finite or switches without end.
+
+    Raises
+    ------
+    satsym.solve.certificate.next_switch.OutOfTime
+        If that takes longer than it may.
+    """
+    deadline = time.perf_counter() + seconds
     instance = solution.instance
     sizes = np.concatenate(typical(solution))
     z, t, end = np.concatenate([instance.initial, solution.lam[:, 0]]), instance.t0, float(solution.times[-1])
     stated = [arcs(solution, control) for control in range(len(instance.lower))]
     # the controls whose switches no sign shows: the solver's stand
     settled = [all(k != SINGULAR for *_, k in stated[i]) and undecided(solution, i) for i in range(len(stated))]
-    levels = _first_levels(instance, stated, settled, z, t, end)
     stations = np.unique(solution.times)
     pieces: list[Piece] = []
     rows: list[tuple[Array, Array, Array]] = []
     cost = 0.0
     try:
+        levels = _first_levels(instance, stated, settled, z, t, end)
         while len(pieces) <= MOST_SWITCHES:
             field = Field(instance, levels)
-            piece, levels = _piece(stated, settled, field, t, end, z, sizes)
+            piece, levels = _piece(stated, settled, field, t, end, z, sizes, deadline)
             pieces.append(piece)
-            row, added = _stations(piece, stations, sizes)
+            row, added = _stations(piece, stations, sizes, deadline)
             rows.append(row)
             t, z, cost = piece.end, piece.after, cost + added
             if piece.switched is None:
                 times, values, controls = (np.concatenate(part, axis=-1) for part in zip(*rows, strict=True))
                 cost += float(instance.model.terminal_cost(t, z[: len(instance.initial)].tolist(), instance.parameters))
                 return Replay(pieces, times, values, controls, cost)
-    except (ArithmeticError, ValueError):
+    except FAILURES:
         return None
     return None
 
@@ -134,7 +146,14 @@ def _first_levels(
 
 
 def _piece(
-    stated: Stated, settled: list[bool], field: Field, start: float, end: float, z: Array, sizes: Array
+    stated: Stated,
+    settled: list[bool],
+    field: Field,
+    start: float,
+    end: float,
+    z: Array,
+    sizes: Array,
+    deadline: float,
 ) -> tuple[Piece, tuple[int, ...]]:
     """The arc from a time to the next switch, and the levels after it."""
     known = [
@@ -144,12 +163,12 @@ def _piece(
         if (settled[i] or SINGULAR in (now[2], after[2])) and now[1] > start + 1e-12 * (end - start)
     ]
     until, switched, level = min(known, default=(end, None, None))
-    met = next_switch(field, settled, start, until, z, sizes)
+    met = next_switch(field, settled, start, until, z, sizes, deadline)
     touching = met is not None and met[1] == switched and until - met[0] < TOUCHING * (until - start)
     if met is not None and not touching:
         until, switched = met
         level = None
-    after, transition = integrated(field, start, until, z, sizes)
+    after, transition = integrated(field, start, until, z, sizes, deadline)
     piece = Piece(field, start, until, z, after, switched, transition)
     if switched is None:
         return piece, field.levels
@@ -161,10 +180,8 @@ def _piece(
     return piece, (*field.levels[:switched], level, *field.levels[switched + 1 :])
 
 
-def _stations(piece: Piece, nodes: Array, sizes: Array) -> tuple[tuple[Array, Array, Array], float]:
+def _stations(piece: Piece, nodes: Array, sizes: Array, deadline: float) -> tuple[tuple[Array, Array, Array], float]:
     """The arc at its ends and at the nodes between, as SciPy interpolates its steps; and its running cost."""
-    from scipy.integrate import solve_ivp
-
     field, rows = piece.field, len(piece.before)
     times = np.concatenate([[piece.start], nodes[(nodes > piece.start) & (nodes < piece.end)], [piece.end]])
 
@@ -175,9 +192,6 @@ def _stations(piece: Piece, nodes: Array, sizes: Array) -> tuple[tuple[Array, Ar
     z, cost = np.stack([piece.before, piece.after], axis=1)[:, [0] * (len(times) - 1) + [1]], 0.0
     if piece.end > piece.start:
         start, scale = np.append(piece.before, 0.0), np.append(sizes, sizes[: field.n] @ sizes[field.n :])
-        ends = (piece.start, piece.end)
-        found = solve_ivp(rates, ends, start, method="DOP853", t_eval=times, rtol=TOLERANCE, atol=TOLERANCE * scale)
-        if found.status != 0:
-            raise ArithmeticError(found.message)
+        found = solved(rates, (piece.start, piece.end), start, scale, deadline, t_eval=times)
         z[:, 1:-1], cost = found.y[:rows, 1:-1], float(found.y[rows, -1])
     return (times, z, field.along(times, z)[0]), cost

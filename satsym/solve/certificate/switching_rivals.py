@@ -14,8 +14,9 @@ from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solve.certificate.competitors import SECONDS, margin
 from satsym.solve.collocation.scaling import final_argument
-from satsym.solve.integrate import NotFinite, integrate
+from satsym.solve.integrate import integrate
 from satsym.solve.iteration import Limits
+from satsym.solve.switching.failures import FAILURES
 
 Array = NDArray[np.floating[Any]]
 
@@ -66,22 +67,22 @@ def needles(solution: Solution) -> float:
     if instance.model.spec.multipliers:
         wanted = np.arange(len(sizes))
     goal = solution.x[:, -1]
-    rng, cheapest = random.Random("needles"), float("inf")
+    rng, cheapest, limits = random.Random("needles"), float("inf"), Limits(RIVALS, time.perf_counter() + SECONDS)
     count = len(switches) + free
 
     def flown(plan: Plan, end: float) -> tuple[float, Array] | None:
         try:
-            x, cost = _fly(instance, plan, end, sizes)
-        except (NotFinite, ArithmeticError, ValueError):
+            x, cost = _fly(instance, plan, end, sizes, limits)
+            cost += float(instance.model.terminal_cost(end, tuple(x.tolist()), instance.parameters))
+        except FAILURES:
             return None
-        cost += float(instance.model.terminal_cost(end, tuple(x.tolist()), instance.parameters))
         return cost, ((x - goal) / sizes)[wanted]
 
     own = flown(base, float(solution.times[-1]))
     if own is None or (count == 0 and len(wanted)):
         return float("inf")
     still, loose = np.zeros(count), count > len(wanted)
-    for _ in range(RIVALS):
+    for _ in range(limits.iterations):
         rivals = [(_needle(solution, base, switches, rng, lasting), still)]
         if loose:  # the end does not fix all times
             rivals.append((base, np.array([rng.choice((-1.0, 1.0)) * rng.uniform(*SHORT) * lasting for _ in still])))
@@ -89,18 +90,17 @@ def needles(solution: Solution) -> float:
             if plan is not None:
                 cost = _corrected(plan, switches, shift, float(solution.times[-1]), lasting, free, flown)
                 cheapest = min(cheapest, cost)
-    scale = max(abs(own[0]), 1e-300)
-    return margin(cheapest, own[0], coarse=1e-12) if scale > 0.0 else float("inf")
+    return margin(cheapest, own[0], coarse=1e-12)
 
 
 def other_starts(solution: Solution) -> float:
     """How much dearer the cheapest extremal from other starts is; infinite where there are none."""
-    from satsym.solve.switching.solving import others
+    from satsym.solve.switching.solving import COMPARED, others
 
     instance = solution.instance
-    limits = Limits(500, time.perf_counter() + SECONDS)
+    limits = Limits(500, time.perf_counter() + SECONDS + COMPARED)
     with np.errstate(all="ignore"):
-        costs = [float(found.trajectory.cost(instance)) for found in others(instance, limits)]
+        costs = [float(found.trajectory.cost(instance)) for found, _ in others(instance, limits)]
     return margin(min(costs, default=float("inf")), solution.objective, coarse=1e-9)
 
 
@@ -160,8 +160,8 @@ def _plan(solution: Solution) -> Plan:
     return Plan(starts, solution.u[:, where].T.copy())
 
 
-def _fly(instance: Instance, plan: Plan, end: float, sizes: Array) -> tuple[Array, float]:
-    """Where a plan leads, and its running cost."""
+def _fly(instance: Instance, plan: Plan, end: float, sizes: Array, limits: Limits) -> tuple[Array, float]:
+    """Where a plan leads, and its running cost; an error where that takes too long."""
     model, p, n = instance.model, instance.parameters, len(instance.initial)
     y = np.append(np.array(instance.initial), 0.0)
     scale = np.append(sizes, 1.0)
@@ -171,6 +171,8 @@ def _fly(instance: Instance, plan: Plan, end: float, sizes: Array) -> tuple[Arra
             continue
 
         def rates(t: float, y: Array, u: tuple[float, ...] = u) -> Array:
+            if limits.expired:
+                raise ArithmeticError("time is up")
             x = y[:n].tolist()
             return np.array([*model.dynamics(t, x, u, p), model.running_cost(t, x, u, p)])
 

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.instance import Instance
-from satsym.solve.integrate import NotFinite
 from satsym.solve.iteration import Limits
+from satsym.solve.switching.failures import FAILURES, tried
 from satsym.solve.switching.newton import Equations, Refined, solve
 from satsym.solve.switching.recognition import Guess
 from satsym.solve.switching.trajectory import Trajectory, Violation, violations
@@ -26,6 +26,9 @@ REPAIRS = 8
 
 SOLVED = 1e-10
 """Largest relative residual of an extremal."""
+
+SIZED = 1e-6
+"""Share of its size in a guess that a state has at least in the extremal."""
 
 NO_TIME = 1e-11
 """An arc shorter than this share of the duration is none."""
@@ -50,8 +53,12 @@ class Exact:
 
 def attempt(instance: Instance, first: Guess, limits: Limits) -> Exact | None:
     """Make a guess exact, with repairs; ``None`` where that leads nowhere."""
-    at, tried, iterations = first, {first.structure}, 0
-    while len(tried) <= REPAIRS and not limits.expired:
+    return tried(lambda: _attempt(instance, first, limits))
+
+
+def _attempt(instance: Instance, first: Guess, limits: Limits) -> Exact | None:
+    at, met, iterations = first, {first.structure}, 0
+    while len(met) <= REPAIRS and not limits.expired:
         found = _solved(instance, at, limits)
         if found is None:
             return None
@@ -71,44 +78,78 @@ def attempt(instance: Instance, first: Guess, limits: Limits) -> Exact | None:
                 return Exact(*exact, iterations)
             worst = max(faults, key=lambda fault: fault.amount)
             at = _inserted(exact[0], exact[1], worst)
-        if at.structure in tried:
+        if at.structure in met:
             return None
-        tried.add(at.structure)
+        met.add(at.structure)
     return None
 
 
-def nearest(instance: Instance, at: Guess, limits: Limits) -> Refined | None:
-    """The extremal of a structure, or what comes nearest to one by least squares; ``None`` where nothing settles."""
-    equations = Equations(instance, at.structure, sizes(instance, at), at.end - instance.t0)
+def nearest(instance: Instance, at: Guess, limits: Limits, known: Array | None = None) -> Refined | None:
+    """The extremal of a structure, or what comes nearest to one by least squares; ``None`` where nothing settles.
+
+    Parameters
+    ----------
+    known
+        Sizes of states and costates, if not those of the guess.
+    """
+    equations = Equations(instance, at.structure, sizes(instance, at) if known is None else known, at.end - instance.t0)
     return solve(equations, equations.start(at.costates, at.times, at.end), limits.watch)
 
 
 def _solved(instance: Instance, at: Guess, limits: Limits) -> Refined | None:
+    """The extremal of a structure, exact in units of its own states: those of a guess may be far larger."""
     found = nearest(instance, at, limits)
-    return found if found is not None and found.residual <= SOLVED else None
+    for last in (False, True):
+        if found is None or found.residual > SOLVED or not found.at.end > instance.t0:
+            return None
+        own = replace(found, sizes=_own_sizes(instance, found))
+        residual = _residual(instance, own)
+        if residual <= SOLVED or last:
+            return replace(own, residual=residual) if residual <= SOLVED else None
+        here = Guess(found.structure, found.at.times, found.at.costates, found.at.end)
+        found = nearest(instance, here, limits, own.sizes)
+    return None
+
+
+def _residual(instance: Instance, found: Refined) -> float:
+    """The largest residual of arcs, relative to their sizes."""
+    equations = Equations(instance, found.structure, found.sizes, found.at.end - instance.t0)
+    return float(np.abs(equations.residual(found.at, found.arcs)[0]).max(initial=0.0))
+
+
+def _own_sizes(instance: Instance, found: Refined) -> Array:
+    """Sizes of states as the arcs show them, by where they end and how fast they move; those of costates as known."""
+    n = len(instance.initial)
+    states = np.maximum(_given(instance), SIZED * found.sizes[:n])
+    for arc in found.arcs:
+        for t, z in ((arc.start, arc.before), (arc.end, arc.after)):
+            moved = (arc.end - arc.start) * np.array(arc.field.rates(t, z.tolist())[:n])
+            states = np.maximum(states, np.maximum(np.abs(z[:n]), np.abs(moved)))
+    return np.concatenate([states, found.sizes[n:]])
+
+
+def _given(instance: Instance) -> Array:
+    """Sizes of what is given of each state at its ends."""
+    final = map(instance.final.get, instance.model.spec.state_names)
+    given = [abs(v) if isinstance(v, float | int) else 0.0 for v in final]
+    return np.maximum(np.abs(np.array(instance.initial)), np.array(given))
 
 
 def sizes(instance: Instance, at: Guess) -> Array:
     """Sizes of states and costates: given ends and what controls do in the duration; costates as they are guessed."""
     n = len(instance.initial)
-    given = [abs(v) if isinstance(v, float | int) else 0.0 for v in map(instance.final.get, _names(instance))]
-    start = np.abs(np.array(instance.initial))
-    states = np.maximum(start, np.array(given))
+    states = _given(instance)
     equations = Equations(instance, at.structure, np.ones(2 * n), at.end - instance.t0)
     try:
         arcs = equations.arcs(equations.start(at.costates, at.times, at.end), slopes=False)
         for arc in arcs:
             states = np.maximum(states, np.abs(arc.after[:n]))
-    except (NotFinite, ArithmeticError, ValueError):
+    except FAILURES:
         pass
     states = np.where(states > 0.0, states, 1.0)
     costates = np.abs(at.costates)
     cost = float((states * costates).max())
     return np.concatenate([states, np.maximum(costates, 1e-3 * cost / states if cost > 0.0 else 1.0)])
-
-
-def _names(instance: Instance) -> tuple[str, ...]:
-    return instance.model.spec.state_names
 
 
 def _shortest(found: Refined, start: float) -> tuple[float, int, int] | None:
@@ -133,15 +174,12 @@ def _collapsed(instance: Instance, found: Refined) -> tuple[Refined, Trajectory]
             break
         left = _dropped(found, *shortest[1:])
         at = replace(found.at, times=left.times)
-        equations = Equations(instance, left.structure, sizes(instance, left), end - start)
-        arcs = equations.arcs(at, slopes=False)
-        residual, _ = equations.residual(at, arcs)
-        worst = float(np.abs(residual).max(initial=0.0))
-        found = replace(found, structure=left.structure, at=at, arcs=arcs, residual=worst)
+        equations = Equations(instance, left.structure, found.sizes, end - start)
+        found = replace(found, structure=left.structure, at=at, arcs=equations.arcs(at, slopes=False))
+        found = replace(found, residual=_residual(instance, found))
     if found.residual > SOLVED:
         return None
-    left = Guess(found.structure, found.at.times, found.at.costates, end)
-    return found, Trajectory.of(found.arcs, sizes(instance, left))
+    return found, Trajectory.of(found.arcs, found.sizes)
 
 
 def _inserted(found: Refined, trajectory: Trajectory, fault: Violation) -> Guess:

@@ -43,13 +43,7 @@ class Field:
 
     def control(self, t: float, z: list[float]) -> tuple[float, ...]:
         """The controls, shape (m,)."""
-        if self.singular is None:
-            return self.held
-        base, slope = self._accelerations(np.array([t]), np.array(z)[:, None])
-        value = float(-base[0] / slope[0]) if slope[0] else math.nan
-        if not math.isfinite(value):
-            raise ArithmeticError("the second derivative of the switching function does not determine the control")
-        return self._with(value)
+        return self.held if self.singular is None else self._feedback(t, z)[0]
 
     def rates(self, t: float, z: list[float]) -> list[float]:
         """dz/dt, 2n numbers."""
@@ -58,17 +52,16 @@ class Field:
 
     def linearised(self, t: float, z: list[float]) -> tuple[Array, Array]:
         """dz/dt, shape (2n,), and its derivatives by z, shape (2n, 2n)."""
-        x, lam, u = z[: self.n], z[self.n :], self.control(t, z)
+        u, by_point, by_control = (self.held, None, None) if self.singular is None else self._feedback(t, z)
+        x, lam = z[: self.n], z[self.n :]
         rates = np.array([*self.model.dynamics(t, x, u, self.p), *self.model.costate_rate(t, x, u, lam, self.p)])
         held = np.array(self.model.extremal_jacobian(t, x, u, lam, self.p)).reshape(2 * self.n, 2 * self.n)
-        if self.singular is None:
+        if by_point is None or by_control is None:
             return rates, held
         # The control keeps the second derivative of the switching function at zero: the gradient of the first
         # derivative times the rates, and what time does besides.
-        gradient = self.gradient(t, z, self.singular)
-        by_control = np.concatenate([gradient[self.n :], -gradient[: self.n]])
-        by_point, turning = self._rate_gradient(t, z, u, rates)
-        return rates, held - np.outer(by_control, (turning + by_point @ held) / (by_point @ by_control))
+        slope = (self._turning(t, z, u, rates) + by_point @ held) / (by_point @ by_control)
+        return rates, held - np.outer(by_control, slope)
 
     def along(self, t: Array, z: Array) -> tuple[Array, Array]:
         """Controls (m, N) and rates (2n, N) at many points at once."""
@@ -111,11 +104,7 @@ class Field:
 
     def rate_gradient(self, t: float, z: list[float], control: int) -> Array:
         """The rate of a switching function by states and costates, shape (2n,)."""
-        columns = np.array(z)[:, None] + 1j * NUDGE * np.eye(2 * self.n)
-        u = np.repeat(np.array(self.control(t, z), dtype=complex)[:, None], 2 * self.n, axis=1)
-        x, lam = columns[: self.n], columns[self.n :]
-        rates = self.model.switching_rate_batch(np.full(2 * self.n, t), x, u, lam, self.p)
-        return np.asarray(rates[control].imag / NUDGE)
+        return self._rate_slopes(t, z, self.control(t, z), control)[:-1]
 
     def legendre(self, t: float, z: list[float]) -> float:
         """The generalised Legendre-Clebsch expression of the singular control; positive where it is strict."""
@@ -146,10 +135,31 @@ class Field:
         found = np.asarray(self.model.switching_rate_batch(*ahead, self.p))[self.singular].imag / NUDGE
         return found[:count], found[count:] - found[:count]
 
-    def _rate_gradient(
-        self, t: float, z: list[float], u: tuple[float, ...], rates: Array
-    ) -> tuple[Array, Array]:
-        """That of the singular control, and how it changes along the extremal, shapes (2n,).
+    def _rate_slopes(self, t: float, z: list[float], u: tuple[float, ...], control: int) -> Array:
+        """The rate of a switching function by states, costates and explicit time, shape (2n + 1,)."""
+        count = 2 * self.n + 1
+        columns = np.array([*z, t], dtype=complex)[:, None] + 1j * NUDGE * np.eye(count)
+        x, lam, times = columns[: self.n], columns[self.n : -1], columns[-1]
+        held, found = np.repeat(np.array(u)[:, None], count, axis=1), np.empty((len(u), count), dtype=complex)
+        self.model.switching_rate_batch(times, x, held, lam, self.p, out=found)
+        return np.asarray(found[control].imag / NUDGE)
+
+    def _feedback(self, t: float, z: list[float]) -> tuple[tuple[float, ...], Array, Array]:
+        """The controls on a singular arc; the gradient of the rate of its switching function; what it does to z."""
+        assert self.singular is not None
+        x, lam, idle = z[: self.n], z[self.n :], self._with(0.0)
+        gradient = self.gradient(t, z, self.singular)
+        by_control = np.concatenate([gradient[self.n :], -gradient[: self.n]])
+        slopes = self._rate_slopes(t, z, idle, self.singular)
+        rates = [*self.model.dynamics(t, x, idle, self.p), *self.model.costate_rate(t, x, idle, lam, self.p), 1.0]
+        acting = float(slopes[:-1] @ by_control)
+        value = -float(slopes @ rates) / acting if acting else math.nan
+        if not math.isfinite(value):
+            raise ArithmeticError("the second derivative of the switching function does not determine the control")
+        return self._with(value), slopes[:-1], by_control
+
+    def _turning(self, t: float, z: list[float], u: tuple[float, ...], rates: Array) -> Array:
+        """How the gradient of the rate of its switching function changes along a singular arc, shape (2n,).
 
         It consists of first derivatives that were generated, so that an imaginary step along the motion gives its
         change to the last digits, which an integrator that is to find so many asks for. Only how the effect of the
@@ -158,23 +168,21 @@ class Field:
         assert self.singular is not None
         n, unit, here = self.n, np.zeros(len(u)), np.array(z)
         unit[self.singular] = 1.0
-        x, lam = np.split(np.repeat((here + 1j * NUDGE * rates)[:, None], 3, axis=1), 2)
+        x, lam = np.repeat((here + 1j * NUDGE * rates)[:, None], 3, axis=1).reshape(2, n, 3)
         controls, times = np.stack([np.array(u), unit, -unit], axis=1), np.full(3, t + 1j * NUDGE)
-        f = np.asarray(self.model.dynamics_batch(times, x, controls, self.p))[:, 0]
-        g = np.asarray(self.model.costate_rate_batch(times, x, controls, lam, self.p))
+        f = np.empty((2 * n, 3), dtype=complex)
+        self.model.dynamics_batch(times, x, controls, self.p, out=f[:n])
+        self.model.costate_rate_batch(times, x, controls, lam, self.p, out=f[n:])
         slopes = np.asarray(self.model.extremal_jacobian_batch(times, x, controls, lam, self.p))
         column = np.asarray(self.model.jacobian_u_batch(times, x, controls, self.p))[:, self.singular, 0]
         by_control = (slopes[:, :, 1] - slopes[:, :, 2]) / 2.0
         curvature = np.concatenate([-by_control[n:], by_control[:n]])
-        gradient = np.concatenate([(g[:, 2] - g[:, 1]) / 2.0, column])
-        found = curvature @ np.concatenate([f, g[:, 0]]) + gradient @ slopes[:, :, 0]
+        gradient = np.concatenate([(f[n:, 2] - f[n:, 1]) / 2.0, column])
+        found = (curvature @ f[:, 0] + gradient @ slopes[:, :, 0]).imag / NUDGE
         end = self.instance.tf if self.instance.tf is not None else self.instance.t0 + max(1.0, abs(t))
-        steps = SHIFT * (end - self.instance.t0) * PLACES
-        explicit = self._by_time(t + steps, here[:, None] + steps * rates[:, None])
-        if not explicit.any():
-            return found.real, found.imag / NUDGE
-        by_time = self._by_time(np.array([t]), here[:, None])[:, 0]
-        return found.real + by_time, found.imag / NUDGE + explicit @ WEIGHTS / (steps[-1] - steps[-2])
+        step = SHIFT * (end - self.instance.t0)
+        explicit = self._by_time(t + step * PLACES, here[:, None] + step * PLACES * rates[:, None])
+        return np.asarray(found + explicit @ WEIGHTS / step)
 
     def _by_time(self, t: Array, z: Array) -> Array:
         """The gradient of the singular control's switching function by explicit time, shape (2n, N)."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import count
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,11 @@ WHOLE = 1.0
 
 ROUGHLY = 1e6
 """So many times larger may errors of the derivatives be: Newton's method corrects itself."""
+
+
+MOST = 2000
+"""Evaluations of a piece with a singular control: off its manifold such a motion may leave for infinity, and steps
+become ever smaller."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,14 +146,22 @@ def _piece(
     rows = len(z)
     if abs(end - start) <= ROUNDING * max(abs(start), abs(end)):
         return z + (end - start) * np.array(field.rates(start, z.tolist())), np.eye(rows)
+    evaluations = count()
+
+    def counted() -> None:
+        if next(evaluations) > MOST and field.singular is not None:
+            raise ArithmeticError("a motion under singular control goes astray")
+
     if not slopes:
 
         def rates(t: float, y: Array) -> Array:
+            counted()
             return np.array(field.rates(t, y.tolist()))
 
         return integrate(rates, np.array([start, end]), z, tolerance, sizes, WHOLE)[0].end, np.zeros(0)
 
     def both(t: float, y: Array) -> Array:
+        counted()
         now, slopes = field.linearised(t, y[:rows].tolist())
         return np.concatenate([now, (slopes @ y[rows:].reshape(rows, rows)).ravel()])
 

@@ -6,12 +6,14 @@ Such a problem may have several extremals, and without bounds often none: nothin
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from itertools import islice, product
 
 import numpy as np
 
 from satsym.grid import Grid
 from satsym.instance import Instance
+from satsym.solve.switching.failures import tried
 from satsym.solve.switching.recognition import Guess, Sample, guess
 
 STEPS = 400
@@ -21,13 +23,18 @@ MOST = 64
 """Corners that are tried: controls beyond the sixth stay at their lower bounds."""
 
 
+def applies(instance: Instance) -> bool:
+    """Whether the time is given and nothing else at the end."""
+    return instance.tf is not None and not instance.final and not instance.model.spec.multipliers
+
+
 def guesses(instance: Instance) -> Iterator[Guess]:
     """Where to look, one guess for each corner whose motion is finite; none where anything is given at the end."""
-    if instance.tf is None or instance.final or instance.model.spec.multipliers:
+    if instance.tf is None or not applies(instance):
         return
     pairs = [sorted({low, high}) for low, high in zip(instance.lower, instance.upper, strict=True)]
     for corner in islice(product(*reversed(pairs)), MOST):
-        seen = _motion(instance, instance.tf, corner[::-1])
+        seen = tried(partial(_motion, instance, instance.tf, corner[::-1]))
         if seen is not None:
             yield guess(instance, seen)
 

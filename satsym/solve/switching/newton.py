@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from satsym.instance import Instance
 from satsym.solve.collocation.scaling import final_argument
-from satsym.solve.integrate import NotFinite
+from satsym.solve.switching.failures import FAILURES
 from satsym.solve.switching.field import Field
 from satsym.solve.switching.flight import TOLERANCE, Arc, Unknowns, fly
 from satsym.solve.switching.structure import SINGULAR, Structure
@@ -57,6 +57,8 @@ class Refined:
         Largest residual, each relative to the size of what it compares.
     iterations
         Corrections.
+    sizes
+        Of states and costates, which residuals are relative to, shape (2n,).
     """
 
     structure: Structure
@@ -64,6 +66,7 @@ class Refined:
     arcs: list[Arc]
     residual: float
     iterations: int
+    sizes: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -246,7 +249,7 @@ def solve(equations: Equations, start: Unknowns, watch: Callable[[float, float],
             arcs = equations.arcs(at, tolerance=TOLERANCE if close else ROUGH)
             residual, slopes = equations.residual(at, arcs)
             step = _least_squares(slopes, -residual)
-        except (NotFinite, ArithmeticError, ValueError, np.linalg.LinAlgError):
+        except FAILURES:
             return None
         size = float(np.abs(step).max(initial=0.0))
         if watch:
@@ -257,7 +260,8 @@ def solve(equations: Equations, start: Unknowns, watch: Callable[[float, float],
             at = equations.moved(at, step)
             arcs = equations.arcs(at, slopes=False)
             values, _ = equations.residual(at, arcs)
-            return Refined(equations.structure, at, arcs, float(np.abs(values).max(initial=0.0)), iteration)
+            worst = float(np.abs(values).max(initial=0.0))
+            return Refined(equations.structure, at, arcs, worst, iteration, equations.sizes)
         n = len(at.costates)
         span = float(np.abs(step[n : n + len(at.times) + equations.free_time]).max(initial=0.0))
         turn = float(np.abs(step[:n]).max(initial=0.0))

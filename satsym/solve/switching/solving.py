@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from satsym.instance import Instance
 from satsym.solution import Iteration, Progress, Solution
-from satsym.solve.integrate import NotFinite
 from satsym.solve.iteration import Limits, watched
 from satsym.solve.nearest import nearest
 from satsym.solve.switching import held, homotopy, least_effort
 from satsym.solve.switching.attempt import Exact, attempt
+from satsym.solve.switching.failures import FAILURES, tried, unbroken
 from satsym.solve.switching.least_time import least_time
 from satsym.solve.switching.newton import switching
 from satsym.solve.switching.recognition import Guess, Sample, guess, inside, sample
@@ -29,6 +29,12 @@ Array = NDArray[np.floating[Any]]
 
 ENOUGH = 1e-9
 """By this share of it a given time may fall short of the least."""
+
+BETWEEN = 4
+"""Of so many smoothed extremals one is looked at for structures with an arc less or more."""
+
+COMPARED = 10.0
+"""Seconds for which at most an extremal that may have more arcs is looked for, where free ends have one already."""
 
 STEADY = 0.5
 """Share of the time off the bounds that is left after smoothing less, where that time is a singular arc's."""
@@ -92,19 +98,42 @@ def _out_of_reach(stopped: homotopy.Stopped, limits: Limits) -> homotopy.Stopped
     """Why there is no answer: where the final time is given, perhaps that no control arrives."""
     if stopped.status is not Status.NOT_CONVERGED or stopped.problem is None or stopped.curve is None:
         return stopped
-    near = nearest(stopped.problem, stopped.curve, limits)
+    problem, curve = stopped.problem, stopped.curve
+    near = tried(lambda: nearest(problem, curve, limits))
     if near is None or near.arrives or limits.expired:
         return stopped
     return replace(stopped, status=Status.INFEASIBLE, message=f"{near.message}; {stopped.message}")
 
 
-def others(instance: Instance, limits: Limits) -> list[Exact]:
-    """Extremals from the quick starts for a free final time or free ends, most of them one and the same."""
-    starts = held.guesses(instance)
+def others(instance: Instance, limits: Limits) -> list[tuple[Exact, str]]:
+    """Extremals from several starts and how each was found, many of them one and the same.
+
+    For a free final time those of the quick starts; for free ends those of controls held at a bound, and what is found
+    by smoothing within a moderate time: it may have arcs that no such control leads to.
+    """
     if instance.tf is None:
-        starts = (_signs(instance, near) for near in least_effort.quick(instance, limits))
-    exact = (_first_of(instance, start, limits, thorough=False) for start in starts)
-    return [one for one in exact if one]
+        found = [
+            (_first_of(instance, start, limits, thorough=False), "the signs of least effort")
+            for start in unbroken(_signs(instance, near) for near in least_effort.quick(instance, limits))
+        ]
+    elif held.applies(instance):
+        return _compared(instance, _at_corners(instance, limits), limits)
+    else:
+        found = []
+    return [(exact, way) for exact, way in found if exact]
+
+
+def _at_corners(instance: Instance, limits: Limits) -> list[tuple[Exact, str]]:
+    """Extremals that controls held at a bound lead to, where the end is free."""
+    found = (attempt(instance, start, limits) for start in held.guesses(instance))
+    return [(exact, "controls held at a bound") for exact in found if exact]
+
+
+def _compared(instance: Instance, known: list[tuple[Exact, str]], limits: Limits) -> list[tuple[Exact, str]]:
+    """Extremals that are known, and what smoothing leads to in a moderate time."""
+    brief = replace(limits, deadline=min(limits.deadline, time.perf_counter() + COMPARED))
+    smoothed = _smoothed(instance, brief, thorough=False)
+    return known if isinstance(smoothed, homotopy.Stopped) else [*known, smoothed]
 
 
 def _signs(instance: Instance, near: least_effort.Smoothed) -> Guess:
@@ -117,38 +146,61 @@ def _signs(instance: Instance, near: least_effort.Smoothed) -> Guess:
 def _found(instance: Instance, limits: Limits) -> tuple[Exact, str] | homotopy.Stopped:
     """Exact arcs and how they were found, or why there are none."""
     resting = _resting(instance)
-    if resting and (exact := attempt(instance, resting, limits)):
-        return exact, "rest"
+    rest = [(exact, "rest")] if resting and (exact := attempt(instance, resting, limits)) else []
+    if held.applies(instance):
+        if known := rest + _at_corners(instance, limits):
+            return min(_compared(instance, known, limits), key=lambda one: one[0].trajectory.cost(instance))
+    elif rest:
+        return rest[0]
     if instance.tf is None:
-        for near in chain(least_effort.quick(instance, limits), least_effort.shortening(instance, limits)):
-            exact = _first_of(instance, _signs(instance, near), limits, thorough=True)
+        near = chain(least_effort.quick(instance, limits), least_effort.shortening(instance, limits))
+        for start in unbroken(_signs(instance, one) for one in near):
+            exact = _first_of(instance, start, limits, thorough=True)
             if exact:
                 return exact, "the signs of least effort"
-    if instance.tf is not None and (free := others(instance, limits)):
-        return min(free, key=lambda one: one.trajectory.cost(instance)), "controls held at a bound"
+    return _smoothed(instance, limits)
+
+
+def _smoothed(instance: Instance, limits: Limits, thorough: bool = True) -> tuple[Exact, str] | homotopy.Stopped:
+    """Exact arcs with a structure that is recognised where less and less is smoothed, or why there are none.
+
+    Structures with an arc less or more are many, so they are tried once all smoothed extremals show no better one.
+    """
     before: Sample | None = None
-    last = None
+    last: least_effort.Smoothed | None = None
+    waiting: list[tuple[Guess, str]] = []
     try:
         for level, near in enumerate(homotopy.path(instance, limits)):
-            seen, last = sample(near.problem, near.curve), near
+            seen, last, way = sample(near.problem, near.curve), near, _way(near)
             for candidate in _candidates(instance, seen, before):
-                exact = _first_of(instance, candidate, limits, thorough=level % 4 == 3)
-                if exact:
-                    return exact, f"the companion smoothed by {near.problem.bounds[-2]:.1e}"
+                if exact := attempt(instance, candidate, limits):
+                    return exact, way
+                if thorough and level % BETWEEN == BETWEEN - 1:
+                    waiting.append((candidate, way))
             before = seen
             if limits.expired:
                 break
     except homotopy.Stopped as stopped:
         last_seen = stopped
-    except (np.linalg.LinAlgError, ArithmeticError, NotFinite) as error:
+    except FAILURES as error:
         last_seen = homotopy.Stopped(Status.NOT_CONVERGED, f"no smoothed solution was found ({error})")
     else:
-        assert last is not None
         message = "no structure that was recognised in smoothed solutions satisfies the minimum principle"
+        assert last is not None
         last_seen = homotopy.Stopped(Status.NOT_CONVERGED, message, last.problem, last.curve)
+    for candidate, way in waiting:
+        for one in unbroken(neighbours(instance, candidate, limits)):
+            if exact := attempt(instance, one, limits):
+                return exact, way
+            if limits.expired:
+                break
     if limits.expired:
         return replace(last_seen, status=Status.TIME_LIMIT, message=f"time was up: {last_seen.message}")
     return last_seen
+
+
+def _way(near: least_effort.Smoothed) -> str:
+    return f"the companion smoothed by {near.problem.bounds[-2]:.1e}"
 
 
 def _resting(instance: Instance) -> Guess | None:
@@ -184,7 +236,7 @@ def _relaxed(instance: Instance, hurried: Exact) -> Guess:
 
 def _first_of(instance: Instance, first: Guess, limits: Limits, thorough: bool) -> Exact | None:
     """The guess made exact, or, with more effort, one with an arc less or more."""
-    for one in chain((first,), neighbours(instance, first, limits) if thorough else ()):
+    for one in chain((first,), unbroken(neighbours(instance, first, limits)) if thorough else ()):
         exact = attempt(instance, one, limits)
         if exact or limits.expired:
             return exact

@@ -19,6 +19,10 @@ Array = NDArray[np.floating[Any]]
 PANELS, POINTS = 20, 8
 """Of a whole trajectory, and Gauss points in each: where its cost and its switching functions are looked at."""
 
+NEAR_ENDS = np.geomspace(1e-6, 1e-2, 9)
+"""Shares of an arc after its start and before its end at which its switching functions are looked at as well: where one
+vanishes there, it may have the wrong sign for a moment only."""
+
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
@@ -92,7 +96,7 @@ class Trajectory:
 
 @dataclass(frozen=True)
 class Violation:
-    """Where a control does not minimise H.
+    """Where a control does not minimise H, or leaves its bounds on a singular arc.
 
     Attributes
     ----------
@@ -103,7 +107,8 @@ class Violation:
     level
         That level.
     amount
-        How far the switching function is on the wrong side, relative to its largest value.
+        How far the switching function is on the wrong side, relative to its largest value; or how far the control is
+        beyond its bounds, relative to the distance between them.
     """
 
     control: int
@@ -115,34 +120,47 @@ class Violation:
 
 
 def violations(trajectory: Trajectory, slack: float = 1e-9) -> list[Violation]:
-    """All stretches on which a control is not at the level that minimises H."""
-    found: list[Violation] = []
+    """All stretches on which a control is not at the level that minimises H, or beyond its bounds."""
     tables = []
-    for arc, (inside, _, values, _) in zip(trajectory.arcs, trajectory.points, strict=True):
-        times = np.concatenate([[arc.start], inside, [arc.end]])
-        z = np.concatenate([arc.before[:, None], values, arc.after[:, None]], axis=1)
-        sigma, weight = switching_functions(arc, times, z)
-        tables.append((times, sigma, weight))
-    largest = np.max([np.abs(sigma).max(axis=1) + weight.max(axis=1) for _, sigma, weight in tables], axis=0)
-    for which, (times, sigma, weight) in enumerate(tables):
-        for control, level in enumerate(trajectory.arcs[which].field.levels):
+    for which, (arc, (inside, _, values, _)) in enumerate(zip(trajectory.arcs, trajectory.points, strict=True)):
+        near = NEAR_ENDS * (arc.end - arc.start)
+        ends = np.concatenate([arc.start + near, arc.end - near[::-1]])
+        times = np.concatenate([[arc.start], inside, [arc.end], ends])
+        z = np.concatenate([arc.before[:, None], values, arc.after[:, None], trajectory.at(which, ends)[0]], axis=1)
+        order = np.argsort(times, kind="stable")
+        times, z = times[order], z[:, order]
+        tables.append((times, z, *switching_functions(arc, times, z)))
+    largest = np.max([np.abs(sigma).max(axis=1) + weight.max(axis=1) for *_, sigma, weight in tables], axis=0)
+    found: list[Violation] = []
+    for which, (arc, (times, z, sigma, weight)) in enumerate(zip(trajectory.arcs, tables, strict=True)):
+        for control, level in enumerate(arc.field.levels):
             if level == SINGULAR:
-                continue
-            limit = slack * max(float(largest[control]), 1e-300)
-            wrong = np.where(
-                sigma[control] > weight[control] + limit,
-                LOWER,
-                np.where(sigma[control] < -weight[control] - limit, UPPER, REST),
-            )
-            inside = np.abs(sigma[control]) < weight[control] - limit
-            bad = (wrong != REST) & (wrong != level) | inside & (level != REST)
+                wrong, amounts = _beyond(arc, times, z, control)
+                bad = amounts > slack
+            else:
+                size = max(float(largest[control]), 1e-300)
+                wrong, bad, amounts = _worse(sigma[control] / size, weight[control] / size, level, slack)
             for first, last in runs(bad):
                 better = int(wrong[(first + last) // 2])
-                excess = np.abs(np.abs(sigma[control]) - weight[control])[first : last + 1].max()
-                amount = float(excess) / max(float(largest[control]), 1e-300)
+                amount = float(amounts[first : last + 1].max())
                 low, high = times[max(first - 1, 0)], times[min(last + 1, len(times) - 1)]
                 found.append(Violation(control, which, float(low), float(high), better, amount))
     return found
+
+
+def _worse(sigma: Array, weight: Array, level: int, slack: float) -> tuple[NDArray[np.int64], NDArray[np.bool_], Array]:
+    """The level that a switching function asks for, where it is not that of the control, and by how much."""
+    wrong = np.where(sigma > weight + slack, LOWER, np.where(sigma < -weight - slack, UPPER, REST))
+    inside = np.abs(sigma) < weight - slack
+    return wrong, (wrong != REST) & (wrong != level) | inside & (level != REST), np.abs(np.abs(sigma) - weight)
+
+
+def _beyond(arc: Arc, times: Array, z: Array, control: int) -> tuple[NDArray[np.int64], Array]:
+    """The bound that is nearer to a singular control, and by how much it is beyond, relative to the box."""
+    low, high = arc.field.instance.lower[control], arc.field.instance.upper[control]
+    u = arc.field.along(times, z)[0][control]
+    excess = np.maximum(low - u, u - high) / (high - low)
+    return np.where(u < (low + high) / 2.0, LOWER, UPPER), np.where(np.isfinite(u), excess, np.inf)
 
 
 def switching_functions(arc: Arc, times: Array, z: Array) -> tuple[Array, Array]:
