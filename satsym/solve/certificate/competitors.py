@@ -15,6 +15,7 @@ import numpy as np
 from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solve import control_set
+from satsym.solve.certificate.flow import products
 from satsym.solve.iteration import Limits
 from satsym.solve.revolutions import shifted
 
@@ -33,6 +34,9 @@ SHORTER_AND_LONGER = (0.8, 0.95, 1.05, 1.25)
 
 SECONDS = 3.0
 """For each competitor."""
+
+HIDDEN = 1e-14
+"""Share of their size by which states are rounded in the end: costs differ by what that is worth, whatever they are."""
 
 ROUGH, SAME = 1e-2, 1e-9
 """Relative errors of costs, on the mesh of a cold start and refined; the latter makes no difference."""
@@ -109,7 +113,12 @@ def _dearer(solution: Solution, rivals: list[Instance], attempt: Attempt) -> flo
             found = attempt(problem.widened(float("inf")), limits)
             if found is not None and found.minimum:
                 cheapest = min(cheapest, _accurately(problem, found, solution.objective, limits))
-    return margin(cheapest, solution.objective, coarse=SAME)
+    return margin(cheapest, solution.objective, coarse=SAME, hidden=hidden(solution))
+
+
+def hidden(solution: Solution) -> float:
+    """The difference of costs that rounding hides."""
+    return HIDDEN * products(solution)
 
 
 def _from_nothing(problem: TwoPoint, limits: Limits) -> Found | None:
@@ -154,9 +163,12 @@ def _on_reference(solution: Solution) -> bool:
     return bool(there and (control_set.project(instance, none) == none).all())
 
 
-def margin(competitor: float, cost: float, coarse: float = 0.0) -> float:
-    """How much dearer a competitor is, relative to the cost; differences below ``coarse`` are its own error."""
+def margin(competitor: float, cost: float, coarse: float = 0.0, hidden: float = 0.0) -> float:
+    """How much dearer a competitor is, relative to the cost.
+
+    Differences below ``coarse``, or of costs below ``hidden``, are its own error.
+    """
     if not np.isfinite(competitor):
         return float("inf")
     margin = (competitor - cost) / max(abs(cost), 1e-300)
-    return 0.0 if abs(margin) < coarse else margin
+    return 0.0 if abs(margin) < coarse or abs(competitor - cost) < hidden else margin

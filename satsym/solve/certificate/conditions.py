@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.solution import Solution
-from satsym.solve.certificate.flow import Flow, typical
+from satsym.solve.certificate.flow import FAINT, NEGLIGIBLE, Flow, products, typical, undriven, unit_sizes
 from satsym.solve.collocation.scaling import final_argument
 
 Array = NDArray[np.floating[Any]]
@@ -17,14 +17,15 @@ RESOLVED = 1e-9
 """Smallest singular value, relative to the largest, of a field whose determinant has a sign that can be trusted."""
 
 
-CANCELLED = 1e-4
-"""Share of the products of states and costates below which a cost is what is left of larger terms."""
+CANCELLED = 1e-5
+"""Share of the products of states and costates below which a cost is what is left of larger terms, or of rounding."""
 
 
 def boundary_residual(solution: Solution, flow: Flow) -> float:
     """Largest residual at the right end of the flow, each relative to the size of what it compares.
 
-    A given state is compared with its own size; a costate with its size and with that of the terms of the gradient
+    A given state is compared with its own size or, where the control moves the end by less, with that, down to a
+    share of its size that rounding allows; a costate with its size and with that of the terms of the gradient
     of the terminal cost, which may cancel almost: an error of the state then counts alike in both.
     """
     instance, model = solution.instance, solution.instance.model
@@ -45,13 +46,22 @@ def boundary_residual(solution: Solution, flow: Flow) -> float:
     nu = (0.0,) * len(spec.multipliers)
     slopes = np.array(model.boundary_jacobian(tf, x, lam, nu, instance.parameters, instance.bounds, final))
     gradient = np.abs(slopes.reshape(len(residual), -1)[:n, :n]) @ state
-    rows = np.where(fixed, state, np.maximum(costate, gradient))
+    least = np.minimum(state, NEGLIGIBLE * unit_sizes(solution)[:n])
+    rows = np.where(fixed, np.maximum(state * _moved(solution, flow, state), least), np.maximum(costate, gradient))
     found = np.abs(residual[:n]) / rows
     parts = [*found, *np.abs(residual[n:-1])]
     if instance.tf is None:
         rates = np.array(model.canonical(tf, x, lam, instance.parameters, instance.bounds))
         parts.append(abs(residual[-1]) / max(float(np.abs(flow.lam[:, -1] * rates[:n]).sum()), 1e-300))
     return float(max(parts))
+
+
+def _moved(solution: Solution, flow: Flow, state: Array) -> float:
+    """How far the control moves the end, relative to the sizes of the states, at most one."""
+    without = undriven(solution)
+    if without is None:
+        return 1.0
+    return float(np.minimum((np.abs(flow.x[:, -1] - without) / state).max(), 1.0))
 
 
 def dynamics_defect(solution: Solution, flow: Flow) -> float:
@@ -62,7 +72,7 @@ def dynamics_defect(solution: Solution, flow: Flow) -> float:
     here = np.clip(np.searchsorted(flow.times, solution.times), 1, len(flow.times) - 1)
     here -= solution.times - flow.times[here - 1] < flow.times[here] - solution.times
     same = np.abs(flow.times[here] - solution.times) <= 1e-12 * max(abs(float(flow.times[-1])), 1e-300)
-    state, costate = typical(solution)
+    state, costate = typical(solution, FAINT)
     parts = [
         (np.abs(mine[:, here[same]] - theirs[:, same]).max(axis=1) / size).max()
         for mine, theirs, size in ((flow.x, solution.x, state), (flow.lam, solution.lam, costate))
@@ -72,8 +82,7 @@ def dynamics_defect(solution: Solution, flow: Flow) -> float:
 
 def off_cost(solution: Solution, flow: Flow) -> float:
     """Difference of the stated cost from that along the flow, relative to it; what cancels counts as a share of H."""
-    state, costate = typical(solution)
-    size = max(abs(flow.cost), CANCELLED * float(state @ costate), 1e-300)
+    size = max(abs(flow.cost), CANCELLED * products(solution), 1e-300)
     return float(abs(flow.cost - solution.objective) / size)
 
 

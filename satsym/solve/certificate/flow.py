@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.solution import Solution
-from satsym.solve.collocation.curve import SMALL
 from satsym.solve.collocation.scaling import two_point
 from satsym.solve.integrate import NotFinite, integrate
 
@@ -18,8 +17,21 @@ Array = NDArray[np.floating[Any]]
 TOLERANCE = 1e-13
 """Error of a step, relative to the size of each component."""
 
+FINEST = 4.0 * np.finfo(float).eps
+"""Share of the terms of a rate below which a step cannot tell what they add up to."""
+
+ROUGHLY = 1e-9
+"""Error of a step where only the size of what is found matters."""
+
 NEGLIGIBLE = 1e-3
 """Share of its unit, or of the largest product with its partner, at which something small counts."""
+
+ROUNDED = 1e-13
+"""Share of its unit up to which a costate may be made of rounding."""
+
+SMALL, FAINT = 1e-4, 1e-6
+"""Share of its unit at which a smaller costate counts: states are rounded, and with them what a costate must be at
+the end; the flow from the initial costates is not, but that it depends on the states."""
 
 STATIONS = 64
 """Times at which the flow is compared with the solver's trajectory and looked at for conjugate times."""
@@ -55,7 +67,7 @@ def flow(solution: Solution) -> Flow | None:
     start, end = float(solution.times[0]), float(solution.times[-1])
     kinks = [t for times in solution.switching_times for t in times if start < t < end]
     stations = np.unique(np.concatenate([np.linspace(start, end, STATIONS + 1), kinks]))
-    sizes = np.concatenate(typical(solution))
+    sizes = np.maximum(np.concatenate(typical(solution, FAINT)), _resolved(solution) / STATIONS)
     by_costates = np.concatenate([np.zeros((n, n)), np.eye(n)])
 
     def rates(t: float, y: Array) -> Array:
@@ -81,16 +93,64 @@ def flow(solution: Solution) -> Flow | None:
     return Flow(stations, x, lam, field, cost)
 
 
-def typical(solution: Solution) -> tuple[Array, Array]:
+def undriven(solution: Solution) -> Array | None:
+    """Where the motion would end without any control, shape (n,); ``None`` where that is nowhere."""
+    instance, model = solution.instance, solution.instance.model
+    none, p = (0.0,) * len(model.spec.controls), instance.parameters
+
+    def rates(t: float, x: Array) -> Array:
+        return np.array(model.dynamics(t, tuple(x.tolist()), none, p))
+
+    times = np.array([float(solution.times[0]), float(solution.times[-1])])
+    try:
+        return integrate(rates, times, np.array(instance.initial), ROUGHLY, typical(solution)[0])[0].end
+    except (NotFinite, ZeroDivisionError, OverflowError, ValueError):
+        return None
+
+
+def _resolved(solution: Solution) -> Array:
+    """Sizes below which errors would be held to less than the rates are rounded by over the whole time, shape (2n,).
+
+    Steps would shrink for ever in vain: a rate may be a small difference of large terms.
+    """
+    instance, model = solution.instance, solution.instance.model
+    z = np.abs(np.concatenate([solution.x, solution.lam]))
+    slopes = model.canonical_jacobian_batch(
+        solution.times, solution.x, solution.lam, instance.parameters, instance.bounds
+    )
+    terms = np.einsum("ijk,jk->ik", np.abs(slopes), z).max(axis=1)
+    found: Array = FINEST / TOLERANCE * abs(float(solution.times[-1] - solution.times[0])) * terms
+    return found
+
+
+def unit_sizes(solution: Solution) -> Array:
+    """Of states and costates, those of the scaled problem, shape (2n,)."""
+    found: Array = two_point(solution.instance, float(solution.times[-1] - solution.times[0])).scale.both[:, 0]
+    return found
+
+
+def products(solution: Solution) -> float:
+    """The sum of the products of states and costates at their largest: what a share of the states is worth."""
+    state, costate = typical(solution, ROUNDED)
+    return float(state @ costate)
+
+
+def typical(solution: Solution, faint: float = SMALL) -> tuple[Array, Array]:
     """Sizes to which errors of states and costates are held, shapes (n,).
 
     Each its largest magnitude along the way, but what is far below its unit counts as a share of that: states are
     rounded, and what they move is no better. A costate also counts as a share of what the largest product of state
     and costate makes of it.
+
+    Parameters
+    ----------
+    solution
+        Whose.
+    faint
+        The share of their unit at which smaller costates count.
     """
-    unit = two_point(solution.instance, float(solution.times[-1] - solution.times[0])).scale.both[:, 0]
-    n = len(solution.x)
+    n, unit = len(solution.x), unit_sizes(solution)
     state = np.maximum(np.abs(solution.x).max(axis=1), NEGLIGIBLE * unit[:n])
     costate = np.abs(solution.lam).max(axis=1)
     product = float((state * costate).max())
-    return state, np.maximum(np.maximum(costate, SMALL * unit[n:]), NEGLIGIBLE * product / state)
+    return state, np.maximum(np.maximum(costate, faint * unit[n:]), NEGLIGIBLE * product / state)

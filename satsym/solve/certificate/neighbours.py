@@ -14,7 +14,7 @@ from satsym.grid import Grid, interleave
 from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solve import control_set
-from satsym.solve.certificate.competitors import margin
+from satsym.solve.certificate.competitors import HIDDEN, hidden, margin
 from satsym.solve.collocation.scaling import final_argument
 
 Array = NDArray[np.floating[Any]]
@@ -31,7 +31,11 @@ AMPLITUDE = 0.05
 
 CORRECTIONS = 12
 MISSED = 1e-9
-"""Relative miss of the end up to which a neighbour counts as feasible."""
+"""Miss of the end up to which a neighbour counts as feasible, relative to its size and to how far the control moves it.
+"""
+
+NUDGE, MOVED = 1e-4, 1e-8
+"""Relative change of the control that shows its effect on the end, and least share by which that must be moved."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +82,9 @@ def neighbours(solution: Solution) -> float:
     size = float(np.abs(u).max()) or 1.0
     shapes = list(_shapes(instance, times, u))
     cost, end = flown(u)
-    nudge = 1e-4 * size
+    moved = float(np.abs(end - flown(np.zeros_like(u))[1]).max(initial=0.0))
+    nudge = size * (NUDGE if moved == 0.0 else max(NUDGE, MOVED / moved))
+    missed = MISSED * min(1.0, max(moved, HIDDEN / MISSED))
     response = np.stack([(flown(u + nudge * shape)[1] - end) / nudge for shape in shapes], axis=1)
     if not np.isfinite(response).all():
         return float("inf")
@@ -87,11 +93,13 @@ def neighbours(solution: Solution) -> float:
     for _ in range(NEIGHBOURS):
         weights = np.array([rng.gauss(0.0, 1.0) for _ in shapes])
         weights *= AMPLITUDE * size / max(1.0, float(np.linalg.norm(weights)))
-        cheapest = min(cheapest, _corrected(flown, u, shapes, weights, response, end))
-    return margin(cheapest, cost)
+        cheapest = min(cheapest, _corrected(flown, u, shapes, weights, response, end, missed))
+    return margin(cheapest, cost, hidden=hidden(solution))
 
 
-def _corrected(flown: Flights, u: Array, shapes: list[Array], weights: Array, response: Array, end: Array) -> float:
+def _corrected(
+    flown: Flights, u: Array, shapes: list[Array], weights: Array, response: Array, end: Array, missed: float
+) -> float:
     """The cost of a neighbour once it ends where the solution does; infinite where it cannot be made to."""
     tried: Array = np.zeros(0)
     for _ in range(CORRECTIONS):
@@ -99,7 +107,7 @@ def _corrected(flown: Flights, u: Array, shapes: list[Array], weights: Array, re
         cost, reached = flown(control_set.project(flown.instance, u + change))
         gap = reached - end
         miss = float(np.abs(gap).max(initial=0.0))
-        if miss <= MISSED:
+        if miss <= missed:
             return cost
         if not np.isfinite(miss):
             break

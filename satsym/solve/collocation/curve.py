@@ -13,10 +13,6 @@ from satsym.solve.collocation.gauss import interpolation, lagrange, scheme
 Array = NDArray[np.floating[Any]]
 
 
-NOTHING = 1e-12
-"""Scaled costates below this do nothing: they change the states by such a share of their size."""
-
-
 SMALL = 1e-4
 """Smaller scaled costates count at this size: states are rounded, and so are costates by as much at least."""
 
@@ -115,9 +111,9 @@ class Step:
     stages: Array
     theta: Array
 
-    def size(self, curve: Curve) -> float:
-        """Largest change: states relative to their size (at least one), costates relative to theirs."""
-        sizes = np.maximum(_largest(curve.nodes, curve.stages), (1.0, SMALL))
+    def size(self, curve: Curve, small: float = SMALL) -> float:
+        """Largest change: states relative to their size (at least one), costates relative to theirs (``small``)."""
+        sizes = np.maximum(_largest(curve.nodes, curve.stages), (1.0, small))
         found = (_largest(self.nodes, self.stages) / sizes).max()
         if len(self.theta):
             found = np.maximum(found, abs(self.theta[-1]) / max(abs(curve.theta[-1]), 1e-300))

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from satsym.solve.collocation.curve import Curve
+from satsym.solve.collocation.continuation import kinks
+from satsym.solve.collocation.curve import SMALL, Curve
 from satsym.solve.collocation.gauss import STAGES
 from satsym.solve.collocation.linearised import Linearised
 from satsym.solve.collocation.newton import newton
@@ -31,6 +32,9 @@ ROUNDS = 8
 MOST_INTERVALS = 400
 FEWEST, LARGEST_SPLIT = 0.6, 4.0
 """Bounds of the change in the density of the mesh in one round."""
+
+ROOM = 0.25
+"""Share of an interval by which a node may be moved to a kink; one that is farther from all nodes gets its own."""
 
 SPARE = 0.1
 """Share of the error aimed at that the next mesh is laid for."""
@@ -72,7 +76,7 @@ def refine(
     tolerance
         Largest error.
     keep_nodes
-        Whether nodes stay where they are (on kinks) and intervals are only split.
+        Whether nodes lie on kinks: intervals are only split, and nodes follow the kinks as these become accurate.
     known
         The linearised equations at the curve or nearby, if it is a solution with :data:`STAGES` stages already.
     """
@@ -84,16 +88,18 @@ def refine(
             if outcome and outcome.converged:
                 curve, known = outcome.curve, outcome.linearised
         sharpened = sharpen(curve, known, aim) if known else None
-        better = sharpened is not None and sharpened.error < 0.5 * best.error
-        if sharpened and sharpened.error < best.error:
-            best = Refined(sharpened.curve, sharpened.error, sharpened.error < tolerance, total)
+        met = kinks(problem, sharpened.curve) if sharpened and keep_nodes else np.zeros(0)
+        error = max(sharpened.error, _misplaced(problem, sharpened.curve, met)) if sharpened else float("inf")
+        better = error < 0.5 * best.error
+        if sharpened and error < best.error:
+            best = Refined(sharpened.curve, error, error < tolerance, total)
         if best.error < aim or (best.converged and not better):
             break
         density = _density(sharpened, aim) if sharpened else np.full(len(curve.mesh) - 1, 2.0)
         if density.sum() > MOST_INTERVALS:
             break
         curve = sharpened.curve if sharpened else curve
-        mesh = _split(curve.mesh, density) if keep_nodes else _spread(curve.mesh, density)
+        mesh = _followed(_split(curve.mesh, density), met) if keep_nodes else _spread(curve.mesh, density)
         curve, known = curve.on(mesh, STAGES), None
     return best
 
@@ -103,6 +109,32 @@ def _density(sharpened: Sharpened, aim: float) -> Array:
     ratio = sharpened.omitted / (SPARE * aim)
     found: Array = np.clip(ratio ** (1.0 / sharpened.curve.order), FEWEST, LARGEST_SPLIT)
     return found
+
+
+def _misplaced(problem: TwoPoint, curve: Curve, met: Array) -> float:
+    """What kinks off the nodes leave out: the rates on one side of a kink, followed up to the node beside it."""
+    if not len(met):
+        return 0.0
+    node = curve.mesh[np.abs(met[:, None] - curve.mesh).argmin(axis=1)]
+    followed, free = (one.rates(node, curve(node), curve.theta) for one in (problem, problem.widened(float("inf"))))
+    n, size = problem.states, np.abs(curve.nodes).reshape(2, -1).max(axis=1)
+    jump = np.abs(followed - free).reshape(2, n, -1).max(axis=1) / np.maximum(size, (1.0, SMALL))[:, None]
+    return float((jump.max(axis=0) * np.abs(met - node)).max()) * problem.elapsed(curve.theta) / 2.0
+
+
+def _followed(mesh: Array, met: Array) -> Array:
+    """A mesh whose nodes have followed the kinks, the others in proportion; kinks far from all nodes get their own."""
+    before, after, own = [0.0], [0.0], []
+    for kink in met:
+        k = int(np.abs(mesh - kink).argmin())
+        room = ROOM * np.diff(mesh)[max(k - 1, 0) : k + 1].min()
+        if 0 < k < len(mesh) - 1 and abs(mesh[k] - kink) < room and mesh[k] > before[-1]:
+            before.append(float(mesh[k]))
+            after.append(float(kink))
+        elif abs(mesh[k] - kink) >= room:
+            own.append(float(kink))
+    moved = np.interp(mesh, [*before, 1.0], [*after, 1.0])
+    return np.unique(np.concatenate([moved, own]))
 
 
 def _split(mesh: Array, density: Array) -> Array:

@@ -14,9 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from satsym.solve.collocation.curve import NOTHING, SMALL, Curve, Step
+from satsym.solve.collocation.curve import SMALL, Curve, Step
 from satsym.solve.collocation.gauss import interpolation, scheme
 from satsym.solve.collocation.linearised import Linearised
+from satsym.solve.collocation.newton import faint
 from satsym.solve.collocation.system import System
 
 Array = NDArray[np.floating[Any]]
@@ -29,7 +30,13 @@ CONTRACTION = 0.1
 """Corrections that shrink less are not worth another."""
 
 ROUNDING = 3e-15
-"""Corrections of this size show nothing any more."""
+"""Corrections of this size show nothing any more, and residuals of this size are none."""
+
+LITTLE = 1e-2
+"""Scaled costates above this are known as well as any others."""
+
+FAINTEST = 1e-6
+"""Scaled costates from which nobody need ask whether they do anything."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,9 +81,10 @@ def sharpen(curve: Curve, linearised: Linearised, tolerance: float) -> Sharpened
     fundamental = linearised.fundamental(onto)
     inverse = _inverted(fundamental)
     fine, before = curve.with_stages(POINTS), float("inf")
+    small = faint(linearised) if np.abs(curve.nodes[len(curve.nodes) // 2 :]).max() < LITTLE else SMALL
     for _ in range(MOST):
         step = _correction(system, fine, linearised, onto, fundamental, inverse)
-        size = step.size(fine)
+        size = step.size(fine, small)
         if not size < before:
             # Near rounding corrections no longer shrink.
             if before > tolerance:
@@ -90,18 +98,24 @@ def sharpen(curve: Curve, linearised: Linearised, tolerance: float) -> Sharpened
         before, size = size, size * contraction if np.isfinite(before) else size
         if size < max(CONTRACTION * tolerance, ROUNDING):
             break
-    omitted = _omitted(fine)
-    return Sharpened(_without_rounding(fine), max(size, float(omitted.max())), omitted)
+    omitted = _omitted(fine, small)
+    return Sharpened(_without_rounding(system, fine), max(size, float(omitted.max())), omitted)
 
 
-def _without_rounding(curve: Curve) -> Curve:
-    """The curve with costates that do nothing set to zero: where no control is needed they are noise of both signs."""
+def _without_rounding(system: System, curve: Curve) -> Curve:
+    """The curve with costates that do nothing set to zero: where no control is needed they are noise of both signs.
+
+    They do nothing if the equations hold as well without them.
+    """
     n = len(curve.nodes) // 2
-    if max(np.abs(curve.nodes[n:]).max(), np.abs(curve.stages[n:]).max()) >= NOTHING:
+    if max(np.abs(curve.nodes[n:]).max(), np.abs(curve.stages[n:]).max()) >= FAINTEST:
         return curve
     nodes, stages = curve.nodes.copy(), curve.stages.copy()
     nodes[n:], stages[n:] = 0.0, 0.0
-    return replace(curve, nodes=nodes, stages=stages)
+    without = replace(curve, nodes=nodes, stages=stages)
+    left, size = system.residual(without), max(1.0, float(np.abs(nodes).max()))
+    parts = (left.stages, left.ends, left.start, left.finish)
+    return without if max(float(np.abs(part).max()) for part in parts) <= ROUNDING * size else curve
 
 
 def _correction(
@@ -129,12 +143,12 @@ def _inverted(matrices: Array) -> Array:
     return found
 
 
-def _omitted(curve: Curve) -> Array:
+def _omitted(curve: Curve, small: float) -> Array:
     """What polynomials of this degree leave out, judged by their last two coefficients, relative, shape (N,)."""
     n = len(curve.nodes) // 2
     known = np.concatenate([curve.nodes[:, :-1, None], curve.stages], axis=2)
     last = np.abs(known @ scheme(curve.order).coefficients[-2:].T).max(axis=2)
     size = np.abs(known).reshape(2 * n, -1).max(axis=1)
-    scale = np.repeat([max(1.0, size[:n].max()), max(size[n:].max(), SMALL)], n)
+    scale = np.repeat([max(1.0, size[:n].max()), max(size[n:].max(), small)], n)
     found: Array = (last / scale[:, None]).max(axis=0)
     return found
