@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from satsym import instance
+from satsym import instance, solve
 from satsym.instance import Instance
 from satsym.instance.types import Guess
 from satsym.solution import Solution
@@ -81,3 +81,33 @@ def test_a_guess_is_where_the_way_begins(guess: Guess) -> None:
     found = two_point.solve(case)
     assert "from the guess" in found.message
     assert found.objective == pytest.approx(COST, rel=1e-10)
+
+
+def test_weights_next_to_nothing_leave_no_warnings() -> None:
+    found = solve.solve(with_parameters(RETURN, c1=1e-300, c2=1e-300))
+    assert found.objective == pytest.approx(1e-300 * COST, rel=1e-10)
+
+
+INFINITE = float("inf")
+
+
+@pytest.mark.parametrize(
+    ("initial", "tf", "lower", "upper"),
+    [
+        ((0.8491, -0.1921, 0.3358, 0.7491), 9.091, (0.0, -INFINITE), (0.2, INFINITE)),
+        ((0.9082, -0.2891, -0.2995, 0.7092), 6.316, (-0.05, -0.1), (0.05, 0.1)),
+        ((1.1855, 0.2077, -0.3183, 1.1539), 6.882, (-INFINITE, -0.3), (INFINITE, 0.0)),
+    ],
+)
+def test_bounds_met_at_many_times_leave_no_error_that_is_not_told(
+    initial: tuple[float, ...], tf: float, lower: tuple[float, ...], upper: tuple[float, ...]
+) -> None:
+    """Nodes that stay where a coarse solution meets its bounds are off by 1e-5 of the duration."""
+    base = with_parameters(RETURN, k1=0.1, k2=0.1, k3=0.02, k4=0.1)
+    case = replace(base, initial=initial, tf=tf, final={"theta": "reference"}, lower=lower, upper=upper)
+    found, other = solve.solve(case), shooting.solve(case)
+    assert found.certificate is not None
+    assert found.certificate.verdict == "certified"
+    assert found.objective == pytest.approx(other.objective, rel=1e-12)
+    for own, theirs in zip(found.switching_times, other.switching_times, strict=True):
+        assert own == pytest.approx(theirs, abs=1e-9)

@@ -125,7 +125,7 @@ def conjugate_time(flow: Flow) -> float | None:
     """
     n, sign = flow.x.shape[0], 0.0
     for time, slopes in zip(flow.times[1:], flow.field[1:], strict=True):
-        upper = slopes[:n] / np.maximum(np.linalg.norm(slopes, axis=0), 1e-300)
+        upper = slopes[:n] / np.maximum(np.abs(slopes).max(axis=0), 1e-300)
         balanced = upper / np.maximum(np.abs(upper).max(axis=1, keepdims=True), 1e-300)
         values = np.linalg.svd(balanced, compute_uv=False)
         if values[-1] < RESOLVED * values[0]:
@@ -152,7 +152,7 @@ def negative_end(solution: Solution, flow: Flow) -> float:
     slopes = np.array(instance.model.boundary_jacobian(tf, x, lam, (), instance.parameters, instance.bounds, final))
     hessian = -slopes.reshape(n + 1, -1)[:n, :n]
     # The columns' scales cancel in Lambda X^-1, but keep the inversion well conditioned.
-    scaled = flow.field[-1] / np.maximum(np.linalg.norm(flow.field[-1], axis=0), 1e-300)
+    scaled = flow.field[-1] / np.maximum(np.abs(flow.field[-1]).max(axis=0), 1e-300)
     arriving = np.linalg.solve(scaled[:n].T, scaled[n:].T).T
     pivot = (hessian - arriving)[np.ix_(free, free)]
     size = 1.0 / np.sqrt(np.maximum(np.abs(np.diag(pivot)), 1e-300))
