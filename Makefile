@@ -20,7 +20,7 @@ demo: $(VENV)/installed  ## solve two shipped problems, with pictures, into resu
 	echo; echo "Results and pictures:"; ls -1 results/soft-return/* results/its-thesis/* | sed 's/^/  /'
 
 test: lint check-derive  ## lint, check generated/, run all tests
-	$(BIN)/python -m pytest -n 2 --dist loadfile
+	$(BIN)/python -m pytest -n 2 --dist worksteal
 
 lint: $(VENV)/installed-dev  ## style, types, import floors
 	$(BIN)/ruff check --quiet

@@ -23,7 +23,7 @@ from satsym.solve.iteration import Limits
 from satsym.status import Status
 from tests.samples import EASY, HARD, Population
 
-CHUNK, WHOLE = 50, 10
+CHUNK, WHOLE = 50, 25
 """Cases of a test, and how many of them share one whole certificate: competitors take longer than solving."""
 
 SECONDS = 60.0

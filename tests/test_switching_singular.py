@@ -80,7 +80,7 @@ def cost_of(start: tuple[float, float], tf: float, signs: tuple[float, float], t
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("start", "tf", "signs", "about"),
-    [((0.0, 1.0), 4.0, (-1.0, 1.0), (1.3, 2.4)), ((-1.0, 0.3), 3.0, (1.0, -1.0), (0.1, 1.9))],
+    [((-1.0, 0.3), 3.0, (1.0, -1.0), (0.1, 1.9))],
 )
 def test_van_der_pols_oscillator_ends_in_a_singular_arc_within_its_bounds(
     tmp_path: Path, start: tuple[float, float], tf: float, signs: tuple[float, float], about: tuple[float, float]
