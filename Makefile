@@ -7,7 +7,7 @@ PIP    := $(BIN)/python -m pip install -qq --disable-pip-version-check
 # Each recipe says itself what the user needs to know; errors of the tools come through (pip -qq: errors only).
 .SILENT:
 .NOTPARALLEL:
-.PHONY: help demo test lint format derive check-derive bench bench-returns bench-drift clean
+.PHONY: help demo test test-whole lint format derive check-derive bench bench-returns bench-drift clean
 
 help:  ## list the targets
 	grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /|/' | awk -F'|' '{printf "  make %-14s %s\n", $$1, $$2}'
@@ -19,8 +19,11 @@ demo: $(VENV)/installed  ## solve two shipped problems, with pictures, into resu
 	done
 	echo; echo "Results and pictures:"; ls -1 results/soft-return/* results/its-thesis/* | sed 's/^/  /'
 
-test: lint check-derive  ## lint, check generated/, run all tests
-	$(BIN)/python -m pytest -n 2 --dist worksteal
+test: lint check-derive  ## lint, check generated/, run the tests, of the slowest ones a sample
+	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
+
+test-whole: lint check-derive  ## the same with every case of the slow tests (takes half an hour)
+	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder --whole
 
 lint: $(VENV)/installed-dev  ## style, types, import floors
 	$(BIN)/ruff check --quiet

@@ -17,6 +17,28 @@ hypothesis.settings.register_profile("satsym", deadline=None, derandomize=True)
 hypothesis.settings.load_profile("satsym")
 
 
+FEW, SHARE = 4, 3
+"""Of a slow test with more than that many cases every third runs, unless all are asked for."""
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """``--whole``: every case of every slow test (`make test-whole`)."""
+    parser.addoption("--whole", action="store_true", help="run all cases of slow tests, not a sample")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave a sample of slow tests that have many cases: long studies are for those who have the time."""
+    if config.getoption("--whole"):
+        return
+    cases: dict[str, list[pytest.Item]] = {}
+    for item in items:
+        if item.get_closest_marker("slow"):
+            cases.setdefault(item.nodeid.partition("[")[0], []).append(item)
+    spared = {item for own in cases.values() if len(own) > FEW for k, item in enumerate(own) if k % SHARE}
+    config.hook.pytest_deselected(items=[item for item in items if item in spared])
+    items[:] = [item for item in items if item not in spared]
+
+
 @pytest.fixture(scope="session")
 def repository() -> Path:
     """The checkout that the tests belong to."""
