@@ -22,7 +22,7 @@ demo: $(VENV)/installed  ## solve two shipped problems, with pictures, into resu
 test: lint check-derive  ## lint, check generated/, run the tests, of the slowest ones a sample
 	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
-test-whole: lint check-derive  ## the same with every case of the slow tests (takes half an hour)
+test-whole: lint check-derive  ## the same with every case of the slow tests
 	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder --whole
 
 lint: $(VENV)/installed-dev  ## style, types, import floors

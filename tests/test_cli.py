@@ -202,6 +202,7 @@ def test_solve_prints_the_object_of_the_contract_and_writes_nothing(run: Run, tm
     assert list(found) == SOLUTION_KEYS
     assert found["status"] == "converged"
     assert found["objective"] == 0.0
+    assert found["certificate"]["verdict"] == "certified"
     assert not list(tmp_path.iterdir())
 
 

@@ -14,6 +14,7 @@ from satsym.solve import revolutions
 from satsym.solve.collocation.continuation import by_bound
 from satsym.solve.collocation.curve import Curve, Path
 from satsym.solve.collocation.problem import Scale, TwoPoint
+from satsym.solve.failures import FAILURES
 from satsym.solve.iteration import Limits, watched
 from satsym.solve.revolutions import TURN, Best
 from satsym.status import Status
@@ -49,10 +50,6 @@ Method = Callable[[Instance, Limits, bool], Extremal]
 """From an instance to an extremal; the last argument says whether with great effort."""
 
 
-ARITHMETIC = (np.linalg.LinAlgError, ArithmeticError)
-"""What numbers beyond all bounds end in."""
-
-
 def without_numbers(instance: Instance, error: Exception) -> Extremal:
     """No answer, because arithmetic failed on the way."""
     n, duration = len(instance.initial), 1.0 if instance.tf is None else instance.tf - instance.t0
@@ -83,7 +80,7 @@ def solved(instance: Instance, progress: Progress | None, name: str, method: Met
     def guarded(one: Instance, effort: bool) -> Extremal:
         try:
             return method(one, limits, effort)
-        except ARITHMETIC as error:
+        except FAILURES as error:
             return without_numbers(one, error)
 
     with np.errstate(all="ignore"):

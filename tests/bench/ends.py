@@ -164,7 +164,7 @@ def ends(rounds: int = 10) -> Table:
         if name.startswith("SciPy"):
             goals = (Goal("at least 5 x satsym", samples[name].times(samples[OURS]), 5.0, True),)
         elif name.startswith("CasADi"):
-            ahead = [(kind, samples[name].times(samples[kind])) for kind in (BUILT, COMPILED) if kind in samples]
+            ahead = [(kind, samples[name].times(samples[kind])) for kind in (OURS, BUILT, COMPILED) if kind in samples]
             goals = tuple(Goal(f"more than {kind}", ratio, 1.0, True) for kind, ratio in ahead)
         note = f"costates off by {off[name]:.0e}" + ("" if off[name] <= WITHIN else f", more than {WITHIN:g}")
         note += f"; {once[name]:.2g} s once" if once[name] > 0.01 else ""

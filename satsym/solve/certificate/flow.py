@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from satsym.solution import Solution
 from satsym.solve.collocation.scaling import two_point
-from satsym.solve.integrate import NotFinite, integrate
+from satsym.solve.failures import FAILURES
+from satsym.solve.integrate import integrate
 
 Array = NDArray[np.floating[Any]]
 
@@ -85,7 +86,7 @@ def flow(solution: Solution) -> Flow | None:
     try:
         for piece in integrate(rates, stations, values, TOLERANCE, scale):
             found.append(piece.end)
-    except (NotFinite, ZeroDivisionError, OverflowError, ValueError):
+    except FAILURES:
         return None
     table = np.array(found)
     x, lam, field = table[:, :n].T, table[:, n : 2 * n].T, table[:, 2 * n : -1].reshape(-1, 2 * n, n)
@@ -104,7 +105,7 @@ def undriven(solution: Solution) -> Array | None:
     times = np.array([float(solution.times[0]), float(solution.times[-1])])
     try:
         return integrate(rates, times, np.array(instance.initial), ROUGHLY, typical(solution)[0])[0].end
-    except (NotFinite, ZeroDivisionError, OverflowError, ValueError):
+    except FAILURES:
         return None
 
 

@@ -19,7 +19,7 @@ from satsym.solution import Solution
 from satsym.solve.certificate.flow import typical
 from satsym.solve.certificate.next_switch import integrated, next_switch, solved
 from satsym.solve.certificate.stated_arcs import Stated, arcs, undecided
-from satsym.solve.switching.failures import FAILURES
+from satsym.solve.failures import FAILURES
 from satsym.solve.switching.field import Field
 from satsym.solve.switching.newton import switching
 from satsym.solve.switching.recognition import levels as best_levels

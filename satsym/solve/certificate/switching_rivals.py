@@ -14,9 +14,9 @@ from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solve.certificate.competitors import SECONDS, margin
 from satsym.solve.collocation.scaling import final_argument
+from satsym.solve.failures import FAILURES
 from satsym.solve.integrate import integrate
-from satsym.solve.iteration import Limits
-from satsym.solve.switching.failures import FAILURES
+from satsym.solve.iteration import MOST, Limits
 
 Array = NDArray[np.floating[Any]]
 
@@ -98,7 +98,7 @@ def other_starts(solution: Solution) -> float:
     from satsym.solve.switching.solving import COMPARED, others
 
     instance = solution.instance
-    limits = Limits(500, time.perf_counter() + SECONDS + COMPARED)
+    limits = Limits(MOST, time.perf_counter() + SECONDS + COMPARED)
     with np.errstate(all="ignore"):
         costs = [float(found.trajectory.cost(instance)) for found, _ in others(instance, limits)]
     return margin(min(costs, default=float("inf")), solution.objective, coarse=1e-9)

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from satsym.solve.collocation.curve import SMALL, Curve, Step
+from satsym.solve.collocation.curve import Curve, Step
 from satsym.solve.collocation.linearised import Linearised
 from satsym.solve.collocation.problem import TwoPoint
 from satsym.solve.collocation.system import System
@@ -27,10 +27,6 @@ SURE = 1e-4
 """Corrections below this are taken whole."""
 
 SHORTEST = 1e-3
-FAINT = 1e-5
-"""Share of the size of the states: costates that move them by less are rounded too much to be known as well as others.
-"""
-
 FLOOR = 1e-9
 """Corrections below this that no longer shrink are rounding."""
 
@@ -58,23 +54,6 @@ class Outcome:
     iterations: int
     linearised: Linearised
     whole: bool
-
-
-def faint(linearised: Linearised) -> float:
-    """The size at which smaller scaled costates count: that which moves the states by :data:`FAINT` of their size.
-
-    What the ends of the states ask of the costates, and how the rounding of states shows in these, is the same
-    response.
-    """
-    system = linearised.system
-    n, e, met = system.problem.states, system.problem.unknowns, np.zeros((system.intervals, system.rows))
-    largest = 0.0
-    for start, finish in [(unit, np.zeros(n + e)) for unit in np.eye(n)] + [
-        (np.zeros(n), unit) for unit in np.eye(n + e)[:n][system.problem.fixed]
-    ]:
-        nodes, _ = linearised.matching.correction(met, start, finish)
-        largest = max(largest, float(np.abs(nodes[:, n:]).max()))
-    return max(SMALL, FAINT * largest) if np.isfinite(largest) else SMALL
 
 
 def newton(system: System, start: Curve, tolerance: float = 1e-12, most: int = 12) -> Outcome | None:

@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from satsym.solve.collocation.curve import SMALL, Curve, Step
 from satsym.solve.collocation.gauss import interpolation, scheme
 from satsym.solve.collocation.linearised import Linearised
-from satsym.solve.collocation.newton import faint
 from satsym.solve.collocation.system import System
 
 Array = NDArray[np.floating[Any]]
@@ -31,6 +30,10 @@ CONTRACTION = 0.1
 
 ROUNDING = 3e-15
 """Corrections of this size show nothing any more, and residuals of this size are none."""
+
+FAINT = 1e-5
+"""Share of the size of the states: costates that move them by less are rounded too much to be known as well as others.
+"""
 
 LITTLE = 1e-2
 """Scaled costates above this are known as well as any others."""
@@ -81,7 +84,7 @@ def sharpen(curve: Curve, linearised: Linearised, tolerance: float) -> Sharpened
     fundamental = linearised.fundamental(onto)
     inverse = _inverted(fundamental)
     fine, before = curve.with_stages(POINTS), float("inf")
-    small = faint(linearised) if np.abs(curve.nodes[len(curve.nodes) // 2 :]).max() < LITTLE else SMALL
+    small = _faint(linearised) if np.abs(curve.nodes[len(curve.nodes) // 2 :]).max() < LITTLE else SMALL
     for _ in range(MOST):
         step = _correction(system, fine, linearised, onto, fundamental, inverse)
         size = step.size(fine, small)
@@ -102,10 +105,26 @@ def sharpen(curve: Curve, linearised: Linearised, tolerance: float) -> Sharpened
     return Sharpened(_without_rounding(system, fine), max(size, float(omitted.max())), omitted)
 
 
+def _faint(linearised: Linearised) -> float:
+    """The size at which smaller scaled costates count: that which moves the states by :data:`FAINT` of their size.
+
+    What the ends of the states ask of the costates, and how the rounding of states shows in these, is the same
+    response.
+    """
+    problem = linearised.system.problem
+    n, e = problem.states, problem.unknowns
+    met = np.zeros((linearised.system.intervals, linearised.system.rows))
+    starts = [(unit, np.zeros(n + e)) for unit in np.eye(n)]
+    ends = [(np.zeros(n), unit) for unit in np.eye(n, n + e)[problem.fixed]]
+    asked = [linearised.matching.correction(met, start, end)[0][:, n:] for start, end in starts + ends]
+    largest = float(np.abs(asked).max())
+    return max(SMALL, FAINT * largest) if np.isfinite(largest) else SMALL
+
+
 def _without_rounding(system: System, curve: Curve) -> Curve:
     """The curve with costates that do nothing set to zero: where no control is needed they are noise of both signs.
 
-    They do nothing if the equations hold as well without them.
+    They do nothing if the residual of the equations is the same without them, but for rounding.
     """
     n = len(curve.nodes) // 2
     if max(np.abs(curve.nodes[n:]).max(), np.abs(curve.stages[n:]).max()) >= FAINTEST:
@@ -113,9 +132,10 @@ def _without_rounding(system: System, curve: Curve) -> Curve:
     nodes, stages = curve.nodes.copy(), curve.stages.copy()
     nodes[n:], stages[n:] = 0.0, 0.0
     without = replace(curve, nodes=nodes, stages=stages)
-    left, size = system.residual(without), max(1.0, float(np.abs(nodes).max()))
-    parts = (left.stages, left.ends, left.start, left.finish)
-    return without if max(float(np.abs(part).max()) for part in parts) <= ROUNDING * size else curve
+    left, kept, size = system.residual(without), system.residual(curve), max(1.0, float(np.abs(nodes).max()))
+    parts = ((left.stages, kept.stages), (left.ends, kept.ends), (left.start, kept.start), (left.finish, kept.finish))
+    done = max(float(np.abs(a - b).max()) for a, b in parts)
+    return without if done <= ROUNDING * size else curve
 
 
 def _correction(

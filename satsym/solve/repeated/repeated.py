@@ -1,4 +1,4 @@
-"""One instance solved again and again, for other initial states and parameters, in a millisecond or two each."""
+"""One instance solved again and again, for other initial states and parameters."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ import numpy as np
 from satsym.instance import Instance
 from satsym.instance.resolve import value_of
 from satsym.solution import Array, Solution
-from satsym.solve.extremal import ARITHMETIC, Extremal, solved, without_numbers
+from satsym.solve.extremal import Extremal, solved, without_numbers
+from satsym.solve.failures import FAILURES
 from satsym.solve.iteration import Limits, watched
 from satsym.solve.repeated.by_collocation import ByCollocation
 from satsym.solve.repeated.means import Means
@@ -145,13 +146,13 @@ class Repeated:
                 continue
             try:
                 found = attempt(case, limits)
-            except ARITHMETIC:
+            except FAILURES:
                 continue
             if found:
                 return found, way
         try:
             return self._means.cold(case, limits), "cold start"
-        except ARITHMETIC as error:
+        except FAILURES as error:
             return without_numbers(case, error), "cold start"
 
     def solution(self, answer: Answer) -> Solution:

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.instance import Instance
+from satsym.solve.failures import FAILURES, tried
 from satsym.solve.iteration import Limits
-from satsym.solve.switching.failures import FAILURES, tried
 from satsym.solve.switching.newton import Equations, Refined, solve
 from satsym.solve.switching.recognition import Guess
 from satsym.solve.switching.trajectory import Trajectory, Violation, violations

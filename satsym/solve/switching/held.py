@@ -13,7 +13,7 @@ import numpy as np
 
 from satsym.grid import Grid
 from satsym.instance import Instance
-from satsym.solve.switching.failures import tried
+from satsym.solve.failures import tried
 from satsym.solve.switching.recognition import Guess, Sample, guess
 
 STEPS = 400

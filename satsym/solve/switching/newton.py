@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from satsym.instance import Instance
 from satsym.solve.collocation.scaling import final_argument
-from satsym.solve.switching.failures import FAILURES
+from satsym.solve.failures import FAILURES
 from satsym.solve.switching.field import Field
 from satsym.solve.switching.flight import TOLERANCE, Arc, Unknowns, fly
 from satsym.solve.switching.structure import SINGULAR, Structure

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from satsym.instance import Instance
 from satsym.solution import Iteration, Progress, Solution
+from satsym.solve.failures import FAILURES, tried, unbroken
 from satsym.solve.iteration import Limits, watched
 from satsym.solve.nearest import nearest
 from satsym.solve.switching import held, homotopy, least_effort
 from satsym.solve.switching.attempt import Exact, attempt
-from satsym.solve.switching.failures import FAILURES, tried, unbroken
 from satsym.solve.switching.least_time import least_time
 from satsym.solve.switching.newton import switching
 from satsym.solve.switching.recognition import Guess, Sample, guess, inside, sample

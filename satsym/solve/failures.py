@@ -12,7 +12,8 @@ from satsym.solve.integrate import NotFinite
 Found = TypeVar("Found")
 
 FAILURES = (NotFinite, ArithmeticError, ValueError, np.linalg.LinAlgError)
-"""Numbers that are not finite, scalars beyond the domain of a function, matrices that have no inverse."""
+"""Numbers that are not finite, scalars beyond the domain of a function (``math`` raises ValueError for these), matrices
+that have no inverse."""
 
 
 def tried(step: Callable[[], Found]) -> Found | None:
