@@ -2,9 +2,10 @@
 PYTHON ?= $(or $(shell command -v python3.11),python3)
 VENV   := .venv
 BIN    := $(VENV)/bin
-PIP    := $(BIN)/python -m pip install -qq --disable-pip-version-check
+PIP    := $(BIN)/python -m pip install -qq --disable-pip-version-check --no-compile
 
 # Each recipe says itself what the user needs to know; errors of the tools come through (pip -qq: errors only).
+# Packages are compiled as they are first loaded, which is quicker than all of them at once.
 .SILENT:
 .NOTPARALLEL:
 .PHONY: help demo test test-whole lint format derive check-derive bench bench-returns bench-drift clean

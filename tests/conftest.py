@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from pathlib import Path
 
 import hypothesis
 import pytest
+
+# Before NumPy is loaded: on small matrices threads gain nothing, and those of two workers take each other's time.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from tests.faults import found, ledger, noted, verdicts
 

@@ -325,14 +325,9 @@ def census(subjects: Sequence[Subject], count: int, seed: int) -> tuple[int, int
     return caught, exact, rest
 
 
-def test_random_slips_are_caught_and_named(subjects: list[Subject]) -> None:
-    caught, exact, rest = census(subjects, 120, seed=2024)
-    assert caught >= 0.99 * 120, rest
-    assert exact >= 0.9 * 120, rest
-
-
 @pytest.mark.slow
-def test_five_hundred_random_slips_are_caught_and_named(subjects: list[Subject]) -> None:
-    caught, exact, rest = census(subjects, 500, seed=4)
-    assert caught >= 0.99 * 500, rest
-    assert exact >= 0.9 * 500, rest
+@pytest.mark.parametrize("seed", range(5))
+def test_a_hundred_random_slips_are_caught_and_named(subjects: list[Subject], seed: int) -> None:
+    caught, exact, rest = census(subjects, 100, seed)
+    assert caught >= 99, rest
+    assert exact >= 90, rest

@@ -351,6 +351,7 @@ def test_a_letter_with_two_meanings_is_found(tmp_path: Path) -> None:
         (row("1", [["x1"]], "polar_orbit:first_order.r", "matrix"), "hold it against a matrix"),
         (row("1", "x2", "solve(x**2 - r, r_dot)"), "no name"),
         (row("1", "x2", "solve(r_dot**2 - r, r_dot)"), "linear in r_dot"),
+        (row("1", "x2", "solve(sigma/r - r_dot, r)"), "linear in r"),
         (row("1", "x2", "det(matrix([[1, 2]]))"), "not square"),
         (row("1", "x2", "matrix([[1, 2]]) @ matrix([[1, 2]])"), "product of a 1 by 2 and a 1 by 2"),
         (row("1", "2", "at('polar_orbit:first_order.r')", "number"), "which is none"),

@@ -175,6 +175,7 @@ def test_widths_are_estimated_as_tex_measures_them(tmp_path: Path) -> None:
     assert 0.97 < min(ratios) <= max(ratios) < 1.4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("language", languages())
 @pytest.mark.parametrize("name", NAMES)
 def test_every_equation_has_one_label_and_every_reference_a_label(name: str, language: str) -> None:

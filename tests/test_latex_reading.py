@@ -196,6 +196,7 @@ def shipped() -> list[object]:
     return [problem for path in loader.shipped() for problem in loader.load(path)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("subject", shipped(), ids=lambda subject: subject.name)
 def test_every_shipped_equation_reads_back_as_what_was_derived(subject: Problem) -> None:
     derivation = derive(subject)

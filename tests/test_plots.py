@@ -294,6 +294,7 @@ assert not sys.modules.keys() & {{"matplotlib.pyplot", "scipy", "sympy", "tkinte
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("which", "name"),
     [("soft_return", name) for name in SOLVED]

@@ -75,7 +75,12 @@ class Calculus(Engine[Node]):
 
     def require_linear(self, expression: Node, slope: Node, rest: Node, by: str) -> None:
         remainder = total([expression, product([_MINUS_ONE, slope, Sym(by)]), product([_MINUS_ONE, rest])])
-        if field.vanishes(slope, "slope", self._positive) or not field.vanishes(remainder, "linear", self._positive):
+        try:
+            linear = field.vanishes(remainder, "linear", self._positive)
+            unique = not field.vanishes(slope, "slope", self._positive)
+        except field.Undecided:  # without a value at zero, where the slope and the rest are taken
+            linear = unique = False
+        if not (linear and unique):
             raise BadInput(f"solve(...) needs what is linear in {by}")
 
 
