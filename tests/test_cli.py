@@ -19,7 +19,7 @@ from satsym.cli import main, output
 from satsym.instance import SolverOptions
 
 Run = Callable[..., tuple[int, str, str]]
-COMMANDS = "models instances solve simulate compare analyse lqr derive latex audit doctor".split()
+COMMANDS = "models instances solve simulate plot compare analyse lqr derive latex audit doctor".split()
 SOLUTION_KEYS = (
     "model instance method status message boundary_type objective t_final x_final costate_initial switching_times "
     "iterations wall_s certificate"

@@ -14,7 +14,7 @@ import pytest
 
 from satsym import instance
 from satsym.instance import Instance
-from satsym.report import files
+from satsym.report import files, trajectory
 from satsym.report.results import flight_object, model_object, solution_object
 from satsym.report.table import figure, table
 from satsym.report.text import flight_text, solution_text, with_files
@@ -166,7 +166,7 @@ def test_boundary_type_follows_from_what_is_given(
 
 
 def test_trajectory_files_give_back_every_number(solution: Solution, tmp_path: Path) -> None:
-    files.write(tmp_path, files.trajectory(solution))
+    files.write(tmp_path, trajectory.contents(solution))
     with np.load(tmp_path / "trajectory.npz", allow_pickle=False) as stored:
         for name in ("times", "x", "u", "lam"):
             np.testing.assert_array_equal(stored[name], getattr(solution, name))
@@ -180,7 +180,7 @@ def test_trajectory_files_give_back_every_number(solution: Solution, tmp_path: P
 
 
 def test_trajectory_of_a_flight_has_no_costates(flight: Flight, tmp_path: Path) -> None:
-    files.write(tmp_path, files.trajectory(flight))
+    files.write(tmp_path, trajectory.contents(flight))
     assert "lambda" not in (tmp_path / "trajectory.csv").read_text(encoding="utf-8")
     with np.load(tmp_path / "trajectory.npz") as stored:
         assert "lam" not in stored
@@ -188,7 +188,7 @@ def test_trajectory_of_a_flight_has_no_costates(flight: Flight, tmp_path: Path) 
 
 def test_same_solution_gives_the_same_bytes(solution: Solution, tmp_path: Path) -> None:
     for folder in ("one", "two"):
-        files.write(tmp_path / folder, files.trajectory(solution))
+        files.write(tmp_path / folder, trajectory.contents(solution))
     for name in ("trajectory.npz", "trajectory.csv"):
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
 

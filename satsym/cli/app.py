@@ -22,6 +22,7 @@ from satsym.cli.latex import latex
 from satsym.cli.lqr import lqr
 from satsym.cli.models import models
 from satsym.cli.output import complain, silence
+from satsym.cli.plot import plot
 from satsym.cli.simulate import simulate
 from satsym.cli.solve import solve
 from satsym.status import BadInput, ExitCode
@@ -73,7 +74,7 @@ class Program(click.Group):
 
 @click.group(
     cls=Program,
-    commands=[models, instances, solve, simulate, compare, analyse, lqr, derive, latex, audit, doctor],
+    commands=[models, instances, solve, simulate, plot, compare, analyse, lqr, derive, latex, audit, doctor],
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog=OVERVIEW,
 )

@@ -12,6 +12,11 @@ if TYPE_CHECKING:
     from satsym.solution import Flight, Solution
 
 
+def default_folder(name: str) -> Path:
+    """Where the results of an instance go if nobody says where."""
+    return Path("results", name)
+
+
 def folder_for(name: str, out: Path | None, plot: bool) -> Path | None:
     """Where the results of an instance go, ``None`` where nothing is to be written.
 
@@ -20,7 +25,7 @@ def folder_for(name: str, out: Path | None, plot: bool) -> Path | None:
     BadInput
         If that is no place to write to; better now than after a long run.
     """
-    folder = out or (Path("results", name) if plot else None)
+    folder = out or (default_folder(name) if plot else None)
     if folder:
         from satsym.report.files import check_writable
 
@@ -38,9 +43,9 @@ def save(folder: Path | None, found: Solution | Flight, result: Mapping[str, Any
     """
     if folder is None:
         return []
-    from satsym.report import files
+    from satsym.report import files, trajectory
 
-    saved = files.write(folder, files.trajectory(found) | {"result.json": files.text(to_json(result))})
+    saved = files.write(folder, trajectory.contents(found) | {"result.json": files.text(to_json(result))})
     if plot:
         from satsym.report import plots
 

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any, TypeAlias
+from typing import IO, TypeAlias
 
 from satsym.status import BadInput
 from satsym.wording import printable
-
-if TYPE_CHECKING:
-    from satsym.solution import Flight, Solution
 
 Content: TypeAlias = Callable[[IO[bytes]], object]
 """Writes a file's content to a stream."""
@@ -25,39 +22,6 @@ def text(content: str) -> Content:
 def binary(content: bytes) -> Content:
     """Bytes as the content of a file."""
     return lambda stream: stream.write(content)
-
-
-def trajectory(found: Solution | Flight) -> dict[str, Content]:
-    """``trajectory.npz`` and ``trajectory.csv`` of a solution or a flight.
-
-    The first holds ``times`` (N+1), ``x`` (n, N+1), ``u`` (m, N+1), for a solution ``lam`` (n, N+1), and the names in
-    ``states`` and ``controls``. The second has a header and a line for each node: time, states, controls, costates as
-    ``lambda_STATE``; its numbers read back exactly.
-    """
-    import numpy as np
-
-    spec = found.instance.model.spec
-    arrays: dict[str, Any] = {"times": found.times, "x": found.x, "u": found.u}
-    header = ["t", *spec.state_names, *spec.control_names]
-    lam = getattr(found, "lam", None)
-    if lam is not None:
-        arrays["lam"] = lam
-        header += [f"lambda_{name}" for name in spec.state_names]
-    # dtype, because an array of no names would be one of floats.
-    names: dict[str, Any] = {
-        "states": np.array(spec.state_names, dtype=str),
-        "controls": np.array(spec.control_names, dtype=str),
-    }
-
-    def lines() -> Iterator[bytes]:
-        yield (",".join(header) + "\n").encode()
-        for row in np.vstack(list(arrays.values())).T:
-            yield (",".join(map(repr, row.tolist())) + "\n").encode()
-
-    return {
-        "trajectory.npz": lambda stream: np.savez(stream, **arrays, **names),
-        "trajectory.csv": lambda stream: stream.writelines(lines()),
-    }
 
 
 def check_writable(folder: Path) -> None:
