@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+ANEW = 100.0
+"""A residual this many times the one before begins another phase."""
+
+
 def convergence(scene: Scene) -> Figure | None:
     """Distance of the cost from its last value, and the residual, over the iterations; nothing for fewer than three."""
     history = scene.history
@@ -33,7 +37,9 @@ def convergence(scene: Scene) -> Figure | None:
     left.set_title(f"cost, in the end {number(last, 10)}" if known.size else "cost")
     _decades(right, at, np.abs(residuals), style.GREEN)
     right.set_ylabel("residual")
-    right.set_title("residual of the optimality conditions")
+    # Solved without bounds first, then within them, say: each phase begins with a residual of its own.
+    begun = (residuals[1:] > ANEW * residuals[:-1]).any()
+    right.set_title("residual of the optimality conditions" + (", phase by phase" if begun else ""))
     return page
 
 
@@ -50,5 +56,6 @@ def _decades(axes: Axes, at: np.ndarray, values: np.ndarray, colour: str) -> Non
         axes.yaxis.set_minor_locator(NullLocator())
     axes.set_xlim(at[0] - 0.3, at[-1] + 0.3)
     axes.xaxis.set_major_locator(MaxNLocator(8, integer=True))
-    axes.plot(at, positive, color=colour, marker="o", markersize=4.5, linewidth=1.4)
+    drawn = np.isfinite(positive)
+    axes.plot(at[drawn], positive[drawn], color=colour, marker="o", markersize=4.5, linewidth=1.4)
     axes.set_xlabel("iteration")
