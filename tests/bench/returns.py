@@ -54,6 +54,7 @@ class Outcome:
     ratio: float
 
 
+@np.errstate(all="ignore")
 def solved(what: str, number: int) -> Outcome:
     """Solve one case and look at it."""
     case = POPULATIONS[what].case(number)
@@ -62,8 +63,7 @@ def solved(what: str, number: int) -> Outcome:
     seconds = time.process_time() - begun
     if not found.status.answered:
         return Outcome(number, f"{found.status.value}: {found.message}", float("inf"), seconds, float("nan"))
-    with np.errstate(all="ignore"):
-        again = flow(found)
+    again = flow(found)
     if again is None or again.x[0].min() <= 0.0:
         return Outcome(number, "leaves the domain", float("inf"), seconds, float("nan"))
     residual = boundary_residual(found, again)
@@ -86,8 +86,7 @@ def best_of_eight(case: Instance) -> float:
     problem = scaled(case, case.tf - case.t0).widened(float("inf"))
     best = float("inf")
     for start in eight(problem):
-        with np.errstate(all="ignore"):
-            found = from_path(problem, start, Limits(STEPS, time.perf_counter() + SECONDS), STEPS)
+        found = from_path(problem, start, Limits(STEPS, time.perf_counter() + SECONDS), STEPS)
         if found.minimum:
             best = min(best, found.cost * problem.scale.cost)
     return best
