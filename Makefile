@@ -2,10 +2,11 @@
 PYTHON ?= $(or $(shell command -v python3.11),python3)
 VENV   := .venv
 BIN    := $(VENV)/bin
-PIP    := $(BIN)/python -m pip install -qq --disable-pip-version-check --no-compile
+PIP    := $(BIN)/python -m pip install -qq --disable-pip-version-check
+# Many containers tell Python not to write bytecode; then every start would compile satsym anew.
+COMPILE := $(BIN)/python -m compileall -q satsym generated
 
 # Each recipe says itself what the user needs to know; errors of the tools come through (pip -qq: errors only).
-# Packages are compiled as they are first loaded, which is quicker than all of them at once.
 .SILENT:
 .NOTPARALLEL:
 .PHONY: help demo test test-whole lint format derive check-derive bench bench-returns bench-drift clean
@@ -61,10 +62,12 @@ $(VENV)/installed: pyproject.toml
 	echo "Setting up $(VENV) (once) ..."
 	$(PYTHON) -m venv $(VENV)
 	$(PIP) --editable .
+	$(COMPILE)
 	touch $@
 
 $(VENV)/installed-%: pyproject.toml
 	echo "Setting up $(VENV) with the $* tools (once) ..."
 	$(PYTHON) -m venv $(VENV)
 	$(PIP) --editable '.[$*]'
+	$(COMPILE)
 	touch $(VENV)/installed $@
