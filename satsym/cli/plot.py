@@ -8,7 +8,7 @@ import click
 
 from satsym.cli.options import json_option, subject_argument
 from satsym.cli.output import emit, emit_json
-from satsym.cli.saving import default_folder, folder_for
+from satsym.cli.saving import default_folder
 from satsym.status import ExitCode
 
 KINDS = ("png", "pdf")
@@ -30,9 +30,14 @@ Examples:
 )
 @click.option("--out", metavar="DIR", type=click.Path(path_type=Path), help="Where pictures go; by default there too.")
 @click.option(
-    "--format", "kinds", type=click.Choice(KINDS), multiple=True, default=("png",), metavar="KIND",
-    help=f"One of: {', '.join(KINDS)}; may be given several times.",
-)  # fmt: skip
+    "--format",
+    "kinds",
+    metavar="KIND",
+    type=click.Choice(KINDS),
+    multiple=True,
+    default=("png",),
+    help=f"One of: {', '.join(KINDS)}; may be given several times. By default png.",
+)
 @json_option
 def plot(subject: str, source: Path | None, out: Path | None, kinds: tuple[str, ...], as_json: bool) -> ExitCode:
     """Draw a saved result, without solving again.
@@ -45,9 +50,8 @@ def plot(subject: str, source: Path | None, out: Path | None, kinds: tuple[str, 
 
     case = instance.load(subject)
     source = source or default_folder(case.name)
-    folder = folder_for(case.name, out or source, plot=True)
-    assert folder is not None
-    saved = plots.save(trajectory.read(case, source), folder, tuple(dict.fromkeys(kinds)))
+    found = trajectory.read(case, source)
+    saved = plots.save(found, out or source, tuple(dict.fromkeys(kinds)))
     if as_json:
         emit_json({"model": case.model.spec.name, "instance": case.name, "pictures": [str(path) for path in saved]})
     else:

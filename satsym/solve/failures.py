@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TypeVar
 
-import numpy as np
-
 from satsym.solve.integrate import NotFinite
 
 Found = TypeVar("Found")
 
-FAILURES = (NotFinite, ArithmeticError, ValueError, np.linalg.LinAlgError)
+FAILURES = (NotFinite, ArithmeticError, ValueError)
 """Numbers that are not finite, scalars beyond the domain of a function (``math`` raises ValueError for these), matrices
-that have no inverse."""
+that have no inverse (a ValueError too)."""
 
 
 def tried(step: Callable[[], Found]) -> Found | None:
