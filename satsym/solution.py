@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from enum import Enum
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from satsym.instance import Instance
-from satsym.status import Status
+from satsym.status import Status, Verdict
 
 Array: TypeAlias = NDArray[np.floating[Any]]
 
@@ -52,6 +53,45 @@ class Check:
         return self.value <= self.limit
 
 
+class Kind(str, Enum):
+    """Kinds of competitors; which one a trajectory is of can be decided by looking at it."""
+
+    NEIGHBOURS = "neighbours"
+    REVOLUTIONS = "revolutions"
+    SIGNS = "sign structure"
+    SATURATION = "saturation structure"
+    DURATIONS = "duration"
+    EARLIER = "earlier arrival"
+    STARTS = "seeded starts"
+
+
+@dataclass(frozen=True)
+class Competitors:
+    """What competitors of one kind came to.
+
+    Attributes
+    ----------
+    kind
+        Which.
+    tried
+        How many were looked for: ``solved`` and ``unanswered`` together.
+    solved
+        How many turned out to be admissible motions that arrive, the solution itself found again among them.
+    cheapest
+        The least cost among these; NaN without any.
+    """
+
+    kind: Kind
+    tried: int
+    solved: int
+    cheapest: float
+
+    @property
+    def unanswered(self) -> int:
+        """How many led to nothing that arrives."""
+        return self.tried - self.solved
+
+
 @dataclass(frozen=True)
 class Certificate:
     """Evidence for an optimum that anyone can recompute from the initial costates.
@@ -59,7 +99,7 @@ class Certificate:
     Attributes
     ----------
     verdict
-        ``"certified"``, ``"extremal only"`` or ``"failed"``.
+        What it comes to.
     boundary_residual
         Largest residual at the right end of the flow that starts from the initial costates, relative.
     dynamics_defect
@@ -74,9 +114,13 @@ class Certificate:
         The first one, or ``None``.
     checks
         All that was measured, with limits.
+    competitors
+        What the solution was compared with, kind by kind.
+    not_checked
+        Kinds of competitors that the problem allows and nobody tried, or for which time was up.
     """
 
-    verdict: str
+    verdict: Verdict
     boundary_residual: float
     dynamics_defect: float
     stationarity: float
@@ -84,6 +128,8 @@ class Certificate:
     legendre_clebsch: float
     conjugate_time: float | None
     checks: tuple[Check, ...]
+    competitors: tuple[Competitors, ...] = ()
+    not_checked: tuple[Kind, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""What can come of a request: solver statuses with advice, exit codes, and the error for bad input."""
+"""What can come of a request: solver statuses with advice, verdicts, exit codes, and the error for bad input."""
 
 from __future__ import annotations
 
@@ -40,6 +40,21 @@ _ADVICE = {
     Status.NON_FINITE: "check the initial state and the parameters for values that divide by zero or overflow",
     Status.TIME_LIMIT: "raise [solver] max_seconds, or use fewer steps",
 }
+
+
+class Verdict(str, Enum):
+    """What a certificate says: a strict local minimum that no competitor undercuts, an extremal, or not even that."""
+
+    CERTIFIED = "certified"
+    EXTREMAL_ONLY = "extremal only"
+    FAILED = "failed"
+
+    @classmethod
+    def of(cls, necessary: bool, sufficient: bool) -> Verdict:
+        """The verdict where the necessary conditions hold or not, and the sufficient ones."""
+        if not necessary:
+            return cls.FAILED
+        return cls.CERTIFIED if sufficient else cls.EXTREMAL_ONLY
 
 
 class ExitCode(IntEnum):

@@ -113,7 +113,7 @@ def _solved(instance: Instance) -> Case:
         instance=instance,
         how=solution.method,
         answered=answered,
-        verdict=solution.certificate.verdict if solution.certificate else None,
+        verdict=solution.certificate.verdict.value if solution.certificate else None,
         message=beyond or solution.message,
         times=times,
         x=solution.x,

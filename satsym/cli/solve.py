@@ -12,7 +12,7 @@ import click
 from satsym.cli.options import json_option, out_option, plot_option, subject_argument
 from satsym.cli.output import emit, emit_json, in_colour, live
 from satsym.cli.saving import folder_for, save
-from satsym.status import ExitCode
+from satsym.status import ExitCode, Verdict
 
 if TYPE_CHECKING:
     from satsym.instance import Instance
@@ -83,7 +83,7 @@ def solve(
         emit(with_files(solution_text(solution, in_colour()), saved))
     if not solution.status.answered:
         return ExitCode.NO_ANSWER
-    failed = solution.certificate is not None and solution.certificate.verdict == "failed"
+    failed = solution.certificate is not None and solution.certificate.verdict is Verdict.FAILED
     return ExitCode.CERTIFICATE_FAILED if failed else ExitCode.DONE
 
 

@@ -45,7 +45,7 @@ def solution_object(solution: Solution) -> dict[str, Any]:
 def certificate_object(certificate: Certificate) -> dict[str, Any]:
     """The certificate of a solution, as JSON has it."""
     return {
-        "verdict": certificate.verdict,
+        "verdict": certificate.verdict.value,
         "boundary_residual": number(certificate.boundary_residual),
         "dynamics_defect": number(certificate.dynamics_defect),
         "stationarity": number(certificate.stationarity),
@@ -56,6 +56,17 @@ def certificate_object(certificate: Certificate) -> dict[str, Any]:
             {"name": c.name, "value": number(c.value), "limit": number(c.limit), "passed": c.passed}
             for c in certificate.checks
         ],
+        "competitors": [
+            {
+                "kind": c.kind.value,
+                "tried": c.tried,
+                "solved": c.solved,
+                "unanswered": c.unanswered,
+                "cheapest": number(c.cheapest),
+            }
+            for c in certificate.competitors
+        ],
+        "not_checked": [kind.value for kind in certificate.not_checked],
     }
 
 

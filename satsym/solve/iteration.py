@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Generic, Protocol, TypeVar
 
 from satsym.instance import Instance
@@ -33,9 +33,18 @@ class Method(Protocol[State]):
         """The line of this state in the history."""
 
 
+@dataclass
+class Meter:
+    """Work that was done, in columns (points of a mesh, steps of an integration) at which a motion was linearised."""
+
+    spent: int = 0
+
+
 @dataclass(frozen=True)
 class Limits:
     """When to give up, and who watches until then.
+
+    What a verdict depends on is limited by work, which is the same on every machine; the clock is there for people.
 
     Attributes
     ----------
@@ -45,21 +54,36 @@ class Limits:
         On the clock of ``time.perf_counter``.
     watch
         Told cost and residual after inner steps, for a solver whose phases take long.
+    work
+        Columns that may be linearised, see :class:`Meter`.
+    meter
+        Shared by all limits that are derived from these.
     """
 
     iterations: int
     deadline: float
     watch: Callable[[float, float], None] | None = None
+    work: float = float("inf")
+    meter: Meter = field(default_factory=Meter)
 
     def tell(self, cost: float, residual: float) -> None:
         """Tell who watches, if anyone does."""
         if self.watch:
             self.watch(cost, residual)
 
+    def spend(self, columns: int) -> None:
+        """Count work."""
+        self.meter.spent += columns
+
     @property
-    def expired(self) -> bool:
+    def late(self) -> bool:
         """Whether the time is over."""
         return time.perf_counter() > self.deadline
+
+    @property
+    def expired(self) -> bool:
+        """Whether the time is over, or all work done that may be."""
+        return self.meter.spent > self.work or self.late
 
 
 def watched(instance: Instance, progress: Progress | None) -> tuple[Limits, list[Iteration]]:

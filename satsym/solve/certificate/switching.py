@@ -20,6 +20,7 @@ from satsym.solve.certificate.switching_rivals import needles, other_starts
 from satsym.solve.certificate.switching_variation import variation
 from satsym.solve.switching.newton import switching
 from satsym.solve.switching.structure import SINGULAR
+from satsym.status import Verdict
 
 Array = NDArray[np.floating[Any]]
 
@@ -49,10 +50,10 @@ def certify(solution: Solution) -> Certificate:
         again, failed = None, f"flow from the initial costates is integrated within {SECONDS:g} s"
     if again is None:
         missing = float("nan")
-        return Certificate("failed", missing, missing, missing, None, missing, None, (Check(failed, 1.0, 0.0),))
+        return Certificate(Verdict.FAILED, missing, missing, missing, None, missing, None, (Check(failed, 1.0, 0.0),))
     first = _first_order(solution, again)
     second = _sufficient(solution, again) if all(c.passed for c in first) else []
-    verdict = "failed" if not second else "certified" if all(c.passed for c in second) else "extremal only"
+    verdict = Verdict.of(all(c.passed for c in first), all(c.passed for c in second))
     measured = {c.name: c.value for c in (*first, *second)}
     return Certificate(
         verdict=verdict,

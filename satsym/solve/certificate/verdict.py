@@ -13,6 +13,7 @@ from satsym.solve.certificate import competitors, conditions
 from satsym.solve.certificate.flow import Flow, flow
 from satsym.solve.certificate.neighbours import neighbours
 from satsym.solve.collocation.scaling import final_argument
+from satsym.status import Verdict
 
 RESIDUAL, DEFECT, STATIONARY, DRIFT, COST = 1e-9, 1e-7, 1e-8, 1e-9, 1e-8
 """Largest boundary residual, defect, violation of stationarity, change of H and error of the stated cost."""
@@ -45,7 +46,7 @@ def certify(solution: Solution) -> Certificate | None:
             return _without_flow()
         first = _first_order(solution, recomputed)
         second = _sufficient(solution, recomputed) if all(c.passed for c in first) else []
-    verdict = "failed" if not second else "certified" if all(c.passed for c in second) else "extremal only"
+    verdict = Verdict.of(all(c.passed for c in first), all(c.passed for c in second))
     measured: dict[str, Any] = {c.name: c.value for c in (*first, *second)}
     return Certificate(
         verdict=verdict,
@@ -102,4 +103,4 @@ def _sufficient(solution: Solution, recomputed: Flow) -> list[Check]:
 def _without_flow() -> Certificate:
     missing = float("nan")
     check = Check("flow from the initial costates is finite", 1.0, 0.0)
-    return Certificate("failed", missing, missing, missing, None, missing, None, (check,))
+    return Certificate(Verdict.FAILED, missing, missing, missing, None, missing, None, (check,))
