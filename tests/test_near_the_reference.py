@@ -17,10 +17,10 @@ from scipy.linalg import expm
 
 from satsym import instance
 from satsym.instance import Instance
-from satsym.solution import Certificate, Solution
+from satsym.solution import Certificate, Kind, Solution
 from satsym.solve import solve
 from satsym.solve.certificate import certify
-from satsym.solve.certificate.competitors import other_starts
+from satsym.solve.certificate.competitors import compared
 from satsym.status import Status
 
 Array = NDArray[np.float64]
@@ -163,4 +163,5 @@ def test_a_competitor_cheaper_by_more_than_rounding_is_noticed(near: tuple[Solut
     solution, size = near
     share = 1e-11 / size
     dearer = replace(solution, objective=(1.0 + share) * solution.objective)
-    assert other_starts(dearer) == pytest.approx(-share / (1.0 + share), rel=0.1)
+    (starts,) = (kind for kind in compared(dearer, float("inf")).kinds if kind.summary.kind is Kind.STARTS)
+    assert starts.margin == pytest.approx(-share / (1.0 + share), rel=0.1)

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from satsym.instance import Instance
 from satsym.solution import Flight, Progress, Solution
-from satsym.status import BadInput
+from satsym.status import BadInput, Status
 
 if TYPE_CHECKING:
     from satsym.solve.closed_loop import Law
@@ -54,16 +53,21 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
             f"{instance.name}: a given final {given} cannot be swept for; leave it free and weigh its error in the "
             'terminal cost, or use method "collocation"'
         )
+    if method == "sweep" and spec.multipliers:
+        raise BadInput(
+            f'{instance.name}: terminal constraints of {spec.name} cannot be swept for; use method "collocation"'
+        )
     if method == "sweep":
         return _swept(instance, progress)
-    from satsym.solve.certificate import certify
+    from satsym.solve.improving import improved
 
     if method == "auto" and spec.switching:
         method = "bang-bang"
-    solution = _solver(method)(instance, progress)
-    if method == "auto" and not solution.status.answered and not instance.final and instance.tf is not None:
+    solution = improved(_solver(method), instance, progress)
+    swept = not instance.final and instance.tf is not None and not spec.multipliers
+    if method == "auto" and solution.status is Status.NOT_CONVERGED and swept:
         return _swept(instance, progress)
-    return replace(solution, certificate=certify(solution))
+    return solution
 
 
 def _unfit(switching: bool, method: str) -> str:

@@ -25,6 +25,9 @@ STEPS = 200
 ROUNDS = 150
 """Iterations from each start."""
 
+DRAWN, PIECES = 4, 5
+"""Starts that are drawn, and constant pieces of each."""
+
 ARRIVED = 1e-4
 """Relative miss that the grid and the minimisation may leave of none."""
 
@@ -90,7 +93,7 @@ def nearest(problem: TwoPoint, path: Path, limits: Limits) -> Nearest | None:
             raise StopIteration
 
     law = problem.control(reach.tau, path(reach.tau), path.theta, bounded=False)
-    starts = [np.zeros_like(law), law, law / 2.0]
+    starts = [np.zeros_like(law), law, law / 2.0, *_drawn(problem, reach)]
     best, tried = None, 0
     for start in starts:
         if limits.expired:
@@ -108,6 +111,8 @@ def nearest(problem: TwoPoint, path: Path, limits: Limits) -> Nearest | None:
         tried += 1
         if np.isfinite(found.fun) and (best is None or found.fun < best.fun):
             best = found
+        if best is not None and best.fun <= ARRIVED**2 / 2.0:
+            break
     if best is None:
         return None
     gap = reach.gap(best.x)
@@ -117,6 +122,18 @@ def nearest(problem: TwoPoint, path: Path, limits: Limits) -> Nearest | None:
     rows = np.flatnonzero(problem.fixed)
     missed = {names[i]: float(gap[k] * problem.scale.state[i]) for k, i in enumerate(rows)}
     return Nearest(missed, float(np.abs(gap).max()), tried)
+
+
+def _drawn(problem: TwoPoint, reach: _Reach) -> list[Array]:
+    """Controls that are drawn within the bounds, constant for a few pieces each."""
+    rng, instance, nodes = np.random.default_rng(0), problem.instance, len(reach.tau)
+    low, high = (np.array(row)[:, None] for row in (instance.lower, instance.upper))
+    if reach._round:
+        low, high = -instance.max_norm * np.ones((reach.controls, 1)), instance.max_norm * np.ones((reach.controls, 1))
+    if not (np.isfinite(low).all() and np.isfinite(high).all()):
+        return []
+    piece = np.minimum(np.arange(nodes) * PIECES // nodes, PIECES - 1)
+    return [(low + (high - low) * rng.uniform(size=(reach.controls, PIECES)))[:, piece] for _ in range(DRAWN)]
 
 
 class _Reach:

@@ -9,14 +9,17 @@ import numpy as np
 
 from satsym.instance import Instance
 from satsym.solution import Progress, Solution
+from satsym.solve.collocation import paths
 from satsym.solve.collocation.cold_start import Start, cold_start
-from satsym.solve.collocation.continuation import Bounded, tighten
-from satsym.solve.collocation.curve import Path
+from satsym.solve.collocation.continuation import Bounded, settled, tighten
+from satsym.solve.collocation.curve import Curve, Path
 from satsym.solve.collocation.durations import free_duration
 from satsym.solve.collocation.gauss import STAGES
 from satsym.solve.collocation.problem import TwoPoint
 from satsym.solve.collocation.refinement import Refined, refine
 from satsym.solve.collocation.scaling import two_point
+from satsym.solve.collocation.softening import within_bounds, within_found
+from satsym.solve.collocation.sqp import Found
 from satsym.solve.collocation.system import System
 from satsym.solve.extremal import Extremal, solved
 from satsym.solve.iteration import Limits
@@ -25,6 +28,15 @@ from satsym.status import Status
 
 ROUNDING = 1e-12
 """An estimated error below this can hardly be made smaller."""
+
+LEAST = 10
+"""Intervals of a mesh on which a guess is followed."""
+
+GUESSED = 1e-2
+"""Softness of the bounds with which a guess or a path that is drawn is followed first."""
+
+DRAWN, AMPLITUDES = 4, (0.2, 0.5)
+"""Paths that are drawn where the bounds cannot be brought in, and how far they leave the straight line."""
 
 Accurate = Callable[[TwoPoint, Start, Limits], Extremal]
 """From an extremal of low order without bounds to an accurate one within them."""
@@ -68,7 +80,7 @@ def from_cold_start(instance: Instance, limits: Limits, effort: bool, accurate: 
     """
     if instance.tf is not None:
         problem = two_point(instance, instance.tf - instance.t0)
-        start, way = cold_start(problem, limits), ""
+        start, way = guessed(problem, limits) or cold_start(problem, limits), ""
         if start.way == "none":
             message = f"no extremal found: {start.found.reason}"
             return unfinished(problem, start.found.curve, message, start.steps, limits)
@@ -88,6 +100,60 @@ def unfinished(problem: TwoPoint, path: Path, message: str, steps: int, limits: 
     if limits.expired:
         return Extremal(problem, path, float("inf"), Status.TIME_LIMIT, f"time was up: {message}", steps)
     return Extremal(problem, path, float("inf"), Status.NOT_CONVERGED, message, steps)
+
+
+def guessed(problem: TwoPoint, limits: Limits) -> Start | None:
+    """The extremal within the bounds to which a guess leads; ``None`` without one, or where bounds are none or free.
+
+    Without costates that are guessed the bounds are soft at first, but harder than where the guess would be led away.
+    """
+    guess = problem.instance.guess
+    if not guess or not np.isfinite(problem.bounds).any() or problem.free_time:
+        return None
+    begun, curve = paths.start(problem), None
+    if guess.costate:
+        bounded = settled(problem, begun, STAGES, max(len(begun.mesh) - 1, LEAST), limits)
+        curve = bounded.curve if bounded.converged else None
+    if curve is None:
+        curve = within_bounds(problem, paths.first(problem), limits, GUESSED).curve
+    if curve is None or not curve.in_domain(problem.positive):
+        return None
+    cost = System(problem, curve.mesh, curve.order).cost(curve)
+    return Start(Found(curve, "minimum", cost, 1, True), "guess", 1, {}, curve)
+
+
+def inside(problem: TwoPoint, start: Start, free: Curve, limits: Limits) -> Bounded:
+    """The extremal within the bounds, from one without.
+
+    The bounds are brought in from where they do not bind. Where that ends too early they are made harder and harder,
+    from that extremal and then from paths that are drawn: a structure that exists only within bounds is found so.
+
+    Parameters
+    ----------
+    problem
+        With its bounds.
+    start
+        How the extremal was found.
+    free
+        The extremal, perhaps more accurate.
+    limits
+        When to stop.
+    """
+    if start.within is not None:
+        return Bounded(start.within, np.zeros(0), 1.0, True, 1)
+    bounded = tighten(problem, free, STAGES, limits)
+    if bounded.converged or problem.free_time:
+        return bounded
+    rng = np.random.default_rng(DRAWN)
+    harder = [within_found(problem, start.found, limits)]
+    for k in range(DRAWN):
+        if harder[-1].curve is not None or limits.expired:
+            break
+        path = paths.bent(problem, rng, AMPLITUDES[k % len(AMPLITUDES)])
+        harder.append(within_bounds(problem, path, limits, GUESSED))
+    steps = bounded.iterations + sum(one.iterations for one in harder)
+    curve = harder[-1].curve
+    return replace(bounded, iterations=steps) if curve is None else Bounded(curve, np.zeros(0), 1.0, True, steps)
 
 
 def outside(problem: TwoPoint, path: Path, bounded: Bounded, steps: int, limits: Limits) -> Extremal:
@@ -119,12 +185,14 @@ def accurate(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
 def within(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
     """The same, without asking why where there is none."""
     tolerance = problem.instance.solver.tolerance
-    free = problem.widened(float("inf"))
-    refined = refine(free, start.found.curve, tolerance, known=start.found.linearised)
-    cost = _cost(free, refined)
-    limits.tell(cost, refined.error)
-    steps = start.steps + refined.iterations
-    bounded = tighten(problem, refined.curve, STAGES, limits)
+    free, steps = problem.widened(float("inf")), start.steps
+    refined, cost = Refined(start.found.curve, float("inf"), False, 0), float("nan")
+    if start.within is None:
+        refined = refine(free, start.found.curve, tolerance, known=start.found.linearised)
+        cost = _cost(free, refined)
+        limits.tell(cost, refined.error)
+        steps += refined.iterations
+    bounded = inside(problem, start, refined.curve, limits)
     if bounded.iterations:
         steps += bounded.iterations
         if not bounded.converged:

@@ -1,45 +1,296 @@
-"""Competitors: feasible controls that might be cheaper. The certificate names each kind it has tried.
+"""Competitors: admissible motions that might be cheaper. The certificate names each kind it has compared.
 
-Each gives a margin: how much dearer the cheapest competitor is, relative to the cost; negative where one is cheaper.
+None starts where the solver did, and how far each may go is limited by work, so that what is found is the same on
+every machine; only time that is up can end it before, and that is said.
 """
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from satsym.instance import Instance
-from satsym.solution import Solution
+from satsym.instance import Guess, Instance
+from satsym.solution import Competitors, Kind, Solution
 from satsym.solve import control_set
 from satsym.solve.certificate.flow import products
 from satsym.solve.iteration import Limits
 from satsym.solve.revolutions import shifted
 
 if TYPE_CHECKING:
+    from satsym.solve.collocation.curve import Curve
     from satsym.solve.collocation.problem import TwoPoint
-    from satsym.solve.collocation.sqp import Found
 
-Attempt = Callable[[Any, Limits], Any]
-"""From a two-point problem without bounds to what was found, or nothing."""
+SECONDS = 3.0
+"""For each competitor of a switching problem."""
+
+WORK = 60_000
+"""Columns that may be linearised for one attempt; a revolution has some 30 of them an iteration."""
+
+SEEDS = 4
+"""Starts that are drawn, of each kind."""
+
+BENT = (0.3, 1.0)
+"""Amplitudes of what is added to a straight line, in sizes of the states."""
+
+SOFT = (0.1, 0.01)
+"""Softness of bounds with which saturated structures are looked for."""
+
+TURNS = 3
+"""Numbers of revolutions that are tried."""
 
 EARLIER = (0.6, 0.8, 0.95)
 """Shares of the duration after which a competitor has arrived, and coasts."""
 
-SHORTER_AND_LONGER = (0.8, 0.95, 1.05, 1.25)
+SHORTER_AND_LONGER = (0.5, 0.8, 0.95, 1.05, 1.25, 2.0)
 """Durations beside one that was chosen, as shares of it."""
-
-SECONDS = 3.0
-"""For each competitor."""
 
 HIDDEN = 1e-14
 """Share of their size by which states are rounded in the end: costs differ by what that is worth, whatever they are."""
 
 ROUGH, SAME = 1e-2, 1e-9
 """Relative errors of costs, on the mesh of a cold start and refined; the latter makes no difference."""
+
+SAMPLES = 401
+"""Values of a guess that leads to a cheaper competitor."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rival:
+    """A competitor that was found.
+
+    Attributes
+    ----------
+    problem
+        Of which it is an extremal.
+    curve
+        Its states and costates, scaled.
+    cost
+        The cost J.
+    """
+
+    problem: TwoPoint
+    curve: Curve
+    cost: float
+
+
+Attempt = Callable[[Limits], Rival | None]
+"""Looks for a competitor that is cheaper than a cost, or says what it costs roughly."""
+
+
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """What competitors of one kind came to.
+
+    Attributes
+    ----------
+    summary
+        As the certificate has it.
+    margin
+        How much dearer the cheapest is, relative to the cost; negative where it is cheaper, infinite without any.
+    cheapest
+        That one.
+    interrupted
+        Whether time was up before all were tried.
+    """
+
+    summary: Competitors
+    margin: float
+    cheapest: Rival | None
+    interrupted: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """All kinds that a problem allows.
+
+    Attributes
+    ----------
+    kinds
+        Those that were compared.
+    not_checked
+        Those that nobody tried, or for which time was up.
+    """
+
+    kinds: tuple[Compared, ...]
+    not_checked: tuple[Kind, ...]
+
+    @property
+    def interrupted(self) -> list[Kind]:
+        """Those for which time was up."""
+        return [c.summary.kind for c in self.kinds if c.interrupted]
+
+    @property
+    def better(self) -> Rival | None:
+        """The cheapest of all that are cheaper than the solution."""
+        cheaper = [c for c in self.kinds if c.margin < -SAME and c.cheapest is not None]
+        return min(cheaper, key=lambda c: c.margin).cheapest if cheaper else None
+
+
+def compared(solution: Solution, deadline: float, seed: int = 0) -> Comparison:
+    """Compare a solution with competitors of every kind.
+
+    Parameters
+    ----------
+    solution
+        With an answer.
+    deadline
+        On the clock of ``time.perf_counter``.
+    seed
+        Of starts that are drawn: another one where a solution was found from such a start.
+    """
+    kinds, missing = [], []
+    for kind, attempts in _attempts(solution, seed):
+        found = _tried(solution, kind, attempts, deadline)
+        if found is None:
+            missing.append(kind)
+            continue
+        kinds.append(found)
+        if found.interrupted:
+            missing.append(kind)
+    return Comparison(tuple(kinds), tuple(missing))
+
+
+def guess(rival: Rival, solution: Solution) -> Instance:
+    """The instance of a solution that starts from a competitor."""
+    problem, instance = rival.problem, solution.instance
+    names = instance.model.spec.state_names
+    end = rival.problem.instance.t0 + problem.elapsed(rival.curve.theta)
+    last = end if instance.tf is None else max(instance.tf, end)
+    n, times = len(names), np.linspace(instance.t0, last, SAMPLES)
+    tau = np.minimum((times - instance.t0) / (end - instance.t0), 1.0)
+    z = rival.curve(tau) * problem.scale.both
+    z[:n] += (np.array(instance.initial) - np.array(problem.instance.initial))[:, None]
+    coasting = times > end
+    if coasting.any():  # arrived on the reference before the end
+        z[:n, coasting] = np.array([instance.model.reference(t, instance.parameters) for t in times[coasting]]).T
+        z[n:, coasting] = 0.0
+    rows = [tuple(row) for row in z.tolist()]
+    start = Guess(dict(zip(names, rows[:n], strict=True)), dict(zip(names, rows[n:], strict=True)))
+    return replace(instance, guess=start, tf_guess=end if instance.tf is None else None)
+
+
+def _tried(solution: Solution, kind: Kind, attempts: list[Attempt], deadline: float) -> Compared | None:
+    """Every attempt at a kind; ``None`` where there is none."""
+    if not attempts:
+        return None
+    found: list[Rival] = []
+    tried, interrupted = 0, False
+    for attempt in attempts:
+        limits = Limits(200, deadline, work=WORK)
+        with np.errstate(all="ignore"):
+            rival = attempt(limits)
+        interrupted = limits.late
+        if interrupted:
+            break
+        tried += 1
+        if rival is not None:
+            found.append(rival)
+    cheapest = min(found, key=lambda one: one.cost, default=None)
+    cost = cheapest.cost if cheapest else float("nan")
+    dearer = margin(cost, solution.objective, coarse=SAME, hidden=hidden(solution))
+    return Compared(Competitors(kind, tried, len(found), cost), dearer, cheapest, interrupted)
+
+
+def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Attempt]]]:
+    """Kinds that the problem of a solution allows, with what is tried of each; nothing where nobody knows how."""
+    from satsym.solve.collocation.scaling import two_point
+    from satsym.solve.symmetry import rotation
+
+    instance, cost = solution.instance, solution.objective
+    lasting = float(solution.times[-1]) - instance.t0
+    fixed = replace(instance, tf=instance.t0 + lasting, tf_guess=None, guess=Guess())
+    problem = two_point(fixed, lasting)
+    rng = np.random.default_rng(seed)
+
+    def leading(paths: Any, softness: float = 1.0) -> list[Attempt]:
+        return [_from_path(problem, path, softness, cost) for path in paths]
+
+    yield Kind.STARTS, leading(_bent(problem, rng))
+    if np.isfinite(instance.bounds).any():
+        starts = zip(_bent(problem, rng), SOFT * SEEDS, strict=False)
+        yield Kind.SATURATION, [_from_path(problem, path, soft, cost) for path, soft in starts]
+    angles = [name for name in instance.solver.free_angles if name in instance.final]
+    turned = [two_point(shifted(fixed, {name: turns}), lasting) for name in angles for turns in (-1, 1)]
+    around: list[Attempt] = [_cold(one, cost) for one in turned]
+    if problem.fixed.all() and not angles and (rotating := rotation(fixed)):
+        around = leading(_spirals(solution, problem, rotating))
+    elif not angles and not problem.fixed.all() and rotation(fixed):
+        yield Kind.REVOLUTIONS, []
+    if around:
+        yield Kind.REVOLUTIONS, around
+    if instance.tf is None:
+        durations = [share * lasting for share in SHORTER_AND_LONGER]
+        at: list[TwoPoint] = [two_point(replace(fixed, tf=instance.t0 + t), t) for t in durations]
+        yield Kind.DURATIONS, [_cold(one, cost) for one in at]
+    if instance.tf is not None and _on_reference(solution):
+        final: dict[str, float | Literal["reference"]] = dict.fromkeys(instance.model.spec.state_names, "reference")
+        sooner = [share * lasting for share in EARLIER]
+        early = [two_point(replace(fixed, tf=instance.t0 + t, final=final), t) for t in sooner]
+        yield Kind.EARLIER, [_cold(one, cost) for one in early]
+
+
+def _from_path(problem: TwoPoint, path: Callable[[Any], Any], softness: float, cost: float) -> Attempt:
+    """The minimum within the bounds to which a path of states leads."""
+    from satsym.solve.collocation.softening import within_bounds
+
+    def attempt(limits: Limits) -> Rival | None:
+        found = within_bounds(problem, path, limits, softness)
+        return None if found.curve is None else _accurate(problem, found.curve, cost)
+
+    return attempt
+
+
+def _cold(problem: TwoPoint, cost: float) -> Attempt:
+    """The minimum within the bounds to which the first ways of the cold start lead."""
+    from satsym.solve.collocation.cold_start import cold_start
+    from satsym.solve.collocation.softening import within_found
+
+    def attempt(limits: Limits) -> Rival | None:
+        start = cold_start(problem, limits, quick=True)
+        if start.way == "none" or not start.found.minimum:
+            return None
+        rough = Rival(problem, start.found.curve, start.found.cost * problem.scale.cost)
+        if rough.cost > cost + ROUGH * abs(cost):  # what is dearer without the bounds is so within them
+            return rough
+        found = within_found(problem, start.found, limits)
+        return None if found.curve is None else _accurate(problem, found.curve, cost)
+
+    return attempt
+
+
+def _accurate(problem: TwoPoint, curve: Curve, cost: float) -> Rival | None:
+    """A minimum with its cost, as rough as its mesh where it is clearly dearer than another cost."""
+    from satsym.solve.collocation.continuation import kept
+    from satsym.solve.collocation.refinement import refine
+    from satsym.solve.collocation.system import System
+
+    rough = System(problem, curve.mesh, curve.order).cost(curve) * problem.scale.cost
+    if rough > cost + ROUGH * abs(cost):
+        return Rival(problem, curve, rough)
+    refined = refine(problem, curve, SAME, keep_nodes=not kept(problem, curve))
+    if not refined.converged or not refined.curve.in_domain(problem.positive):
+        return None
+    exact = System(problem, refined.curve.mesh, refined.curve.order).cost(refined.curve) * problem.scale.cost
+    return Rival(problem, refined.curve, exact)
+
+
+def _bent(problem: TwoPoint, rng: np.random.Generator) -> Iterator[Callable[[Any], Any]]:
+    """Paths that are drawn, of both amplitudes in turn."""
+    from satsym.solve.collocation import paths
+
+    for k in range(SEEDS):
+        yield paths.bent(problem, rng, BENT[k % len(BENT)])
+
+
+def _spirals(solution: Solution, problem: TwoPoint, around: Any) -> list[Callable[[Any], Any]]:
+    """Paths of other numbers of revolutions than the solution's, the likeliest first."""
+    from satsym.solve.symmetry import spirals, turns
+
+    own = turns(around, solution.x)
+    return [path for number, path in spirals(problem, TURNS + 1, around) if abs(number - own) > 0.5]
 
 
 def none_conceivable(solution: Solution) -> bool:
@@ -58,98 +309,9 @@ def none_conceivable(solution: Solution) -> bool:
     return not np.any(slopes) and not np.any(ends)
 
 
-def other_starts(solution: Solution) -> float:
-    """The minimum to which a path of easier problems leads, where that is another way than the solution came."""
-    from satsym.solve.collocation.path_of_problems import along_problems, geometric
-
-    if solution.instance.tf is None:
-        return float("inf")
-
-    def attempt(problem: TwoPoint, limits: Limits) -> Found | None:
-        return along_problems(problem, geometric, limits)
-
-    return _dearer(solution, [solution.instance], attempt)
-
-
-def other_revolutions(solution: Solution) -> float:
-    """A turn more and a turn less of each final angle that counts modulo a turn."""
-    at = solution.instance
-    if at.tf is None:
-        return float("inf")
-    angles = [name for name in at.solver.free_angles if name in at.final]
-    turned = [shifted(at, {name: turns}) for name in angles for turns in (-1, 1)]
-    return _dearer(solution, turned, _from_nothing)
-
-
-def other_durations(solution: Solution) -> float:
-    """Shorter and longer durations where the final time is free."""
-    instance = solution.instance
-    if instance.tf is not None:
-        return float("inf")
-    lasting = float(solution.times[-1]) - instance.t0
-    durations = [instance.t0 + share * lasting for share in SHORTER_AND_LONGER]
-    return _dearer(solution, [replace(instance, tf=tf, tf_guess=None) for tf in durations], _from_nothing)
-
-
-def earlier_arrivals(solution: Solution) -> float:
-    """Arriving earlier on the reference, and coasting on it: possible where the whole end is on it."""
-    instance = solution.instance
-    if instance.tf is None or not _on_reference(solution):
-        return float("inf")
-    final: dict[str, float | Literal["reference"]] = dict.fromkeys(instance.model.spec.state_names, "reference")
-    times = [instance.t0 + share * (instance.tf - instance.t0) for share in EARLIER]
-    return _dearer(solution, [replace(instance, tf=tf, final=final) for tf in times], _from_nothing)
-
-
-def _dearer(solution: Solution, rivals: list[Instance], attempt: Attempt) -> float:
-    """How much dearer the cheapest rival is, all with given final times; infinite where none is found."""
-    from satsym.solve.collocation.scaling import two_point
-
-    cheapest = float("inf")
-    for rival in rivals:
-        assert rival.tf is not None
-        problem, limits = two_point(rival, rival.tf - rival.t0), Limits(200, time.perf_counter() + SECONDS)
-        with np.errstate(all="ignore"):
-            found = attempt(problem.widened(float("inf")), limits)
-            if found is not None and found.minimum:
-                cheapest = min(cheapest, _accurately(problem, found, solution.objective, limits))
-    return margin(cheapest, solution.objective, coarse=SAME, hidden=hidden(solution))
-
-
 def hidden(solution: Solution) -> float:
     """The difference of costs that rounding hides."""
     return HIDDEN * products(solution)
-
-
-def _from_nothing(problem: TwoPoint, limits: Limits) -> Found | None:
-    from satsym.solve.collocation.cold_start import cold_start
-
-    start = cold_start(problem, limits)
-    return None if start.way == "none" else start.found
-
-
-def _accurately(problem: TwoPoint, found: Found, cost: float, limits: Limits) -> float:
-    """The cost of a minimum within the bounds, as rough as its mesh where it is clearly dearer than another cost.
-
-    What is dearer without the bounds is so within them.
-    """
-    from satsym.solve.collocation.continuation import tighten
-    from satsym.solve.collocation.gauss import STAGES
-    from satsym.solve.collocation.refinement import refine
-    from satsym.solve.collocation.system import System
-
-    rough = found.cost * problem.scale.cost
-    if rough > cost + ROUGH * abs(cost):
-        return rough
-    refined = refine(problem.widened(float("inf")), found.curve, SAME)
-    bounded = tighten(problem, refined.curve, STAGES, limits)
-    if bounded.iterations:
-        if not bounded.converged:
-            return float("inf")
-        refined = refine(problem, bounded.curve, SAME, keep_nodes=True)
-    if not refined.converged:
-        return float("inf")
-    return System(problem, refined.curve.mesh, refined.curve.order).cost(refined.curve) * problem.scale.cost
 
 
 def _on_reference(solution: Solution) -> bool:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
+import time
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from satsym.solution import Certificate, Check, Solution
+from satsym.solution import Certificate, Check, Competitors, Kind, Solution
 from satsym.solve import revolutions
 from satsym.solve.certificate import competitors, conditions
+from satsym.solve.certificate.competitors import Compared, Comparison, Rival
 from satsym.solve.certificate.flow import Flow, flow
 from satsym.solve.certificate.neighbours import neighbours
 from satsym.solve.collocation.scaling import final_argument
@@ -28,27 +31,47 @@ def certify(solution: Solution) -> Certificate | None:
     Returns
     -------
     Certificate
-        ``certified``: a strict local optimum, with no cheaper competitor among the kinds that its checks list.
+        ``certified``: a strict local optimum, with no cheaper competitor among the kinds that it lists.
         ``extremal only``: the first-order conditions hold, a sufficient one does not. ``failed``: not even the
         former hold.
     """
+    return examined(solution, time.perf_counter() + solution.instance.solver.max_seconds)[0]
+
+
+def examined(solution: Solution, deadline: float, seed: int = 0) -> tuple[Certificate | None, Rival | None]:
+    """The certificate of a solution, and the cheapest competitor if one is cheaper than it.
+
+    Parameters
+    ----------
+    solution
+        Whatever its status.
+    deadline
+        On the clock of ``time.perf_counter``; what is not compared by then is said.
+    seed
+        Of starts that are drawn.
+    """
     if not solution.status.answered:
-        return None
+        return None, None
     if solution.instance.model.spec.switching:
         from satsym.solve.certificate import switching
 
         with np.errstate(all="ignore"):
-            return switching.certify(solution)
+            return switching.certify(solution), None
     solution = revolutions.as_stated(solution)
     with np.errstate(all="ignore"):
         recomputed = flow(solution)
         if recomputed is None:
-            return _without_flow()
+            return _without_flow(), None
         first = _first_order(solution, recomputed)
-        second = _sufficient(solution, recomputed) if all(c.passed for c in first) else []
+        second, others = [], Comparison((), ())
+        if all(c.passed for c in first):
+            second = _sufficient(solution, recomputed)
+            others = _compared(solution, deadline, seed)
+            second += [_cheaper(kind) for kind in others.kinds]
+            second += [Check(f"time was up before: {kind.value}", 1.0, 0.0) for kind in others.interrupted]
     verdict = Verdict.of(all(c.passed for c in first), all(c.passed for c in second))
     measured: dict[str, Any] = {c.name: c.value for c in (*first, *second)}
-    return Certificate(
+    certificate = Certificate(
         verdict=verdict,
         boundary_residual=measured["boundary residual"],
         dynamics_defect=measured["dynamics defect"],
@@ -57,7 +80,25 @@ def certify(solution: Solution) -> Certificate | None:
         legendre_clebsch=conditions.legendre_clebsch(solution),
         conjugate_time=conditions.conjugate_time(recomputed),
         checks=(*first, *second),
+        competitors=tuple(kind.summary for kind in others.kinds),
+        not_checked=others.not_checked,
     )
+    return certificate, others.better
+
+
+def _compared(solution: Solution, deadline: float, seed: int) -> Comparison:
+    """With competitors, unless none can be cheaper."""
+    if competitors.none_conceivable(solution):
+        return Comparison((), ())
+    near = neighbours(solution)
+    found = competitors.compared(solution, deadline, seed)
+    summary = Competitors(Kind.NEIGHBOURS, 1, int(math.isfinite(near)), float("nan"))
+    return replace(found, kinds=(Compared(summary, near, None, False), *found.kinds))
+
+
+def _cheaper(found: Compared) -> Check:
+    """That no competitor of a kind is cheaper."""
+    return Check(f"cheaper by: {found.summary.kind.value}", max(0.0, -found.margin), DEARER)
 
 
 def _first_order(solution: Solution, recomputed: Flow) -> list[Check]:
@@ -85,18 +126,6 @@ def _sufficient(solution: Solution, recomputed: Flow) -> list[Check]:
         checks.append(
             Check("curvature in the free end", float(not conditions.negative_end(solution, recomputed) > 0.0), 0.0)
         )
-    if competitors.none_conceivable(solution):
-        return [*checks, Check("cheaper by: anything", 0.0, 0.0)]
-    for name, competitor in (
-        ("feasible neighbours", neighbours),
-        ("other starts", competitors.other_starts),
-        ("other revolutions", competitors.other_revolutions),
-        ("other durations", competitors.other_durations),
-        ("earlier arrivals", competitors.earlier_arrivals),
-    ):
-        dearer = competitor(solution)
-        if math.isfinite(dearer):
-            checks.append(Check(f"cheaper by: {name}", max(0.0, -dearer), DEARER))
     return checks
 
 

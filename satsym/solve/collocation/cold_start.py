@@ -1,17 +1,19 @@
 """From nothing to an extremal: a straight line where that goes straight, else a path of easier problems.
 
-First Newton's method from what is guessed, or from the straight line in the state space (or, where nothing is asked of
-the end, from the motion without control), then the minimisation from there. Where neither
-walks straight through, the second way decides as well: from a motion that needs no control at all and ends where it
-should, the initial state is moved to the given one, each problem starting from the last. The cheaper minimum
-stands. Where neither way arrives, the duration is halved until the straight line leads to a minimum, and lengthened
-from there; at last the final angles are left free and then moved to where they should be.
+Where the motion without control looks the same after a rotation, spirals of the likeliest numbers of turns come
+first. Else first Newton's method from what is guessed, or from the straight line in the state space (or, where nothing
+is asked of the end, from the motion without control), then the minimisation from there. Where neither walks straight
+through, the second way decides as well: from a motion that needs no control at all and ends where it should, the
+initial state is moved to the given one, each problem starting from the last. The cheaper minimum stands. Where neither
+way arrives, the duration is halved until the straight line leads to a minimum, and lengthened from there; at last the
+final angles are left free and then moved to where they should be.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -29,6 +31,7 @@ from satsym.solve.collocation.sqp import OUTGROWN, Found, minimise
 from satsym.solve.collocation.straight_through import straight_through
 from satsym.solve.collocation.system import System
 from satsym.solve.iteration import Limits
+from satsym.solve.symmetry import spirals
 
 Array = NDArray[np.floating[Any]]
 
@@ -37,6 +40,9 @@ STRAIGHT_THROUGH = 15
 
 TOLERANCES = (3e-2, 1e-3, 1e-7)
 """Sizes of the last step after which the mesh is laid anew; the last one ends the minimisation."""
+
+TURNS = 2
+"""Spirals that are tried."""
 
 LAST = ("straight path of problems", "path of durations", "path of ends")
 """Ways that are tried only if the others led nowhere."""
@@ -51,17 +57,21 @@ class Start:
     found
         The cheapest minimum, or the last attempt.
     way
-        ``"guess"`` or ``"straight line"``, ``"path of problems"``, one of those in ``LAST``, or ``"none"``.
+        ``"guess"`` or ``"straight line"``, ``"path of problems"``, one of those in ``LAST``, ``"spiral of ..."``, or
+        ``"none"``.
     steps
         Steps of all attempts.
     minima
         Scaled costs of all minima that were met, by their way.
+    within
+        Where it was looked for within the bounds at once: the extremal there.
     """
 
     found: Found
     way: str
     steps: int
     minima: dict[str, float]
+    within: Curve | None = None
 
 
 def cold_start(problem: TwoPoint, limits: Limits, quick: bool = False) -> Start:
@@ -91,11 +101,14 @@ def cold_start(problem: TwoPoint, limits: Limits, quick: bool = False) -> Start:
         ("path of ends", lambda: along_ends(free, limits, lambda easier: cold_start(easier, limits).found)),
     ]
 
+    turning = [] if guess else spirals(free, TURNS)
+    ways[:0] = [(f"spiral of {turns:.2g} turns", partial(from_path, free, path, limits)) for turns, path in turning]
+
     minima: dict[str, Found] = {}
     last: Found | None = None
     steps = 0
-    for way, attempt in ways:
-        if way in LAST and minima:
+    for number, (way, attempt) in enumerate(ways):
+        if minima and (way in LAST or number == len(turning)):
             break
         with np.errstate(all="ignore"):
             found = attempt()
@@ -104,7 +117,7 @@ def cold_start(problem: TwoPoint, limits: Limits, quick: bool = False) -> Start:
         last, steps = found, steps + found.iterations
         if found.minimum and found.curve.in_domain(free.positive):
             minima[way] = found
-            if not found.hard:
+            if not found.hard and number >= len(turning):
                 break
         if limits.expired or quick:
             break

@@ -6,7 +6,7 @@ is met or left. Newton converges if it starts near, so the bounds move in as far
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -94,6 +94,7 @@ def tighten(problem: TwoPoint, free: Curve, order: int, limits: Limits) -> Bound
         step = problem.widened(narrower)
         mesh = through(kinks(step, curve), count)
         outcome = newton(System(step, mesh, order), curve.on(mesh, order), tolerance=1e-6, most=15)
+        limits.spend((outcome.iterations if outcome else 1) * (len(mesh) - 1) * order)
         if outcome is None or not outcome.converged:
             move /= 2.0
             if move < SHORTEST * worst or limits.expired:
@@ -104,7 +105,8 @@ def tighten(problem: TwoPoint, free: Curve, order: int, limits: Limits) -> Bound
         if limits.watch:
             limits.watch(System(step, mesh, order).cost(curve) * step.scale.cost, width / worst)
         move *= FASTER if outcome.iterations <= QUICK else 1.0
-    return _settled(problem, curve, order, count, total)
+    found = settled(problem, curve, order, count, limits)
+    return replace(found, iterations=total + found.iterations)
 
 
 def kinks(problem: TwoPoint, curve: Path) -> Array:
@@ -136,6 +138,11 @@ def by_bound(problem: TwoPoint, curve: Path) -> list[Array]:
     return found
 
 
+def kept(problem: TwoPoint, curve: Curve) -> bool:
+    """Whether the control law without bounds keeps them."""
+    return _violation(problem, curve) <= 0.0
+
+
 def _violation(problem: TwoPoint, curve: Curve) -> float:
     """By how much the control law without bounds leaves the control set; negative where there are none."""
     if not np.isfinite(problem.instance.bounds).any():
@@ -156,10 +163,24 @@ def through(points: Array, count: int) -> Array:
     return np.concatenate([*pieces, [1.0]])
 
 
-def _settled(problem: TwoPoint, curve: Curve, order: int, count: int, total: int) -> Bounded:
-    """Solve with nodes on the kinks until these stand still."""
+def settled(problem: TwoPoint, curve: Curve, order: int, count: int, limits: Limits) -> Bounded:
+    """Solve within the bounds, from a curve nearby, with nodes on the kinks until these stand still.
+
+    Parameters
+    ----------
+    problem
+        With its bounds.
+    curve
+        Where to begin.
+    order
+        Stages; two more are taken.
+    count
+        Intervals, about.
+    limits
+        Count work.
+    """
     before: Array | None = None
-    now = kinks(problem, curve)
+    now, total = kinks(problem, curve), 0
     for _ in range(SETTLING):
         if before is not None and len(before) == len(now) and np.abs(now - before).max(initial=0.0) < STILL:
             return Bounded(curve, now, 1.0, True, total)
@@ -167,6 +188,7 @@ def _settled(problem: TwoPoint, curve: Curve, order: int, count: int, total: int
         outcome = newton(System(problem, mesh, order + 2), curve.on(mesh, order + 2), most=15)
         if outcome is None or not outcome.converged:
             break
+        limits.spend(outcome.iterations * (len(mesh) - 1) * (order + 2))
         total += outcome.iterations
         curve, before = outcome.curve, now
         now = kinks(problem, curve)

@@ -22,6 +22,9 @@ States = Callable[[Array], Array]
 POINTS = 41
 """Points of a path at which the mesh is laid."""
 
+WAVES = 4
+"""Of a path that is drawn."""
+
 STEPS = 4000
 """RK4 steps of a motion without control."""
 
@@ -41,6 +44,22 @@ def first(problem: TwoPoint) -> States:
         return states
 
     return overlaid
+
+
+def bent(problem: TwoPoint, rng: np.random.Generator, amplitude: float) -> States:
+    """The path where one begins, with waves that are drawn; states that must be positive stay so."""
+    path = first(problem)
+    waves = amplitude * rng.standard_normal((problem.states, WAVES)) / np.arange(1.0, WAVES + 1.0)
+
+    def drawn(tau: Array) -> Array:
+        states = path(tau)
+        added = waves @ np.sin(np.pi * np.outer(np.arange(1.0, WAVES + 1.0), tau))
+        positive = list(problem.positive)
+        found = states + added
+        found[positive] = states[positive] * np.exp(added[positive])
+        return np.asarray(found)
+
+    return drawn
 
 
 def start(problem: TwoPoint) -> Curve:

@@ -66,6 +66,9 @@ class TwoPoint:
         Units.
     widening
         By how much every bound of the control is moved outwards; infinite: no bounds.
+    softness
+        Share of what the control law without bounds exceeds them by that is granted: zero where bounds are kept. That
+        is the law where exceeding them costs as its square, so a soft problem is one of optimal control as well.
     """
 
     instance: Instance
@@ -73,6 +76,7 @@ class TwoPoint:
     duration: float
     scale: Scale
     widening: float = 0.0
+    softness: float = 0.0
 
     @property
     def states(self) -> int:
@@ -120,6 +124,10 @@ class TwoPoint:
         """The same problem with other bounds."""
         return replace(self, widening=widening)
 
+    def softened(self, softness: float) -> TwoPoint:
+        """The same problem with bounds of another softness."""
+        return replace(self, softness=softness)
+
     def elapsed(self, theta: Array) -> float:
         """The duration."""
         return float(theta[-1]) if self.free_time else self.duration
@@ -131,17 +139,23 @@ class TwoPoint:
 
     def rates(self, tau: Array, z: Array, theta: Array) -> Array:
         """dz/dt, shape (2n, N), at ``tau`` (N,) and ``z`` (2n, N)."""
-        rates = np.empty(z.shape, z.dtype)  # given, so that kernels need not find out shapes and types
-        self.instance.model.canonical_batch(*self._arguments(tau, z, theta), self.bounds, out=rates)
-        rates /= self.scale.both
-        return rates
+        return self._blended(self.instance.model.canonical_batch, z.shape, tau, z, theta) / self.scale.both
 
     def jacobian(self, tau: Array, z: Array, theta: Array) -> Array:
         """The rates by z, shape (2n, 2n, N)."""
-        slopes = np.empty((len(z), *z.shape), z.dtype)
-        self.instance.model.canonical_jacobian_batch(*self._arguments(tau, z, theta), self.bounds, out=slopes)
-        slopes *= self.scale.ratio
-        return slopes
+        shape = (len(z), *z.shape)
+        return self._blended(self.instance.model.canonical_jacobian_batch, shape, tau, z, theta) * self.scale.ratio
+
+    def _blended(self, kernel: Any, shape: tuple[int, ...], tau: Array, z: Array, theta: Array) -> Array:
+        """A kernel of the canonical equations; with soft bounds a mean: they are affine in the control."""
+        arguments = self._arguments(tau, z, theta)
+        found = np.empty(shape, z.dtype)  # given, so that kernels need not find out shapes and types
+        kernel(*arguments, self.bounds, out=found)
+        if self.softness:
+            without = np.empty(shape, z.dtype)
+            kernel(*arguments, control_set.without_bounds(self.instance), out=without)
+            found += self.softness * (without - found)
+        return found
 
     def drift(self, tau: Array, z: Array, theta: Array) -> Array | float:
         """The rates by explicit time, shape (2n, N)."""
@@ -158,7 +172,13 @@ class TwoPoint:
             u = smoothed_law(self.instance, self.bounds, t, x, lam)
             return smoothed_cost(self.instance, self.bounds, t, x, u) / self.scale.cost
         u = model.control_law_batch(t, x, lam, p, self.bounds)
-        return np.asarray(model.running_cost_batch(t, x, u, p)) / self.scale.cost
+        beyond = 0.0
+        if self.softness:
+            over = np.asarray(model.control_law_batch(t, x, lam, p, control_set.without_bounds(self.instance))) - u
+            weight = np.asarray(model.control_hessian_batch(t, x, u, lam, p))
+            beyond = self.softness * (1.0 - self.softness) / 2.0 * np.einsum("ik,ijk,jk->k", over, weight, over)
+            u = u + self.softness * over
+        return (np.asarray(model.running_cost_batch(t, x, u, p)) + beyond) / self.scale.cost
 
     def terminal_cost(self, end: Array, theta: Array) -> float:
         """S at the end, scaled."""

@@ -114,6 +114,7 @@ def minimise(
     for iteration in range(most):
         first = not curve.stages[n:].any()
         jacobian = system.jacobian(curve)
+        limits.spend(curve.flat.shape[1])
         if iteration and coarsest < float("inf") and system.largest_turn(curve, jacobian) > coarsest:
             return Found(curve, OUTGROWN, cost, iteration, True)
         avoid = newton and share < CUT

@@ -9,16 +9,15 @@ import numpy as np
 from satsym.instance import Instance
 from satsym.solution import Array, Progress, Solution
 from satsym.solve.collocation.cold_start import Start
-from satsym.solve.collocation.continuation import kinks, through, tighten
+from satsym.solve.collocation.continuation import kinks, through
 from satsym.solve.collocation.curve import Path
-from satsym.solve.collocation.gauss import STAGES
 from satsym.solve.collocation.problem import TwoPoint
 from satsym.solve.extremal import Extremal, solved
 from satsym.solve.iteration import Limits
 from satsym.solve.shooting.arcs import Arcs, sufficient
 from satsym.solve.shooting.newton import Outcome, doubled, newton
 from satsym.solve.shooting.runge_kutta import ORDER
-from satsym.solve.two_point import explained, from_cold_start, outside, unfinished
+from satsym.solve.two_point import explained, from_cold_start, inside, outside, unfinished
 from satsym.status import Status
 
 ACCURACY = 1e-11
@@ -114,7 +113,7 @@ def converged(arcs: Arcs, error: float, iterations: int) -> Extremal:
 
 def _accurate(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
     """From an extremal of low order without bounds to an accurate one within them."""
-    bounded = tighten(problem, start.found.curve, STAGES, limits)
+    bounded = inside(problem, start, start.found.curve, limits)
     steps = start.steps + bounded.iterations
     if bounded.reached < 1.0:
         return explained(outside(problem, bounded.curve, bounded, steps, limits), limits)

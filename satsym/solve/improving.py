@@ -1,0 +1,64 @@
+"""A solution with its certificate; where that knows a cheaper competitor, the solution to which this leads instead."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+import msgspec
+
+from satsym.instance import Instance
+from satsym.solution import Progress, Solution
+from satsym.solve.certificate.competitors import Rival, guess
+from satsym.solve.certificate.verdict import examined
+
+ROUNDS = 3
+"""Cheaper competitors that are taken for the solution, one after the other."""
+
+Solver = Callable[[Instance, Progress | None], Solution]
+
+
+def improved(solver: Solver, instance: Instance, progress: Progress | None) -> Solution:
+    """Solve an instance, and again from each competitor that is cheaper than what was found.
+
+    An instance with a guess of its own has the solution to which that leads: what is cheaper is only said.
+
+    Parameters
+    ----------
+    solver
+        Of a method.
+    instance
+        What to solve.
+    progress
+        Called after each iteration.
+    """
+    began = time.perf_counter()
+    deadline = began + instance.solver.max_seconds
+    solution = solver(instance, progress)
+    certificate, better = examined(solution, deadline)
+    if better is not None and instance.guess:
+        message = f"{solution.message}; another extremal costs less, {better.cost:.10g}: leave out [guess] to have it"
+        solution, better = replace(solution, message=message), None
+    for seed in range(1, ROUNDS + 1):
+        again = None if better is None else _from(better, solver, solution, progress, deadline)
+        if again is None:
+            break
+        certificate, better = examined(again, deadline, seed)
+        solution = again
+    return replace(solution, certificate=certificate, wall_s=time.perf_counter() - began)
+
+
+def _from(
+    better: Rival, solver: Solver, solution: Solution, progress: Progress | None, deadline: float
+) -> Solution | None:
+    """The solution to which a competitor leads; ``None`` where that is not cheaper, or time is up."""
+    instance, left = solution.instance, deadline - time.perf_counter()
+    if left <= 0.0:
+        return None
+    options = msgspec.structs.replace(instance.solver, max_seconds=left)
+    found = solver(replace(guess(better, solution), solver=options), progress)
+    if not found.status.answered or not found.objective < solution.objective:
+        return None
+    message = f"{found.message}; the first extremal found costs {solution.objective:.6g}"
+    return replace(found, instance=instance, message=message, iterations=found.iterations + solution.iterations)
