@@ -39,9 +39,10 @@ class Nearest:
     Attributes
     ----------
     missed
-        By how much each given final state is missed, in the model's units, by its name.
+        By how much each given final state is missed, in the model's units, by its name, and each terminal constraint,
+        by its multiplier's.
     distance
-        The largest of them relative to the size of its state along the way.
+        The largest of them, relative to the size of its state along the way.
     starts
         Controls from which the miss was minimised.
     """
@@ -80,11 +81,11 @@ def nearest(problem: TwoPoint, path: Path, limits: Limits) -> Nearest | None:
     Returns
     -------
     Nearest or None
-        ``None`` where the final time is free, where time was up first, or where nothing could be flown.
+        ``None`` where the final time is free, where time was up first, or where nothing could be simulated.
     """
     from scipy.optimize import minimize
 
-    if problem.free_time or not problem.fixed.any():
+    if problem.free_time or not (problem.fixed.any() or problem.unknowns):
         return None
     reach = _Reach(problem)
 
@@ -118,9 +119,9 @@ def nearest(problem: TwoPoint, path: Path, limits: Limits) -> Nearest | None:
     gap = reach.gap(best.x)
     if gap is None:
         return None
-    names = problem.instance.model.spec.state_names
-    rows = np.flatnonzero(problem.fixed)
-    missed = {names[i]: float(gap[k] * problem.scale.state[i]) for k, i in enumerate(rows)}
+    spec, units = problem.instance.model.spec, [*problem.scale.state, *(1.0 for _ in range(problem.unknowns))]
+    names = [*spec.state_names, *(f"the constraint of {v.symbol}" for v in spec.multipliers)]
+    missed = {names[i]: float(gap[k] * units[i]) for k, i in enumerate(reach.rows)}
     return Nearest(missed, float(np.abs(gap).max()), tried)
 
 
@@ -144,7 +145,7 @@ class _Reach:
         assert instance.tf is not None
         self.problem, self.grid = problem, Grid.uniform(instance.t0, instance.tf, STEPS)
         self.tau = np.linspace(0.0, 1.0, STEPS + 1)
-        self.rows = np.flatnonzero(problem.fixed)
+        self.rows = np.append(np.flatnonzero(problem.fixed), problem.states + np.arange(problem.unknowns))
         self.controls = len(instance.model.spec.controls)
 
     @property
@@ -185,30 +186,32 @@ class _Reach:
             found = self.problem.instance.max_norm * found / np.sqrt(1.0 + (found**2).sum(axis=0))
         return found
 
-    def flown(self, u: Array) -> tuple[Array, Array]:
-        """States at the nodes, and the scaled miss of the given ones."""
-        instance = self.problem.instance
+    def reached(self, u: Array) -> tuple[Array, Array, Array]:
+        """States at the nodes, the scaled miss of what ties the end, and its derivatives by the scaled final state."""
+        problem, instance = self.problem, self.problem.instance
         middle = (u[:, 1:] + u[:, :-1]) / 2.0
         x, _, _ = instance.model.forward(self.grid.nodes, instance.initial, u, middle, instance.parameters)
-        return x, (x[:, -1] - self._goal(instance))[self.rows] / self.problem.scale.state[self.rows]
+        end = np.append(x[:, -1] / problem.scale.state, np.zeros(problem.states))
+        slopes, _ = problem.boundary_slopes(end, problem.theta)
+        return x, problem.boundary(end, problem.theta)[self.rows], slopes[self.rows, : problem.states]
 
     def gap(self, parameters: Array) -> Array | None:
         """The scaled miss; ``None`` where the motion is not finite."""
-        _, gap = self.flown(self.control(parameters))
+        _, gap, _ = self.reached(self.control(parameters))
         return gap if np.isfinite(gap).all() else None
 
     def miss(self, parameters: Array) -> tuple[float, Array]:
         """Half the squared miss, and its gradient."""
         problem, instance = self.problem, self.problem.instance
         u = self.control(parameters)
-        x, gap = self.flown(u)
+        x, gap, slopes = self.reached(u)
         if not np.isfinite(x).all() or not instance.model.in_domain(x):
             return 1e10, np.zeros_like(parameters)
         n = problem.states
         by_x = instance.model.jacobian_x_batch(self.grid.nodes, x, u, instance.parameters)
         by_u = instance.model.jacobian_u_batch(self.grid.nodes, x, u, instance.parameters)
         adjoint = np.zeros((n, STEPS + 1))
-        adjoint[self.rows, -1] = gap / problem.scale.state[self.rows]
+        adjoint[:, -1] = (gap @ slopes) / problem.scale.state
         width, transposed = self.grid.nodes[1] - self.grid.nodes[0], by_x.transpose(2, 1, 0)
         # Trapezoids: second order is plenty for a direction of descent.
         one = np.eye(n)
@@ -223,11 +226,3 @@ class _Reach:
             length = np.sqrt(1.0 + (v**2).sum(axis=0))
             slope = instance.max_norm * (slope / length - v * (v * slope).sum(axis=0) / length**3)
         return float(gap @ gap) / 2.0, slope.ravel()
-
-    def _goal(self, instance: Instance) -> Array:
-        given, on_reference, target = np.array(self.problem.final).reshape(3, -1)
-        goal = np.where(given > 0.0, target, 0.0)
-        if on_reference.any():
-            curve = np.array(instance.model.reference(self.grid.tf, instance.parameters))
-            goal = np.where(on_reference > 0.0, curve, goal)
-        return goal

@@ -44,7 +44,11 @@ TOLERANCES = (3e-2, 1e-3, 1e-7)
 TURNS = 2
 """Spirals that are tried."""
 
-LAST = ("straight path of problems", "path of durations", "path of ends")
+PATHS, AMPLITUDE, MOST = 3, 0.2, 40
+"""Paths that are drawn, how far they leave the straight line, and steps from each."""
+
+DRAWN = "drawn path"
+LAST = (DRAWN, "straight path of problems", "path of durations", "path of ends")
 """Ways that are tried only if the others led nowhere."""
 
 
@@ -96,6 +100,7 @@ def cold_start(problem: TwoPoint, limits: Limits, quick: bool = False) -> Start:
     ways: list[tuple[str, Callable[[], Found | None]]] = [
         (begin, lambda: straight_through(line, System(free, line.mesh, STAGES), limits) or from_line(free)),
         ("path of problems", lambda: along_problems(free, geometric, limits)),
+        (DRAWN, lambda: _drawn(free, limits)),
         ("straight path of problems", lambda: along_problems(free, straight, limits)),
         ("path of durations", lambda: along_durations(free, STAGES, limits, from_line)),
         ("path of ends", lambda: along_ends(free, limits, lambda easier: cold_start(easier, limits).found)),
@@ -148,6 +153,15 @@ def from_path(problem: TwoPoint, path: Callable[[Array], Array], limits: Limits,
         if extremal:
             stage = stage + 1 if hard else len(TOLERANCES) - 1
         curve = found.curve if extremal and not hard else _remeshed(problem, found.curve)
+
+
+def _drawn(problem: TwoPoint, limits: Limits) -> Found | None:
+    """The cheapest minimum to which paths lead that are drawn: the straight line may lie between two minima."""
+    rng = np.random.default_rng(0)
+    found = [from_path(problem, paths.bent(problem, rng, AMPLITUDE), limits, MOST) for _ in range(PATHS)]
+    minima = [one for one in found if one.minimum and one.curve.in_domain(problem.positive)]
+    best = min(minima, key=lambda one: one.cost, default=None)
+    return None if best is None else replace(best, hard=True, iterations=sum(one.iterations for one in found))
 
 
 def _remeshed(problem: TwoPoint, curve: Curve) -> Curve:
