@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.grid import Grid
-from satsym.instance import Instance
 from satsym.solve.collocation.curve import Path
 from satsym.solve.collocation.problem import TwoPoint
 from satsym.solve.iteration import Limits

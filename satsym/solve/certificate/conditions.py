@@ -1,4 +1,4 @@
-"""Necessary and sufficient conditions, measured along the flow."""
+"""Necessary conditions, and that of Legendre and Clebsch, measured along the flow."""
 
 from __future__ import annotations
 
@@ -8,14 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.solution import Solution
+from satsym.solve.certificate.end_form import fixed_states, multipliers
 from satsym.solve.certificate.flow import FAINT, NEGLIGIBLE, Flow, products, typical, undriven, unit_sizes
 from satsym.solve.collocation.scaling import final_argument
 
 Array = NDArray[np.floating[Any]]
-
-RESOLVED = 1e-9
-"""Smallest singular value, relative to the largest, of a field whose determinant has a sign that can be trusted."""
-
 
 CANCELLED = 1e-5
 """Share of the products of states and costates below which a cost is what is left of larger terms, or of rounding."""
@@ -26,30 +23,22 @@ def boundary_residual(solution: Solution, flow: Flow) -> float:
 
     A given state is compared with its own size or, where the control moves the end by less, with that, down to a
     share of its size that rounding allows; a costate with its size and with that of the terms of the gradient
-    of the terminal cost, which may cancel almost: an error of the state then counts alike in both.
+    of the terminal cost, which may cancel almost: an error of the state then counts alike in both. A terminal
+    constraint is compared with what the states contribute to it.
     """
     instance, model = solution.instance, solution.instance.model
-    n, spec = len(instance.initial), instance.model.spec
+    n = len(instance.initial)
     tf, x, lam = float(flow.times[-1]), tuple(flow.x[:, -1].tolist()), tuple(flow.lam[:, -1].tolist())
     final = final_argument(instance)
-
-    def at(nu: tuple[float, ...]) -> Array:
-        return np.array(model.boundary(tf, x, lam, nu, instance.parameters, instance.bounds, final))
-
-    residual = at((0.0,) * len(spec.multipliers))
-    if spec.multipliers:  # the residual is affine in the multipliers: take those that fit best
-        units = np.eye(len(spec.multipliers))
-        slopes = np.stack([at(tuple(unit)) - residual for unit in units], axis=1)
-        residual = residual + slopes @ np.linalg.lstsq(slopes, -residual, rcond=None)[0]
-    fixed = np.array(final[:n]) + np.array(final[n : 2 * n]) > 0.0
-    state, costate = typical(solution)
-    nu = (0.0,) * len(spec.multipliers)
+    nu, residual = multipliers(instance, tf, x, lam)
+    fixed, (state, costate) = fixed_states(instance), typical(solution)
     slopes = np.array(model.boundary_jacobian(tf, x, lam, nu, instance.parameters, instance.bounds, final))
-    gradient = np.abs(slopes.reshape(len(residual), -1)[:n, :n]) @ state
+    gradient = np.abs(slopes.reshape(len(residual), -1)[:-1, :n]) @ state
     least = np.minimum(state, NEGLIGIBLE * unit_sizes(solution)[:n])
-    rows = np.where(fixed, np.maximum(state * _moved(solution, flow, state), least), np.maximum(costate, gradient))
+    rows = np.where(fixed, np.maximum(state * _moved(solution, flow, state), least), np.maximum(costate, gradient[:n]))
     found = np.abs(residual[:n]) / rows
-    parts = [*found, *np.abs(residual[n:-1])]
+    constraints = np.abs(residual[n:-1]) / np.maximum(gradient[n:], 1e-300)
+    parts = [*found, *constraints]
     if instance.tf is None:
         rates = np.array(model.canonical(tf, x, lam, instance.parameters, instance.bounds))
         parts.append(abs(residual[-1]) / max(float(np.abs(flow.lam[:, -1] * rates[:n]).sum()), 1e-300))
@@ -114,47 +103,3 @@ def legendre_clebsch(solution: Solution) -> float:
         model.control_hessian_batch(solution.times, solution.x, solution.u, solution.lam, instance.parameters)
     )
     return float(np.linalg.eigvalsh(hessian.transpose(2, 0, 1)).min()) if len(hessian) else float("inf")
-
-
-def conjugate_time(flow: Flow) -> float | None:
-    """The first time after the start at which neighbouring extremals meet again, or ``None``.
-
-    There the derivative of the states by the initial costates is singular, which its determinant shows by a
-    change of sign; bounds that are active stay so. Shortly after the start, or while bounds leave little freedom,
-    the determinant is too small to have a sign that can be trusted, and such times are passed over.
-    """
-    n, sign = flow.x.shape[0], 0.0
-    for time, slopes in zip(flow.times[1:], flow.field[1:], strict=True):
-        upper = slopes[:n] / np.maximum(np.abs(slopes).max(axis=0), 1e-300)
-        balanced = upper / np.maximum(np.abs(upper).max(axis=1, keepdims=True), 1e-300)
-        values = np.linalg.svd(balanced, compute_uv=False)
-        if values[-1] < RESOLVED * values[0]:
-            continue
-        now = float(np.linalg.slogdet(balanced)[0])
-        if now * sign < 0.0:
-            return float(time)
-        sign = now
-    return None
-
-
-def negative_end(solution: Solution, flow: Flow) -> float:
-    """Smallest curvature of the cost in the free final states, relative; positive at a minimum.
-
-    Infinite where no final state is free. It is the second derivative of S + nu' psi minus that of the cost to
-    come, -Lambda X^-1, in the free components.
-    """
-    instance, n = solution.instance, flow.x.shape[0]
-    final = final_argument(instance)
-    free = np.flatnonzero(np.array(final[:n]) + np.array(final[n : 2 * n]) == 0.0)
-    if not len(free) or instance.model.spec.multipliers:
-        return float("inf")
-    tf, x, lam = float(flow.times[-1]), tuple(flow.x[:, -1].tolist()), tuple(flow.lam[:, -1].tolist())
-    slopes = np.array(instance.model.boundary_jacobian(tf, x, lam, (), instance.parameters, instance.bounds, final))
-    hessian = -slopes.reshape(n + 1, -1)[:n, :n]
-    # The columns' scales cancel in Lambda X^-1, but keep the inversion well conditioned.
-    scaled = flow.field[-1] / np.maximum(np.abs(flow.field[-1]).max(axis=0), 1e-300)
-    arriving = np.linalg.solve(scaled[:n].T, scaled[n:].T).T
-    pivot = (hessian - arriving)[np.ix_(free, free)]
-    size = 1.0 / np.sqrt(np.maximum(np.abs(np.diag(pivot)), 1e-300))
-    balanced = pivot * np.outer(size, size)
-    return float(np.linalg.eigvalsh(balanced + balanced.T).min() / 2.0)

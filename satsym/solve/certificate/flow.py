@@ -35,12 +35,12 @@ SMALL, FAINT = 1e-4, 1e-6
 the end; the flow from the initial costates is not, but that it depends on the states."""
 
 STATIONS = 64
-"""Times at which the flow is compared with the solver's trajectory and looked at for conjugate times."""
+"""Times at which the flow is compared with the solver's trajectory."""
 
 
 @dataclass(frozen=True, eq=False)
 class Flow:
-    """States, costates and the field of neighbouring extremals from the same initial state.
+    """States and costates along the canonical equations.
 
     Attributes
     ----------
@@ -48,8 +48,6 @@ class Flow:
         Stations, shape (K,), switching times among them.
     x, lam
         States and costates there, shapes (n, K).
-    field
-        Their derivatives by the initial costates, shape (K, 2n, n).
     cost
         Of the whole motion, the terminal cost included.
     """
@@ -57,7 +55,6 @@ class Flow:
     times: Array
     x: Array
     lam: Array
-    field: Array
     cost: float
 
 
@@ -69,19 +66,14 @@ def flow(solution: Solution) -> Flow | None:
     kinks = [t for times in solution.switching_times for t in times if start < t < end]
     stations = np.unique(np.concatenate([np.linspace(start, end, STATIONS + 1), kinks]))
     sizes = np.maximum(np.concatenate(typical(solution, FAINT)), _resolved(solution) / STATIONS)
-    by_costates = np.concatenate([np.zeros((n, n)), np.eye(n)])
 
     def rates(t: float, y: Array) -> Array:
         x, lam = tuple(y[:n].tolist()), tuple(y[n : 2 * n].tolist())
-        slopes = np.array(model.canonical_jacobian(t, x, lam, p, bounds)).reshape(2 * n, 2 * n)
-        neighbours = slopes @ y[2 * n : -1].reshape(2 * n, n)
         cost = model.running_cost(t, x, model.control_law(t, x, lam, p, bounds), p)
-        return np.concatenate([model.canonical(t, x, lam, p, bounds), neighbours.ravel(), [cost]])
+        return np.array([*model.canonical(t, x, lam, p, bounds), cost])
 
-    values = np.concatenate([instance.initial, solution.lam[:, 0], by_costates.ravel(), [0.0]])
-    # The field may grow without bound; what matters is its direction, so its own size is what errors are held to.
-    fields = np.full(2 * n * n, 1e-3) * np.outer(sizes, 1.0 / sizes[n:]).ravel()
-    scale = np.concatenate([sizes, fields, [sizes[:n] @ sizes[n:]]])
+    values = np.concatenate([instance.initial, solution.lam[:, 0], [0.0]])
+    scale = np.append(sizes, sizes[:n] @ sizes[n:])
     found = [values]
     try:
         for piece in integrate(rates, stations, values, TOLERANCE, scale):
@@ -89,9 +81,9 @@ def flow(solution: Solution) -> Flow | None:
     except FAILURES:
         return None
     table = np.array(found)
-    x, lam, field = table[:, :n].T, table[:, n : 2 * n].T, table[:, 2 * n : -1].reshape(-1, 2 * n, n)
+    x, lam = table[:, :n].T, table[:, n : 2 * n].T
     cost = float(table[-1, -1]) + float(model.terminal_cost(end, tuple(x[:, -1].tolist()), p))
-    return Flow(stations, x, lam, field, cost)
+    return Flow(stations, x, lam, cost)
 
 
 def undriven(solution: Solution) -> Array | None:

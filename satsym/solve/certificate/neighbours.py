@@ -1,10 +1,9 @@
-"""Competitors close by: random smooth changes of the control, corrected until the end is met again."""
+"""Competitors close by: the control changed where the second variation gains most, corrected until the end is met."""
 
 from __future__ import annotations
 
-import random
-from collections.abc import Iterator
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -12,156 +11,200 @@ from numpy.typing import NDArray
 
 from satsym.grid import Grid, interleave
 from satsym.instance import Instance
-from satsym.solution import Solution
+from satsym.solution import Check, Competitors, Kind, Solution
 from satsym.solve import control_set
+from satsym.solve.certificate.accessory import Accessory, accessory
 from satsym.solve.certificate.competitors import HIDDEN, hidden, margin
+from satsym.solve.certificate.end_form import fixed_states
 from satsym.solve.collocation.scaling import final_argument
 
 Array = NDArray[np.floating[Any]]
 
 STEPS = (200, 800, 3200)
-"""RK4 steps with which neighbours are compared, on the same grid as the solution itself: the fewest that fly it."""
+"""RK4 steps with which neighbours are compared, on as many as the solution itself: the fewest that follow it."""
 
-FLOWN = 1e-2
-"""Relative distance from the solution's end within which a grid flies it: what is compared is the same on both."""
+FOLLOWED = 1e-2
+"""Relative distance from the solution's end within which a grid follows it: what is compared is the same on both."""
 
-NEIGHBOURS, WAVES = 8, 6
-AMPLITUDE = 0.05
-"""Of a neighbour's departure from the control, relative to the largest control."""
+AMPLITUDES = (0.05, -0.05, 0.01, -0.01)
+"""Of a neighbour's departure from the control, relative to the largest control, and of the final time's change."""
+
+SADDLE = 1e-4
+"""Curvature below zero by more than this is no error of the grid's."""
+
+DEARER = 1e-9
+"""Relative margin by which a neighbour may seem cheaper: its own error."""
 
 CORRECTIONS = 12
 MISSED = 1e-9
 """Miss of the end up to which a neighbour counts as feasible, relative to its size and to how far the control moves it.
 """
 
-NUDGE, MOVED = 1e-4, 1e-8
-"""Relative change of the control that shows its effect on the end, and least share by which that must be moved."""
-
 
 @dataclass(frozen=True, eq=False)
-class Flights:
-    """Flights of one instance on one grid.
+class Neighbours:
+    """What neighbours came to.
 
     Attributes
     ----------
-    instance, grid
-        What is flown, and where controls are given: at the nodes and midpoints.
-    fixed
-        Indices of the states whose end is given.
+    margin
+        How much dearer the cheapest is, relative to the cost; infinite where none could be simulated.
+    curvature
+        The least of the second variation on short pieces of the control, in units of what the change of the control
+        costs; infinite where the end leaves no choice, NaN where it could not be resolved.
+    competitors
+        How many, and the cheapest.
+    """
+
+    margin: float
+    curvature: float
+    competitors: Competitors
+
+    @property
+    def checks(self) -> list[Check]:
+        """Each is a deficit that must not be positive."""
+        found = []
+        if math.isfinite(self.curvature):
+            found.append(Check("second variation on pieces of the control", float(self.curvature < -SADDLE), 0.0))
+        if math.isfinite(self.margin):
+            found.append(Check(f"cheaper by: {Kind.NEIGHBOURS.value}", max(0.0, -self.margin), DEARER))
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Simulations:
+    """Simulations of one instance with as many steps.
+
+    Attributes
+    ----------
+    instance
+        What is simulated.
+    rows
+        Indices of the boundary residuals that tie the final state.
     scale
         Sizes of these.
+    steps
+        Of each simulation.
+    end
+        The final time.
     """
 
     instance: Instance
-    grid: Grid
-    fixed: NDArray[np.intp]
+    rows: NDArray[np.intp]
     scale: Array
+    steps: int
+    end: float
 
-    @property
-    def times(self) -> Array:
-        """Nodes and midpoints."""
-        return interleave(self.grid.nodes, self.grid.midpoints)
+    def grid(self, longer: float = 0.0) -> Grid:
+        """To a final time that much later."""
+        return Grid.uniform(self.instance.t0, self.end + longer, self.steps)
 
-    def __call__(self, control: Array) -> tuple[float, Array]:
-        """The cost of a control, shape (m, 2 N + 1), and by how many sizes the given states end from zero."""
-        instance, grid = self.instance, self.grid
+    def __call__(self, control: Array, grid: Grid) -> tuple[float, Array]:
+        """The cost of a control at nodes and midpoints, shape (m, 2 N + 1), and what ties the end, in sizes."""
+        x, running = self.motion(control, grid)
+        instance, end = self.instance, tuple(x[:, -1].tolist())
+        terminal = instance.model.terminal_cost(grid.tf, end, instance.parameters)
+        none, nu = (0.0,) * len(end), (0.0,) * len(instance.model.spec.multipliers)
+        arguments = none, nu, instance.parameters, instance.bounds, final_argument(instance)
+        residual = np.array(instance.model.boundary(grid.tf, end, *arguments))
+        return running + terminal, residual[self.rows] / self.scale
+
+    def motion(self, control: Array, grid: Grid) -> tuple[Array, float]:
+        """States at the nodes and the integral of the running cost."""
+        instance = self.instance
         x, _, running = instance.model.forward(
             grid.nodes, instance.initial, control[:, ::2], control[:, 1::2], instance.parameters
         )
-        terminal = instance.model.terminal_cost(grid.tf, tuple(x[:, -1].tolist()), instance.parameters)
-        return running + terminal, x[self.fixed, -1] / self.scale
+        return x, running
 
 
-def neighbours(solution: Solution) -> float:
-    """How much dearer the cheapest neighbour is, relative to the cost; infinite where none could be flown."""
-    flown = _flights(solution)
-    if flown is None:
-        return float("inf")
-    instance, times = solution.instance, flown.times
-    u = _control(solution, times)
-    size = float(np.abs(u).max()) or 1.0
-    shapes = list(_shapes(instance, times, u))
-    cost, end = flown(u)
-    moved = float(np.abs(end - flown(np.zeros_like(u))[1]).max(initial=0.0))
-    nudge = size * (NUDGE if moved == 0.0 else max(NUDGE, MOVED / moved))
+def neighbours(solution: Solution) -> Neighbours:
+    """The cheapest neighbour in the direction in which the second variation is least."""
+    nothing = Neighbours(float("inf"), float("nan"), Competitors(Kind.NEIGHBOURS, len(AMPLITUDES), 0, float("nan")))
+    simulations = _simulations(solution)
+    if simulations is None:
+        return nothing
+    grid = simulations.grid()
+    second = accessory(solution, grid)
+    if second is None:
+        return nothing
+    curvature, direction = second.least
+    if not np.isfinite(curvature):
+        return Neighbours(float("inf"), curvature, Competitors(Kind.NEIGHBOURS, 0, 0, float("nan")))
+    simulations, u = replace(simulations, scale=second.sizes), _control(solution, grid)
+    reference = simulations(u, grid)
+    moved = float(np.abs(reference[1] - simulations(np.zeros_like(u), grid)[1]).max(initial=0.0))
     missed = MISSED * min(1.0, max(moved, HIDDEN / MISSED))
-    response = np.stack([(flown(u + nudge * shape)[1] - end) / nudge for shape in shapes], axis=1)
-    if not np.isfinite(response).all():
-        return float("inf")
-    rng = random.Random("neighbours")
-    cheapest = float("inf")
-    for _ in range(NEIGHBOURS):
-        weights = np.array([rng.gauss(0.0, 1.0) for _ in shapes])
-        weights *= AMPLITUDE * size / max(1.0, float(np.linalg.norm(weights)))
-        cheapest = min(cheapest, _corrected(flown, u, shapes, weights, response, end, missed))
-    return margin(cheapest, cost, hidden=hidden(solution))
+    unit = direction / _size(second, direction, float(np.abs(u).max()) or 1.0)
+    search = _Search(simulations, second, solution, reference[1], missed)
+    costs = [search.corrected(amplitude * unit) for amplitude in AMPLITUDES]
+    solved = [cost for cost in costs if np.isfinite(cost)]
+    cheapest = min(solved, default=float("inf"))
+    return Neighbours(
+        margin(cheapest, reference[0], hidden=hidden(solution)),
+        curvature,
+        Competitors(Kind.NEIGHBOURS, len(costs), len(solved), cheapest if solved else float("nan")),
+    )
 
 
-def _corrected(
-    flown: Flights, u: Array, shapes: list[Array], weights: Array, response: Array, end: Array, missed: float
-) -> float:
-    """The cost of a neighbour once it ends where the solution does; infinite where it cannot be made to."""
-    tried: Array = np.zeros(0)
-    for _ in range(CORRECTIONS):
-        change = sum((w * s for w, s in zip(weights, shapes, strict=True)), np.zeros_like(u))
-        cost, reached = flown(control_set.project(flown.instance, u + change))
-        gap = reached - end
-        miss = float(np.abs(gap).max(initial=0.0))
-        if miss <= missed:
-            return cost
-        if not np.isfinite(miss):
-            break
-        if len(tried):  # Broyden: the response as the last correction found it
-            response = response + np.outer(gap, tried) / float(tried @ tried)
-            if not np.isfinite(response).all():
+def _size(second: Accessory, direction: Array, largest: float) -> float:
+    """Of a direction: of the change of the control, or of the final time, relative to their own."""
+    lasting = float(np.abs(second.duration).max()) or 1.0
+    longer = abs(float(second.duration @ direction)) / lasting
+    return max(float(np.abs(second.controls @ direction).max()) / largest, longer)
+
+
+@dataclass(frozen=True, eq=False)
+class _Search:
+    simulations: Simulations
+    second: Accessory
+    solution: Solution
+    end: Array
+    missed: float
+
+    def corrected(self, change: Array) -> float:
+        """The cost of a neighbour once its end is as the solution's; infinite where it cannot be made so."""
+        response, tried = self.second.ties, np.zeros(0)
+        for _ in range(CORRECTIONS):
+            cost, reached = self._simulated(change)
+            gap = reached - self.end
+            miss = float(np.abs(gap).max(initial=0.0))
+            if miss <= self.missed:
+                return cost
+            if not np.isfinite(miss):
                 break
-        tried = -np.linalg.lstsq(response, gap, rcond=None)[0]
-        weights = weights + tried
-    return float("inf")
+            if len(tried):  # Broyden: the response as the last correction found it
+                response = response + np.outer(gap, tried) / float(tried @ tried)
+                if not np.isfinite(response).all():
+                    break
+            tried = -np.linalg.lstsq(response, gap, rcond=None)[0]
+            change = change + tried
+        return float("inf")
+
+    def _simulated(self, change: Array) -> tuple[float, Array]:
+        longer = float(self.second.duration @ change)
+        grid, before = self.simulations.grid(longer), self.simulations.grid()
+        at, times = interleave(grid.nodes, grid.midpoints), interleave(before.nodes, before.midpoints)
+        by = np.array([np.interp(at, times, row) for row in self.second.controls @ change])
+        control = control_set.project(self.simulations.instance, _control(self.solution, grid) + by)
+        return self.simulations(control, grid)
 
 
-def _flights(solution: Solution) -> Flights | None:
-    """Flights on the first grid on which the solution's own control leads to its end."""
-    n = len(solution.instance.initial)
-    final = np.array(final_argument(solution.instance))
-    # Where constraints tie the end, a neighbour keeps them by keeping the whole of it.
-    tied = bool(solution.instance.model.spec.multipliers)
-    fixed = np.arange(n) if tied else np.flatnonzero(final[:n] + final[n : 2 * n] > 0.0)
-    scale = np.maximum(np.abs(solution.x).max(axis=1), 1e-300)
+def _simulations(solution: Solution) -> Simulations | None:
+    """Simulations with the fewest steps with which the solution's own control leads to its end."""
+    instance, n = solution.instance, len(solution.x)
+    size = np.maximum(np.abs(solution.x).max(axis=1), 1e-300)
+    fixed = np.flatnonzero(fixed_states(instance))
+    tied = n + np.arange(len(instance.model.spec.multipliers))
     for steps in STEPS:
-        grid = Grid.uniform(float(solution.times[0]), float(solution.times[-1]), steps)
-        everything = Flights(solution.instance, grid, np.arange(n), scale)
-        _, end = everything(_control(solution, everything.times))
-        if np.abs(end - solution.x[:, -1] / scale).max() < FLOWN:
-            return Flights(solution.instance, grid, fixed, scale[fixed])
+        found = Simulations(instance, np.append(fixed, tied), np.ones(1), steps, float(solution.times[-1]))
+        grid = found.grid()
+        x, _ = found.motion(_control(solution, grid), grid)
+        if (np.abs(x[:, -1] - solution.x[:, -1]) / size).max() < FOLLOWED:
+            return found
     return None
 
 
-def _control(solution: Solution, times: Array) -> Array:
+def _control(solution: Solution, grid: Grid) -> Array:
+    times = interleave(grid.nodes, grid.midpoints)
     return np.array([np.interp(times, solution.times, row) for row in solution.u])
-
-
-def _shapes(instance: Instance, times: Array, u: Array) -> Iterator[Array]:
-    """Smooth changes of one control each, which vanish where a bound holds it."""
-    share = (times - times[0]) / (times[-1] - times[0])
-    room = _room(instance, u)
-    for i in range(len(u)):
-        for wave in range(WAVES):
-            shape = np.zeros_like(u)
-            shape[i] = np.cos(np.pi * wave * share) * room[i]
-            yield shape
-
-
-def _room(instance: Instance, u: Array) -> Array:
-    """One where a control is far from its bounds, zero on them, shape (m, M)."""
-    size = max(float(np.abs(u).max()), 1e-300)
-    distance = control_set.excess(instance, u)
-    kind = instance.model.spec.control_set
-    if kind == "box":
-        m = len(u)
-        distance = np.minimum(np.abs(distance[:m]), np.abs(distance[m:]))
-    elif kind == "ball":
-        distance = np.broadcast_to(np.abs(distance), u.shape)
-    else:
-        return np.ones_like(u)
-    return np.clip(distance / (2.0 * AMPLITUDE * size), 0.0, 1.0)

@@ -69,7 +69,7 @@ def certify(solution: Solution) -> Certificate:
 
 def _first_order(solution: Solution, again: Replay) -> list[Check]:
     instance, n = solution.instance, len(solution.instance.initial)
-    flow = Flow(again.times, again.z[:n], again.z[n:], np.zeros(0), again.cost)
+    flow = Flow(again.times, again.z[:n], again.z[n:], again.cost)
     checks = [
         Check("boundary residual", conditions.boundary_residual(solution, flow), RESIDUAL),
         Check("dynamics defect", conditions.dynamics_defect(solution, flow), DEFECT),
