@@ -35,7 +35,7 @@ _ADVICE = {
     Status.CONVERGED: "",
     Status.NOT_CONVERGED: "try more steps, another method, or a guess closer to the answer",
     Status.INFEASIBLE: "give it more time, or wider bounds on the control",
-    Status.NO_MINIMISER: "fix the final time",
+    Status.NO_MINIMISER: "",
     Status.LEFT_DOMAIN: "check the initial state, shorten the horizon, or widen the control bounds",
     Status.NON_FINITE: "check the initial state and the parameters for values that divide by zero or overflow",
     Status.TIME_LIMIT: "raise [solver] max_seconds, or use fewer steps",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from satsym.instance import Instance
@@ -97,9 +98,25 @@ def _solver(method: str) -> Callable[[Instance, Progress | None], Solution]:
 
 
 def _swept(instance: Instance, progress: Progress | None) -> Solution:
+    """By sweeps. Where these end without any control, that is the answer only if no control can be cheaper."""
     from satsym.solve import forward_backward
+    from satsym.solve.certificate.competitors import none_conceivable
+    from satsym.solve.improving import bottomless
 
-    return forward_backward.solve(instance, progress)
+    found = forward_backward.solve(instance, progress)
+    if not found.status.answered or found.lam.any():
+        return found
+    if none_conceivable(found):
+        message = (
+            "the best control is none: the final state is free and costs nothing, so the costates vanish and any "
+            "control only adds to the cost; the motion is the one without control"
+        )
+        return replace(found, message=message)
+    return bottomless(found) or replace(
+        found,
+        status=Status.NOT_CONVERGED,
+        message="without control the costates vanish, so it is stationary, but another control may be cheaper",
+    )
 
 
 def simulate(instance: Instance, law: Law | None = None) -> Flight:

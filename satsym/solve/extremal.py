@@ -103,7 +103,8 @@ def _solution(
     status, message = extremal.status, "; ".join(part for part in (extremal.message, best.message) if part)
     if best.endless and instance.tf is None:
         costs = ", ".join(f"{value:.4g}" for value in best.endless)
-        status, message = Status.NO_MINIMISER, f"more turns are always cheaper: the last three numbers cost {costs}"
+        message = f"more turns are always cheaper: the last three numbers cost {costs}; fix the final time"
+        status = Status.NO_MINIMISER
     u = problem.control(tau, scaled, path.theta)
     if status in (Status.INFEASIBLE, Status.NO_MINIMISER, Status.NON_FINITE):
         z, u = np.full_like(z, np.nan), np.full_like(u, np.nan)  # what was tried on the way is no answer

@@ -183,10 +183,7 @@ def _explained(problem: SweepProblem, sweep: Sweep, run: Run[Descent] | Run[Rela
     if run.status is not Status.CONVERGED:
         return run.message
     if not sweep.lam.any() and not sweep.u.any():
-        return (
-            "the best control is none: the final state is free and costs nothing, so the costates vanish and any "
-            "control only adds to the cost; the motion is the one without control"
-        )
+        return f"{run.message}; without control all costates vanish"
     return run.message
 
 

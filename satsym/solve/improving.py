@@ -7,11 +7,14 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import msgspec
+import numpy as np
 
 from satsym.instance import Instance
 from satsym.solution import Progress, Solution
 from satsym.solve.certificate.competitors import Rival, guess
+from satsym.solve.certificate.unbounded import fall
 from satsym.solve.certificate.verdict import examined
+from satsym.status import Status, Verdict
 
 ROUNDS = 3
 """Cheaper competitors that are taken for the solution, one after the other."""
@@ -46,7 +49,30 @@ def improved(solver: Solver, instance: Instance, progress: Progress | None) -> S
             break
         certificate, better = examined(again, deadline, seed)
         solution = again
+    if certificate is not None and certificate.verdict is Verdict.EXTREMAL_ONLY:
+        endless = bottomless(solution)
+        if endless is not None:
+            return endless
     return replace(solution, certificate=certificate, wall_s=time.perf_counter() - began)
+
+
+def bottomless(solution: Solution) -> Solution | None:
+    """No answer, where what was found is stationary and other controls cost ever less; ``None`` where none shows."""
+    endless = None if solution.instance.model.spec.switching else fall(solution)
+    if endless is None:
+        return None
+    x, u, lam = (np.full_like(row, np.nan) for row in (solution.x, solution.u, solution.lam))
+    return replace(
+        solution,
+        status=Status.NO_MINIMISER,
+        message=f"{endless.message}; weigh the control or time more, shorten the time, or bound the control",
+        objective=float("nan"),
+        x=x,
+        u=u,
+        lam=lam,
+        switching_times=tuple(() for _ in solution.switching_times),
+        certificate=None,
+    )
 
 
 def _from(

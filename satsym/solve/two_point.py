@@ -20,6 +20,7 @@ from satsym.solve.collocation.refinement import Refined, refine
 from satsym.solve.collocation.scaling import two_point
 from satsym.solve.collocation.softening import within_bounds, within_found
 from satsym.solve.collocation.sqp import Found
+from satsym.solve.collocation.swept import swept
 from satsym.solve.collocation.system import System
 from satsym.solve.extremal import Extremal, solved
 from satsym.solve.iteration import Limits
@@ -81,7 +82,11 @@ def from_cold_start(instance: Instance, limits: Limits, effort: bool, accurate: 
     if instance.tf is not None:
         problem = two_point(instance, instance.tf - instance.t0)
         start, way = guessed(problem, limits) or cold_start(problem, limits), ""
-        if start.way == "none":
+        if start.way == "none" and np.isfinite(problem.bounds).any():
+            start = drawn_within(problem, limits) or start
+        if start.saddle is not None:
+            start = replace(start, found=start.saddle, way="straight line: a saddle, no minimum was found")
+        elif start.way == "none":
             message = f"no extremal found: {start.found.reason}"
             return unfinished(problem, start.found.curve, message, start.steps, limits)
     else:
@@ -119,7 +124,7 @@ def guessed(problem: TwoPoint, limits: Limits) -> Start | None:
     if curve is None or not curve.in_domain(problem.positive):
         return None
     cost = System(problem, curve.mesh, curve.order).cost(curve)
-    return Start(Found(curve, "minimum", cost, 1, True), "guess", 1, {}, curve)
+    return Start(Found(curve, "minimum", cost, 1, True), "guess", 1, {}, within=curve)
 
 
 def inside(problem: TwoPoint, start: Start, free: Curve, limits: Limits) -> Bounded:
@@ -144,16 +149,31 @@ def inside(problem: TwoPoint, start: Start, free: Curve, limits: Limits) -> Boun
     bounded = tighten(problem, free, STAGES, limits)
     if bounded.converged or problem.free_time:
         return bounded
-    rng = np.random.default_rng(DRAWN)
-    harder = [within_found(problem, start.found, limits)]
-    for k in range(DRAWN):
-        if harder[-1].curve is not None or limits.expired:
-            break
-        path = paths.bent(problem, rng, AMPLITUDES[k % len(AMPLITUDES)])
-        harder.append(within_bounds(problem, path, limits, GUESSED))
-    steps = bounded.iterations + sum(one.iterations for one in harder)
-    curve = harder[-1].curve
+    first = within_found(problem, start.found, limits)
+    found = None if first.curve is not None else drawn_within(problem, limits)
+    steps = bounded.iterations + first.iterations + (found.steps if found else 0)
+    curve = found.within if found else first.curve
     return replace(bounded, iterations=steps) if curve is None else Bounded(curve, np.zeros(0), 1.0, True, steps)
+
+
+def drawn_within(problem: TwoPoint, limits: Limits) -> Start | None:
+    """The cheapest extremal within the bounds to which paths that are drawn lead, or corners of the box, if any."""
+    rng, steps = np.random.default_rng(DRAWN), 0
+    found: list[tuple[float, Curve]] = []
+    for k in range(DRAWN):
+        path = paths.bent(problem, rng, AMPLITUDES[k % len(AMPLITUDES)])
+        one = within_bounds(problem, path, limits, GUESSED)
+        steps += one.iterations
+        if one.curve is not None:
+            found.append((System(problem, one.curve.mesh, one.curve.order).cost(one.curve), one.curve))
+        if limits.expired:
+            break
+    corners = (curve for curve in swept(problem, limits) if curve is not None)
+    found += [(System(problem, curve.mesh, curve.order).cost(curve), curve) for curve in corners]
+    if not found:
+        return None
+    cost, curve = min(found, key=lambda one: one[0])
+    return Start(Found(curve, "minimum", cost, steps, True), "drawn path", steps, {}, within=curve)
 
 
 def outside(problem: TwoPoint, path: Path, bounded: Bounded, steps: int, limits: Limits) -> Extremal:

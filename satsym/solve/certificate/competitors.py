@@ -15,7 +15,7 @@ import numpy as np
 from satsym.instance import Guess, Instance
 from satsym.solution import Competitors, Kind, Solution
 from satsym.solve import control_set
-from satsym.solve.certificate.flow import products
+from satsym.solve.certificate.flow import products, unit_sizes
 from satsym.solve.iteration import Limits
 from satsym.solve.revolutions import shifted
 
@@ -211,7 +211,8 @@ def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Attemp
     yield Kind.STARTS, leading(_bent(problem, rng))
     if np.isfinite(instance.bounds).any():
         starts = zip(_bent(problem, rng), SOFT * SEEDS, strict=False)
-        yield Kind.SATURATION, [_from_path(problem, path, soft, cost) for path, soft in starts]
+        soft = [_from_path(problem, path, softness, cost) for path, softness in starts]
+        yield Kind.SATURATION, [*soft, *_from_corners(problem, cost)]
     angles = [name for name in instance.solver.free_angles if name in instance.final]
     turned = [two_point(shifted(fixed, {name: turns}), lasting) for name in angles for turns in (-1, 1)]
     around: list[Attempt] = [_cold(one, cost) for one in turned]
@@ -241,6 +242,20 @@ def _from_path(problem: TwoPoint, path: Callable[[Any], Any], softness: float, c
         return None if found.curve is None else _accurate(problem, found.curve, cost)
 
     return attempt
+
+
+def _from_corners(problem: TwoPoint, cost: float) -> list[Attempt]:
+    """The cheapest extremal to which controls at the corners of their box lead, where nothing is asked of the end."""
+    from satsym.solve.collocation.swept import swept
+
+    if problem.fixed.any():
+        return []
+
+    def attempt(limits: Limits) -> Rival | None:
+        found = (_accurate(problem, curve, cost) for curve in swept(problem, limits) if curve is not None)
+        return min(filter(None, found), key=lambda one: one.cost, default=None)
+
+    return [attempt]
 
 
 def _cold(problem: TwoPoint, cost: float) -> Attempt:
@@ -296,17 +311,24 @@ def _spirals(solution: Solution, problem: TwoPoint, around: Any) -> list[Callabl
 def none_conceivable(solution: Solution) -> bool:
     """Whether no control can cost less: the state costs nothing, and the control is the least of the running cost.
 
-    So it is where all costates vanish, and with them the terminal cost's gradient, and the running cost does not
-    depend on the state; the latter is looked at for states drawn around those of the solution.
+    So it is where all costates vanish, neither the terminal nor the running cost depends on the state, and no control
+    makes the latter smaller: looked at for states and controls drawn all around those of the solution.
     """
-    if solution.lam.any():
+    if solution.lam.any() or solution.instance.model.spec.multipliers:
         return False
     instance, model = solution.instance, solution.instance.model
-    rng = np.random.default_rng(0)
-    x = solution.x * rng.uniform(0.5, 2.0, solution.x.shape)
-    slopes = model.costate_rate_batch(solution.times, x, solution.u, solution.lam, instance.parameters)
-    ends = [model.terminal_gradient(float(solution.times[-1]), tuple(row), instance.parameters) for row in x.T[:20]]
-    return not np.any(slopes) and not np.any(ends)
+    rng, p, t = np.random.default_rng(0), instance.parameters, solution.times
+    x = solution.x + unit_sizes(solution)[: len(solution.x), None] * rng.uniform(-2.0, 2.0, solution.x.shape)
+    positive = [i for i, state in enumerate(model.spec.states) if state.positive]
+    x[positive] = solution.x[positive] * rng.uniform(0.2, 5.0, solution.x[positive].shape)
+    size = np.abs(solution.u).max(initial=0.0) or 1.0
+    u = control_set.project(
+        instance, solution.u + size * 10.0 ** rng.uniform(-3.0, 3.0) * rng.normal(size=solution.u.shape)
+    )
+    slopes = model.costate_rate_batch(t, x, u, solution.lam, p)
+    ends = [model.terminal_gradient(float(t[-1]), tuple(row), p) for row in x.T[:20]]
+    least = np.asarray(model.running_cost_batch(t, x, solution.u, p)) <= model.running_cost_batch(t, x, u, p)
+    return not np.any(slopes) and not np.any(ends) and bool(np.all(least))
 
 
 def hidden(solution: Solution) -> float:

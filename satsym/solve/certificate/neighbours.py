@@ -16,6 +16,7 @@ from satsym.solve import control_set
 from satsym.solve.certificate.accessory import Accessory, accessory
 from satsym.solve.certificate.competitors import HIDDEN, hidden, margin
 from satsym.solve.certificate.end_form import fixed_states
+from satsym.solve.certificate.flow import typical
 from satsym.solve.collocation.scaling import final_argument
 
 Array = NDArray[np.floating[Any]]
@@ -121,7 +122,7 @@ class Simulations:
 def neighbours(solution: Solution) -> Neighbours:
     """The cheapest neighbour in the direction in which the second variation is least."""
     nothing = Neighbours(float("inf"), float("nan"), Competitors(Kind.NEIGHBOURS, len(AMPLITUDES), 0, float("nan")))
-    simulations = _simulations(solution)
+    simulations = simulations_of(solution)
     if simulations is None:
         return nothing
     grid = simulations.grid()
@@ -131,11 +132,14 @@ def neighbours(solution: Solution) -> Neighbours:
     curvature, direction = second.least
     if not np.isfinite(curvature):
         return Neighbours(float("inf"), curvature, Competitors(Kind.NEIGHBOURS, 0, 0, float("nan")))
-    simulations, u = replace(simulations, scale=second.sizes), _control(solution, grid)
+    simulations, u = replace(simulations, scale=second.sizes), stated_control(solution, grid)
     reference = simulations(u, grid)
     moved = float(np.abs(reference[1] - simulations(np.zeros_like(u), grid)[1]).max(initial=0.0))
     missed = MISSED * min(1.0, max(moved, HIDDEN / MISSED))
-    unit = direction / _size(second, direction, float(np.abs(u).max()) or 1.0)
+    size = _size(second, direction, float(np.abs(u).max()) or 1.0)
+    if not size > 0.0:  # every control is saturated throughout
+        return Neighbours(float("inf"), float("inf"), Competitors(Kind.NEIGHBOURS, 0, 0, float("nan")))
+    unit = direction / size
     search = _Search(simulations, second, solution, reference[1], missed)
     costs = [search.corrected(amplitude * unit) for amplitude in AMPLITUDES]
     solved = [cost for cost in costs if np.isfinite(cost)]
@@ -186,25 +190,26 @@ class _Search:
         grid, before = self.simulations.grid(longer), self.simulations.grid()
         at, times = interleave(grid.nodes, grid.midpoints), interleave(before.nodes, before.midpoints)
         by = np.array([np.interp(at, times, row) for row in self.second.controls @ change])
-        control = control_set.project(self.simulations.instance, _control(self.solution, grid) + by)
+        control = control_set.project(self.simulations.instance, stated_control(self.solution, grid) + by)
         return self.simulations(control, grid)
 
 
-def _simulations(solution: Solution) -> Simulations | None:
+def simulations_of(solution: Solution) -> Simulations | None:
     """Simulations with the fewest steps with which the solution's own control leads to its end."""
     instance, n = solution.instance, len(solution.x)
-    size = np.maximum(np.abs(solution.x).max(axis=1), 1e-300)
+    size, _ = typical(solution)
     fixed = np.flatnonzero(fixed_states(instance))
     tied = n + np.arange(len(instance.model.spec.multipliers))
     for steps in STEPS:
         found = Simulations(instance, np.append(fixed, tied), np.ones(1), steps, float(solution.times[-1]))
         grid = found.grid()
-        x, _ = found.motion(_control(solution, grid), grid)
+        x, _ = found.motion(stated_control(solution, grid), grid)
         if (np.abs(x[:, -1] - solution.x[:, -1]) / size).max() < FOLLOWED:
             return found
     return None
 
 
-def _control(solution: Solution, grid: Grid) -> Array:
+def stated_control(solution: Solution, grid: Grid) -> Array:
+    """The control of a solution at nodes and midpoints, shape (m, 2 N + 1)."""
     times = interleave(grid.nodes, grid.midpoints)
     return np.array([np.interp(times, solution.times, row) for row in solution.u])

@@ -23,6 +23,7 @@ from satsym.solve.collocation import mesh as meshes
 from satsym.solve.collocation import paths
 from satsym.solve.collocation.curve import Curve
 from satsym.solve.collocation.gauss import STAGES
+from satsym.solve.collocation.newton import newton
 from satsym.solve.collocation.path_of_durations import along_durations
 from satsym.solve.collocation.path_of_ends import along_ends
 from satsym.solve.collocation.path_of_problems import along_problems, geometric, straight
@@ -67,6 +68,8 @@ class Start:
         Steps of all attempts.
     minima
         Scaled costs of all minima that were met, by their way.
+    saddle
+        An extremal that is no minimum, where no minimum was found.
     within
         Where it was looked for within the bounds at once: the extremal there.
     """
@@ -75,6 +78,7 @@ class Start:
     way: str
     steps: int
     minima: dict[str, float]
+    saddle: Found | None = None
     within: Curve | None = None
 
 
@@ -111,6 +115,7 @@ def cold_start(problem: TwoPoint, limits: Limits, quick: bool = False) -> Start:
 
     minima: dict[str, Found] = {}
     last: Found | None = None
+    saddle: Found | None = None
     steps = 0
     for number, (way, attempt) in enumerate(ways):
         if minima and (way in LAST or number == len(turning)):
@@ -124,12 +129,15 @@ def cold_start(problem: TwoPoint, limits: Limits, quick: bool = False) -> Start:
             minima[way] = found
             if not found.hard and number >= len(turning):
                 break
-        if limits.expired or quick:
+        elif free.linear and number == len(turning):
+            saddle = _extremal(free, line)
+        if limits.expired or quick or saddle:
             break
     costs = {way: found.cost for way, found in minima.items()}
     if not minima:
         assert last is not None
-        return Start(replace(last, reason=_reason(last)), "none", steps, costs)
+        saddle = saddle or (None if limits.expired or quick else _extremal(free, line))
+        return Start(replace(last, reason=_reason(last)), "none", steps, costs, saddle)
     best = min(minima, key=lambda way: minima[way].cost)
     return Start(minima[best], best, steps, costs)
 
@@ -153,6 +161,15 @@ def from_path(problem: TwoPoint, path: Callable[[Array], Array], limits: Limits,
         if extremal:
             stage = stage + 1 if hard else len(TOLERANCES) - 1
         curve = found.curve if extremal and not hard else _remeshed(problem, found.curve)
+
+
+def _extremal(problem: TwoPoint, start: Curve) -> Found | None:
+    """What Newton's method finds from a curve, whether a minimum or not."""
+    system = System(problem, start.mesh, STAGES)
+    outcome = newton(system, start, most=STRAIGHT_THROUGH)
+    if outcome is None or not outcome.converged or not outcome.curve.in_domain(problem.positive):
+        return None
+    return Found(outcome.curve, "saddle", system.cost(outcome.curve), outcome.iterations, True)
 
 
 def _drawn(problem: TwoPoint, limits: Limits) -> Found | None:

@@ -60,7 +60,8 @@ def free_duration(instance: Instance, limits: Limits, effort: bool = True) -> Ch
     if not search.tries:
         return _unsolved(trials, limits)
     if search.flat(FLAT * trials.unit):
-        return _none(trials, Status.NO_MINIMISER, f"nothing decides the final time: {_costs(search.tries[-3:])}")
+        message = f"nothing decides the final time: {_costs(search.tries[-3:])}; fix it"
+        return _none(trials, Status.NO_MINIMISER, message)
     brackets = search.brackets
     found = [minimum for minimum in (search.minimum(a, b) for a, b in brackets[:POLISHED]) if minimum]
     best = search.confirmed(min(found, key=lambda minimum: minimum.cost)) if found else None

@@ -53,7 +53,9 @@ def bent(problem: TwoPoint, rng: np.random.Generator, amplitude: float) -> State
 
     def drawn(tau: Array) -> Array:
         states = path(tau)
-        added = waves @ np.sin(np.pi * np.outer(np.arange(1.0, WAVES + 1.0), tau))
+        numbers = np.arange(1.0, WAVES + 1.0)
+        both, one = (np.sin(np.pi * np.outer(row, tau)) for row in (numbers, numbers - 0.5))
+        added = np.where(problem.fixed[:, None], waves @ both, waves @ one)  # a free end moves as well
         positive = list(problem.positive)
         found = states + added
         found[positive] = states[positive] * np.exp(added[positive])

@@ -20,6 +20,9 @@ from satsym.solve.switching.companion import sloping, smoothed_cost, smoothed_la
 
 Array = NDArray[np.floating[Any]]
 
+PLACES, SAME = 8, 1e-9
+"""Times at which derivatives are compared, and the relative difference that may be rounding."""
+
 
 @dataclass(frozen=True, eq=False)
 class Scale:
@@ -194,6 +197,19 @@ class TwoPoint:
             return smoothed_law(self.instance, bounds, t, x, lam)
         law: Array = self.instance.model.control_law_batch(*self._arguments(tau, z, theta), bounds)
         return law
+
+    @cached_property
+    def linear(self) -> bool:
+        """Whether canonical equations and ends are linear: their derivatives are the same at places that are drawn.
+
+        An extremal that is no minimum then has no minimum beside it either: the cost has none.
+        """
+        rng, tau = np.random.default_rng(0), np.linspace(0.0, 1.0, PLACES)
+        places = rng.uniform(0.5, 1.5, (2, 2 * self.states, PLACES))
+        here, there = (self.jacobian(tau, place, self.theta) for place in places)
+        ends = [self.boundary_slopes(place[:, -1], self.theta + k) for k, place in enumerate(places)]
+        pairs = [(here, there), *zip(*ends, strict=True)]
+        return all((np.abs(a - b) <= SAME * np.abs(a).max(initial=0.0)).all() for a, b in pairs)
 
     def boundary(self, end: Array, theta: Array) -> Array:
         """Residuals at the right end, scaled, shape (n + e,).

@@ -129,7 +129,7 @@ def minimise(
         if limits.expired:
             return Found(curve, "time was up", cost, iteration, True)
         limits.tell(cost * problem.scale.cost, size)
-        if size < tolerance and (newton or first):
+        if size < tolerance:
             curve = curve.moved(step, 1.0)
             return Found(curve, _kind(system, curve), system.cost(curve), iteration + 1, hard)
         close = newton and size < CLOSE and share == 1.0

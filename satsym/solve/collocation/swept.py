@@ -1,0 +1,91 @@
+"""From controls at the corners of their box, swept until they settle, to extremals within the bounds.
+
+Where nothing is asked of the end, costates belong to every control, and a sweep begins wherever one likes: also where
+the straight line and all that starts from it see nothing but a maximum (a reward at the end, say).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import islice, product
+from typing import Any
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Guess, Instance
+from satsym.solve import forward_backward
+from satsym.solve.collocation import mesh as meshes
+from satsym.solve.collocation.continuation import kinks, settled, through
+from satsym.solve.collocation.curve import Curve, stage_times
+from satsym.solve.collocation.gauss import STAGES
+from satsym.solve.collocation.problem import TwoPoint
+from satsym.solve.iteration import Limits
+
+Array = NDArray[np.floating[Any]]
+
+STEPS, SWEEPS, SECONDS = 200, 60, 10.0
+"""Of each sweep, their number, and a time that none of them takes."""
+
+ROUGH = 1e-5
+"""Residual at which sweeps end: Newton's method goes on from there."""
+
+MOST = 8
+"""Corners that are tried."""
+
+
+def swept(problem: TwoPoint, limits: Limits) -> Iterator[Curve | None]:
+    """An extremal from every corner of the box, or ``None`` where that leads to none; nothing where that cannot be.
+
+    Parameters
+    ----------
+    problem
+        With its bounds, a given duration, and an end of which nothing is asked.
+    limits
+        When to stop; counts work.
+    """
+    instance = problem.instance
+    finite = np.isfinite(instance.lower).all() and np.isfinite(instance.upper).all()
+    if problem.fixed.any() or problem.unknowns or instance.model.spec.control_set != "box" or not finite:
+        return
+    for corner in islice(product(*zip(instance.lower, instance.upper, strict=True)), MOST):
+        if limits.expired:
+            return
+        limits.spend(SWEEPS * STEPS)
+        yield _settled(problem, corner, limits)
+
+
+def _settled(problem: TwoPoint, corner: tuple[float, ...], limits: Limits) -> Curve | None:
+    found = forward_backward.solve(_starting_at(problem.instance, corner))
+    if not (np.isfinite(found.x).all() and np.isfinite(found.lam).all()):
+        return None
+    z = np.concatenate([found.x, found.lam]) / problem.scale.both
+    tau = (found.times - found.times[0]) / (found.times[-1] - found.times[0])
+    curve = _curve(problem, tau, z, meshes.along(problem, tau, z[: problem.states], problem.theta))
+    curve = _curve(problem, tau, z, through(kinks(problem, curve), len(curve.mesh) - 1))
+    bounded = settled(problem, curve, STAGES, len(curve.mesh) - 1, limits)
+    return bounded.curve if bounded.converged and bounded.curve.in_domain(problem.positive) else None
+
+
+def _curve(problem: TwoPoint, tau: Array, z: Array, mesh: Array) -> Curve:
+    """States and costates at times (M,) on a mesh."""
+    at = stage_times(mesh, STAGES)
+    nodes, stages = (np.array([np.interp(where, tau, row) for row in z]) for where in (mesh, at.ravel()))
+    return Curve(mesh, nodes, stages.reshape(len(z), *at.shape), problem.theta)
+
+
+def _starting_at(instance: Instance, corner: tuple[float, ...]) -> Instance:
+    """The instance for a quick sweep that begins with the control at a corner of its box."""
+    options = msgspec.structs.replace(
+        instance.solver,
+        steps=STEPS,
+        max_iterations=SWEEPS,
+        max_seconds=SECONDS,
+        tolerance=ROUGH,
+        relaxation=None,
+        backend="python",
+    )
+    control = {name: (value,) for name, value in zip(instance.model.spec.control_names, corner, strict=True)}
+    return replace(instance, solver=options, guess=Guess(control=control))
