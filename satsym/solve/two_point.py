@@ -20,7 +20,7 @@ from satsym.solve.collocation.refinement import Refined, refine
 from satsym.solve.collocation.scaling import two_point
 from satsym.solve.collocation.softening import within_bounds, within_found
 from satsym.solve.collocation.sqp import Found
-from satsym.solve.collocation.swept import swept
+from satsym.solve.collocation.swept import from_control, loose, swept
 from satsym.solve.collocation.system import System
 from satsym.solve.extremal import Extremal, solved
 from satsym.solve.iteration import Limits
@@ -116,7 +116,9 @@ def guessed(problem: TwoPoint, limits: Limits) -> Start | None:
     if not guess or not np.isfinite(problem.bounds).any() or problem.free_time:
         return None
     begun, curve = paths.start(problem), None
-    if guess.costate:
+    if guess.control and loose(problem):
+        curve = from_control(problem, guess.control, limits)
+    elif guess.costate:
         bounded = settled(problem, begun, STAGES, max(len(begun.mesh) - 1, LEAST), limits)
         curve = bounded.curve if bounded.converged else None
     if curve is None:

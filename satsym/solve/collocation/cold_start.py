@@ -96,7 +96,7 @@ def cold_start(problem: TwoPoint, limits: Limits, quick: bool = False) -> Start:
     """
     free = problem.widened(float("inf"))
     line, guess = paths.start(free), problem.instance.guess
-    begin = "guess" if guess.state or guess.costate else "straight line"
+    begin = "guess" if guess else "straight line"
 
     def from_line(problem: TwoPoint) -> Found:
         return from_path(problem, paths.first(problem), limits)

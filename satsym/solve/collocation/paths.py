@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.grid import Grid
+from satsym.solve import control_set
 from satsym.solve.collocation import mesh as meshes
 from satsym.solve.collocation.curve import Curve, stage_times
 from satsym.solve.collocation.gauss import STAGES
@@ -32,7 +33,7 @@ STEPS = 4000
 def first(problem: TwoPoint) -> States:
     """Where to begin: as guessed, else on the straight line to the end, or where that is free without control."""
     coasting = None if problem.fixed.any() else _coasting(problem, problem.initial, backwards=False)
-    path = coasting or _line(problem)
+    path = _under_guess(problem) or coasting or _line(problem)
     guessed, names = problem.instance.guess.state, problem.instance.model.spec.state_names
     if not guessed:
         return path
@@ -105,6 +106,22 @@ def on(problem: TwoPoint, path: States, mesh: Array) -> Curve:
 def _line(problem: TwoPoint) -> States:
     line = straight(problem)
     return lambda tau: line[:, :1] + (line[:, 1:] - line[:, :1]) * tau
+
+
+def _under_guess(problem: TwoPoint) -> States | None:
+    """The motion under the control that is guessed, if it is, and stays in the domain."""
+    instance, values = problem.instance, problem.instance.guess.control
+    if not values:
+        return None
+    nodes = np.linspace(0.0, 1.0, 2 * STEPS + 1)
+    names = instance.model.spec.control_names
+    u = np.array([_series(values.get(name, (0.0,)), nodes) for name in names])
+    u = control_set.project(instance, u)
+    times = instance.t0 + problem.duration * nodes[::2]
+    x, _, _ = instance.model.forward(times, instance.initial, u[:, ::2], u[:, 1::2], instance.parameters)
+    if not np.isfinite(x).all() or not instance.model.in_domain(x):
+        return None
+    return lambda tau: np.array([np.interp(tau, nodes[::2], row) for row in x / problem.scale.state[:, None]])
 
 
 def _coasting(problem: TwoPoint, state: Array, backwards: bool) -> States | None:

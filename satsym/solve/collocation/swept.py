@@ -6,7 +6,7 @@ the straight line and all that starts from it see nothing but a maximum (a rewar
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice, product
 from typing import Any
@@ -48,17 +48,24 @@ def swept(problem: TwoPoint, limits: Limits) -> Iterator[Curve | None]:
     """
     instance = problem.instance
     finite = np.isfinite(instance.lower).all() and np.isfinite(instance.upper).all()
-    if problem.fixed.any() or problem.unknowns or instance.model.spec.control_set != "box" or not finite:
+    if not loose(problem) or instance.model.spec.control_set != "box" or not finite:
         return
+    names = instance.model.spec.control_names
     for corner in islice(product(*zip(instance.lower, instance.upper, strict=True)), MOST):
         if limits.expired:
             return
-        limits.spend(SWEEPS * STEPS)
-        yield _settled(problem, corner, limits)
+        yield from_control(problem, {name: (value,) for name, value in zip(names, corner, strict=True)}, limits)
 
 
-def _settled(problem: TwoPoint, corner: tuple[float, ...], limits: Limits) -> Curve | None:
-    found = forward_backward.solve(_starting_at(problem.instance, corner))
+def loose(problem: TwoPoint) -> bool:
+    """Whether nothing is asked of the end, nor of the final time."""
+    return not problem.fixed.any() and not problem.unknowns
+
+
+def from_control(problem: TwoPoint, control: Mapping[str, Sequence[float]], limits: Limits) -> Curve | None:
+    """The extremal within the bounds to which sweeps lead from controls by name, evenly spaced values of each."""
+    limits.spend(SWEEPS * STEPS)
+    found = forward_backward.solve(_starting_at(problem.instance, control))
     if not (np.isfinite(found.x).all() and np.isfinite(found.lam).all()):
         return None
     z = np.concatenate([found.x, found.lam]) / problem.scale.both
@@ -76,8 +83,8 @@ def _curve(problem: TwoPoint, tau: Array, z: Array, mesh: Array) -> Curve:
     return Curve(mesh, nodes, stages.reshape(len(z), *at.shape), problem.theta)
 
 
-def _starting_at(instance: Instance, corner: tuple[float, ...]) -> Instance:
-    """The instance for a quick sweep that begins with the control at a corner of its box."""
+def _starting_at(instance: Instance, control: Mapping[str, Sequence[float]]) -> Instance:
+    """The instance for a quick sweep that begins with a control."""
     options = msgspec.structs.replace(
         instance.solver,
         steps=STEPS,
@@ -87,5 +94,5 @@ def _starting_at(instance: Instance, corner: tuple[float, ...]) -> Instance:
         relaxation=None,
         backend="python",
     )
-    control = {name: (value,) for name, value in zip(instance.model.spec.control_names, corner, strict=True)}
-    return replace(instance, solver=options, guess=Guess(control=control))
+    start = Guess(control={name: tuple(values) for name, values in control.items()})
+    return replace(instance, solver=options, guess=start)
