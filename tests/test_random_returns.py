@@ -10,7 +10,9 @@ import pytest
 
 from satsym.solve import two_point
 from satsym.solve.certificate import certify, conditions
+from satsym.solve.certificate.conjugate import conjugate
 from satsym.solve.certificate.flow import flow
+from satsym.solve.certificate.segments import segments
 from satsym.solve.collocation.arclength import extremals
 from satsym.solve.collocation.cold_start import cold_start
 from satsym.solve.collocation.newton import newton
@@ -52,7 +54,9 @@ def check(population: Population, first: int) -> None:
         again = flow(found)
         assert again is not None
         assert conditions.boundary_residual(found, again) < 1e-9, number
-        assert conditions.conjugate_time(again) is None, number
+        field = conjugate(found, segments(found))
+        assert field.resolved, number
+        assert field.time is None, number
         assert again.x[0].min() > 0.0
         if number % WHOLE == 0:
             certificate = certify(found)

@@ -27,8 +27,10 @@ from samples import EASY, HARD
 from satsym.instance import Instance
 from satsym.solve import two_point
 from satsym.solve.certificate import certify
-from satsym.solve.certificate.conditions import boundary_residual, conjugate_time
+from satsym.solve.certificate.conditions import boundary_residual
+from satsym.solve.certificate.conjugate import conjugate
 from satsym.solve.certificate.flow import flow
+from satsym.solve.certificate.segments import segments
 from satsym.solve.collocation import paths
 from satsym.solve.collocation.cold_start import from_path
 from satsym.solve.collocation.problem import TwoPoint
@@ -68,7 +70,8 @@ def solved(what: str, number: int) -> Outcome:
         return Outcome(number, "leaves the domain", float("inf"), seconds, float("nan"))
     residual = boundary_residual(found, again)
     fault = "" if residual < 1e-9 else f"residual {residual:.0e}"
-    if not fault and conjugate_time(again) is not None:
+    field = conjugate(found, segments(found))
+    if not fault and (field.time is not None or not field.resolved):
         fault = "conjugate time"
     ratio = float("nan")
     if what == "hard":

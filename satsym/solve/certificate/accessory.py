@@ -24,6 +24,9 @@ Array = NDArray[np.floating[Any]]
 PIECES = 50
 """On which the control's change is constant."""
 
+LEFT = 1e-3
+"""Share of a piece, or of the largest response of a control, below which a bound leaves nothing of a direction."""
+
 NUDGE = 1e-6
 """Relative change of states and costates that shows how the control law follows them."""
 
@@ -89,13 +92,13 @@ def accessory(solution: Solution, grid: Grid) -> Accessory | None:
     states, weights = _sensitivities(linear, grid)
     n, pieces, free_time = states.shape[1], states.shape[2], int(solution.instance.tf is None)
     weighed = linear.restoring * interleave(grid.node_weights, grid.midpoint_weights)[:, None, None] @ states
-    inside = states.reshape(-1, pieces).T @ weighed.reshape(-1, pieces)
+    inside = np.tensordot(states, weighed, axes=((0, 1), (0, 1)))
     arriving = np.zeros((n + free_time, pieces + free_time))
     arriving[:n, :pieces], arriving[n:, pieces:] = states[-1], np.eye(free_time)
     end = end_form(solution, linear.scale)
     form = arriving.T @ end.form @ arriving
     form[:pieces, :pieces] += inside + np.eye(pieces)
-    largest = max(np.abs(inside).max(), (np.abs(end.form) @ np.abs(arriving) ** 2).max())
+    largest = max(np.abs(inside).max(initial=0.0), (np.abs(end.form) @ arriving**2).max(initial=0.0))
     if not largest * np.finfo(float).eps < DROWNED:
         return None
     controls = np.zeros((weights.shape[1], len(times), pieces + free_time))
@@ -106,7 +109,10 @@ def accessory(solution: Solution, grid: Grid) -> Accessory | None:
 
 @dataclass(frozen=True, eq=False)
 class _Linear:
-    """The accessory problem at M times: x' = motion x + push w, costs (x' restoring x + w'w) / 2, in scaled states."""
+    """The accessory problem at M times: x' = motion x + push w, costs (x' restoring x + w'w) / 2, in scaled states.
+
+    Controls change by feedback x + direct w; effective projects on those w that bounds leave.
+    """
 
     scale: Array
     motion: Array
@@ -114,6 +120,7 @@ class _Linear:
     restoring: Array
     feedback: Array
     direct: Array
+    effective: Array
 
     @classmethod
     def of(cls, solution: Solution, t: Array, z: Array) -> _Linear | None:
@@ -129,10 +136,15 @@ class _Linear:
             return None
         # The law follows the costates as -K B', with the inverse K of H_uu where no bound holds, and zero elsewhere.
         inverse = -law[:, :, n:] @ np.linalg.pinv(by_control.transpose(0, 2, 1))
-        values, axes = np.linalg.eigh((inverse + inverse.transpose(0, 2, 1)) / 2.0)
+        size = np.sqrt(np.maximum(np.einsum("kii->ki", inverse).max(axis=0), 0.0))[:, None]
+        size[size == 0.0] = 1.0
+        values, axes = np.linalg.eigh((inverse + inverse.transpose(0, 2, 1)) / (2.0 * size * size.T))
         root = (axes * np.sqrt(np.maximum(values, 0.0))[:, None, :]) @ axes.transpose(0, 2, 1)
+        effective = (axes * (values > LEFT)[:, None, :]) @ axes.transpose(0, 2, 1)
         restoring = -(slopes[:, n:, :n] + slopes[:, n:, :n].transpose(0, 2, 1)) / 2.0
-        return cls(scale, slopes[:, :n, :n], by_control @ root, restoring, law[:, :, :n], root)
+        return cls(
+            scale, slopes[:, :n, :n], by_control * size.T @ root, restoring, law[:, :, :n], size * root, effective
+        )
 
 
 def _law_slopes(solution: Solution, t: Array, z: Array, scale: Array) -> Array:
@@ -157,15 +169,12 @@ def _sensitivities(linear: _Linear, grid: Grid) -> tuple[Array, Array]:
     By the classical Runge-Kutta method and, for the midpoints, Hermite's interpolation; each change is constant on
     its piece and costs half its square.
     """
-    m, n = linear.push.shape[2], linear.motion.shape[1]
-    edges = np.linspace(0, grid.steps, min(PIECES, grid.steps) + 1).round().astype(int)
-    count = len(edges) - 1
-    piece = np.repeat(np.arange(count), np.diff(edges))
-    size = 1.0 / np.sqrt(grid.nodes[edges[1:]] - grid.nodes[edges[:-1]])
-    own = np.einsum("kp,ij->kipj", np.diag(size)[piece], np.eye(m)).reshape(grid.steps, m, count * m)
-    steps = _steps(linear, grid)
+    n, edges = linear.motion.shape[1], np.linspace(0, grid.steps, min(PIECES, grid.steps) + 1).round().astype(int)
+    piece, shapes = np.repeat(np.arange(len(edges) - 1), np.diff(edges)), _shapes(linear, grid, edges)
+    changes = shapes.shape[2]
+    own, steps = shapes[piece], _steps(linear, grid)
     driven = steps[:, :n, n:] @ own
-    states = np.zeros((grid.steps + 1, n, count * m))
+    states = np.zeros((grid.steps + 1, n, changes))
     for k in range(grid.steps):
         states[k + 1] = steps[k, :n, :n] @ states[k] + driven[k]
     begun, ended = states[:-1], states[1:]
@@ -176,10 +185,24 @@ def _sensitivities(linear: _Linear, grid: Grid) -> tuple[Array, Array]:
     between = (begun + ended) / 2.0 + grid.widths[:, None, None] / 8.0 * (slopes[0] - slopes[1])
     # To be simulated, changes go linearly from the middle of a piece to that of the next.
     times, middles = interleave(grid.nodes, grid.midpoints), (grid.nodes[edges[1:]] + grid.nodes[edges[:-1]]) / 2.0
-    hats = np.array([np.interp(times, middles, row) for row in np.diag(size)]).T
-    weights = np.einsum("kp,ij->kipj", hats, np.eye(m)).reshape(len(times), m, count * m)
+    hats = np.array([np.interp(times, middles, row) for row in np.eye(len(middles))]).T
+    weights = np.einsum("kp,pij->kij", hats, shapes)
     course = interleave(states.transpose(1, 2, 0), between.transpose(1, 2, 0)).transpose(2, 0, 1)
     return course, weights
+
+
+def _shapes(linear: _Linear, grid: Grid, edges: NDArray[np.intp]) -> Array:
+    """What the changes are on each piece, shape (pieces, m, P): of what bounds leave there of the controls."""
+    m, reach = linear.push.shape[2], linear.effective
+    steps = (reach[:-2:2] + 4.0 * reach[1::2] + reach[2::2]) * (grid.widths[:, None, None] / 6.0)
+    shares = np.add.reduceat(steps, edges[:-1], axis=0)
+    values, axes = np.linalg.eigh(shares)
+    kept = values > LEFT * (grid.nodes[edges[1:]] - grid.nodes[edges[:-1]])[:, None]
+    unit = axes / np.sqrt(np.where(kept, values, 1.0))[:, None, :]
+    found = np.zeros((len(shares), m, len(shares), m))
+    every = np.arange(len(shares))
+    found[every, :, every, :] = unit
+    return found.reshape(len(shares), m, -1)[:, :, kept.ravel()]
 
 
 def _steps(linear: _Linear, grid: Grid) -> Array:

@@ -47,8 +47,7 @@ def final_values(solution: Solution) -> tuple[float, tuple[float, ...], tuple[fl
 
 def fixed_states(instance: Instance) -> NDArray[np.bool_]:
     """Which states have their end given or on the reference, shape (n,)."""
-    found: NDArray[np.bool_] = np.array(final_argument(instance)).reshape(3, -1)[:2].any(axis=0)
-    return found
+    return np.asarray(np.array(final_argument(instance)).reshape(3, -1)[:2].any(axis=0))
 
 
 def multipliers(

@@ -168,7 +168,7 @@ class _Search:
 
     def corrected(self, change: Array) -> float:
         """The cost of a neighbour once its end is as the solution's; infinite where it cannot be made so."""
-        response, tried = self.second.ties, np.zeros(0)
+        response, tried = self.second.ties, change[:0]
         for _ in range(CORRECTIONS):
             cost, reached = self._simulated(change)
             gap = reached - self.end

@@ -1,8 +1,4 @@
-"""The canonical equations once more, from each of a solution's own nodes to the next, with their linearisation.
-
-The flow from the initial costates alone is worth little where neighbouring extremals part quickly; from node to node
-it is as good as ever. The linearisations, one behind the other, say how neighbouring extremals go on.
-"""
+"""The canonical equations, linearised from node to node of a solution: how neighbouring extremals go on."""
 
 from __future__ import annotations
 
@@ -13,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.solution import Solution
-from satsym.solve.certificate.flow import Flow, unit_sizes
+from satsym.solve.certificate.flow import unit_sizes
 from satsym.solve.failures import FAILURES
 from satsym.solve.integrate import leap
 
@@ -60,12 +56,18 @@ class Segments:
     scale
         Units of states and costates, shape (2n,). The products of the two are all the same, so that transitions
         are symplectic.
+    nodes
+        Indices of the solution's times at which segments begin, and of the last.
+    steps
+        In each segment.
     """
 
     times: Array
     begins: Array
     transition: Array
     scale: Array
+    nodes: NDArray[np.intp]
+    steps: int
 
     @property
     def growth(self) -> float:
@@ -81,11 +83,11 @@ class Segments:
 
 def segments(solution: Solution) -> Segments | None:
     """Integrate from node to node; ``None`` where that is not finite or takes more than ``MOST`` steps."""
-    times, z = solution.times, np.concatenate([solution.x, solution.lam])
+    times, z = solution.times, values(solution)
     slopes = _slopes(solution, times, z)
     if not np.isfinite(slopes).all():
         return None
-    scale = _balanced(unit_sizes(solution), slopes, float(times[-1] - times[0]))
+    scale = balanced(unit_sizes(solution), slopes, float(times[-1] - times[0]))
     turned = np.append(0.0, np.cumsum(_turning(slopes, scale, np.diff(times))))
     if turned[-1] > MOST * TURN:
         return None
@@ -97,30 +99,16 @@ def segments(solution: Solution) -> Segments | None:
         return None
 
 
-def node_by_node(solution: Solution) -> Flow | None:
-    """Where the canonical equations lead from each node to the next, to be compared with it; ``None`` if not finite."""
-    instance, model, n = solution.instance, solution.instance.model, len(solution.x)
-    p, bounds, t, h = instance.parameters, instance.bounds, solution.times[:-1], np.diff(solution.times)
-    z = np.concatenate([solution.x, solution.lam, np.zeros((1, len(solution.times)))])
-
-    def rates(t: Array, y: Array) -> Array:
-        x, lam = y[:n], y[n:-1]
-        cost = model.running_cost_batch(t, x, model.control_law_batch(t, x, lam, p, bounds), p)
-        return np.concatenate([model.canonical_batch(t, x, lam, p, bounds), np.broadcast_to(cost, t.shape)[None]])
-
-    try:
-        ends = np.column_stack([z[:, 0], leap(rates, t, z[:, :-1], h)])
-        terminal = float(model.terminal_cost(float(solution.times[-1]), tuple(ends[:n, -1].tolist()), p))
-    except FAILURES:
-        return None
-    return Flow(solution.times, ends[:n], ends[n:-1], float(ends[-1].sum()) + terminal)
-
-
 def between(solution: Solution, found: Segments, station: int, times: Array) -> Array:
     """Transitions from a station to times until the next, shape (M, 2n, 2n)."""
     begin = float(found.times[station])
     z = np.repeat(found.begins[:, station : station + 1], len(times), axis=1)
     return _leapt(solution, found.scale, np.full(len(times), begin), z, times - begin)[1]
+
+
+def values(solution: Solution) -> Array:
+    """States and costates at the nodes, shape (2n, N+1)."""
+    return np.concatenate([solution.x, solution.lam])
 
 
 def _slopes(solution: Solution, t: Array, z: Array) -> Array:
@@ -131,7 +119,7 @@ def _slopes(solution: Solution, t: Array, z: Array) -> Array:
     return found
 
 
-def _balanced(scale: Array, slopes: Array, duration: float) -> Array:
+def balanced(scale: Array, slopes: Array, duration: float) -> Array:
     """The scale with other units, in which neighbouring extremals turn as slowly and evenly as may be.
 
     The squares of all rates together are least, by one unit after the other (Osborne, On pre-conditioning of
@@ -180,14 +168,15 @@ def _nodes(solution: Solution, turned: Array) -> NDArray[np.intp]:
 
 def _linearised(solution: Solution, nodes: NDArray[np.intp], steps: int, scale: Array) -> Segments:
     begun, widths = solution.times[nodes][:-1], np.diff(solution.times[nodes]) / steps
-    begins, transition = [np.concatenate([solution.x, solution.lam])[:, nodes[:-1]]], []
+    begins, transition = [values(solution)[:, nodes[:-1]]], []
     for step in range(steps):
         after, matrices = _leapt(solution, scale, begun + step * widths, begins[-1], widths)
         begins.append(after)
         transition.append(matrices)
     stations = np.append((begun[:, None] + np.arange(steps) * widths[:, None]).ravel(), solution.times[-1])
     every = np.stack(transition, axis=1).reshape(-1, len(scale), len(scale))
-    return Segments(stations, np.stack(begins[:-1], axis=2).reshape(len(scale), -1), every, scale)
+    before = np.stack(begins[:-1], axis=2).reshape(len(scale), -1)
+    return Segments(stations, before, every, scale, nodes, steps)
 
 
 def _leapt(solution: Solution, scale: Array, t: Array, z: Array, h: Array) -> tuple[Array, Array]:

@@ -14,8 +14,9 @@ from satsym.solve.certificate import competitors, conditions
 from satsym.solve.certificate.competitors import Compared, Comparison, Rival
 from satsym.solve.certificate.conjugate import Conjugate, conjugate
 from satsym.solve.certificate.flow import TOLERANCE, Flow, flow
+from satsym.solve.certificate.junctions import correction, node_by_node
 from satsym.solve.certificate.neighbours import Neighbours, neighbours
-from satsym.solve.certificate.segments import Segments, node_by_node, segments
+from satsym.solve.certificate.segments import Segments, segments
 from satsym.status import Verdict
 
 RESIDUAL, DEFECT, STATIONARY, DRIFT, COST = 1e-9, 1e-7, 1e-8, 1e-9, 1e-8
@@ -111,8 +112,11 @@ def _first_order(solution: Solution, along: Segments | None) -> list[Check]:
     checks = _along(solution, recomputed, OF_FLOW) if recomputed else []
     if (checks and all(c.passed for c in checks)) or along is None or not along.growth * TOLERANCE > RESIDUAL:
         return checks
-    by_segments = node_by_node(solution)
-    return _along(solution, by_segments, OF_SEGMENTS) if by_segments else checks
+    reached = node_by_node(solution, along)
+    if reached is None:
+        return checks
+    moved = Check("correction of the nodes", correction(solution, along, reached), DEFECT)
+    return [*_along(solution, reached, OF_SEGMENTS), moved]
 
 
 def _along(solution: Solution, recomputed: Flow, defect: str) -> list[Check]:
