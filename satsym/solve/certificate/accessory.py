@@ -186,7 +186,7 @@ def _sensitivities(linear: _Linear, grid: Grid) -> tuple[Array, Array]:
     # To be simulated, changes go linearly from the middle of a piece to that of the next.
     times, middles = interleave(grid.nodes, grid.midpoints), (grid.nodes[edges[1:]] + grid.nodes[edges[:-1]]) / 2.0
     hats = np.array([np.interp(times, middles, row) for row in np.eye(len(middles))]).T
-    weights = np.einsum("kp,pij->kij", hats, shapes)
+    weights = np.tensordot(hats, shapes, axes=1)
     course = interleave(states.transpose(1, 2, 0), between.transpose(1, 2, 0)).transpose(2, 0, 1)
     return course, weights
 

@@ -26,6 +26,9 @@ TURN = 2.0 * np.pi
 TOUCHED = 1e-7
 """Phases this close to a full turn have made it, as far as can be told."""
 
+AFRESH = 8
+"""Steps after which the basis is made orthonormal: within so many it does not become a bad one."""
+
 INDEPENDENT = 1e-9
 """Least singular value, relative, of ties at the end that are different ones."""
 
@@ -79,11 +82,12 @@ def followed(transition: Array) -> Phases | None:
     """
     n = transition.shape[1] // 2
     frames = [np.concatenate([np.zeros((n, n)), np.eye(n)])]
-    for matrix in transition:
-        frames.append(np.linalg.qr(matrix @ frames[-1])[0])
-    every = np.array(frames)
-    if not np.isfinite(every).all():
+    for k, matrix in enumerate(transition):
+        begin = frames[-1] if k % AFRESH else np.linalg.qr(frames[-1])[0]
+        frames.append(matrix @ begin)
+    if not np.isfinite(frames).all():
         return None
+    every = np.linalg.qr(np.array(frames))[0]
     values = [np.zeros(n)]
     for new in _angles(every)[1:]:
         values.append(_continued(values[-1], new))

@@ -16,16 +16,14 @@ from satsym.solve import control_set
 from satsym.solve.certificate.accessory import Accessory, accessory
 from satsym.solve.certificate.competitors import HIDDEN, hidden, margin
 from satsym.solve.certificate.end_form import fixed_states
-from satsym.solve.certificate.flow import typical
+from satsym.solve.certificate.flow import products, typical
 from satsym.solve.collocation.scaling import final_argument
 
 Array = NDArray[np.floating[Any]]
 
-STEPS = (200, 800, 3200)
-"""RK4 steps with which neighbours are compared, on as many as the solution itself: the fewest that follow it."""
-
-FOLLOWED = 1e-2
-"""Relative distance from the solution's end within which a grid follows it: what is compared is the same on both."""
+STEPS = ((200, 1e-3), (800, 1e-3), (3200, 1e-2))
+"""RK4 steps with which neighbours are compared, on as many as the solution itself, and the relative distance from the
+solution's end within which these follow it; the fewest that do."""
 
 AMPLITUDES = (0.05, -0.05, 0.01, -0.01)
 """Of a neighbour's departure from the control, relative to the largest control, and of the final time's change."""
@@ -88,6 +86,8 @@ class Simulations:
         Of each simulation.
     end
         The final time.
+    missed
+        Relative distance of the end to which the solution's own control leads from the solution's.
     """
 
     instance: Instance
@@ -95,6 +95,7 @@ class Simulations:
     scale: Array
     steps: int
     end: float
+    missed: float = 0.0
 
     def grid(self, longer: float = 0.0) -> Grid:
         """To a final time that much later."""
@@ -144,10 +145,13 @@ def neighbours(solution: Solution) -> Neighbours:
     costs = [search.corrected(amplitude * unit) for amplitude in AMPLITUDES]
     solved = [cost for cost in costs if np.isfinite(cost)]
     cheapest = min(solved, default=float("inf"))
+    stated = solution.objective + (cheapest - reference[0])  # without what simulating makes of both
+    # To another end than the solution's, its control is not the best, by the square of the distance.
+    own = max(hidden(solution), simulations.missed**2 * max(products(solution), abs(reference[0])))
     return Neighbours(
-        margin(cheapest, reference[0], hidden=hidden(solution)),
+        margin(cheapest, reference[0], hidden=own),
         curvature,
-        Competitors(Kind.NEIGHBOURS, len(costs), len(solved), cheapest if solved else float("nan")),
+        Competitors(Kind.NEIGHBOURS, len(costs), len(solved), stated if solved else float("nan")),
     )
 
 
@@ -200,12 +204,13 @@ def simulations_of(solution: Solution) -> Simulations | None:
     size, _ = typical(solution)
     fixed = np.flatnonzero(fixed_states(instance))
     tied = n + np.arange(len(instance.model.spec.multipliers))
-    for steps in STEPS:
+    for steps, limit in STEPS:
         found = Simulations(instance, np.append(fixed, tied), np.ones(1), steps, float(solution.times[-1]))
         grid = found.grid()
         x, _ = found.motion(stated_control(solution, grid), grid)
-        if (np.abs(x[:, -1] - solution.x[:, -1]) / size).max() < FOLLOWED:
-            return found
+        missed = float((np.abs(x[:, -1] - solution.x[:, -1]) / size).max())
+        if missed < limit:
+            return replace(found, missed=missed)
     return None
 
 
