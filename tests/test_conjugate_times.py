@@ -6,14 +6,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import numpy as np
 import pytest
 from sympy import Expr, sympify
 
 from satsym.instance import Instance
 from satsym.solution import Certificate, Solution
-from satsym.solve import solve
+from satsym.solve import linear
 from satsym.solve.certificate import certify
 from satsym.solve.certificate.conjugate import NOT_STRICT, Conjugate, conjugate
 from satsym.solve.certificate.neighbours import Neighbours, neighbours
@@ -153,11 +152,12 @@ def test_a_final_time_that_is_conjugate_is_no_strict_minimum(equal: Instance) ->
 
 @pytest.mark.parametrize(("tf", "verdict"), [(3.0, "certified"), (4.0, "extremal only"), (7.0, "extremal only")])
 def test_the_linear_method_is_not_certified_beyond_the_conjugate_time(equal: Instance, tf: float, verdict: str) -> None:
-    solver = msgspec.structs.replace(equal.solver, method="linear")
-    found = solve(replace(equal, final={"a": 0.0, "b": 0.0}, tf=tf, solver=solver))
-    assert found.certificate is not None
-    assert found.certificate.verdict == verdict
-    assert {c.kind.value for c in found.certificate.competitors} == {"neighbours"}
+    found = linear.solve(replace(equal, final={"a": 0.0, "b": 0.0}, tf=tf))
+    assert found.status is Status.CONVERGED
+    certificate = certify(found)
+    assert certificate is not None
+    assert certificate.verdict == verdict
+    assert ("conjugate times" in failing(certificate)) is (verdict != "certified")
 
 
 @pytest.mark.parametrize(("weight", "minimum"), [(0.45, True), (0.55, False)])
@@ -224,3 +224,19 @@ def test_a_free_final_time_may_be_the_worst_one(folder: Path, late: bool, minimu
     certificate = certify(solution)
     assert certificate is not None
     assert (certificate.verdict == "certified") is minimum
+
+
+def test_a_final_time_is_the_worst_one_where_costates_still_change(folder: Path) -> None:
+    """From 0.6 to 0.6 again within a quarter of a turn: J(T) = T c / 2 - 0.36 tan(T / 2) is concave throughout."""
+    price = 2.0 * 0.36 / (1.0 + np.cos(1.0))  # for J'(1) = 0
+    cost = EFFORT - (a**2 + b**2) / 2 + sympify(float(price)) / 2
+    case = build(folder, plane("there_and_back", cost), TEXT)
+    t = np.linspace(0.0, 1.0, 401)
+    x = np.stack([0.6 * np.cos(t - 0.5) / np.cos(0.5), np.zeros_like(t)])
+    u = np.stack([-0.6 * np.sin(t - 0.5) / np.cos(0.5), np.zeros_like(t)])
+    objective = float(price) / 2.0 - 0.36 * np.tan(0.5)
+    solution = extremal(replace(case, final={"a": 0.6, "b": 0.0}, tf=None), t, x, u, objective)
+    found, near = second_order(solution)
+    assert found.passed == 0
+    assert found.curvature < 0.0
+    assert near.margin < 0.0
