@@ -10,6 +10,7 @@ from typing import Generic, Protocol, TypeVar
 from satsym.instance import Instance
 from satsym.solution import Iteration, Progress
 from satsym.status import Status
+from satsym.wording import counted
 
 State = TypeVar("State")
 
@@ -119,8 +120,15 @@ def iterate(method: Method[State], limits: Limits, progress: Progress | None) ->
         if verdict := method.terminate(state):
             return Run(state, *verdict, tuple(history))
         if len(history) > limits.iterations:
-            return Run(state, Status.NOT_CONVERGED, f"no convergence in {limits.iterations} iterations", tuple(history))
+            return Run(
+                state,
+                Status.NOT_CONVERGED,
+                f"no convergence in {counted(limits.iterations, 'iteration')}",
+                tuple(history),
+            )
         if limits.expired:
-            return Run(state, Status.TIME_LIMIT, f"time was up after {len(history) - 1} iterations", tuple(history))
+            return Run(
+                state, Status.TIME_LIMIT, f"time was up after {counted(len(history) - 1, 'iteration')}", tuple(history)
+            )
         state = method.step(state)
         history.append(method.measure(state, len(history)))
