@@ -23,7 +23,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        Exit code, see :class:`satsym.status.ExitCode`; 130, 141 and 143 where the user, a closed pipe or the system ended it.
+        Exit code, see :class:`satsym.status.ExitCode`; 130, 141 and 143 where the user, a closed pipe or the system
+        ended it.
     """
     # Read when NumPy is loaded: on matrices as small as ours, threads cost several times what they save.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")

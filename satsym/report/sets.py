@@ -14,50 +14,24 @@ Whoever writes next completes step 3 and removes what step 1 left. Readers chang
 
 from __future__ import annotations
 
-import hashlib
 import os
 import shutil
-import time
-from collections.abc import Callable, Collection, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Collection, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
-from satsym.report.files import Content, opened, store, text, to_json, unwritable
+from satsym.report.files import Content, store, text, to_json, unwritable
+from satsym.report.locking import locked
+from satsym.report.set_list import LIST, Listed, content, decoded, is_listed, listed_as, unusable
 from satsym.status import BadInput
-from satsym.wording import printable, shown
+from satsym.wording import printable
 
-LIST = "result.json"
 NEXT = ".satsym-next"
 STAGING = ".satsym-new-"
-
-MOST_FILES = 200
-LONGEST_LIST = 2**24
-"""Bytes of a result.json that are read."""
-LARGEST = 2**31
-"""Bytes of a file in a set."""
-LARGEST_READ = 2**28
-"""Bytes of a file that is read into memory: what instances may ask for makes half of that at most."""
-
-PATIENCE, PAUSE = 30.0, 0.05
-"""Seconds to wait for another process that writes into the same folder, and between two looks at it."""
-
-
-class Listed(msgspec.Struct, frozen=True):
-    """A file in the list of its set."""
-
-    bytes: int
-    sha256: str
-
-
-class _List(msgspec.Struct):
-    """What of result.json tells which files belong to it; those of older versions list none."""
-
-    files: dict[str, Listed] | None = None
-    command: str = ""
 
 
 @dataclass(frozen=True)
@@ -139,7 +113,7 @@ def read(folder: Path, wanted: Collection[str] = ()) -> Found:
     if not folder.is_dir():
         return _verified(folder, folder / LIST, wanted)
     try:
-        with _locked(folder, shared=True):
+        with locked(folder, shared=True):
             return _counting(folder, wanted)
     except OSError as error:
         raise unusable(folder / LIST, f"cannot be opened ({error.strerror or 'not a file'})") from None
@@ -162,14 +136,7 @@ def command_of(folder: Path) -> str | None:
         If its result.json cannot be read.
     """
     place = next((p for p in (folder / NEXT / LIST, folder / LIST) if p.exists()), None)
-    return None if place is None else printable(_list(place)[1])
-
-
-def unusable(path: Path, why: str) -> BadInput:
-    """The complaint about a file of a set."""
-    return BadInput(
-        f"{printable(str(path), 120)}: {why}; `satsym solve X --out {printable(str(path.parent), 120)}` writes it anew"
-    )
+    return None if place is None else printable(decoded(place)[1])
 
 
 def _counting(folder: Path, wanted: Collection[str]) -> Found:
@@ -180,72 +147,23 @@ def _counting(folder: Path, wanted: Collection[str]) -> Found:
 
 
 def _verified(folder: Path, path: Path, wanted: Collection[str]) -> Found:
-    raw, command, listed = _list(path)
+    raw, command, listed = decoded(path)
     contents = {}
     for name, each in listed.items():
-        place = next((p for p in (path.parent / name, folder / name) if _is(p, each)), None)
+        place = next((p for p in (path.parent / name, folder / name) if is_listed(p, each)), None)
         if place is None:
             raise unusable(folder / name, f"is not the file that {LIST} lists, but missing or another")
         if name in wanted:
-            contents[name] = _content(place, each)
+            contents[name] = content(place, each)
     return Found(folder, command, raw, listed, contents)
-
-
-def _list(path: Path) -> tuple[bytes, str, dict[str, Listed]]:
-    """Text, command and files of a result.json."""
-    try:
-        with opened(path) as (stream, size):
-            if size > LONGEST_LIST:
-                raise unusable(path, "cannot be read (it is too long)")
-            raw = stream.read(LONGEST_LIST)
-        found = msgspec.json.decode(raw, type=_List)
-    except OSError as error:
-        raise unusable(path, f"cannot be opened ({error.strerror or 'not a file'})") from None
-    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise unusable(path, f"cannot be read ({printable(str(error))})") from None
-    if found.files is None:
-        raise unusable(path, "does not list its files, as results of this version do")
-    wrong = next((name for name, each in found.files.items() if not _sound(name, each)), None)
-    if wrong is not None or len(found.files) > MOST_FILES:
-        which = shown(wrong) if wrong is not None else f"more than {MOST_FILES}"
-        raise unusable(path, f"lists files that no set has: {which}")
-    return raw, found.command, found.files
-
-
-def _sound(name: str, each: Listed) -> bool:
-    """Whether a set may have such a file: a plain name in its own folder."""
-    plain = name.isprintable() and 0 < len(name) <= 100 and name[0] not in ". " and not set("/\\:") & set(name)
-    return plain and name != LIST and 0 <= each.bytes <= LARGEST
-
-
-def _is(path: Path, listed: Listed) -> bool:
-    """Whether a file is the one that is listed; its size is looked at first."""
-    try:
-        with opened(path) as (stream, size):
-            return size == listed.bytes and hashlib.file_digest(stream, "sha256").hexdigest() == listed.sha256
-    except OSError:
-        return False
-
-
-def _content(path: Path, listed: Listed) -> bytes:
-    if listed.bytes > LARGEST_READ:
-        raise unusable(path, f"is larger than {LARGEST_READ} bytes")
-    try:
-        with opened(path) as (stream, _):
-            content = stream.read(listed.bytes + 1)
-    except OSError as error:
-        raise unusable(path, f"cannot be opened ({error.strerror or 'not a file'})") from None
-    if hashlib.sha256(content).hexdigest() != listed.sha256:
-        raise unusable(path, "has changed while it was read")
-    return content
 
 
 def _write(folder: Path, result: Mapping[str, Any], files: Mapping[str, Content], found: Found | None) -> list[Path]:
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        with _locked(folder):
+        with locked(folder):
             _recover(folder)
-            if found is not None and _list(folder / LIST)[0] != found.result:
+            if found is not None and decoded(folder / LIST)[0] != found.result:
                 raise BadInput(f"{printable(str(folder))}: has been written anew meanwhile; try again")
             for name in (*files, LIST):
                 if (folder / name).is_dir():
@@ -262,10 +180,10 @@ def _stage(folder: Path, result: Mapping[str, Any], files: Mapping[str, Content]
     staging = folder / f"{STAGING}{os.getpid()}"
     staging.mkdir()
     try:
-        for name, content in files.items():
-            store(staging / name, content)
+        for name, written in files.items():
+            store(staging / name, written)
         listed = dict(found.listed) if found else {}
-        listed |= {name: _listed(staging / name) for name in files}
+        listed |= {name: listed_as(staging / name) for name in files}
         plain = {name: msgspec.structs.asdict(each) for name, each in listed.items()}
         store(staging / LIST, text(to_json({**result, "files": plain})))
         if found and (then := written_at(folder)) is not None:
@@ -281,9 +199,9 @@ def _stage(folder: Path, result: Mapping[str, Any], files: Mapping[str, Content]
 def _install(folder: Path) -> None:
     """Step 3, from wherever it was interrupted."""
     source = folder / NEXT
-    _, _, listed = _list(source / LIST)
+    _, _, listed = decoded(source / LIST)
     for name, each in _listed_before(folder).items():
-        if name not in listed and _is(folder / name, each):
+        if name not in listed and is_listed(folder / name, each):
             (folder / name).unlink()
     for name in (*listed, LIST):
         if (source / name).exists():
@@ -305,18 +223,6 @@ def _recover(folder: Path) -> None:
         shutil.rmtree(leftover)
 
 
-def _listed_before(folder: Path) -> dict[str, Listed]:
-    try:
-        return _list(folder / LIST)[2]
-    except BadInput:
-        return {}
-
-
-def _listed(path: Path) -> Listed:
-    with opened(path) as (stream, size):
-        return Listed(size, hashlib.file_digest(stream, "sha256").hexdigest())
-
-
 def _flush(folder: Path) -> None:
     """Have the system write down the names in a folder, where it can be asked to."""
     if os.name == "posix":
@@ -328,36 +234,8 @@ def _flush(folder: Path) -> None:
             os.close(handle)
 
 
-@contextmanager
-def _locked(folder: Path, *, shared: bool = False) -> Iterator[None]:
-    """Keep other processes from writing into a folder; without effect where the system has no such locks.
-
-    The lock is on the folder itself, so that it leaves no file, and goes with the process. A shared one lets others
-    read.
-    """
+def _listed_before(folder: Path) -> dict[str, Listed]:
     try:
-        import fcntl
-    except ImportError:
-        yield
-        return
-    kind = (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB
-    handle, until = os.open(folder, os.O_RDONLY), time.monotonic() + PATIENCE
-    try:
-        while not _taken(lambda: fcntl.flock(handle, kind)):
-            if time.monotonic() > until:
-                raise BadInput(f"{printable(str(folder))}: in use by another process; wait for it, or give another")
-            time.sleep(PAUSE)
-        yield
-    finally:
-        os.close(handle)
-
-
-def _taken(lock: Callable[[], None]) -> bool:
-    """Whether a lock was taken, or cannot be had on this file system."""
-    try:
-        lock()
-    except BlockingIOError:
-        return False
-    except OSError:
-        return True
-    return True
+        return decoded(folder / LIST)[2]
+    except BadInput:
+        return {}

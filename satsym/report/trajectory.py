@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from satsym.report import arrays, sets
 from satsym.report.files import Content
-from satsym.report.sets import unusable
+from satsym.report.set_list import LIST, unusable
 from satsym.solution import Flight, Invariant, Iteration, Solution
 from satsym.status import Status
 from satsym.wording import printable
@@ -115,7 +115,7 @@ def read(instance: Instance, folder: Path) -> tuple[Solution | Flight, sets.Foun
         If one of the files is missing or damaged, or belongs to another instance.
     """
     found = sets.read(folder, [ARRAYS])
-    listing, place = folder / sets.LIST, folder / ARRAYS
+    listing, place = folder / LIST, folder / ARRAYS
     result, spec = _result(listing, found.result), instance.model.spec
     if (result.model, result.instance) != (spec.name, instance.name):
         theirs = printable(f"{result.instance} (model {result.model})")

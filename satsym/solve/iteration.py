@@ -120,15 +120,10 @@ def iterate(method: Method[State], limits: Limits, progress: Progress | None) ->
         if verdict := method.terminate(state):
             return Run(state, *verdict, tuple(history))
         if len(history) > limits.iterations:
-            return Run(
-                state,
-                Status.NOT_CONVERGED,
-                f"no convergence in {counted(limits.iterations, 'iteration')}",
-                tuple(history),
-            )
+            message = f"no convergence in {counted(limits.iterations, 'iteration')}"
+            return Run(state, Status.NOT_CONVERGED, message, tuple(history))
         if limits.expired:
-            return Run(
-                state, Status.TIME_LIMIT, f"time was up after {counted(len(history) - 1, 'iteration')}", tuple(history)
-            )
+            message = f"time was up after {counted(len(history) - 1, 'iteration')}"
+            return Run(state, Status.TIME_LIMIT, message, tuple(history))
         state = method.step(state)
         history.append(method.measure(state, len(history)))

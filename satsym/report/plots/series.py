@@ -156,10 +156,8 @@ def costates(scene: Scene) -> list[Series]:
         terms = np.abs(scene.lam * model.dynamics_batch(scene.nodes, scene.x, scene.u, p))
     meaning = "Hamiltonian" + (", constant on an extremal" if scene.spec.autonomous else "")
     time = time_unit(scene.spec)
-    return [
-        *found,
-        Series("H", "H", cost_per(time) if time else "1", meaning, along, size=_largest(curves.clean(terms))),
-    ]
+    rate = cost_per(time) if time else "1"
+    return [*found, Series("H", "H", rate, meaning, along, size=_largest(curves.clean(terms)))]
 
 
 def invariants(scene: Scene) -> list[Series]:
