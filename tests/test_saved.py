@@ -143,7 +143,10 @@ def test_a_single_array_is_refused(solution: Solution, folder: Path) -> None:
         trajectory.read(solution.instance, folder)
 
 
-@pytest.mark.parametrize("content", ["", "{", "[]", '{"model": 3}', '{"model": "polar_orbit", "instance": null}'])
+NO_RESULTS = ["", "{", "[]", '{"files": {}, "model": 3}', '{"files": {}, "command": "solve", "instance": null}']
+
+
+@pytest.mark.parametrize("content", NO_RESULTS)
 def test_a_result_that_is_none_is_refused(solution: Solution, folder: Path, content: str) -> None:
     (folder / "result.json").write_text(content, encoding="utf-8")
     with pytest.raises(BadInput, match=r"result\.json: cannot be read"):

@@ -157,6 +157,11 @@ def test_a_list_reaches_nothing_outside_its_folder(tmp_path: Path, name: str) ->
     assert (tmp_path / "outside").read_text() == "theirs"
 
 
+def made_pipe(path: Path) -> None:
+    path.unlink(missing_ok=True)
+    os.mkfifo(path)
+
+
 @pytest.mark.parametrize(
     "damage",
     [
@@ -164,7 +169,7 @@ def test_a_list_reaches_nothing_outside_its_folder(tmp_path: Path, name: str) ->
         lambda path: path.write_text("other"),
         lambda path: path.write_text("old A"),
         lambda path: (path.unlink(), path.mkdir()),
-        lambda path: (path.unlink(), os.mkfifo(path)),
+        made_pipe,
         lambda path: (path.unlink(), path.symlink_to("/dev/zero")),
         lambda path: (path.unlink(), path.symlink_to(path)),
     ],
@@ -181,7 +186,7 @@ def test_a_set_that_does_not_match_its_list_is_refused(tmp_path: Path, damage: C
     "damage",
     [
         lambda path: path.mkdir(),
-        lambda path: os.mkfifo(path),
+        made_pipe,
         lambda path: path.symlink_to("/dev/zero"),
         lambda path: path.write_text('{"model": "x"}'),
         lambda path: path.write_bytes(b" " * (2**24 + 1)),

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from satsym.instance import Instance
 from satsym.solution import Flight, Progress, Solution
+from satsym.solve.iteration import TimeUp
 from satsym.status import BadInput, Status
 
 if TYPE_CHECKING:
@@ -58,10 +60,27 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         raise BadInput(
             f'{instance.name}: terminal constraints of {spec.name} cannot be swept for; use method "collocation"'
         )
+    began = time.perf_counter()
+    try:
+        return _solved(instance, progress, method)
+    except TimeUp:
+        from satsym.solve import out_of_time
+
+        return out_of_time.solution(instance, _named(method, spec.switching), time.perf_counter() - began)
+
+
+def _named(method: str, switching: bool) -> str:
+    """The method that is tried first under this name."""
+    return method if method != "auto" else "bang-bang" if switching else "collocation"
+
+
+def _solved(instance: Instance, progress: Progress | None, method: str) -> Solution:
+    """By a method that is known and fits."""
     if method == "sweep":
         return _swept(instance, progress)
     from satsym.solve.improving import improved
 
+    spec = instance.model.spec
     if method == "auto" and spec.switching:
         method = "bang-bang"
     solution = improved(_solver(method), instance, progress)
