@@ -33,7 +33,7 @@ def check(options: SolverOptions, spec: ProblemSpec) -> None:
     if needed > MOST_BYTES:
         most = MOST_BYTES // _each(options, spec)
         raise BadInput(
-            f"[solver] steps: {options.steps} steps of {spec.name} need about {_shown(needed)} of memory, more than the "
+            f"[solver] steps: {options.steps} steps of {spec.name} need about {_shown(needed)} of memory, above the "
             f"limit of {_shown(MOST_BYTES)}; use at most {most}"
         )
 
