@@ -141,6 +141,7 @@ def loop(instance: Instance) -> Loop:
     )
 
 
+@np.errstate(all="ignore")  # numbers out of range are a status
 def simulate(instance: Instance) -> Flight:
     """Fly an instance under its classical law.
 

@@ -74,6 +74,7 @@ def designed(subject: Kernels | Instance) -> Design:
         raise BadInput(f"{subject.name}: {error}") from None
 
 
+@np.errstate(all="ignore")  # numbers out of range are a status
 def simulate(instance: Instance, feedback: str | None = None) -> Flight:
     """Simulate an instance under a feedback.
 

@@ -57,7 +57,7 @@ def decoded(path: Path) -> tuple[bytes, str, dict[str, Listed]]:
         with opened(path) as (stream, size):
             if size > LONGEST_LIST:
                 raise unusable(path, "cannot be read (it is too long)")
-            raw = stream.read(LONGEST_LIST)
+            raw = stream.read(size)
         found = msgspec.json.decode(raw, type=_List)
     except OSError as error:
         raise unusable(path, f"cannot be opened ({error.strerror or 'not a file'})") from None

@@ -43,6 +43,7 @@ to a singularity would take longest, to no avail.
 """
 
 
+@np.errstate(all="ignore")  # numbers out of range are a status
 def simulate(instance: Instance, law: Law | None = None) -> Flight:
     """Integrate the motion, twice, until the two runs agree: with RK4, or under a law with DOP853.
 
