@@ -46,7 +46,7 @@ def number_scaled(rng: random.Random, tree: dict[str, Any], path: Path) -> None:
     for _ in range(rng.choice([1, 1, 3])):
         table, key = rng.choice(_numbers(tree))
         factors = [-1, 0, 1e-12, 1e-3, 0.5, 0.9, 1.1, 2, 10, 1e3, 1e12, 1e200]
-        table[key] = type(table[key])(table[key] * rng.choice(factors))
+        table[key] = type(table[key])(min(table[key] * rng.choice(factors), 1e300))
     path.write_text(_text(tree), encoding="utf-8")
 
 

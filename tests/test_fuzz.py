@@ -51,7 +51,7 @@ def test_damages_are_refused_but_for_those_that_change_nothing_that_is_read(
 
 
 def test_what_a_bomb_promises_is_never_taken(sound: Path, tmp_path: Path) -> None:
-    """By Python's own count: an array of 8 TB, and 100 MB of zeros in 100 kB."""
+    """By Python's own count: an array of 8 TB, and 30 MB of zeros in 30 kB."""
     import random
     import shutil
     import tracemalloc
