@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import random
 import shutil
 import subprocess
 import sys
@@ -245,6 +246,7 @@ WRITER = """
 import sys, time
 from pathlib import Path
 from satsym.report import files, sets
+print(flush=True)
 while True:
     time.sleep(0.03)  # so that the other has its turn
     sets.write(Path(sys.argv[1]), {}, {name: files.text(sys.argv[2] * 9999) for name in "abcdefgh"[: int(sys.argv[3])]})
@@ -255,7 +257,7 @@ def test_a_reader_beside_two_writers_always_finds_one_whole_set(tmp_path: Path) 
     write(tmp_path, OLD)
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     commands = [[sys.executable, "-c", WRITER, str(tmp_path), *each] for each in (("1", "5"), ("2", "8"))]
-    writers = [subprocess.Popen(command, env=environment) for command in commands]
+    writers = [subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL) for command in commands]
     try:
         found: set[frozenset[str]] = set()
         until = time.monotonic() + 20.0
@@ -270,6 +272,33 @@ def test_a_reader_beside_two_writers_always_finds_one_whole_set(tmp_path: Path) 
             writer.kill()
             writer.wait()
     assert len(found) == 2
+
+
+def kinds_after_kills(folder: Path, kills: int) -> list[int]:
+    """Kill processes that replace sets without end, at random moments; how many files were found each time."""
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    rng, found = random.Random(1), []
+    for number in range(kills):
+        command = [sys.executable, "-c", WRITER, str(folder), "12"[number % 2], "58"[number % 2]]
+        with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE) as writer:
+            assert writer.stdout is not None
+            writer.stdout.readline()
+            time.sleep(rng.uniform(0.0, 0.1))
+            writer.kill()
+        contents = sets.read(folder, "abcdefgh").contents
+        kind = (len(contents), {one[:1] for one in contents.values()})
+        assert kind in ((2, {b"o"}), (5, {b"1"}), (8, {b"2"})), number
+        found.append(len(contents))
+    return found
+
+
+def test_a_kill_at_any_moment_of_writing_leaves_one_whole_set(tmp_path: Path) -> None:
+    """Whole runs are killed in tests/bench/kills.py."""
+    write(tmp_path, OLD)
+    (tmp_path / "mine").touch()
+    assert {5, 8} <= set(kinds_after_kills(tmp_path, 8))
+    write(tmp_path, NEW)
+    assert names(tmp_path) == {*NEW, "mine", "result.json"}
 
 
 def test_a_place_that_cannot_be_written_to_is_a_clear_line(tmp_path: Path) -> None:
