@@ -16,10 +16,10 @@ help:  ## list the targets
 
 demo: $(VENV)/installed  ## solve two shipped problems, with pictures, into results/
 	for name in soft-return its-thesis; do \
-	    echo; echo "satsym solve $$name --plot --out results/$$name"; \
-	    $(BIN)/satsym solve $$name --plot --out results/$$name || exit $$?; \
+	    echo; echo "satsym solve $$name --plot"; \
+	    $(BIN)/satsym solve $$name --plot || exit $$?; \
 	done
-	echo; echo "Results and pictures:"; ls -1 results/soft-return/* results/its-thesis/* | sed 's/^/  /'
+	echo; echo "Results and pictures:"; ls -1 results/soft-return/solve/* results/its-thesis/solve/* | sed 's/^/  /'
 
 test: lint check-derive  ## lint, check generated/, run the tests, of the slowest ones a sample
 	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder

@@ -40,6 +40,11 @@ def shown(value: object) -> str:
     return f"a {type(value).__name__}"
 
 
+def counted(number: int, one: str, several: str = "") -> str:
+    """A number of things: 1 iteration, 2 iterations."""
+    return f"{number} {one if number == 1 else several or f'{one}s'}"
+
+
 MOST_NAMES = 12
 """Known names that a message lists."""
 

@@ -17,12 +17,14 @@ import satsym
 from satsym import kernels
 from satsym.cli import main, output
 from satsym.instance import SolverOptions
+from satsym.report.files import to_json
 
 Run = Callable[..., tuple[int, str, str]]
 COMMANDS = "models instances solve simulate plot compare analyse lqr derive latex audit doctor".split()
+HEAD = "satsym schema command model instance status units".split()
 SOLUTION_KEYS = (
-    "model instance method status message boundary_type objective t_final x_final costate_initial switching_times "
-    "iterations wall_s certificate"
+    "satsym schema command model instance status units method message boundary_type objective t_final x_final "
+    "costate_initial switching_times iterations wall_s certificate"
 ).split()
 
 INSTANCE = """
@@ -97,6 +99,13 @@ def program(*arguments: str, **options: Any) -> subprocess.CompletedProcess[str]
         check=False,
         **options,
     )
+
+
+def printed(folder: Path) -> str:
+    """What a result.json holds, as --json prints it: all but the list of files."""
+    found = json.loads((folder / "result.json").read_text(encoding="utf-8"))
+    assert set(found.pop("files")) == {path.name for path in folder.iterdir()} - {"result.json"}
+    return to_json(found)
 
 
 def one_line(text: str) -> bool:
@@ -224,22 +233,18 @@ def test_solve_writes_results_where_it_is_told(run: Run, case: Path, tmp_path: P
     assert code == 0
     folder = tmp_path / "new" / "folder"
     assert {path.name for path in folder.iterdir()} == {"trajectory.npz", "trajectory.csv", "result.json"}
-    assert (folder / "result.json").read_text(encoding="utf-8") == out
+    assert printed(folder) == out
 
 
 @pytest.mark.parametrize("command", ["solve", "simulate"])
 def test_pictures_go_to_results_by_default(
     run: Run, case: Path, tmp_path: Path, command: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def save(_result: object, folder: Path) -> list[Path]:
-        (folder / "picture.png").touch()
-        return [folder / "picture.png"]
-
-    monkeypatch.setattr("satsym.report.plots.save", save)
+    monkeypatch.setattr("satsym.report.plots.pictures", lambda _result: {"picture.png": lambda stream: None})
     code, out, _ = run(command, case, "--plot")
     assert code == 0
-    assert f"{Path('results', 'case')}: trajectory.npz, trajectory.csv, result.json, picture.png" in out
-    assert (tmp_path / "results" / "case" / "picture.png").is_file()
+    assert f"{Path('results', 'case', command)}: trajectory.npz, trajectory.csv, picture.png, result.json" in out
+    assert (tmp_path / "results" / "case" / command / "picture.png").is_file()
 
 
 def test_options_replace_those_of_the_instance(run: Run, case: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -263,7 +268,7 @@ def test_no_answer_is_4_and_prints_the_object_all_the_same(run: Run, case: Path,
     assert (code, err) == (4, "")
     assert list(found) == SOLUTION_KEYS
     assert found["status"] != "converged"
-    assert (tmp_path / "out" / "result.json").read_text(encoding="utf-8") == out
+    assert printed(tmp_path / "out") == out
     code, out, _ = run("solve", case)
     assert code == 4
     assert found["status"] in out
@@ -273,7 +278,7 @@ def test_simulate_prints_the_object_of_the_contract(run: Run) -> None:
     code, out, err = run("simulate", "soft-return", "--json")
     found = json.loads(out)
     assert (code, err) == (0, "")
-    assert list(found) == "model instance feedback t_final x_final invariants metrics".split()
+    assert list(found) == [*HEAD, *"feedback t_final x_final invariants metrics".split()]
     assert found["feedback"] == "none"
     assert found["invariants"]["energy"]["drift"] < 1e-9
 

@@ -23,12 +23,13 @@ from tests.test_floors import run_satsym
 
 Run = Callable[..., tuple[int, str, str]]
 
+HEAD = "satsym schema command model instance status units "
 ANALYSIS_KEYS = (
-    "equilibrium A B C eigenvalues jordan_blocks characteristic_polynomial routh stability controllability "
+    HEAD + "equilibrium A B C eigenvalues jordan_blocks characteristic_polynomial routh stability controllability "
     "observability exact orbit point floquet"
 ).split()
 REGULATOR_KEYS = (
-    "inputs K P riccati_residual closed_loop_eigenvalues characteristic_polynomial routh cost_from_initial"
+    HEAD + "inputs K P riccati_residual closed_loop_eigenvalues characteristic_polynomial routh cost_from_initial"
 ).split()
 
 WEIGHTED = """
@@ -203,11 +204,11 @@ def test_files_and_pictures_go_where_they_are_asked_for(run: Run, tmp_path: Path
         "responses.png",
         "result.json",
     ]
-    assert "written to there: result.json" in out
-    assert list(json.loads((tmp_path / "there/result.json").read_text())) == REGULATOR_KEYS
+    assert "written to there: eigenvalues.png" in out
+    assert list(json.loads((tmp_path / "there/result.json").read_text())) == [*REGULATOR_KEYS, "files"]
     code, _, _ = run("analyse", "saddle", "--plot")
     assert code == 0
-    assert sorted(path.name for path in (tmp_path / "results/saddle").iterdir()) == [
+    assert sorted(path.name for path in (tmp_path / "results/saddle/analyse").iterdir()) == [
         "eigenvalues.png",
         "phase.png",
         "result.json",

@@ -166,6 +166,9 @@ def test_compare_prints_a_table_and_draws_a_page(tmp_path: Path, capsys: pytest.
     assert main(["compare", *names, "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert [each["instance"] for each in found["instances"]] == names
+    assert list(found)[:7] == "satsym schema command model instance status units".split()
+    assert (found["model"], found["instance"], found["status"]) == (None, None, "converged")
+    assert found["units"]["wheel_torque"] == "N*m"
     assert found["metrics"]["power_energy"]["lapan-classical"] is None  # an impulse takes infinite energy
 
 
@@ -182,8 +185,8 @@ def test_a_law_that_does_not_settle_is_drawn_beside_others(
     assert page.axes[0].get_xlim()[1] == pytest.approx(plots.SHOWN * 200.0)
 
 
-def test_without_any_answer_nothing_is_drawn(compared: list[comparison.Case], tmp_path: Path) -> None:
-    assert plots.save([replace(compared[1], answered=False)], tmp_path) == []
+def test_without_any_answer_nothing_is_drawn(compared: list[comparison.Case]) -> None:
+    assert plots.pictures([replace(compared[1], answered=False)]) == {}
 
 
 def test_a_solved_manoeuvre_past_the_limit_of_the_wheel_says_so() -> None:

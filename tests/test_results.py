@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Callable
+import os
 from dataclasses import replace
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 import pytest
 
 from satsym import instance
 from satsym.instance import Instance
-from satsym.report import files, trajectory
+from satsym.report import files, sets, trajectory
 from satsym.report.results import flight_object, model_object, solution_object
 from satsym.report.table import figure, table
 from satsym.report.text import flight_text, solution_text, with_files
@@ -22,10 +22,10 @@ from satsym.solution import Flight, Invariant, Solution
 from satsym.status import BadInput, Status
 
 SOLUTION_KEYS = (
-    "model instance method status message boundary_type objective t_final x_final costate_initial switching_times "
-    "iterations wall_s certificate"
+    "satsym schema command model instance status units method message boundary_type objective t_final x_final "
+    "costate_initial switching_times iterations wall_s certificate"
 ).split()
-FLIGHT_KEYS = "model instance feedback t_final x_final invariants metrics".split()
+FLIGHT_KEYS = "satsym schema command model instance status units feedback t_final x_final invariants metrics".split()
 STATES = ["r", "r_dot", "theta", "theta_dot"]
 
 
@@ -166,7 +166,7 @@ def test_boundary_type_follows_from_what_is_given(
 
 
 def test_trajectory_files_give_back_every_number(solution: Solution, tmp_path: Path) -> None:
-    files.write(tmp_path, trajectory.contents(solution))
+    sets.write(tmp_path, {}, trajectory.contents(solution))
     with np.load(tmp_path / "trajectory.npz", allow_pickle=False) as stored:
         for name in ("times", "x", "u", "lam"):
             np.testing.assert_array_equal(stored[name], getattr(solution, name))
@@ -180,7 +180,7 @@ def test_trajectory_files_give_back_every_number(solution: Solution, tmp_path: P
 
 
 def test_trajectory_of_a_flight_has_no_costates(flight: Flight, tmp_path: Path) -> None:
-    files.write(tmp_path, trajectory.contents(flight))
+    sets.write(tmp_path, {}, trajectory.contents(flight))
     assert "lambda" not in (tmp_path / "trajectory.csv").read_text(encoding="utf-8")
     with np.load(tmp_path / "trajectory.npz") as stored:
         assert "lam" not in stored
@@ -188,40 +188,9 @@ def test_trajectory_of_a_flight_has_no_costates(flight: Flight, tmp_path: Path) 
 
 def test_same_solution_gives_the_same_bytes(solution: Solution, tmp_path: Path) -> None:
     for folder in ("one", "two"):
-        files.write(tmp_path / folder, trajectory.contents(solution))
+        sets.write(tmp_path / folder, {}, trajectory.contents(solution))
     for name in ("trajectory.npz", "trajectory.csv"):
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
-
-
-def breaking(stream: IO[bytes]) -> None:
-    stream.write(b"half")
-    raise OSError(28, "No space left on device")
-
-
-def interrupted(stream: IO[bytes]) -> None:
-    stream.write(b"half")
-    raise KeyboardInterrupt
-
-
-@pytest.mark.parametrize(
-    ("content", "error"), [(breaking, BadInput), (interrupted, KeyboardInterrupt)], ids=["disk full", "interrupted"]
-)
-def test_files_that_cannot_be_finished_leave_the_old_ones(
-    tmp_path: Path, content: Callable[[IO[bytes]], None], error: type[BaseException]
-) -> None:
-    files.write(tmp_path, {"first": files.text("old"), "second": files.text("old")})
-    with pytest.raises(error):
-        files.write(tmp_path, {"first": files.text("new"), "second": content})
-    assert {path.name: path.read_text(encoding="utf-8") for path in tmp_path.iterdir()} == {
-        "first": "old",
-        "second": "old",
-    }
-
-
-def test_files_are_as_readable_as_any_other(tmp_path: Path) -> None:
-    (tmp_path / "plain").touch()
-    files.write(tmp_path, {"ours": files.text("")})
-    assert (tmp_path / "ours").stat().st_mode == (tmp_path / "plain").stat().st_mode
 
 
 def test_text_file_is_written_through_a_link(tmp_path: Path) -> None:
@@ -229,6 +198,18 @@ def test_text_file_is_written_through_a_link(tmp_path: Path) -> None:
     files.write_text(tmp_path / "link", "θ\n")
     assert (tmp_path / "link").is_symlink()
     assert (tmp_path / "target").read_text(encoding="utf-8") == "θ\n"
+
+
+def test_what_a_killed_process_left_of_a_text_file_is_removed(tmp_path: Path) -> None:
+    (tmp_path / ".a.tex.4194305.tmp").touch()  # no system has so many processes
+    (tmp_path / f".a.tex.{os.getppid()}.tmp").touch()
+    (tmp_path / ".b.tex.4194305.tmp").touch()
+    files.write_text(tmp_path / "a.tex", "text")
+    assert {path.name for path in tmp_path.iterdir()} == {
+        "a.tex",
+        f".a.tex.{os.getppid()}.tmp",
+        ".b.tex.4194305.tmp",
+    }
 
 
 def test_device_is_written_to_and_not_replaced() -> None:

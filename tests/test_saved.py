@@ -13,12 +13,13 @@ from click.testing import CliRunner
 
 from satsym import instance
 from satsym.cli.app import program
-from satsym.cli.saving import save
+from satsym.cli.saving import save, trajectory_files
 from satsym.report import trajectory
 from satsym.report.results import flight_object, solution_object
 from satsym.solution import Flight, Solution
 from satsym.solve import simulate, solve
 from satsym.status import BadInput
+from tests.damage import signed
 
 NAME = "return-to-orbit-006"
 
@@ -36,7 +37,7 @@ def flight() -> Flight:
 
 @pytest.fixture
 def folder(solution: Solution, tmp_path: Path) -> Path:
-    save(tmp_path, solution, solution_object(solution), plot=False)
+    save(tmp_path, solution_object(solution), trajectory_files(tmp_path, solution, plot=False))
     return tmp_path
 
 
@@ -48,7 +49,7 @@ def kept(found: Solution | Flight) -> dict[str, Any]:
 
 
 def test_a_solution_comes_back_with_every_number(solution: Solution, folder: Path) -> None:
-    found = trajectory.read(solution.instance, folder)
+    found, _ = trajectory.read(solution.instance, folder)
     assert isinstance(found, Solution)
     assert any(solution.switching_times)
     assert len(solution.history) > 2
@@ -56,8 +57,8 @@ def test_a_solution_comes_back_with_every_number(solution: Solution, folder: Pat
 
 
 def test_a_flight_comes_back_with_every_number(flight: Flight, tmp_path: Path) -> None:
-    save(tmp_path, flight, flight_object(flight), plot=False)
-    found = trajectory.read(flight.instance, tmp_path)
+    save(tmp_path, flight_object(flight), trajectory_files(tmp_path, flight, plot=False))
+    found, _ = trajectory.read(flight.instance, tmp_path)
     assert isinstance(found, Flight)
     assert kept(found) == kept(flight)
 
@@ -70,7 +71,8 @@ def plotted(*arguments: str | Path) -> str:
 
 @pytest.mark.slow
 def test_pictures_are_those_of_the_run_itself(solution: Solution, tmp_path: Path) -> None:
-    first = save(tmp_path / "run", solution, solution_object(solution), plot=True)
+    files = trajectory_files(tmp_path / "run", solution, plot=True)
+    first = save(tmp_path / "run", solution_object(solution), files)
     drawn = json.loads(plotted(NAME, "--from", tmp_path / "run", "--out", tmp_path / "again", "--json"))
     pictures = [path for path in first if path.suffix == ".png"]
     assert [Path(name).name for name in drawn["pictures"]] == [path.name for path in pictures]
@@ -91,6 +93,7 @@ def damaged(folder: Path, **changes: Any) -> None:
     with np.load(folder / "trajectory.npz") as file:
         arrays = {name: file[name] for name in file.files} | changes
     np.savez(folder / "trajectory.npz", **{name: value for name, value in arrays.items() if value is not None})
+    signed(folder)
 
 
 @pytest.mark.parametrize(
@@ -107,8 +110,15 @@ def damaged(folder: Path, **changes: Any) -> None:
         {"states": np.array(["r", "v", "theta", "theta_dot"])},
         {"times": np.array([None, 1.0], dtype=object)},
         {"times": np.zeros((2, 2))},
+        {"times": np.full(1001, np.nan)},
+        {"times": np.linspace(1.0, 0.0, 1001)},
+        {"switching": np.full((2, 1), np.nan)},
+        {"more": np.zeros(1)},
     ],
-    ids="no times,no status,no history,unknown status,x,u,lam,switching,states,objects,times".split(","),
+    ids=(
+        "no times,no status,no history,unknown status,x,u,lam,switching,states,objects,times,nan,backwards,"
+        "nan switching,more"
+    ).split(","),
 )
 def test_other_arrays_are_refused(solution: Solution, folder: Path, changes: dict[str, Any]) -> None:
     damaged(folder, **changes)
@@ -119,6 +129,7 @@ def test_other_arrays_are_refused(solution: Solution, folder: Path, changes: dic
 @pytest.mark.parametrize("content", [b"", b"PK\x03\x04", b"\x80\x04.", b"times, x, u", b"\x93NUMPY\x01\x00"])
 def test_a_file_that_holds_no_arrays_is_refused(solution: Solution, folder: Path, content: bytes) -> None:
     (folder / "trajectory.npz").write_bytes(content)
+    signed(folder)
     with pytest.raises(BadInput, match=r"trajectory\.npz: "):
         trajectory.read(solution.instance, folder)
 
@@ -127,11 +138,15 @@ def test_a_single_array_is_refused(solution: Solution, folder: Path) -> None:
     alone = io.BytesIO()
     np.save(alone, np.zeros(3))
     (folder / "trajectory.npz").write_bytes(alone.getvalue())
+    signed(folder)
     with pytest.raises(BadInput, match=r"trajectory\.npz: "):
         trajectory.read(solution.instance, folder)
 
 
-@pytest.mark.parametrize("content", ["", "{", "[]", '{"model": 3}', '{"model": "polar_orbit", "instance": null}'])
+NO_RESULTS = ["", "{", "[]", '{"files": {}, "model": 3}', '{"files": {}, "command": "solve", "instance": null}']
+
+
+@pytest.mark.parametrize("content", NO_RESULTS)
 def test_a_result_that_is_none_is_refused(solution: Solution, folder: Path, content: str) -> None:
     (folder / "result.json").write_text(content, encoding="utf-8")
     with pytest.raises(BadInput, match=r"result\.json: cannot be read"):

@@ -213,7 +213,7 @@ def test_too_little_time_is_a_time_limit_with_advice():
 def test_too_few_iterations_are_not_converged_with_advice():
     solution = solve(shipped("soft-return", max_iterations=1))
     assert solution.status is Status.NOT_CONVERGED
-    assert solution.message == "no convergence in 1 iterations"
+    assert solution.message == "no convergence in 1 iteration"
     assert "guess" in solution.status.advice
     assert solution.iterations == 1
     assert solution.history[1].objective < solution.history[0].objective

@@ -16,7 +16,7 @@ from sympy import Abs, Integer
 
 from satsym import solve
 from satsym.instance import Instance
-from satsym.report import files, trajectory
+from satsym.report import sets, trajectory
 from satsym.report.results import solution_object
 from satsym.solution import Iteration, Solution
 from satsym.solve.switching import solving
@@ -183,7 +183,7 @@ def test_the_trajectory_jumps_at_the_exact_switching_times() -> None:
 
 def test_the_table_of_the_trajectory_holds_both_sides_of_a_switch(tmp_path: Path) -> None:
     found = solving.solve(case(TIME))
-    files.write(tmp_path, trajectory.contents(found))
+    sets.write(tmp_path, {}, trajectory.contents(found))
     with (tmp_path / "trajectory.csv").open() as stream:
         rows = [row for row in csv.DictReader(stream) if float(row["t"]) == found.switching_times[0][0]]
     assert [float(row["u1"]) for row in rows] == [-1.0, 1.0]

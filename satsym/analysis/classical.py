@@ -18,7 +18,9 @@ from satsym.analysis.signals import Span, excesses, totals
 from satsym.grid import Grid
 from satsym.instance import Instance
 from satsym.solution import Array, Flight
+from satsym.solve import out_of_time
 from satsym.solve.balances import balances
+from satsym.solve.iteration import Limits, TimeUp, watched
 from satsym.status import BadInput, Status
 
 if TYPE_CHECKING:
@@ -139,6 +141,7 @@ def loop(instance: Instance) -> Loop:
     )
 
 
+@np.errstate(all="ignore")  # numbers out of range are a status
 def simulate(instance: Instance) -> Flight:
     """Fly an instance under its classical law.
 
@@ -154,21 +157,35 @@ def simulate(instance: Instance) -> Flight:
     """
     if instance.tf is None:
         raise BadInput(f"{instance.name}: time.tf: a simulation needs a number, not a free final time")
-    found, spec = loop(instance), instance.model.spec
+    found = loop(instance)
     if found.fastest * (instance.tf - instance.t0) > MOST_STEPS:
         raise BadInput(
             f"{instance.name}: [classical]: the loop's shortest time constant, {1.0 / found.fastest:.3g}, is too short "
             f"to be followed until {instance.tf:.6g}; give an earlier time.tf, or a slower law or differentiator"
         )
-    n = len(spec.states)
+    limits, _ = watched(instance, None)
+    try:
+        return _simulated(instance, found, limits)
+    except TimeUp:
+        return out_of_time.flight(instance, "classical")
+
+
+def _simulated(instance: Instance, found: Loop, limits: Limits) -> Flight:
+    assert instance.tf is not None
+    n = len(instance.model.spec.states)
     times = Grid.uniform(instance.t0, instance.tf, instance.solver.steps).nodes
     initial = np.array(instance.initial)
-    z, dense = _flown(instance, found, times, found.start(initial))
+    z, dense = _flown(instance, found, times, found.start(initial), limits)
     status = Status.CONVERGED if np.isfinite(z).all() else Status.NON_FINITE
     x, u = z[:n], found.control(z)[None]
     metrics: dict[str, float] = {"gain_rate": found.gains[0], "gain_state": found.gains[1]}
     if status is Status.CONVERGED:
-        span = Span(np.union1d(times, dense.ts), lambda t: dense(t)[:n], lambda t: found.control(dense(t))[None])
+
+        def seen(at: Array) -> Array:
+            limits.check()
+            return np.asarray(dense(at))
+
+        span = Span(np.union1d(times, dense.ts), lambda t: seen(t)[:n], lambda t: found.control(seen(t))[None])
         metrics |= performance(span.times, span.x, found.follows, float(initial[found.follows]), found.command)
         metrics |= totals(instance, [span], found.impulse)
     return Flight(
@@ -214,13 +231,14 @@ def _linear(
     return {"matrix": matrix, "offset": offset}
 
 
-def _flown(instance: Instance, found: Loop, times: Array, start: Array) -> tuple[Array, OdeSolution]:
+def _flown(instance: Instance, found: Loop, times: Array, start: Array, limits: Limits) -> tuple[Array, OdeSolution]:
     """The motion at the nodes, and between them, with the steps that were taken."""
     from scipy.integrate import solve_ivp
 
     n, f, p = len(instance.model.spec.states), instance.model.dynamics, instance.parameters
 
     def rates(t: float, z: Array) -> Array:
+        limits.check()
         u = float(found.control(z))
         change = np.array(f(t, z[:n].tolist(), [u], p))
         if not found.differentiator:

@@ -64,6 +64,12 @@ class Linearisation:
         """The motion at a time, shape (n,)."""
         return np.array(self.model.reference(t, self.parameters)) if self.on_reference else self.point
 
+    def along(self, times: Array) -> Array:
+        """The motion at several times, shape (n, M)."""
+        if not self.on_reference:
+            return np.repeat(self.point[:, None], len(times), axis=1)
+        return np.asarray(self.model.reference_batch(times, self.parameters))
+
     @property
     def rates(self) -> Function:
         """The exact rates of change of the states, a function of t, x, u and p on plain floats."""

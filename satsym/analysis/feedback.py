@@ -15,7 +15,7 @@ from satsym.kernels import Kernels
 from satsym.solution import Flight
 from satsym.solve import simulate as fly
 from satsym.solve.closed_loop import Law
-from satsym.status import BadInput
+from satsym.status import BadInput, Status
 
 FEEDBACKS = ("none", "lqr", "classical", "switching", "pulses")
 """Control laws that a simulation can follow."""
@@ -74,6 +74,7 @@ def designed(subject: Kernels | Instance) -> Design:
         raise BadInput(f"{subject.name}: {error}") from None
 
 
+@np.errstate(all="ignore")  # numbers out of range are a status
 def simulate(instance: Instance, feedback: str | None = None) -> Flight:
     """Simulate an instance under a feedback.
 
@@ -117,7 +118,9 @@ def simulate(instance: Instance, feedback: str | None = None) -> Flight:
     design = designed(instance)
     about, found = design.about, design.regulator
     flight = fly(instance, law(about, found))
-    x = flight.x - np.array([about.at(t) for t in flight.times]).T
+    if flight.status is Status.TIME_LIMIT:
+        return flight
+    x = flight.x - about.along(flight.times)
     u = flight.u[[about.system.inputs.index(name) for name in found.system.inputs]]
     paid = {"lqr_cost": _integral(flight.times, running_cost(found, x, u)), "lqr_cost_linear": found.cost(x[:, 0])}
     return replace(flight, metrics=flight.metrics | paid)

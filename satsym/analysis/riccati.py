@@ -8,6 +8,8 @@ matrix, and Newton's method (D. L. Kleinman, IEEE TAC 13, 1968) where that is no
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -117,5 +119,8 @@ def _newton(A: Array, G: Array, Q: Array, P: Array) -> Array:
     from scipy.linalg import solve_continuous_lyapunov
 
     closed = A - G @ P
-    found = solve_continuous_lyapunov(closed.T, -(Q + P @ G @ P))
+    with warnings.catch_warnings():
+        # of an equation that is nearly singular: whether the step is any good is told by its residual
+        warnings.simplefilter("ignore", RuntimeWarning)
+        found = solve_continuous_lyapunov(closed.T, -(Q + P @ G @ P))
     return np.asarray(0.5 * (found + found.T))

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import os
 import sys
+import warnings
 from collections.abc import Sequence
+
+from satsym.cli.stopping import stopped, terminable
 
 __all__ = ["main"]
 
@@ -20,14 +23,19 @@ def main(argv: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        Exit code, see :class:`satsym.status.ExitCode`; 130 and 141 where the user or a closed pipe ended it.
+        Exit code, see :class:`satsym.status.ExitCode`; 130, 141 and 143 where the user, a closed pipe or the system
+        ended it.
     """
     # Read when NumPy is loaded: on matrices as small as ours, threads cost several times what they save.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    if argv is None and not sys.warnoptions:
+        # What libraries have to say of our arithmetic is for us, not for users; it is heard where warnings are asked
+        # for (python -W), and in the tests.
+        warnings.simplefilter("ignore")
     try:
-        from satsym.cli.app import run
+        with terminable():
+            from satsym.cli.app import run
 
-        return run(argv)
-    except KeyboardInterrupt:  # while the command was still being loaded
-        sys.stderr.write("\nsatsym: interrupted\n")
-        return 130
+            return run(argv)
+    except KeyboardInterrupt as error:  # while the command was still being loaded, or was over
+        return stopped(error)

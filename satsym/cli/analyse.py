@@ -8,29 +8,30 @@ from typing import TYPE_CHECKING
 import click
 
 from satsym.cli.options import json_option, out_option, plot_option
-from satsym.cli.output import emit, emit_json, in_colour, to_json
-from satsym.cli.saving import folder_for
-from satsym.status import BadInput, ExitCode
+from satsym.cli.output import emit, emit_json, in_colour
+from satsym.cli.saving import folder_for, save
+from satsym.status import BadInput, ExitCode, Status
 
 if TYPE_CHECKING:
     from satsym.analysis.orbits.survey import Survey
     from satsym.analysis.structure import Analysis
     from satsym.instance import Instance
     from satsym.kernels import Kernels
+    from satsym.report.files import Content
 
 EXAMPLES = """\b
 Examples:
   satsym analyse itb-earth --plot       an orbit: its kind, its monodromy matrix, what its stability means
   satsym analyse clohessy_wiltshire     a satellite near a circular orbit
   satsym analyse soft-return-geo        a nonlinear model, near its reference, in kilometres and seconds
-  satsym analyse uny-lqr --plot         with pictures, into results/uny-lqr"""
+  satsym analyse uny-lqr --plot         with pictures, into results/uny-lqr/analyse"""
 
 
 @click.command(epilog=EXAMPLES)
 @click.argument("subject", metavar="X")
 @json_option
 @out_option
-@plot_option
+@plot_option("analyse")
 def analyse(subject: str, as_json: bool, out: Path | None, plot: bool) -> ExitCode:
     """Tell what a model does near its reference or an equilibrium, and an orbit about a centre.
 
@@ -40,26 +41,19 @@ def analyse(subject: str, as_json: bool, out: Path | None, plot: bool) -> ExitCo
     start and why they decide nothing, its monodromy matrix and Floquet multipliers.
     """
     from satsym.cli.exact import exact
-    from satsym.cli.subject import find
+    from satsym.cli.subject import begins, find
     from satsym.report.linear import analysis_object
     from satsym.report.orbit import orbit_object
     from satsym.report.text import with_files
 
     given = find(subject)
-    folder = folder_for(Path(subject).stem, out, plot)
+    folder = folder_for(Path(subject).stem, "analyse", out, plot)
     found, orbit = _analysed(given)
     saved: list[Path] = []
     if as_json or folder is not None:
-        result = analysis_object(found, exact(found.about.model) if found else None) | orbit_object(orbit)
-    if folder is not None:
-        from satsym.report import files
-
-        saved = files.write(folder, {"result.json": files.text(to_json(result))})
-        if plot:
-            from satsym.report.plots.systems import save_analysis, save_orbit
-
-            saved += save_analysis(found, folder) if found else []
-            saved += save_orbit(orbit, folder) if orbit else []
+        result = begins("analyse", given, Status.CONVERGED)
+        result |= analysis_object(found, exact(found.about.model) if found else None) | orbit_object(orbit)
+        saved = save(folder, result, _pictures(found, orbit) if folder and plot else {})
     if as_json:
         emit_json(result)
     else:
@@ -86,6 +80,12 @@ def _analysed(given: Kernels | Instance) -> tuple[Analysis | None, Survey | None
         return analysed(given), None
     orbit = survey(given) if spec.keplerian else None
     return analysed(given) if orbit is None or spec.has_reference else None, orbit
+
+
+def _pictures(found: Analysis | None, orbit: Survey | None) -> dict[str, Content]:
+    from satsym.report.plots.systems import of_analysis, of_orbit
+
+    return (of_analysis(found) if found else {}) | (of_orbit(orbit) if orbit else {})
 
 
 def _text(found: Analysis | None, orbit: Survey | None) -> str:

@@ -6,6 +6,7 @@ Commands load what they need when they run, so that ``--help`` loads nothing but
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Sequence
 from typing import Any
 
@@ -21,16 +22,16 @@ from satsym.cli.instances import instances
 from satsym.cli.latex import latex
 from satsym.cli.lqr import lqr
 from satsym.cli.models import models
-from satsym.cli.output import complain, silence
+from satsym.cli.output import Unheard, complain, hearable, silence, unless_unwritable
 from satsym.cli.plot import plot
 from satsym.cli.simulate import simulate
 from satsym.cli.solve import solve
+from satsym.cli.stopping import stopped
 from satsym.status import BadInput, ExitCode
 from satsym.wording import printable
 
-INTERRUPTED = 130
 CLOSED_PIPE = 141
-"""As the shell reports programs that SIGINT or SIGPIPE ended."""
+"""As the shell reports programs that SIGPIPE ended."""
 
 OVERVIEW = """\b
 Start here:
@@ -61,12 +62,10 @@ class Program(click.Group):
         except BadInput as error:
             complain(str(error))
             return ExitCode.BAD_INPUT
-        except (KeyboardInterrupt, click.Abort):
-            complain("interrupted")
-            return INTERRUPTED
-        except BrokenPipeError:
-            silence()
-            return CLOSED_PIPE
+        except KeyboardInterrupt as error:
+            return stopped(error)
+        except Unheard as error:
+            return _unheard(error)
         except Exception as error:
             _unforeseen(error)
             return ExitCode.UNFORESEEN
@@ -86,11 +85,26 @@ def program() -> None:
 def run(argv: Sequence[str] | None = None) -> int:
     """Run the program on these arguments and give its exit code."""
     try:
-        outcome = program.main(None if argv is None else list(argv), prog_name="satsym", standalone_mode=False)
+        with hearable():  # help and usage are written by click itself
+            outcome = program.main(None if argv is None else list(argv), prog_name="satsym", standalone_mode=False)
     except click.ClickException as error:
-        error.show()
+        with unless_unwritable():
+            error.show()
         return error.exit_code
+    except click.Abort as error:  # what click makes of an interruption
+        return stopped(error.__cause__ or error)
+    except Unheard as error:
+        return _unheard(error)
     return int(outcome or 0)
+
+
+def _unheard(error: Unheard) -> int:
+    """What ends with whoever reads stdout: nothing more to say to a closed pipe, else one line."""
+    silence(sys.stdout)
+    if isinstance(error.cause, BrokenPipeError):
+        return CLOSED_PIPE
+    complain(f"stdout cannot be written ({error.cause.strerror or 'not open'}); send it elsewhere")
+    return ExitCode.BAD_INPUT
 
 
 def _unforeseen(error: Exception) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from satsym.cli.options import json_option
+from satsym.cli.options import json_option, place_option
 from satsym.cli.output import emit, emit_json, live
 from satsym.status import ExitCode
 
@@ -21,7 +21,7 @@ Examples:
 @click.command(epilog=EXAMPLES)
 @click.argument("ledgers", metavar="[LEDGER]...", nargs=-1)
 @json_option
-@click.option("--latex", metavar="FILE", type=click.Path(path_type=Path), help="Write a report for LaTeX, too.")
+@place_option("--latex", metavar="FILE", help="Write a report for LaTeX, too.")
 @click.option("--item", "items", metavar="X", multiple=True, help="Judge this item alone; may be repeated.")
 @click.option("--coverage", is_flag=True, help="List the document's numbers that have no row; judge nothing.")
 @click.option("--fresh", is_flag=True, help="Compute anew, whatever is in the cache.")

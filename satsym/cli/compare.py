@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING
 
 import click
 
-from satsym.cli.options import json_option
-from satsym.cli.output import complain, emit, emit_json, to_json
-from satsym.cli.saving import folder_for
+from satsym.cli.options import json_option, out_option, plot_option
+from satsym.cli.output import complain, emit, emit_json
+from satsym.cli.saving import folder_for, save
 from satsym.status import ExitCode
 
 if TYPE_CHECKING:
     from satsym.analysis.comparison import Range
     from satsym.instance import Instance
+    from satsym.report.files import Content
 
 EXAMPLES = """\b
 Examples:
@@ -30,15 +31,13 @@ SHARES = (0.25, 0.5, 1.0, 2.0, 4.0)
 @click.argument("subjects", metavar="X...", nargs=-1, required=True)
 @json_option
 @click.option("--range", "ranged", is_flag=True, help="Vary damping and command of the first instance's law.")
-@click.option(
-    "--out", metavar="DIR", type=click.Path(path_type=Path), help="Write result.json and, with --plot, a page there."
-)
-@click.option("--plot", is_flag=True, help="Draw a page too; without --out into results/compare.")
+@out_option
+@plot_option("compare")
 def compare(subjects: tuple[str, ...], as_json: bool, ranged: bool, out: Path | None, plot: bool) -> ExitCode:
     """Fly or solve instances of one system, and set the numbers that describe them side by side.
 
     An instance that states a law ([classical]) is flown under it, any other is solved. Totals, largest and last
-    values, durations.
+    values, durations. NAME, where results go, is that of the first X.
     """
     from satsym import instance
     from satsym.analysis import comparison
@@ -46,19 +45,16 @@ def compare(subjects: tuple[str, ...], as_json: bool, ranged: bool, out: Path | 
     from satsym.report.text import with_files
 
     loaded = [instance.load(subject) for subject in subjects]
-    folder = folder_for("compare", out, plot)
+    folder = folder_for(loaded[0].name, "compare", out, plot)
     over = _range(loaded[0]) if ranged else None
     cases = comparison.compare(loaded)
     result = comparison_object(cases, over)
-    saved: list[Path] = []
-    if folder is not None:
-        from satsym.report import files
+    pages: dict[str, Content] = {}
+    if folder and plot:
+        from satsym.report.plots import comparison as plots
 
-        saved = files.write(folder, {"result.json": files.text(to_json(result))})
-        if plot:
-            from satsym.report.plots import comparison as plots
-
-            saved += plots.save(cases, folder)
+        pages = plots.pictures(cases)
+    saved = save(folder, result, pages)
     if as_json:
         emit_json(result)
     else:

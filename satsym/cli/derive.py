@@ -9,6 +9,7 @@ from pathlib import Path
 import click
 
 from satsym.cli.derivations import checkout, explained
+from satsym.cli.options import place_option
 from satsym.cli.output import complain, emit, live
 from satsym.status import ExitCode
 
@@ -26,9 +27,7 @@ SIGNATURE = "Written by satsym from "
 
 @click.command(epilog=EXAMPLES)
 @click.argument("files", metavar="[FILE]...", nargs=-1)
-@click.option(
-    "--out", metavar="DIR", type=click.Path(path_type=Path), help="Write there instead of to the checkout's generated/."
-)
+@place_option("--out", metavar="DIR", help="Write there instead of to the checkout's generated/.")
 @click.option("--check", is_flag=True, help="Write nothing; print what would change, and exit with 6 if anything does.")
 def derive(files: tuple[str, ...], out: Path | None, check: bool) -> ExitCode:
     """Derive kernels and LaTeX from derivation files.

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from satsym.cli.options import place_option
 from satsym.cli.output import emit, live
 from satsym.status import ExitCode
 
@@ -22,9 +23,7 @@ Examples:
 
 @click.command(epilog=f"\b{EXAMPLES}")
 @click.argument("name")
-@click.option(
-    "-o", "--output", metavar="FILE", type=click.Path(path_type=Path), help="Write there instead of to stdout."
-)
+@place_option("-o", "--output", metavar="FILE", help="Write there instead of to stdout.")
 @click.option(
     "--lang", "language", type=click.Choice(("en", "id")), default="en", help="Language of the text.", show_default=True
 )

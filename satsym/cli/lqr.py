@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from satsym.cli.options import json_option, out_option, plot_option
-from satsym.cli.output import emit, emit_json, to_json
-from satsym.cli.saving import folder_for
-from satsym.status import ExitCode
+from satsym.cli.output import emit, emit_json
+from satsym.cli.saving import folder_for, save
+from satsym.status import ExitCode, Status
+
+if TYPE_CHECKING:
+    from satsym.report.files import Content
 
 EXAMPLES = """\b
 Examples:
@@ -22,7 +26,7 @@ Examples:
 @click.argument("subject", metavar="X")
 @json_option
 @out_option
-@plot_option
+@plot_option("lqr")
 def lqr(subject: str, as_json: bool, out: Path | None, plot: bool) -> ExitCode:
     """Find the gain that costs least: u = -K x for the deviation x.
 
@@ -30,24 +34,21 @@ def lqr(subject: str, as_json: bool, out: Path | None, plot: bool) -> ExitCode:
     cost is the integral of x'Qx + u'Ru, without a factor 1/2.
     """
     from satsym.analysis.feedback import designed
-    from satsym.cli.subject import find
+    from satsym.cli.subject import begins, find
     from satsym.report.linear import regulator_object
     from satsym.report.linear_text import regulator_text
     from satsym.report.text import with_files
 
     given = find(subject)
-    folder = folder_for(Path(subject).stem, out, plot)
+    folder = folder_for(Path(subject).stem, "lqr", out, plot)
     design = designed(given)
-    result = regulator_object(design)
-    saved: list[Path] = []
-    if folder is not None:
-        from satsym.report import files
+    result = begins("lqr", given, Status.CONVERGED) | regulator_object(design)
+    pictures: dict[str, Content] = {}
+    if folder and plot:
+        from satsym.report.plots.systems import of_design
 
-        saved = files.write(folder, {"result.json": files.text(to_json(result))})
-        if plot:
-            from satsym.report.plots.systems import save_design
-
-            saved += save_design(design, folder)
+        pictures = of_design(design)
+    saved = save(folder, result, pictures)
     if as_json:
         emit_json(result)
     else:

@@ -2,16 +2,50 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import click
 
+from satsym.status import BadInput
+
+
+class Place(click.Path):
+    """A path to write to or to read from; none is empty, which would be the current folder."""
+
+    def __init__(self) -> None:
+        super().__init__(path_type=Path)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """As of click.
+
+        Raises
+        ------
+        BadInput
+            If it is empty.
+        """
+        if value == "":
+            name = param.opts[-1] if param else "path"
+            raise BadInput(f"{name}: the name is empty; give one, or . for the current folder")
+        return super().convert(value, param, ctx)
+
+
+def place_option(*names: str, metavar: str, help: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """An option that takes a path."""
+    return click.option(*names, metavar=metavar, type=Place(), help=help)
+
+
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 subject_argument = click.argument("subject", metavar="X")
-out_option = click.option(
-    "--out",
-    metavar="DIR",
-    type=click.Path(path_type=Path),
-    help="Write trajectory.npz, trajectory.csv and result.json there.",
+trajectory_option = place_option(
+    "--out", metavar="DIR", help="Write trajectory.npz, trajectory.csv and result.json there; they replace a result."
 )
-plot_option = click.option("--plot", is_flag=True, help="Draw pictures too; without --out into results/NAME.")
+out_option = place_option("--out", metavar="DIR", help="Write result.json there; it replaces a result.")
+
+
+def plot_option(command: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Whether to draw, for a command, whose results go into a folder of its name."""
+    return click.option(
+        "--plot", is_flag=True, help=f"Draw pictures too; without --out into results/NAME/{command}, with all else."
+    )

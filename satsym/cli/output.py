@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import os
 import shutil
 import sys
 import time
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
-from typing import Any, TextIO
+from contextlib import contextmanager, suppress
+from typing import Any, TextIO, cast
 
 INTERVAL = 0.1
 """Seconds between two states of the live line."""
@@ -20,30 +19,80 @@ def emit(text: str) -> None:
 
     Raises
     ------
-    OSError
-        If stdout cannot take it; closed pipes included.
+    Unheard
+        If stdout cannot take it, where :func:`hearable` watches it; closed pipes included.
     """
     _write(sys.stdout, text if text.endswith("\n") else text + "\n")
 
 
 def emit_json(value: Mapping[str, Any]) -> None:
     """Write an object to stdout as JSON."""
+    from satsym.report.files import to_json
+
     emit(to_json(value))
 
 
-def to_json(value: Mapping[str, Any]) -> str:
-    """The object as JSON text, plain ASCII. Raises ValueError for a number that is not finite."""
-    return json.dumps(value, indent=2, allow_nan=False) + "\n"
-
-
 def complain(message: str) -> None:
-    """One line on stderr."""
-    _write(sys.stderr, f"satsym: {message.rstrip()}\n")
+    """One line on stderr, as far as it can be written to."""
+    with unless_unwritable():
+        _write(sys.stderr, f"satsym: {message.rstrip()}\n")
 
 
-def silence() -> None:
-    """Forget what stdout has not written yet, so that nothing fails anew when the interpreter flushes it."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+class Unheard(Exception):
+    """Stdout cannot be written to; no OSError, of which libraries have notions of their own."""
+
+    def __init__(self, cause: OSError) -> None:
+        super().__init__(str(cause))
+        self.cause = cause
+
+
+@contextmanager
+def hearable() -> Iterator[None]:
+    """Raise :class:`Unheard` where stdout cannot be written to, whoever writes."""
+    before = sys.stdout
+    if before is not None:
+        sys.stdout = cast(TextIO, _Watched(before))
+    try:
+        yield
+    finally:
+        sys.stdout = before
+
+
+class _Watched:
+    """A stream with another error for what it cannot write."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+    def write(self, text: str) -> int:
+        try:
+            return self._stream.write(text)
+        except OSError as error:
+            raise Unheard(error) from None
+
+    def flush(self) -> None:
+        try:
+            self._stream.flush()
+        except OSError as error:
+            raise Unheard(error) from None
+
+
+@contextmanager
+def unless_unwritable() -> Iterator[None]:
+    """Write to stderr in here: that it cannot be written to is no reason for anything else to change."""
+    try:
+        yield
+    except OSError:
+        silence(sys.stderr)
+
+
+def silence(stream: TextIO) -> None:
+    """Forget what a stream has not written yet, so that nothing fails anew when the interpreter flushes it."""
+    with suppress(OSError, ValueError, AttributeError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def in_colour() -> bool:
@@ -64,11 +113,13 @@ class Live:
         if self._shown and now >= self._due:
             self._due = now + INTERVAL
             width = shutil.get_terminal_size().columns - 1
-            _write(sys.stderr, f"\r\x1b[K{text[:width]}")
+            with unless_unwritable():
+                _write(sys.stderr, f"\r\x1b[K{text[:width]}")
 
     def erase(self) -> None:
         if self._shown and self._due:
-            _write(sys.stderr, "\r\x1b[K")
+            with unless_unwritable():
+                _write(sys.stderr, "\r\x1b[K")
 
 
 @contextmanager

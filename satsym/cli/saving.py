@@ -1,4 +1,4 @@
-"""Where the results of ``solve`` and ``simulate`` go."""
+"""Where results go: ``results/NAME/COMMAND``, or where the user says."""
 
 from __future__ import annotations
 
@@ -6,26 +6,27 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from satsym.cli.output import to_json
+from satsym.status import BadInput
+from satsym.wording import printable
 
 if TYPE_CHECKING:
+    from satsym.report.files import Content
     from satsym.solution import Flight, Solution
 
+RESULTS = "results"
+DRAWN = ("solve", "simulate")
+"""Commands whose results can be drawn again; here once more, because ``--help`` loads no reader of them."""
 
-def default_folder(name: str) -> Path:
-    """Where the results of an instance go if nobody says where."""
-    return Path("results", name)
 
-
-def folder_for(name: str, out: Path | None, plot: bool) -> Path | None:
-    """Where the results of an instance go, ``None`` where nothing is to be written.
+def folder_for(name: str, command: str, out: Path | None, plot: bool) -> Path | None:
+    """Where the results of a command go, ``None`` where nothing is to be written.
 
     Raises
     ------
     BadInput
         If that is no place to write to; better now than after a long run.
     """
-    folder = out or (default_folder(name) if plot else None)
+    folder = out or (Path(RESULTS, name, command) if plot else None)
     if folder:
         from satsym.report.files import check_writable
 
@@ -33,24 +34,47 @@ def folder_for(name: str, out: Path | None, plot: bool) -> Path | None:
     return folder
 
 
-def save(folder: Path | None, found: Solution | Flight, result: Mapping[str, Any], plot: bool) -> list[Path]:
-    """Write the trajectory, the result and, where asked for, the pictures.
-
-    Returns
-    -------
-    list of Path
-        What was written.
-    """
+def save(folder: Path | None, result: Mapping[str, Any], files: Mapping[str, Content]) -> list[Path]:
+    """Replace what a folder holds of earlier results, if there is one to write to; the files that were written."""
     if folder is None:
         return []
-    from satsym.report import files, trajectory
+    from satsym.report import sets
 
-    saved = files.write(folder, trajectory.contents(found) | {"result.json": files.text(to_json(result))})
-    if plot:
-        from satsym.report import plots
+    return sets.write(folder, result, files)
 
-        try:
-            saved += plots.save(found, folder)
-        except OSError as error:
-            raise files.unwritable(folder, error) from None
-    return saved
+
+def trajectory_files(folder: Path | None, found: Solution | Flight, plot: bool) -> dict[str, Content]:
+    """Trajectory and, where asked for, pictures: name -> content; none where nothing is to be written."""
+    if folder is None:
+        return {}
+    from satsym.report import plots, trajectory
+
+    return trajectory.contents(found) | (plots.pictures(found) if plot else {})
+
+
+def split(subject: str) -> tuple[str, str | None]:
+    """An instance, and the command whose results are meant: from ``NAME`` or ``NAME/COMMAND``."""
+    name, _, command = subject.rpartition("/")
+    return (name, command) if name and command in DRAWN else (subject, None)
+
+
+def saved_folder(name: str, command: str | None) -> Path:
+    """Where the results of an instance are: of a command, or of the one that wrote last.
+
+    Raises
+    ------
+    BadInput
+        If there are none.
+    """
+    from satsym.report.sets import written_at
+
+    home = Path(RESULTS, name)
+    there = {home / each: written_at(home / each) for each in ([command] if command else DRAWN)}
+    known = {folder: time for folder, time in there.items() if time is not None}
+    if not known:
+        which = f"of `satsym {command}` " if command else ""
+        raise BadInput(
+            f"{printable(name)}: no results {which}in {printable(str(home))}; `satsym {command or 'solve'} "
+            f"{printable(name)} --plot` writes them, or say with --from where they are"
+        )
+    return max(known, key=lambda folder: known[folder])

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import click
 
-from satsym.cli.options import json_option, out_option, plot_option, subject_argument
+from satsym.cli.options import json_option, plot_option, subject_argument, trajectory_option
 from satsym.cli.output import complain, emit, emit_json, in_colour
-from satsym.cli.saving import folder_for, save
+from satsym.cli.saving import folder_for, save, trajectory_files
 from satsym.status import ExitCode
 
 FEEDBACKS = ("none", "lqr", "classical", "switching", "pulses")
@@ -17,7 +17,7 @@ FEEDBACKS = ("none", "lqr", "classical", "switching", "pulses")
 EXAMPLES = """\b
 Examples:
   satsym simulate its-thesis            where the satellite goes if nobody steers it
-  satsym simulate its-thesis --plot     with pictures, into results/its-thesis
+  satsym simulate its-thesis --plot     with pictures, into results/its-thesis/simulate
   satsym simulate geo-lqr --feedback lqr    the nonlinear motion under the linear law
   satsym simulate lapan-classical       a pitch manoeuvre under the law that it states
   satsym simulate lapan-minimum-time --feedback switching    the same in least time, by the switching curve
@@ -34,8 +34,8 @@ Examples:
     help=f"One of: {', '.join(FEEDBACKS)}; by default classical where the instance states such a law, else none.",
 )
 @json_option
-@out_option
-@plot_option
+@trajectory_option
+@plot_option("simulate")
 def simulate(subject: str, feedback: str | None, as_json: bool, out: Path | None, plot: bool) -> ExitCode:
     """Follow the motion under a control law.
 
@@ -48,10 +48,10 @@ def simulate(subject: str, feedback: str | None, as_json: bool, out: Path | None
     from satsym.report.text import flight_text, with_files
 
     case = instance.load(subject)
-    folder = folder_for(case.name, out, plot)
+    folder = folder_for(case.name, "simulate", out, plot)
     flight = simulated(case, feedback)
     result = flight_object(flight)
-    saved = save(folder, flight, result, plot)
+    saved = save(folder, result, trajectory_files(folder, flight, plot))
     if as_json:
         emit_json(result)
     else:

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from satsym.cli.options import json_option, out_option, plot_option, subject_argument
+from satsym.cli.options import json_option, plot_option, subject_argument, trajectory_option
 from satsym.cli.output import emit, emit_json, in_colour, live
-from satsym.cli.saving import folder_for, save
+from satsym.cli.saving import folder_for, save, trajectory_files
 from satsym.status import ExitCode, Verdict
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ METHODS = ("auto", "sweep", "collocation", "shooting", "linear", "bang-bang")
 
 EXAMPLES = """\b
 Examples:
-  satsym solve soft-return --plot       results and pictures into results/soft-return
+  satsym solve soft-return --plot       results and pictures into results/soft-return/solve
   satsym solve my_case.toml --json      the numbers alone, for another program
 
 Exit codes: 0 converged, 3 the instance cannot be used, 4 there is no answer (its status says why),
@@ -38,8 +38,8 @@ def _positive(_context: click.Context, _option: click.Parameter, value: float | 
 @click.command(epilog=EXAMPLES)
 @subject_argument
 @json_option
-@out_option
-@plot_option
+@trajectory_option
+@plot_option("solve")
 @click.option(
     "--method", type=click.Choice(METHODS), metavar="METHOD", help=f"Instead of the instance's: {', '.join(METHODS)}."
 )
@@ -66,7 +66,7 @@ def solve(
     from satsym.report.text import progress_line, solution_text, with_files
 
     case = _changed(instance.load(subject), method=method, steps=steps, tolerance=tolerance)
-    folder = folder_for(case.name, out, plot)
+    folder = folder_for(case.name, "solve", out, plot)
     with live() as line:
         solution = solvers.solve(case, progress=lambda iteration: line.show(progress_line(iteration)))
     if case.limits:
@@ -76,7 +76,7 @@ def solve(
 
         solution = replace(solution, message=limits_passed(solution) or solution.message)
     result = solution_object(solution)
-    saved = save(folder, solution, result, plot)
+    saved = save(folder, result, trajectory_files(folder, solution, plot))
     if as_json:
         emit_json(result)
     else:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from satsym.status import BadInput
+from satsym.status import BadInput, Status
 from satsym.wording import printable, suggestion
 
 if TYPE_CHECKING:
@@ -32,3 +32,13 @@ def find(name: str) -> Instance | Kernels:
         f"{printable(name)}: no instance and no model of this name; {instead} (`satsym instances` and `satsym models` "
         "list all; or give the path of a TOML file)"
     )
+
+
+def begins(command: str, given: Instance | Kernels, status: Status) -> dict[str, Any]:
+    """What the object of a command about it begins with."""
+    from satsym.kernels import Kernels
+    from satsym.report.results import head
+
+    if isinstance(given, Kernels):
+        return head(command, given.spec, None, status)
+    return head(command, given.model.spec, given.name, status)

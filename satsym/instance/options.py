@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from satsym.instance import weights
+from satsym.instance import memory, weights
 from satsym.instance.resolve import known, quantity, time, value_of
 from satsym.instance.schema import GuessTable, LqrTable, SolverOptions
 from satsym.instance.types import Guess, LqrOptions
@@ -26,6 +26,7 @@ def solver(options: SolverOptions, spec: ProblemSpec) -> SolverOptions:
             have = ", ".join(v.symbol for v in angles) or "none"
             raise BadInput(f"[solver] free_angles: {shown(name)} is no angle among the states; angles here: {have}")
     _no_repetition(options.free_angles, "[solver] free_angles")
+    memory.check(options, spec)
     return options
 
 

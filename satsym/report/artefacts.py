@@ -113,7 +113,6 @@ def differences(rendered: Mapping[str, str], folder: Path, whole: bool) -> list[
 
 def write(rendered: Mapping[str, str], folder: Path) -> list[Path]:
     """Write what was rendered, each file whole or not at all; the paths."""
-    folder.mkdir(parents=True, exist_ok=True)
     written = []
     for name, text in rendered.items():
         write_text(folder / name, text)

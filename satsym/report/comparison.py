@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from satsym.report.results import number
+from satsym.report.results import head, number
 from satsym.report.table import figure, table
 from satsym.report.text import joined
+from satsym.report.unit_names import units
+from satsym.status import Status
 
 if TYPE_CHECKING:
     from satsym.analysis.comparison import Case, Range
@@ -24,7 +26,12 @@ def metrics_of(cases: Sequence[Case]) -> dict[str, list[float | None]]:
 
 def comparison_object(cases: Sequence[Case], over: Range | None = None) -> dict[str, Any]:
     """What ``satsym compare --json`` prints."""
-    found: dict[str, Any] = {
+    specs = [case.instance.model.spec for case in cases]
+    status = Status.CONVERGED if all(case.answered for case in cases) else Status.NOT_CONVERGED
+    begins = head("compare", specs[0], None, status)
+    if any(spec.name != specs[0].name for spec in specs):
+        begins |= {"model": None, "units": {name: unit for spec in specs for name, unit in units(spec).items()}}
+    found: dict[str, Any] = begins | {
         "instances": [
             {
                 "instance": case.instance.name,

@@ -6,11 +6,37 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from satsym import __version__
+from satsym.report.unit_names import units
 from satsym.spec import ProblemSpec, Variable
+from satsym.status import Status
 
 if TYPE_CHECKING:
     from satsym.instance import Instance
     from satsym.solution import Array, Certificate, Flight, Solution
+
+
+SCHEMA = 1
+"""Version of these objects: it grows where a key changes its meaning or goes."""
+
+
+def head(command: str, spec: ProblemSpec, instance: str | None, status: Status) -> dict[str, Any]:
+    """What the object of every command begins with.
+
+    Parameters
+    ----------
+    instance
+        Its name; ``None`` where the command is about a model, or about several instances.
+    """
+    return {
+        "satsym": __version__,
+        "schema": SCHEMA,
+        "command": command,
+        "model": spec.name,
+        "instance": instance,
+        "status": status.value,
+        "units": units(spec),
+    }
 
 
 def solution_object(solution: Solution) -> dict[str, Any]:
@@ -22,13 +48,10 @@ def solution_object(solution: Solution) -> dict[str, Any]:
         Keys in a fixed order. States and costates by the state's name; ``None`` where a number is not finite.
         ``switching_times`` are those of all controls together, each once, sorted.
     """
-    states = solution.instance.model.spec.state_names
+    spec, states = solution.instance.model.spec, solution.instance.model.spec.state_names
     switches = {float(t) for times in solution.switching_times for t in times}
-    return {
-        "model": solution.instance.model.spec.name,
-        "instance": solution.instance.name,
+    return head("solve", spec, solution.instance.name, solution.status) | {
         "method": solution.method,
-        "status": solution.status.value,
         "message": solution.status.explain(solution.message),
         "boundary_type": solution.instance.boundary_type,
         "objective": number(solution.objective),
@@ -72,9 +95,7 @@ def certificate_object(certificate: Certificate) -> dict[str, Any]:
 
 def flight_object(flight: Flight) -> dict[str, Any]:
     """What ``satsym simulate --json`` prints; see :func:`solution_object`."""
-    return {
-        "model": flight.instance.model.spec.name,
-        "instance": flight.instance.name,
+    return head("simulate", flight.instance.model.spec, flight.instance.name, flight.status) | {
         "feedback": flight.feedback,
         "t_final": _last(flight.times),
         "x_final": _named(flight.instance.model.spec.state_names, map(_last, flight.x)),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 import textwrap
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,15 +11,16 @@ import numpy as np
 
 from satsym.instance import Instance
 from satsym.report.table import figure, table
+from satsym.report.unit_names import cost_per, time_unit
 from satsym.solution import Array, Certificate, Flight, Iteration, Solution
 from satsym.status import Status
+from satsym.wording import counted
 
 WIDTH = 100
 SHOWN_TIMES = 6
 """Switching times of one control that are listed."""
 
 _AT_BOUND = 1e-9
-_TIME_UNITS = frozenset({"s", "second", "min", "minute", "h", "hour", "day", "year"})
 _BOUNDARY = {
     1: "final time and final state given",
     2: "final time free, final state given",
@@ -41,7 +41,7 @@ def solution_text(solution: Solution, colour: bool = False) -> str:
         Whether the status is coloured.
     """
     instance = solution.instance
-    unit = _time_unit(instance)
+    unit = time_unit(instance.model.spec)
     facts = [
         ("cost J", figure(solution.objective, 10)),
         ("final time", f"{figure(_last(solution.times), 10)} {unit}".rstrip()),
@@ -66,7 +66,7 @@ def solution_text(solution: Solution, colour: bool = False) -> str:
 def flight_text(flight: Flight, colour: bool = False) -> str:
     """Summary of a flight; see :func:`solution_text`."""
     instance = flight.instance
-    unit = _time_unit(instance)
+    unit = time_unit(instance.model.spec)
     facts = [("final time", f"{figure(_last(flight.times), 10)} {unit}".rstrip())]
     kept = [(name, figure(i.initial, 10), figure(i.drift, 3)) for name, i in flight.invariants.items()]
     metrics = [(name, figure(value, 10)) for name, value in flight.metrics.items()]
@@ -117,8 +117,7 @@ def _heading(instance: Instance, status: Status, how: str, colour: bool) -> list
 
 
 def _effort(solution: Solution) -> str:
-    plural = "" if solution.iterations == 1 else "s"
-    return f"{solution.iterations} iteration{plural}, {figure(solution.wall_s, 2)} s"
+    return f"{counted(solution.iterations, 'iteration')}, {figure(solution.wall_s, 2)} s"
 
 
 def _message(status: Status, message: str) -> list[str]:
@@ -133,7 +132,7 @@ def _states(instance: Instance, times: Array, x: Array, lam: Array | None) -> li
     """A line for each state: where it starts and ends, where it was to end, and its costate."""
     spec = instance.model.spec
     reference = _reference(instance, times)
-    rows = [("state", "initial", "final", "given", "reference", "difference", "costate at t0", "unit")]
+    rows = [("state", "initial", "final", "given", "reference", "difference", "unit", "costate at t0", "unit")]
     for i, state in enumerate(spec.states):
         final = _last(x[i])
         off = "" if reference is None else figure(_difference(instance, state.symbol, final, reference[i]), 3)
@@ -145,11 +144,12 @@ def _states(instance: Instance, times: Array, x: Array, lam: Array | None) -> li
                 _given(instance, state.symbol),
                 "" if reference is None else figure(reference[i]),
                 off,
-                "" if lam is None else figure(float(lam[i][0]) if len(lam[i]) else math.nan, 10),
                 "" if state.unit == "1" else state.unit,
+                "" if lam is None else figure(float(lam[i][0]) if len(lam[i]) else math.nan, 10),
+                "" if lam is None or state.unit == "1" else cost_per(state.unit),
             )
         )
-    return table(rows, right=range(1, 7))
+    return table(rows, right=(*range(1, 6), 7))
 
 
 def _difference(instance: Instance, name: str, value: float, reference: float) -> float:
@@ -213,14 +213,3 @@ def _switching(solution: Solution, unit: str) -> list[str]:
 
 def _last(row: Array) -> float:
     return float(row[-1]) if len(row) else math.nan
-
-
-def _time_unit(instance: Instance) -> str:
-    """The unit of time as the model's units spell it; nothing where they do not agree on one.
-
-    Told from the words alone: asking pint costs more than solving.
-    """
-    spec = instance.model.spec
-    words = {word for v in (*spec.states, *spec.controls) for word in re.findall(r"[A-Za-z]+", v.unit)}
-    found = words & _TIME_UNITS
-    return found.pop() if len(found) == 1 else ""

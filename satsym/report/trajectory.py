@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-import zipfile
+import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,9 +12,11 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.report import arrays, sets
 from satsym.report.files import Content
+from satsym.report.set_list import LIST, unusable
 from satsym.solution import Flight, Invariant, Iteration, Solution
-from satsym.status import BadInput, Status
+from satsym.status import Status
 from satsym.wording import printable
 
 if TYPE_CHECKING:
@@ -22,6 +24,13 @@ if TYPE_CHECKING:
     from satsym.spec import ProblemSpec
 
 Stored = dict[str, NDArray[Any]]
+
+ARRAYS = "trajectory.npz"
+COMMANDS = ("solve", "simulate")
+"""Those whose results hold a trajectory."""
+
+_LAW = re.compile(r"[a-z][a-z-]{0,29}\Z")
+"""How methods and feedbacks are called."""
 
 SAME = 1e-9
 """Difference of initial states that is none, relative to their size along the way."""
@@ -37,6 +46,7 @@ class _Kept(msgspec.Struct):
 class _Result(msgspec.Struct):
     """What of result.json is read back; the rest is in the trajectory."""
 
+    command: str
     model: str
     instance: str
     method: str = ""
@@ -85,7 +95,7 @@ def contents(found: Solution | Flight) -> dict[str, Content]:
     }
 
 
-def read(instance: Instance, folder: Path) -> Solution | Flight:
+def read(instance: Instance, folder: Path) -> tuple[Solution | Flight, sets.Found]:
     """What ``satsym solve`` or ``satsym simulate`` wrote into a folder; without the certificate of a solution.
 
     Parameters
@@ -93,23 +103,37 @@ def read(instance: Instance, folder: Path) -> Solution | Flight:
     instance
         Of which the folder holds a result.
     folder
-        With trajectory.npz and result.json.
+        With a whole set of files, see :mod:`satsym.report.sets`.
+
+    Returns
+    -------
+    The result, and the set that it comes from.
 
     Raises
     ------
     BadInput
         If one of the files is missing or damaged, or belongs to another instance.
     """
-    result, stored = _result(folder / "result.json"), _stored(folder / "trajectory.npz")
-    spec = instance.model.spec
+    found = sets.read(folder, [ARRAYS])
+    listing, place = folder / LIST, folder / ARRAYS
+    result, spec = _result(listing, found.result), instance.model.spec
     if (result.model, result.instance) != (spec.name, instance.name):
         theirs = printable(f"{result.instance} (model {result.model})")
-        raise _unusable(folder / "result.json", f"is of {theirs}, not of {instance.name} (model {spec.name})")
-    if not _fits(stored, spec):
-        raise _unusable(folder / "trajectory.npz", f"does not hold what a trajectory of {spec.name} has")
+        raise unusable(listing, f"is of {theirs}, not of {instance.name} (model {spec.name})")
+    if result.command not in COMMANDS or ARRAYS not in found.contents:
+        raise unusable(listing, f"is of `satsym {printable(result.command)}`, which leaves no trajectory")
+    if not _LAW.match(result.method if result.command == "solve" else result.feedback):
+        raise unusable(listing, "names no method and no feedback")
+    try:
+        stored = arrays.unpacked(found.contents[ARRAYS])
+    except ValueError as error:
+        raise unusable(place, f"cannot be read ({printable(str(error), 120)})") from None
+    if not _fits(stored, spec, result.command == "solve"):
+        raise unusable(place, f"does not hold what a trajectory of {spec.name} has")
     if not _starts_at(stored["x"], instance.initial):
-        raise _unusable(folder / "trajectory.npz", f"starts elsewhere than {instance.name}, which has changed since")
-    return _solution(instance, result, stored) if "lam" in stored else _flight(instance, result, stored)
+        raise unusable(place, f"starts elsewhere than {instance.name}, which has changed since")
+    make = _solution if result.command == "solve" else _flight
+    return make(instance, result, stored), found
 
 
 def _solution(instance: Instance, result: _Result, stored: Stored) -> Solution:
@@ -145,29 +169,19 @@ def _flight(instance: Instance, result: _Result, stored: Stored) -> Flight:
     )
 
 
-def _result(path: Path) -> _Result:
+def _result(path: Path, content: bytes) -> _Result:
     try:
-        return msgspec.json.decode(path.read_bytes(), type=_Result)
-    except OSError as error:
-        raise _missing(path, error) from None
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
-        raise _unusable(path, f"cannot be read ({printable(str(error))})") from None
+        found = msgspec.json.decode(content, type=_Result)
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise unusable(path, f"cannot be read ({printable(str(error))})") from None
+    return found
 
 
-def _stored(path: Path) -> Stored:
-    try:
-        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-            return {name: file[name] for name in file.files}
-    except OSError as error:
-        raise _missing(path, error) from None
-    except (ValueError, EOFError, TypeError, AttributeError, KeyError, zipfile.BadZipFile) as error:
-        raise _unusable(path, f"cannot be read ({printable(str(error))})") from None
-
-
-def _fits(stored: Stored, spec: ProblemSpec) -> bool:
-    """Whether the arrays have the names, shapes and kinds that :func:`contents` gives them."""
+def _fits(stored: Stored, spec: ProblemSpec, solved: bool) -> bool:
+    """Whether the arrays have the names, shapes and kinds that :func:`contents` gives them, and times that pass."""
     texts = {"states": list(spec.state_names), "controls": list(spec.control_names)}
-    if not {"times", "x", "u", "status", *texts} <= stored.keys():
+    numbers = {"times", "x", "u"} | ({"lam", "history", "switching"} if solved else set())
+    if stored.keys() != {"status", *texts, *numbers}:
         return False
     count = stored["times"].size
     shapes: dict[str, tuple[int, ...]] = {
@@ -175,14 +189,22 @@ def _fits(stored: Stored, spec: ProblemSpec) -> bool:
         "x": (len(spec.states), count),
         "u": (len(spec.controls), count),
     }
-    if "lam" in stored:
-        if not {"history", "switching"} <= stored.keys():
-            return False
+    if solved:
         shapes |= {"lam": shapes["x"]} | {name: (2, stored[name].size // 2) for name in ("history", "switching")}
     return (
         all(stored[name].tolist() == names for name, names in texts.items())
         and all(stored[name].shape == shape and stored[name].dtype.kind == "f" for name, shape in shapes.items())
         and stored["status"].tolist() in [status.value for status in Status]
+        and _passes(stored)
+    )
+
+
+def _passes(stored: Stored) -> bool:
+    """Whether times are numbers that do not decrease, where there is any motion; switching times are always numbers."""
+    times, switching = stored["times"], stored.get("switching", np.empty(0))
+    nothing = not np.isfinite(stored["x"]).any()
+    return bool(
+        np.isfinite(switching).all() and (nothing or (np.isfinite(times).all() and (np.diff(times) >= 0).all()))
     )
 
 
@@ -190,20 +212,10 @@ def _starts_at(x: NDArray[Any], initial: Sequence[float]) -> bool:
     """Whether the first of some states is the given one, where it is known, but for rounding."""
     if not x.shape[1]:
         return True
-    off = np.abs(x[:, 0] - initial)
-    return not (off > SAME * np.nanmax(np.abs(x), axis=1, initial=0.0)).any()
+    with np.errstate(all="ignore"):
+        off = np.abs(x[:, 0] - initial)
+        return not (off > SAME * np.nanmax(np.abs(x), axis=1, initial=0.0)).any()
 
 
 def _float(value: float | None) -> float:
     return math.nan if value is None else value
-
-
-def _missing(path: Path, error: OSError) -> BadInput:
-    reason = error.strerror or "not a file"
-    return _unusable(path, f"cannot be opened ({reason})")
-
-
-def _unusable(path: Path, why: str) -> BadInput:
-    return BadInput(
-        f"{printable(str(path))}: {why}; `satsym solve X --out {printable(str(path.parent))}` writes it anew"
-    )

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from satsym.instance import Instance
 from satsym.solution import Flight, Progress, Solution
+from satsym.solve.iteration import TimeUp
 from satsym.status import BadInput, Status
 
 if TYPE_CHECKING:
     from satsym.solve.closed_loop import Law
 
 __all__ = ["simulate", "solve"]
+
+Solver: TypeAlias = Callable[[Instance, Progress | None], Solution]
 
 METHODS = ("sweep", "collocation", "shooting", "linear", "bang-bang")
 """What is available of what an instance may name."""
@@ -64,7 +68,7 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
 
     if method == "auto" and spec.switching:
         method = "bang-bang"
-    solution = improved(_solver(method), instance, progress)
+    solution = improved(_in_time(_solver(method), method), instance, progress)
     swept = not instance.final and instance.tf is not None and not spec.multipliers
     if method == "auto" and solution.status is Status.NOT_CONVERGED and swept:
         return _swept(instance, progress)
@@ -78,7 +82,23 @@ def _unfit(switching: bool, method: str) -> str:
     return '"bang-bang" is for controls that enter without a square; use "collocation"'
 
 
-def _solver(method: str) -> Callable[[Instance, Progress | None], Solution]:
+def _in_time(solver: Solver, method: str) -> Solver:
+    """The same, without a trajectory where time ends while that is computed."""
+
+    def solved(instance: Instance, progress: Progress | None) -> Solution:
+        began = time.perf_counter()
+        try:
+            return solver(instance, progress)
+        except TimeUp:
+            from satsym.solve import out_of_time
+
+            name = "collocation" if method == "auto" else method
+            return out_of_time.solution(instance, name, time.perf_counter() - began)
+
+    return solved
+
+
+def _solver(method: str) -> Solver:
     """The one of that name, collocation by default; no other is loaded."""
     if method == "shooting":
         from satsym.solve import shooting
@@ -103,7 +123,7 @@ def _swept(instance: Instance, progress: Progress | None) -> Solution:
     from satsym.solve.certificate.competitors import none_conceivable
     from satsym.solve.improving import bottomless
 
-    found = forward_backward.solve(instance, progress)
+    found = _in_time(forward_backward.solve, "sweep")(instance, progress)
     if not found.status.answered or found.lam.any():
         return found
     if none_conceivable(found):

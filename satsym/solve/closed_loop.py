@@ -8,16 +8,21 @@ from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from satsym.instance import Instance
 from satsym.kernels.core import Function
 from satsym.solution import Array
-from satsym.solve import control_set
+from satsym.solve import blocks, control_set
+from satsym.solve.iteration import Limits
 
 Control: TypeAlias = Callable[[float, Sequence[float]], Sequence[float]]
 
 MOST_EVALUATIONS = 100_000
 """Of the rates in one run; a motion that needs more is on its way to a singularity."""
+
+EVERY = 256
+"""Evaluations between two looks at the clock."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +61,14 @@ class Run:
     left_domain: bool
 
 
-def fly(instance: Instance, law: Law, nodes: Array, tolerance: float, dynamics: Function | None = None) -> Run:
+def fly(
+    instance: Instance,
+    law: Law,
+    nodes: Array,
+    tolerance: float,
+    dynamics: Function | None = None,
+    limits: Limits | None = None,
+) -> Run:
     """Follow the motion under the admissible controls next to the law's.
 
     Parameters
@@ -67,6 +79,13 @@ def fly(instance: Instance, law: Law, nodes: Array, tolerance: float, dynamics: 
         Of each step, relative to the size of each state.
     dynamics
         Rates of change of the states, if not those of the model: a function of t, x, u and p on floats.
+    limits
+        Of the time, if it has any.
+
+    Raises
+    ------
+    TimeUp
+        If the time is over.
     """
     from scipy.integrate import solve_ivp
 
@@ -76,6 +95,8 @@ def fly(instance: Instance, law: Law, nodes: Array, tolerance: float, dynamics: 
     def rates(t: float, x: Array) -> Any:
         nonlocal count
         count += 1
+        if limits is not None and count % EVERY == 0:
+            limits.check()
         if count > MOST_EVALUATIONS:
             return [math.nan] * len(x)
         try:
@@ -99,20 +120,26 @@ def fly(instance: Instance, law: Law, nodes: Array, tolerance: float, dynamics: 
             method="DOP853",
             t_eval=nodes,
             rtol=tolerance,
-            atol=tolerance * _sizes(instance, nodes),
+            atol=tolerance * _sizes(instance, nodes, limits),
             events=boundary if positive else None,
         )
     x = np.full((len(start), len(nodes)), np.nan)
     x[:, : found.y.shape[1]] = found.y
-    wanted = [law.control(t, column) for t, column in zip(found.t.tolist(), found.y.T.tolist(), strict=True)]
+
+    def wanted(part: NDArray[Any]) -> Array:
+        columns = zip(found.t[part].tolist(), found.y[:, part].T.tolist(), strict=True)
+        return np.array([law.control(t, column) for t, column in columns]).T
+
     u = np.full((len(instance.model.spec.controls), len(nodes)), np.nan)
-    u[:, : len(wanted)] = control_set.project(instance, np.array(wanted).T)
+    every = np.arange(len(found.t))
+    met = wanted(every) if limits is None else limits.in_blocks(wanted, every)
+    u[:, : len(every)] = control_set.project(instance, met)
     return Run(x, u, found.nfev // 12, found.status == 1)
 
 
-def _sizes(instance: Instance, nodes: Array) -> Array:
+def _sizes(instance: Instance, nodes: Array, limits: Limits | None) -> Array:
     """What counts as large for each state: how large it becomes without control."""
     rest = np.zeros((len(instance.model.spec.controls), len(nodes)))
-    x, _, _ = instance.model.forward(nodes, instance.initial, rest, rest[:, 1:], instance.parameters)
+    x, _, _ = blocks.forward(instance.model, nodes, instance.initial, rest, rest[:, 1:], instance.parameters, limits)
     sizes = np.nan_to_num(np.abs(x), nan=0.0, posinf=0.0).max(axis=1)
     return np.where(sizes > 0.0, sizes, 1.0)

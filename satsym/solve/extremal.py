@@ -85,17 +85,22 @@ def solved(instance: Instance, progress: Progress | None, name: str, method: Met
 
     with np.errstate(all="ignore"):
         best = revolutions.cheapest(instance, limits, guarded, lambda found: found.cost)
-        return _solution(instance, name, best, tuple(history), began)
+        return _solution(instance, name, best, tuple(history), limits, began)
 
 
 def _solution(
-    instance: Instance, method: str, best: Best[Extremal], history: tuple[Iteration, ...], began: float
+    instance: Instance,
+    method: str,
+    best: Best[Extremal],
+    history: tuple[Iteration, ...],
+    limits: Limits,
+    began: float,
 ) -> Solution:
     extremal = best.answer
     problem, path = extremal.problem, extremal.path
     n, m = problem.states, len(instance.model.spec.controls)
     tau = np.unique(np.concatenate([np.linspace(0.0, 1.0, instance.solver.steps + 1), path.mesh]))
-    scaled = path(tau)
+    scaled = limits.in_blocks(path, tau)
     z = scaled * problem.scale.both
     for name, turns in best.turns.items():
         z[instance.model.spec.state_names.index(name)] += turns * TURN

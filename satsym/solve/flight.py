@@ -9,10 +9,10 @@ import numpy as np
 from satsym.grid import Grid
 from satsym.instance import Instance
 from satsym.solution import Array, Flight, Invariant
-from satsym.solve import closed_loop, control_set
+from satsym.solve import blocks, closed_loop, control_set, out_of_time
 from satsym.solve.balances import balances
 from satsym.solve.closed_loop import Law
-from satsym.solve.iteration import Limits, watched
+from satsym.solve.iteration import Limits, TimeUp, watched
 from satsym.status import BadInput, Status
 
 RICHARDSON = 2.0**4 - 1.0
@@ -43,6 +43,7 @@ to a singularity would take longest, to no avail.
 """
 
 
+@np.errstate(all="ignore")  # numbers out of range are a status
 def simulate(instance: Instance, law: Law | None = None) -> Flight:
     """Integrate the motion, twice, until the two runs agree: with RK4, or under a law with DOP853.
 
@@ -67,8 +68,16 @@ def simulate(instance: Instance, law: Law | None = None) -> Flight:
     """
     if instance.tf is None:
         raise BadInput(f"{instance.name}: time.tf: a simulation needs a number, not a free final time")
-    times = Grid.uniform(instance.t0, instance.tf, instance.solver.steps).nodes
     limits, _ = watched(instance, None)
+    try:
+        return _simulated(instance, law, limits)
+    except TimeUp:
+        return out_of_time.flight(instance, law.name if law else "none")
+
+
+def _simulated(instance: Instance, law: Law | None, limits: Limits) -> Flight:
+    assert instance.tf is not None
+    times = Grid.uniform(instance.t0, instance.tf, instance.solver.steps).nodes
     if law is None:
         x, steps, error = _uncontrolled(instance, limits)
         u, left = np.repeat(_control(instance), len(times), axis=1), False
@@ -97,13 +106,17 @@ def _control(instance: Instance) -> Array:
 def _uncontrolled(instance: Instance, limits: Limits) -> tuple[Array, int, float]:
     """States at the nodes by RK4, halving the step until two runs agree; steps; and the estimated error."""
     coarse_steps, sufficient = instance.solver.steps, MARGIN * instance.solver.tolerance
-    steps, x, error = coarse_steps, _fly(instance, coarse_steps), float("nan")
+    steps, x, error = coarse_steps, _fly(instance, coarse_steps, limits), float("nan")
     most = max(MOST_STEPS, 2 * coarse_steps)
     while 2 * steps <= most and (steps < HOPELESS * coarse_steps or _sound(instance, x)):
-        steps, coarse, x, before = 2 * steps, x, _fly(instance, 2 * steps), error
+        try:
+            finer = _fly(instance, 2 * steps, limits)
+        except TimeUp:  # what there is stays, with the error of the run before
+            break
+        steps, coarse, x, before = 2 * steps, x, finer, error
         error = _difference(coarse, x[:, ::2]) / RICHARDSON
         if error > 0.25 * before:  # no longer fourth order
-            error = _difference(coarse, x[:, ::2], _rounding(instance, x, steps) / sufficient) / RICHARDSON
+            error = _difference(coarse, x[:, ::2], _rounding(instance, x, steps, limits) / sufficient) / RICHARDSON
         if error <= sufficient or error > instance.solver.tolerance * FASTEST ** np.log2(most / steps):
             break
         if limits.expired:
@@ -115,19 +128,22 @@ def _controlled(instance: Instance, law: Law, times: Array, limits: Limits) -> t
     """The motion under a law, with smaller tolerances until two runs agree; and the estimated error."""
     sufficient = MARGIN * instance.solver.tolerance
     tolerance, error = sufficient, float("nan")
-    run = closed_loop.fly(instance, law, times, tolerance)
+    run = closed_loop.fly(instance, law, times, tolerance, limits=limits)
     while not error <= sufficient and tolerance > LEAST_TOLERANCE and np.isfinite(run.x).all() and not limits.expired:
         tolerance, coarse = max(SHARPER * tolerance, LEAST_TOLERANCE), run
-        run = closed_loop.fly(instance, law, times, tolerance)
+        try:
+            run = closed_loop.fly(instance, law, times, tolerance, limits=limits)
+        except TimeUp:
+            break
         error = _difference(coarse.x, run.x) / GAINED
     return run, error
 
 
-def _fly(instance: Instance, steps: int) -> Array:
+def _fly(instance: Instance, steps: int, limits: Limits) -> Array:
     assert instance.tf is not None
     grid = Grid.uniform(instance.t0, instance.tf, steps)
     u = np.repeat(_control(instance), steps + 1, axis=1)
-    x, _, _ = instance.model.forward(grid.nodes, instance.initial, u, u[:, 1:], instance.parameters)
+    x, _, _ = blocks.forward(instance.model, grid.nodes, instance.initial, u, u[:, 1:], instance.parameters, limits)
     return x
 
 
@@ -135,11 +151,11 @@ def _sound(instance: Instance, x: Array) -> bool:
     return bool(np.isfinite(x).all()) and instance.model.in_domain(x)
 
 
-def _rounding(instance: Instance, x: Array, steps: int) -> Array:
+def _rounding(instance: Instance, x: Array, steps: int, limits: Limits) -> Array:
     """What rounding can do to each state, shape (n, 1)."""
     nudged = replace(instance, initial=tuple(value * (1.0 + ROUNDING) for value in instance.initial))
     with np.errstate(invalid="ignore"):
-        effect: Array = np.abs(_fly(nudged, steps) - x).max(axis=1, keepdims=True)
+        effect: Array = np.abs(_fly(nudged, steps, limits) - x).max(axis=1, keepdims=True)
     return effect
 
 

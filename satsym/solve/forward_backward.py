@@ -54,7 +54,7 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     kernels = _kernels(instance)
     rule = "relaxation" if instance.solver.relaxation else "quasi-Newton"
     limits = Limits(instance.solver.max_iterations or ITERATIONS[rule], began + instance.solver.max_seconds)
-    problem = SweepProblem(instance, kernels, Grid.uniform(instance.t0, instance.tf, instance.solver.steps))
+    problem = SweepProblem(instance, kernels, Grid.uniform(instance.t0, instance.tf, instance.solver.steps), limits)
     start = forward(problem, _starting_control(problem))
     if not start.usable:
         return _without_answer(problem, start, time.perf_counter() - began)
@@ -132,7 +132,7 @@ def _improvable(run: Run[Descent] | Run[Relaxed]) -> bool:
 def _with_kinks(problem: SweepProblem, switches: tuple[tuple[float, ...], ...]) -> SweepProblem:
     uniform = Grid.uniform(problem.grid.t0, problem.grid.tf, problem.instance.solver.steps)
     points = sorted({t for times in switches for t in times})
-    return SweepProblem(problem.instance, problem.kernels, uniform.with_kinks(points))
+    return SweepProblem(problem.instance, problem.kernels, uniform.with_kinks(points), problem.limits)
 
 
 def _carried_over(problem: SweepProblem, sweep: Sweep, onto: SweepProblem) -> Array:

@@ -5,11 +5,15 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Generic, Protocol, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
 
 from satsym.instance import Instance
-from satsym.solution import Iteration, Progress
+from satsym.solution import Array, Iteration, Progress
 from satsym.status import Status
+from satsym.wording import counted
 
 State = TypeVar("State")
 
@@ -38,6 +42,14 @@ class Meter:
     """Work that was done, in columns (points of a mesh, steps of an integration) at which a motion was linearised."""
 
     spent: int = 0
+
+
+class TimeUp(Exception):
+    """The time is over in the midst of what does not iterate, such as a long trajectory."""
+
+
+BLOCK = 10_000
+"""Steps of a grid between two looks at the clock."""
 
 
 @dataclass(frozen=True)
@@ -80,6 +92,26 @@ class Limits:
         """Whether the time is over."""
         return time.perf_counter() > self.deadline
 
+    def check(self) -> None:
+        """Raise :class:`TimeUp` if the time is over."""
+        if self.expired:
+            raise TimeUp
+
+    def in_blocks(self, function: Callable[[NDArray[Any]], Array], places: NDArray[Any]) -> Array:
+        """Values of a function at many places, shape (rows, M), with a look at the clock now and then.
+
+        Raises
+        ------
+        TimeUp
+            If the time is over and more than a block is left: few places are never too late.
+        """
+        found = []
+        for first in range(0, len(places), BLOCK):
+            if first:
+                self.check()
+            found.append(function(places[first : first + BLOCK]))
+        return np.concatenate(found, axis=-1)
+
     @property
     def expired(self) -> bool:
         """Whether the time is over, or all work done that may be."""
@@ -119,8 +151,13 @@ def iterate(method: Method[State], limits: Limits, progress: Progress | None) ->
         if verdict := method.terminate(state):
             return Run(state, *verdict, tuple(history))
         if len(history) > limits.iterations:
-            return Run(state, Status.NOT_CONVERGED, f"no convergence in {limits.iterations} iterations", tuple(history))
+            message = f"no convergence in {counted(limits.iterations, 'iteration')}"
+            return Run(state, Status.NOT_CONVERGED, message, tuple(history))
         if limits.expired:
-            return Run(state, Status.TIME_LIMIT, f"time was up after {len(history) - 1} iterations", tuple(history))
-        state = method.step(state)
+            message = f"time was up after {counted(len(history) - 1, 'iteration')}"
+            return Run(state, Status.TIME_LIMIT, message, tuple(history))
+        try:
+            state = method.step(state)
+        except TimeUp:
+            continue  # with the last state that is whole; the clock is looked at there
         history.append(method.measure(state, len(history)))

@@ -25,6 +25,7 @@ from satsym.solve.shooting.arcs import MOST_STEPS, Arcs, sufficient
 from satsym.solve.shooting.newton import doubled, linearised, residual
 from satsym.solve.two_point import unfinished
 from satsym.status import BadInput, Status
+from satsym.wording import counted
 
 Array = NDArray[np.floating[Any]]
 
@@ -134,12 +135,13 @@ def _extremal(instance: Instance, limits: Limits, effort: bool) -> Extremal:
         )
         return unfinished(problem, arcs, message, 1, limits)
     tau = np.linspace(0.0, 1.0, instance.solver.steps + 1)
-    if control_set.violation(instance, problem.control(tau, arcs(tau), arcs.theta, bounded=False)) > 0.0:
+    control = limits.in_blocks(lambda part: problem.control(part, arcs(part), arcs.theta, bounded=False), tau)
+    if control_set.violation(instance, control) > 0.0:
         raise _refusal(instance, "bounds on its control are met")
     cost = arcs.cost() * problem.scale.cost
     limits.tell(cost, error)
     kind = "matrix exponentials" if isinstance(arcs, Exponential) else "variational equations"
-    message = f"closed form by {kind} on {len(arcs.widths)} arcs, estimated error {error:.0e}"
+    message = f"closed form by {kind} on {counted(len(arcs.widths), 'arc')}, estimated error {error:.0e}"
     return Extremal(problem, arcs, cost, Status.CONVERGED, message, 1)
 
 

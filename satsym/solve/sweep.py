@@ -17,18 +17,21 @@ from numpy.typing import NDArray
 from satsym.grid import Grid, interleave
 from satsym.instance import Instance
 from satsym.kernels import Kernels
+from satsym.solve import blocks
 from satsym.solve.control_set import without_bounds
+from satsym.solve.iteration import Limits
 
 Array = NDArray[np.floating[Any]]
 
 
 @dataclass(frozen=True, eq=False)
 class SweepProblem:
-    """What a sweep needs to know: an instance with a free final state, its kernels, and a grid."""
+    """What a sweep needs to know: an instance with a free final state, its kernels, a grid, and when to stop."""
 
     instance: Instance
     kernels: Kernels
     grid: Grid
+    limits: Limits | None = None
 
     @cached_property
     def times(self) -> Array:
@@ -113,7 +116,7 @@ def forward(problem: SweepProblem, u: Array) -> Forward:
     """Integrate the states under a control on the fine grid, shape (m, 2N+1)."""
     instance, kernels = problem.instance, problem.kernels
     p, grid = instance.parameters, problem.grid
-    x, x_mid, running = kernels.forward(grid.nodes, instance.initial, u[:, ::2], u[:, 1::2], p)
+    x, x_mid, running = blocks.forward(kernels, grid.nodes, instance.initial, u[:, ::2], u[:, 1::2], p, problem.limits)
     fine = interleave(x, x_mid)
     if not np.isfinite(fine).all():
         return Forward(u, fine, float("nan"), in_domain=True)
@@ -126,7 +129,8 @@ def backward(problem: SweepProblem, motion: Forward) -> Sweep:
     instance, kernels = problem.instance, problem.kernels
     p, grid, x, u = instance.parameters, problem.grid, motion.x, motion.u
     lam_f = kernels.terminal_gradient(grid.tf, tuple(x[:, -1].tolist()), p)
-    nodes, mids = kernels.backward(grid.nodes, lam_f, x[:, ::2], x[:, 1::2], u[:, ::2], u[:, 1::2], p)
+    motion_at, control_at = (x[:, ::2], x[:, 1::2]), (u[:, ::2], u[:, 1::2])
+    nodes, mids = blocks.backward(kernels, grid.nodes, lam_f, motion_at, control_at, p, problem.limits)
     lam = interleave(nodes, mids)
     law = kernels.control_law_batch(problem.times, x, lam, p, instance.bounds)
     gradient = kernels.stationarity_batch(problem.times, x, u, lam, p)

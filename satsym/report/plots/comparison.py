@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,20 +27,13 @@ DAMPINGS = (0.2, 5.0)
 """Shares of the instance's own, in a range."""
 
 
-def save(cases: Sequence[Case], folder: Path, formats: Sequence[str] = ("png",)) -> list[Path]:
-    """Draw the page ``comparison``.
-
-    Raises
-    ------
-    BadInput
-        If the folder cannot be written to.
-    """
+def pictures(cases: Sequence[Case], formats: Sequence[str] = ("png",)) -> dict[str, files.Content]:
+    """The page ``comparison``: name -> content of each file; none where there are no answers."""
     with style.applied():
         drawn = page(cases)
         if drawn is None:
-            return []
-        content = {f"comparison.{kind}": files.binary(style.rendered(drawn, kind)) for kind in formats}
-    return files.write(folder, content)
+            return {}
+        return {f"comparison.{kind}": files.binary(style.rendered(drawn, kind)) for kind in formats}
 
 
 def page(cases: Sequence[Case]) -> Figure | None:

@@ -60,8 +60,25 @@ def exponent_for(size: float) -> int:
 def number(value: float, digits: int = 6) -> str:
     """A number in a sentence, such as 42164.2 or 1.6 × 10⁻⁸."""
     mantissa, e, exponent = f"{value:.{digits}g}".partition("e")
-    power = f" × 10{str(int(exponent)).translate(_RAISED)}" if e else ""
-    return mantissa.replace("-", "\N{MINUS SIGN}") + power
+    return mantissa.replace("-", "\N{MINUS SIGN}") + (_times_ten_to(int(exponent)) if e else "")
+
+
+def on_axis(value: float, exponent: int, digits: int) -> str:
+    """A number as its axis shows it, with the power of ten that the axis is divided by: -770.67 × 10⁻¹⁵.
+
+    Parameters
+    ----------
+    value
+        Divided by that power.
+    """
+    text = number(value, digits)
+    if not exponent or value == 0.0:
+        return text
+    return number(value * 10.0**exponent, digits) if "×" in text else text + _times_ten_to(exponent)
+
+
+def _times_ten_to(exponent: int) -> str:
+    return f" × 10{str(exponent).translate(_RAISED)}"
 
 
 def time_scale(units: Iterable[str], span: float) -> tuple[float, str]:

@@ -12,6 +12,7 @@ from satsym.report.plots.display import number, shortened, unit_text
 from satsym.report.plots.panels import small_multiples
 from satsym.report.plots.scene import Scene
 from satsym.solution import Solution
+from satsym.wording import counted
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure, SubFigure
@@ -70,7 +71,7 @@ def _facts(scene: Scene) -> list[str]:
     result = scene.result
     found = [f"model {scene.spec.name}"]
     if isinstance(result, Solution):
-        found.append(f"by {result.method}, {result.iterations} iterations")
+        found.append(f"by {result.method}, {counted(result.iterations, 'iteration')}")
         if math.isfinite(result.objective):
             found.append(f"$J$ = {number(result.objective, 7)}")
     elif scene.spec.controls:

@@ -33,6 +33,8 @@ class Reading:
     ----------
     label
         Symbol with unit and power of ten.
+    exponent
+        Of that power, by which all numbers are divided.
     values, reference, free, target, lower, upper
         As in :class:`~satsym.report.plots.series.Series`, in that unit and counted from the datum.
     low, high
@@ -44,6 +46,7 @@ class Reading:
     """
 
     label: str
+    exponent: int
     values: Array
     reference: Array | None
     free: Array | None
@@ -80,6 +83,7 @@ def read(series: Series) -> Reading:
     last = datum if isinstance(datum, float) else float(datum[-1])
     return Reading(
         label=labelled(symbol, unit, exponent),
+        exponent=exponent,
         values=shown * scale,
         reference=placed(series.reference),
         free=placed(series.free),

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from satsym.report.plots import curves
 from satsym.report.plots.display import formula, plain
 from satsym.report.plots.scene import Scene
+from satsym.report.unit_names import cost_per, time_unit
 from satsym.solution import Flight
 
 Array = NDArray[np.floating[Any]]
@@ -143,7 +144,7 @@ def costates(scene: Scene) -> list[Series]:
         Series(
             rf"\lambda_{{{v.latex}}}",
             f"lambda_{v.symbol}",
-            "1",
+            "1" if v.unit == "1" else cost_per(v.unit),
             f"costate of {formula(v.latex, v.symbol)}",
             values,
             size=worth / width,
@@ -154,7 +155,9 @@ def costates(scene: Scene) -> list[Series]:
         along = curves.clean(model.hamiltonian_batch(scene.nodes, scene.x, scene.u, scene.lam, p))
         terms = np.abs(scene.lam * model.dynamics_batch(scene.nodes, scene.x, scene.u, p))
     meaning = "Hamiltonian" + (", constant on an extremal" if scene.spec.autonomous else "")
-    return [*found, Series("H", "H", "1", meaning, along, size=_largest(curves.clean(terms)))]
+    time = time_unit(scene.spec)
+    rate = cost_per(time) if time else "1"
+    return [*found, Series("H", "H", rate, meaning, along, size=_largest(curves.clean(terms)))]
 
 
 def invariants(scene: Scene) -> list[Series]:

@@ -104,6 +104,10 @@ _RC: dict[Any, Any] = {
 @contextmanager
 def applied() -> Iterator[None]:
     """Draw in this style, whatever the user's matplotlibrc says; afterwards their settings are back."""
+    import logging
+
+    # what it logs, such as fonts that it looks for, would else go to stderr where nobody listens
+    logging.getLogger("matplotlib").addHandler(logging.NullHandler())
     import matplotlib
 
     with matplotlib.rc_context(), warnings.catch_warnings():

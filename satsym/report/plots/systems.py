@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from satsym.report import files
 from satsym.report.plots import style
@@ -16,30 +15,29 @@ if TYPE_CHECKING:
     from satsym.analysis.orbits.survey import Survey
     from satsym.analysis.structure import Analysis
 
+Pictures: TypeAlias = dict[str, files.Content]
+"""Name -> content of each file."""
 
-def save_analysis(found: Analysis, folder: Path, formats: Sequence[str] = ("png",)) -> list[Path]:
+
+def of_analysis(found: Analysis, formats: Sequence[str] = ("png",)) -> Pictures:
     """Draw an analysis: ``eigenvalues``, and ``phase`` where there are two states.
 
     Parameters
     ----------
-    folder
-        Made if it is not there.
     formats
         Of ``png`` and ``pdf``.
 
-    Raises
-    ------
-    BadInput
-        If the folder cannot be written to.
+    Returns
+    -------
+    dict
+        Name -> content of each file.
     """
     from satsym.report.plots import phase, plane
 
-    return _save(
-        {"eigenvalues": lambda: plane.of_analysis(found), "phase": lambda: phase.portrait(found)}, folder, formats
-    )
+    return _drawn({"eigenvalues": lambda: plane.of_analysis(found), "phase": lambda: phase.portrait(found)}, formats)
 
 
-def save_orbit(found: Survey, folder: Path, formats: Sequence[str] = ("png",)) -> list[Path]:
+def of_orbit(found: Survey, formats: Sequence[str] = ("png",)) -> Pictures:
     """Draw an orbit: ``orbit``, ``point`` (eigenvalues at its start) and, of a closed one, ``multipliers``."""
     from satsym.report.plots import conics, plane, unit_circle
 
@@ -48,10 +46,10 @@ def save_orbit(found: Survey, folder: Path, formats: Sequence[str] = ("png",)) -
         "point": lambda: plane.of_point(found),
         "multipliers": lambda: unit_circle.page(found),
     }
-    return _save(pictures, folder, formats)
+    return _drawn(pictures, formats)
 
 
-def save_design(design: Design, folder: Path, formats: Sequence[str] = ("png",)) -> list[Path]:
+def of_design(design: Design, formats: Sequence[str] = ("png",)) -> Pictures:
     """Draw a regulator: ``eigenvalues``; of an instance also ``responses``; of a nonlinear model also ``basin``."""
     from satsym.report.plots import plane, responses
 
@@ -60,14 +58,14 @@ def save_design(design: Design, folder: Path, formats: Sequence[str] = ("png",))
         case = design.instance
         pictures["responses"] = lambda: responses.page(design, case)
         pictures["basin"] = lambda: responses.reach(design, case)
-    return _save(pictures, folder, formats)
+    return _drawn(pictures, formats)
 
 
-def _save(pictures: Mapping[str, Callable[[], Figure | None]], folder: Path, formats: Sequence[str]) -> list[Path]:
-    drawn: dict[str, files.Content] = {}
+def _drawn(pictures: Mapping[str, Callable[[], Figure | None]], formats: Sequence[str]) -> Pictures:
+    drawn: Pictures = {}
     with style.applied():
         for name, picture in pictures.items():
             page = picture()
             if page is not None:
                 drawn |= {f"{name}.{kind}": files.binary(style.rendered(page, kind)) for kind in formats}
-    return files.write(folder, drawn) if drawn else []
+    return drawn

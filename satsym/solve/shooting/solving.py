@@ -19,6 +19,7 @@ from satsym.solve.shooting.newton import Outcome, doubled, newton
 from satsym.solve.shooting.runge_kutta import ORDER
 from satsym.solve.two_point import explained, from_cold_start, inside, outside, unfinished
 from satsym.status import Status
+from satsym.wording import counted
 
 ACCURACY = 1e-11
 """Error of an arc during Newton's method, at first. Twice as many steps, which make the answer, have a 256th of it."""
@@ -100,14 +101,14 @@ def extremal(problem: TwoPoint, start: Path, limits: Limits) -> Extremal:
             if error <= tolerance:
                 return converged(arcs, error, total)
             accuracy /= 2**ORDER
-            why = f"the estimated error stays at {error:.0e} on {len(mesh) - 1} arcs of {arcs.steps} steps"
+            why = f"the estimated error stays at {error:.0e} on {_said(arcs)}"
     return unfinished(problem, start, why, total, limits)
 
 
 def converged(arcs: Arcs, error: float, iterations: int) -> Extremal:
     """The extremal that arcs are, with their estimated error."""
     problem = arcs.problem
-    message = f"estimated error {error:.0e} on {len(arcs.widths)} arcs of {arcs.steps} steps"
+    message = f"estimated error {error:.0e} on {_said(arcs)}"
     return Extremal(problem, arcs, arcs.cost() * problem.scale.cost, Status.CONVERGED, message, iterations)
 
 
@@ -133,3 +134,7 @@ def _shot(problem: TwoPoint, start: Path, mesh: Array, accuracy: float, limits: 
             break
         mesh = np.insert(mesh, np.arange(1, len(mesh)), (mesh[1:] + mesh[:-1]) / 2.0)
     return replace(outcome, iterations=total)
+
+
+def _said(arcs: Arcs) -> str:
+    return f"{counted(len(arcs.widths), 'arc')} of {counted(arcs.steps, 'step')}"

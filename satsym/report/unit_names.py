@@ -1,0 +1,44 @@
+"""Units of what results hold, as text: of time, and of what is counted in the cost."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from satsym.spec import ProblemSpec
+
+COST = "cost"
+"""The unit of J: weights decide what that is, and models do not state it."""
+
+_TIMES = frozenset({"s", "second", "min", "minute", "h", "hour", "day", "year"})
+
+
+def time_unit(spec: ProblemSpec) -> str:
+    """The unit of time as the model's units spell it; nothing where they do not agree on one.
+
+    Told from the words alone: asking pint costs more than solving.
+    """
+    words = {word for v in (*spec.states, *spec.controls) for word in re.findall(r"[A-Za-z]+", v.unit)}
+    found = words & _TIMES
+    return found.pop() if len(found) == 1 else ""
+
+
+def cost_per(unit: str) -> str:
+    """The unit of a costate: of the cost, per unit of the state."""
+    if unit == "1":
+        return COST
+    return f"{COST}/({unit})" if re.search(r"[*/^]", unit) else f"{COST}/{unit}"
+
+
+def units(spec: ProblemSpec) -> dict[str, str | None]:
+    """Unit of each state, control and costate by name, of the time ``t`` and of the ``objective``.
+
+    Names are those of trajectory.csv; ``"1"`` for a plain number, ``None`` where a unit is not clear.
+    """
+    plain = all(v.unit == "1" for v in (*spec.states, *spec.controls))
+    found: dict[str, str | None] = {"t": time_unit(spec) or ("1" if plain else None)}
+    found |= {v.symbol: v.unit for v in (*spec.states, *spec.controls)}
+    if spec.has_cost:
+        found |= {f"lambda_{v.symbol}": cost_per(v.unit) for v in spec.states} | {"objective": COST}
+    return found
