@@ -13,7 +13,7 @@ from satsym.instance import Instance
 from satsym.report.table import figure, table
 from satsym.report.unit_names import cost_per, time_unit
 from satsym.solution import Array, Certificate, Flight, Iteration, Solution
-from satsym.status import Status
+from satsym.status import Status, Verdict
 from satsym.wording import counted
 
 WIDTH = 100
@@ -98,12 +98,32 @@ def progress_line(iteration: Iteration) -> str:
 
 
 def _certificate(certificate: Certificate) -> list[str]:
-    """The verdict, and each check with its limit; a failed one says so."""
+    """The verdict, what it was compared with, and each check with its limit; a failed one says so."""
     rows = [
         (c.name, figure(abs(c.value), 2), "ok" if c.passed else f"FAILED, limit {figure(c.limit, 2)}")
         for c in certificate.checks
     ]
-    return [f"  certificate: {certificate.verdict}", *table([("", "", ""), *rows], right=(1,))[1:]]
+    compared = [
+        (c.kind.value, str(c.tried), str(c.unanswered), figure(c.cheapest, 10))
+        for c in certificate.competitors
+        if c.tried
+    ]
+    header = ("competitors", "tried", "unanswered", "cheapest costs")
+    return [
+        *_wrapped(f"certificate: {_verdict(certificate)}"),
+        *table([("", "", ""), *rows], right=(1,))[1:],
+        *(["", *table([header, *compared], right=(1, 2, 3))] if compared else []),
+    ]
+
+
+def _verdict(certificate: Certificate) -> str:
+    """The verdict in words, with what was not checked."""
+    words = certificate.verdict.value
+    solved = sum(c.solved for c in certificate.competitors)
+    if certificate.verdict is Verdict.CERTIFIED and solved:
+        words += f": strict local minimum; {counted(solved, 'competitor')} of these kinds compared, none cheaper"
+    missing = ", ".join(kind.value for kind in certificate.not_checked)
+    return f"{words}; not checked: {missing}" if missing else words
 
 
 def joined(blocks: Sequence[Sequence[str]]) -> str:
