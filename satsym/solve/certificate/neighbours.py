@@ -25,8 +25,8 @@ STEPS = ((200, 1e-3), (800, 1e-3), (3200, 1e-2))
 """RK4 steps with which neighbours are compared, on as many as the solution itself, and the relative distance from the
 solution's end within which these follow it; the fewest that do."""
 
-AMPLITUDES = (0.05, -0.05, 0.01, -0.01)
-"""Of a neighbour's departure from the control, relative to the largest control, and of the final time's change."""
+AMPLITUDES = (0.05, 0.01)
+"""Of departures from the control to both sides, relative to the largest control, and of the final time's change."""
 
 SADDLE = 1e-4
 """Curvature below zero by more than this is no error of the grid's."""
@@ -47,7 +47,8 @@ class Neighbours:
     Attributes
     ----------
     margin
-        How much dearer the cheapest is, relative to the cost; infinite where none could be simulated.
+        How much dearer the cheapest pair of opposite ones is in the mean, relative to the cost; infinite where none
+        could be simulated.
     curvature
         The least of the second variation on short pieces of the control, in units of what the change of the control
         costs; infinite where the end leaves no choice, NaN where it could not be resolved.
@@ -122,7 +123,7 @@ class Simulations:
 
 def neighbours(solution: Solution) -> Neighbours:
     """The cheapest neighbour in the direction in which the second variation is least."""
-    nothing = Neighbours(float("inf"), float("nan"), Competitors(Kind.NEIGHBOURS, len(AMPLITUDES), 0, float("nan")))
+    nothing = Neighbours(float("inf"), float("nan"), Competitors(Kind.NEIGHBOURS, 2 * len(AMPLITUDES), 0, float("nan")))
     simulations = simulations_of(solution)
     if simulations is None:
         return nothing
@@ -142,16 +143,18 @@ def neighbours(solution: Solution) -> Neighbours:
         return Neighbours(float("inf"), float("inf"), Competitors(Kind.NEIGHBOURS, 0, 0, float("nan")))
     unit = direction / size
     search = _Search(simulations, second, solution, reference[1], missed)
-    costs = [search.corrected(amplitude * unit) for amplitude in AMPLITUDES]
-    solved = [cost for cost in costs if np.isfinite(cost)]
+    # The grid's own end may make one side cheaper: that is of first order, and cancels in the mean of both.
+    means = [(search.corrected(a * unit) + search.corrected(-a * unit)) / 2.0 for a in AMPLITUDES]
+    solved = [cost for cost in means if np.isfinite(cost)]
     cheapest = min(solved, default=float("inf"))
     stated = solution.objective + (cheapest - reference[0])  # without what simulating makes of both
     # To another end than the solution's, its control is not the best, by the square of the distance.
     own = max(hidden(solution), simulations.missed**2 * max(products(solution), abs(reference[0])))
+    own = max(own, abs(reference[0] - solution.objective))  # nor does a grid tell less than it is off itself
     return Neighbours(
         margin(cheapest, reference[0], hidden=own),
         curvature,
-        Competitors(Kind.NEIGHBOURS, len(costs), len(solved), stated if solved else float("nan")),
+        Competitors(Kind.NEIGHBOURS, 2 * len(means), 2 * len(solved), stated if solved else float("nan")),
     )
 
 
