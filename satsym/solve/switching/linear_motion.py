@@ -108,14 +108,13 @@ def linear_motion(instance: Instance) -> LinearMotion | None:
 
 
 def _cost(instance: Instance, t: Array, x: Array, u: Array) -> tuple[float, Array, Array]:
-    """Coefficients of the running cost; NaN for the first where it, or a terminal cost, depends on anything else."""
+    """Coefficients of the running cost; NaN for the first where there are others, or a terminal cost."""
     model, p, m = instance.model, instance.parameters, len(u)
     none = np.zeros_like(x)
     slope = np.broadcast_to(np.asarray(model.switching_function_batch(t, x, none, p)), u.shape)
     weight = np.broadcast_to(np.asarray(model.magnitude_weight_batch(t, x, p)), u.shape)
     idle = np.broadcast_to(np.asarray(model.running_cost_batch(t, x, np.zeros_like(u), p)), t.shape)
-    ends = [model.terminal_gradient(instance.t0, tuple(column), p) for column in x.T.tolist()]
-    plain = _constant(slope) and _constant(weight) and _constant(idle) and not np.any(ends)
+    plain = _constant(slope) and _constant(weight) and _constant(idle) and not model.spec.has_terminal_cost
     return (float(idle[0]) if plain else float("nan")), slope[:, 0].copy(), weight[:, 0].copy()
 
 
