@@ -103,7 +103,9 @@ def test_van_der_pols_oscillator_ends_in_a_singular_arc_within_its_bounds(
     assert failed == ["no proof of a minimum along singular arcs: not convex"]
 
 
-def test_a_certificate_that_takes_too_much_work_fails_and_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_certificate_that_takes_too_much_work_fails_and_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     found = solving.solve(instance(tmp_path, problem("regulator", {x: v}, x**2 / 2, ("v",)), (1.2,), 3.0))
     monkeypatch.setattr(replaying, "EVALUATIONS", 50)
     monkeypatch.setattr(certifying, "EVALUATIONS", 50)

@@ -135,7 +135,7 @@ def next_switch(
 def at_once(
     field: Field, settled: list[bool], start: float, end: float, z: Array, sizes: Array
 ) -> tuple[int, int] | None:
-    """A control that switches at the very start of an arc, at the same time as another did, and its level from there."""
+    """A control that switches at the very start of an arc, together with another, and its level from there."""
     for mark in _marks(field, settled, start, z):
         now, rate = mark.gap(start, z.tolist())
         size = mark.size(start, z, sizes)

@@ -102,7 +102,9 @@ def replay(solution: Solution, within: Limits | None = None) -> Replay | None:
     sizes = np.concatenate(typical(solution))
     z, t, end = np.concatenate([instance.initial, solution.lam[:, 0]]), instance.t0, float(solution.times[-1])
     stated = [arcs(solution, control) for control in range(len(instance.lower))]
-    settled = [decided_by_none(solution, i) for i in range(len(stated))]  # no sign shows their switches: the solver's stand
+    settled = [
+        decided_by_none(solution, i) for i in range(len(stated))
+    ]  # no sign shows their switches: the solver's stand
     stations = np.unique(solution.times)
     pieces: list[Piece] = []
     rows: list[tuple[Array, Array, Array]] = []
@@ -158,8 +160,8 @@ def _piece(
     """The arc from a time to the next switch, and the levels after it."""
     together = at_once(field, settled, start, end, z, sizes)
     if together is not None:
-        control, level = together
-        return Piece(field, start, start, z, z, control, np.eye(len(z))), _with(field.levels, control, level)
+        piece = Piece(field, start, start, z, z, together[0], np.eye(len(z)))
+        return piece, _with(field.levels, *together)
     known = [
         (now[1], i, after[2])
         for i, row in enumerate(stated)

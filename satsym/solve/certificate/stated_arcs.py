@@ -48,7 +48,7 @@ def decided_by_none(solution: Solution, control: int) -> bool:
 
 
 def indifferent(solution: Solution, control: int) -> bool:
-    """Whether a control may do what it likes all along, as far as H shows: nor is there a singular arc it must follow."""
+    """Whether a control may do what it likes all along, as far as H shows, with no singular arc to follow."""
     if undecided(solution, control) < MOSTLY:
         return False
     instance, k = solution.instance, len(solution.times) // 2

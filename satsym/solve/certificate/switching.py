@@ -79,9 +79,7 @@ def certify(solution: Solution) -> Certificate:
 
 def _without_flow(verdict: Verdict, check: Check, not_checked: tuple[Kind, ...]) -> Certificate:
     missing = float("nan")
-    return Certificate(
-        verdict, missing, missing, missing, None, missing, None, (check,), not_checked=not_checked
-    )
+    return Certificate(verdict, missing, missing, missing, None, missing, None, (check,), not_checked=not_checked)
 
 
 def _first_order(solution: Solution, again: Replay) -> list[Check]:

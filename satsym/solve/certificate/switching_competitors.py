@@ -1,4 +1,4 @@
-"""Competitors of exact arcs: other structures, other durations and other starts, each an admissible motion that arrives.
+"""Competitors of exact arcs: motions that arrive with other structures, in other durations, from other starts.
 
 None of them is where a solver starts from: what is seeded here is drawn anew, and of a linear motion's durations those
 are looked at that lie on the way to the solution's.
@@ -6,14 +6,12 @@ are looked at that lie on the way to the solution's.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from satsym.instance import Instance
 from satsym.solution import Competitors, Kind, Solution
 from satsym.solve.failures import tried
 from satsym.solve.iteration import Limits
@@ -86,7 +84,9 @@ def _drawn(solution: Solution, limits: Limits) -> list[Competitors]:
     found = scouts.scouted(instance, together(*(plans for _, plans, _ in parts)), sizes, limits, ends)
     exact = _exact(solution, found, kinds, ends, sizes, limits)
     return [
-        Competitors(kind, len(own), *_cheapest(solution, [one for one in found if kinds[one.number] == kind.value], exact))
+        Competitors(
+            kind, len(own), *_cheapest(solution, [one for one in found if kinds[one.number] == kind.value], exact)
+        )
         for kind, _, own in parts
     ]
 
@@ -100,7 +100,7 @@ def _work(switches: list[int]) -> float:
 def _exact(
     solution: Solution, found: list[Scout], kinds: NDArray[Any], ends: Array, sizes: Array, limits: Limits
 ) -> dict[int, float]:
-    """Exact costs of the cheapest of each kind, where these seem to undercut the solution, by the number of the plan."""
+    """Exact costs by the number of the plan: of the cheapest of each kind that seem to undercut the solution."""
     chosen = [
         one
         for kind in dict.fromkeys(kinds.tolist())

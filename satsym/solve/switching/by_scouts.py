@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from satsym.solve.switching.least_effort import first_duration
 from satsym.solve.switching.newton import Equations
 from satsym.solve.switching.plans import Scout, seeded
 from satsym.solve.switching.recognition import Guess
-from satsym.solve.switching.scouts import scouted
+from satsym.solve.switching.scouts import ROUNDS, scouted
 from satsym.solve.switching.structure import Structure
 
 Array = NDArray[np.floating[Any]]
@@ -23,10 +24,13 @@ Array = NDArray[np.floating[Any]]
 SEED = 7
 """Of what is drawn; certificates draw otherwise."""
 
-PLANS = 24
+PLANS = 32
 """At once."""
 
-AROUND, FAR = (0.1, 1.3), (0.1, 10.0)
+PATIENT = 50
+"""Corrections of their arcs, where no extremal is known."""
+
+AROUND, FAR = (0.1, 1.3), (0.2, 10.0)
 """Shares of a known duration, and of one that is only a scale, between which others are drawn."""
 
 MORE, MOST = 2, 4
@@ -78,13 +82,13 @@ def _drawn(
     sizes = np.where(sizes > 0.0, sizes, max(float(sizes.max()), 1e-300))
     wanted = ends if instance.tf is not None else np.full(PLANS, np.nan)
     seen: list[float] = []
-    for scout in scouted(instance, plans, sizes, limits, wanted):
+    for scout in scouted(instance, plans, sizes, limits, wanted, ROUNDS if known else PATIENT):
         if scout.cost >= cost - APART * abs(cost) or len(seen) == TRIED:
             break
         if seen and abs(scout.cost - seen[-1]) <= APART * abs(seen[-1]):
             continue
         seen.append(scout.cost)
-        first = tried(lambda scout=scout: _guess(instance, scout, sizes))
+        first = tried(partial(_guess, instance, scout, sizes))
         exact = None if first is None else attempt(instance, first, limits)
         if exact is not None and exact.trajectory.cost(instance) < cost - APART * abs(cost):
             return exact

@@ -68,7 +68,7 @@ def arrivals(instance: Instance, motion: LinearMotion, limits: Limits) -> Iterat
     rows, n = given_rows(instance), len(instance.initial)
     apart = np.array(instance.initial)[rows] - goal(instance, rows, instance.t0)
     size = np.maximum(np.abs(np.array(instance.initial)[rows]), np.abs(goal(instance, rows, instance.t0)))
-    costate = np.zeros(n)
+    costate: Array = np.zeros(n)
     costate[rows] = apart / np.where(size > 0.0, size, 1.0) ** 2
     duration = _beyond(instance, motion, costate, 0.0, _scale(instance, motion))
     further, tired = BEYOND, 0

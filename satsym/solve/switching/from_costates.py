@@ -6,7 +6,6 @@ given the arcs that bring the motion to its end with the least effort, weighed s
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -73,10 +72,10 @@ def _with_least_effort(reach: Reach, sigma: Array, weight: Array, open_: NDArray
     side = np.where(weight[:, 0] > 0.0, np.sign(middle[:, 0]), 0.0)  # |u| may not cost more on the other side
     choices = levels.copy()
     choices[0, side < 0.0], choices[2, side > 0.0] = levels[1, side < 0.0], levels[1, side > 0.0]
-    choices = choices[:, open_].reshape(3, -1)
+    offered = choices[:, open_].reshape(3, -1)
     effort = np.exp(np.linspace(0.0, 1.0, 2 * count + 1))
-    prices = np.tile(effort[1::2], int(open_.sum())) * np.abs(choices) * (reach.duration / count)
-    found = cheapest(axes.T @ own, axes.T @ base, choices, prices)
+    prices = np.tile(effort[1::2], int(open_.sum())) * np.abs(offered) * (reach.duration / count)
+    found = cheapest(axes.T @ own, axes.T @ base, offered, prices)
     if found is None:
         return sigma, weight
     pushing, side = reach.pushing(reach.in_full(towards.T @ (axes @ found[1]))), side[:, None]

@@ -109,7 +109,7 @@ def linear_motion(instance: Instance) -> LinearMotion | None:
 
 def _cost(instance: Instance, t: Array, x: Array, u: Array) -> tuple[float, Array, Array]:
     """Coefficients of the running cost; NaN for the first where there are others, or a terminal cost."""
-    model, p, m = instance.model, instance.parameters, len(u)
+    model, p = instance.model, instance.parameters
     none = np.zeros_like(x)
     slope = np.broadcast_to(np.asarray(model.switching_function_batch(t, x, none, p)), u.shape)
     weight = np.broadcast_to(np.asarray(model.magnitude_weight_batch(t, x, p)), u.shape)

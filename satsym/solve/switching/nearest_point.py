@@ -56,8 +56,9 @@ def nearest_point(support: Callable[[Array], Array], first: Array, close: float,
     tight
         Share of its distance by which a hyperplane may be nearer to the origin than the point.
     """
-    corners, shares, point, best = first[None], np.ones(1), first, -np.inf
-    direction = first
+    corners: Array = first[None]
+    shares: Array = np.ones(1)
+    point, direction, best = first, first, -np.inf
     for _ in range(ROUNDS):
         length = float(np.linalg.norm(point))
         if length <= close:

@@ -72,7 +72,8 @@ def seeded(
     for number, duration in enumerate(durations.tolist()):
         times, tables = [], []
         for control, most in enumerate(switches):
-            own = _walk(instance, control, bool(weighs[control]), int(rng.integers(0, most + 1)), number + opposite, rng)
+            count = int(rng.integers(0, most + 1))
+            own = _walk(instance, control, bool(weighs[control]), count, number + opposite, rng)
             tables.append((np.sort(rng.uniform(0.0, duration, len(own) - 1)), own))
             times.append(tables[-1][0])
         edges = np.concatenate([[0.0], np.sort(np.concatenate(times)), [duration]])

@@ -103,8 +103,8 @@ class Reach:
         end = end + np.einsum("kij,jk->i", self.powers[self.count - 1 :: -1], pushed)
         f = motion.states @ end + motion.controls @ u[:, -1] + motion.drift
         cost = motion.rate + float(motion.slope @ u[:, -1] + motion.weight @ np.abs(u[:, -1]))
-        moving = (goal(self.instance, self.rows, t + length) - goal(self.instance, self.rows, t - length)) / (2.0 * length)
-        return cost + float(costate @ f) - float(costate[self.rows] @ moving)
+        before, after = (goal(self.instance, self.rows, at) for at in (t - length, t + length))
+        return cost + float(costate @ f) - float(costate[self.rows] @ (after - before)) / (2.0 * length)
 
     @cached_property
     def steps(self) -> tuple[Array, Array]:

@@ -34,6 +34,10 @@ BOLD, CALMER = 0.3, 0.9
 LARGEST = 0.5
 """Share of the duration by which an arc may change at once so that the motion arrives."""
 
+GROWN, BACK, FORTH = 1.5, 0.3, 1.6
+"""A miss that is so many times larger after a change is none to go on from: the change is taken back but for a share,
+and the next ones are smaller, and larger again where that goes well."""
+
 NUDGE = 1e-6
 """Difference that derivatives are taken over, as a share of the duration."""
 
@@ -52,7 +56,9 @@ NOISE = 1e-4
 """Share of a slope below which what is left of it is the error of a difference."""
 
 
-def scouted(instance: Instance, plans: Plans, sizes: Array, limits: Limits, ends: Array) -> list[Scout]:
+def scouted(
+    instance: Instance, plans: Plans, sizes: Array, limits: Limits, ends: Array, rounds: int = ROUNDS
+) -> list[Scout]:
     """What of these plans arrives, the cheapest first.
 
     Parameters
@@ -63,17 +69,26 @@ def scouted(instance: Instance, plans: Plans, sizes: Array, limits: Limits, ends
         Spent by the points at which a motion is looked at.
     ends
         The final time of each plan, where it is given or to be kept, NaN where it is free; shape (M,).
+    rounds
+        Corrections of the lengths of arcs.
     """
     wanted = _Wanted(instance, sizes, np.flatnonzero(_final(instance)[:2].any(axis=0)), ends)
     steps = _Steps.of(instance, limits)
     lengths = plans.lengths.copy()
     span = lengths.sum(axis=0)
-    for round_ in range(ROUNDS):
+    before, missed, trust = lengths, np.full(lengths.shape[1], np.inf), np.full(lengths.shape[1], LARGEST)
+    for round_ in range(rounds):
         if limits.expired:
             return []
         value, _, slopes, gradient = _derivatives(instance, plans.levels, lengths, NUDGE * span, wanted, steps)
-        bold = BOLD * CALMER**round_ if round_ < ROUNDS - LAST else 0.0
-        lengths = np.maximum(lengths + _step(value, slopes, gradient, lengths, span, bold), 0.0)
+        miss = np.abs(value).max(axis=0, initial=0.0)
+        worse = ~(miss <= np.maximum(GROWN * missed, ARRIVED)) & (round_ > 0)
+        trust = np.where(worse, trust * BACK, np.minimum(trust * FORTH, LARGEST))
+        lengths = np.where(worse, before + BACK * (lengths - before), lengths)  # and look there again
+        before, missed = np.where(worse, before, lengths), np.where(worse, missed, miss)
+        bold = BOLD * CALMER**round_ if round_ < rounds - LAST else 0.0
+        moved = np.maximum(lengths + _step(value, slopes, gradient, lengths, trust * span, bold / LARGEST), 0.0)
+        lengths = np.where(worse, lengths, moved)
         span = np.maximum(lengths.sum(axis=0), 1e-9 * span)
     return _arrived(wanted, Plans(plans.levels, lengths), steps, ARRIVED)
 
@@ -99,7 +114,7 @@ def exactly(instance: Instance, scouts: list[Scout], sizes: Array, limits: Limit
         value, _, slopes, gradient = _derivatives(instance, plans.levels, lengths, NUDGE * span, wanted, steps)
         if float(np.abs(value).max(initial=0.0)) <= THERE / 10.0:
             break
-        lengths = np.maximum(lengths + _step(value, slopes, gradient, lengths, span, 0.0), 0.0)
+        lengths = np.maximum(lengths + _step(value, slopes, gradient, lengths, LARGEST * span, 0.0), 0.0)
     found = _arrived(wanted, Plans(plans.levels, lengths), steps, THERE)
     return [replace(one, number=scouts[one.number].number) for one in found]
 
@@ -231,7 +246,7 @@ def _flown(instance: Instance, levels: NDArray[np.int64], lengths: Array, steps:
     return x, cost
 
 
-def _step(value: Array, slopes: Array, gradient: Array, lengths: Array, span: Array, bold: float) -> Array:
+def _step(value: Array, slopes: Array, gradient: Array, lengths: Array, largest: Array, bold: float) -> Array:
     """How lengths of arcs change, shape (K, M): towards the end, and downhill along what leaves it where it is."""
     usable = np.isfinite(slopes).all(axis=(1, 2)) & np.isfinite(gradient).all(axis=1) & np.isfinite(value).all(axis=0)
     slopes, gradient = (np.where(usable.reshape(-1, *[1] * (part.ndim - 1)), part, 0.0) for part in (slopes, gradient))
@@ -242,13 +257,12 @@ def _step(value: Array, slopes: Array, gradient: Array, lengths: Array, span: Ar
         table = slopes * free[:, None]
         inverse = np.linalg.pinv(table, rcond=RANK)
         towards = -np.einsum("mkc,cm->mk", inverse, value)
-        towards *= np.minimum(1.0, LARGEST * span / np.maximum(np.abs(towards).max(axis=1), 1e-300))[:, None]
+        towards *= np.minimum(1.0, largest / np.maximum(np.abs(towards).max(axis=1), 1e-300))[:, None]
         downhill = np.where(free, -gradient, 0.0)
         steepest = np.abs(downhill).max(axis=1)
         downhill = downhill - np.einsum("mkc,mcl,ml->mk", inverse, table, downhill)
         size = np.abs(downhill).max(axis=1)
-        downhill *= np.where(size > NOISE * steepest, bold * span / np.maximum(size, 1e-300), 0.0)[:, None]
+        downhill *= np.where(size > NOISE * steepest, bold * largest / np.maximum(size, 1e-300), 0.0)[:, None]
         step = towards + downhill
         free &= ~((lengths.T <= 0.0) & (step < 0.0))
     return np.asarray(np.where(free, step, 0.0).T)
-

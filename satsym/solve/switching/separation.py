@@ -37,6 +37,7 @@ def separates(instance: Instance, costate: Array) -> bool:
     assert instance.tf is not None
     model, p, n = instance.model, instance.parameters, len(costate)
     low, high = np.array(instance.lower), np.array(instance.upper)
+    largest = np.maximum(np.abs(low), np.abs(high))
     at_zero, idle = (0.0,) * n, (0.0,) * len(low)
 
     def backwards(t: float, y: Array) -> Array:
@@ -44,7 +45,8 @@ def separates(instance: Instance, costate: Array) -> bool:
         pushed = y[:n] @ np.array(model.jacobian_u(t, at_zero, idle, p)).reshape(n, -1)
         drift = y[:n] @ np.array(model.dynamics(t, at_zero, idle, p))
         least = float(np.minimum(pushed * low, pushed * high).sum())
-        return np.concatenate([-y[:n] @ by_x, [-drift - least, -abs(drift) - np.abs(pushed) @ np.maximum(np.abs(low), np.abs(high))]])
+        terms = abs(drift) + np.abs(pushed) @ largest
+        return np.concatenate([-y[:n] @ by_x, [-drift - least, -terms]])
 
     size = max(float(np.abs(costate).max()), 1e-300)
     start = np.concatenate([costate / size, [0.0, 0.0]])

@@ -12,11 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.instance import Instance
-from satsym.solution import Iteration, Progress, Solution
+from satsym.solution import Progress, Solution
 from satsym.solve.failures import FAILURES, tried, unbroken
 from satsym.solve.iteration import Limits, watched
 from satsym.solve.nearest import nearest
 from satsym.solve.switching import by_reach, by_scouts, held, homotopy, least_effort
+from satsym.solve.switching.answers import answered, without
 from satsym.solve.switching.attempt import Exact, attempt
 from satsym.solve.switching.least_time import least_time
 from satsym.solve.switching.newton import switching
@@ -72,8 +73,8 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         if isinstance(found, homotopy.Stopped):
             found = _by_least_time(instance, found, limits)
         if isinstance(found, homotopy.Stopped):
-            return _none(instance, _out_of_reach(found, limits), tuple(history), began)
-        return _solution(instance, *found, tuple(history), began)
+            return without(instance, _out_of_reach(found, limits), tuple(history), began)
+        return answered(instance, *found, tuple(history), began)
 
 
 def _by_least_time(
@@ -166,12 +167,12 @@ def _found(instance: Instance, limits: Limits) -> tuple[Exact, str] | homotopy.S
     if instance.tf is not None and (message := by_reach.unreachable(instance, limits)):
         return homotopy.Stopped(Status.INFEASIBLE, message)
     found = _by_effort(instance, limits)
-    known = None if isinstance(found, homotopy.Stopped) else found[0]
+    best = None if isinstance(found, homotopy.Stopped) else found[0]
     for _ in range(ADOPTED):
-        better = None if limits.expired else tried(partial(by_scouts.cheaper, instance, known, limits))
+        better = None if limits.expired else tried(partial(by_scouts.cheaper, instance, best, limits))
         if better is None:
             break
-        known, found = better, (better, "switching times that were drawn")
+        best, found = better, (better, "switching times that were drawn")
     return found
 
 
@@ -284,51 +285,3 @@ def _candidates(instance: Instance, seen: Sample, before: Sample | None) -> list
 
 def _time(seen: Sample, where: NDArray[np.bool_]) -> float:
     return float(np.trapezoid(where.astype(float), seen.times))
-
-
-def _solution(instance: Instance, exact: Exact, way: str, history: tuple[Iteration, ...], began: float) -> Solution:
-    at, structure, trajectory = exact.refined.at, exact.refined.structure, exact.trajectory
-    nodes = np.linspace(instance.t0, at.end, instance.solver.steps + 1)
-    times, z, u = trajectory.grid(nodes)
-    n = len(instance.initial)
-    status = Status.CONVERGED if instance.model.in_domain(z[:n]) else Status.LEFT_DOMAIN
-    plural = "" if structure.switches == 1 else "es"
-    message = (
-        f"structure {structure.name}, {structure.switches} switch{plural}, residual {exact.refined.residual:.0e}, "
-        f"from {way}"
-    )
-    return Solution(
-        instance=instance,
-        method="bang-bang",
-        status=status,
-        message=message,
-        objective=trajectory.cost(instance),
-        times=times,
-        x=z[:n],
-        u=u,
-        lam=z[n:],
-        switching_times=tuple(tuple(own.tolist()) for own in structure.by_control(at.times)),
-        iterations=exact.iterations,
-        history=history,
-        wall_s=time.perf_counter() - began,
-    )
-
-
-def _none(instance: Instance, stopped: homotopy.Stopped, history: tuple[Iteration, ...], began: float) -> Solution:
-    n, m = len(instance.initial), len(instance.lower)
-    end = instance.tf if instance.tf is not None else instance.t0 + 1.0
-    return Solution(
-        instance=instance,
-        method="bang-bang",
-        status=stopped.status,
-        message=stopped.message,
-        objective=float("nan"),
-        times=np.array([instance.t0, end]),
-        x=np.full((n, 2), np.nan),
-        u=np.full((m, 2), np.nan),
-        lam=np.full((n, 2), np.nan),
-        switching_times=((),) * m,
-        iterations=len(history),
-        history=history,
-        wall_s=time.perf_counter() - began,
-    )
