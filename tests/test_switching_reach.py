@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 from scipy.optimize import linprog
-from sympy import Integer
+from sympy import Abs, Integer
 
 from satsym import solve
 from satsym.instance import Instance
@@ -250,6 +250,25 @@ def test_a_chain_of_three_is_led_back_by_the_arcs_that_led_it_away(tmp_path: Pat
         assert found.switching_times[0] == pytest.approx(np.cumsum(lengths)[:2], rel=1e-6)
         if number == 0:
             assert_certified(replace(found, certificate=certify(found)))
+
+
+def test_one_signed_burns_too_short_for_few_steps_are_found(tmp_path: Path) -> None:
+    fuel = problem("triple_fuel", {x: y, y: v, v: w}, Abs(w), ("w",))
+    start, end = (-0.00385, -1.17868, 0.590564), (0.208124, 0.436708, -0.168314)
+    found = solve.solve(replace(built(tmp_path, fuel, start, end, "12.84635"), lower=(-1.96388,), upper=(1.88495,)))
+    assert found.status is Status.CONVERGED, found.message
+    assert found.objective == pytest.approx(start[2] - end[2], rel=1e-9)
+    assert_not_strict(found)
+
+
+def test_a_later_start_and_a_control_without_room_change_nothing_but_times(axes: Instance) -> None:
+    one = replace(axes, initial=(2.0, 0.0, 0.0, 0.0), lower=(-1.0, 0.0), upper=(1.0, 0.0), t0=5.0)
+    found = solve.solve(one)
+    assert found.status is Status.CONVERGED, found.message
+    assert found.objective == pytest.approx(2.0 * math.sqrt(2.0), rel=1e-12)
+    assert found.switching_times[0] == pytest.approx((5.0 + math.sqrt(2.0),), rel=1e-12)
+    assert found.certificate is not None
+    assert "not strict: other controls cost the same" not in {c.name for c in found.certificate.checks if not c.passed}
 
 
 def test_time_is_weighed_against_fuel_where_every_control_brakes_as_well() -> None:

@@ -44,6 +44,8 @@ def arcs(solution: Solution, control: int) -> list[tuple[float, float, int]]:
 
 def decided_by_none(solution: Solution, control: int) -> bool:
     """Whether no sign tells where a control switches, although none of its arcs is singular."""
+    if solution.instance.lower[control] == solution.instance.upper[control]:
+        return False
     return undecided(solution, control) > 1.0 - MOSTLY and all(k != SINGULAR for *_, k in arcs(solution, control))
 
 

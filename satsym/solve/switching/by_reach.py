@@ -33,6 +33,9 @@ TRIED = 4
 HALVINGS = 12
 """Of the time between two of them, until that with the least cost is known well enough."""
 
+FINER = (1, 5)
+"""How many times more steps than usual show a structure, one after the other."""
+
 WAY = "the set of all ends that are reached"
 
 
@@ -42,11 +45,11 @@ def optimum(instance: Instance, limits: Limits) -> Exact | None:
     if motion is None or not motion.priced or not len(given_rows(instance)):
         return None
     if instance.tf is not None:
-        return _first(instance, limits, [(Reach(instance, motion, instance.tf - instance.t0), None)])
+        return _given(instance, motion, instance.tf - instance.t0, limits)
     if motion.rate <= 0.0:
         return None
     if motion.slope.any() or motion.weight.any():
-        return _first(instance, limits, _durations(instance, motion, limits))
+        return _cheapest(instance, limits, _durations(instance, motion, limits))
     return _soonest(instance, motion, limits)
 
 
@@ -152,7 +155,16 @@ def _between(
     return after[0], replace(after[1], costate=costate)
 
 
-def _first(instance: Instance, limits: Limits, tried: list[tuple[Reach, Priced | None]]) -> Exact | None:
+def _given(instance: Instance, motion: LinearMotion, duration: float, limits: Limits) -> Exact | None:
+    """The least cost in a given time, with more steps where exact arcs do not come of fewer."""
+    for finer in FINER:
+        exact = _cheapest(instance, limits, [(Reach(instance, motion, duration, finer), None)])
+        if exact is not None or limits.expired:
+            return exact
+    return None
+
+
+def _cheapest(instance: Instance, limits: Limits, tried: list[tuple[Reach, Priced | None]]) -> Exact | None:
     """The cheapest of the exact arcs that these lead to."""
     found = [exact for first in _guesses(instance, limits, tried) if (exact := attempt(instance, first, limits))]
     return min(found, key=lambda exact: exact.trajectory.cost(instance), default=None)

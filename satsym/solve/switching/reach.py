@@ -61,11 +61,14 @@ class Reach:
         Whose.
     duration
         From the start.
+    finer
+        So many times more steps are taken than usual: short arcs do not show in fewer.
     """
 
     instance: Instance
     motion: LinearMotion
     duration: float
+    finer: int = 1
 
     @cached_property
     def rows(self) -> NDArray[np.intp]:
@@ -75,7 +78,7 @@ class Reach:
     @cached_property
     def count(self) -> int:
         """Steps."""
-        return steps(self.motion, self.duration)
+        return self.finer * steps(self.motion, self.duration)
 
     @cached_property
     def powers(self) -> Array:
