@@ -77,3 +77,19 @@ def least_fuel(q: float, v: float, duration: float) -> Known | None:
         if a > 0.0 and b > 0.0 and a + b < duration:
             return Known(a + b, duration, (a, duration - b), (-side, 0.0, side))
     return None
+
+
+def moving_arrivals(start: tuple[float, ...], end: tuple[Any, Any], low: float, high: float) -> list[float]:
+    """Durations of all controls of one switch between two bounds that lead to a moving end, the shortest first.
+
+    With u until the velocity is w, and u' from there, the way is (w^2 - v^2)/(2u) + (v'^2 - w^2)/(2u'): w follows up to
+    its sign, and the times (w - v)/u and (v' - w)/u' must not be negative.
+    """
+    found = []
+    (q, v), (goal, last) = start, end
+    for first, then in ((low, high), (high, low)):
+        squared = (goal - q + v * v / (2.0 * first) - last * last / (2.0 * then)) / (0.5 / first - 0.5 / then)
+        for turning in (math.sqrt(squared), -math.sqrt(squared)) if squared >= 0.0 else ():
+            times = (turning - v) / first, (last - turning) / then
+            found += [sum(times)] if min(times) >= 0.0 else []
+    return sorted(found)

@@ -134,7 +134,7 @@ def test_where_any_brake_costs_the_same_the_cost_is_found_and_no_strict_minimum_
     assert found.certificate is not None
     assert found.certificate.verdict == "extremal only"
     failed = [c.name for c in found.certificate.checks if not c.passed]
-    assert "switching is not strict" in failed
+    assert "not strict: other controls cost the same" in failed
 
 
 def test_fuel_without_a_weight_on_time_has_no_minimiser() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import msgspec
 import numpy as np
 import pytest
 import sympy as sp
@@ -22,6 +23,8 @@ from satsym.solve.switching.field import Field
 from satsym.solve.switching.structure import SINGULAR
 from satsym.status import Status
 from satsym.symbolic import Problem, t
+from tests.switching_closed_forms import TIME
+from tests.switching_closed_forms import case as shipped_case
 from tests.test_switching_models import case, problem, v, w, x, y
 
 VAN_DER_POL = problem("van_der_pol", {x: y, y: -x + y * (1 - x**2) + v}, (x**2 + y**2) / 2, ("v",))
@@ -100,13 +103,27 @@ def test_van_der_pols_oscillator_ends_in_a_singular_arc_within_its_bounds(
     assert failed == ["no proof of a minimum along singular arcs: not convex"]
 
 
-def test_a_certificate_that_takes_too_long_fails_and_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_certificate_that_takes_too_much_work_fails_and_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     found = solving.solve(instance(tmp_path, problem("regulator", {x: v}, x**2 / 2, ("v",)), (1.2,), 3.0))
-    monkeypatch.setattr(certifying, "replay", lambda solution: replaying.replay(solution, seconds=0.0))
+    monkeypatch.setattr(replaying, "EVALUATIONS", 50)
+    monkeypatch.setattr(certifying, "EVALUATIONS", 50)
     verdict = certificate.certify(found)
     assert verdict is not None
     assert verdict.verdict == "failed"
-    assert [c.name for c in verdict.checks] == ["flow from the initial costates is integrated within 30 s"]
+    assert [c.name for c in verdict.checks] == ["flow from the initial costates is integrated within 50 evaluations"]
+
+
+def test_time_that_ends_while_checks_are_made_neither_certifies_nor_fails() -> None:
+    found = solving.solve(shipped_case(TIME))
+    for seconds in (0.0, 0.02):
+        hurried = replace(found.instance, solver=msgspec.structs.replace(found.instance.solver, max_seconds=seconds))
+        verdict = certificate.certify(replace(found, instance=hurried, wall_s=0.0))
+        assert verdict is not None
+        assert verdict.verdict == "extremal only"
+        assert verdict.not_checked
+        assert all(c.name.startswith("time was up before: ") for c in verdict.checks if not c.passed)
 
 
 HUMP = problem("hump", {x: v}, x**2 / (1 + x**4), ("v",))
@@ -137,7 +154,7 @@ def test_running_away_is_not_certified_where_coming_to_rest_is_cheaper(tmp_path:
     verdict = certificate.certify(away)
     assert verdict is not None
     assert verdict.verdict == "extremal only", verdict.checks
-    assert [c.name for c in verdict.checks if not c.passed] == ["cheaper by: other starts"]
+    assert [c.name for c in verdict.checks if not c.passed] == ["cheaper by: seeded starts"]
 
 
 def test_a_corner_beyond_the_domain_of_the_cost_does_not_end_the_search(tmp_path: Path) -> None:

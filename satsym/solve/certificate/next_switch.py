@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -10,8 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.solve.iteration import Limits
 from satsym.solve.switching.field import Field
 from satsym.solve.switching.newton import switching
+from satsym.solve.switching.recognition import levels
 from satsym.solve.switching.structure import SINGULAR
 
 Array = NDArray[np.floating[Any]]
@@ -28,13 +29,21 @@ switching function counts as zero there."""
 TOUCHED = 1e-11
 """Share of its size by which a switching function has to be beyond a zero, if it is not only touched."""
 
+AHEAD, TURNING = 1e-6, 1e-3
+"""Share of the time that is left after which the level of a control is looked at that switches at once, and by how much
+its switching function, relative to its size, changes at least in that time."""
+
 AT_THE_END = 1e-12
 """Share of the time within which a switch before the end is rounding: a costate that vanishes at the end does so there
 to the last digits only."""
 
 
 class OutOfTime(Exception):
-    """An integration takes longer than it may."""
+    """An integration takes longer than the clock allows."""
+
+
+class TooMuchWork(Exception):
+    """An integration takes more evaluations than it may: rates that are not smooth make its steps tiny."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +86,7 @@ class Mark:
 
 
 def next_switch(
-    field: Field, settled: list[bool], start: float, end: float, z: Array, sizes: Array, deadline: float
+    field: Field, settled: list[bool], start: float, end: float, z: Array, sizes: Array, limits: Limits
 ) -> tuple[float, int] | None:
     """When, and of which control, the next change of sign is.
 
@@ -85,8 +94,8 @@ def next_switch(
     ------
     ArithmeticError
         If SciPy cannot integrate so far.
-    OutOfTime
-        If that is not done by the deadline.
+    OutOfTime, TooMuchWork
+        If the limits do not allow it.
     """
     span, marks = end - start, _marks(field, settled, start, z)
     if not marks or span <= 0.0:
@@ -99,7 +108,7 @@ def next_switch(
         (start, end),
         z,
         sizes,
-        deadline,
+        limits,
         events=[*crossings, *turns],
         max_step=span / 16.0,
     )
@@ -113,14 +122,32 @@ def next_switch(
         if t - start > AT_ONCE * span and sign * mark.gap(t, y.tolist())[0] < -TOUCHED * mark.size(t, y, sizes)
     ]
     if between and min(between) < float(found.t[-1]):
-        earlier = next_switch(field, settled, start, min(between), z, sizes, deadline)
+        earlier = next_switch(field, settled, start, min(between), z, sizes, limits)
         if earlier is not None:
             return earlier
     if found.status == 0:
         return None
     which = next(k for k, times in enumerate(found.t_events[: len(marks)]) if len(times))
-    when = _polished(marks[which], start, float(found.t_events[which][0]), span, z, sizes, deadline)
+    when = _polished(marks[which], start, float(found.t_events[which][0]), span, z, sizes, limits)
     return (when, marks[which].control) if end - when > AT_THE_END * span else None
+
+
+def at_once(
+    field: Field, settled: list[bool], start: float, end: float, z: Array, sizes: Array
+) -> tuple[int, int] | None:
+    """A control that switches at the very start of an arc, together with another, and its level from there."""
+    for mark in _marks(field, settled, start, z):
+        now, rate = mark.gap(start, z.tolist())
+        size = mark.size(start, z, sizes)
+        if abs(now) > AT_ONCE * size or abs(rate) * (end - start) <= TURNING * size:
+            continue
+        sigma, growth = switching(field, start, z.tolist(), mark.control)
+        ahead = np.array([sigma + growth * AHEAD * (end - start)])
+        weight = np.array([field.weight(start, z.tolist(), mark.control)])
+        level = int(levels(field.instance, mark.control, ahead, weight)[0])
+        if level != field.levels[mark.control]:
+            return mark.control, level
+    return None
 
 
 def _marks(field: Field, settled: list[bool], start: float, z: Array) -> list[Mark]:
@@ -134,11 +161,11 @@ def _marks(field: Field, settled: list[bool], start: float, z: Array) -> list[Ma
     return marks
 
 
-def _polished(mark: Mark, start: float, guess: float, span: float, z: Array, sizes: Array, deadline: float) -> float:
+def _polished(mark: Mark, start: float, guess: float, span: float, z: Array, sizes: Array, limits: Limits) -> float:
     """The time by Newton's method: SciPy finds events on an interpolant that is less accurate than its steps."""
     at = guess
     for _ in range(POLISHED):
-        y, _ = integrated(mark.field, start, at, z, sizes, deadline, transition=False)
+        y, _ = integrated(mark.field, start, at, z, sizes, limits, transition=False)
         value, rate = mark.gap(at, y.tolist())
         if rate == 0.0 or abs(value) > abs(rate) * 1e-3 * span:
             break
@@ -150,7 +177,7 @@ def _polished(mark: Mark, start: float, guess: float, span: float, z: Array, siz
 
 
 def integrated(
-    field: Field, start: float, end: float, z: Array, sizes: Array, deadline: float, transition: bool = True
+    field: Field, start: float, end: float, z: Array, sizes: Array, limits: Limits, transition: bool = True
 ) -> tuple[Array, Array]:
     """States and costates at the end of a piece, and their derivatives by those at its start."""
     rows = len(z)
@@ -168,7 +195,7 @@ def integrated(
         scale = np.concatenate([sizes, np.outer(sizes, 1.0 / sizes).ravel()])
     if end <= start:
         return z, np.eye(rows)
-    last = solved(rates, (start, end), y, scale, deadline).y[:, -1]
+    last = solved(rates, (start, end), y, scale, limits).y[:, -1]
     return last[:rows], last[rows:].reshape(rows, rows) if transition else np.zeros(0)
 
 
@@ -177,7 +204,7 @@ def solved(
     ends: tuple[float, float],
     start: Array,
     scale: Array,
-    deadline: float,
+    limits: Limits,
     **options: Any,
 ) -> Any:
     """What SciPy finds with as many digits as it can.
@@ -188,8 +215,8 @@ def solved(
         What is integrated, from when to when, and from where.
     scale
         Typical sizes.
-    deadline
-        On the clock of ``time.perf_counter``.
+    limits
+        Spent by the evaluations.
     options
         Others of SciPy.
 
@@ -197,14 +224,17 @@ def solved(
     ------
     ArithmeticError
         If SciPy cannot integrate so far.
-    OutOfTime
-        If it is not done by the deadline: rates that are not as smooth as the tolerance asks make steps tiny.
+    OutOfTime, TooMuchWork
+        If the limits do not allow it.
     """
     from scipy.integrate import solve_ivp
 
     def timed(t: float, y: Array) -> Sequence[float] | Array:
-        if time.perf_counter() > deadline:
+        limits.spend(1)
+        if limits.late:
             raise OutOfTime
+        if limits.expired:
+            raise TooMuchWork
         return rates(t, y)
 
     found = solve_ivp(timed, ends, start, method="DOP853", rtol=TOLERANCE, atol=TOLERANCE * scale, **options)

@@ -6,8 +6,7 @@ integrates, which the solver does not use. Only where singular arcs begin and en
 
 from __future__ import annotations
 
-import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
@@ -17,9 +16,10 @@ from numpy.typing import NDArray
 from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solve.certificate.flow import typical
-from satsym.solve.certificate.next_switch import integrated, next_switch, solved
-from satsym.solve.certificate.stated_arcs import Stated, arcs, undecided
+from satsym.solve.certificate.next_switch import at_once, integrated, next_switch, solved
+from satsym.solve.certificate.stated_arcs import Stated, arcs, decided_by_none
 from satsym.solve.failures import FAILURES
+from satsym.solve.iteration import Limits
 from satsym.solve.switching.field import Field
 from satsym.solve.switching.newton import switching
 from satsym.solve.switching.recognition import levels as best_levels
@@ -29,8 +29,8 @@ Array = NDArray[np.floating[Any]]
 
 MOST_SWITCHES = 200
 
-SECONDS = 30.0
-"""That it may take."""
+EVALUATIONS = 1_000_000
+"""Of the rates that it may take."""
 
 TOUCHING = 1e-4
 """A change of sign so shortly before a singular arc, as a share of the arc before it, is where its zero is touched."""
@@ -88,21 +88,23 @@ class Replay:
         return [piece.end for piece in self.pieces if piece.switched == control]
 
 
-def replay(solution: Solution, seconds: float = SECONDS) -> Replay | None:
+def replay(solution: Solution, within: Limits | None = None) -> Replay | None:
     """Integrate again; ``None`` where the motion is not finite or switches without end.
 
     Raises
     ------
-    satsym.solve.certificate.next_switch.OutOfTime
+    satsym.solve.certificate.next_switch.OutOfTime, satsym.solve.certificate.next_switch.TooMuchWork
         If that takes longer than it may.
     """
-    deadline = time.perf_counter() + seconds
+    within = within or Limits(MOST_SWITCHES, float("inf"))
+    limits = replace(within, work=within.meter.spent + EVALUATIONS)
     instance = solution.instance
     sizes = np.concatenate(typical(solution))
     z, t, end = np.concatenate([instance.initial, solution.lam[:, 0]]), instance.t0, float(solution.times[-1])
     stated = [arcs(solution, control) for control in range(len(instance.lower))]
-    # the controls whose switches no sign shows: the solver's stand
-    settled = [all(k != SINGULAR for *_, k in stated[i]) and undecided(solution, i) for i in range(len(stated))]
+    settled = [
+        decided_by_none(solution, i) for i in range(len(stated))
+    ]  # no sign shows their switches: the solver's stand
     stations = np.unique(solution.times)
     pieces: list[Piece] = []
     rows: list[tuple[Array, Array, Array]] = []
@@ -111,9 +113,9 @@ def replay(solution: Solution, seconds: float = SECONDS) -> Replay | None:
         levels = _first_levels(instance, stated, settled, z, t, end)
         while len(pieces) <= MOST_SWITCHES:
             field = Field(instance, levels)
-            piece, levels = _piece(stated, settled, field, t, end, z, sizes, deadline)
+            piece, levels = _piece(stated, settled, field, t, end, z, sizes, limits)
             pieces.append(piece)
-            row, added = _stations(piece, stations, sizes, deadline)
+            row, added = _stations(piece, stations, sizes, limits)
             rows.append(row)
             t, z, cost = piece.end, piece.after, cost + added
             if piece.switched is None:
@@ -153,9 +155,13 @@ def _piece(
     end: float,
     z: Array,
     sizes: Array,
-    deadline: float,
+    limits: Limits,
 ) -> tuple[Piece, tuple[int, ...]]:
     """The arc from a time to the next switch, and the levels after it."""
+    together = at_once(field, settled, start, end, z, sizes)
+    if together is not None:
+        piece = Piece(field, start, start, z, z, together[0], np.eye(len(z)))
+        return piece, _with(field.levels, *together)
     known = [
         (now[1], i, after[2])
         for i, row in enumerate(stated)
@@ -163,12 +169,12 @@ def _piece(
         if (settled[i] or SINGULAR in (now[2], after[2])) and now[1] > start + 1e-12 * (end - start)
     ]
     until, switched, level = min(known, default=(end, None, None))
-    met = next_switch(field, settled, start, until, z, sizes, deadline)
+    met = next_switch(field, settled, start, until, z, sizes, limits)
     touching = met is not None and met[1] == switched and until - met[0] < TOUCHING * (until - start)
     if met is not None and not touching:
         until, switched = met
         level = None
-    after, transition = integrated(field, start, until, z, sizes, deadline)
+    after, transition = integrated(field, start, until, z, sizes, limits)
     piece = Piece(field, start, until, z, after, switched, transition)
     if switched is None:
         return piece, field.levels
@@ -177,10 +183,14 @@ def _piece(
         ahead = sigma + rate * 1e-6 * (end - start)
         weight = field.weight(until, after.tolist(), switched)
         level = int(best_levels(field.instance, switched, np.array([ahead]), np.array([weight]))[0])
-    return piece, (*field.levels[:switched], level, *field.levels[switched + 1 :])
+    return piece, _with(field.levels, switched, level)
 
 
-def _stations(piece: Piece, nodes: Array, sizes: Array, deadline: float) -> tuple[tuple[Array, Array, Array], float]:
+def _with(levels: tuple[int, ...], control: int, level: int) -> tuple[int, ...]:
+    return (*levels[:control], level, *levels[control + 1 :])
+
+
+def _stations(piece: Piece, nodes: Array, sizes: Array, limits: Limits) -> tuple[tuple[Array, Array, Array], float]:
     """The arc at its ends and at the nodes between, as SciPy interpolates its steps; and its running cost."""
     field, rows = piece.field, len(piece.before)
     times = np.concatenate([[piece.start], nodes[(nodes > piece.start) & (nodes < piece.end)], [piece.end]])
@@ -192,6 +202,6 @@ def _stations(piece: Piece, nodes: Array, sizes: Array, deadline: float) -> tupl
     z, cost = np.stack([piece.before, piece.after], axis=1)[:, [0] * (len(times) - 1) + [1]], 0.0
     if piece.end > piece.start:
         start, scale = np.append(piece.before, 0.0), np.append(sizes, sizes[: field.n] @ sizes[field.n :])
-        found = solved(rates, (piece.start, piece.end), start, scale, deadline, t_eval=times)
+        found = solved(rates, (piece.start, piece.end), start, scale, limits, t_eval=times)
         z[:, 1:-1], cost = found.y[:rows, 1:-1], float(found.y[rows, -1])
     return (times, z, field.along(times, z)[0]), cost

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-import math
+import time
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from satsym.instance import Instance
-from satsym.solution import Certificate, Check, Solution
+from satsym.solution import Certificate, Check, Kind, Solution
 from satsym.solve.certificate import conditions
 from satsym.solve.certificate.convexity import convex
 from satsym.solve.certificate.end_switches import with_end_switches
 from satsym.solve.certificate.flow import Flow
-from satsym.solve.certificate.next_switch import OutOfTime
-from satsym.solve.certificate.replay import SECONDS, Replay, replay
-from satsym.solve.certificate.switching_rivals import needles, other_starts
+from satsym.solve.certificate.next_switch import OutOfTime, TooMuchWork
+from satsym.solve.certificate.replay import EVALUATIONS, Replay, replay
+from satsym.solve.certificate.stated_arcs import decided_by_none
+from satsym.solve.certificate.switching_comparison import Comparison, allowed, compared
 from satsym.solve.certificate.switching_variation import variation
+from satsym.solve.iteration import MOST, Limits
+from satsym.solve.switching.linear_motion import linear_motion
 from satsym.solve.switching.newton import switching
 from satsym.solve.switching.structure import SINGULAR
 from satsym.status import Verdict
@@ -27,9 +30,6 @@ Array = NDArray[np.floating[Any]]
 RESIDUAL, DEFECT, STATIONARY, DRIFT, TIMES, COST = 1e-9, 1e-7, 1e-8, 1e-9, 1e-9, 1e-8
 """Largest boundary residual, defect, violation of the minimum of H, change of H, of switching times and of the cost,
 relative."""
-
-DEARER = 1e-9
-"""Relative margin by which a competitor may seem cheaper: its own error."""
 
 STRICT = 1e-6
 """Least rate of a switching function at a switch, relative to its size over the duration; least distance between
@@ -44,15 +44,23 @@ CURVED = 1e-7
 
 def certify(solution: Solution) -> Certificate:
     """Certify exact arcs; see :func:`satsym.solve.certificate.certify`."""
+    seconds = max(solution.instance.solver.max_seconds - solution.wall_s, 0.0)
+    limits = Limits(MOST, time.perf_counter() + seconds)
     try:
-        again, failed = replay(solution), "flow from the initial costates is finite"
+        again, failed = replay(solution, limits), "flow from the initial costates is finite"
+    except TooMuchWork:
+        again, failed = None, f"flow from the initial costates is integrated within {EVALUATIONS} evaluations"
     except OutOfTime:
-        again, failed = None, f"flow from the initial costates is integrated within {SECONDS:g} s"
+        check = Check("time was up before: flow from the initial costates", 1.0, 0.0)
+        return _without_flow(Verdict.EXTREMAL_ONLY, check, tuple(allowed(solution.instance)))
     if again is None:
-        missing = float("nan")
-        return Certificate(Verdict.FAILED, missing, missing, missing, None, missing, None, (Check(failed, 1.0, 0.0),))
+        return _without_flow(Verdict.FAILED, Check(failed, 1.0, 0.0), ())
     first = _first_order(solution, again)
-    second = _sufficient(solution, again) if all(c.passed for c in first) else []
+    second: list[Check] = []
+    comparison = Comparison()
+    if all(c.passed for c in first):
+        comparison = compared(solution, limits)
+        second = [*_sufficient(solution, again), *comparison.checks]
     verdict = Verdict.of(all(c.passed for c in first), all(c.passed for c in second))
     measured = {c.name: c.value for c in (*first, *second)}
     return Certificate(
@@ -64,7 +72,14 @@ def certify(solution: Solution) -> Certificate:
         legendre_clebsch=_legendre(again),
         conjugate_time=None,
         checks=(*first, *second),
+        competitors=comparison.competitors,
+        not_checked=comparison.not_checked,
     )
+
+
+def _without_flow(verdict: Verdict, check: Check, not_checked: tuple[Kind, ...]) -> Certificate:
+    missing = float("nan")
+    return Certificate(verdict, missing, missing, missing, None, missing, None, (check,), not_checked=not_checked)
 
 
 def _first_order(solution: Solution, again: Replay) -> list[Check]:
@@ -87,9 +102,11 @@ def _first_order(solution: Solution, again: Replay) -> list[Check]:
 
 def _sufficient(solution: Solution, again: Replay) -> list[Check]:
     """Each is a deficit that must not be positive."""
+    free = [decided_by_none(solution, control) for control in range(len(solution.u))]
     extended = with_end_switches(again, _along(again)[0])
-    rates, gap, distance = _strictness(again, extended)
-    checks = [
+    rates, gap, distance = _strictness(again, extended, free)
+    checks = [Check("not strict: other controls cost the same", 1.0, 0.0)] if any(free) else []
+    checks += [
         Check("switching is not strict", float(not rates > STRICT), 0.0),
         Check("switches coincide", float(not gap > STRICT), 0.0),
         Check("switching function vanishes on an arc", float(not distance > STRICT), 0.0),
@@ -97,14 +114,10 @@ def _sufficient(solution: Solution, again: Replay) -> list[Check]:
     if any(SINGULAR in piece.field.levels for piece in again.pieces):
         checks.append(Check("generalised legendre-clebsch", float(not _legendre(again) > 0.0), 0.0))
         checks.append(Check("no proof of a minimum along singular arcs: not convex", float(not convex(solution)), 0.0))
-    else:
+    elif not any(free):
         second = variation(solution.instance, extended)
         flat = second is None or not second.curvature > CURVED
         checks.append(Check("second variation in the switching times", float(flat), 0.0))
-    for name, rival in (("perturbed switching times", needles), ("other starts", other_starts)):
-        dearer = rival(solution)
-        if math.isfinite(dearer):
-            checks.append(Check(f"cheaper by: {name}", max(0.0, -dearer), DEARER))
     return checks
 
 
@@ -174,25 +187,33 @@ def _legendre(again: Replay) -> float:
     return min(values, default=float("nan"))
 
 
-def _strictness(again: Replay, extended: Replay) -> tuple[float, float, float]:
-    """Least rate of a switching function at a switch, least time between switches, and least distance elsewhere."""
+def _strictness(again: Replay, extended: Replay, free: list[bool]) -> tuple[float, float, float]:
+    """Least rate of a switching function at a switch, least time between switches, and least distance elsewhere.
+
+    Switches of controls that are free to do what they like are left out.
+    """
     pieces = extended.pieces
     start, end = pieces[0].start, pieces[-1].end
     lasting = end - start
     sizes, marks = _along(again)
-    switches = [piece for piece in again.pieces if piece.switched is not None]
+    switches = [piece for piece in again.pieces if piece.switched is not None and not free[piece.switched]]
     rates = [float("inf")]
     for k, piece in enumerate(pieces[:-1]):
         control = piece.switched
         assert control is not None
-        if SINGULAR in (piece.field.levels[control], pieces[k + 1].field.levels[control]):
+        if free[control] or SINGULAR in (piece.field.levels[control], pieces[k + 1].field.levels[control]):
             continue
         for field in (piece.field, pieces[k + 1].field):
             _, rate = switching(field, piece.end, piece.after.tolist(), control)
             rates.append(abs(rate) * lasting / sizes[control])
-    gaps = np.diff([start, *(piece.end for piece in switches), end]) / lasting
+    # In a convex problem switches of different controls may coincide: each of them is decided by its own sign.
+    each = [None] if linear_motion(again.pieces[0].field.instance) is None else range(len(free))
+    rows = [[piece.end for piece in switches if control in (None, piece.switched)] for control in each]
+    gaps = np.concatenate([np.diff([start, *row, end]) for row in rows]) / lasting
     distances = [float("inf")]
     for control, (times, margin) in enumerate(marks):
+        if free[control]:
+            continue
         own = extended.switching_times(control)
         away = np.min([np.abs(times - t) for t in own], axis=0) if own else np.full(len(times), np.inf)
         far = (away > CLOSE * lasting) & np.isfinite(margin)

@@ -30,6 +30,9 @@ SOLVED = 1e-10
 SIZED = 1e-6
 """Share of its size in a guess that a state has at least in the extremal."""
 
+EVALUATED = 250
+"""Evaluations of an arc, roughly: how the work of corrections is counted."""
+
 NO_TIME = 1e-11
 """An arc shorter than this share of the duration is none."""
 
@@ -63,6 +66,7 @@ def _attempt(instance: Instance, first: Guess, limits: Limits) -> Exact | None:
         if found is None:
             return None
         iterations += found.iterations
+        limits.spend(EVALUATED * found.iterations * len(found.arcs))
         start, end = instance.t0, found.at.end
         shortest = _shortest(found, start)
         if shortest is not None and shortest[0] < -NO_TIME * (end - start):
@@ -120,7 +124,7 @@ def _residual(instance: Instance, found: Refined) -> float:
 def _own_sizes(instance: Instance, found: Refined) -> Array:
     """Sizes of states as the arcs show them, by where they end and how fast they move; those of costates as known."""
     n = len(instance.initial)
-    states = np.maximum(_given(instance), SIZED * found.sizes[:n])
+    states = np.maximum(given(instance), SIZED * found.sizes[:n])
     for arc in found.arcs:
         for t, z in ((arc.start, arc.before), (arc.end, arc.after)):
             moved = (arc.end - arc.start) * np.array(arc.field.rates(t, z.tolist())[:n])
@@ -128,7 +132,7 @@ def _own_sizes(instance: Instance, found: Refined) -> Array:
     return np.concatenate([states, found.sizes[n:]])
 
 
-def _given(instance: Instance) -> Array:
+def given(instance: Instance) -> Array:
     """Sizes of what is given of each state at its ends."""
     final = map(instance.final.get, instance.model.spec.state_names)
     given = [abs(v) if isinstance(v, float | int) else 0.0 for v in final]
@@ -138,7 +142,7 @@ def _given(instance: Instance) -> Array:
 def sizes(instance: Instance, at: Guess) -> Array:
     """Sizes of states and costates: given ends and what controls do in the duration; costates as they are guessed."""
     n = len(instance.initial)
-    states = _given(instance)
+    states = given(instance)
     equations = Equations(instance, at.structure, np.ones(2 * n), at.end - instance.t0)
     try:
         arcs = equations.arcs(equations.start(at.costates, at.times, at.end), slopes=False)

@@ -48,6 +48,9 @@ OTHERS = (1.4, 2.0)
 SHORTER, LEAST_SHORTER = 0.12, 0.002
 """By this share durations are shortened, and by no less."""
 
+FOLLOWED = 5
+"""Corrections that a step of the continuation usually takes, as its work is counted."""
+
 ROUGHLY = 1e-5
 """Accuracy of solutions on the way."""
 
@@ -198,6 +201,7 @@ def follow(
     while at < 1.0 and move >= shortest and not limits.expired:
         there = problem(min(at + move, 1.0))
         mesh = through(kinks(there, curve), count)
+        limits.spend(FOLLOWED * STAGES * len(mesh))
         outcome = newton(System(there, mesh, STAGES), curve.on(mesh, STAGES), tolerance=ROUGHLY, most=10)
         if outcome is None or not outcome.converged or not outcome.curve.in_domain(there.positive):
             move /= 2.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
+from functools import partial
 from itertools import chain
 from typing import Any
 
@@ -11,11 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.instance import Instance
-from satsym.solution import Iteration, Progress, Solution
+from satsym.solution import Progress, Solution
 from satsym.solve.failures import FAILURES, tried, unbroken
 from satsym.solve.iteration import Limits, watched
 from satsym.solve.nearest import nearest
-from satsym.solve.switching import held, homotopy, least_effort
+from satsym.solve.switching import by_reach, by_scouts, held, homotopy, least_effort
+from satsym.solve.switching.answers import answered, without
 from satsym.solve.switching.attempt import Exact, attempt
 from satsym.solve.switching.least_time import least_time
 from satsym.solve.switching.newton import switching
@@ -33,8 +35,11 @@ ENOUGH = 1e-9
 BETWEEN = 4
 """Of so many smoothed extremals one is looked at for structures with an arc less or more."""
 
-COMPARED = 10.0
-"""Seconds for which at most an extremal that may have more arcs is looked for, where free ends have one already."""
+COMPARED = 100_000
+"""Columns for which at most an extremal that may have more arcs is looked for, where free ends have one already."""
+
+ADOPTED = 3
+"""Times that something cheaper is looked for, as long as there is."""
 
 STEADY = 0.5
 """Share of the time off the bounds that is left after smoothing less, where that time is a singular arc's."""
@@ -68,28 +73,33 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         if isinstance(found, homotopy.Stopped):
             found = _by_least_time(instance, found, limits)
         if isinstance(found, homotopy.Stopped):
-            return _none(instance, _out_of_reach(found, limits), tuple(history), began)
-        return _solution(instance, *found, tuple(history), began)
+            return without(instance, _out_of_reach(found, limits), tuple(history), began)
+        return answered(instance, *found, tuple(history), began)
 
 
 def _by_least_time(
     instance: Instance, stopped: homotopy.Stopped, limits: Limits
 ) -> tuple[Exact, str] | homotopy.Stopped:
-    """What the least time says: that the given time is too short, or a structure where it is hardly longer."""
+    """What the least time says: a structure where the given one is hardly longer, or that it is too short.
+
+    The latter where the motion is linear: only there is it known that nothing arrives earlier.
+    """
     hurried = least_time(instance) if instance.tf is not None and instance.final and not limits.expired else None
     found = _found(hurried, limits) if hurried is not None else stopped
-    if isinstance(found, homotopy.Stopped) or instance.tf is None:
+    if isinstance(found, homotopy.Stopped) or instance.tf is None or hurried is None:
         return stopped
-    exact, _ = found
+    exact, way = found
     least, given = exact.refined.at.end - instance.t0, instance.tf - instance.t0
     name = exact.refined.structure.name
-    if least > given * (1.0 + ENOUGH):
+    if way == by_reach.WAY and least > given * (1.0 + ENOUGH):
         message = f"the least time to the given end is {least:.10g} (structure {name}), and only {given:.10g} is given"
         return replace(stopped, status=Status.INFEASIBLE, message=message)
     near = attempt(instance, _relaxed(instance, exact), limits) if least < given else None
     if near is not None:
         return near, "the structure of the least time"
-    alone = ", and at that only one control arrives, whatever it costs" if given <= least * (1.0 + ENOUGH) else ""
+    if stopped.status is Status.INFEASIBLE:
+        return stopped
+    alone = ", and at that only one control arrives, whatever it costs" if abs(given / least - 1.0) <= ENOUGH else ""
     message = f"{stopped.message}; the least time to the given end is {least:.10g} (structure {name}){alone}"
     return replace(stopped, message=message)
 
@@ -108,18 +118,17 @@ def _out_of_reach(stopped: homotopy.Stopped, limits: Limits) -> homotopy.Stopped
 def others(instance: Instance, limits: Limits) -> list[tuple[Exact, str]]:
     """Extremals from several starts and how each was found, many of them one and the same.
 
-    For a free final time those of the quick starts; for free ends those of controls held at a bound, and what is found
-    by smoothing within a moderate time: it may have arcs that no such control leads to.
+    For free ends those of controls held at a bound, and what is found by smoothing with moderate effort: it may have
+    arcs that no such control leads to. For terminal constraints and a free time those of the quick starts.
     """
-    if instance.tf is None:
-        found = [
-            (_first_of(instance, start, limits, thorough=False), "the signs of least effort")
-            for start in unbroken(_signs(instance, near) for near in least_effort.quick(instance, limits))
-        ]
-    elif held.applies(instance):
+    if held.applies(instance):
         return _compared(instance, _at_corners(instance, limits), limits)
-    else:
-        found = []
+    if instance.tf is not None or not instance.model.spec.multipliers:
+        return []
+    found = (
+        (_first_of(instance, start, limits, thorough=False), "the signs of least effort")
+        for start in unbroken(_signs(instance, near) for near in least_effort.quick(instance, limits))
+    )
     return [(exact, way) for exact, way in found if exact]
 
 
@@ -130,9 +139,9 @@ def _at_corners(instance: Instance, limits: Limits) -> list[tuple[Exact, str]]:
 
 
 def _compared(instance: Instance, known: list[tuple[Exact, str]], limits: Limits) -> list[tuple[Exact, str]]:
-    """Extremals that are known, and what smoothing leads to in a moderate time."""
-    brief = replace(limits, deadline=min(limits.deadline, time.perf_counter() + COMPARED))
-    smoothed = _smoothed(instance, brief, thorough=False)
+    """Extremals that are known, and what smoothing leads to with moderate effort."""
+    moderate = replace(limits, work=min(limits.work, limits.meter.spent + COMPARED))
+    smoothed = _smoothed(instance, moderate, thorough=False)
     return known if isinstance(smoothed, homotopy.Stopped) else [*known, smoothed]
 
 
@@ -150,8 +159,25 @@ def _found(instance: Instance, limits: Limits) -> tuple[Exact, str] | homotopy.S
     if held.applies(instance):
         if known := rest + _at_corners(instance, limits):
             return min(_compared(instance, known, limits), key=lambda one: one[0].trajectory.cost(instance))
-    elif rest:
+        return _smoothed(instance, limits)
+    if rest:
         return rest[0]
+    if exact := by_reach.optimum(instance, limits):
+        return exact, by_reach.WAY
+    if instance.tf is not None and (message := by_reach.unreachable(instance, limits)):
+        return homotopy.Stopped(Status.INFEASIBLE, message)
+    found = _by_effort(instance, limits)
+    best = None if isinstance(found, homotopy.Stopped) else found[0]
+    for _ in range(ADOPTED):
+        better = None if limits.expired else tried(partial(by_scouts.cheaper, instance, best, limits))
+        if better is None:
+            break
+        best, found = better, (better, "switching times that were drawn")
+    return found
+
+
+def _by_effort(instance: Instance, limits: Limits) -> tuple[Exact, str] | homotopy.Stopped:
+    """What motions of least effort lead to, the final time being free, or else less and less smoothing."""
     if instance.tf is None:
         near = chain(least_effort.quick(instance, limits), least_effort.shortening(instance, limits))
         for start in unbroken(_signs(instance, one) for one in near):
@@ -259,51 +285,3 @@ def _candidates(instance: Instance, seen: Sample, before: Sample | None) -> list
 
 def _time(seen: Sample, where: NDArray[np.bool_]) -> float:
     return float(np.trapezoid(where.astype(float), seen.times))
-
-
-def _solution(instance: Instance, exact: Exact, way: str, history: tuple[Iteration, ...], began: float) -> Solution:
-    at, structure, trajectory = exact.refined.at, exact.refined.structure, exact.trajectory
-    nodes = np.linspace(instance.t0, at.end, instance.solver.steps + 1)
-    times, z, u = trajectory.grid(nodes)
-    n = len(instance.initial)
-    status = Status.CONVERGED if instance.model.in_domain(z[:n]) else Status.LEFT_DOMAIN
-    plural = "" if structure.switches == 1 else "es"
-    message = (
-        f"structure {structure.name}, {structure.switches} switch{plural}, residual {exact.refined.residual:.0e}, "
-        f"from {way}"
-    )
-    return Solution(
-        instance=instance,
-        method="bang-bang",
-        status=status,
-        message=message,
-        objective=trajectory.cost(instance),
-        times=times,
-        x=z[:n],
-        u=u,
-        lam=z[n:],
-        switching_times=tuple(tuple(own.tolist()) for own in structure.by_control(at.times)),
-        iterations=exact.iterations,
-        history=history,
-        wall_s=time.perf_counter() - began,
-    )
-
-
-def _none(instance: Instance, stopped: homotopy.Stopped, history: tuple[Iteration, ...], began: float) -> Solution:
-    n, m = len(instance.initial), len(instance.lower)
-    end = instance.tf if instance.tf is not None else instance.t0 + 1.0
-    return Solution(
-        instance=instance,
-        method="bang-bang",
-        status=stopped.status,
-        message=stopped.message,
-        objective=float("nan"),
-        times=np.array([instance.t0, end]),
-        x=np.full((n, 2), np.nan),
-        u=np.full((m, 2), np.nan),
-        lam=np.full((n, 2), np.nan),
-        switching_times=((),) * m,
-        iterations=len(history),
-        history=history,
-        wall_s=time.perf_counter() - began,
-    )

@@ -24,6 +24,10 @@ NEAR_ENDS = np.geomspace(1e-6, 1e-2, 9)
 vanishes there, it may have the wrong sign for a moment only."""
 
 
+DECIDING = 1e-3
+"""Of what another control decides on: a switching function that is always smaller is compared with so much of that."""
+
+
 @dataclass(frozen=True, eq=False)
 class Trajectory:
     """An extremal arc by arc.
@@ -131,6 +135,8 @@ def violations(trajectory: Trajectory, slack: float = 1e-9) -> list[Violation]:
         times, z = times[order], z[:, order]
         tables.append((times, z, *switching_functions(arc, times, z)))
     largest = np.max([np.abs(sigma).max(axis=1) + weight.max(axis=1) for *_, sigma, weight in tables], axis=0)
+    instance = trajectory.arcs[0].field.instance
+    largest = np.maximum(largest, DECIDING * deciding(instance, largest))
     found: list[Violation] = []
     for which, (arc, (times, z, sigma, weight)) in enumerate(zip(trajectory.arcs, tables, strict=True)):
         for control, level in enumerate(arc.field.levels):
@@ -146,6 +152,18 @@ def violations(trajectory: Trajectory, slack: float = 1e-9) -> list[Violation]:
                 low, high = times[max(first - 1, 0)], times[min(last + 1, len(times) - 1)]
                 found.append(Violation(control, which, float(low), float(high), better, amount))
     return found
+
+
+def deciding(instance: Instance, sizes: Array) -> Array:
+    """For each control the switching function with which it would decide on as much as any does, shape (m,).
+
+    Parameters
+    ----------
+    sizes
+        Of all switching functions, shape (m,).
+    """
+    room = np.maximum(np.array(instance.upper) - np.array(instance.lower), 1e-300)
+    return np.asarray((sizes * room).max() / room)
 
 
 def _worse(sigma: Array, weight: Array, level: int, slack: float) -> tuple[NDArray[np.int64], NDArray[np.bool_], Array]:

@@ -1,32 +1,32 @@
-"""Competitors of exact arcs: other switching times, with a short arc put in or not, and extremals from other starts."""
+"""Competitors close by: other switching times, with a short arc put in or not."""
 
 from __future__ import annotations
 
 import random
-import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from satsym.instance import Instance
-from satsym.solution import Solution
-from satsym.solve.certificate.competitors import SECONDS, margin
+from satsym.solution import Competitors, Kind, Solution
 from satsym.solve.collocation.scaling import final_argument
 from satsym.solve.failures import FAILURES
 from satsym.solve.integrate import integrate
-from satsym.solve.iteration import MOST, Limits
+from satsym.solve.iteration import Limits
 
 Array = NDArray[np.floating[Any]]
 
-RIVALS = 8
+PLANS = 8
+EVALUATIONS = 200_000
+
 SHORT = (0.01, 0.04)
 """Shares of the duration that an arc which is put in lasts."""
 
 CORRECTIONS = 12
 MISSED = 1e-11
-"""Relative miss of the end up to which a rival counts as feasible."""
+"""Relative miss of the end up to which a competitor counts as feasible."""
 
 TOLERANCE = 1e-13
 
@@ -54,20 +54,20 @@ class Plan:
         return Plan(order, self.values)
 
 
-def needles(solution: Solution) -> float:
-    """How much dearer the cheapest rival close by is, relative to the cost; infinite where none could be flown."""
+def needles(solution: Solution, within: Limits) -> Competitors | None:
+    """Other switching times, with a short arc put in or not; ``None`` along singular arcs."""
     instance = solution.instance
     free = instance.tf is None
     switches = np.unique([t for times in solution.switching_times for t in times])
     if _singular(solution):
-        return float("inf")
+        return None
     base, lasting = _plan(solution), float(solution.times[-1] - solution.times[0])
     sizes = np.maximum(np.abs(solution.x).max(axis=1), 1e-300)
     wanted = _fixed(instance)
     if instance.model.spec.multipliers:
         wanted = np.arange(len(sizes))
     goal = solution.x[:, -1]
-    rng, cheapest, limits = random.Random("needles"), float("inf"), Limits(RIVALS, time.perf_counter() + SECONDS)
+    rng, limits = random.Random("needles"), replace(within, work=within.meter.spent + EVALUATIONS)
     count = len(switches) + free
 
     def flown(plan: Plan, end: float) -> tuple[float, Array] | None:
@@ -80,28 +80,17 @@ def needles(solution: Solution) -> float:
 
     own = flown(base, float(solution.times[-1]))
     if own is None or (count == 0 and len(wanted)):
-        return float("inf")
-    still, loose = np.zeros(count), count > len(wanted)
-    for _ in range(limits.iterations):
-        rivals = [(_needle(solution, base, switches, rng, lasting), still)]
+        return Competitors(Kind.NEIGHBOURS, 0, 0, float("nan"))
+    still, loose, costs = np.zeros(count), count > len(wanted), []
+    for _ in range(PLANS):
+        plans = [(_needle(solution, base, switches, rng, lasting), still)]
         if loose:  # the end does not fix all times
-            rivals.append((base, np.array([rng.choice((-1.0, 1.0)) * rng.uniform(*SHORT) * lasting for _ in still])))
-        for plan, shift in rivals:
+            plans.append((base, np.array([rng.choice((-1.0, 1.0)) * rng.uniform(*SHORT) * lasting for _ in still])))
+        for plan, shift in plans:
             if plan is not None:
-                cost = _corrected(plan, switches, shift, float(solution.times[-1]), lasting, free, flown)
-                cheapest = min(cheapest, cost)
-    return margin(cheapest, own[0], coarse=1e-12)
-
-
-def other_starts(solution: Solution) -> float:
-    """How much dearer the cheapest extremal from other starts is; infinite where there are none."""
-    from satsym.solve.switching.solving import COMPARED, others
-
-    instance = solution.instance
-    limits = Limits(MOST, time.perf_counter() + SECONDS + COMPARED)
-    with np.errstate(all="ignore"):
-        costs = [float(found.trajectory.cost(instance)) for found, _ in others(instance, limits)]
-    return margin(min(costs, default=float("inf")), solution.objective, coarse=1e-9)
+                costs.append(_corrected(plan, switches, shift, float(solution.times[-1]), lasting, free, flown))
+    found = [cost + (solution.objective - own[0]) for cost in costs if np.isfinite(cost)]
+    return Competitors(Kind.NEIGHBOURS, len(costs), len(found), min(found, default=float("nan")))
 
 
 def _corrected(plan: Plan, switches: Array, shift: Array, end: float, lasting: float, free: bool, flown: Any) -> float:
@@ -171,8 +160,9 @@ def _fly(instance: Instance, plan: Plan, end: float, sizes: Array, limits: Limit
             continue
 
         def rates(t: float, y: Array, u: tuple[float, ...] = u) -> Array:
+            limits.spend(1)
             if limits.expired:
-                raise ArithmeticError("time is up")
+                raise ArithmeticError("no more evaluations")
             x = y[:n].tolist()
             return np.array([*model.dynamics(t, x, u, p), model.running_cost(t, x, u, p)])
 

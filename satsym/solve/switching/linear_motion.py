@@ -1,0 +1,124 @@
+"""Motions x' = A x + B u + c with constant coefficients: what controls do until a given end, in steps of equal length.
+
+The states that such controls within a box can reach form a convex set; whatever is said about its points is global.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+
+Array = NDArray[np.floating[Any]]
+
+DRAWN = 24
+"""Points at which coefficients are compared."""
+
+SAME = 1e-12
+"""Relative difference of coefficients that is rounding."""
+
+TERMS = 18
+"""Of the exponential series, once its argument is below one half."""
+
+
+@dataclass(frozen=True, eq=False)
+class LinearMotion:
+    """Coefficients of a motion, and of a running cost ``rate + slope'u + weight'|u|``.
+
+    Attributes
+    ----------
+    states, controls, drift
+        A, B and c: shapes (n, n), (n, m) and (n,).
+    rate
+        Of the cost with time; NaN where the cost is of another form.
+    slope, weight
+        Of the cost with controls and with their magnitudes, shape (m,).
+    """
+
+    states: Array
+    controls: Array
+    drift: Array
+    rate: float
+    slope: Array
+    weight: Array
+
+    @property
+    def priced(self) -> bool:
+        """Whether the cost has the form that is looked for."""
+        return bool(np.isfinite(self.rate))
+
+    def step(self, length: float) -> tuple[Array, Array, Array]:
+        """What one step of that length does: to states, by controls, and by the drift."""
+        n, m = self.controls.shape
+        table = np.zeros((n + m + 1, n + m + 1))
+        table[:n] = np.concatenate([self.states, self.controls, self.drift[:, None]], axis=1)
+        found = exponential(length * table)[:n]
+        return found[:, :n], found[:, n:-1], found[:, -1]
+
+    def powers(self, length: float, count: int) -> Array:
+        """What 0, 1, ... count steps do to states, shape (count + 1, n, n)."""
+        one = self.step(length)[0]
+        found = np.eye(len(one))[None]
+        leap = one
+        while len(found) <= count:
+            found = np.concatenate([found, leap @ found])
+            leap = leap @ leap
+        return np.asarray(found[: count + 1])
+
+
+def exponential(matrix: Array) -> Array:
+    """The exponential of a matrix: its series for a small part of it, squared."""
+    size = float(np.abs(matrix).sum(axis=0).max(initial=0.0))
+    if not np.isfinite(size):
+        raise ArithmeticError("coefficients are not finite")
+    halvings = max(0, int(np.ceil(np.log2(max(size, 1e-300)))) + 1)
+    small = matrix / 2.0**halvings
+    term = found = np.eye(len(matrix))
+    for k in range(1, TERMS):
+        term = term @ small / k
+        found = found + term
+    for _ in range(halvings):
+        found = found @ found
+    return np.asarray(found)
+
+
+def linear_motion(instance: Instance) -> LinearMotion | None:
+    """The coefficients of an instance's motion; ``None`` where they vary with time, states or controls."""
+    model, p, n, m = instance.model, instance.parameters, len(instance.initial), len(instance.lower)
+    if not model.spec.autonomous or model.spec.multipliers:
+        return None
+    rng = np.random.default_rng(0)
+    given = [abs(v) if isinstance(v, float | int) else 0.0 for v in map(instance.final.get, model.spec.state_names)]
+    sizes = np.maximum(np.abs(instance.initial), np.array(given))
+    sizes = np.where(sizes > 0.0, sizes, max(float(sizes.max(initial=0.0)), 1.0))[:, None]
+    x = sizes * rng.normal(size=(n, DRAWN)) * 10.0 ** rng.uniform(-1.0, 2.0, DRAWN)
+    low, high = (np.array(row)[:, None] for row in (instance.lower, instance.upper))
+    u, t = rng.uniform(low, high, (m, DRAWN)), np.full(DRAWN, instance.t0)
+    by_x = np.broadcast_to(np.asarray(model.jacobian_x_batch(t, x, u, p)), (n, n, DRAWN))
+    by_u = np.broadcast_to(np.asarray(model.jacobian_u_batch(t, x, u, p)), (n, m, DRAWN))
+    if not (_constant(by_x) and _constant(by_u)):
+        return None
+    drift = np.array(model.dynamics(instance.t0, (0.0,) * n, (0.0,) * m, p))
+    rate, slope, weight = _cost(instance, t, x, u)
+    return LinearMotion(by_x[:, :, 0].copy(), by_u[:, :, 0].copy(), drift, rate, slope, weight)
+
+
+def _cost(instance: Instance, t: Array, x: Array, u: Array) -> tuple[float, Array, Array]:
+    """Coefficients of the running cost; NaN for the first where there are others, or a terminal cost."""
+    model, p = instance.model, instance.parameters
+    none = np.zeros_like(x)
+    slope = np.broadcast_to(np.asarray(model.switching_function_batch(t, x, none, p)), u.shape)
+    weight = np.broadcast_to(np.asarray(model.magnitude_weight_batch(t, x, p)), u.shape)
+    idle = np.broadcast_to(np.asarray(model.running_cost_batch(t, x, np.zeros_like(u), p)), t.shape)
+    plain = _constant(slope) and _constant(weight) and _constant(idle) and not model.spec.has_terminal_cost
+    return (float(idle[0]) if plain else float("nan")), slope[:, 0].copy(), weight[:, 0].copy()
+
+
+def _constant(values: Array) -> bool:
+    """Whether values do not vary along the last axis."""
+    spread = np.abs(values - values[..., :1]).max(initial=0.0)
+    return bool(np.isfinite(values).all() and spread <= SAME * np.abs(values).max(initial=0.0))

@@ -1,0 +1,101 @@
+"""The point of a convex set that is nearest to the origin, for a set that is known by its support points.
+
+Wolfe's algorithm: the nearest point of the hull of few support points, one more at a time (Wolfe, Finding the nearest
+point in a polytope, Mathematical Programming 11, 1976).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.floating[Any]]
+
+ROUNDS = 400
+"""Support points that are asked for at most."""
+
+NO_GAIN = 1e-13
+"""Relative gain of a support point below which rounding has the last word."""
+
+
+@dataclass(frozen=True, eq=False)
+class Near:
+    """A point next to the nearest.
+
+    Attributes
+    ----------
+    point
+        Of the set, shape (d,): also the direction of a hyperplane between the set and the origin, if there is one.
+    distance
+        Of that hyperplane from the origin, a lower bound of the set's; not positive where there is none.
+    corners, shares
+        Support points, shape (k, d), whose mean with these weights the point is.
+    """
+
+    point: Array
+    distance: float
+    corners: Array
+    shares: Array
+
+
+def nearest_point(support: Callable[[Array], Array], first: Array, close: float, tight: float) -> Near:
+    """Look for the nearest point.
+
+    Parameters
+    ----------
+    support
+        From a direction to a point of the set that is farthest against it: the least product with it.
+    first
+        A point of the set.
+    close
+        Distance that counts as none.
+    tight
+        Share of its distance by which a hyperplane may be nearer to the origin than the point.
+    """
+    corners: Array = first[None]
+    shares: Array = np.ones(1)
+    point, direction, best = first, first, -np.inf
+    for _ in range(ROUNDS):
+        length = float(np.linalg.norm(point))
+        if length <= close:
+            break
+        found = support(point)
+        distance = float(point @ found) / length
+        if distance > best:
+            best, direction = distance, point
+        if best >= (1.0 - tight) * length or float(point @ (point - found)) <= NO_GAIN * length * length:
+            break
+        corners, shares = _with(corners, shares, found)
+        point = shares @ corners
+    return Near(direction if best > 0.0 else point, best, corners, shares)
+
+
+def _with(corners: Array, shares: Array, new: Array) -> tuple[Array, Array]:
+    """The nearest point of the hull with one corner more, and without those that it does not need."""
+    corners, shares = np.concatenate([corners, new[None]]), np.append(shares, 0.0)
+    for _ in range(2 * len(corners)):
+        wanted = _affine(corners)
+        if (wanted > 0.0).all():
+            return corners, wanted
+        falling = wanted <= 0.0
+        steps = shares[falling] / np.maximum(shares[falling] - wanted[falling], 1e-300)
+        shares = shares + min(float(steps.min()), 1.0) * (wanted - shares)
+        kept = shares > 1e-14
+        kept[int(np.argmax(shares))] = True
+        if kept.all():
+            kept[np.flatnonzero(falling)[int(np.argmin(steps))]] = False
+        corners, shares = corners[kept], shares[kept] / shares[kept].sum()
+    return corners, shares
+
+
+def _affine(corners: Array) -> Array:
+    """Weights, of sum one, of the point of least norm on the plane through all corners."""
+    if len(corners) == 1:
+        return np.ones(1)
+    sides = corners[1:] - corners[0]
+    found = np.linalg.lstsq(sides.T, -corners[0], rcond=1e-13)[0]
+    return np.append(1.0 - found.sum(), found)
