@@ -25,6 +25,7 @@ from satsym.solve.collocation.system import System
 from satsym.solve.extremal import Extremal, solved
 from satsym.solve.iteration import Limits
 from satsym.solve.nearest import nearest
+from satsym.solve.switching.by_reach import unreachable
 from satsym.status import Status
 
 ROUNDING = 1e-12
@@ -149,7 +150,7 @@ def inside(problem: TwoPoint, start: Start, free: Curve, limits: Limits) -> Boun
     if start.within is not None:
         return Bounded(start.within, np.zeros(0), 1.0, True, 1)
     bounded = tighten(problem, free, STAGES, limits)
-    if bounded.converged or problem.free_time:
+    if bounded.converged or problem.free_time or unreachable(problem.instance, limits) is not None:
         return bounded
     first = within_found(problem, start.found, limits)
     found = None if first.curve is not None else drawn_within(problem, limits)
@@ -191,6 +192,9 @@ def explained(found: Extremal, limits: Limits) -> Extremal:
     problem = found.problem
     if found.status is not Status.NOT_CONVERGED or not np.isfinite(problem.bounds).any():
         return found
+    separated = unreachable(problem.instance, limits)
+    if separated is not None:
+        return replace(found, status=Status.INFEASIBLE, message=separated)
     near = nearest(problem, found.path, limits)
     if near is None or limits.expired:
         return found

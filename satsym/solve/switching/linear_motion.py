@@ -87,9 +87,10 @@ def exponential(matrix: Array) -> Array:
 
 
 def linear_motion(instance: Instance) -> LinearMotion | None:
-    """The coefficients of an instance's motion; ``None`` where they vary with time, states or controls."""
+    """The coefficients of an instance's motion; ``None`` where they vary, or controls have no box around them."""
     model, p, n, m = instance.model, instance.parameters, len(instance.initial), len(instance.lower)
-    if not model.spec.autonomous or model.spec.multipliers:
+    bounded = np.isfinite(instance.lower).all() and np.isfinite(instance.upper).all()
+    if not model.spec.autonomous or model.spec.multipliers or model.spec.control_set != "box" or not bounded:
         return None
     rng = np.random.default_rng(0)
     given = [abs(v) if isinstance(v, float | int) else 0.0 for v in map(instance.final.get, model.spec.state_names)]
@@ -110,6 +111,8 @@ def linear_motion(instance: Instance) -> LinearMotion | None:
 def _cost(instance: Instance, t: Array, x: Array, u: Array) -> tuple[float, Array, Array]:
     """Coefficients of the running cost; NaN for the first where there are others, or a terminal cost."""
     model, p = instance.model, instance.parameters
+    if not model.spec.switching:
+        return float("nan"), np.zeros(len(u)), np.zeros(len(u))
     none = np.zeros_like(x)
     slope = np.broadcast_to(np.asarray(model.switching_function_batch(t, x, none, p)), u.shape)
     weight = np.broadcast_to(np.asarray(model.magnitude_weight_batch(t, x, p)), u.shape)
