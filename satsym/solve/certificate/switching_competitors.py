@@ -34,6 +34,9 @@ STRUCTURES, ARRIVALS, STARTS = 10, 6, 6
 WORK = 250_000
 """Columns that all plans together may take, as far as can be told beforehand."""
 
+ROUNDS = 18
+"""Corrections of their arcs."""
+
 SHORTER = 12
 """Shorter durations at which it is looked at what a linear motion reaches."""
 
@@ -81,7 +84,7 @@ def _drawn(solution: Solution, limits: Limits) -> list[Competitors]:
     kinds = np.concatenate([[kind.value] * len(ends) for kind, _, ends in parts])
     ends = np.concatenate([ends for *_, ends in parts])
     sizes = np.maximum(np.abs(solution.x).max(axis=1), 1e-300)
-    found = scouts.scouted(instance, together(*(plans for _, plans, _ in parts)), sizes, limits, ends)
+    found = scouts.scouted(instance, together(*(plans for _, plans, _ in parts)), sizes, limits, ends, ROUNDS)
     exact = _exact(solution, found, kinds, ends, sizes, limits)
     return [
         Competitors(
@@ -94,7 +97,7 @@ def _drawn(solution: Solution, limits: Limits) -> list[Competitors]:
 def _work(switches: list[int]) -> float:
     """Columns that all plans take, roughly."""
     arcs = sum(switches) + 1
-    return float((STRUCTURES + ARRIVALS + STARTS) * arcs * (arcs + 1) * scouts.LEAST * scouts.ROUNDS)
+    return float((STRUCTURES + ARRIVALS + STARTS) * arcs * (arcs + 1) * scouts.LEAST * ROUNDS)
 
 
 def _exact(
