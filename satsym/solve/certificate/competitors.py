@@ -23,9 +23,6 @@ if TYPE_CHECKING:
     from satsym.solve.collocation.curve import Curve
     from satsym.solve.collocation.problem import TwoPoint
 
-SECONDS = 3.0
-"""For each competitor of a switching problem."""
-
 WORK = 60_000
 """Columns that may be linearised for one attempt; a revolution has some 30 of them an iteration."""
 
