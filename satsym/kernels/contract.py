@@ -10,6 +10,13 @@ from satsym.spec import ProblemSpec
 BATCH = "_batch"
 """Suffix of the batch form of a pointwise function; it takes ``out=None`` as well."""
 
+TUPLES = ("nu", "p", "bounds", "final")
+"""Arguments that are tuples of numbers, or of arrays, also in the batch form; others are arrays there."""
+
+GROUPS = {"x": "n", "lam": "n", "u": "m", "p": "k", "bounds": "b", "nu": "c", "final": "f", "original": "n"}
+GROUPS |= {"gain": "mn", "riccati": "nn", "state_weight": "nn", "control_weight": "mm"}
+"""What an argument of a function of one point consists of: a letter for each axis, see :func:`sizes`."""
+
 
 @dataclass(frozen=True)
 class Signature:
