@@ -176,7 +176,7 @@ def required(case: Instance) -> LqrOptions:
 
 
 def _stabilising(given: LinearSystem, Q: Array, R: Array) -> tuple[Array, NDArray[np.complexfloating], float]:
-    """P, the closed-loop eigenvalues and the error; what keeps them from existing is looked for where they seem not to."""
+    """P, the closed-loop eigenvalues and the error; why there are none is looked for where there seem to be none."""
     try:
         found = riccati.stabilising(given.A, given.B, Q, R)
     except riccati.NoSolution:

@@ -87,9 +87,7 @@ def solve(A: Array, G: Array, Q: Array) -> tuple[Array, NDArray[np.complexfloati
     return P / weight, eigenvalues.astype(complex)
 
 
-def stabilising(
-    A: Array, B: Array, Q: Array, R: Array
-) -> tuple[Array, NDArray[np.complexfloating], float]:
+def stabilising(A: Array, B: Array, Q: Array, R: Array) -> tuple[Array, NDArray[np.complexfloating], float]:
     """The stabilising solution, right to the last digits where the problem allows.
 
     Parameters
@@ -126,8 +124,7 @@ def _by_subspace(A: Array, B: Array, Q: Array, R: Array) -> Array:
 
 
 def _by_scipy(A: Array, B: Array, Q: Array, R: Array) -> Array:
-    """From an extended pencil, which does without the product B R^-1 B': more work, and a better start where that is
-    large."""
+    """From an extended pencil, which does without B R^-1 B' and is a better start where that is large."""
     from scipy.linalg import solve_continuous_are
 
     with warnings.catch_warnings():

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from satsym.kernels.evaluation import FAINT, Array, Evaluation
-from satsym.kernels.relations import Relation, derivative
+from satsym.kernels.relations import Relation
 
 
 def of_switching(of: Evaluation) -> Iterator[Relation]:
@@ -58,7 +58,7 @@ def _limits(of: Evaluation) -> tuple[Array, Array, Array, Array]:
 
 
 def _law(of: Evaluation, sigma: Array, weight: Array) -> Array:
-    """The least of sigma u + weight |u| in the box; where all of an interval is so, of least magnitude or its middle."""
+    """The least of sigma u + weight |u| in the box; where all of an interval is, of least magnitude or its middle."""
     low, high, *_ = _limits(of)
     rest = np.where(weight > 0.0, np.minimum(np.maximum(0.0, low), high), 0.5 * (low + high))
     return np.asarray(np.where(sigma > weight, low, np.where(sigma < -weight, high, rest)))

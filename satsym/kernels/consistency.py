@@ -14,9 +14,10 @@ from math import prod
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from satsym.kernels import plain
-from satsym.kernels.contract import GROUPS, TUPLES, pointwise, sizes
+from satsym.kernels.contract import CURVE, GROUPS, TUPLES, pointwise, sizes
 from satsym.kernels.core import Kernels
 from satsym.kernels.evaluation import COPIES, Array, Evaluation, size, with_copies
 from satsym.kernels.relations import Relation, deviations, relations
@@ -57,8 +58,8 @@ class Contradiction:
     deviation: float
 
 
-def worst(kernels: Kernels, at: Mapping[str, Any], seed: int = SEED) -> Contradiction:
-    """The largest contradiction between the functions of a module at places.
+def worst(kernels: Kernels, at: Mapping[str, Any], seed: int = SEED) -> Contradiction | None:
+    """The largest contradiction between the functions of a module at places; ``None`` where none is in their domain.
 
     Parameters
     ----------
@@ -69,8 +70,14 @@ def worst(kernels: Kernels, at: Mapping[str, Any], seed: int = SEED) -> Contradi
     seed
         Of the copies aside of the places, by which sizes are told.
     """
-    evaluation = Evaluation(kernels, with_copies(at, seed))
     with np.errstate(all="ignore"):
+        evaluation = Evaluation(kernels, with_copies(at, seed))
+        finite = _finite(evaluation)
+        if not finite.all():
+            at = {a: tuple(v[finite] for v in row) if a in TUPLES else row[..., finite] for a, row in at.items()}
+            evaluation = Evaluation(kernels, with_copies(at, seed))
+        if not finite.any():
+            return None
         groups = [(list(relations(evaluation)), size)]
         groups += [([each], _largest) for source in (_both_forms(evaluation), _loops(kernels, at)) for each in source]
         found = [
@@ -79,6 +86,13 @@ def worst(kernels: Kernels, at: Mapping[str, Any], seed: int = SEED) -> Contradi
             for each, deviation in zip(group, deviations(group, scale), strict=True)
         ]
     return max(found, key=lambda each: each.deviation)
+
+
+def _finite(of: Evaluation) -> NDArray[np.bool_]:
+    """Which places are in the domain of all functions, the laws of switching curves apart, with their copies."""
+    names = [name for name in of.signatures if name not in CURVE]
+    rows = np.concatenate([of(name).reshape(-1, len(of.at["t"])) for name in names])
+    return np.asarray(np.isfinite(rows).all(axis=0).reshape(1 + COPIES, -1).all(axis=0))
 
 
 def random_places(kernels: Kernels, seed: int = SEED) -> dict[str, Any]:
@@ -106,16 +120,16 @@ def random_places(kernels: Kernels, seed: int = SEED) -> dict[str, Any]:
             varied *= 10.0 ** np.array(rng.sample([-1.5 + 2.0 * k / PLACES for k in range(PLACES)], PLACES))
         found[name] = tuple(table) if name in TUPLES else table
     if spec.has_cost and spec.control_set == "box" and not spec.switching:
-        found["bounds"] = _about_the_law(kernels, found)
+        found["bounds"] = about_the_law(kernels, found)
     return found
 
 
-def _about_the_law(kernels: Kernels, at: Mapping[str, Any]) -> tuple[Array, ...]:
+def about_the_law(kernels: Kernels, at: Mapping[str, Any]) -> tuple[Array, ...]:
     """Bounds of a box of which most lie near the control without any: around it, above it or below."""
     m = len(kernels.spec.controls)
     with np.errstate(all="ignore"):
         law = kernels.control_law_batch(*(at[a] for a in ("t", "x", "lam", "p")), (*[-FAR] * m, *[FAR] * m))
-    kinds = np.arange(PLACES)[None, :] + np.arange(m)[:, None]  # no two controls alike
+    kinds = np.arange(law.shape[-1])[None, :] + np.arange(m)[:, None]  # no two controls alike
     found = []
     for shifts, bounds in zip(NEAR, (at["bounds"][:m], at["bounds"][m:]), strict=True):
         near = law + np.array(shifts)[kinds % len(shifts)] * np.abs(law)
@@ -128,13 +142,15 @@ def _positive(variables: tuple[Variable, ...]) -> dict[int, float]:
 
 
 def _both_forms(of: Evaluation) -> Iterator[Relation]:
-    """The form on floats and that on arrays, of every function; also where costates vanish and laws may be undecided."""
+    """The form on floats and that on arrays, of every function; also where costates vanish and no law is decided."""
     none = np.zeros_like(of.at["lam"])
     columns = [column(of.at, k) for k in range(len(of.at["t"]) // (1 + COPIES))]
     columns.append(column({**of.at, "lam": none}, 0))
     for name, signature in of.signatures.items():
         everywhere = of(name).reshape(-1, len(of.at["t"]))
-        first = of(name, lam=none).reshape(everywhere.shape)[:, :1] if "lam" in signature.arguments else everywhere[:, :1]
+        first = (
+            of(name, lam=none).reshape(everywhere.shape)[:, :1] if "lam" in signature.arguments else everywhere[:, :1]
+        )
         rows = np.concatenate([everywhere[:, : len(columns) - 1], first], axis=1)
         found = [_single(of, name, signature.arguments, each) for each in columns]
         pairs = [(one, rows[:, k]) for k, one in enumerate(found) if one is not None]

@@ -84,7 +84,7 @@ _SWITCHING = {
 Its ``canonical`` functions and ``boundary`` are those of the smoothed companion, see
 :mod:`satsym.codegen.switching`.
 """
-_CURVE = {
+CURVE = {
     "beyond_switching_curve": _signature("t x p bounds final"),
     "feedback_law": _signature("t x p bounds final", "m"),
     "transition_time": _signature("t x p bounds final"),
@@ -135,7 +135,7 @@ def pointwise(spec: ProblemSpec) -> dict[str, Signature]:
     found |= _COST if spec.has_cost else {}
     if spec.switching:
         found = {name: signature for name, signature in found.items() if name not in _OF_REGULAR_LAWS} | _SWITCHING
-        found |= _CURVE if spec.switching_curve else {}
+        found |= CURVE if spec.switching_curve else {}
     return found
 
 

@@ -31,7 +31,9 @@ def of_linear_models(of: Evaluation) -> Iterator[Relation]:
             yield Relation(name, f"derivative of {function} at rest", of(name), slopes, terms)
     if of.has("original_state", "deviation_state"):
         back = of("deviation_state", original=of("original_state"))
-        yield Relation("deviation_state", "inverse of original_state", back, of.at["x"], size(of("original_state")).max())
+        yield Relation(
+            "deviation_state", "inverse of original_state", back, of.at["x"], size(of("original_state")).max()
+        )
     yield from _of_polynomials(of, a, b)
     yield from _of_closed_forms(of, a)
     if of.has("riccati_residual"):
@@ -98,6 +100,6 @@ def _of_riccati(of: Evaluation, a: Array, b: Array) -> Relation:
     paid = p @ b @ np.linalg.solve(r, np.swapaxes(b, 1, 2) @ p)
     exact = np.swapaxes(a, 1, 2) @ p + p @ a - paid + q
     terms = np.moveaxis(np.abs(paid), 0, -1)
-    return Relation("riccati_residual", "A'P + PA - P B R^-1 B' P + Q", of("riccati_residual"), np.moveaxis(exact, 0, -1), terms)
-
-
+    return Relation(
+        "riccati_residual", "A'P + PA - P B R^-1 B' P + Q", of("riccati_residual"), np.moveaxis(exact, 0, -1), terms
+    )

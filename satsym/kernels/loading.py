@@ -145,7 +145,7 @@ def _load_file(model: str, root: Path, path: Path, text: str) -> Kernels:
     if not intact(text):
         raise BadInput(f"{shown(model)}: {_EDITED}")
     worst = consistency.worst(found, consistency.random_places(found))
-    if not worst.deviation <= consistency.LIMIT:
+    if worst is not None and not worst.deviation <= consistency.LIMIT:
         raise BadInput(f"{shown(model)}: {worst.function} contradicts the other functions ({worst.claim}); {_ANEW}")
     return found
 

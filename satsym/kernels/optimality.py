@@ -46,7 +46,9 @@ def _of_regular_law(of: Evaluation) -> Iterator[Relation]:
     terms = np.abs(of.slope("hamiltonian", "u", u=np.zeros_like(law))) + np.abs(slope)
     kind, bounds = of.kernels.spec.control_set, [np.asarray(b) for b in of.at["bounds"]]
     if kind == "box":
-        low, high = (np.array(np.broadcast_arrays(*half, law[0])[:-1]) for half in (bounds[: len(law)], bounds[len(law) :]))
+        low, high = (
+            np.array(np.broadcast_arrays(*half, law[0])[:-1]) for half in (bounds[: len(law)], bounds[len(law) :])
+        )
         left = _outside_box(of, law, slope, low, high)
         size_of_law = size(law)
         yield Relation("control_law", "within its box", law, np.minimum(np.maximum(law, low), high), size_of_law)
@@ -102,7 +104,9 @@ def _of_ends(of: Evaluation, control: Array) -> Iterator[Relation]:
     h = of("hamiltonian", u=control) + _smoothing(of, control)
     parts = [h, of.slope("terminal_cost", "t")[0], *(weights * by_time[:, 0]), *((slope - lam) * on_reference * pace)]
     size_of_parts = np.sum(np.abs(parts), axis=0)
-    yield Relation("boundary", "transversality of the final time", found[-1], np.sum(parts, axis=0), size_of_parts * FAINT)
+    yield Relation(
+        "boundary", "transversality of the final time", found[-1], np.sum(parts, axis=0), size_of_parts * FAINT
+    )
     yield from derivative(of, "boundary_jacobian", "boundary", ("x", "lam", "nu", "t"))
 
 

@@ -33,7 +33,14 @@ def forward(
 
 
 def backward(
-    kernels: Kernels, times: Array, lam_f: Sequence[float], x: Array, x_mid: Array, u: Array, u_mid: Array, p: tuple[float, ...]
+    kernels: Kernels,
+    times: Array,
+    lam_f: Sequence[float],
+    x: Array,
+    x_mid: Array,
+    u: Array,
+    u_mid: Array,
+    p: tuple[float, ...],
 ) -> tuple[Array, Array]:
     """As :meth:`satsym.kernels.Kernels.backward`."""
     n = len(x)

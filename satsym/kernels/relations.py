@@ -50,7 +50,9 @@ def deviations(found: Sequence[Relation], scale: Callable[[Array], Array]) -> li
         Size of the rows of a table, shape (rows, 1).
     """
     columns = found[0].left.shape[-1]
-    sides = [np.concatenate([side.reshape(-1, columns) for side in group]) for group in zip(*map(_sides, found), strict=True)]
+    sides = [
+        np.concatenate([side.reshape(-1, columns) for side in group]) for group in zip(*map(_sides, found), strict=True)
+    ]
     known = np.isfinite(sides[0])
     one_sided = known != np.isfinite(sides[1])
     left, right, terms = (np.where(known & np.isfinite(side), side, 0.0) for side in sides)
@@ -73,7 +75,9 @@ def relations(of: Evaluation) -> Iterator[Relation]:
         yield from of_the_cost(of)
 
 
-def derivative(of: Evaluation, name: str, function: str, by: tuple[str, ...], factor: float = 1.0) -> Iterator[Relation]:
+def derivative(
+    of: Evaluation, name: str, function: str, by: tuple[str, ...], factor: float = 1.0
+) -> Iterator[Relation]:
     """A function must be the derivative of another, by one argument or by several in turn."""
     arguments = [a for a in by if len(of.at[a])]
     if not arguments:
