@@ -8,7 +8,7 @@ must be derivatives (:mod:`satsym.kernels.relations`).
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from math import prod
 from typing import Any
@@ -78,7 +78,7 @@ def worst(kernels: Kernels, at: Mapping[str, Any], seed: int = SEED) -> Contradi
             evaluation = Evaluation(kernels, with_copies(at, seed))
         if not finite.any():
             return None
-        groups = [(list(relations(evaluation)), size)]
+        groups: list[tuple[list[Relation], Callable[[Array], Array]]] = [(list(relations(evaluation)), size)]
         groups += [([each], _largest) for source in (_both_forms(evaluation), _loops(kernels, at)) for each in source]
         found = [
             Contradiction(each.function, each.claim, deviation)

@@ -13,6 +13,7 @@ import math
 import re
 from collections.abc import Mapping
 from functools import cache, lru_cache
+from importlib.abc import InspectLoader
 from pathlib import Path
 from types import FunctionType
 from typing import Any
@@ -92,7 +93,8 @@ def _unknown(model: str) -> str:
 @cache
 def _load_shipped(name: str) -> Kernels:
     module = importlib.import_module(f"{PACKAGE}.{name}")
-    text = module.__loader__.get_source(module.__name__) if module.__loader__ else None
+    loader = module.__loader__
+    text = loader.get_source(module.__name__) if isinstance(loader, InspectLoader) else None
     if text is not None and not intact(text):
         raise BadInput(f"{shown(name)}: {_EDITED}")
     try:
