@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from satsym.instance import Instance
 from satsym.kernels import consistency
 from satsym.solution import Certificate, Check, Solution
+from satsym.status import Verdict
 
 Array = NDArray[np.floating[Any]]
 
@@ -34,7 +35,7 @@ def with_kernels_examined(certificate: Certificate, solution: Solution) -> Certi
     worst = consistency.worst(solution.instance.model, _places(solution))
     deviation = float("inf") if worst is None else worst.deviation
     check = Check("kernels contradict each other", deviation, consistency.LIMIT)
-    verdict = certificate.verdict if check.passed else "failed"
+    verdict = certificate.verdict if check.passed else Verdict.FAILED
     return replace(certificate, verdict=verdict, checks=(*certificate.checks, check))
 
 
