@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 from dataclasses import replace
@@ -48,14 +49,14 @@ def solved(folder: Path, text: str) -> subprocess.CompletedProcess[str]:
     """What the command line makes of an instance of this module."""
     (folder / "mine.py").write_text(text, encoding="utf-8")
     (folder / "case.toml").write_text(CASE, encoding="utf-8")
-    command = [sys.executable, "-m", "satsym", "solve", "case.toml"]
+    command = [sys.executable, "-m", "satsym", "solve", "case.toml", "--json"]
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
 
 
 def test_a_file_as_it_was_written_is_solved_and_certified(energy: str, tmp_path: Path):
     done = solved(tmp_path, energy)
     assert done.returncode == 0, done.stderr
-    assert "certificate: certified" in done.stdout
+    assert json.loads(done.stdout)["certificate"]["verdict"] == "certified"
 
 
 @pytest.mark.parametrize("digest", [False, True])
