@@ -77,7 +77,10 @@ def solve(A: Array, G: Array, Q: Array) -> tuple[Array, NDArray[np.complexfloati
     for _ in range(MOST_STEPS):
         if error <= ACCURATE or not (eigenvalues.real < 0.0).all():
             break
-        better = _newton(a, g, q, P)
+        try:
+            better = lyapunov(a - g @ P, q + P @ g @ P)  # what the gain of P costs
+        except ArithmeticError:  # nearly singular: there is nothing to gain by a step
+            break
         before, error = error, residual(a, g, q, better)
         if not error < 0.5 * before:
             break
@@ -176,11 +179,3 @@ def _from_subspace(matrix: Array) -> Array:
     except np.linalg.LinAlgError:
         raise NoSolution from None
     return 0.5 * (P + P.T)
-
-
-def _newton(A: Array, G: Array, Q: Array, P: Array) -> Array:
-    """One step of Newton's method: what the gain of P costs."""
-    try:
-        return lyapunov(A - G @ P, Q + P @ G @ P)
-    except ArithmeticError:
-        raise NoSolution from None
