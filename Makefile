@@ -9,7 +9,7 @@ COMPILE := $(BIN)/python -m compileall -q satsym generated
 # Each recipe says itself what the user needs to know; errors of the tools come through (pip -qq: errors only).
 .SILENT:
 .NOTPARALLEL:
-.PHONY: help demo test test-whole lint format derive check-derive bench bench-returns bench-drift clean
+.PHONY: help demo test test-whole test-lowest lint format derive check-derive bench bench-returns bench-drift clean
 
 help:  ## list the targets
 	grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /|/' | awk -F'|' '{printf "  make %-14s %s\n", $$1, $$2}'
@@ -26,6 +26,9 @@ test: lint check-derive  ## lint, check generated/, run the tests, of the slowes
 
 test-whole: lint check-derive  ## the same with every case of the slow tests
 	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder --whole
+
+test-lowest:  ## try the oldest versions that pyproject.toml allows, in an environment of their own
+	$(PYTHON) .ci/lowest.py
 
 lint: $(VENV)/installed-dev  ## style, types, import floors
 	$(BIN)/ruff check --quiet

@@ -2,6 +2,7 @@
 
 Written by satsym from derivations/clohessy_wiltshire.py. Do not edit: mend that file instead, then run
     satsym derive derivations/clohessy_wiltshire.py
+Digest: 5a0abfbc5248a887129b35ccef299e70957d9f89e0e455983cb29cb6820a3b85
 """
 
 import math

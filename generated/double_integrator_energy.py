@@ -2,6 +2,7 @@
 
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
+Digest: 8049a7ce46f15b9878592810966b260efcf9f1070b7753081affe0be566c2b39
 """
 
 import math

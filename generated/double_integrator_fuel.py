@@ -2,6 +2,7 @@
 
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
+Digest: 60a002a6b3f650662bc7bd24aa746a167b5ec657d1452d4a1524465fc2ddc9ef
 """
 
 import math

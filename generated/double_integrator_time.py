@@ -2,6 +2,7 @@
 
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
+Digest: a0cbb53ef92d1f3974cd225c6a4777cfe24271e3f10f39769592096e660cff25
 """
 
 import math

@@ -2,6 +2,7 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
+Digest: 22cad3bf9109bf44ed6a85102f314598af618ffff802ef6448a596637e25522f
 """
 
 import math

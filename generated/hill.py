@@ -2,6 +2,7 @@
 
 Written by satsym from derivations/hill.py. Do not edit: mend that file instead, then run
     satsym derive derivations/hill.py
+Digest: 75b237390361a15fc27092fa662cd0ad3555b84505b81c65508b922ae11e16df
 """
 
 import math

@@ -2,6 +2,7 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
+Digest: a249947c84bcf9cc09c9a3d7e87113479aeb31003bdc171dbd1171fa71d030cf
 """
 
 import math

@@ -2,6 +2,7 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
+Digest: 83cda27a639ac6647c148cb2598daf6d37091aacf7b7b661da7803a72377310d
 """
 
 import math

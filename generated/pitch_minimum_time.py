@@ -2,6 +2,7 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
+Digest: 34ae2b1eb99840af331fc0ea798ffa4a073934b50a6424ec19716ee4d05ead47
 """
 
 import math

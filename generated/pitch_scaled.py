@@ -2,6 +2,7 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
+Digest: 9d08529630927c127e530b59734cec9102e0e25ca8a7505ec5af4192b48769ae
 """
 
 import math

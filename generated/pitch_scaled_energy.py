@@ -2,6 +2,7 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
+Digest: 8a8b29e1c62dec07b991613e1a3bb57a01b68ba50a25ec309380892577fc1dbc
 """
 
 import math

@@ -2,6 +2,7 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
+Digest: a8b69e8fd0be586645df51dae66af7d1ad5e0f7fd5a08742a85bc1ca63789da3
 """
 
 import math

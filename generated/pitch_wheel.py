@@ -2,6 +2,7 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
+Digest: adb88caaa46b17f5cee20724af26cb8e0d043a1bae0ee3f8c9575ae3931940fb
 """
 
 import math

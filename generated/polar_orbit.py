@@ -2,6 +2,7 @@
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
+Digest: ffa691ab4c3f24ce6578e8807c593600e0f147989524161c32630c544d46acbb
 """
 
 import math

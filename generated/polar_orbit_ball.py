@@ -2,6 +2,7 @@
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
+Digest: 16d5e955d4018bbb3cb4707fe51001c997f839ae13ce295919c078b44a250a10
 """
 
 import math

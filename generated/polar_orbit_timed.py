@@ -2,6 +2,7 @@
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
+Digest: e1f7b36bfb87ddd72a611c75072a806831bc0bcaa06e5ae70a3d2684a824c04e
 """
 
 import math

@@ -2,6 +2,7 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
+Digest: 8bc03a7a944a386398f8063506dc4f9a042a1b4eb7e70e79998c24925bf66886
 """
 
 import math

@@ -2,6 +2,7 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
+Digest: c93a8e6298ba83f23be8bf0371a55f976cea5f25935dfbd11f95c246e31fa6a3
 """
 
 import math

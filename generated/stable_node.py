@@ -2,6 +2,7 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
+Digest: 8196f0ebea3ec85016a2131fcc81535fff4be7595474962382b9cb88f5f45bca
 """
 
 import math

@@ -2,6 +2,7 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
+Digest: f7a1be824e804e23f05cae405c96cda463fd949179b815e8c545d83f71861cf2
 """
 
 import math

@@ -2,6 +2,7 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
+Digest: 40d9321c8814566f4cfbaeb6f5dff05078ac2ba86eb937a1975a634ee7c7500d
 """
 
 import math

@@ -2,6 +2,7 @@
 
 Written by satsym from derivations/two_body.py. Do not edit: mend that file instead, then run
     satsym derive derivations/two_body.py
+Digest: b1166cec40d235a22a9f032e00d995ae8600a16b85d997bda1baa3d500640130
 """
 
 import math

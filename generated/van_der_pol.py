@@ -2,6 +2,7 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
+Digest: 789ae212508f7add8ff5bf8ac12b88c956988784437963bc333335f3cdf75fe0
 """
 
 import math

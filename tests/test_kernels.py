@@ -13,6 +13,7 @@ import pytest
 
 from satsym.grid import Grid
 from satsym.kernels import Kernels, load, shipped
+from satsym.kernels.digest import sealed
 from satsym.status import BadInput
 
 GRID = Grid.uniform(0.0, 6.0, 300)
@@ -147,7 +148,7 @@ def test_an_edited_file_is_loaded_anew(repository: Path, tmp_path: Path):
     (tmp_path / "mine.py").write_text(text, encoding="utf-8")
     before = load("mine", tmp_path)
     assert load("mine", tmp_path) is before
-    (tmp_path / "mine.py").write_text(text.replace("Rates of change", "Derivatives"), encoding="utf-8")
+    (tmp_path / "mine.py").write_text(sealed(text.replace("Rates of change", "Derivatives")), encoding="utf-8")
     assert load("mine", tmp_path).dynamics.__doc__ != before.dynamics.__doc__
 
 

@@ -10,6 +10,7 @@ import pytest
 
 from satsym.kernels import load
 from satsym.kernels.checking import check
+from satsym.kernels.digest import sealed
 from satsym.kernels.loading import LARGEST
 from satsym.status import BadInput
 
@@ -300,7 +301,7 @@ def test_files_that_are_no_module_at_all_are_refused(data: bytes, tmp_path: Path
 
 def test_code_behind_a_false_encoding_stays_a_comment(legal: str, tmp_path: Path, trap: Trap):
     hidden = "".join(f"+{'AAo'}-{trap.code}")
-    (tmp_path / "sly.py").write_text(f"# coding: utf-7\n#{hidden}\n{legal}", encoding="utf-8")
+    (tmp_path / "sly.py").write_text(sealed(f"# coding: utf-7\n#{hidden}\n{legal}"), encoding="utf-8")
     load("./sly", tmp_path).dynamics(0.0, (1.0, 0.0, 0.0, 1.0), (0.0, 0.0), (1.0,) * 8)
     assert not trap.file.exists()
 

@@ -48,9 +48,10 @@ def solve(A: ArrayLike, B: ArrayLike, Q: ArrayLike, R: ArrayLike) -> tuple[Array
     for start in range(0, len(a), BLOCK):
         part = slice(start, start + BLOCK)
         P[part], left[part] = _block(a[part], g[part], q[part])
+    b, r = (np.broadcast_to(each, (*lead, *each.shape[-2:])).reshape(-1, *each.shape[-2:]) for each in (b, r))
     for i in np.flatnonzero(~(left <= WANTED)):
         try:
-            P[i], _ = riccati.solve(a[i], g[i], q[i])
+            P[i], *_ = riccati.stabilising(a[i], b[i], q[i], r[i])
             left[i] = riccati.residual(a[i], g[i], q[i], P[i])
         except riccati.NoSolution:
             P[i], left[i] = np.nan, np.nan

@@ -43,6 +43,9 @@ class Regulator:
         Of A - B K, the largest real part first, shape (n,).
     residual
         Of the Riccati equation, relative to its terms; of the differential one where the horizon is finite.
+    error
+        Estimated, of P, relative to P in units in which its diagonal elements are 1: what Newton's method would still
+        change, with residuals in twice the precision. ``None`` where the horizon is finite.
     """
 
     system: LinearSystem
@@ -53,6 +56,7 @@ class Regulator:
     P: Array
     eigenvalues: NDArray[np.complexfloating]
     residual: float
+    error: float | None = None
 
     @cached_property
     def closed_loop(self) -> LinearSystem:
@@ -67,7 +71,7 @@ class Regulator:
     @cached_property
     def routh(self) -> Routh:
         """Routh array of the closed loop."""
-        return routh(self.polynomial.tolist())
+        return routh(self.polynomial.tolist(), self.eigenvalues.tolist())
 
     def cost(self, deviation: ArrayLike) -> float:
         """The least cost from a deviation on, of shape (n,)."""
@@ -78,7 +82,7 @@ class Regulator:
         """K at evenly spaced times from the beginning of a finite horizon to its end, shape (steps + 1, m, n)."""
         if self.horizon is None:
             return np.broadcast_to(self.K, (steps + 1, *self.K.shape))
-        step = flow(self.system.A, _cost_of_control(self.system.B, self.R), self.Q, self.horizon / steps)
+        step = flow(self.system.A, riccati.cost_of_control(self.system.B, self.R), self.Q, self.horizon / steps)
         P = [np.zeros_like(self.P)]
         for _ in range(steps):
             P.append(step.before(P[-1]))
@@ -107,10 +111,11 @@ def lqr(given: LinearSystem, Q: ArrayLike, R: ArrayLike, horizon: float | None =
         np.asarray(Q, dtype=float).tolist(), np.asarray(R, dtype=float).tolist(), len(given.states), len(given.inputs)
     )
     q, r = np.array(q_rows), np.array(r_rows)
-    A, B, G = given.A, given.B, _cost_of_control(given.B, r)
+    A, B, G = given.A, given.B, riccati.cost_of_control(given.B, r)
     rate: Array | float = 0.0
+    error: float | None = None
     if horizon is None:
-        P, eigenvalues = _stabilising(given, G, q)
+        P, eigenvalues, error = _stabilising(given, q, r)
     else:
         run = flow(A, G, q, horizon)
         P, rate = run.T, run.E.T @ q @ run.E
@@ -125,6 +130,7 @@ def lqr(given: LinearSystem, Q: ArrayLike, R: ArrayLike, horizon: float | None =
         P=P,
         eigenvalues=eigenvalues[order],
         residual=riccati.residual(A, G, q, P, rate),
+        error=error,
     )
 
 
@@ -169,22 +175,17 @@ def required(case: Instance) -> LqrOptions:
     return case.lqr
 
 
-def _cost_of_control(B: Array, R: Array) -> Array:
-    """G = B R^-1 B'."""
-    found = B @ np.linalg.solve(R, B.T)
-    return np.asarray(0.5 * (found + found.T))
-
-
-def _stabilising(given: LinearSystem, G: Array, Q: Array) -> tuple[Array, NDArray[np.complexfloating]]:
-    """P and the closed-loop eigenvalues; what keeps them from existing is looked for only where they seem not to."""
+def _stabilising(given: LinearSystem, Q: Array, R: Array) -> tuple[Array, NDArray[np.complexfloating], float]:
+    """P, the closed-loop eigenvalues and the error; why there are none is looked for where there seem to be none."""
     try:
-        P, eigenvalues = riccati.solve(given.A, G, Q)
+        found = riccati.stabilising(given.A, given.B, Q, R)
     except riccati.NoSolution:
         why = _obstacle(given, Q) or "[lqr] Q, R: no accurate gain is found; choose weights nearer together"
         raise BadInput(why) from None
+    eigenvalues = found[1]
     if eigenvalues.real.max() > -DOUBTFUL * np.abs(eigenvalues).max() and (why := _obstacle(given, Q)):
         raise BadInput(why)
-    return P, eigenvalues
+    return found
 
 
 def _obstacle(given: LinearSystem, Q: Array) -> str:

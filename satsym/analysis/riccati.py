@@ -3,7 +3,8 @@
 From x' = A x + B u and J = integral of x'Qx + u'Ru (no 1/2) the minimum principle gives, with lambda = P x for the
 costates of J/2, the Hamiltonian matrix ((A, -G), (-Q, -A')). P comes from its invariant subspace of decaying motions
 (A. J. Laub, A Schur method for solving algebraic Riccati equations, IEEE TAC 24, 1979), in units that balance the
-matrix, and Newton's method (D. L. Kleinman, IEEE TAC 13, 1968) where that is not accurate enough.
+matrix, and Newton's method (D. L. Kleinman, IEEE TAC 13, 1968) where that is not accurate enough. What comes of it, or
+of SciPy's solver where it does not do, is refined in twice the precision (:mod:`satsym.analysis.refinement`).
 """
 
 from __future__ import annotations
@@ -14,11 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.analysis.linear import Array
+from satsym.analysis.refinement import lyapunov, refined
 
 ACCURATE = 1e-13
 """A residual below this needs no improvement."""
 MOST_STEPS = 8
 """Of Newton's method."""
+DOUBTFUL = 1e-6
+"""An estimated error above this, relative, is none to rely on."""
 
 
 class NoSolution(ArithmeticError):
@@ -73,7 +77,10 @@ def solve(A: Array, G: Array, Q: Array) -> tuple[Array, NDArray[np.complexfloati
     for _ in range(MOST_STEPS):
         if error <= ACCURATE or not (eigenvalues.real < 0.0).all():
             break
-        better = _newton(a, g, q, P)
+        try:
+            better = lyapunov(a - g @ P, q + P @ g @ P)  # what the gain of P costs
+        except ArithmeticError:  # nearly singular: there is nothing to gain by a step
+            break
         before, error = error, residual(a, g, q, better)
         if not error < 0.5 * before:
             break
@@ -81,6 +88,66 @@ def solve(A: Array, G: Array, Q: Array) -> tuple[Array, NDArray[np.complexfloati
     if not (eigenvalues.real < 0.0).all():
         raise NoSolution
     return P / weight, eigenvalues.astype(complex)
+
+
+def stabilising(A: Array, B: Array, Q: Array, R: Array) -> tuple[Array, NDArray[np.complexfloating], float]:
+    """The stabilising solution, right to the last digits where the problem allows.
+
+    Parameters
+    ----------
+    A, B, Q, R
+        Shapes (n, n), (n, m), (n, n) and (m, m), with J = integral of x'Qx + u'Ru.
+
+    Returns
+    -------
+    P : array of shape (n, n)
+    eigenvalues : complex array of shape (n,)
+        Of the closed loop, all with negative real parts.
+    error : float
+        Estimated, see :func:`satsym.analysis.refinement.refined`.
+
+    Raises
+    ------
+    NoSolution
+        As :func:`solve`.
+    """
+    for start in (_by_subspace, _by_scipy):
+        try:
+            P, error = refined(A, B, Q, R, start(A, B, Q, R))
+            eigenvalues = _closed_loop(A, B, R, P)
+        except (NoSolution, ValueError):  # SciPy raises the latter, as a LinAlgError, too
+            continue
+        if error <= DOUBTFUL and (eigenvalues.real < 0.0).all():
+            return P, eigenvalues, error
+    raise NoSolution
+
+
+def _by_subspace(A: Array, B: Array, Q: Array, R: Array) -> Array:
+    return solve(A, cost_of_control(B, R), Q)[0]
+
+
+def _by_scipy(A: Array, B: Array, Q: Array, R: Array) -> Array:
+    """From an extended pencil, which does without B R^-1 B' and is a better start where that is large."""
+    from scipy.linalg import solve_continuous_are
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # about accuracy, which is measured
+        return np.asarray(solve_continuous_are(A, B, Q, R))
+
+
+def _closed_loop(A: Array, B: Array, R: Array, P: Array) -> NDArray[np.complexfloating]:
+    """Eigenvalues of A - B R^-1 B'P, in units in which the diagonal elements of P are 1."""
+    diagonal = np.diag(P)
+    unit = np.exp2(-np.rint(0.5 * np.log2(np.where(diagonal > 0.0, diagonal, 1.0))))
+    b = B / unit[:, None]
+    gain = np.linalg.solve(R, b.T @ (P * np.outer(unit, unit)))
+    return np.linalg.eigvals(A * (unit / unit[:, None]) - b @ gain).astype(complex)
+
+
+def cost_of_control(B: Array, R: Array) -> Array:
+    """G = B R^-1 B'."""
+    found = B @ np.linalg.solve(R, B.T)
+    return np.asarray(0.5 * (found + found.T))
 
 
 def residual(A: Array, G: Array, Q: Array, P: Array, rate: Array | float = 0.0) -> float:
@@ -112,15 +179,3 @@ def _from_subspace(matrix: Array) -> Array:
     except np.linalg.LinAlgError:
         raise NoSolution from None
     return 0.5 * (P + P.T)
-
-
-def _newton(A: Array, G: Array, Q: Array, P: Array) -> Array:
-    """One step of Newton's method: what the gain of P costs."""
-    from scipy.linalg import solve_continuous_lyapunov
-
-    closed = A - G @ P
-    with warnings.catch_warnings():
-        # of an equation that is nearly singular: whether the step is any good is told by its residual
-        warnings.simplefilter("ignore", RuntimeWarning)
-        found = solve_continuous_lyapunov(closed.T, -(Q + P @ G @ P))
-    return np.asarray(0.5 * (found + found.T))

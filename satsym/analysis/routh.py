@@ -12,12 +12,14 @@ IEEE Transactions on Automatic Control 35 (1990).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 from numbers import Rational
 from typing import Any, TypeAlias
 
+from satsym.analysis.polynomials import companion
+from satsym.analysis.spectrum import spectrum
 from satsym.status import BadInput
 
 ZERO_ELEMENT, ZERO_ROW = "zero in the first column", "row of zeros"
@@ -59,13 +61,19 @@ class Routh:
         return " and ".join(dict.fromkeys(self.special_cases)) or None
 
 
-def routh(coefficients: Sequence[Any]) -> Routh:
+def routh(coefficients: Sequence[Any], roots: Sequence[complex] | None = None) -> Routh:
     """The Routh array of a polynomial.
+
+    Whole numbers and fractions are reckoned with exactly. Of floats the array says what their roots say, never anything
+    else: where rounding would have it contradict them, it is the exact array of the polynomial that has these roots.
 
     Parameters
     ----------
     coefficients
-        Highest power first, the first one not zero. Whole numbers and fractions are reckoned with exactly.
+        Highest power first, the first one not zero.
+    roots
+        Of floats, each as often as it occurs, complex ones with their conjugates; those that count as lying on the
+        imaginary axis exactly there. By default eigenvalues of the companion matrix.
 
     Raises
     ------
@@ -74,9 +82,45 @@ def routh(coefficients: Sequence[Any]) -> Routh:
     """
     if not len(coefficients) or not coefficients[0]:
         raise BadInput("a polynomial must have a leading coefficient other than 0; leave out higher powers")
-    exact = all(isinstance(value, Rational) for value in coefficients)
-    given = [Fraction(value) if exact else float(value) for value in coefficients]
-    degree, limit = len(given) - 1, 0.0 if exact else CANCELLED
+    if all(isinstance(value, Rational) for value in coefficients):
+        return _array([Fraction(value) for value in coefficients], 0.0)
+    given = [float(value) for value in coefficients]
+    roots = _roots(given) if roots is None else roots
+    right, on_axis = sum(root.real > 0.0 for root in roots), sum(root.real == 0.0 for root in roots)
+    found = _array(given, CANCELLED)
+    if (found.sign_changes, found.on_axis) == (right, on_axis):
+        return found
+    nearby = _array(_with_roots(given[0], roots), 0.0)
+    return replace(nearby, rows=tuple(tuple(map(float, row)) for row in nearby.rows))
+
+
+def _roots(coefficients: Sequence[float]) -> list[complex]:
+    """Eigenvalues of the companion matrix, those on the axis within what rounding does to the coefficients there."""
+    monic = [value / coefficients[0] for value in coefficients]
+    if len(monic) == 1:
+        return []
+    return [each.value for each in spectrum(companion(monic)) for _ in range(each.algebraic)]
+
+
+def _with_roots(leading: float, roots: Sequence[complex]) -> list[Fraction]:
+    """The polynomial with these roots, exactly; complex ones are taken with their conjugates."""
+    found = [Fraction(leading)]
+    for root in roots:
+        real, imaginary = Fraction(root.real), Fraction(root.imag)
+        if imaginary < 0:
+            continue
+        factor = [Fraction(1), -real] if imaginary == 0 else [Fraction(1), -2 * real, real**2 + imaginary**2]
+        longer = [Fraction(0)] * (len(found) + len(factor) - 1)
+        for i, a in enumerate(found):
+            for j, b in enumerate(factor):
+                longer[i + j] += a * b
+        found = longer
+    return found
+
+
+def _array(given: Sequence[Any], limit: float) -> Routh:
+    """The array by its rule; differences that cancel to less than a share of their terms are zero."""
+    degree = len(given) - 1
     width = degree // 2 + 1
     above, row = (_padded(given[start::2], width) for start in (0, 1))
     rows, met, symmetric = [above], [], None

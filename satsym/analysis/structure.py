@@ -53,7 +53,7 @@ def analyse(subject: Kernels | Instance) -> Analysis:
         about=about,
         eigenvalues=eigenvalues,
         polynomial=polynomial,
-        routh=routh(polynomial.tolist()),
+        routh=routh(polynomial.tolist(), [each.value for each in eigenvalues for _ in range(each.algebraic)]),
         stability=_verdict(about, eigenvalues),
         controllability=controllability(system) if system.inputs else None,
         observability=observability(system) if system.outputs else None,

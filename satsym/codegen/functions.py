@@ -20,9 +20,6 @@ from satsym.symbolic.switching_notation import COMPANION
 ARGUMENTS = tuple("t x original u lam nu gain riccati state_weight control_weight p bounds final".split())
 """Names of arguments, in the order in which every function takes those it has."""
 
-TUPLES = ("nu", "p", "bounds", "final")
-"""Those that are tuples of numbers also in the batch form."""
-
 
 @dataclass(frozen=True)
 class Function:

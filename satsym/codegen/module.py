@@ -9,11 +9,13 @@ import sympy as sp
 from satsym.codegen import rk4, symplectic
 from satsym.codegen.block import Assignment, build
 from satsym.codegen.emitter import Emitter
-from satsym.codegen.functions import TUPLES, Function, Symbols, symbols
+from satsym.codegen.functions import Function, Symbols, symbols
 from satsym.codegen.linear import linear_functions
 from satsym.codegen.naming import NEEDED, Code, code_of
 from satsym.codegen.printers import BatchPrinter, ScalarPrinter
 from satsym.codegen.switching import switches
+from satsym.kernels.contract import TUPLES
+from satsym.kernels.digest import sealed
 from satsym.spec import ProblemSpec, Variable
 from satsym.symbolic.attraction import strength_of
 from satsym.symbolic.derivation import Derivation, Equation
@@ -34,8 +36,8 @@ def render(derivation: Derivation, source: str) -> str:
     Returns
     -------
     str
-        Straight-line Python that imports only ``math`` and ``numpy``; the same text for the same derivation,
-        always.
+        Straight-line Python that imports only ``math`` and ``numpy``, with a digest of itself; the same text for
+        the same derivation, always.
     """
     code = code_of(derivation)
     s, constants = code.symbols, list(code.constants.items())
@@ -48,7 +50,7 @@ def render(derivation: Derivation, source: str) -> str:
         *([symplectic.source(code, parts_of_motion, constants)] if parts_of_motion else []),
         *(_batch_form(f, s, constants) for f in code.functions),
     ]
-    return "\n\n".join(parts)
+    return sealed("\n\n".join(parts))
 
 
 def spec(derivation: Derivation, source: str) -> ProblemSpec:

@@ -16,20 +16,17 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from satsym.codegen import symplectic
-from satsym.codegen.functions import ARGUMENTS, TUPLES, Function, Symbols
+from satsym.codegen.functions import ARGUMENTS, Function, Symbols
 from satsym.codegen.naming import code_of
-from satsym.kernels import Kernels
-from satsym.kernels.composition import weights
+from satsym.kernels import Kernels, plain
+from satsym.kernels.contract import TUPLES
+from satsym.kernels.evaluation import COMPLEX_STEP
 from satsym.symbolic.checks import DIGITS, numeric
 from satsym.symbolic.derivation import Derivation, DerivationError
-from satsym.symbolic.model import symbols_of
 
 POINTS = 12
 LIMIT = 1e-12
 """Allowed deviation relative to one plus the size of the number: rounding of some tens of operations."""
-
-COMPLEX_STEP = 1e-30
 
 DERIVATIVES: dict[str, tuple[str | tuple[str, ...], tuple[str, ...], float]] = {
     "jacobian_x": ("dynamics", ("x",), 1.0),
@@ -155,68 +152,20 @@ def _stacked(argument: str, places: Sequence[Arguments]) -> Any:
 def _same_loops(derivation: Derivation, known: Symbols, kernels: Kernels, rng: random.Random) -> None:
     place = _arguments(known, derivation, rng)
     times = np.cumsum([0.3, 0.02, 0.03, 0.01])
-    steps, m = len(times) - 1, len(known.u)
+    steps, m, p = len(times) - 1, len(known.u), place["p"]
     u, u_mid = (np.array([[rng.uniform(-1, 1) for _ in range(m)] for _ in range(k)]).T for k in (steps + 1, steps))
-    p, costs = place["p"], derivation.problem is not None
-
-    def rates(t: float, y: Array, u_now: Array) -> Array:
-        state = tuple(y[: len(known.x)])
-        running = [kernels.running_cost(t, state, tuple(u_now), p)] if costs else []
-        return np.array([*kernels.dynamics(t, state, tuple(u_now), p), *running])
-
-    start = np.array([*place["x"], *([0.0] if costs else [])])
-    y, y_mid = _plain_rk4(rates, times, start, u, u_mid)
+    exact, exact_mid, cost = plain.forward(kernels, times, place["x"], u, u_mid, p)
     x, x_mid, total = kernels.forward(times, place["x"], u, u_mid, p)
-    n = len(known.x)
-    _refuse(derivation.name, "forward", np.hstack([x, x_mid]), np.hstack([y[:n], y_mid[:n]]))
+    _refuse(derivation.name, "forward", np.hstack([x, x_mid]), np.hstack([exact, exact_mid]))
     if kernels.spec.separable:
         found = kernels.symplectic(times, place["x"], p)
-        _refuse(derivation.name, "symplectic", found, _kicked(derivation, kernels, times, place))
-    if not costs:
+        _refuse(derivation.name, "symplectic", found, plain.symplectic(kernels, times, place["x"], p))
+    if derivation.problem is None:
         return
-    _refuse(derivation.name, "forward (cost)", [total], [y[n, -1]])
-
-    def costate_rates(t: float, lam: Array, given: Array) -> Array:
-        return np.array(kernels.costate_rate(t, tuple(given[:n]), tuple(given[n:]), tuple(lam), p))
-
-    given, given_mid = np.vstack([x, u])[:, ::-1], np.vstack([x_mid, u_mid])[:, ::-1]
-    lam, lam_mid = _plain_rk4(costate_rates, times[::-1], np.array(place["lam"]), given, given_mid)
-    found = np.hstack(kernels.backward(times, place["lam"], x, x_mid, u, u_mid, p))
-    _refuse(derivation.name, "backward", found, np.hstack([lam[:, ::-1], lam_mid[:, ::-1]]))
-
-
-def _plain_rk4(
-    rates: Callable[[float, Array, Array], Array], times: Array, start: Array, given: Array, given_mid: Array
-) -> tuple[Array, Array]:
-    """RK4 and Hermite midpoints, written as in a textbook; times may run backward."""
-    y, middles = [start], []
-    for i, h in enumerate(np.diff(times)):
-        t, here = times[i], y[-1]
-        k1 = rates(t, here, given[:, i])
-        k2 = rates(t + h / 2, here + h / 2 * k1, given_mid[:, i])
-        k3 = rates(t + h / 2, here + h / 2 * k2, given_mid[:, i])
-        k4 = rates(t + h, here + h * k3, given[:, i + 1])
-        there = here + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
-        middles.append((here + there) / 2 + h / 8 * (k1 - rates(t + h, there, given[:, i + 1])))
-        y.append(there)
-    return np.array(y).T, np.array(middles).T
-
-
-def _kicked(derivation: Derivation, kernels: Kernels, times: Array, place: Arguments) -> Array:
-    """Kicks of the velocities and drifts of the coordinates in turn, by the rates without control."""
-    parts, states = symplectic.split(derivation), symbols_of(derivation.model.states)
-    assert parts is not None
-    moved, kicked = (np.isin(states, group) for group in (parts.coordinates, parts.velocities))
-    kicks, drifts = weights()
-    coast = (0.0,) * len(kernels.spec.controls)
-    y = [np.array(place["x"])]
-    for i, h in enumerate(np.diff(times)):
-        now = y[-1]
-        for kick, drift in zip(kicks, [*drifts, 0.0], strict=True):
-            now = now + kick * h * kicked * kernels.dynamics(times[i], now, coast, place["p"])
-            now = now + drift * h * moved * kernels.dynamics(times[i], now, coast, place["p"])
-        y.append(now)
-    return np.array(y).T
+    _refuse(derivation.name, "forward (cost)", [total], [cost])
+    lam = np.hstack(kernels.backward(times, place["lam"], x, x_mid, u, u_mid, p))
+    exact = np.hstack(plain.backward(kernels, times, place["lam"], x, x_mid, u, u_mid, p))
+    _refuse(derivation.name, "backward", lam, exact)
 
 
 def _refuse(model: str, what: str, found: Any, expected: Any) -> None:

@@ -13,12 +13,9 @@ from collections.abc import Mapping
 from math import prod
 from typing import NoReturn
 
-from satsym.kernels.contract import Signature
+from satsym.kernels.contract import GROUPS, TUPLES, Signature
 
-_GROUPS = {"x": "n", "x0": "n", "x_mid": "n", "lam": "n", "lam_f": "n", "lam_mid": "n", "u": "m", "u_mid": "m"}
-_GROUPS |= {"p": "k", "bounds": "b", "nu": "c", "final": "f", "original": "n"}
-_GROUPS |= {"gain": "mn", "riccati": "nn", "state_weight": "nn", "control_weight": "mm"}
-_TUPLES = ("nu", "p", "bounds", "final")  # of numbers, also in the batch form
+_GROUPS = GROUPS | {"x0": "n", "x_mid": "n", "lam_f": "n", "lam_mid": "n", "u_mid": "m"}
 _NODES, _MIDPOINTS = ("times", "x", "lam", "u"), ("x_mid", "lam_mid", "u_mid")
 _KEPT = {"math", "np", "len", "range", "float", "out", "shape"}
 _UNARY = ("sqrt", "sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log")
@@ -156,10 +153,10 @@ class Body:
     def _allocation(self) -> str:
         """How a batch form makes its result."""
         arguments = self.signature.arguments
-        sized = [a for a in arguments if a not in _TUPLES and self.packed.get(a) != 0]
+        sized = [a for a in arguments if a not in TUPLES and self.packed.get(a) != 0]
         parts = [f"np.shape({a}[0])" if a in self.packed else f"np.shape({a})" for a in sized]
         parts += [f"np.shape(p[{k}])" for k in range(self.packed["p"])] if self.signature.over_parameters else []
-        types = [f"*{a}" if a in _TUPLES else a for a in arguments]
+        types = [f"*{a}" if a in TUPLES else a for a in arguments]
         shape = f"({', '.join(map(str, self.shape))}, *shape)" if self.shape else "shape"
         return (
             f"if out is None:\n    shape = np.broadcast_shapes({', '.join(parts)})\n"

@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import re
 import warnings
+from itertools import islice
 from math import isfinite
 
 import msgspec
@@ -20,6 +21,10 @@ from satsym.spec import ProblemSpec
 _IMPORTS = ("import math", "import numpy as np")
 _LARGEST = 10**6
 _LONGEST = 1000
+_MOST_WORDS = 200_000
+"""Names, numbers and signs, ends of lines among them; shipped modules have a tenth of that. What Python makes of a text
+takes thousandfold its memory."""
+_WORD = re.compile(r"\w+|[^\w ]")
 _NAME = re.compile(r"[a-z][a-z0-9_]*\Z")
 
 
@@ -35,6 +40,8 @@ def check(text: str) -> tuple[ProblemSpec, list[ast.FunctionDef]]:
     Unexpected
         At the first line that the generator does not write.
     """
+    if sum(1 for _ in islice(_WORD.finditer(text), _MOST_WORDS + 1)) > _MOST_WORDS:
+        raise Unexpected(1, "begins more than a generated module holds")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # they would print lines of the file

@@ -10,6 +10,13 @@ from satsym.spec import ProblemSpec
 BATCH = "_batch"
 """Suffix of the batch form of a pointwise function; it takes ``out=None`` as well."""
 
+TUPLES = ("nu", "p", "bounds", "final")
+"""Arguments that are tuples of numbers, or of arrays, also in the batch form; others are arrays there."""
+
+GROUPS = {"x": "n", "lam": "n", "u": "m", "p": "k", "bounds": "b", "nu": "c", "final": "f", "original": "n"}
+GROUPS |= {"gain": "mn", "riccati": "nn", "state_weight": "nn", "control_weight": "mm"}
+"""What an argument of a function of one point consists of: a letter for each axis, see :func:`sizes`."""
+
 
 @dataclass(frozen=True)
 class Signature:
@@ -77,7 +84,7 @@ _SWITCHING = {
 Its ``canonical`` functions and ``boundary`` are those of the smoothed companion, see
 :mod:`satsym.codegen.switching`.
 """
-_CURVE = {
+CURVE = {
     "beyond_switching_curve": _signature("t x p bounds final"),
     "feedback_law": _signature("t x p bounds final", "m"),
     "transition_time": _signature("t x p bounds final"),
@@ -128,7 +135,7 @@ def pointwise(spec: ProblemSpec) -> dict[str, Signature]:
     found |= _COST if spec.has_cost else {}
     if spec.switching:
         found = {name: signature for name, signature in found.items() if name not in _OF_REGULAR_LAWS} | _SWITCHING
-        found |= _CURVE if spec.switching_curve else {}
+        found |= CURVE if spec.switching_curve else {}
     return found
 
 

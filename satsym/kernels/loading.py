@@ -1,7 +1,8 @@
 """Find a model by name or by path, and make its Kernels.
 
 Shipped modules are imported like any other. A file that an instance names by path is data from someone else:
-it must lie in the instance's folder, and it is checked node by node before anything in it runs.
+it must lie in the instance's folder, and it is checked node by node before anything in it runs; then its digest, and
+its functions against one another.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import math
 import re
 from collections.abc import Mapping
 from functools import cache, lru_cache
+from importlib.abc import InspectLoader
 from pathlib import Path
 from types import FunctionType
 from typing import Any
@@ -19,16 +21,18 @@ from typing import Any
 import numpy as np
 
 from satsym.kernels.core import Function, Kernels
+from satsym.kernels.digest import intact
 from satsym.spec import ProblemSpec
 from satsym.status import BadInput
 from satsym.wording import printable, shown, suggestion
 
 PACKAGE = "satsym.generated"
-LARGEST = 2_000_000
-"""Bytes of a module file; the shipped ones have a hundredth of that."""
+LARGEST = 1_000_000
+"""Bytes of a module file; the shipped ones have a twentieth of that."""
 
 _NAME = re.compile(r"[a-z][a-z0-9_]{0,99}\Z")
 _ANEW = "write it anew with `satsym derive`"
+_EDITED = "edited by hand or damaged since it was written; run `satsym derive` again"
 
 
 def shipped() -> list[str]:
@@ -61,11 +65,11 @@ def load(model: str, folder: Path | None = None) -> Kernels:
             raise BadInput(_unknown(model))
         model = f"./{model}"
     path, root = _resolve(model, folder)
-    return _load_text(model, root, path, _read(model, path))
+    return _load_file(model, root, path, _read(model, path))
 
 
 def from_text(text: str, name: str) -> Kernels:
-    """The kernels of a module that has not been written to a file, checked as one that has.
+    """The kernels of a module that has not been written to a file, its code checked as that of one that has.
 
     Parameters
     ----------
@@ -89,6 +93,10 @@ def _unknown(model: str) -> str:
 @cache
 def _load_shipped(name: str) -> Kernels:
     module = importlib.import_module(f"{PACKAGE}.{name}")
+    loader = module.__loader__
+    text = loader.get_source(module.__name__) if isinstance(loader, InspectLoader) else None
+    if text is not None and not intact(text):
+        raise BadInput(f"{shown(name)}: {_EDITED}")
     try:
         return Kernels(ProblemSpec.from_literal(module.MODEL), _defined(vars(module)), origin=(name, None))
     except ValueError as error:
@@ -131,6 +139,19 @@ def _read(model: str, path: Path) -> str:
 
 
 @lru_cache(maxsize=32)
+def _load_file(model: str, root: Path, path: Path, text: str) -> Kernels:
+    """The kernels of a file, which must be as it was written, and must not contradict itself."""
+    from satsym.kernels import consistency
+
+    found = _load_text(model, root, path, text)
+    if not intact(text):
+        raise BadInput(f"{shown(model)}: {_EDITED}")
+    worst = consistency.worst(found, consistency.random_places(found))
+    if worst is not None and not worst.deviation <= consistency.LIMIT:
+        raise BadInput(f"{shown(model)}: {worst.function} contradicts the other functions ({worst.claim}); {_ANEW}")
+    return found
+
+
 def _load_text(model: str, root: Path, path: Path, text: str) -> Kernels:
     # Imported here: shipped models need no check.
     from satsym.kernels.bodies import Unexpected

@@ -64,6 +64,7 @@ def regulator_object(design: Design) -> dict[str, Any]:
         "K": rows(found.K),
         "P": rows(found.P),
         "riccati_residual": number(found.residual),
+        "riccati_error": None if found.error is None else number(found.error),
         "closed_loop_eigenvalues": [complex_object(value) for value in found.eigenvalues],
         "characteristic_polynomial": numbers(found.polynomial),
         "routh": routh_object(found.routh),

@@ -60,6 +60,8 @@ def regulator_text(design: Design) -> str:
     over = "an infinite horizon" if found.horizon is None else f"a horizon of {figure(found.horizon)}, at its beginning"
     name = about.model.spec.name if design.instance is None else design.instance.name
     facts = [("Riccati residual", figure(found.residual, 2))]
+    if found.error is not None:
+        facts.append(("estimated error of P", figure(found.error, 2)))
     if design.deviation is not None:
         facts.append(("cost from the initial state", figure(found.cost(design.deviation), 10)))
     eigenvalues = [(complex_number(value),) for value in found.eigenvalues]

@@ -15,6 +15,7 @@ from satsym.solve.certificate.competitors import Compared, Comparison, Rival
 from satsym.solve.certificate.conjugate import Conjugate, conjugate
 from satsym.solve.certificate.flow import TOLERANCE, Flow, flow
 from satsym.solve.certificate.junctions import correction, node_by_node
+from satsym.solve.certificate.kernel_consistency import with_kernels_examined
 from satsym.solve.certificate.neighbours import Neighbours, neighbours
 from satsym.solve.certificate.segments import Segments, segments
 from satsym.status import Verdict
@@ -58,6 +59,12 @@ def examined(solution: Solution, deadline: float, seed: int = 0) -> tuple[Certif
     """
     if not solution.status.answered:
         return None, None
+    certificate, rival = _judged(solution, deadline, seed)
+    return with_kernels_examined(certificate, solution), rival
+
+
+def _judged(solution: Solution, deadline: float, seed: int) -> tuple[Certificate, Rival | None]:
+    """The certificate that the kernels give, whatever they are worth, and the cheapest competitor."""
     if solution.instance.model.spec.switching:
         from satsym.solve.certificate import switching
 

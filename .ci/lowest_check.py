@@ -1,0 +1,72 @@
+"""A round through what satsym does, each step with a known answer; for environments other than the tests' own."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from satsym import instance
+from satsym.analysis.equilibrium import linearise
+from satsym.cli import main
+from satsym.kernels import load
+
+CASE = """
+model = "double_integrator_energy"
+title = "With units"
+[initial]
+q = "100 cm"
+q_dot = "0 cm/s"
+[final]
+q = 0.0
+q_dot = 0.0
+[time]
+tf = "1000 ms"
+"""
+
+
+def run(*words: str) -> dict[str, Any]:
+    """What a command writes into result.json."""
+    out = Path("out", words[0])
+    code = main([*words, "--out", str(out)])
+    if code:
+        sys.exit(f"satsym {' '.join(words)}: exit {code}")
+    found: dict[str, Any] = json.loads((out / "result.json").read_text(encoding="utf-8"))
+    return found
+
+
+def expect(what: str, true: bool) -> None:
+    """End here unless that is so."""
+    if not true:
+        sys.exit(f"{what}: not so")
+
+
+def check() -> None:
+    """Solve, simulate, analyse, regulate, draw, read units, compile, hand over to python-control."""
+    Path("case.toml").write_text(CASE, encoding="utf-8")
+    solved = run("solve", "case.toml", "--plot")
+    expect("from rest to rest costs 6", abs(solved["objective"] - 6.0) < 1e-8)
+    expect("certified", solved["certificate"]["verdict"] == "certified")
+    expect("pictures", any(Path("out/solve").glob("*.png")))
+    expect("simulated", abs(run("simulate", "return-to-orbit")["t_final"] - 2.0 * np.pi) < 1e-9)
+    verdict = run("analyse", "polar_orbit")["stability"]["verdict"]
+    expect("the orbit's linearisation is unstable, its double zero growing like t", verdict == "unstable")
+    gain = np.array(run("lqr", "uny-lqr")["K"])
+    expect("the printed gain", np.allclose(gain, [[10.2210, 4.2841, -1.0, 4.0170]], atol=1e-4))
+    found = linearise(load("polar_orbit")).system
+    poles = np.sort_complex(found.to_control().poles())
+    expect("python-control has the same poles", np.allclose(poles, np.sort_complex(np.linalg.eigvals(found.A))))
+    case = instance.load("return-to-orbit")
+    nodes, rest = np.linspace(0.0, 1.0, 50), np.zeros((2, 50))
+    ours, compiled = (
+        k.forward(nodes, case.initial, rest, rest[:, 1:], case.parameters) for k in (case.model, case.model.compiled())
+    )
+    expect("compiled code computes the same", np.allclose(ours[0], compiled[0], rtol=1e-12))
+    expect("LaTeX", not main(["latex", "polar_orbit"]))
+
+
+if __name__ == "__main__":
+    check()

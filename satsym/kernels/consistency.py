@@ -1,0 +1,214 @@
+"""Whether the functions of a module contradict each other.
+
+A digest shows that a file is as it was written; it can be recomputed. What was edited in one function no longer fits
+the others: the two forms of a function must agree, loops must do what the functions of one point say, and derivatives
+must be derivatives (:mod:`satsym.kernels.relations`).
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from math import prod
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.kernels import plain
+from satsym.kernels.contract import CURVE, GROUPS, TUPLES, pointwise, sizes
+from satsym.kernels.core import Kernels
+from satsym.kernels.evaluation import COPIES, Array, Evaluation, size, with_copies
+from satsym.kernels.relations import Relation, deviations, relations
+from satsym.spec import Variable
+
+LIMIT = 1e-9
+"""Largest difference of what must be equal, relative to the size of what it is made of; rounding stays far below."""
+
+PLACES = 24
+"""Of random ones."""
+
+STEPS, SHARE = 3, 0.1
+"""Nodes over which loops are followed, and by which share of themselves states change in a step."""
+
+FAR = 1e9
+NEAR = ((float("nan"), -0.2, 0.1, -0.5), (float("nan"), 0.2, 0.5, -0.1))
+"""Lower and upper bounds aside of a control, relative to it: in turn any, around it, above it and below it."""
+
+SEED = 20
+_FAILED = (ArithmeticError, ValueError, TypeError)
+"""What functions on floats raise beyond their domain; roots of negative numbers are complex, and no arguments."""
+
+
+@dataclass(frozen=True)
+class Contradiction:
+    """The worst disagreement of a function with others.
+
+    Attributes
+    ----------
+    function, claim
+        Which, and what it must be.
+    deviation
+        Relative, see :data:`LIMIT`; infinite where only one of two numbers is finite.
+    """
+
+    function: str
+    claim: str
+    deviation: float
+
+
+def worst(kernels: Kernels, at: Mapping[str, Any], seed: int = SEED) -> Contradiction | None:
+    """The largest contradiction between the functions of a module at places; ``None`` where none is in their domain.
+
+    Parameters
+    ----------
+    kernels
+        To be examined.
+    at
+        Arguments by name, as :func:`random_places` gives them.
+    seed
+        Of the copies aside of the places, by which sizes are told.
+    """
+    with np.errstate(all="ignore"):
+        evaluation = Evaluation(kernels, with_copies(at, seed))
+        finite = _finite(evaluation)
+        if not finite.all():
+            at = {a: tuple(v[finite] for v in row) if a in TUPLES else row[..., finite] for a, row in at.items()}
+            evaluation = Evaluation(kernels, with_copies(at, seed))
+        if not finite.any():
+            return None
+        groups: list[tuple[list[Relation], Callable[[Array], Array]]] = [(list(relations(evaluation)), size)]
+        groups += [([each], _largest) for source in (_both_forms(evaluation), _loops(kernels, at)) for each in source]
+        found = [
+            Contradiction(each.function, each.claim, deviation)
+            for group, scale in groups
+            for each, deviation in zip(group, deviations(group, scale), strict=True)
+        ]
+    return max(found, key=lambda each: each.deviation)
+
+
+def _finite(of: Evaluation) -> NDArray[np.bool_]:
+    """Which places are in the domain of all functions, the laws of switching curves apart, with their copies."""
+    names = [name for name in of.signatures if name not in CURVE]
+    rows = np.concatenate([of(name).reshape(-1, len(of.at["t"])) for name in names])
+    return np.asarray(np.isfinite(rows).all(axis=0).reshape(1 + COPIES, -1).all(axis=0))
+
+
+def random_places(kernels: Kernels, seed: int = SEED) -> dict[str, Any]:
+    """Arguments of size one, within the domain, with bounds that some controls meet and others do not."""
+    spec, counts, rng = kernels.spec, sizes(kernels.spec), random.Random(seed)
+
+    def drawn(count: int, positive: Mapping[int, float]) -> Array:
+        rows = [
+            [positive.get(i, rng.choice((-1.0, 1.0))) * rng.uniform(0.5, 1.5) for _ in range(PLACES)]
+            for i in range(count)
+        ]
+        return np.array(rows).reshape(count, PLACES)
+
+    signs = {"x": _positive(spec.states), "original": {}, "p": _positive(spec.parameters)}
+    m, b = counts["m"], counts["b"]
+    signs["bounds"] = {i: -1.0 if spec.control_set == "box" and i < m else 1.0 for i in range(b)}
+    found: dict[str, Any] = {"t": drawn(1, {})[0]}
+    needed = {"x", "u", "lam"}.union(*(signature.arguments for signature in pointwise(spec).values()))
+    for name, letters in GROUPS.items():
+        if name not in needed:
+            continue
+        table = drawn(prod(counts[letter] for letter in letters), signs.get(name, {}))
+        if name in ("lam", "bounds"):  # so that some bounds hold nearly every control, and some hold none
+            varied = table[: b - 2 * spec.switching] if name == "bounds" else table
+            varied *= 10.0 ** np.array(rng.sample([-1.5 + 2.0 * k / PLACES for k in range(PLACES)], PLACES))
+        found[name] = tuple(table) if name in TUPLES else table
+    if spec.has_cost and spec.control_set == "box" and not spec.switching:
+        found["bounds"] = about_the_law(kernels, found)
+    return found
+
+
+def about_the_law(kernels: Kernels, at: Mapping[str, Any]) -> tuple[Array, ...]:
+    """Bounds of a box of which most lie near the control without any: around it, above it or below."""
+    m = len(kernels.spec.controls)
+    with np.errstate(all="ignore"):
+        law = kernels.control_law_batch(*(at[a] for a in ("t", "x", "lam", "p")), (*[-FAR] * m, *[FAR] * m))
+    kinds = np.arange(law.shape[-1])[None, :] + np.arange(m)[:, None]  # no two controls alike
+    found = []
+    for shifts, bounds in zip(NEAR, (at["bounds"][:m], at["bounds"][m:]), strict=True):
+        near = law + np.array(shifts)[kinds % len(shifts)] * np.abs(law)
+        found += list(np.where(np.isfinite(near), near, np.array(bounds)))
+    return tuple(found)
+
+
+def _positive(variables: tuple[Variable, ...]) -> dict[int, float]:
+    return {i: 1.0 for i, variable in enumerate(variables) if variable.positive}
+
+
+def _both_forms(of: Evaluation) -> Iterator[Relation]:
+    """The form on floats and that on arrays, of every function; also where costates vanish and no law is decided."""
+    none = np.zeros_like(of.at["lam"])
+    columns = [column(of.at, k) for k in range(len(of.at["t"]) // (1 + COPIES))]
+    columns.append(column({**of.at, "lam": none}, 0))
+    for name, signature in of.signatures.items():
+        everywhere = of(name).reshape(-1, len(of.at["t"]))
+        first = (
+            of(name, lam=none).reshape(everywhere.shape)[:, :1] if "lam" in signature.arguments else everywhere[:, :1]
+        )
+        rows = np.concatenate([everywhere[:, : len(columns) - 1], first], axis=1)
+        found = [_single(of, name, signature.arguments, each) for each in columns]
+        pairs = [(one, rows[:, k]) for k, one in enumerate(found) if one is not None]
+        if pairs:
+            single, batch = (np.array(side).T for side in zip(*pairs, strict=True))
+            yield Relation(name, "the same on floats and on arrays", single, batch, _largest(rows))
+
+
+def _single(of: Evaluation, name: str, arguments: tuple[str, ...], at: Mapping[str, Any]) -> Array | None:
+    """A function on floats, as a row; ``None`` where something in it has no value, which arrays may get over."""
+    try:
+        found = of.kernels.functions[name](*(at[a] for a in arguments))
+        return np.atleast_1d(np.asarray(found, dtype=float))
+    except _FAILED:
+        return None
+
+
+def column(at: Mapping[str, Any], k: int) -> dict[str, Any]:
+    """One place of many, as floats."""
+    return {
+        name: float(values[k]) if name == "t" else tuple(float(row[k]) for row in values) for name, values in at.items()
+    }
+
+
+def _loops(kernels: Kernels, at: Mapping[str, Any]) -> Iterator[Relation]:
+    """Trajectory loops over a few steps from the first place, the controls being those of the others."""
+    first = column(at, 0)
+    p, start, end, u = first["p"], first["x"], first["lam"], at["u"][:, :STEPS]
+    times = first["t"] + _short(kernels, first) * np.array([0.0, 1.0, 1.5])
+    u_mid = 0.3 * u[:, :-1] + 0.7 * u[:, 1:]
+    x, x_mid, cost = kernels.forward(times, start, u, u_mid, p)
+    try:
+        exact, exact_mid, total = plain.forward(kernels, times, start, u, u_mid, p)
+        claim = "RK4 of the rates"
+        yield Relation("forward", claim, np.hstack([x, x_mid]), np.hstack([exact, exact_mid]))
+        yield Relation("forward", "Simpson's rule for the running cost", np.array([[cost]]), np.array([[total]]))
+        if kernels.spec.separable:
+            again = plain.symplectic(kernels, times, start, p)
+            yield Relation("symplectic", "kicks and drifts", kernels.symplectic(times, start, p), again)
+        if kernels.spec.has_cost:
+            lam = np.hstack(kernels.backward(times, end, x, x_mid, u, u_mid, p))
+            again = np.hstack(plain.backward(kernels, times, end, x, x_mid, u, u_mid, p))
+            yield Relation("backward", claim, lam, again)
+    except _FAILED:
+        return  # beyond the domain of the rates
+
+
+def _largest(rows: Array) -> Array:
+    """Of the finite numbers of each row."""
+    return np.asarray(np.abs(np.where(np.isfinite(rows), rows, 0.0)).max(axis=-1, initial=0.0, keepdims=True))
+
+
+def _short(kernels: Kernels, at: Mapping[str, Any]) -> float:
+    """A time in which the states change by some tenth of themselves."""
+    try:
+        rates = np.abs(kernels.dynamics(at["t"], at["x"], at["u"], at["p"]))
+    except _FAILED:
+        return SHARE
+    x = np.abs(at["x"])
+    pace = float((rates / np.where(x > 0.0, x, np.inf)).max(initial=0.0))
+    return SHARE / pace if np.isfinite(pace) and pace > 0.0 else SHARE

@@ -1,0 +1,105 @@
+"""Relations of the functions that linear models have; see :mod:`satsym.kernels.relations`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from satsym.kernels.evaluation import FAINT, Array, Evaluation, size
+from satsym.kernels.relations import Relation
+
+PROBES = (-1.7, -0.4, 0.9, 2.3)
+"""Where polynomials are compared with determinants, in units of the matrix."""
+
+
+def of_linear_models(of: Evaluation) -> Iterator[Relation]:
+    """Matrices, changes of variables, polynomials, closed forms and Riccati's equation."""
+    columns = of.at["t"].shape[-1]
+    a, at_rest = of("state_matrix"), {"x": np.zeros_like(of.at["x"]), "u": np.zeros_like(of.at["u"])}
+    b = of("input_matrix") if of.has("input_matrix") else np.zeros((len(a), 0, columns))
+    exact = "deviation_dynamics" if of.has("deviation_dynamics") else "dynamics"
+    for name, function, by in (
+        ("state_matrix", "dynamics", "x"),
+        ("state_matrix", exact, "x"),
+        ("input_matrix", "dynamics", "u"),
+        ("input_matrix", exact, "u"),
+    ):
+        if of.has(name):
+            slopes = of.slope(function, by, **at_rest)
+            terms = FAINT * size(slopes).max()
+            yield Relation(name, f"derivative of {function} at rest", of(name), slopes, terms)
+    if of.has("original_state", "deviation_state"):
+        back = of("deviation_state", original=of("original_state"))
+        yield Relation(
+            "deviation_state", "inverse of original_state", back, of.at["x"], size(of("original_state")).max()
+        )
+    yield from _of_polynomials(of, a, b)
+    yield from _of_closed_forms(of, a)
+    if of.has("riccati_residual"):
+        yield _of_riccati(of, a, b)
+
+
+def _of_polynomials(of: Evaluation, a: Array, b: Array) -> Iterator[Relation]:
+    n, columns = len(a), a.shape[-1]
+    matrices = {"characteristic_polynomial": a}
+    if of.has("closed_loop_polynomial"):
+        matrices["closed_loop_polynomial"] = a - np.einsum("imk,mjk->ijk", b, of.at["gain"].reshape(-1, n, columns))
+    for name, matrix in matrices.items():
+        if not of.has(name):
+            continue
+        coefficients = np.broadcast_to(of(name), (n + 1, columns))
+        unit = np.abs(matrix).sum(axis=1).max(axis=0)
+        for probe in PROBES:
+            s = probe * unit
+            powers = s ** np.arange(n, -1, -1)[:, None]
+            value = (coefficients * powers).sum(axis=0)
+            exact = np.linalg.det(s[:, None, None] * np.eye(n) - np.moveaxis(matrix, -1, 0))
+            yield Relation(name, "determinant of s minus the matrix", value, exact, (3.0 * unit) ** n)
+    if of.has("closed_loop_routh"):  # the column of the open loop may hold special cases
+        found, expected = of("closed_loop_routh"), _routh_column(of("closed_loop_polynomial"))
+        yield Relation("closed_loop_routh", "first column of the Routh array", found, expected)
+
+
+def _routh_column(coefficients: Array) -> Array:
+    """Without special cases."""
+    above, row = list(coefficients[0::2]), list(coefficients[1::2])
+    found = [above[0]]
+    while row:
+        found.append(row[0])
+        padded = [*row, *[np.zeros_like(row[0])] * (len(above) - len(row))]
+        below = [above[k] - above[0] * padded[k] / row[0] for k in range(1, len(above))]
+        above, row = row, below[: max(len(above) - 1, 0)]
+    return np.array(found)
+
+
+def _of_closed_forms(of: Evaluation, a: Array) -> Iterator[Relation]:
+    n, columns = len(a), a.shape[-1]
+    if of.has("eigenvalues"):
+        real, imaginary = np.moveaxis(np.broadcast_to(of("eigenvalues"), (n, 2, columns)), 1, 0)
+        unit = np.abs(a).sum(axis=1).max(axis=0)
+        for probe in PROBES:
+            value = np.prod(probe * unit - real - 1j * imaginary, axis=0)
+            exact = np.linalg.det((probe * unit)[:, None, None] * np.eye(n) - np.moveaxis(a, -1, 0))
+            for part, other in ((value.real, exact), (value.imag, np.zeros_like(exact))):
+                yield Relation("eigenvalues", "roots of the determinant of s - A", part, other, (3.0 * unit) ** n)
+    if of.has("transition_matrix"):
+        name, now = "transition_matrix", of("transition_matrix")
+        onward = np.einsum("imk,mjk->ijk", a, now)
+        terms = np.einsum("imk,mjk->ijk", np.abs(a), np.abs(now))
+        yield Relation(name, "changes at the rate A", of.slope(name, "t")[..., 0, :], onward, terms)
+        start = of(name, t=np.zeros(columns))
+        yield Relation(name, "one at the start", start, np.broadcast_to(np.eye(n)[..., None], start.shape), 1.0)
+
+
+def _of_riccati(of: Evaluation, a: Array, b: Array) -> Relation:
+    n, m, columns = *b.shape[:2], b.shape[-1]
+    p, q = (np.moveaxis(of.at[name].reshape(n, n, columns), -1, 0) for name in ("riccati", "state_weight"))
+    r = np.moveaxis(of.at["control_weight"].reshape(m, m, columns), -1, 0)
+    a, b = np.moveaxis(a, -1, 0), np.moveaxis(b, -1, 0)
+    paid = p @ b @ np.linalg.solve(r, np.swapaxes(b, 1, 2) @ p)
+    exact = np.swapaxes(a, 1, 2) @ p + p @ a - paid + q
+    terms = np.moveaxis(np.abs(paid), 0, -1)
+    return Relation(
+        "riccati_residual", "A'P + PA - P B R^-1 B' P + Q", of("riccati_residual"), np.moveaxis(exact, 0, -1), terms
+    )

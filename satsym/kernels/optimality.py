@@ -1,0 +1,124 @@
+"""What the functions of a problem with a cost must have to do with each other; see :mod:`satsym.kernels.relations`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from satsym.kernels.evaluation import FAINT, Array, Evaluation, size
+from satsym.kernels.relations import Relation, derivative
+
+
+def of_the_cost(of: Evaluation) -> Iterator[Relation]:
+    """Relations of the Hamiltonian, the law, the canonical equations and the right end."""
+    yield from _of_hamiltonian(of)
+    if of.kernels.spec.switching:
+        from satsym.kernels.alternation import companion_law, of_switching
+
+        yield from of_switching(of)
+        control, surplus = companion_law(of)
+    else:
+        yield from _of_regular_law(of)
+        control, surplus = of("control_law"), np.zeros_like(of.at["x"])
+    yield from _of_canonical(of, control, surplus)
+    yield from _of_ends(of, control)
+
+
+def _of_hamiltonian(of: Evaluation) -> Iterator[Relation]:
+    f, lam = of("dynamics"), of.at["lam"]
+    work = lam * f
+    cost, terms = of("hamiltonian") - work.sum(axis=0), np.abs(work).sum(axis=0)
+    yield Relation("running_cost", "H - lambda' f", of("running_cost"), cost, FAINT * terms)
+    yield from derivative(of, "dynamics", "hamiltonian", ("lam",))
+    yield from derivative(of, "costate_rate", "hamiltonian", ("x",), -1.0)
+    yield from derivative(of, "terminal_gradient", "terminal_cost", ("x",))
+    if not of.kernels.spec.has_terminal_cost:
+        yield Relation("terminal_cost", "none", of("terminal_cost"), np.zeros_like(of.at["t"]))
+
+
+def _of_regular_law(of: Evaluation) -> Iterator[Relation]:
+    yield from derivative(of, "stationarity", "hamiltonian", ("u",))
+    yield from derivative(of, "control_hessian", "stationarity", ("u",))
+    law = of("control_law")
+    slope = of.slope("hamiltonian", "u", u=law)
+    terms = np.abs(of.slope("hamiltonian", "u", u=np.zeros_like(law))) + np.abs(slope)
+    kind, bounds = of.kernels.spec.control_set, [np.asarray(b) for b in of.at["bounds"]]
+    if kind == "box":
+        low, high = (
+            np.array(np.broadcast_arrays(*half, law[0])[:-1]) for half in (bounds[: len(law)], bounds[len(law) :])
+        )
+        left = _outside_box(of, law, slope, low, high)
+        size_of_law = size(law)
+        yield Relation("control_law", "within its box", law, np.minimum(np.maximum(law, low), high), size_of_law)
+    elif kind == "ball":
+        norm = np.sqrt((law * law).sum(axis=0))
+        left = _outside_ball(slope, law, norm, bounds[0])
+        yield Relation("control_law", "within its ball", norm, np.minimum(norm, bounds[0]))
+    else:
+        left = slope
+    yield Relation("control_law", "H is least there", left, np.zeros_like(left), terms)
+
+
+def _outside_box(of: Evaluation, law: Array, slope: Array, low: Array, high: Array) -> Array:
+    """H_u but for what a bound that is met may hold; which sign that has where H_uu says which way is down."""
+    curved = np.asarray(np.einsum("iik->ik", of("control_hessian", u=law)) > 0.0)
+    held = np.where(law <= low, np.minimum(slope, 0.0), np.where(law >= high, np.maximum(slope, 0.0), slope))
+    free = np.where((law <= low) | (law >= high), 0.0, slope)
+    return np.asarray(np.where(low == high, 0.0, np.where(curved, held, free)))
+
+
+def _outside_ball(slope: Array, law: Array, norm: Array, limit: Array) -> Array:
+    """H_u but for a part that points from a control at the limit straight into the ball."""
+    outward = law / np.where(norm > 0.0, norm, 1.0)
+    along = (slope * outward).sum(axis=0)
+    at_limit = norm >= limit * (1.0 - 1e-12)
+    return np.asarray(slope - np.where(at_limit, np.minimum(along, 0.0), 0.0) * outward)
+
+
+def _of_canonical(of: Evaluation, control: Array, surplus: Array) -> Iterator[Relation]:
+    """The rates of states and costates with the law in them, and what is derived from these."""
+    expected = np.concatenate([of("dynamics", u=control), of("costate_rate", u=control) + surplus])
+    terms = sum(np.abs(of.slope("canonical", name) * of.at[name]).sum(axis=-2) for name in ("x", "lam"))
+    yield Relation("canonical", "rates of states and costates under the law", of("canonical"), expected, FAINT * terms)
+    yield from derivative(of, "canonical_jacobian", "canonical", ("x", "lam"))
+    yield from derivative(of, "canonical_drift", "canonical", ("t",))
+
+
+def _of_ends(of: Evaluation, control: Array) -> Iterator[Relation]:
+    """The boundary residuals, put together from cost, reference and constraints."""
+    x, lam, n = of.at["x"], of.at["lam"], len(of.at["x"])
+    given, on_reference, target = (_rows(of.at["final"][k * n : (k + 1) * n], x) for k in range(3))
+    found = of("boundary")
+    constraints = slice(n, len(found) - 1)
+    weights = _rows(of.at["nu"], x)
+    by_state, by_time = (of.slope("boundary", a)[constraints] for a in ("x", "t"))
+    curve, pace = np.zeros_like(x), np.zeros_like(x)
+    if of.has("reference"):
+        curve, pace = of("reference"), of.slope("reference", "t")[..., 0, :]
+    slope = of.slope("terminal_cost", "x") + np.einsum("ck,cnk->nk", weights, by_state)
+    ends = given * (x - target) + on_reference * (x - curve) + (1.0 - given - on_reference) * (lam - slope)
+    terms = np.abs(given * x) + np.abs(on_reference * x) + np.abs(lam) + np.abs(slope)
+    yield Relation("boundary", "the end, or transversality, of each state", found[:n], ends, FAINT * terms)
+    h = of("hamiltonian", u=control) + _smoothing(of, control)
+    parts = [h, of.slope("terminal_cost", "t")[0], *(weights * by_time[:, 0]), *((slope - lam) * on_reference * pace)]
+    size_of_parts = np.sum(np.abs(parts), axis=0)
+    yield Relation(
+        "boundary", "transversality of the final time", found[-1], np.sum(parts, axis=0), size_of_parts * FAINT
+    )
+    yield from derivative(of, "boundary_jacobian", "boundary", ("x", "lam", "nu", "t"))
+
+
+def _smoothing(of: Evaluation, control: Array) -> Array | float:
+    """What the companion's Hamiltonian has besides, where there is one."""
+    if not of.kernels.spec.switching:
+        return 0.0
+    from satsym.kernels.alternation import extra_cost
+
+    return extra_cost(of, control)
+
+
+def _rows(values: Any, like: Array) -> Array:
+    """A tuple of numbers or arrays as a table of as many columns."""
+    return np.array([np.broadcast_to(value, like.shape[-1:]) for value in values]).reshape(len(values), like.shape[-1])

@@ -1,0 +1,87 @@
+"""The trajectory loops once more, as textbooks have them, by calls of functions of one point in time.
+
+Slow, and therefore only what the generated loops are held against.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.kernels.composition import weights
+from satsym.kernels.core import Kernels
+
+Array = NDArray[np.floating[Any]]
+
+
+def forward(
+    kernels: Kernels, times: Array, x0: Sequence[float], u: Array, u_mid: Array, p: tuple[float, ...]
+) -> tuple[Array, Array, float]:
+    """As :meth:`satsym.kernels.Kernels.forward`."""
+    n, costs = len(x0), kernels.spec.has_cost
+
+    def rates(t: float, y: Array, u_now: Array) -> Array:
+        state, control = tuple(y[:n].tolist()), tuple(u_now.tolist())
+        running = [kernels.running_cost(t, state, control, p)] if costs else []
+        return np.array([*kernels.dynamics(t, state, control, p), *running])
+
+    y, y_mid = _rk4(rates, times, np.array([*x0, *([0.0] if costs else [])]), u, u_mid)
+    return y[:n], y_mid[:n], float(y[n, -1]) if costs else 0.0
+
+
+def backward(
+    kernels: Kernels,
+    times: Array,
+    lam_f: Sequence[float],
+    x: Array,
+    x_mid: Array,
+    u: Array,
+    u_mid: Array,
+    p: tuple[float, ...],
+) -> tuple[Array, Array]:
+    """As :meth:`satsym.kernels.Kernels.backward`."""
+    n = len(x)
+
+    def rates(t: float, lam: Array, given: Array) -> Array:
+        state, control = tuple(given[:n].tolist()), tuple(given[n:].tolist())
+        return np.array(kernels.costate_rate(t, state, control, tuple(lam.tolist()), p))
+
+    given, given_mid = np.vstack([x, u])[:, ::-1], np.vstack([x_mid, u_mid])[:, ::-1]
+    lam, lam_mid = _rk4(rates, times[::-1], np.array(lam_f), given, given_mid)
+    return lam[:, ::-1], lam_mid[:, ::-1]
+
+
+def symplectic(kernels: Kernels, times: Array, x0: Sequence[float], p: tuple[float, ...]) -> Array:
+    """Kicks of the velocities and drifts of the coordinates in turn, by the rates without control."""
+    spec = kernels.spec
+    moved, kicked = (np.isin(spec.state_names, group) for group in (spec.coordinates, spec.velocities))
+    kicks, drifts = weights()
+    coast = (0.0,) * len(spec.controls)
+    y = [np.array(x0, dtype=float)]
+    for i, h in enumerate(np.diff(times)):
+        now = y[-1]
+        for kick, drift in zip(kicks, [*drifts, 0.0], strict=True):
+            now = now + kick * h * kicked * kernels.dynamics(times[i], tuple(now.tolist()), coast, p)
+            now = now + drift * h * moved * kernels.dynamics(times[i], tuple(now.tolist()), coast, p)
+        y.append(now)
+    return np.array(y).T
+
+
+def _rk4(
+    rates: Callable[[float, Array, Array], Array], times: Array, start: Array, given: Array, given_mid: Array
+) -> tuple[Array, Array]:
+    """RK4 and Hermite midpoints; times may run backward."""
+    y, middles = [start], []
+    for i, h in enumerate(np.diff(times)):
+        t, here = float(times[i]), y[-1]
+        k1 = rates(t, here, given[:, i])
+        k2 = rates(t + h / 2, here + h / 2 * k1, given_mid[:, i])
+        k3 = rates(t + h / 2, here + h / 2 * k2, given_mid[:, i])
+        k4 = rates(t + h, here + h * k3, given[:, i + 1])
+        there = here + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+        middles.append((here + there) / 2 + h / 8 * (k1 - rates(t + h, there, given[:, i + 1])))
+        y.append(there)
+    return np.array(y).T, np.array(middles).T

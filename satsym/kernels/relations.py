@@ -1,0 +1,135 @@
+"""What functions of one module must have to do with each other, whatever the module describes.
+
+The Hamiltonian says it all: its derivatives are the rates of states and costates, where it is least over the admissible
+controls is the law, and with the law in it these rates are the canonical equations. Each relation is two sides that
+were generated apart.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from satsym.kernels.evaluation import FAINT, Array, Evaluation
+
+
+@dataclass(frozen=True, eq=False)
+class Relation:
+    """Two sides that must be equal but for rounding.
+
+    Attributes
+    ----------
+    function
+        The one that is held against the others.
+    claim
+        What it must be.
+    left, right
+        Of one shape, the last axis for columns.
+    terms
+        Sizes of what the sides are sums of, where these may cancel; broadcast against the sides.
+    """
+
+    function: str
+    claim: str
+    left: Array
+    right: Array
+    terms: Array | float = 0.0
+
+
+def deviations(found: Sequence[Relation], scale: Callable[[Array], Array]) -> list[float]:
+    """Largest difference of the sides of each relation, relative to their size; all of as many columns.
+
+    Where neither side is finite there is nothing to compare; where one is, they could not differ more.
+
+    Parameters
+    ----------
+    scale
+        Size of the rows of a table, shape (rows, 1).
+    """
+    columns = found[0].left.shape[-1]
+    sides = [
+        np.concatenate([side.reshape(-1, columns) for side in group]) for group in zip(*map(_sides, found), strict=True)
+    ]
+    known = np.isfinite(sides[0])
+    one_sided = known != np.isfinite(sides[1])
+    left, right, terms = (np.where(known & np.isfinite(side), side, 0.0) for side in sides)
+    sizes = np.maximum(np.maximum(scale(left), scale(right)), terms.max(axis=-1, initial=0.0, keepdims=True))
+    rows = (np.where(one_sided, np.inf, np.abs(left - right)) / np.maximum(sizes, 1e-300)).max(axis=-1, initial=0.0)
+    ends = np.cumsum([math.prod(each.left.shape[:-1]) for each in found])
+    return [float(part.max(initial=0.0)) for part in np.split(rows, ends[:-1])]
+
+
+def _sides(of: Relation) -> tuple[Array, Array, Array]:
+    return of.left, of.right, np.broadcast_to(of.terms, of.left.shape)
+
+
+def relations(of: Evaluation) -> Iterator[Relation]:
+    """All relations between the functions that a model has."""
+    yield from _of_motion(of)
+    if of.kernels.spec.has_cost:
+        from satsym.kernels.optimality import of_the_cost
+
+        yield from of_the_cost(of)
+
+
+def derivative(
+    of: Evaluation, name: str, function: str, by: tuple[str, ...], factor: float = 1.0
+) -> Iterator[Relation]:
+    """A function must be the derivative of another, by one argument or by several in turn."""
+    arguments = [a for a in by if len(of.at[a])]
+    if not arguments:
+        return
+    slopes = np.concatenate([of.slope(function, a) for a in arguments], axis=-2)
+    faint = np.concatenate([of.faint(function, a) for a in arguments], axis=-2)
+    found = of(name).reshape(slopes.shape)
+    yield Relation(name, f"derivative of {function} by {', '.join(by)}", found, factor * slopes, faint)
+
+
+def along(of: Evaluation, name: str, rates: Array, **instead: Array) -> tuple[Array, Array]:
+    """The rate of change of a function along a motion of the states, and the terms it consists of."""
+    by_time = of.slope(name, "t", **instead)[..., 0, :]
+    parts = of.slope(name, "x", **instead) * rates
+    return by_time + parts.sum(axis=-2), np.abs(by_time) + np.abs(parts).sum(axis=-2)
+
+
+def _of_motion(of: Evaluation) -> Iterator[Relation]:
+    x = ("x",)
+    yield from derivative(of, "jacobian_x", "dynamics", x)
+    yield from derivative(of, "jacobian_u", "dynamics", ("u",))
+    rest = np.zeros_like(of.at["u"])
+    drift = of("dynamics", u=rest)
+    if of.has("reference"):
+        curve = of("reference")
+        rates, pace = of("dynamics", x=curve, u=rest), of.slope("reference", "t")[..., 0, :]
+        terms = np.abs(of.slope("dynamics", "x", x=curve, u=rest) * curve).sum(axis=-2)
+        yield Relation("reference", "motion without control", pace, rates, FAINT * terms)
+    if of.has("invariants"):
+        left, terms = along(of, "invariants", drift)
+        yield Relation("invariants", "constant without control", left, np.zeros_like(left), terms)
+    if of.has("balances"):
+        rates, terms = along(of, "balances", of("dynamics"))
+        stated = of("balances")[1::2]
+        yield Relation("balances", "each followed by its rate of change", stated, rates[::2], terms[::2])
+    if of.has("inertial_state"):
+        yield from _of_attraction(of, drift)
+    if of.kernels.spec.linear:
+        from satsym.kernels.linearity import of_linear_models
+
+        yield from of_linear_models(of)
+
+
+def _of_attraction(of: Evaluation, drift: Array) -> Iterator[Relation]:
+    """Velocity and acceleration in space, and the law of attraction."""
+    name = "inertial_state"
+    state = of(name)
+    rates, terms = along(of, name, drift)
+    place, mu = state[:3], state[6]
+    distance = np.sqrt((place * place).sum(axis=0))
+    yield Relation(name, "velocity is the rate of change of place", state[3:6], rates[:3], terms[:3])
+    yield Relation(name, "acceleration is that of attraction", rates[3:6], -mu * place / distance**3, terms[3:6])
+    if of.has("position"):
+        found = of("position")
+        yield Relation("position", "place in space", found, place[: len(found)], distance * FAINT)

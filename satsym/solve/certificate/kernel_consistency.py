@@ -1,0 +1,82 @@
+"""Whether the kernels contradict each other where a solution lies; what they say of it would prove nothing then.
+
+The nodes are taken a little aside of themselves, so that no number is zero by chance: once with the instance's own
+bounds, and twice with others near the control, once with the costates turned round, so that every bound is met. The
+companion of a switching problem is smoothed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+from satsym.kernels import consistency
+from satsym.solution import Certificate, Check, Solution
+from satsym.status import Verdict
+
+Array = NDArray[np.floating[Any]]
+
+NODES = 4
+"""Of a solution at which its kernels are looked at, once with its own and twice with narrow bounds."""
+
+ASIDE = 1e-3
+"""How far aside of the nodes, relative to the largest value of each component."""
+
+WIDE, NARROW = 1e3, 0.5
+"""Bounds where there are none, and narrow ones, relative to the largest control."""
+
+
+def with_kernels_examined(certificate: Certificate, solution: Solution) -> Certificate:
+    """The certificate with a check more, which none passes whose kernels contradict each other."""
+    worst = consistency.worst(solution.instance.model, _places(solution))
+    deviation = float("inf") if worst is None else worst.deviation
+    check = Check("kernels contradict each other", deviation, consistency.LIMIT)
+    verdict = certificate.verdict if check.passed else Verdict.FAILED
+    return replace(certificate, verdict=verdict, checks=(*certificate.checks, check))
+
+
+def _places(solution: Solution) -> dict[str, Any]:
+    """Arguments of all kernels near nodes of a solution."""
+    instance, spec = solution.instance, solution.instance.model.spec
+    rng = np.random.default_rng(consistency.SEED)
+    chosen = np.tile(np.linspace(0, len(solution.times) - 1, NODES).astype(int), 3)
+    columns = len(chosen)
+
+    def near(table: Array) -> Array:
+        unit = np.abs(table).max(axis=-1, keepdims=True)
+        return table[:, chosen] + ASIDE * np.where(unit > 0.0, unit, 1.0) * rng.uniform(0.5, 1.0, (len(table), columns))
+
+    x, u, lam = near(solution.x), near(solution.u), near(solution.lam)
+    lam[:, 2 * NODES :] *= -1.0
+    t = near(solution.times[None, :])[0]
+    p = tuple(near(np.array(instance.parameters).reshape(-1, 1) * np.ones_like(solution.times)))
+    final = (*rng.uniform(0.2, 0.6, (2 * len(x), columns)), *x * rng.uniform(0.5, 1.5, x.shape))
+    found = {"t": t, "x": x, "u": u, "lam": lam, "p": p, "final": final}
+    found["nu"] = tuple(rng.uniform(0.5, 1.5, (len(spec.multipliers), columns)))
+    return found | {"bounds": _bounds(instance, found)}
+
+
+def _bounds(instance: Instance, at: dict[str, Any]) -> tuple[Array, ...]:
+    """The instance's own for the first places, narrow ones for the others."""
+    model, u = instance.model, at["u"]
+    kind = model.spec.control_set
+    if kind not in ("box", "ball"):
+        return ()
+    size = np.maximum(np.abs(u).max(axis=-1, keepdims=True), 1e-300)
+    owned = np.arange(u.shape[-1]) < NODES
+    if kind == "ball":
+        radius = float(np.linalg.norm(size))
+        return (np.where(owned, min(instance.max_norm, WIDE * radius), NARROW * radius),)
+    low, high = (np.array(bounds)[:, None] for bounds in (instance.lower, instance.upper))
+    low, high = np.maximum(low, -WIDE * size), np.minimum(high, WIDE * size)
+    box = (*np.where(owned, low, -NARROW * size), *np.where(owned, high, NARROW * size))
+    if not model.spec.switching:
+        around = consistency.about_the_law(model, at | {"bounds": box})
+        return tuple(np.where(owned, own, narrow) for own, narrow in zip(box, around, strict=True))
+    sigma = np.abs(model.switching_function_batch(at["t"], at["x"], at["lam"], at["p"]))
+    smoothing = float(np.maximum(sigma / size, 1e-300).max())
+    return (*box, np.full(u.shape[-1], smoothing), np.full(u.shape[-1], NARROW))
