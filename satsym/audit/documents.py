@@ -22,9 +22,14 @@ def shipped() -> list[Path]:
     return sorted(folder.glob(f"*{SUFFIX}"))
 
 
+def comes_with_satsym(path: Path) -> bool:
+    """Whether a path is that of a shipped ledger."""
+    return path in shipped()
+
+
 def named(path: Path) -> str:
     """How commands name a ledger: a shipped one by its document, any other by its path."""
-    return path.stem if path in shipped() else str(path)
+    return path.stem if comes_with_satsym(path) else str(path)
 
 
 def locate(name_or_path: str) -> Path:

@@ -8,7 +8,7 @@ from satsym.audit.edits import Change, Edit
 from satsym.audit.judge.equations import Equal, Multiple
 from satsym.audit.judge.plan import Plan
 from satsym.audit.notation import CONSTANTS
-from satsym.formula.angles import terms_of
+from satsym.formula.angles import TooManyTerms, terms_of
 from satsym.formula.calculus import product, raised, total
 from satsym.formula.reading import NAME
 from satsym.formula.tree import (
@@ -67,7 +67,7 @@ def _is_multiple(term: Node, other: Node) -> bool:
     """Whether two terms differ by a number alone."""
     try:
         return list(terms_of(Div(term, other)).coefficients) == [()]
-    except OverflowError:
+    except TooManyTerms:
         return False
 
 
@@ -103,7 +103,7 @@ def _single_term(plan: Plan, gap: Node, slope: Node, beside: Node) -> Node | Non
     """The gap over the slope, and a term that is there, if they make one short term in the document's symbols."""
     try:
         terms = terms_of(total([Div(gap, plan.normal(slope)), plan.normal(beside)])).coefficients
-    except OverflowError:
+    except TooManyTerms:
         return None
     if len(terms) != 1:
         return None

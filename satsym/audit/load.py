@@ -17,8 +17,9 @@ from satsym.audit.ledger import Ledger, Row, calls_in, row_key
 from satsym.audit.notation import Scope, WrongScope
 from satsym.audit.positions import positions
 from satsym.audit.schema import DocumentTable, RowTable, SymbolTable, WrongKey
-from satsym.formula import reading
+from satsym.formula import budget, reading
 from satsym.formula.tree import Node, substituted
+from satsym.formula.weight import Scales
 from satsym.instance import files
 from satsym.status import BadInput
 from satsym.wording import printable, shown, suggestion
@@ -38,7 +39,8 @@ def read(path: Path) -> Ledger:
         tree = files.read(path)
     except BadInput as error:
         raise BadInput(f"{printable(str(path), 200)}: {error}") from None
-    return _Reader(path, tree).ledger(documents.named(path))
+    allowance = budget.Allowance(counted=not documents.comes_with_satsym(path))
+    return allowance.within(budget.READING, lambda: _Reader(path, tree).ledger(documents.named(path)))
 
 
 class _Reader:
@@ -56,6 +58,7 @@ class _Reader:
         self._symbols = self._entries("symbols", _symbol)
         self._inputs = self._entries("inputs", _input)
         self._derived: dict[str, Node] = {}
+        self._scales = Scales()
         self._derived = self._entries("derived", self._expression, self._derived)
         self._scopes = self._read_scopes()
         self._known = vocabulary.vocabulary(self._symbols, self._scopes)
@@ -101,7 +104,9 @@ class _Reader:
     def _expression(self, entry: object) -> Node:
         if not isinstance(entry, str):
             raise BadInput(f"got {shown(entry)}; write an expression in quotes")
-        return substituted(reading.expression(entry, language.JUDGING, judging=True), self._derived)
+        found = substituted(reading.expression(entry, language.JUDGING, judging=True), self._derived)
+        self._scales.checked(found)
+        return found
 
     def _read_scopes(self) -> dict[str, Scope]:
         tables = {"main": {}, **self._mapping("scope")}
@@ -200,7 +205,7 @@ class _Reader:
         except WrongKey as error:
             where = f"row {row}: " if table == "row" else f"[{table}] "
             raise self._bad(f"{where}{error}", table, error.key, index) from None
-        except BadInput as error:
+        except (BadInput, budget.Spent) as error:
             where = f"row {printable(row)}: {key}: " if table == "row" else f"[{table}] {printable(key)}: "
             raise self._bad(f"{where}{error}", table, key, index) from None
 

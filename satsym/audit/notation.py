@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from satsym.audit.language import JUDGING
 from satsym.formula import reading
 from satsym.formula.tree import Equality, Node, Sym, calls, substituted, symbols
+from satsym.formula.weight import Scales
 from satsym.formula.writing import written
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
@@ -42,7 +43,9 @@ class Scope:
 
     def ours(self, printed: Node) -> Node:
         """A printed formula in our names."""
-        return substituted(printed, self.meanings)
+        found = substituted(printed, self.meanings)
+        Scales().checked(found)
+        return found
 
     def family(self, name: str) -> list[str]:
         """Symbols that differ from this one by their index alone, as ``x1`` and ``x2`` do; then the others."""
@@ -114,6 +117,7 @@ def _scope(name: str, table: Mapping[str, object], below: Scope | None, derived:
         try:
             reading.checked_name(key)
             meanings[key] = substituted(reading.expression(value, JUDGING, judging=True), derived)
+            Scales().checked(meanings[key])
         except BadInput as error:
             raise WrongScope(name, key, str(error)) from None
         if any(call.function == "row" for call in calls(meanings[key])):

@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 
-_HEADER = re.compile(r"\s*\[\[?\s*([^\[\]]+?)\s*\]\]?\s*(?:#.*)?$")
+_HEADER = re.compile(r"\s*+\[\[?([^\[\]]++)\]\]?\s*+(?:#.*)?$")
+"""Possessive, so that a line of nothing but spaces after a bracket is gone through once."""
 _KEY = re.compile(r"""\s*("[^"]*"|'[^']*'|[A-Za-z0-9_-]+)\s*=""")
 _DELIMITER = re.compile(r'"""|' + r"'''")
 
@@ -31,7 +32,7 @@ def positions(text: str) -> Positions:
         if not inside:
             header, key = _HEADER.match(line), _KEY.match(line)
             if header:
-                table = header[1].replace(" ", "")
+                table = "".join(header[1].split())
                 index = seen.get(table, -1) + 1
                 seen[table] = index
                 found.tables[table, index] = number

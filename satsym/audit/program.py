@@ -19,6 +19,10 @@ MAX_LENGTH = 20_000
 MAX_DEPTH = 50
 
 
+class Stops(BadInput):
+    """The program would stop here with an error, as Python would say, too."""
+
+
 @dataclass(frozen=True, eq=False)
 class Program:
     """A program as it is printed, and the statements Python's parser finds in it.

@@ -2,19 +2,39 @@
 
 from __future__ import annotations
 
+import ast
 import math
+import operator
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
+from satsym.audit.program_sizes import MAX_SIZE, formatted, made, numeric
+from satsym.formula import budget
+from satsym.formula.budget import OverBudget
 from satsym.status import BadInput
 from satsym.wording import shown
 
-MAX_SIZE = 100_000
-"""Entries of an array."""
+MAX_STATES = 100
+"""States of an initial value problem: an implicit method solves linear equations of that size at every step."""
 DRAWING = frozenset("figure plot scatter title xlabel ylabel legend grid axis show savefig".split())
+BINARY: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: operator.pow,
+}
+COMPARED: Mapping[type[ast.cmpop], Callable[[Any, Any], Any]] = {
+    ast.LtE: operator.le,
+    ast.Lt: operator.lt,
+    ast.GtE: operator.ge,
+    ast.Gt: operator.gt,
+    ast.Eq: operator.eq,
+}
 _KEYWORDS = frozenset({"t_eval", "rtol", "atol", "method"})
 
 
@@ -49,13 +69,13 @@ def modules(outside: Outside) -> Mapping[str, Module]:
     numpy = Module(
         "numpy",
         {
-            "sqrt": np.sqrt,
+            "sqrt": _sqrt,
             "array": _array,
             "hstack": _hstack,
             "linspace": _linspace,
             "zeros": lambda shape: np.zeros(_shape(shape)),
             "eye": lambda n: np.eye(_shape((n, n))[0]),
-            "linalg": Module("numpy.linalg", {"norm": lambda a: np.linalg.norm(np.asarray(a))}),
+            "linalg": Module("numpy.linalg", {"norm": lambda a: np.linalg.norm(numeric(a))}),
             "pi": math.pi,
         },
     )
@@ -75,25 +95,36 @@ def builtins(outside: Outside) -> Mapping[str, Any]:
         "any": any,
         "abs": abs,
         "len": len,
-        "print": lambda *a: outside.said.append(" ".join(map(str, a))),
+        "print": lambda *a: outside.said.append(formatted([" ".join(map(str, a))])),
     }
 
 
 def _shape(shape: object) -> tuple[int, ...]:
     sizes = shape if isinstance(shape, tuple) else (shape,)
     if not all(isinstance(n, int) and 0 <= n <= MAX_SIZE for n in sizes) or math.prod(sizes) > MAX_SIZE:
-        raise BadInput(f"an array of the size {shown(shape)}; at most {MAX_SIZE} entries are read")
+        if not all(isinstance(n, int) for n in sizes):
+            raise TypeError(f"an array of the size {shown(shape)}")
+        made(max([0, *sizes]) if min([0, *sizes]) < 0 else math.prod(sizes))
+        raise ValueError("an array of a negative size")
+    made(math.prod(sizes))
     return sizes
 
 
 def _array(entries: object) -> Any:
-    return np.asarray(entries, dtype=np.result_type(np.asarray(entries), float))
+    found = numeric(entries)
+    return np.asarray(found, dtype=np.result_type(found, float))
+
+
+def _sqrt(*arguments: Any, **named: Any) -> Any:
+    if len(arguments) != 1 or named:
+        raise BadInput("np.sqrt of more than one thing, or by name, is not known here")
+    return np.sqrt(numeric(arguments[0]))
 
 
 def _hstack(parts: Sequence[Any]) -> Any:
-    if sum(np.size(part) for part in parts) > MAX_SIZE:
-        raise BadInput(f"an array of more than {MAX_SIZE} entries")
-    return np.hstack(parts)
+    found = [numeric(part) for part in parts]
+    made(sum(part.size for part in found))
+    return np.hstack(found)
 
 
 def _linspace(first: float, last: float, number: int) -> Any:
@@ -110,7 +141,9 @@ def _noted(outside: Outside, name: str) -> Callable[..., None]:
 def _eig(matrix: Any) -> tuple[Any, Any]:
     from scipy import linalg
 
-    values, vectors = linalg.eig(np.asarray(matrix))
+    found = numeric(matrix)
+    budget.charge(numbers=max((0, *found.shape)) ** 3)
+    values, vectors = linalg.eig(found)
     return values, vectors
 
 
@@ -120,7 +153,18 @@ def _solver(outside: Outside) -> Callable[..., Module]:
 
         if unknown := set(named) - _KEYWORDS:
             raise BadInput(f"solve_ivp with {', '.join(sorted(unknown))}; known are {', '.join(sorted(_KEYWORDS))}")
-        done = integrate.solve_ivp(rates, span, start, **named)
+        count = numeric(start).size
+        if count > MAX_STATES:
+            raise OverBudget(f"solve_ivp with more than {MAX_STATES} states")
+        made(count * numeric(named.get("t_eval", ())).size)
+
+        def counted(t: float, y: Any) -> Any:
+            budget.charge(numbers=10 * count)
+            return rates(t, y)
+
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # such as a tolerance that is raised to what is possible
+            done = integrate.solve_ivp(counted, span, start, **named)
         if not done.success:
             raise BadInput(f"solve_ivp: {done.message}")
         outside.evaluations.append(int(done.nfev))

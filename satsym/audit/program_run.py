@@ -15,27 +15,16 @@ from typing import Any
 
 import numpy as np
 
-from satsym.audit.program import Program
-from satsym.audit.program_library import MAX_SIZE, Drawing, Module, Outside, builtins, modules
+from satsym.audit.program import Program, Stops
+from satsym.audit.program_library import BINARY, COMPARED, Drawing, Module, Outside, builtins, modules
+from satsym.audit.program_sizes import broadcast, formatted, indexed, listed
+from satsym.formula import budget
+from satsym.formula.budget import OverBudget
 from satsym.status import BadInput
 from satsym.wording import shown
 
 MAX_STEPS = 3_000_000
 MAX_CALLS = 30
-_BINARY: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = {
-    ast.Add: operator.add,
-    ast.Sub: operator.sub,
-    ast.Mult: operator.mul,
-    ast.Div: operator.truediv,
-    ast.Pow: operator.pow,
-}
-_COMPARED: Mapping[type[ast.cmpop], Callable[[Any, Any], Any]] = {
-    ast.LtE: operator.le,
-    ast.Lt: operator.lt,
-    ast.GtE: operator.ge,
-    ast.Gt: operator.gt,
-    ast.Eq: operator.eq,
-}
 _NUMBERS = (int, float, complex, np.number)
 _LARGEST = 2**53
 _PARTS = ("real", "imag")
@@ -63,10 +52,18 @@ def run(program: Program, given: Mapping[str, Any] | None = None, *, until: str 
 
     Raises
     ------
+    Stops
+        If it would stop with an error; with the line.
+    OverBudget
+        If it does too much.
     BadInput
-        If it does what is not known here, or too much, or would stop with an error; with the line.
+        If it does what is not known here.
     """
-    walker = _Walker(program, given or {})
+    return budget.within(budget.PREDICATE, lambda: _run(program, given or {}, until))
+
+
+def _run(program: Program, given: Mapping[str, Any], until: str) -> Run:
+    walker = _Walker(program, given)
     with np.errstate(all="ignore"):
         for statement in program.statements:
             walker.statement(statement)
@@ -93,9 +90,11 @@ class _Walker:
         try:
             self._execute(found, self.world)
         except BadInput as error:
-            raise BadInput(f"{error}, in {shown(self._program.line(found))}") from None
-        except (ArithmeticError, TypeError, ValueError, IndexError, LookupError, AttributeError) as error:
-            raise BadInput(f"it would stop: {error}, in {shown(self._program.line(found))}") from None
+            raise type(error)(f"{error}, in {shown(self._program.line(found))}") from None
+        except RecursionError:
+            raise OverBudget(f"nested too deep, in {shown(self._program.line(found))}") from None
+        except (ArithmeticError, TypeError, ValueError, LookupError, AttributeError) as error:
+            raise Stops(f"it would stop: {error}, in {shown(self._program.line(found))}") from None
 
     def _execute(self, found: ast.stmt, scope: dict[str, Any]) -> None:
         self._step()
@@ -129,9 +128,9 @@ class _Walker:
 
         def call(*arguments: Any) -> Any:
             if len(arguments) != len(names):
-                raise BadInput(f"{found.name} takes {len(names)} arguments, and is given {len(arguments)}")
+                raise Stops(f"{found.name} takes {len(names)} arguments, and is given {len(arguments)}")
             if self._calls >= MAX_CALLS:
-                raise BadInput("functions call one another too deep")
+                raise OverBudget(f"functions call one another more than {MAX_CALLS} deep")
             inside = dict(zip(names, arguments, strict=True))
             self._calls += 1
             try:
@@ -151,7 +150,7 @@ class _Walker:
         elif isinstance(target, ast.Tuple):
             parts = list(value)
             if len(parts) != len(target.elts):
-                raise BadInput(f"{len(parts)} values for {len(target.elts)} names")
+                raise Stops(f"{len(parts)} values for {len(target.elts)} names")
             for name, part in zip(target.elts, parts, strict=True):
                 self._assign(name, part, scope)
         elif isinstance(target, ast.Subscript):
@@ -180,7 +179,7 @@ class _Walker:
         for names in (scope, self.world, self._builtins):
             if found.id in names:
                 return names[found.id]
-        raise BadInput(f"the name {shown(found.id)} has no value")
+        raise Stops(f"the name {shown(found.id)} has no value")
 
     def _attribute_of(self, found: ast.Attribute, scope: Mapping[str, Any]) -> Any:
         owner = self._value(found.value, scope)
@@ -202,14 +201,13 @@ class _Walker:
         return -value if isinstance(found.op, ast.USub) else value
 
     def _binary(self, found: ast.BinOp, scope: Mapping[str, Any]) -> Any:
-        rule = _BINARY.get(type(found.op))
+        rule = BINARY.get(type(found.op))
         if rule is None:
             raise self._refused(found)
         one, other = (self._numeric(self._value(side, scope), found) for side in (found.left, found.right))
         if isinstance(one, int) and isinstance(other, int) and rule is operator.pow:
             one = float(one)
-        if np.prod(np.broadcast_shapes(np.shape(one), np.shape(other))) > MAX_SIZE:
-            raise BadInput(f"an array of more than {MAX_SIZE} entries")
+        broadcast(one, other)
         value = rule(one, other)
         return float(value) if isinstance(value, int) and abs(value) > _LARGEST else value
 
@@ -219,10 +217,13 @@ class _Walker:
         return value
 
     def _compare(self, found: ast.Compare, scope: Mapping[str, Any]) -> Any:
-        rule = _COMPARED.get(type(found.ops[0]))
+        rule = COMPARED.get(type(found.ops[0]))
         if rule is None or len(found.ops) > 1:
             raise self._refused(found)
-        return rule(self._value(found.left, scope), self._value(found.comparators[0], scope))
+        one, other = self._value(found.left, scope), self._value(found.comparators[0], scope)
+        if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
+            broadcast(one, other)
+        return rule(one, other)
 
     def _choice(self, found: ast.IfExp, scope: Mapping[str, Any]) -> Any:
         return self._value(found.body if self._value(found.test, scope) else found.orelse, scope)
@@ -236,14 +237,17 @@ class _Walker:
         return function(*arguments, **named)
 
     def _list(self, found: ast.List | ast.Tuple, scope: Mapping[str, Any]) -> Any:
-        entries = [self._value(entry, scope) for entry in found.elts]
+        entries = listed([self._value(entry, scope) for entry in found.elts])
         return tuple(entries) if isinstance(found, ast.Tuple) else entries
 
     def _subscript(self, found: ast.Subscript, scope: Mapping[str, Any]) -> Any:
         owner = self._value(found.value, scope)
         if not isinstance(owner, np.ndarray | list | tuple):
             raise self._refused(found)
-        return owner[self._place(found.slice, scope)]
+        place = self._place(found.slice, scope)
+        if isinstance(owner, np.ndarray):
+            indexed(owner, place)
+        return owner[place]
 
     def _place(self, found: ast.expr, scope: Mapping[str, Any]) -> Any:
         if isinstance(found, ast.Tuple):
@@ -261,7 +265,7 @@ class _Walker:
                 parts.append(str(self._value(part.value, scope)))
             else:
                 parts.append(str(self._value(part, scope)))
-        return "".join(parts)
+        return formatted(parts)
 
     def _loop(self, found: ast.GeneratorExp, scope: Mapping[str, Any]) -> Iterator[Any]:
         if len(found.generators) > 1 or found.generators[0].ifs:
@@ -275,7 +279,7 @@ class _Walker:
     def _step(self) -> None:
         self._steps += 1
         if self._steps > MAX_STEPS:
-            raise BadInput(f"the program takes more than {MAX_STEPS} steps")
+            raise OverBudget(f"the program takes more than {MAX_STEPS:,} steps")
 
     def _refused(self, found: ast.AST) -> BadInput:
         return BadInput(f"{type(found).__name__} is not known here, or not of these values")

@@ -10,7 +10,7 @@ from fractions import Fraction
 
 from satsym import units
 from satsym.audit.constants import PUBLISHED
-from satsym.formula.reading import FUNCTIONS
+from satsym.formula.reading import FUNCTIONS, MAX_DIGITS
 from satsym.formula.tree import Add, Call, Div, Equality, Mul, Neg, Node, Num, Pow, Sym, Text, constant, walk
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
@@ -62,6 +62,8 @@ def printed_number(text: str) -> PrintedNumber:
         raise BadInput(f'{shown(text)} is not a number with a unit; write for instance "35786 km"')
     part, power = match["part"], int(match["power"] or 0)
     digits = f"{match['whole']}{part or ''}"
+    if len(digits) > MAX_DIGITS:
+        raise BadInput(f"{shown(text)} has more than {MAX_DIGITS} digits; nothing is measured so exactly")
     significant = digits if part is not None else digits.rstrip("0") or "0"
     last = power - len(part or "") + len(digits) - len(significant)
     value = Fraction(int(digits)) * Fraction(10) ** (power - len(part or ""))

@@ -11,6 +11,7 @@ from satsym.audit.schema import RowTable
 from satsym.audit.vocabulary import Vocabulary
 from satsym.formula import reading
 from satsym.formula.tree import Call, Equality, Grid, Neg, Node, Num, Sym, Text, substituted
+from satsym.formula.weight import Scales
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
@@ -118,5 +119,8 @@ def _literal(node: Node) -> Any:
 
 def _with(formula: Node | Equality, derived: Mapping[str, Node]) -> Node | Equality:
     if isinstance(formula, Equality):
-        return Equality(substituted(formula.lhs, derived), substituted(formula.rhs, derived))
-    return substituted(formula, derived)
+        found: Node | Equality = Equality(substituted(formula.lhs, derived), substituted(formula.rhs, derived))
+    else:
+        found = substituted(formula, derived)
+    Scales().checked(found)
+    return found

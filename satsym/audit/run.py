@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 from satsym.audit.ledger import Ledger, Row
 from satsym.audit.predicates import Question, Told
-from satsym.status import BadInput
+from satsym.formula import budget
 from satsym.wording import printable
 
 if TYPE_CHECKING:
@@ -43,11 +44,12 @@ def audit(ledger: Ledger, items: Sequence[str] = (), announce: Callable[[str], N
     outcomes = []
     for i, row in enumerate(rows, start=1):
         announce(f"{ledger.document.key}: row {i} of {len(rows)}, {printable(row.key)}")
-        outcomes.append(_told(bench, row))
+        outcomes.append(_counted(bench, row))
     return verdicts(bench, outcomes, wanted)
 
 
 def _outcome(bench: Bench, row: Row) -> Outcome:
+    from satsym.audit import refusal
     from satsym.audit.judge import formula, value
     from satsym.audit.outcome import Outcome
 
@@ -57,9 +59,10 @@ def _outcome(bench: Bench, row: Row) -> Outcome:
         table, ledger = row.table, bench.ledger
         inputs = {**ledger.inputs, **table.inputs}
         document = Told("row", {key: other.table.printed for key, other in bench.rows.items()})
-        found = row.asks(
-            Question(row.key, table.kind, table.printed, table.columns, inputs, table.scope, ledger.scopes, document)
+        question = Question(
+            row.key, table.kind, table.printed, table.columns, inputs, table.scope, ledger.scopes, document
         )
+        found = refusal.asked(table.holds, partial(row.asks, question))
         return Outcome(
             row,
             found.holds,
@@ -76,17 +79,18 @@ def _outcome(bench: Bench, row: Row) -> Outcome:
     return judges.get(row.table.kind, formula.judge)(bench, row)
 
 
-def _told(bench: Bench, row: Row) -> Outcome:
-    """The outcome of a row; what is wrong with the row is told with the line it stands in."""
-    try:
-        return _outcome(bench, row)
-    except BadInput as error:
-        path = printable(str(bench.ledger.path), 200)
-        raise BadInput(f"{path}:{row.line}: row {printable(row.key)}: {error}") from None
+def _counted(bench: Bench, row: Row) -> Outcome:
+    """The outcome of a row, within what a row may take."""
+    from satsym.audit import refusal
+
+    limit = budget.FORMULA if row.asks is None else budget.PREDICATE
+    return refusal.named(bench, row, limit, lambda: _outcome(bench, row))
 
 
 def _bearing(bench: Bench, wanted: Sequence[str]) -> set[str]:
     """Keys of rows that the verdicts of some rows depend on: what they use, what uses them, and the same target."""
+    from satsym.audit import refusal
+
     rows = bench.ledger.rows
     found = set(wanted)
     for row in (bench.rows[key] for key in wanted):
@@ -94,6 +98,6 @@ def _bearing(bench: Bench, wanted: Sequence[str]) -> set[str]:
         for other in rows:
             if row.key in other.uses:
                 found.update([other.key, *other.uses])
-            if bench.same_target(row, other):
+            if refusal.named(bench, other, budget.FORMULA, partial(bench.same_target, row, other)):
                 found.add(other.key)
     return found

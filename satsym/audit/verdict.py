@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 
-from satsym.audit import sentences
+from satsym.audit import refusal, sentences
 from satsym.audit.judge.bench import Bench, Formula
 from satsym.audit.judge.compare import plans
 from satsym.audit.judge.formula import corrected
 from satsym.audit.judged import Judged, Verdict
 from satsym.audit.ledger import Row
 from satsym.audit.outcome import Outcome
+from satsym.formula import budget
 from satsym.formula.values import Kernel, Roots
-from satsym.status import BadInput
-from satsym.wording import printable
 
 FORMULAS = ("equation", "matrix")
 """Kinds of rows that may be misprinted; a line of a program is executed, and a number is claimed."""
@@ -33,7 +33,8 @@ def verdicts(bench: Bench, outcomes: Sequence[Outcome], wanted: Sequence[str] | 
     """
     by_key = {outcome.row.key: outcome for outcome in outcomes}
     context = _Context(bench, by_key)
-    return [context.judged(o) for o in outcomes if wanted is None or o.row.key in wanted]
+    chosen = [o for o in outcomes if wanted is None or o.row.key in wanted]
+    return [refusal.named(bench, o.row, budget.VERDICT, partial(context.judged, o)) for o in chosen]
 
 
 class _Context:
@@ -134,11 +135,8 @@ class _Context:
         """Whether a row follows from the rows it names, some of them replaced."""
         asked = row.key, tuple(replacements)
         if asked not in self._known:
-            try:
-                self._known[asked] = self._follows_from(row, replacements)
-            except BadInput as error:
-                path = printable(str(self._bench.ledger.path), 200)
-                raise BadInput(f"{path}:{row.line}: row {printable(row.key)}: from: {error}") from None
+            work = partial(self._follows_from, row, replacements)
+            self._known[asked] = refusal.named(self._bench, row, budget.VERDICT, work, "from")
         return self._known[asked]
 
     def _follows_from(self, row: Row, replacements: Mapping[str, Formula]) -> bool:

@@ -10,6 +10,11 @@ from typing import TypeAlias
 from satsym.formula.tree import Add, Div, Mul, Neg, Node, Num, Pow, Sym, constant
 from satsym.formula.writing import written
 
+
+class TooManyTerms(Exception):
+    """An angle, or an exponent, that is not taken apart: it has too many terms."""
+
+
 Complex: TypeAlias = tuple[Fraction, Fraction]
 Monomial: TypeAlias = tuple[tuple[str, Fraction], ...]
 """Names, or the text of what is no product, each with its exponent; sorted."""
@@ -87,7 +92,7 @@ def _atom(node: Node, exponent: Fraction) -> dict[Monomial, Complex]:
 def _times(one: Mapping[Monomial, Complex], other: Mapping[Monomial, Complex]) -> dict[Monomial, Complex]:
     total: dict[Monomial, Complex] = {}
     if len(one) * len(other) > _MOST:
-        raise OverflowError("an angle of too many terms")
+        raise TooManyTerms("an angle of too many terms")
     for left, (a, b) in one.items():
         for right, (c, d) in other.items():
             _enter(total, _joined(left, right), (a * c - b * d, a * d + b * c))

@@ -9,6 +9,7 @@ from satsym.formula import field
 from satsym.formula.evaluation import Engine
 from satsym.formula.tree import ONE, ZERO, Add, Call, Div, Mul, Neg, Node, Num, Pow, Sym, constant, number, substituted
 from satsym.formula.values import Matrix, Sources, without
+from satsym.formula.weight import Scales
 from satsym.formula.writing import written
 from satsym.status import BadInput
 
@@ -29,27 +30,28 @@ class Calculus(Engine[Node]):
     def __init__(self, sources: Sources[Node], positive: Collection[str]) -> None:
         super().__init__(sources)
         self._positive = positive
+        self._scales = Scales()
 
     def number(self, value: Fraction) -> Node:
         return number(value)
 
     def add(self, terms: Sequence[Node]) -> Node:
-        return total(terms)
+        return self._weighed(total(terms))
 
     def multiply(self, factors: Sequence[Node]) -> Node:
-        return product(factors)
+        return self._weighed(product(factors))
 
     def power(self, base: Node, exponent: Fraction) -> Node:
-        return raised(base, exponent)
+        return self._weighed(raised(base, exponent))
 
     def function(self, name: str, arguments: Sequence[Node]) -> Node:
-        return Call(name, tuple(arguments))
+        return self._weighed(Call(name, tuple(arguments)))
 
     def derivative(self, expression: Node, by: str) -> Node:
-        return derivative(expression, by)
+        return self._weighed(derivative(expression, by))
 
     def substitute(self, expression: Node, values: Mapping[str, Node]) -> Node:
-        return substituted(expression, values)
+        return self._weighed(substituted(expression, values))
 
     def determinant(self, matrix: Matrix[Node]) -> Node:
         """By minors of the first row."""
@@ -60,8 +62,8 @@ class Calculus(Engine[Node]):
         terms = []
         for j, entry in enumerate(matrix.rows[0]):
             if entry != ZERO:
-                terms.append(product([number((-1) ** j), entry, self.determinant(without(matrix, 0, j))]))
-        return total(terms)
+                terms.append(self.multiply([number((-1) ** j), entry, self.determinant(without(matrix, 0, j))]))
+        return self.add(terms)
 
     def rank(self, matrix: Matrix[Node]) -> int:
         """The largest rank at a few random points: it is less than that on a set of measure zero only."""
@@ -82,6 +84,11 @@ class Calculus(Engine[Node]):
             linear = unique = False
         if not (linear and unique):
             raise BadInput(f"solve(...) needs what is linear in {by}")
+
+    def _weighed(self, tree: Node) -> Node:
+        """The tree, unless it is too heavy for what sympy, or the field, would be asked to do with it next."""
+        self._scales.checked(tree)
+        return tree
 
 
 def total(terms: Sequence[Node]) -> Node:

@@ -18,7 +18,7 @@ from collections.abc import Collection, Iterable
 from fractions import Fraction
 from typing import TypeAlias
 
-from satsym.formula.angles import HALF_TURNS, PARTS, Terms, terms_of
+from satsym.formula.angles import HALF_TURNS, PARTS, Terms, TooManyTerms, terms_of
 from satsym.formula.tree import Add, Call, Div, Mul, Neg, Node, Num, Pow, Sym, constant
 from satsym.formula.writing import written
 
@@ -146,12 +146,12 @@ class Point:
         """The value of a function of something."""
         name = node.function
         if name in ("sin", "cos", "tan"):
-            turn = self._exponential(terms_of(node.arguments[0]).times_i())
+            turn = self._exponential(_terms(node.arguments[0]).times_i())
             return _circular(name, turn)
         if name == "exp":
-            return self._exponential(terms_of(node.arguments[0]))
+            return self._exponential(_terms(node.arguments[0]))
         if name in ("sinh", "cosh", "tanh"):
-            growth = self._exponential(terms_of(node.arguments[0]))
+            growth = self._exponential(_terms(node.arguments[0]))
             back = _inverse(growth)
             sine, cosine = (growth - back) * _HALF % PRIME, (growth + back) * _HALF % PRIME
             return {"sinh": sine, "cosh": cosine}.get(name) or sine * _inverse(cosine) % PRIME
@@ -189,6 +189,13 @@ class Point:
                     base = pow(self._random(f"{kind} {key}"), _TO_POSITIVE if kind == "grows" else 1, PRIME)
                     product = product * pow(base, int(share), PRIME) % PRIME
         return product
+
+
+def _terms(node: Node) -> Terms:
+    try:
+        return terms_of(node)
+    except TooManyTerms as error:
+        raise NoValue(str(error)) from None
 
 
 Zero: TypeAlias = bool | None

@@ -14,7 +14,8 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import TypeAlias
 
-from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, Text, children, constant
+from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, Text, constant
+from satsym.formula.weight import MAX_TERMS, Scales
 from satsym.status import BadInput
 from satsym.wording import printable, shown, suggestion
 
@@ -24,10 +25,6 @@ MAX_DIGITS = 30
 MAX_NAME = 40
 MAX_EXPONENT = 20
 MAX_DENOMINATOR = 12
-MAX_TERMS = 20_000
-"""Terms of a formula once multiplied out."""
-MAX_WEIGHT = 2000
-"""Digits of a number once multiplied out."""
 
 NAME = re.compile(r"[A-Za-z](?:_?[A-Za-z0-9])*_?\Z")
 Functions: TypeAlias = Mapping[str, tuple[int, int]]
@@ -92,7 +89,7 @@ def expression(text: str, functions: Functions = FUNCTIONS, *, judging: bool = F
     _measure(text, judging)
     line = _LAMBDA.sub(_STAND_IN, text.strip().replace("\n", " "))
     tree = _Reader(line, functions, judging).node(_parsed(line, text))
-    _weight(tree)
+    Scales(MAX_TERMS).checked(tree)
     return tree
 
 
@@ -272,26 +269,3 @@ class _Reader:
 
 def _column(found: ast.expr) -> str:
     return f" (column {found.col_offset + 1})" if hasattr(found, "col_offset") else ""
-
-
-def _weight(node: Node) -> tuple[int, int]:
-    """How many terms a tree has once multiplied out, and how many digits its longest number; both bounded above."""
-    parts = [_weight(child) for child in children(node)]
-    if isinstance(node, Num):
-        return 1, len(str(node.value.numerator)) + len(str(node.value.denominator))
-    terms, digits = 1, max((d for _, d in parts), default=1)
-    if isinstance(node, Add):
-        terms = sum(t for t, _ in parts)
-    elif isinstance(node, Mul | Div):
-        for t, _ in parts:
-            terms = min(terms * t, MAX_TERMS + 1)
-        digits = sum(d for _, d in parts)
-    elif isinstance(node, Pow):
-        exponent = max(abs(constant(node.exponent) or Fraction(1)), Fraction(1))
-        terms = int(min(parts[0][0] ** min(int(exponent) + 1, MAX_EXPONENT), MAX_TERMS + 1))
-        digits = int(parts[0][1] * exponent) + 1
-    elif parts:
-        terms = max(t for t, _ in parts)
-    if terms > MAX_TERMS or digits > MAX_WEIGHT:
-        raise BadInput("is too large once multiplied out; split it into parts, or use smaller exponents")
-    return terms, digits

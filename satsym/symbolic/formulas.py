@@ -8,7 +8,10 @@ from typing import Any
 
 import mpmath as mp
 import sympy as sp
+from sympy.functions.elementary.hyperbolic import HyperbolicFunction
+from sympy.functions.elementary.trigonometric import TrigonometricFunction
 
+from satsym.formula.budget import charge
 from satsym.formula.tree import Add, Call, Div, Mul, Neg, Node, Num, Pow, Sym, constant, number
 from satsym.symbolic.checks import points
 from satsym.symbolic.control_sets import Clip, Shorten
@@ -157,6 +160,7 @@ def is_zero(expression: sp.Expr) -> bool:
         return True
     if numerator.is_polynomial(*numerator.free_symbols):
         return False
+    charge(calls=_multiple(numerator) ** 2)
     taken_apart = sp.expand(
         numerator.rewrite(sp.exp) if numerator.has(sp.sinh, sp.cosh, sp.tanh) else numerator, trig=True
     )
@@ -164,6 +168,13 @@ def is_zero(expression: sp.Expr) -> bool:
     if taken_apart == 0:
         return True
     return bool(sp.simplify(numerator) == 0)
+
+
+def _multiple(expression: sp.Expr) -> int:
+    """The largest whole multiple of something that a sine or a cosine is taken of: a polynomial of that degree."""
+    arguments = [call.args[0] for call in expression.atoms(TrigonometricFunction, HyperbolicFunction)]
+    factors = [abs(term.as_coeff_Mul()[0]) for a in arguments for term in sp.Add.make_args(sp.expand(a))]
+    return max((int(factor) for factor in factors if factor.is_Integer), default=0)
 
 
 def _squares(expression: sp.Expr) -> dict[sp.Expr, sp.Expr]:
@@ -185,7 +196,7 @@ def differs_somewhere(expression: sp.Expr) -> bool:
             try:
                 if abs(function_(*(point[s] for s in symbols))) > _NOT_ZERO:
                     return True
-            except (ZeroDivisionError, ValueError):
+            except (ArithmeticError, ValueError, TypeError, AttributeError):  # mpmath orders no complex numbers
                 continue
     return False
 

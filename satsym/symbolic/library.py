@@ -14,6 +14,7 @@ from typing import TypeAlias
 
 import sympy as sp
 
+from satsym.formula.budget import exempt
 from satsym.formula.tree import Node
 from satsym.formula.values import Matrix, Relation, Value
 from satsym.status import BadInput
@@ -40,22 +41,24 @@ def derivation(name: str) -> Derivation:
     BadInput
         If there is none, or a file cannot be derived from.
     """
-    found = {problem.name: problem for path in loader.shipped() for problem in loader.load(path)}
-    if name not in found:
-        raise BadInput(f"no derivation {shown(name)}; {suggestion(name, found)}")
-    try:
-        return derive(found[name])
-    except DerivationError as error:
-        raise BadInput(" ".join(str(error).split())) from error
+    with exempt():
+        found = {problem.name: problem for path in loader.shipped() for problem in loader.load(path)}
+        if name not in found:
+            raise BadInput(f"no derivation {shown(name)}; {suggestion(name, found)}")
+        try:
+            return derive(found[name])
+        except DerivationError as error:
+            raise BadInput(" ".join(str(error).split())) from error
 
 
 @cache
 def known_dimensions(name: str) -> Known:
     """Dimensions of all names of a derivation."""
     found = derivation(name)
-    known = dimensions.declared(begin(found.model, found.problem))
-    for step in found.steps:
-        known = dimensions.extended(known, step)
+    with exempt():
+        known = dimensions.declared(begin(found.model, found.problem))
+        for step in found.steps:
+            known = dimensions.extended(known, step)
     return known
 
 

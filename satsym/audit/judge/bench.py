@@ -7,9 +7,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, TypeAlias
 
+from satsym.audit import documents
 from satsym.audit.ledger import Ledger, Row
 from satsym.audit.notation import Scope, self_named
 from satsym.audit.vocabulary import is_address
+from satsym.formula.budget import Allowance, OverBudget
 from satsym.formula.calculus import Calculus
 from satsym.formula.evaluation import Engine
 from satsym.formula.tree import Equality, Node, Sym, Text, substituted, symbols, walk
@@ -42,6 +44,7 @@ class Bench:
     ledger: Ledger
 
     def __post_init__(self) -> None:
+        self.allowance = Allowance(counted=not documents.comes_with_satsym(self.ledger.path))
         self.rows = {row.key: row for row in self.ledger.rows}
         self._meanings: dict[str, Mapping[str, Node]] = {}
         self._derived: dict[tuple[str, str], Both] = {}
@@ -138,6 +141,8 @@ class Bench:
         for name, meaning in self.scope(row).meanings.items():
             try:
                 value = engine.value(meaning)
+            except OverBudget:
+                raise
             except BadInput:
                 continue
             if not isinstance(value, Matrix | Relation):
@@ -163,6 +168,8 @@ class Bench:
             return None
         try:
             return Both(trees.solution(relation.trees, name), exact.solution(relation.exact, name))
+        except OverBudget:
+            raise
         except BadInput:
             return None
 

@@ -10,7 +10,7 @@ from satsym.audit.judge.bench import Bench, Both
 from satsym.audit.judge.plan import Cells, Plan
 from satsym.audit.ledger import Row
 from satsym.formula import field
-from satsym.formula.angles import Complex, Monomial, terms_of
+from satsym.formula.angles import Complex, Monomial, TooManyTerms, terms_of
 from satsym.formula.bound import BoundPoint
 from satsym.formula.calculus import difference, product, raised
 from satsym.formula.tree import Equality, Neg, Node, Sym, number
@@ -92,7 +92,7 @@ class Multiple(Plan):
             pairs = [
                 (a, b) for a in terms_of(printed).coefficients.items() for b in terms_of(self._aim).coefficients.items()
             ]
-        except OverflowError:
+        except TooManyTerms:
             pairs = []
         for one, other in pairs:
             factor = _quotient(one, other, self.bench.names.positive)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from satsym import kernels
 from satsym.audit import program as programs
 from satsym.audit.predicates import Finding, Question, predicate
-from satsym.audit.program import Program
+from satsym.audit.program import Program, Stops
 from satsym.audit.program_run import Run, run
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
@@ -152,7 +152,7 @@ def runs_through(row: Question) -> Finding:
     loose = programs.loose_names(listing)
     try:
         found = _walked(listing.text, ())
-    except BadInput as error:
+    except Stops as error:  # what is not known here, or takes too much, is no fault of the program
         return Finding(False, str(error), {"statements": len(listing.statements), "names without a value": len(loose)})
     return Finding(
         not loose,
