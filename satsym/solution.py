@@ -117,7 +117,8 @@ class Certificate:
     competitors
         What the solution was compared with, kind by kind.
     not_checked
-        Kinds of competitors that the problem allows and nobody tried, or for which time was up.
+        Kinds of competitors that the problem allows and nobody tried, of which none was solved, or for which time was
+        up.
     """
 
     verdict: Verdict

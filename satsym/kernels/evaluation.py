@@ -80,7 +80,11 @@ class Evaluation:
         table = self._table(by, instead)
         moved: Any = table[:, None, :] + 1j * COMPLEX_STEP * np.eye(len(table))[:, :, None]
         moved = moved[0] if by == "t" else tuple(moved) if by in TUPLES else moved
-        return np.asarray(np.imag(self._called(name, {**instead, by: moved})) / COMPLEX_STEP)
+        others = {}
+        if by in TUPLES:  # functions take their shape from arrays, so these have as many copies
+            given = {a: np.asarray(instead.get(a, v)) for a, v in self.at.items() if a not in TUPLES}
+            others = {a: np.repeat(v[..., None, :], len(table), axis=-2) for a, v in given.items()}
+        return np.asarray(np.imag(self._called(name, {**instead, **others, by: moved})) / COMPLEX_STEP)
 
     def faint(self, name: str, by: str, **instead: Any) -> Array:
         """How small derivatives may be before what they are made of is lost: see :data:`FAINT`."""

@@ -8,7 +8,8 @@ at random show all of them, in whatever Cartesian coordinates the model is state
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -27,6 +28,11 @@ DRAWN = 12
 
 NONE = 1e-9
 """Relative size of a singular value, or of a real part of an eigenvalue, that is none."""
+
+TURN = 2.0 * np.pi
+
+CORRECTIONS, CLOSE = 20, 1e-6
+"""Of a state until it rotates steadily, and how nearly it does then."""
 
 ANGLES = 720
 """Angles by which the end is turned to see which fits best."""
@@ -52,6 +58,11 @@ class Rotation:
         """States (n, M), each by its angle (M,)."""
         phases = np.exp(np.multiply.outer(self.angular, np.atleast_1d(angle)))
         return np.asarray((self.axes @ (phases * (self.inverse @ states))).real)
+
+    @property
+    def matrix(self) -> Array:
+        """G, shape (n, n)."""
+        return np.asarray(((self.axes * self.angular) @ self.inverse).real)
 
     def generator(self, states: Array) -> Array:
         """G applied to states (n, M)."""
@@ -91,10 +102,32 @@ def turns(around: Rotation, states: Array) -> float:
     if not len(parts):
         return 0.0
     largest = parts[int(np.argmax(np.abs(parts).min(axis=1)))]
-    return float(np.unwrap(np.angle(largest))[-1] - np.angle(largest[0])) / (2.0 * np.pi)
+    return float(np.unwrap(np.angle(largest))[-1] - np.angle(largest[0])) / (TURN)
 
 
-def spirals(problem: TwoPoint, most: int, around: Rotation | None = None) -> list[tuple[float, States]]:
+@dataclass(frozen=True, eq=False)
+class Spiral:
+    """A path that turns with the motion to the given end.
+
+    Attributes
+    ----------
+    turns
+        How often it goes round.
+    path
+        Of scaled states.
+    coasting
+        The path of as many turns as the free motion makes by itself, from the initial state turned so that it arrives.
+    unwound
+        From a share of the way to a problem: from the one whose start is turned so, to the one that is solved.
+    """
+
+    turns: float
+    path: States
+    coasting: States
+    unwound: Callable[[float], TwoPoint]
+
+
+def spirals(problem: TwoPoint, most: int, around: Rotation | None = None) -> list[Spiral]:
     """Paths that turn with the motion from the start to the given end, by their turns; the likeliest first.
 
     Empty where the motion has no such rotation, the end is not given as a whole, or the duration is free.
@@ -115,28 +148,67 @@ def spirals(problem: TwoPoint, most: int, around: Rotation | None = None) -> lis
         return []
     unit = problem.scale.state[:, None]
     start, end = (column[:, None] * unit for column in straight(problem).T)
-    back = around.turned(np.repeat(end, ANGLES, axis=1), -np.linspace(0.0, 2.0 * np.pi, ANGLES, endpoint=False))
-    best = 2.0 * np.pi / ANGLES * int(np.argmin((((back - start) / unit) ** 2).sum(axis=0)))
+    back = around.turned(np.repeat(end, ANGLES, axis=1), -np.linspace(0.0, TURN, ANGLES, endpoint=False))
+    best = TURN / ANGLES * int(np.argmin((((back - start) / unit) ** 2).sum(axis=0)))
     first, last = _rate(problem.instance, around, start), _rate(problem.instance, around, end)
     mean = (first + last) / 2.0
     if not (mean > 0.0 and np.isfinite(mean)):
         return []
     natural = mean * problem.duration
-    nearest = round((natural - best) / (2.0 * np.pi))
-    angles = best + 2.0 * np.pi * np.arange(nearest - most, nearest + most + 1)
+    nearest = round((natural - best) / (TURN))
+    angles = best + TURN * np.arange(nearest - most, nearest + most + 1)
     likeliest = angles[np.argsort(np.abs(angles - natural), kind="stable")][:most].tolist()
-    return [(a / (2.0 * np.pi), _spiral(around, start, end, a, first / mean, unit)) for a in likeliest]
+    between = _Between(problem, around, start, end, (first, last))
+
+    def unwound(angle: float, share: float) -> TwoPoint:
+        return problem.starting_at((around.turned(start, (1.0 - share) * (angle - natural)) / unit)[:, 0])
+
+    def spiral(angle: float) -> Spiral:
+        turned = replace(between, start=around.turned(start, angle - natural))
+        return Spiral(angle / TURN, between.spiral(angle), turned.spiral(natural), partial(unwound, angle))
+
+    return [spiral(angle) for angle in likeliest]
 
 
-def _spiral(around: Rotation, start: Array, end: Array, angle: float, first: float, unit: Array) -> States:
-    """The path whose distance from the turning frame changes evenly, and whose rate does."""
-    unturned = around.turned(end, -angle)
+@dataclass(frozen=True, eq=False)
+class _Between:
+    """Ends of spirals, shape (n, 1), and the rates of the free motion there."""
 
-    def path(tau: Array) -> Array:
-        swept = angle * (first * tau + (1.0 - first) * tau**2)
-        return around.turned(start + (unturned - start) * tau, swept) / unit
+    problem: TwoPoint
+    around: Rotation
+    start: Array
+    end: Array
+    rates: tuple[float, float]
 
-    return path
+    def spiral(self, angle: float) -> States:
+        """The path through the steady rotation that turns as fast as it must; its own rate changes evenly."""
+        duration, unit = self.problem.duration, self.problem.scale.state[:, None]
+        unturned = self.around.turned(self.end, -angle)
+        steady = self._steady(angle / duration, (self.start + unturned) / 2.0)
+        middle = (self.start + unturned) / 2.0 if steady is None else steady
+        first, last = (rate * duration for rate in self.rates)
+        bulge = 6.0 * (angle - (first + last) / 2.0)
+
+        def path(tau: Array) -> Array:
+            swept = first * tau + (last - first) * tau**2 / 2.0 + bulge * (tau**2 / 2.0 - tau**3 / 3.0)
+            near = self.start * (1.0 - tau) * (1.0 - 2.0 * tau), middle * 4.0 * tau * (1.0 - tau)
+            return self.around.turned(sum(near) + unturned * tau * (2.0 * tau - 1.0), swept) / unit
+
+        return path
+
+    def _steady(self, rate: float, state: Array) -> Array | None:
+        """The state next to another one whose free motion is the rotation at that rate, if there is one."""
+        unit, turning = self.problem.scale.state[:, None], rate * self.around.matrix
+        for _ in range(CORRECTIONS):
+            rates, slopes = _motion(self.problem.instance, state)
+            missing = (rates - turning @ state) / unit
+            if not np.isfinite(missing).all():
+                return None
+            if np.abs(missing).max() <= CLOSE * abs(rate):
+                return state
+            by_state = (slopes[:, :, 0] - turning) * unit.T / unit
+            state = state - unit * np.linalg.lstsq(by_state, missing, rcond=1e-9)[0]
+        return None
 
 
 def _rate(instance: Instance, around: Rotation, state: Array) -> float:

@@ -22,8 +22,10 @@ from satsym.solve.revolutions import shifted
 if TYPE_CHECKING:
     from satsym.solve.collocation.curve import Curve
     from satsym.solve.collocation.problem import TwoPoint
+    from satsym.solve.collocation.sqp import Found
+    from satsym.solve.symmetry import Rotation, Spiral
 
-WORK = 60_000
+WORK = 15_000
 """Columns that may be linearised for one attempt; a revolution has some 30 of them an iteration."""
 
 SEEDS = 4
@@ -108,7 +110,7 @@ class Comparison:
     kinds
         Those that were compared.
     not_checked
-        Those that nobody tried, or for which time was up.
+        Those that nobody tried, of which nothing was solved, or for which time was up.
     """
 
     kinds: tuple[Compared, ...]
@@ -145,7 +147,7 @@ def compared(solution: Solution, deadline: float, seed: int = 0) -> Comparison:
             missing.append(kind)
             continue
         kinds.append(found)
-        if found.interrupted:
+        if found.interrupted or not found.summary.solved:
             missing.append(kind)
     return Comparison(tuple(kinds), tuple(missing))
 
@@ -214,7 +216,7 @@ def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Attemp
     turned = [two_point(shifted(fixed, {name: turns}), lasting) for name in angles for turns in (-1, 1)]
     around: list[Attempt] = [_cold(one, cost) for one in turned]
     if problem.fixed.all() and not angles and (rotating := rotation(fixed)):
-        around = leading(_spirals(solution, problem, rotating))
+        around = [_from_spiral(problem, spiral, cost) for spiral in _spirals(solution, problem, rotating)]
     elif not angles and not problem.fixed.all() and rotation(fixed):
         yield Kind.REVOLUTIONS, []
     if around:
@@ -241,6 +243,13 @@ def _from_path(problem: TwoPoint, path: Callable[[Any], Any], softness: float, c
     return attempt
 
 
+def _from_spiral(problem: TwoPoint, spiral: Spiral, cost: float) -> Attempt:
+    """The minimum within the bounds with a number of turns."""
+    from satsym.solve.collocation.path_of_turns import along_turns
+
+    return lambda limits: _bounded(problem, along_turns(problem.widened(float("inf")), spiral, limits), cost, limits)
+
+
 def _from_corners(problem: TwoPoint, cost: float) -> list[Attempt]:
     """The cheapest extremal to which controls at the corners of their box lead, where nothing is asked of the end."""
     from satsym.solve.collocation.swept import swept
@@ -258,19 +267,25 @@ def _from_corners(problem: TwoPoint, cost: float) -> list[Attempt]:
 def _cold(problem: TwoPoint, cost: float) -> Attempt:
     """The minimum within the bounds to which the first ways of the cold start lead."""
     from satsym.solve.collocation.cold_start import cold_start
-    from satsym.solve.collocation.softening import within_found
 
     def attempt(limits: Limits) -> Rival | None:
         start = cold_start(problem, limits, quick=True)
-        if start.way == "none" or not start.found.minimum:
-            return None
-        rough = Rival(problem, start.found.curve, start.found.cost * problem.scale.cost)
-        if rough.cost > cost + ROUGH * abs(cost):  # what is dearer without the bounds is so within them
-            return rough
-        found = within_found(problem, start.found, limits)
-        return None if found.curve is None else _accurate(problem, found.curve, cost)
+        return None if start.way == "none" else _bounded(problem, start.found, cost, limits)
 
     return attempt
+
+
+def _bounded(problem: TwoPoint, found: Found, cost: float, limits: Limits) -> Rival | None:
+    """The minimum within the bounds to which one without them leads."""
+    from satsym.solve.collocation.softening import within_found
+
+    if not found.minimum or not found.curve.in_domain(problem.positive):
+        return None
+    rough = Rival(problem, found.curve, found.cost * problem.scale.cost)
+    if rough.cost > cost + ROUGH * abs(cost):  # what is dearer without the bounds is so within them
+        return rough
+    inside = within_found(problem, found, limits)
+    return None if inside.curve is None else _accurate(problem, inside.curve, cost)
 
 
 def _accurate(problem: TwoPoint, curve: Curve, cost: float) -> Rival | None:
@@ -297,12 +312,12 @@ def _bent(problem: TwoPoint, rng: np.random.Generator) -> Iterator[Callable[[Any
         yield paths.bent(problem, rng, BENT[k % len(BENT)])
 
 
-def _spirals(solution: Solution, problem: TwoPoint, around: Any) -> list[Callable[[Any], Any]]:
+def _spirals(solution: Solution, problem: TwoPoint, around: Rotation) -> list[Spiral]:
     """Paths of other numbers of revolutions than the solution's, the likeliest first."""
     from satsym.solve.symmetry import spirals, turns
 
     own = turns(around, solution.x)
-    return [path for number, path in spirals(problem, TURNS + 1, around) if abs(number - own) > 0.5]
+    return [one for one in spirals(problem, TURNS + 1, around) if abs(one.turns - own) > 0.5]
 
 
 def none_conceivable(solution: Solution) -> bool:

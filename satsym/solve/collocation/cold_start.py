@@ -19,28 +19,23 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from satsym.solve.collocation import mesh as meshes
 from satsym.solve.collocation import paths
 from satsym.solve.collocation.curve import Curve
+from satsym.solve.collocation.from_path import STRAIGHT_THROUGH, from_path
 from satsym.solve.collocation.gauss import STAGES
 from satsym.solve.collocation.newton import newton
 from satsym.solve.collocation.path_of_durations import along_durations
 from satsym.solve.collocation.path_of_ends import along_ends
 from satsym.solve.collocation.path_of_problems import along_problems, geometric, straight
+from satsym.solve.collocation.path_of_turns import along_turns
 from satsym.solve.collocation.problem import TwoPoint
-from satsym.solve.collocation.sqp import OUTGROWN, Found, minimise
+from satsym.solve.collocation.sqp import Found
 from satsym.solve.collocation.straight_through import straight_through
 from satsym.solve.collocation.system import System
 from satsym.solve.iteration import Limits
 from satsym.solve.symmetry import spirals
 
 Array = NDArray[np.floating[Any]]
-
-STRAIGHT_THROUGH = 15
-"""Steps within which the straight line leads to a minimum if it does so easily."""
-
-TOLERANCES = (3e-2, 1e-3, 1e-7)
-"""Sizes of the last step after which the mesh is laid anew; the last one ends the minimisation."""
 
 TURNS = 2
 """Spirals that are tried."""
@@ -111,7 +106,7 @@ def cold_start(problem: TwoPoint, limits: Limits, quick: bool = False) -> Start:
     ]
 
     turning = [] if guess else spirals(free, TURNS)
-    ways[:0] = [(f"spiral of {turns:.2g} turns", partial(from_path, free, path, limits)) for turns, path in turning]
+    ways[:0] = [(f"spiral of {one.turns:.2g} turns", partial(along_turns, free, one, limits)) for one in turning]
 
     minima: dict[str, Found] = {}
     last: Found | None = None
@@ -142,27 +137,6 @@ def cold_start(problem: TwoPoint, limits: Limits, quick: bool = False) -> Start:
     return Start(minima[best], best, steps, costs)
 
 
-def from_path(problem: TwoPoint, path: Callable[[Array], Array], limits: Limits, most: int = STRAIGHT_THROUGH) -> Found:
-    """Minimise from a path of states, shape (n, M) for M times; the mesh is laid anew as the curve takes shape."""
-    curve = paths.curve(problem, path)
-    steps, hard, stage = 0, False, 0
-    while True:
-        system = System(problem, curve.mesh, STAGES)
-        found = minimise(system, curve, limits, TOLERANCES[stage], max(most - steps, 1), meshes.COARSEST)
-        steps, hard = steps + found.iterations, hard or found.hard
-        found = replace(found, iterations=steps, hard=hard)
-        extremal = found.reason in ("minimum", "saddle")
-        if not (extremal or found.reason == OUTGROWN) or not found.curve.in_domain(problem.positive):
-            return found
-        if extremal and stage == len(TOLERANCES) - 1:
-            return found
-        if steps >= most or limits.expired:
-            return replace(found, reason=f"no convergence in {steps} steps")
-        if extremal:
-            stage = stage + 1 if hard else len(TOLERANCES) - 1
-        curve = found.curve if extremal and not hard else _remeshed(problem, found.curve)
-
-
 def _extremal(problem: TwoPoint, start: Curve) -> Found | None:
     """What Newton's method finds from a curve, whether a minimum or not."""
     system = System(problem, start.mesh, STAGES)
@@ -179,10 +153,6 @@ def _drawn(problem: TwoPoint, limits: Limits) -> Found | None:
     minima = [one for one in found if one.minimum and one.curve.in_domain(problem.positive)]
     best = min(minima, key=lambda one: one.cost, default=None)
     return None if best is None else replace(best, hard=True, iterations=sum(one.iterations for one in found))
-
-
-def _remeshed(problem: TwoPoint, curve: Curve) -> Curve:
-    return curve.on(meshes.laid(problem, curve), STAGES)
 
 
 def _reason(found: Found) -> str:

@@ -45,14 +45,30 @@ def along_problems(problem: TwoPoint, between: Between, limits: Limits) -> Found
     coasting = paths.coasting_to_the_end(problem)
     if coasting is None:
         return None
-    curve = paths.curve(problem, coasting)
     away, home = coasting(np.zeros(1))[:, 0], problem.initial
-    at, move, steps = 0.0, FIRST_MOVE, 0
-    tangent: Step | None = None
 
     def path(share: float) -> TwoPoint:
         return problem.starting_at(between(away, home, share))
 
+    return followed(problem, path, paths.curve(problem, coasting), limits)
+
+
+def followed(problem: TwoPoint, path: Callable[[float], TwoPoint], curve: Curve, limits: Limits) -> Found:
+    """Follow the minima of problems from the first one to a problem, which is the last.
+
+    Parameters
+    ----------
+    problem
+        Without bounds.
+    path
+        The problem at a share of the way, in the units of the last.
+    curve
+        A guess of the first one's minimum.
+    limits
+        When to stop.
+    """
+    at, move, steps = 0.0, FIRST_MOVE, 0
+    tangent: Step | None = None
     while steps < MOST_STEPS and move >= SMALLEST_MOVE and not limits.expired:
         there = min(1.0, at + move)
         guess = _predicted(problem, curve, tangent, there - at)

@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.solve.collocation import mesh as meshes
-from satsym.solve.collocation.cold_start import from_path
 from satsym.solve.collocation.continuation import kept, settled
 from satsym.solve.collocation.curve import Curve
+from satsym.solve.collocation.from_path import from_path
 from satsym.solve.collocation.gauss import STAGES
 from satsym.solve.collocation.problem import TwoPoint
 from satsym.solve.collocation.sqp import OUTGROWN, Found, minimise

@@ -139,6 +139,7 @@ def minimise(
         if found is None:
             return Found(curve, "no descent", cost, iteration, True)
         curve, residual, share, halved = found
+        limits.spend(int(curve.flat.shape[1] * -np.log2(share)) if halved else 0)
         hard = hard or halved
         cost, violated = system.cost(curve), system.infeasibility(residual)
     return Found(curve, f"no convergence in {most} steps", cost, most, True)
