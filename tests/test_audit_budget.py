@@ -170,6 +170,8 @@ def test_what_people_print_is_light_enough(text: str) -> None:
     reading.expression(text)
 
 
-@pytest.mark.parametrize("seed", [*range(22), *(pytest.param(n, marks=pytest.mark.slow) for n in (105, 140, 153))])
+@pytest.mark.parametrize(
+    "seed", [*range(22), *(pytest.param(n, marks=pytest.mark.slow) for n in (105, 140, 153, 394, 475))]
+)
 def test_a_ledger_that_nobody_would_write_ends_in_verdicts_or_in_one_line(seed: int, tmp_path: Path) -> None:
     assert not audited(seed, tmp_path).fault

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
@@ -39,6 +40,10 @@ _FUNCTIONS: dict[str, Callable[..., sp.Expr]] = {
 _NAMES = {function: name for name, function in _FUNCTIONS.items() if name != "sqrt"}
 _DIGITS = 40
 _NOT_ZERO = 1e-12
+_MOST_COEFFICIENTS = 200_000
+"""Of a dense polynomial that is factored only to be shown shorter."""
+_PER_COEFFICIENT = 20
+"""Calls that a coefficient of a dense polynomial is charged as."""
 
 
 class NotAFormula(Exception):
@@ -167,7 +172,38 @@ def is_zero(expression: sp.Expr) -> bool:
     taken_apart = sp.expand(taken_apart.replace(sp.sin, lambda x: sp.sin(x)).subs(_squares(taken_apart)))
     if taken_apart == 0:
         return True
+    charge(calls=_PER_COEFFICIENT * _box(numerator))
     return bool(sp.simplify(numerator) == 0)
+
+
+def _box(expression: sp.Expr) -> int:
+    """Coefficients of an expression as a dense polynomial in all that has powers in it, zeros included.
+
+    That many lists sympy makes of it, and so many digits has the number at which it is evaluated to find a common
+    divisor.
+    """
+    return math.prod(1 + degree for degree in _degrees(expression).values())
+
+
+def _degrees(e: sp.Expr) -> dict[sp.Expr, int]:
+    """Degree in each thing that has powers, once multiplied out; exp(5*x) is the fifth power of exp(x)."""
+    found: dict[sp.Expr, int] = {}
+    if e.is_number:
+        return found
+    if isinstance(e, sp.Pow) and e.exp.is_Rational:
+        return {base: degree * abs(int(e.exp.p)) for base, degree in _degrees(e.base).items()}
+    if isinstance(e, sp.exp | TrigonometricFunction | HyperbolicFunction):
+        for factor, rest in (term.as_coeff_Mul() for term in sp.Add.make_args(e.args[0])):
+            size = max(abs(int(factor.p)), int(factor.q)) if factor.is_Rational else 1
+            found[e.func(rest)] = max(found.get(e.func(rest), 0), size)
+        return found
+    if not isinstance(e, sp.Add | sp.Mul):
+        return {e: 1}
+    for part in e.args:
+        for base, degree in _degrees(part).items():
+            before = found.get(base, 0)
+            found[base] = max(before, degree) if isinstance(e, sp.Add) else before + degree
+    return found
 
 
 def _multiple(expression: sp.Expr) -> int:
@@ -253,7 +289,10 @@ def text(expression: sp.Expr) -> str:
 def short(expression: sp.Expr) -> sp.Expr:
     """The shortest of a few ways to write an expression."""
     expanded = sp.expand(expression)
-    return min((expanded, sp.factor(expanded), sp.together(expanded)), key=sp.count_ops)
+    ways = [expanded, sp.together(expanded)]
+    if max(map(_box, sp.fraction(ways[-1]))) <= _MOST_COEFFICIENTS:
+        ways.insert(1, sp.factor(expanded))
+    return min(ways, key=sp.count_ops)
 
 
 def has_a_value(expression: sp.Expr) -> bool:
