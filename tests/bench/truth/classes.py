@@ -39,7 +39,7 @@ CLASSES: dict[str, Class] = {
     "orbit 4: rendezvous": Class(orbits.rendezvous, multistart.best, 30),
     "orbit 5: free": Class(orbits.all_free, multistart.best, 30),
     "orbit in km": Class(orbits.in_kilometres, multistart.best, 25),
-    "orbit, any angle": Class(orbits.any_angle, multistart.best, 30),
+    "orbit, any angle": Class(orbits.any_angle, multistart.best, 20),
     "orbit, box": Class(orbits.boxed, multistart.best, 30),
     "orbit, lopsided": Class(orbits.lopsided, multistart.best, 30),
     "orbit, one-sided": Class(orbits.one_sided, multistart.best, 30),

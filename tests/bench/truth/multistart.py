@@ -12,6 +12,7 @@ INTERVALS = {"polar_orbit": 24, "polar_orbit_timed": 24, "polar_orbit_ball": 30,
 BOUNDED, FEW = 36, 20
 FINE = 80
 """Intervals on which bounds, which make the control bend within them, are taken up again."""
+SAME = 1e-2
 HOPELESS = 4
 """How many starts fail until bounds are taken to forbid to arrive; then nothing is said."""
 TRIES = 3
@@ -35,8 +36,10 @@ def best(case: Case) -> Answer:
     for rough, start in _distinct(pairs)[:TRIES]:
         found = rough
         if intervals >= BOUNDED:
-            again = Start(rough.duration, rough.path, start.shift)
-            found = solved(case, again, FINE) or rough
+            fine = solved(case, Start(rough.duration, rough.path, start.shift), FINE)
+            # From straight lines through the old nodes, the new ones may lead elsewhere.
+            if fine is not None and abs(fine.cost - rough.cost) < SAME * abs(rough.cost):
+                found = fine
         checked = confirmed(case, found)
         if checked is not None:
             how += f"; simulated: misses {checked.missed:.0e}, worth {checked.worth:.0e}"
