@@ -64,6 +64,12 @@ class Case:
     length: float = 1.0
     time: float = 1.0
 
+    @classmethod
+    def of(cls, fields: Mapping[str, Any]) -> Case:
+        """From what JSON makes of its fields."""
+        pairs = {name: tuple(pair) for name, pair in fields["bounds"].items()}
+        return cls(**{**fields, "bounds": pairs, "free_angles": tuple(fields["free_angles"])})
+
     @property
     def key(self) -> str:
         """What names it in records."""
@@ -81,8 +87,8 @@ class Case:
         a, b = POLAR_UNITS[name]
         return float(self.length**a * self.time**b)
 
-    def text(self, own: bool) -> str:
-        """The instance file; ``own`` models lie in a folder ``models`` beside it."""
+    def text(self, own: bool, seconds: float | None = None) -> str:
+        """The instance file, perhaps with a time limit; ``own`` models lie in a folder ``models`` beside it."""
         lines = [f'model = "{"models/" if own else ""}{self.model}"']
         for section in ("parameters", "initial", "final"):
             values: Mapping[str, Any] = getattr(self, section)
@@ -95,8 +101,10 @@ class Case:
             lines += [f"{k} = [{', '.join(repr(v * self.unit(k)) for v in pair)}]" for k, pair in self.bounds.items()]
         if self.max_norm is not None:
             lines.append(f"max_norm = {self.max_norm * self.unit('u1')!r}")
-        if self.free_angles:
-            lines += ["", "[solver]", f"free_angles = {json.dumps(self.free_angles)}"]
+        options = [f"free_angles = {json.dumps(self.free_angles)}"] if self.free_angles else []
+        options += [] if seconds is None else [f"max_seconds = {seconds!r}"]
+        if options:
+            lines += ["", "[solver]", *options]
         return "\n".join(lines) + "\n"
 
     def _written(self, name: str, value: float | str) -> str:

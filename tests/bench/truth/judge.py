@@ -67,7 +67,7 @@ def judged(truth: Answer, ours: dict[str, Any]) -> Judgement:
     if status == "infeasible":
         if truth.truth is Truth.INFEASIBLE:
             return Judgement(Outcome.AGREED)
-        return Judgement(Outcome.NONE, Wrong.INFEASIBLE if truth.truth is not Truth.UNBOUNDED else Wrong.NO_MINIMISER)
+        return Judgement(Outcome.NONE, Wrong.INFEASIBLE)
     if status == "no minimiser":
         if truth.truth is Truth.UNBOUNDED:
             return Judgement(Outcome.AGREED)
@@ -77,8 +77,8 @@ def judged(truth: Answer, ours: dict[str, Any]) -> Judgement:
 
 def _converged(truth: Answer, ours: dict[str, Any]) -> Judgement:
     certified = ours.get("verdict") == "certified"
-    violated = ours["missed"] > MISSED or ours["off cost"] > OFF_COST or ours["out"] > OUT
-    if violated:
+    kept = ours["missed"] <= MISSED and ours["off cost"] <= OFF_COST and ours["out"] <= OUT  # NaN is not
+    if not kept:
         return Judgement(Outcome.NONE, Wrong.VIOLATED)
     if truth.truth is Truth.UNKNOWN:
         return Judgement(Outcome.UNJUDGED)

@@ -1,9 +1,10 @@
 """Truth of what satsym says: random instances of all classes beside independent answers (`make bench-truth`).
 
 What is done is kept below results/truth/: the same command goes on where it was broken off. Independent answers are
-computed once, and stay when only satsym changes. ``--classes WORD`` takes the classes whose names contain it,
+computed once, and stay when only satsym changes. ``--classes WORD`` (repeatable) takes the classes whose names contain it,
 ``--first N`` the first of each, ``--only truth`` or ``--only ours`` one side, ``--show`` prints what there is,
-``--any-revision`` also counts answers of earlier revisions of satsym, ``--seconds S`` stops in time.
+``--any-revision`` also counts answers of earlier revisions of satsym, ``--seconds S`` stops in time,
+``--write-sample`` writes the sample that the tests use.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from typing import Any
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from tests.bench.truth import classes, record, table
+from tests.bench.truth import classes, record, sample, table
 from tests.bench.truth.answer import Answer
 from tests.bench.truth.judge import judged
 from tests.bench.truth.ours import Worker
@@ -26,7 +27,7 @@ from tests.bench.truth.ours import Worker
 def main() -> None:
     """Answer what is not answered yet, and print the table."""
     options = _options()
-    families = [name for name in classes.CLASSES if options.classes in name]
+    families = [name for name in classes.CLASSES if any(word in name for word in options.classes or [""])]
     pairs = [(f, n) for f, n in classes.in_turn(families) if n < options.first]
     truths, ours = record.Record("truth"), record.Record("ours")
     if not options.show:
@@ -34,16 +35,19 @@ def main() -> None:
     entries = _entries(pairs, truths, ours, options.any_revision)
     print(table.text(entries))
     print("\n" + table.wrong(entries))
+    if options.write_sample:
+        print(f"\n{sample.PATH}: {sample.written(entries)} instances")
 
 
 def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--classes", default="", metavar="WORD")
+    parser.add_argument("--classes", action="append", metavar="WORD")
     parser.add_argument("--first", type=int, default=10**6, metavar="N")
     parser.add_argument("--only", choices=("truth", "ours"))
     parser.add_argument("--seconds", type=float, default=float("inf"))
     parser.add_argument("--show", action="store_true")
     parser.add_argument("--any-revision", action="store_true")
+    parser.add_argument("--write-sample", action="store_true")
     return parser.parse_args()
 
 
