@@ -225,4 +225,3 @@ def test_a_control_that_does_not_arrive_is_seen_by_the_coarse_simulation():
         0.2, abs=0.02
     )
     assert ours.violations(replace(case, bounds={"u1": (-0.5, 1.0)}), Solution)["out"] == pytest.approx(0.5)
-    assert lines.LINE == ("q", "q_dot")

@@ -1,9 +1,9 @@
 """Truth of what satsym says: random instances of all classes beside independent answers (`make bench-truth`).
 
 What is done is kept below results/truth/: the same command goes on where it was broken off. Independent answers are
-computed once, and stay when only satsym changes. ``--classes WORD`` (repeatable) takes the classes whose names contain it,
-``--first N`` the first of each, ``--only truth`` or ``--only ours`` one side, ``--show`` prints what there is,
-``--any-revision`` also counts answers of earlier revisions of satsym, ``--seconds S`` stops in time,
+computed once, and stay when only satsym changes. ``--classes WORD`` (repeatable) takes the classes whose names contain
+it, ``--first N`` the first of each, ``--only truth`` or ``--only ours`` one side, ``--show`` prints what there is,
+``--any-revision`` also counts answers of earlier revisions of satsym, ``--seconds S`` stops in time, and
 ``--write-sample`` writes the sample that the tests use.
 """
 
