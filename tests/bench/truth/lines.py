@@ -101,7 +101,8 @@ def _timed(rng: Rng, case: Case) -> Case:
     effects, _ = motion.effect(tf, 400)
     gram = np.einsum("kim,kjm->ij", effects, effects) * tf / 400.0
     peak = float(np.abs(effects[:, :, 0] @ np.linalg.solve(gram, motion.gap(tf))).max())
-    low, high = peak * rng.uniform(0.6 if case.model.startswith("oscillator") else 0.35, 1.2, 2)
+    least, most = (0.8, 1.8) if case.model.startswith("oscillator") else (0.35, 1.2)
+    low, high = peak * rng.uniform(least, most, 2)
     return Case(**{**vars(plain), "bounds": {"u1": (-float(low), float(high))}})
 
 

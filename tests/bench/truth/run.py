@@ -3,8 +3,8 @@
 What is done is kept below results/truth/: the same command goes on where it was broken off. Independent answers are
 computed once, and stay when only satsym changes. ``--classes WORD`` (repeatable) takes the classes whose names contain
 it, ``--first N`` the first of each, ``--only truth`` or ``--only ours`` one side, ``--show`` prints what there is,
-``--any-revision`` also counts answers of earlier revisions of satsym, ``--seconds S`` stops in time, and
-``--write-sample`` writes the sample that the tests use.
+``--any-revision`` also counts answers of earlier revisions of satsym, ``--keep-right`` solves only those again that
+such a one was not right about, ``--seconds S`` stops in time, ``--write-sample`` writes the sample that the tests use.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from tests.bench.truth import classes, record, sample, table
 from tests.bench.truth.answer import Answer
-from tests.bench.truth.judge import judged
+from tests.bench.truth.judge import Outcome, judged
 from tests.bench.truth.ours import Worker
 
 
@@ -47,6 +47,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--seconds", type=float, default=float("inf"))
     parser.add_argument("--show", action="store_true")
     parser.add_argument("--any-revision", action="store_true")
+    parser.add_argument("--keep-right", action="store_true")
     parser.add_argument("--write-sample", action="store_true")
     return parser.parse_args()
 
@@ -62,7 +63,7 @@ def _run(pairs: list[tuple[str, int]], truths: record.Record, ours: record.Recor
                 break
             if options.only != "ours":
                 independent(family, number, truths)
-            if options.only != "truth":
+            if options.only != "truth" and not (options.keep_right and _right(family, number, truths, ours)):
                 from_satsym(family, number, ours, worker)
             if sys.stderr.isatty():
                 print(f"\r{count + 1} of {len(pairs)}", end="", file=sys.stderr, flush=True)
@@ -101,6 +102,13 @@ def from_satsym(family: str, number: int, ours: record.Record, worker: Worker) -
     if row is None:
         row = ours.add(case.key, text, record.of_satsym(), worker.solve(case, case.model.startswith(classes.OWN)))
     return row
+
+
+def _right(family: str, number: int, truths: record.Record, ours: record.Record) -> bool:
+    """Whether an earlier revision of satsym was right about an instance, and certified what it found."""
+    found = _entries([(family, number)], truths, ours, any_revision=True)
+    good = (Outcome.AGREED, Outcome.OURS)
+    return any(e.judgement.outcome in good and e.ours.get("verdict", "certified") == "certified" for e in found)
 
 
 def _entries(
