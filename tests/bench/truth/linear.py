@@ -54,9 +54,15 @@ class Linear:
         n, m = self.B.shape
         block = np.zeros((n + m, n + m))
         block[:n, :n], block[:n, n:] = self.A, self.B
-        exact = [expm(block * h)[:n, n:] for h in np.diff(nodes)]
-        after = [expm(self.A * (nodes[-1] - t)) for t in nodes[1:]]
-        return np.array([self.C @ a @ b for a, b in zip(after, exact, strict=True)]).transpose(1, 0, 2)
+        widths = np.diff(nodes)
+        different, which = np.unique(np.round(widths, 14), return_inverse=True)
+        exact = [expm(block * h) for h in different]
+        effects, after = np.empty((len(widths), len(self.C), m)), self.C
+        for k in range(len(widths) - 1, -1, -1):
+            step = exact[which[k]]
+            effects[k] = after @ step[:n, n:]
+            after = after @ step[:n, :n]
+        return effects.transpose(1, 0, 2)
 
 
 def linear(case: Case) -> Linear:
