@@ -6,6 +6,7 @@ import math
 import multiprocessing
 import time
 import traceback
+from contextlib import suppress
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
@@ -57,12 +58,9 @@ class Worker:
 
 
 def _serve(pipe: Connection) -> None:
-    while True:
-        try:
-            case, path = pipe.recv()
-        except EOFError:
-            return
-        pipe.send(answer(case, path))
+    with suppress(EOFError, BrokenPipeError):  # the bench was broken off
+        while True:
+            pipe.send(answer(*pipe.recv()))
 
 
 def answer(case: Case, path: Path) -> dict[str, Any]:

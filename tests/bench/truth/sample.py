@@ -1,7 +1,7 @@
 """A few instances with stored independent answers, for tests that have neither the peers nor the time.
 
-Written by ``python -m tests.bench.truth.run --write-sample``: of each class the first that is judged, quickly solved
-and not wrong. It tells of words that cease to be true, not of how many are.
+Written by ``python -m tests.bench.truth.run --write-sample``: of each class the first that is right and quickly
+solved, and some more. It tells of words that cease to be true, not of how many are.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from typing import Any
 from tests.bench.truth import classes, record
 from tests.bench.truth.answer import Answer, Truth
 from tests.bench.truth.case import Case
+from tests.bench.truth.judge import Outcome
 from tests.bench.truth.table import Entry
 
 PATH = record.HERE / "sample.json"
@@ -27,14 +28,23 @@ NOTE = (
 
 def written(entries: Iterable[Entry]) -> int:
     """Write the sample; how many it has."""
-    chosen: dict[str, Entry] = {}
-    for entry in entries:
-        good = entry.truth.truth is not Truth.UNKNOWN and entry.judgement.wrong is None
-        if good and entry.ours.get("processor", QUICK) < QUICK:
-            chosen.setdefault(entry.family, entry)
-    rows = [_row(entry) for entry in list(chosen.values())[:SIZE]]
+    good = [entry for entry in entries if _good(entry)]
+    firsts = {entry.family: entry for entry in reversed(good)}
+    others = [entry for entry in good if entry is not firsts[entry.family]]
+    rows = [
+        _row(entry) for entry in sorted([*firsts.values(), *others[:: max(1, len(others) // SIZE)]][:SIZE], key=_key)
+    ]
     PATH.write_text(json.dumps({"note": NOTE, "answers": rows}, indent=1) + "\n", encoding="utf-8")
     return len(rows)
+
+
+def _good(entry: Entry) -> bool:
+    right = entry.judgement.wrong is None and entry.judgement.outcome in (Outcome.AGREED, Outcome.OURS)
+    return right and entry.truth.truth is not Truth.UNKNOWN and entry.ours.get("processor", QUICK) < QUICK
+
+
+def _key(entry: Entry) -> tuple[str, int]:
+    return entry.family, entry.number
 
 
 def _row(entry: Entry) -> dict[str, Any]:
