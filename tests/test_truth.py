@@ -18,7 +18,8 @@ from tests.bench.truth.judge import Outcome, Wrong
 
 PARTS = 4
 LEAST = Answer(Truth.MINIMUM, 1.0, "by hand")
-ANSWER = {"status": "converged", "cost": 1.0, "verdict": "certified", "missed": 0.0, "off cost": 0.0, "out": 0.0}
+ANSWER = {"status": "converged", "cost": 1.0, "verdict": "certified", "kinds": ["seeded starts 4/4"]}
+ANSWER |= {"missed": 0.0, "off cost": 0.0, "out": 0.0}
 
 
 @pytest.fixture(scope="module")
@@ -72,6 +73,7 @@ def test_the_sample_is_of_many_classes_and_says_how_each_answer_was_obtained():
         (LEAST, {"cost": 1.0 + 2e-5}, Wrong.CERTIFIED),
         (replace(LEAST, truth=Truth.REACHED), {"cost": 2.0}, Wrong.CERTIFIED),
         (replace(LEAST, truth=Truth.UNBOUNDED, cost=None), {}, Wrong.CERTIFIED),
+        (LEAST, {"cost": 2.0, "kinds": ["neighbours 4/4"]}, Wrong.UNCOMPARED),
         (LEAST, {"cost": 1.0 - 2e-5}, Wrong.BELOW),
         (LEAST, {"missed": 0.01}, Wrong.VIOLATED),
         (LEAST, {"out": 0.01}, Wrong.VIOLATED),

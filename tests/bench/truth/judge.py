@@ -31,6 +31,7 @@ class Wrong(str, Enum):
     """Words of satsym's that are not true."""
 
     CERTIFIED = "certified, though there is a cheaper control"
+    UNCOMPARED = "certified without seeded starts, though there is a cheaper control"
     INFEASIBLE = "infeasible, though a control arrives"
     NO_MINIMISER = "no minimiser, though there is one"
     ARRIVED = "converged, though nothing can arrive"
@@ -76,7 +77,10 @@ def judged(truth: Answer, ours: dict[str, Any]) -> Judgement:
 
 
 def _converged(truth: Answer, ours: dict[str, Any]) -> Judgement:
-    certified = ours.get("verdict") == "certified"
+    word = None
+    if ours.get("verdict") == "certified":
+        compared = any(kind.startswith("seeded starts") for kind in ours.get("kinds", ()))
+        word = Wrong.CERTIFIED if compared else Wrong.UNCOMPARED
     kept = ours["missed"] <= MISSED and ours["off cost"] <= OFF_COST and ours["out"] <= OUT  # NaN is not
     if not kept:
         return Judgement(Outcome.NONE, Wrong.VIOLATED)
@@ -85,12 +89,12 @@ def _converged(truth: Answer, ours: dict[str, Any]) -> Judgement:
     if truth.truth is Truth.INFEASIBLE:
         return Judgement(Outcome.NONE, Wrong.ARRIVED)
     if truth.truth is Truth.UNBOUNDED:
-        return Judgement(Outcome.THEIRS, Wrong.CERTIFIED if certified else None)
+        return Judgement(Outcome.THEIRS, word)
     assert truth.cost is not None
     scale = max(abs(truth.cost), abs(ours["cost"]), NOTHING)
     excess = (ours["cost"] - truth.cost) / scale
     if excess > CHEAPER:
-        return Judgement(Outcome.THEIRS, Wrong.CERTIFIED if certified else None, excess)
+        return Judgement(Outcome.THEIRS, word, excess)
     if excess < -CHEAPER:
         return Judgement(Outcome.OURS, Wrong.BELOW if truth.truth is Truth.MINIMUM else None, excess)
     return Judgement(Outcome.AGREED, None, excess)
