@@ -24,7 +24,7 @@ OPTIONS = {
     "ipopt.print_level": 0,
     "ipopt.sb": "yes",
     "ipopt.tol": 1e-9,
-    "ipopt.max_iter": 150,
+    "ipopt.max_iter": 250,
     "ipopt.bound_relax_factor": 0.0,
     "ipopt.acceptable_tol": 1e-7,
 }

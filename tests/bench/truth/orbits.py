@@ -165,14 +165,14 @@ def boxed_ends(rng: Rng, family: str, number: int) -> Case:
 
 
 def rewarded(rng: Rng, family: str, number: int) -> Case:
-    """Negative terminal weights within bounds: going far is rewarded."""
-    tf = float(rng.uniform(1.0, 6.0))
-    weights = {f"k{k}": -float(10 ** rng.uniform(-2.5, 0.0)) for k in (1, 2, 4) if rng.random() < 0.6}
+    """A negative terminal weight of the distance, within bounds: going far is rewarded.
+
+    Rates are not: near the centre they have no bound.
+    """
+    tf, weights = float(rng.uniform(1.0, 6.0)), {"k1": -float(10 ** rng.uniform(-2.5, 0.0))}
     limits = 10 ** rng.uniform(-2.0, -0.7, 2)
     bounds = {f"u{k}": (-float(b), float(b)) for k, b in enumerate(limits, 1)}
-    return Case(
-        family, number, "polar_orbit", _start(rng, 0.2), {}, tf, parameters=weights or {"k1": -0.1}, bounds=bounds
-    )
+    return Case(family, number, "polar_orbit", _start(rng, 0.2), {}, tf, parameters=weights, bounds=bounds)
 
 
 def plane(rng: Rng, family: str, number: int) -> Case:

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
+from itertools import product
 
 import numpy as np
+from scipy.integrate import solve_ivp
 
 from tests.bench.truth.case import Case
 from tests.bench.truth.collocate import Start
@@ -29,14 +31,35 @@ def starts(case: Case) -> list[Start]:
 def _polar(case: Case) -> list[Start]:
     shifts = [TURN * k for k in (-1, 0, 1, 2)] if case.free_angles else [0.0]
     bends = BENDS[:3] if case.free_angles else BENDS
+    corners = _corners(case) if case.bounds and not case.final else []
     if case.tf is not None:
-        return [
+        return corners + [
             Start(case.tf - case.t0, _bent(case, case.tf, shift, waves, bend), shift)
             for shift in shifts
             for waves, bend in bends
         ]
     durations = (0.8, 2.0, 4.0, 6.5) if case.bounds else (0.7, 1.5, 3.0, 4.5, 6.5, 9.0)
     return [Start(T, _bent(case, case.t0 + T, 0.0, 1, bend)) for T in durations for bend in (0.0, 0.3)]
+
+
+def _corners(case: Case) -> list[Start]:
+    """Motions under full thrust all the way, to which negative weights of a free end may lead."""
+    physics, start = MODELS[case.model], [case.initial[name] for name in MODELS[case.model].states]
+    p = physics.given(case.parameters)
+    duration = 3.0 if case.tf is None else case.tf - case.t0
+    found = []
+    for u in product(*(case.bounds.get(name, (0.0, 0.0)) for name in physics.controls)):
+        with np.errstate(all="ignore"):
+            motion = solve_ivp(
+                lambda t, x, u=u: physics.rate(math, t, x, u, p), (0.0, duration), start, dense_output=True, rtol=1e-6
+            )
+        if motion.success and np.isfinite(motion.y).all():
+            found.append(Start(duration, partial(_along, motion.sol, duration)))
+    return found
+
+
+def _along(motion: Callable[[np.ndarray], np.ndarray], duration: float, tau: np.ndarray) -> np.ndarray:
+    return motion(tau * duration)
 
 
 def _bent(case: Case, tf: float, shift: float, waves: int, bend: float) -> Path:
