@@ -1,0 +1,63 @@
+"""The best of many starts of direct collocation, confirmed by simulation."""
+
+from __future__ import annotations
+
+from tests.bench.truth.answer import Answer, Truth
+from tests.bench.truth.case import Case
+from tests.bench.truth.collocate import Found, Start, solved
+from tests.bench.truth.simulate import confirmed
+from tests.bench.truth.starts import starts
+
+INTERVALS = {"polar_orbit": 24, "polar_orbit_timed": 24, "polar_orbit_ball": 30, "transfer_plane": 40}
+BOUNDED, FEW = 36, 20
+FINE = 80
+"""Intervals on which bounds, which make the control bend within them, are taken up again."""
+SAME = 1e-2
+HOPELESS = 4
+"""How many starts fail until bounds are taken to forbid to arrive; then nothing is said."""
+TRIES = 6
+"""How many of the best are simulated until one costs what it seemed to."""
+
+
+def best(case: Case) -> Answer:
+    """Solve from every start; the cheapest control that a simulation confirms."""
+    intervals = INTERVALS.get(case.model, FEW)
+    if case.bounds or case.max_norm is not None:
+        intervals = max(intervals, BOUNDED)
+    tried = starts(case)
+    pairs: list[tuple[Found, Start]] = []
+    for count, start in enumerate(tried):
+        if not pairs and intervals >= BOUNDED and count == HOPELESS:
+            break
+        if (found := solved(case, start, intervals)) is not None:
+            pairs.append((found, start))
+    pairs.sort(key=lambda pair: pair[0].cost)
+    how = f"collocation on {intervals} intervals, {len(pairs)} of {len(tried)} starts solved"
+    least: tuple[float, float, str] | None = None
+    for rough, start in _distinct(pairs)[:TRIES]:
+        found = _finer(case, rough, start) if intervals >= BOUNDED else rough
+        checked = confirmed(case, found)
+        if checked is None:
+            continue
+        if least is None or checked.cost < least[0]:
+            least = checked.cost, found.duration, f"misses {checked.missed:.0e}, worth {checked.worth:.0e}"
+        if abs(checked.cost - found.cost) < SAME * abs(found.cost):
+            break  # the others cost more; but for those that go through the centre, where nothing is resolved
+    if least is None:
+        return Answer(Truth.UNKNOWN, None, how)
+    return Answer(Truth.REACHED, least[0], f"{how}; simulated: {least[2]}", least[1])
+
+
+def _finer(case: Case, rough: Found, start: Start) -> Found:
+    """On more intervals; from straight lines through the old nodes these may lead elsewhere, and then the old ones."""
+    fine = solved(case, Start(rough.duration, rough.path, start.shift), FINE)
+    return fine if fine is not None and abs(fine.cost - rough.cost) < SAME * abs(rough.cost) else rough
+
+
+def _distinct(pairs: list[tuple[Found, Start]]) -> list[tuple[Found, Start]]:
+    """One of each cost."""
+    kept: list[tuple[Found, Start]] = []
+    for found, start in pairs:
+        if not kept or found.cost > kept[-1][0].cost + 1e-7 * abs(found.cost):
+            kept.append((found, start))
+    return kept

@@ -1,0 +1,156 @@
+"""satsym's answer to an instance, in a process of its own that can be ended when it takes too long."""
+
+from __future__ import annotations
+
+import math
+import multiprocessing
+import time
+import traceback
+from contextlib import suppress
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tests.bench.truth.case import Case
+from tests.bench.truth.physics import MODELS
+
+SECONDS, PATIENCE = 600.0, 900.0
+"""satsym's limit, generous because the machine may be busy; and after how long an instance is given up."""
+
+
+class Worker:
+    """A process that solves one instance after the other; ended and begun anew when it hangs."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.process: Any = None
+        self.pipe: Any = None
+
+    def solve(self, case: Case, own: bool) -> dict[str, Any]:
+        """The row of one instance for the record."""
+        path = self.folder / f"{case.family.replace(' ', '_').replace(',', '').replace(':', '')}-{case.number}.toml"
+        path.write_text(case.text(own, SECONDS), encoding="utf-8")
+        if self.process is None or not self.process.is_alive():
+            context = multiprocessing.get_context("spawn")
+            self.pipe, theirs = context.Pipe()
+            self.process = context.Process(target=_serve, args=(theirs,), daemon=True)
+            self.process.start()
+            theirs.close()
+        begun = time.perf_counter()
+        try:
+            self.pipe.send((case, path))
+            if self.pipe.poll(PATIENCE):
+                row: dict[str, Any] = self.pipe.recv()
+                return row
+        except (EOFError, BrokenPipeError):
+            self.process = None
+            return {"status": "error", "message": "the process ended"}
+        self.process.kill()
+        self.process = None
+        return {"status": "hangs", "message": f"no answer within {PATIENCE:g} s", "wall": time.perf_counter() - begun}
+
+    def end(self) -> None:
+        """End the process."""
+        if self.process is not None:
+            self.process.kill()
+
+
+def _serve(pipe: Connection) -> None:
+    with suppress(EOFError, BrokenPipeError):  # the bench was broken off
+        while True:
+            pipe.send(answer(*pipe.recv()))
+
+
+def answer(case: Case, path: Path) -> dict[str, Any]:
+    """Solve an instance file with satsym; what came of it, with costs in the units of the case."""
+    from satsym import instance, solve
+    from satsym.status import BadInput
+
+    wall, processor = time.perf_counter(), time.process_time()
+    try:
+        solution = solve.solve(instance.load(path))
+    except BadInput as error:
+        return {"status": "refused", "message": str(error)}
+    except Exception:
+        return {"status": "error", "message": traceback.format_exc()[-600:]}
+    row: dict[str, Any] = {
+        "status": solution.status.value,
+        "message": solution.message[:300],
+        "wall": round(time.perf_counter() - wall, 3),
+        "processor": round(time.process_time() - processor, 3),
+    }
+    if not solution.status.answered:
+        return row
+    row |= {"cost": solution.objective / case.cost_unit, "duration": float(solution.times[-1]) / case.time - case.t0}
+    certificate = solution.certificate
+    if certificate is not None:
+        row |= {
+            "verdict": certificate.verdict.value,
+            "failing": [f"{c.name}: {c.value:.2e} > {c.limit:.0e}" for c in certificate.checks if not c.passed],
+            "kinds": [f"{c.kind.value} {c.solved}/{c.tried}" for c in certificate.competitors],
+            "not checked": [kind.value for kind in certificate.not_checked],
+        }
+    return row | violations(case, solution)
+
+
+def violations(case: Case, solution: Any) -> dict[str, float]:
+    """How far its control, simulated once more by other equations, is from the end, the cost and the bounds."""
+    physics = MODELS[case.model]
+    p = physics.given(case.parameters)
+    units = np.array([case.unit(name) for name in physics.states])
+    thrust = np.array([case.unit(name) for name in physics.controls])
+    times = np.asarray(solution.times) / case.time
+    u = np.asarray(solution.u) / thrust[:, None]
+    y = [*(case.initial[name] for name in physics.states), 0.0]
+    with np.errstate(all="ignore"):
+        try:
+            for k in np.flatnonzero(np.diff(times) > 0.0):
+                y = _step(physics, p, float(times[k]), float(times[k + 1] - times[k]), y, u[:, k], u[:, k + 1])
+        except (ZeroDivisionError, OverflowError, ValueError):
+            y = [math.nan] * len(y)
+    x, tf = y[:-1], float(times[-1])
+    sizes = np.maximum(1.0, np.abs(np.asarray(solution.x) / units[:, None]).max(axis=1))
+    curve, missed = physics.reference(math, tf, p), 0.0
+    for i, name in enumerate(physics.states):
+        if name in case.final:
+            value = case.final[name]
+            off = x[i] - (curve[i] if isinstance(value, str) else value)
+            if name in case.free_angles:
+                off = math.remainder(off, 2.0 * math.pi)
+            missed = max(missed, abs(off) / float(sizes[i])) if math.isfinite(off) else math.inf
+    missed = max([missed, *(abs(end) for end in physics.ends(math, tf, x, p))])
+    cost = y[-1] + physics.terminal(math, tf, x, p)
+    stated = solution.objective / case.cost_unit
+    return {
+        "missed": missed,
+        "off cost": abs(cost - stated) / max(abs(stated), 1e-6) if math.isfinite(cost) else math.inf,
+        "out": _outside(case, u),
+    }
+
+
+def _step(physics: Any, p: Any, t: float, h: float, y: list[float], before: Any, after: Any) -> list[float]:
+    """One step of RK4 with a control that is straight in between."""
+    first, last = before.tolist(), after.tolist()
+    middle = [(a + b) / 2.0 for a, b in zip(first, last, strict=True)]
+
+    def rate(t: float, y: list[float], u: list[float]) -> list[float]:
+        return [*physics.rate(math, t, y, u, p), physics.running(math, t, y, u, p)]
+
+    k1 = rate(t, y, first)
+    k2 = rate(t + h / 2.0, [a + h / 2.0 * b for a, b in zip(y, k1, strict=True)], middle)
+    k3 = rate(t + h / 2.0, [a + h / 2.0 * b for a, b in zip(y, k2, strict=True)], middle)
+    k4 = rate(t + h, [a + h * b for a, b in zip(y, k3, strict=True)], last)
+    return [a + h / 6.0 * (b + 2.0 * c + 2.0 * d + e) for a, b, c, d, e in zip(y, k1, k2, k3, k4, strict=True)]
+
+
+def _outside(case: Case, u: np.ndarray) -> float:
+    """By how much the control leaves its set, relative to its size."""
+    worst = 0.0
+    for k, name in enumerate(MODELS[case.model].controls):
+        low, high = case.bounds.get(name, (-math.inf, math.inf))
+        worst = max(worst, float(low - u[k].min()), float(u[k].max() - high))
+    if case.max_norm is not None:
+        worst = max(worst, float(np.linalg.norm(u, axis=0).max()) - case.max_norm)
+    return worst / max(float(np.abs(u).max()), 1e-12)
