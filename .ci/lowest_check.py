@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import json
 import sys
 from pathlib import Path
@@ -28,10 +30,16 @@ tf = "1000 ms"
 """
 
 
+def quietly(*words: str) -> int:
+    """The exit code of a command; what it prints is not what is looked at."""
+    with contextlib.redirect_stdout(io.TextIOWrapper(io.BytesIO(), encoding="utf-8")):
+        return main(list(words))
+
+
 def run(*words: str) -> dict[str, Any]:
     """What a command writes into result.json."""
     out = Path("out", words[0])
-    code = main([*words, "--out", str(out)])
+    code = quietly(*words, "--out", str(out))
     if code:
         sys.exit(f"satsym {' '.join(words)}: exit {code}")
     found: dict[str, Any] = json.loads((out / "result.json").read_text(encoding="utf-8"))
@@ -65,7 +73,7 @@ def check() -> None:
         k.forward(nodes, case.initial, rest, rest[:, 1:], case.parameters) for k in (case.model, case.model.compiled())
     )
     expect("compiled code computes the same", np.allclose(ours[0], compiled[0], rtol=1e-12))
-    expect("LaTeX", not main(["latex", "polar_orbit"]))
+    expect("LaTeX", not quietly("latex", "polar_orbit"))
 
 
 if __name__ == "__main__":
