@@ -8,6 +8,7 @@ Mathematical Analysis and Applications 1, 1960; Eaton, An iterative solution to 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -63,7 +64,8 @@ class Arrival:
 def arrivals(instance: Instance, motion: LinearMotion, limits: Limits) -> Iterator[Arrival]:
     """Times that are not too short, the shortest first: the first is the least, as far as steps can tell.
 
-    Nothing is given where no time is found.
+    Nothing is given where no time is found, and an infinite one where a plane tells the end from what is reached for as
+    long as anyone will wait.
     """
     rows, n = given_rows(instance), len(instance.initial)
     apart = np.array(instance.initial)[rows] - goal(instance, rows, instance.t0)
@@ -74,6 +76,9 @@ def arrivals(instance: Instance, motion: LinearMotion, limits: Limits) -> Iterat
     further, tired = BEYOND, 0
     for _ in range(PLANES):
         if duration is None or limits.expired or tired > TIRED:
+            return
+        if math.isinf(duration):
+            yield Arrival(duration, ())
             return
         reach = Reach(instance, motion, duration)
         limits.spend(reach.count)
@@ -98,7 +103,7 @@ def _scale(instance: Instance, motion: LinearMotion) -> float:
 
 
 def _beyond(instance: Instance, motion: LinearMotion, costate: Array, after: float, scale: float) -> float | None:
-    """The first duration after one at which a plane no longer tells the end from what is reached."""
+    """The first duration after one at which a plane no longer tells the end from what is reached; infinite if none is."""
     length = scale / steps(motion, scale)
     rows = given_rows(instance)
     low, high = np.array(instance.lower), np.array(instance.upper)
@@ -128,4 +133,4 @@ def _beyond(instance: Instance, motion: LinearMotion, costate: Array, after: flo
                 return _beyond(instance, motion, costate, 0.0, found)
             return found
         first, count = count, 2 * count
-    return None
+    return math.inf

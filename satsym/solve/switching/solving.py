@@ -164,7 +164,7 @@ def _found(instance: Instance, limits: Limits) -> tuple[Exact, str] | homotopy.S
         return rest[0]
     if exact := by_reach.optimum(instance, limits):
         return exact, by_reach.WAY
-    if instance.tf is not None and (message := by_reach.unreachable(instance, limits)):
+    if message := by_reach.unreachable(instance, limits):
         return homotopy.Stopped(Status.INFEASIBLE, message)
     found = _by_effort(instance, limits)
     best = None if isinstance(found, homotopy.Stopped) else found[0]
