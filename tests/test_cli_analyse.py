@@ -29,7 +29,8 @@ ANALYSIS_KEYS = (
     "observability exact orbit point floquet"
 ).split()
 REGULATOR_KEYS = (
-    HEAD + "inputs K P riccati_residual closed_loop_eigenvalues characteristic_polynomial routh cost_from_initial"
+    HEAD + "inputs K P riccati_residual riccati_error closed_loop_eigenvalues characteristic_polynomial routh "
+    "cost_from_initial"
 ).split()
 
 WEIGHTED = """

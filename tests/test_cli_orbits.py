@@ -12,6 +12,8 @@ import pytest
 from satsym import instance
 from satsym.analysis.orbits.survey import survey
 from satsym.cli import main
+
+HEAD = "satsym schema command model instance status units".split()
 from satsym.report.linear import ANALYSIS
 from satsym.report.orbit_text import orbit_text
 from satsym.report.plots import conics, plane, style, unit_circle
@@ -41,7 +43,7 @@ def analysed(subject: str | Path, capsys: pytest.CaptureFixture[str], *options: 
 def test_an_orbit_has_the_agreed_keys(name: str, conic: str, status: str, capsys: pytest.CaptureFixture[str]) -> None:
     code, out, err = analysed(name, capsys, "--json")
     found = json.loads(out)
-    assert (code, err, list(found)) == (0, "", [*ANALYSIS, "orbit", "point", "floquet"])
+    assert (code, err, list(found)) == (0, "", [*HEAD, *ANALYSIS, "orbit", "point", "floquet"])
     assert all(found[key] is None for key in ANALYSIS)  # nothing rests anywhere
     assert [key for key in ORBIT if key in found["orbit"]] == ORBIT
     assert [key for key in POINT if key in found["point"]] == POINT
@@ -96,7 +98,7 @@ def test_an_orbit_in_polar_coordinates_has_both_analyses(capsys: pytest.CaptureF
 def test_what_is_no_orbit_has_nothing_under_these_keys(capsys: pytest.CaptureFixture[str]) -> None:
     found = json.loads(analysed("saddle", capsys, "--json")[1])
     assert (found["orbit"], found["point"], found["floquet"]) == (None, None, None)
-    assert list(found)[: len(ANALYSIS)] == list(ANALYSIS)
+    assert list(found)[: len(HEAD) + len(ANALYSIS)] == [*HEAD, *ANALYSIS]
     assert found["stability"]["verdict"] == "unstable"
 
 

@@ -12,11 +12,14 @@ from sympy import Matrix, exp, eye
 
 from satsym import instance
 from satsym.instance import Guess, Instance
-from satsym.solution import Certificate, Kind, Solution
+from satsym.solution import Certificate, Kind, Progress, Solution
 from satsym.solve import solve
+from satsym.solve import two_point as two_point_method
 from satsym.solve.certificate import certify
 from satsym.solve.certificate.competitors import none_conceivable
-from satsym.solve.symmetry import rotation
+from satsym.solve.collocation.scaling import two_point
+from satsym.solve.improving import improved
+from satsym.solve.symmetry import rotation, spirals
 from satsym.status import BadInput, Status
 from satsym.symbolic import FirstOrder, Newton, Problem, Variable, symbols_of
 from tests.models import build
@@ -113,6 +116,37 @@ def test_a_transfer_in_cartesian_coordinates_makes_the_revolutions_that_cost_lea
     assert int(np.argmin(turns)) == 1
     assert certificate(found).verdict == "certified"
     assert Kind.REVOLUTIONS in compared(found)
+
+
+def test_spirals_lead_from_the_start_to_the_end_with_their_turns(tmp_path: Path) -> None:
+    text = "[initial]\nx = 1.0\ny = 0.0\nv_x = 0.0\nv_y = 1.0\n[final]\nx = 0.0\ny = 1.3\nv_x = -0.8\nv_y = 0.1\n"
+    problem = two_point(build(tmp_path, cartesian, text + "[time]\nt0 = 1.0\ntf = 12.0\n"), 11.0)
+    for spiral in spirals(problem, 4):
+        path = spiral.path(np.linspace(0.0, 1.0, 2001)) * problem.scale.state[:, None]
+        assert path[:, 0] == pytest.approx([1.0, 0.0, 0.0, 1.0], abs=1e-9)
+        assert path[:, -1] == pytest.approx([0.0, 1.3, -0.8, 0.1], abs=1e-9)
+        angle = np.unwrap(np.arctan2(path[1], path[0]))
+        assert (angle[-1] - angle[0]) / (2.0 * np.pi) == pytest.approx(spiral.turns, abs=0.03)
+        assert spiral.unwound(1.0).initial == pytest.approx(problem.initial, abs=1e-12)
+
+
+def test_a_cheaper_competitor_becomes_the_answer(tmp_path: Path) -> None:
+    """A solver that starts at the wrong corner at first, and then from whatever it is given."""
+    numbers = 0.4, -8.0, (-1.6, 0.4), 2.0
+    case = rewarded(tmp_path, *numbers)
+
+    def solver(one: Instance, progress: Progress | None) -> Solution:
+        start = one.guess or Guess(control={"u1": (0.4,)})
+        return replace(two_point_method.solve(replace(one, guess=start), progress), instance=one)
+
+    costs = dearest(*numbers)
+    first = solver(case, None)
+    assert first.objective == pytest.approx(costs[0.4], rel=1e-9)
+    found = improved(solver, case, None)
+    assert found.objective == pytest.approx(costs[-1.6], rel=1e-9)
+    assert certificate(found).verdict == "certified"
+    assert found.instance is case
+    assert f"{costs[0.4]:.6g}" in found.message
 
 
 @pytest.mark.parametrize("name", ["return-to-orbit", "lapan-minimum-energy"])

@@ -112,7 +112,8 @@ def test_a_certificate_that_takes_too_much_work_fails_and_says_so(
     verdict = certificate.certify(found)
     assert verdict is not None
     assert verdict.verdict == "failed"
-    assert [c.name for c in verdict.checks] == ["flow from the initial costates is integrated within 50 evaluations"]
+    failed = [c.name for c in verdict.checks if not c.passed]
+    assert failed == ["flow from the initial costates is integrated within 50 evaluations"]
 
 
 def test_time_that_ends_while_checks_are_made_neither_certifies_nor_fails() -> None:

@@ -58,15 +58,16 @@ def unreachable(instance: Instance, limits: Limits) -> str | None:
     """Why no control brings a linear motion to its end, in the given time if it is given; ``None`` where one may.
 
     Evidence is a plane with the end on one side and everything that is reached on the other, of a free time one that
-    does so for as long as anyone will wait.
+    does so for very long.
     """
     motion, rows = linear_motion(instance), given_rows(instance)
     if motion is None or not len(rows):
         return None
     if instance.tf is None:
         first = next(arrivals(instance, motion, limits), None)
-        never = first is not None and math.isinf(first.duration)
-        return "no control within its bounds reaches the given end in any time" if never else None
+        if first is None or math.isfinite(first.duration):
+            return None
+        return f"no control within its bounds reaches the given end in any time up to {first.waited:.3g}"
     reach = Reach(instance, motion, instance.tf - instance.t0)
     limits.spend(reach.count)
     distance, costate = reach.separation()

@@ -55,10 +55,13 @@ class Arrival:
         From the start; nothing arrives in less than the first of them.
     costates
         Of all states at the end, shape (n,), without a scale, one for each way to look for them.
+    waited
+        Where nothing arrives at all: for how long that was looked at.
     """
 
     duration: float
     costates: tuple[Array, ...]
+    waited: float = 0.0
 
 
 def arrivals(instance: Instance, motion: LinearMotion, limits: Limits) -> Iterator[Arrival]:
@@ -72,15 +75,16 @@ def arrivals(instance: Instance, motion: LinearMotion, limits: Limits) -> Iterat
     size = np.maximum(np.abs(np.array(instance.initial)[rows]), np.abs(goal(instance, rows, instance.t0)))
     costate: Array = np.zeros(n)
     costate[rows] = apart / np.where(size > 0.0, size, 1.0) ** 2
-    duration = _beyond(instance, motion, costate, 0.0, _scale(instance, motion))
+    scale = _scale(instance, motion)
+    duration = _beyond(instance, motion, costate, 0.0, scale)
     further, tired = BEYOND, 0
     for _ in range(PLANES):
         if duration is None or limits.expired or tired > TIRED:
             return
         if math.isinf(duration):
-            yield Arrival(duration, ())
+            yield Arrival(duration, (), HORIZON * scale / steps(motion, scale))
             return
-        reach = Reach(instance, motion, duration)
+        scale, reach = duration, Reach(instance, motion, duration)
         limits.spend(reach.count)
         distance, costate = reach.separation()
         later = _beyond(instance, motion, costate, duration, duration) if distance > THERE else duration
@@ -103,7 +107,7 @@ def _scale(instance: Instance, motion: LinearMotion) -> float:
 
 
 def _beyond(instance: Instance, motion: LinearMotion, costate: Array, after: float, scale: float) -> float | None:
-    """The first duration after one at which a plane no longer tells the end from what is reached; infinite if none is."""
+    """The first duration after one at which a plane no longer tells the end from what is reached, or infinity."""
     length = scale / steps(motion, scale)
     rows = given_rows(instance)
     low, high = np.array(instance.lower), np.array(instance.upper)
