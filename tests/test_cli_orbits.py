@@ -12,14 +12,13 @@ import pytest
 from satsym import instance
 from satsym.analysis.orbits.survey import survey
 from satsym.cli import main
-
-HEAD = "satsym schema command model instance status units".split()
 from satsym.report.linear import ANALYSIS
 from satsym.report.orbit_text import orbit_text
 from satsym.report.plots import conics, plane, style, unit_circle
 from tests.cases import two_body_case
 from tests.test_floors import run_satsym
 
+HEAD = "satsym schema command model instance status units".split()
 ORBIT = "conic eccentricity semi_major_axis period energy angular_momentum".split()
 POINT = "eigenvalues rule_verdict note".split()
 FLOQUET = "multipliers determinant verdict note".split()
