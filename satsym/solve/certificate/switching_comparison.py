@@ -87,7 +87,7 @@ def _smoothed(solution: Solution, limits: Limits) -> Competitors | None:
 
     instance = solution.instance
     moderate = replace(limits, work=limits.meter.spent + WORK)
-    found = others(instance, moderate)
+    found = others(instance, float(solution.times[-1]) - instance.t0, moderate)
     if not found:
         return None
     costs = [float(exact.trajectory.cost(instance)) for exact, _ in found]

@@ -6,7 +6,7 @@ the bang-bang control; within the bounds, from a long duration towards the least
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -88,6 +88,14 @@ def quick(instance: Instance, limits: Limits) -> Iterator[Smoothed]:
         other = _least_effort(instance, factor * found.problem.duration, limits)
         if other is not None:
             yield other
+
+
+def beside(instance: Instance, duration: float, shares: Sequence[float], limits: Limits) -> Iterator[Smoothed]:
+    """Motions of least effort in shares of a duration: reachable durations need not be an interval."""
+    for share in shares:
+        found = _least_effort(instance, share * duration, limits)
+        if found is not None:
+            yield found
 
 
 def of_size(instance: Instance, wanted: tuple[float, float], limits: Limits) -> Smoothed | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import chain
@@ -37,6 +38,9 @@ BETWEEN = 4
 
 COMPARED = 100_000
 """Columns for which at most an extremal that may have more arcs is looked for, where free ends have one already."""
+
+BESIDE, COMPARED_BESIDE = (0.02, 0.05, 0.12, 0.3, 0.7), (0.035, 0.08, 0.2, 0.45, 0.85, 1.3)
+"""Shares of a duration that was found, at which others are looked for by the solver and by certificates."""
 
 ADOPTED = 3
 """Times that something cheaper is looked for, as long as there is."""
@@ -115,21 +119,18 @@ def _out_of_reach(stopped: homotopy.Stopped, limits: Limits) -> homotopy.Stopped
     return replace(stopped, status=Status.INFEASIBLE, message=f"{near.message}; {stopped.message}")
 
 
-def others(instance: Instance, limits: Limits) -> list[tuple[Exact, str]]:
+def others(instance: Instance, duration: float, limits: Limits) -> list[tuple[Exact, str]]:
     """Extremals from several starts and how each was found, many of them one and the same.
 
     For free ends those of controls held at a bound, and what is found by smoothing with moderate effort: it may have
-    arcs that no such control leads to. For terminal constraints and a free time those of the quick starts.
+    arcs that no such control leads to. For terminal constraints and a free time those of least effort in shares of the
+    duration that was found.
     """
     if held.applies(instance):
         return _compared(instance, _at_corners(instance, limits), limits)
     if instance.tf is not None or not instance.model.spec.multipliers:
         return []
-    found = (
-        (_first_of(instance, start, limits, thorough=False), "the signs of least effort")
-        for start in unbroken(_signs(instance, near) for near in least_effort.quick(instance, limits))
-    )
-    return [(exact, way) for exact, way in found if exact]
+    return [(exact, "the signs of least effort") for exact in _beside(instance, duration, COMPARED_BESIDE, limits)]
 
 
 def _at_corners(instance: Instance, limits: Limits) -> list[tuple[Exact, str]]:
@@ -183,8 +184,17 @@ def _by_effort(instance: Instance, limits: Limits) -> tuple[Exact, str] | homoto
         for start in unbroken(_signs(instance, one) for one in near):
             exact = _first_of(instance, start, limits, thorough=True)
             if exact:
-                return exact, "the signs of least effort"
+                others = _beside(instance, exact.refined.at.end - instance.t0, BESIDE, limits)
+                best = min([exact, *others], key=lambda one: one.trajectory.cost(instance))
+                return best, "the signs of least effort"
     return _smoothed(instance, limits)
+
+
+def _beside(instance: Instance, duration: float, shares: Sequence[float], limits: Limits) -> list[Exact]:
+    """Extremals to which the signs of least effort lead in shares of a duration."""
+    starts = unbroken(_signs(instance, near) for near in least_effort.beside(instance, duration, shares, limits))
+    found = (_first_of(instance, start, limits, thorough=False) for start in starts)
+    return [exact for exact in found if exact]
 
 
 def _smoothed(instance: Instance, limits: Limits, thorough: bool = True) -> tuple[Exact, str] | homotopy.Stopped:
