@@ -43,7 +43,7 @@ TURNS = 3
 EARLIER = (0.6, 0.8, 0.95)
 """Shares of the duration after which a competitor has arrived, and coasts."""
 
-SHORTER_AND_LONGER = (0.5, 0.8, 0.95, 1.05, 1.25, 2.0)
+SHORTER_AND_LONGER = (0.4, 0.5, 0.6, 0.7, 0.8, 1.25, 1.5, 2.0)
 """Durations beside one that was chosen, as shares of it."""
 
 HIDDEN = 1e-14
@@ -222,9 +222,7 @@ def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Attemp
     if around:
         yield Kind.REVOLUTIONS, around
     if instance.tf is None:
-        durations = [share * lasting for share in SHORTER_AND_LONGER]
-        at: list[TwoPoint] = [two_point(replace(fixed, tf=instance.t0 + t), t) for t in durations]
-        yield Kind.DURATIONS, [_cold(one, cost) for one in at]
+        yield Kind.DURATIONS, [_lasting(instance, share * lasting, cost) for share in SHORTER_AND_LONGER]
     if instance.tf is not None and _on_reference(solution):
         final: dict[str, float | Literal["reference"]] = dict.fromkeys(instance.model.spec.state_names, "reference")
         sooner = [share * lasting for share in EARLIER]
@@ -262,6 +260,27 @@ def _from_corners(problem: TwoPoint, cost: float) -> list[Attempt]:
         return min(filter(None, found), key=lambda one: one.cost, default=None)
 
     return [attempt]
+
+
+def _lasting(instance: Instance, duration: float, cost: float) -> Attempt:
+    """The minimum over the duration next to a given one; that of the given one where bounds are in its way."""
+    from satsym.solve.collocation.continuation import kept
+    from satsym.solve.collocation.duration_trials import Trials
+
+    free = replace(instance, guess=Guess(), tf_guess=None)
+
+    def attempt(limits: Limits) -> Rival | None:
+        trials = Trials(free, limits, duration)
+        rough = trials.cold(duration, quick=True)
+        if rough is None:
+            return None
+        least = trials.freed(rough)
+        if least is not None and kept(least.problem.widened(0.0), least.start.found.curve):
+            return _accurate(least.problem.widened(0.0), least.start.found.curve, cost)
+        given = replace(rough.problem, widening=0.0)
+        return _bounded(given, rough.start.found, cost, limits)
+
+    return attempt
 
 
 def _cold(problem: TwoPoint, cost: float) -> Attempt:
