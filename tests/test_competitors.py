@@ -163,6 +163,23 @@ def test_a_hill_exactly_in_the_way_is_passed_on_one_side(tmp_path: Path) -> None
     assert certificate(beside).verdict == "certified"
 
 
+def test_a_saddle_is_left_for_what_lies_below_it(tmp_path: Path) -> None:
+    """From next to the long axis the far end of an ellipse is an extremal, too; the near one is the nearest point."""
+    ends = Problem(
+        name="ellipse",
+        title="To an ellipse",
+        model=plane,
+        running_cost=(u1**2 + u2**2) / 2,
+        terminal_constraints=(x1**2 / 4 + x2**2 - 1,),
+    )
+    start, tf = (0.3, 0.0), 1.5
+    found = solve(build(tmp_path, ends, f"[initial]\nx1 = {start[0]}\nx2 = {start[1]}\n[time]\ntf = {tf}\n"))
+    angles = np.linspace(0.0, 2.0 * np.pi, 200_001)
+    nearest = np.hypot(2.0 * np.cos(angles) - start[0], np.sin(angles) - start[1]).min()
+    assert found.objective == pytest.approx(nearest**2 / (2.0 * tf), rel=1e-8)
+    assert certificate(found).verdict == "certified"
+
+
 @pytest.mark.parametrize(("tf", "bounded"), [(3.0, True), (4.0, False), (7.0, False)])
 @pytest.mark.parametrize("method", ["auto", "linear", "shooting"])
 def test_two_equal_axes_beyond_their_conjugate_time_have_no_minimiser(

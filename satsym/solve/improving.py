@@ -12,7 +12,7 @@ import numpy as np
 from satsym.instance import Instance
 from satsym.solution import Progress, Solution
 from satsym.solve.certificate.competitors import Rival, guess
-from satsym.solve.certificate.unbounded import fall
+from satsym.solve.certificate.saddle import departures, fall
 from satsym.solve.certificate.verdict import examined
 from satsym.status import Status, Verdict
 
@@ -53,6 +53,9 @@ def improved(solver: Solver, instance: Instance, progress: Progress | None) -> S
         endless = bottomless(solution)
         if endless is not None:
             return endless
+        lower = None if instance.guess else _departed(solver, solution, progress, deadline)
+        if lower is not None:
+            solution, certificate = lower, examined(lower, deadline, ROUNDS + 1)[0]
     return replace(solution, certificate=certificate, wall_s=time.perf_counter() - began)
 
 
@@ -75,15 +78,33 @@ def bottomless(solution: Solution) -> Solution | None:
     )
 
 
+def _departed(solver: Solver, solution: Solution, progress: Progress | None, deadline: float) -> Solution | None:
+    """What a saddle's descents lead to; ``None`` where that is not cheaper."""
+    if solution.instance.model.spec.switching:
+        return None
+    for start in departures(solution):
+        found = _again(replace(solution.instance, guess=start), solver, solution, progress, deadline)
+        if found is not None:
+            return found
+    return None
+
+
 def _from(
     better: Rival, solver: Solver, solution: Solution, progress: Progress | None, deadline: float
 ) -> Solution | None:
     """The solution to which a competitor leads; ``None`` where that is not cheaper, or time is up."""
+    return _again(guess(better, solution), solver, solution, progress, deadline)
+
+
+def _again(
+    start: Instance, solver: Solver, solution: Solution, progress: Progress | None, deadline: float
+) -> Solution | None:
+    """The solution to which an instance with a guess leads; ``None`` where it is not cheaper, or time is up."""
     instance, left = solution.instance, deadline - time.perf_counter()
     if left <= 0.0:
         return None
     options = msgspec.structs.replace(instance.solver, max_seconds=left)
-    found = solver(replace(guess(better, solution), solver=options), progress)
+    found = solver(replace(start, solver=options), progress)
     if not found.status.answered or not found.objective < solution.objective:
         return None
     message = f"{found.message}; the first extremal found costs {solution.objective:.6g}"

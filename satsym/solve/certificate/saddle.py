@@ -1,9 +1,8 @@
-"""Whether the cost of a problem falls without end: shown by controls that are larger and larger.
+"""What lies below an extremal that is no minimum: motions to descend from, or a cost that falls without end.
 
-From an extremal that is no minimum the control is changed along the direction in which the second variation is least,
-by twice as much again and again. Where the end stays as it is asked for and the cost falls at least in proportion,
-time after time, no control is the best one. Of linear problems with quadratic costs this decides; of others it is
-evidence.
+The control is changed along the direction in which the second variation is least, to both sides. Where twice as large a
+change, again and again, leaves the end as it is asked for and the cost falls at least in proportion, no control is the
+best one: of linear problems with quadratic costs this decides, of others it is evidence.
 """
 
 from __future__ import annotations
@@ -15,7 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.grid import Grid
+from satsym.instance import Guess
 from satsym.solution import Solution
+from satsym.solve import control_set
 from satsym.solve.certificate.accessory import accessory
 from satsym.solve.certificate.flow import unit_sizes
 from satsym.solve.certificate.neighbours import Simulations, simulations_of, stated_control
@@ -33,6 +34,10 @@ PROPORTIONAL = 1.9
 
 KEPT = 1e-6
 """Relative miss of the end beside what the change would have moved it."""
+
+
+DEPARTED = (0.5, -0.5, 0.1, -0.1)
+"""Shares of that size by which a motion departs from a saddle."""
 
 
 @dataclass(frozen=True)
@@ -65,22 +70,44 @@ def fall(solution: Solution) -> Fall | None:
     solution
         With a given final time; controls that have bounds are not asked.
     """
+    found = None if np.isfinite(solution.instance.bounds).any() else _downhill(solution)
+    if found is None:
+        return None
+    simulations, grid, u, change = found
+    falls = (_doubled(simulations, grid, u, sign * change) for sign in (1.0, -1.0))
+    return next(filter(None, falls), None)
+
+
+def departures(solution: Solution) -> list[Guess]:
+    """Motions to both sides of an extremal that is no minimum, along which the cost falls at first; none elsewhere."""
+    found = _downhill(solution)
+    if found is None:
+        return []
+    simulations, grid, u, change = found
+    names, guesses = solution.instance.model.spec.state_names, []
+    for share in DEPARTED:
+        x, _ = simulations.motion(control_set.project(solution.instance, u + share * change), grid)
+        if np.isfinite(x).all() and solution.instance.model.in_domain(x):
+            guesses.append(Guess(state=dict(zip(names, map(tuple, x.tolist()), strict=True))))
+    return guesses
+
+
+def _downhill(solution: Solution) -> tuple[Simulations, Grid, Array, Array] | None:
+    """The control of an extremal on a grid, and the change along which the second variation is most negative."""
     simulations = simulations_of(solution)
-    bounded = bool(np.isfinite(solution.instance.bounds).any())
-    if solution.instance.tf is None or bounded or simulations is None:
+    if solution.instance.tf is None or simulations is None:
         return None
     grid = simulations.grid()
     second = accessory(solution, grid)
     if second is None:
         return None
     curvature, direction = second.least
-    if not curvature < 0.0:
-        return None
     shape = second.controls @ direction
-    unit = max(float(np.abs(solution.u).max()), _natural(solution, shape)) / float(np.abs(shape).max())
-    u = stated_control(solution, grid)
-    found = [_doubled(simulations, grid, u, sign * unit * shape) for sign in (1.0, -1.0)]
-    return next(filter(None, found), None)
+    largest = float(np.abs(shape).max(initial=0.0))
+    if not (curvature < 0.0 and largest > 0.0):
+        return None
+    unit = max(float(np.abs(solution.u).max()), _natural(solution, shape)) / largest
+    return simulations, grid, stated_control(solution, grid), unit * shape
 
 
 def _natural(solution: Solution, shape: Array) -> float:
