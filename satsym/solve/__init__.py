@@ -71,8 +71,22 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     solution = improved(_in_time(_solver(method), method), instance, progress)
     swept = not instance.final and instance.tf is not None and not spec.multipliers
     if method == "auto" and solution.status is Status.NOT_CONVERGED and swept:
-        return _swept(instance, progress)
+        return _confirmed(_swept(instance, progress), progress)
     return solution
+
+
+def _confirmed(swept: Solution, progress: Progress | None) -> Solution:
+    """What collocation, which has a certificate, makes of what the sweep found; no answer where it finds none there."""
+    from satsym.solve import two_point
+    from satsym.solve.improving import improved, starting_from
+
+    if not swept.status.answered or not swept.lam.any():
+        return swept
+    again = improved(_in_time(two_point.solve, "collocation"), starting_from(swept), progress)
+    if again.status.answered or again.status is Status.NO_MINIMISER:
+        return replace(again, instance=swept.instance)
+    message = f"{swept.message}, at the cost {swept.objective:.6g}, but collocation confirms no extremal there"
+    return replace(swept, status=Status.NOT_CONVERGED, message=message)
 
 
 def _unfit(switching: bool, method: str) -> str:

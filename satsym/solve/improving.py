@@ -9,9 +9,9 @@ from dataclasses import replace
 import msgspec
 import numpy as np
 
-from satsym.instance import Instance
+from satsym.instance import Guess, Instance
 from satsym.solution import Progress, Solution
-from satsym.solve.certificate.competitors import Rival, guess
+from satsym.solve.certificate.competitors import SAMPLES, Rival, guess
 from satsym.solve.certificate.saddle import departures, fall
 from satsym.solve.certificate.verdict import examined
 from satsym.status import Status, Verdict
@@ -76,6 +76,16 @@ def bottomless(solution: Solution) -> Solution | None:
         switching_times=tuple(() for _ in solution.switching_times),
         certificate=None,
     )
+
+
+def starting_from(solution: Solution) -> Instance:
+    """The instance of a solution with its states and costates as the guess, resampled evenly."""
+    instance, names = solution.instance, solution.instance.model.spec.state_names
+    times = np.linspace(float(solution.times[0]), float(solution.times[-1]), SAMPLES)
+    rows = [tuple(np.interp(times, solution.times, row).tolist()) for row in (*solution.x, *solution.lam)]
+    n = len(names)
+    start = Guess(dict(zip(names, rows[:n], strict=True)), dict(zip(names, rows[n:], strict=True)))
+    return replace(instance, guess=start)
 
 
 def _departed(solver: Solver, solution: Solution, progress: Progress | None, deadline: float) -> Solution | None:

@@ -74,9 +74,7 @@ def unreachable(instance: Instance, limits: Limits) -> str | None:
     if distance <= THERE or not separates(instance, costate):
         return None
     names = instance.model.spec.state_names
-    missed = reach.nearest_miss(
-        np.maximum(np.maximum(np.abs(np.array(instance.initial)[rows]), np.abs(reach.goal)), 1e-300)
-    )
+    missed = reach.nearest_miss()
     told = ", ".join(f"{names[i]} by {abs(value):.3g}" for i, value in zip(rows, missed, strict=True))
     plane = ", ".join(f"{names[i]}: {costate[i] / np.abs(costate).max():.3g}" for i in rows)
     return (

@@ -167,10 +167,16 @@ class Reach:
         found = cheapest(effects, base, self.levels, slope * self.levels + weight * np.abs(self.levels))
         return None if found is None else Priced(found[0], self.in_full(towards.T @ found[1]))
 
-    def nearest_miss(self, sizes: Array) -> Array:
-        """By how much the nearest of the ends misses the given one, each state relative to a size; shape (F,)."""
+    def nearest_miss(self) -> Array:
+        """By how much the nearest of the ends misses the given one, each state in units of what controls move it by.
+
+        Shape (F,), in the model's units.
+        """
         effects, base = self.steps
-        flat, low, high = effects.reshape(len(base), -1) / sizes[:, None], self.levels[0], self.levels[2]
+        low, high = self.levels[0], self.levels[2]
+        moved = np.abs(effects.reshape(len(base), -1)) @ np.maximum(np.abs(low), np.abs(high))
+        sizes = np.maximum(moved, 1e-12 * max(float(np.abs(self.goal).max(initial=0.0)), 1e-300))
+        flat = effects.reshape(len(base), -1) / sizes[:, None]
         from_goal = (base - self.goal) / sizes
 
         def support(direction: Array) -> Array:
