@@ -86,7 +86,7 @@ def from_cold_start(instance: Instance, limits: Limits, effort: bool, accurate: 
         if start.way == "none" and np.isfinite(problem.bounds).any():
             start = drawn_within(problem, limits) or start
         if start.saddle is not None:
-            start = replace(start, found=start.saddle, way="straight line, which leads to an extremal but to no minimum")
+            start = replace(start, found=start.saddle, way="straight line, but no minimum was found")
         elif start.way == "none":
             message = f"no extremal found: {start.found.reason}"
             return unfinished(problem, start.found.curve, message, start.steps, limits)
