@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
@@ -55,19 +54,13 @@ def optimum(instance: Instance, limits: Limits) -> Exact | None:
 
 
 def unreachable(instance: Instance, limits: Limits) -> str | None:
-    """Why no control brings a linear motion to its end, in the given time if it is given; ``None`` where one may.
+    """Why no control brings a linear motion to its end in the given time; ``None`` where one may.
 
-    Evidence is a plane with the end on one side and everything that is reached on the other, of a free time one that
-    does so for very long.
+    Evidence is a plane with the end on one side and everything that is reached on the other.
     """
     motion, rows = linear_motion(instance), given_rows(instance)
-    if motion is None or not len(rows):
+    if motion is None or instance.tf is None or not len(rows):
         return None
-    if instance.tf is None:
-        first = next(arrivals(instance, motion, limits), None)
-        if first is None or math.isfinite(first.duration):
-            return None
-        return f"no control within its bounds reaches the given end in any time up to {first.waited:.3g}"
     reach = Reach(instance, motion, instance.tf - instance.t0)
     limits.spend(reach.count)
     distance, costate = reach.separation()
@@ -87,7 +80,7 @@ def _soonest(instance: Instance, motion: LinearMotion, limits: Limits) -> Exact 
     """The first arrival; a later one where nothing exact comes of that."""
     best: Exact | None = None
     for arrival in arrivals(instance, motion, limits):
-        if math.isinf(arrival.duration) or (best is not None and arrival.duration >= _duration(instance, best)):
+        if best is not None and arrival.duration >= _duration(instance, best):
             break
         for costate in arrival.costates:
             reach = Reach(instance, motion, arrival.duration)
@@ -115,7 +108,7 @@ def _factor(motion: LinearMotion, reach: Reach, costate: Array) -> float:
 def _durations(instance: Instance, motion: LinearMotion, limits: Limits) -> list[tuple[Reach, Priced | None]]:
     """Durations of about the least cost, the cheapest first: local minima of what ends in them cost at least."""
     first = next(arrivals(instance, motion, limits), None)
-    if first is None or math.isinf(first.duration):
+    if first is None:
         return []
     found: list[tuple[float, Reach, Priced | None]] = []
     duration, cheapest = first.duration * (1.0 + LATER), float("inf")

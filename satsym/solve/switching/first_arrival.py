@@ -8,7 +8,6 @@ Mathematical Analysis and Applications 1, 1960; Eaton, An iterative solution to 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -55,36 +54,28 @@ class Arrival:
         From the start; nothing arrives in less than the first of them.
     costates
         Of all states at the end, shape (n,), without a scale, one for each way to look for them.
-    waited
-        Where nothing arrives at all: for how long that was looked at.
     """
 
     duration: float
     costates: tuple[Array, ...]
-    waited: float = 0.0
 
 
 def arrivals(instance: Instance, motion: LinearMotion, limits: Limits) -> Iterator[Arrival]:
     """Times that are not too short, the shortest first: the first is the least, as far as steps can tell.
 
-    Nothing is given where no time is found, and an infinite one where a plane tells the end from what is reached for as
-    long as anyone will wait.
+    Nothing is given where no time is found.
     """
     rows, n = given_rows(instance), len(instance.initial)
     apart = np.array(instance.initial)[rows] - goal(instance, rows, instance.t0)
     size = np.maximum(np.abs(np.array(instance.initial)[rows]), np.abs(goal(instance, rows, instance.t0)))
     costate: Array = np.zeros(n)
     costate[rows] = apart / np.where(size > 0.0, size, 1.0) ** 2
-    scale = _scale(instance, motion)
-    duration = _beyond(instance, motion, costate, 0.0, scale)
+    duration = _beyond(instance, motion, costate, 0.0, _scale(instance, motion))
     further, tired = BEYOND, 0
     for _ in range(PLANES):
         if duration is None or limits.expired or tired > TIRED:
             return
-        if math.isinf(duration):
-            yield Arrival(duration, (), HORIZON * scale / steps(motion, scale))
-            return
-        scale, reach = duration, Reach(instance, motion, duration)
+        reach = Reach(instance, motion, duration)
         limits.spend(reach.count)
         distance, costate = reach.separation()
         later = _beyond(instance, motion, costate, duration, duration) if distance > THERE else duration
@@ -107,7 +98,7 @@ def _scale(instance: Instance, motion: LinearMotion) -> float:
 
 
 def _beyond(instance: Instance, motion: LinearMotion, costate: Array, after: float, scale: float) -> float | None:
-    """The first duration after one at which a plane no longer tells the end from what is reached, or infinity."""
+    """The first duration after one at which a plane no longer tells the end from what is reached."""
     length = scale / steps(motion, scale)
     rows = given_rows(instance)
     low, high = np.array(instance.lower), np.array(instance.upper)
@@ -137,4 +128,4 @@ def _beyond(instance: Instance, motion: LinearMotion, costate: Array, after: flo
                 return _beyond(instance, motion, costate, 0.0, found)
             return found
         first, count = count, 2 * count
-    return math.inf
+    return None
