@@ -11,7 +11,7 @@ import numpy as np
 
 from satsym.instance import Guess, Instance
 from satsym.solution import Progress, Solution
-from satsym.solve.certificate.competitors import SAMPLES, Rival, guess
+from satsym.solve.certificate.competitors import SAMPLES, Competitor, guess
 from satsym.solve.certificate.saddle import departures, fall
 from satsym.solve.certificate.verdict import examined
 from satsym.status import Status, Verdict
@@ -100,7 +100,7 @@ def _departed(solver: Solver, solution: Solution, progress: Progress | None, dea
 
 
 def _from(
-    better: Rival, solver: Solver, solution: Solution, progress: Progress | None, deadline: float
+    better: Competitor, solver: Solver, solution: Solution, progress: Progress | None, deadline: float
 ) -> Solution | None:
     """The solution to which a competitor leads; ``None`` where that is not cheaper, or time is up."""
     return _again(guess(better, solution), solver, solution, progress, deadline)

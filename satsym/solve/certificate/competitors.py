@@ -57,7 +57,7 @@ SAMPLES = 401
 
 
 @dataclass(frozen=True, eq=False)
-class Rival:
+class Competitor:
     """A competitor that was found.
 
     Attributes
@@ -75,7 +75,7 @@ class Rival:
     cost: float
 
 
-Attempt = Callable[[Limits], Rival | None]
+Attempt = Callable[[Limits], Competitor | None]
 """Looks for a competitor that is cheaper than a cost, or says what it costs roughly."""
 
 
@@ -97,7 +97,7 @@ class Compared:
 
     summary: Competitors
     margin: float
-    cheapest: Rival | None
+    cheapest: Competitor | None
     interrupted: bool
 
 
@@ -122,7 +122,7 @@ class Comparison:
         return [c.summary.kind for c in self.kinds if c.interrupted]
 
     @property
-    def better(self) -> Rival | None:
+    def better(self) -> Competitor | None:
         """The cheapest of all that are cheaper than the solution."""
         cheaper = [c for c in self.kinds if c.margin < -SAME and c.cheapest is not None]
         return min(cheaper, key=lambda c: c.margin).cheapest if cheaper else None
@@ -152,15 +152,15 @@ def compared(solution: Solution, deadline: float, seed: int = 0) -> Comparison:
     return Comparison(tuple(kinds), tuple(missing))
 
 
-def guess(rival: Rival, solution: Solution) -> Instance:
+def guess(competitor: Competitor, solution: Solution) -> Instance:
     """The instance of a solution that starts from a competitor."""
-    problem, instance = rival.problem, solution.instance
+    problem, instance = competitor.problem, solution.instance
     names = instance.model.spec.state_names
-    end = rival.problem.instance.t0 + problem.elapsed(rival.curve.theta)
+    end = competitor.problem.instance.t0 + problem.elapsed(competitor.curve.theta)
     last = end if instance.tf is None else max(instance.tf, end)
     n, times = len(names), np.linspace(instance.t0, last, SAMPLES)
     tau = np.minimum((times - instance.t0) / (end - instance.t0), 1.0)
-    z = rival.curve(tau) * problem.scale.both
+    z = competitor.curve(tau) * problem.scale.both
     z[:n] += (np.array(instance.initial) - np.array(problem.instance.initial))[:, None]
     coasting = times > end
     if coasting.any():  # arrived on the reference before the end
@@ -175,18 +175,18 @@ def _tried(solution: Solution, kind: Kind, attempts: list[Attempt], deadline: fl
     """Every attempt at a kind; ``None`` where there is none."""
     if not attempts:
         return None
-    found: list[Rival] = []
+    found: list[Competitor] = []
     tried, interrupted = 0, False
     for attempt in attempts:
         limits = Limits(200, deadline, work=WORK)
         with np.errstate(all="ignore"):
-            rival = attempt(limits)
+            competitor = attempt(limits)
         interrupted = limits.late
         if interrupted:
             break
         tried += 1
-        if rival is not None:
-            found.append(rival)
+        if competitor is not None:
+            found.append(competitor)
     cheapest = min(found, key=lambda one: one.cost, default=None)
     cost = cheapest.cost if cheapest else float("nan")
     dearer = margin(cost, solution.objective, coarse=SAME, hidden=hidden(solution))
@@ -234,7 +234,7 @@ def _from_path(problem: TwoPoint, path: Callable[[Any], Any], softness: float, c
     """The minimum within the bounds to which a path of states leads."""
     from satsym.solve.collocation.softening import within_bounds
 
-    def attempt(limits: Limits) -> Rival | None:
+    def attempt(limits: Limits) -> Competitor | None:
         found = within_bounds(problem, path, limits, softness)
         return None if found.curve is None else _accurate(problem, found.curve, cost)
 
@@ -255,7 +255,7 @@ def _from_corners(problem: TwoPoint, cost: float) -> list[Attempt]:
     if problem.fixed.any():
         return []
 
-    def attempt(limits: Limits) -> Rival | None:
+    def attempt(limits: Limits) -> Competitor | None:
         found = (_accurate(problem, curve, cost) for curve in swept(problem, limits) if curve is not None)
         return min(filter(None, found), key=lambda one: one.cost, default=None)
 
@@ -269,7 +269,7 @@ def _lasting(instance: Instance, duration: float, cost: float) -> Attempt:
 
     free = replace(instance, guess=Guess(), tf_guess=None)
 
-    def attempt(limits: Limits) -> Rival | None:
+    def attempt(limits: Limits) -> Competitor | None:
         trials = Trials(free, limits, duration)
         rough = trials.cold(duration, quick=True)
         if rough is None:
@@ -287,27 +287,27 @@ def _cold(problem: TwoPoint, cost: float) -> Attempt:
     """The minimum within the bounds to which the first ways of the cold start lead."""
     from satsym.solve.collocation.cold_start import cold_start
 
-    def attempt(limits: Limits) -> Rival | None:
+    def attempt(limits: Limits) -> Competitor | None:
         start = cold_start(problem, limits, quick=True)
         return None if start.way == "none" else _bounded(problem, start.found, cost, limits)
 
     return attempt
 
 
-def _bounded(problem: TwoPoint, found: Found, cost: float, limits: Limits) -> Rival | None:
+def _bounded(problem: TwoPoint, found: Found, cost: float, limits: Limits) -> Competitor | None:
     """The minimum within the bounds to which one without them leads."""
     from satsym.solve.collocation.softening import within_found
 
     if not found.minimum or not found.curve.in_domain(problem.positive):
         return None
-    rough = Rival(problem, found.curve, found.cost * problem.scale.cost)
+    rough = Competitor(problem, found.curve, found.cost * problem.scale.cost)
     if rough.cost > cost + ROUGH * abs(cost):  # what is dearer without the bounds is so within them
         return rough
     inside = within_found(problem, found, limits)
     return None if inside.curve is None else _accurate(problem, inside.curve, cost)
 
 
-def _accurate(problem: TwoPoint, curve: Curve, cost: float) -> Rival | None:
+def _accurate(problem: TwoPoint, curve: Curve, cost: float) -> Competitor | None:
     """A minimum with its cost, as rough as its mesh where it is clearly dearer than another cost."""
     from satsym.solve.collocation.continuation import kept
     from satsym.solve.collocation.refinement import refine
@@ -315,12 +315,12 @@ def _accurate(problem: TwoPoint, curve: Curve, cost: float) -> Rival | None:
 
     rough = System(problem, curve.mesh, curve.order).cost(curve) * problem.scale.cost
     if rough > cost + ROUGH * abs(cost):
-        return Rival(problem, curve, rough)
+        return Competitor(problem, curve, rough)
     refined = refine(problem, curve, SAME, keep_nodes=not kept(problem, curve))
     if not refined.converged or not refined.curve.in_domain(problem.positive):
         return None
     exact = System(problem, refined.curve.mesh, refined.curve.order).cost(refined.curve) * problem.scale.cost
-    return Rival(problem, refined.curve, exact)
+    return Competitor(problem, refined.curve, exact)
 
 
 def _bent(problem: TwoPoint, rng: np.random.Generator) -> Iterator[Callable[[Any], Any]]:

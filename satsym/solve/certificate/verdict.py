@@ -11,7 +11,7 @@ import numpy as np
 from satsym.solution import Certificate, Check, Solution
 from satsym.solve import revolutions
 from satsym.solve.certificate import competitors, conditions
-from satsym.solve.certificate.competitors import Compared, Comparison, Rival
+from satsym.solve.certificate.competitors import Compared, Comparison, Competitor
 from satsym.solve.certificate.conjugate import Conjugate, conjugate
 from satsym.solve.certificate.flow import TOLERANCE, Flow, flow
 from satsym.solve.certificate.junctions import correction, node_by_node
@@ -45,7 +45,7 @@ def certify(solution: Solution) -> Certificate | None:
     return examined(solution, time.perf_counter() + solution.instance.solver.max_seconds)[0]
 
 
-def examined(solution: Solution, deadline: float, seed: int = 0) -> tuple[Certificate | None, Rival | None]:
+def examined(solution: Solution, deadline: float, seed: int = 0) -> tuple[Certificate | None, Competitor | None]:
     """The certificate of a solution, and the cheapest competitor if one is cheaper than it.
 
     Parameters
@@ -59,11 +59,11 @@ def examined(solution: Solution, deadline: float, seed: int = 0) -> tuple[Certif
     """
     if not solution.status.answered:
         return None, None
-    certificate, rival = _judged(solution, deadline, seed)
-    return with_kernels_examined(certificate, solution), rival
+    certificate, competitor = _judged(solution, deadline, seed)
+    return with_kernels_examined(certificate, solution), competitor
 
 
-def _judged(solution: Solution, deadline: float, seed: int) -> tuple[Certificate, Rival | None]:
+def _judged(solution: Solution, deadline: float, seed: int) -> tuple[Certificate, Competitor | None]:
     """The certificate that the kernels give, whatever they are worth, and the cheapest competitor."""
     if solution.instance.model.spec.switching:
         from satsym.solve.certificate import switching
