@@ -1,4 +1,4 @@
-"""How heavy a formula is, told from its tree before anything is done with it.
+"""How heavy a formula is, known from its tree before anything is done with it.
 
 A tree may share its parts: twenty abbreviations that each square the one before make a million terms of forty nodes.
 So each part is weighed once, and the weight of a whole follows from those of its parts.

@@ -1,4 +1,4 @@
-"""How much memory an instance asks for by its number of steps, told before any of it is taken.
+"""How much memory an instance asks for by its number of steps, known before any of it is taken.
 
 The estimate depends on nothing but the instance, so that what one machine refuses no other accepts. It is what solving,
 certifying, simulating and writing were measured to take at most, by all methods, rounded up.

@@ -1,4 +1,4 @@
-"""The digest that a generated module carries, so that one that was edited by hand is told from one that was not.
+"""The digest that a generated module carries, so that one that was edited by hand is known from one that was not.
 
 It guards against accidents, not against malice: whoever recomputes it meets :mod:`satsym.kernels.consistency`.
 """
