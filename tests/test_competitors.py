@@ -17,8 +17,14 @@ from satsym.solve import solve
 from satsym.solve import two_point as two_point_method
 from satsym.solve.certificate import certify
 from satsym.solve.certificate.competitors import none_conceivable
+from satsym.solve.collocation import paths
+from satsym.solve.collocation.curve import Curve
+from satsym.solve.collocation.path_of_turns import along_turns, fading
+from satsym.solve.collocation.problem import TwoPoint
 from satsym.solve.collocation.scaling import two_point
+from satsym.solve.collocation.system import System
 from satsym.solve.improving import improved
+from satsym.solve.iteration import Limits
 from satsym.solve.symmetry import rotation, spirals
 from satsym.status import BadInput, Status
 from satsym.symbolic import FirstOrder, Newton, Problem, Variable, symbols_of
@@ -127,7 +133,27 @@ def test_spirals_lead_from_the_start_to_the_end_with_their_turns(tmp_path: Path)
         assert path[:, -1] == pytest.approx([0.0, 1.3, -0.8, 0.1], abs=1e-9)
         angle = np.unwrap(np.arctan2(path[1], path[0]))
         assert (angle[-1] - angle[0]) / (2.0 * np.pi) == pytest.approx(spiral.turns, abs=0.03)
-        assert spiral.unwound(1.0).initial == pytest.approx(problem.initial, abs=1e-12)
+
+
+def test_a_force_that_fades_leads_from_each_spiral_to_the_minimum_with_its_turns(tmp_path: Path) -> None:
+    """Polar coordinates have the same minima, by final angle; with all of the force the spiral is a motion."""
+    text = "[initial]\nx = 1.0\ny = 0.0\nv_x = 0.0\nv_y = 1.0\n[final]\nx = -1.2\ny = 0.0\nv_x = 0.0\nv_y = -0.9\n"
+    problem = two_point(build(tmp_path, cartesian, text + "[time]\nt0 = 2.0\ntf = 12.0\n"), 10.0).widened(np.inf)
+    for spiral in spirals(problem, 3):
+        curve = paths.curve(problem, spiral.path)
+        forced, free = (fading(problem, spiral)(share) for share in (0.0, 1.0))
+        assert 1e3 * defect(forced, curve) < defect(free, curve) == defect(problem, curve)
+        found = along_turns(problem, spiral, Limits(1, np.inf))
+        end = {"r": 1.2, "r_dot": 0.0, "theta": spiral.turns * 2.0 * np.pi, "theta_dot": 0.75}
+        polar = replace(instance.load("return-to-orbit"), initial=(1.0, 0.0, 0.0, 1.0), final=end, tf=10.0)
+        wide = replace(polar, lower=(-np.inf,) * 2, upper=(np.inf,) * 2)
+        assert found.cost * problem.scale.cost == pytest.approx(solve(wide).objective, rel=1e-5)
+
+
+def defect(problem: TwoPoint, curve: Curve) -> float:
+    """How far a curve is from a motion."""
+    system = System(problem, curve.mesh, curve.order)
+    return float(system.infeasibility(system.residual(curve)).sum())
 
 
 def test_a_cheaper_competitor_becomes_the_answer(tmp_path: Path) -> None:

@@ -8,8 +8,7 @@ at random show all of them, in whatever Cartesian coordinates the model is state
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -115,16 +114,10 @@ class Spiral:
         How often it goes round.
     path
         Of scaled states.
-    coasting
-        The path of as many turns as the free motion makes by itself, from the initial state turned so that it arrives.
-    unwound
-        From a share of the way to a problem: from the one whose start is turned so, to the one that is solved.
     """
 
     turns: float
     path: States
-    coasting: States
-    unwound: Callable[[float], TwoPoint]
 
 
 def spirals(problem: TwoPoint, most: int, around: Rotation | None = None) -> list[Spiral]:
@@ -160,14 +153,7 @@ def spirals(problem: TwoPoint, most: int, around: Rotation | None = None) -> lis
     likeliest = angles[np.argsort(np.abs(angles - natural), kind="stable")][:most].tolist()
     between = _Between(problem, around, start, end, (first, last))
 
-    def unwound(angle: float, share: float) -> TwoPoint:
-        return problem.starting_at((around.turned(start, (1.0 - share) * (angle - natural)) / unit)[:, 0])
-
-    def spiral(angle: float) -> Spiral:
-        turned = replace(between, start=around.turned(start, angle - natural))
-        return Spiral(angle / TURN, between.spiral(angle), turned.spiral(natural), partial(unwound, angle))
-
-    return [spiral(angle) for angle in likeliest]
+    return [Spiral(angle / TURN, between.spiral(angle)) for angle in likeliest]
 
 
 @dataclass(frozen=True, eq=False)

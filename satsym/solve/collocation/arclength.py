@@ -169,16 +169,15 @@ class Point:
             return False
 
     def response(self) -> Step:
-        """The change of the extremal by the share of the way: only what is given at the ends changes."""
-        there = self.at(self.share + AHEAD)
-        finish = there.boundary(self.curve.nodes[:, -1], self.curve.theta)
-        nothing = np.zeros_like(self.residual.ends)
+        """The change of the extremal by the share of the way."""
+        there = System(self.at(self.share + AHEAD), self.curve.mesh, STAGES).residual(self.curve)
+        here = self.residual
         slope = replace(
-            self.residual,
-            stages=np.zeros_like(self.residual.stages),
-            ends=nothing,
-            start=(self.problem.initial - there.initial) / AHEAD,
-            finish=(finish - self.residual.finish) / AHEAD,
+            here,
+            stages=(there.stages - here.stages) / AHEAD,
+            ends=np.zeros_like(here.ends),
+            start=(there.start - here.start) / AHEAD,
+            finish=(there.finish - here.finish) / AHEAD,
         )
         return self.linearised.step(slope)
 

@@ -1,23 +1,29 @@
-"""A given number of turns: along the spiral that makes them, or unwound from what the free motion makes by itself.
+"""A given number of turns: from the spiral that makes them, driven by a force that fades.
 
-Where the spiral leads to no minimum, the initial state is turned so far that the free motion arrives with as many turns
-as it makes in that time, and then moved home: each problem starts from the last.
+A spiral is no motion: it lacks some rates. With these added to the model it becomes one, and costs no control, so it
+is where a path of problems begins; the controls take over what the force leaves. Minimising from the spiral itself
+gets stuck where there are many turns, as a small defect early on asks for a large change of phase later.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from satsym.solve.collocation import paths
-from satsym.solve.collocation.from_path import from_path
 from satsym.solve.collocation.path_of_problems import followed
 from satsym.solve.collocation.problem import TwoPoint
 from satsym.solve.collocation.sqp import Found
 from satsym.solve.iteration import Limits
 from satsym.solve.symmetry import Spiral
 
-MOST = 30
-"""Steps along the spiral itself."""
+Array = NDArray[np.floating[Any]]
+
+STEP = 1e-5
+"""Share of the duration by which a path is differenced."""
 
 
 def along_turns(problem: TwoPoint, spiral: Spiral, limits: Limits) -> Found:
@@ -26,16 +32,21 @@ def along_turns(problem: TwoPoint, spiral: Spiral, limits: Limits) -> Found:
     Parameters
     ----------
     problem
-        Without bounds, or with soft ones.
+        Without bounds, or with soft ones; its duration is given.
     spiral
         That makes them.
     limits
         When to stop.
     """
-    found = from_path(problem, spiral.path, limits, MOST)
-    if found.minimum or limits.expired:
-        return found
-    first = from_path(spiral.unwound(0.0), spiral.coasting, limits, MOST)
-    begun = first.curve if first.minimum else paths.curve(problem, spiral.coasting)
-    unwound = followed(problem, spiral.unwound, begun, limits)
-    return replace(unwound, iterations=found.iterations + first.iterations + unwound.iterations)
+    return followed(problem, fading(problem, spiral), paths.curve(problem, spiral.path), limits)
+
+
+def fading(problem: TwoPoint, spiral: Spiral) -> Callable[[float], TwoPoint]:
+    """Problems by their share of the way: from the one that the spiral solves without costates, to the given one."""
+
+    def lacking(tau: Array) -> Array:
+        its = (spiral.path(tau + STEP) - spiral.path(tau - STEP)) / (2.0 * STEP * problem.duration)
+        z = np.concatenate([spiral.path(tau), np.zeros((problem.states, len(tau)))])
+        return its - problem.rates(tau, z, problem.theta)[: problem.states]
+
+    return lambda share: problem.forced(lacking, 1.0 - share)

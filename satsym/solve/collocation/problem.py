@@ -7,6 +7,7 @@ costates at most so over the horizon.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -72,6 +73,8 @@ class TwoPoint:
     softness
         Share of what the control law without bounds exceeds them by that is granted: zero where bounds are kept. That
         is the law where exceeding them costs as its square, so a soft problem is one of optimal control as well.
+    forcing
+        What is added to the rates of the states, scaled, shape (n, N) at times tau (N,); nothing by default.
     """
 
     instance: Instance
@@ -80,6 +83,7 @@ class TwoPoint:
     scale: Scale
     widening: float = 0.0
     softness: float = 0.0
+    forcing: Callable[[Array], Array] | None = None
 
     @property
     def states(self) -> int:
@@ -131,6 +135,10 @@ class TwoPoint:
         """The same problem with bounds of another softness."""
         return replace(self, softness=softness)
 
+    def forced(self, forcing: Callable[[Array], Array], share: float) -> TwoPoint:
+        """The same problem with a share of a forcing."""
+        return replace(self, forcing=(lambda tau: share * forcing(tau)) if share else None)
+
     def elapsed(self, theta: Array) -> float:
         """The duration."""
         return float(theta[-1]) if self.free_time else self.duration
@@ -142,7 +150,10 @@ class TwoPoint:
 
     def rates(self, tau: Array, z: Array, theta: Array) -> Array:
         """dz/dt, shape (2n, N), at ``tau`` (N,) and ``z`` (2n, N)."""
-        return self._blended(self.instance.model.canonical_batch, z.shape, tau, z, theta) / self.scale.both
+        found: Array = self._blended(self.instance.model.canonical_batch, z.shape, tau, z, theta) / self.scale.both
+        if self.forcing is not None:
+            found[: self.states] += self.forcing(tau)
+        return found
 
     def jacobian(self, tau: Array, z: Array, theta: Array) -> Array:
         """The rates by z, shape (2n, 2n, N)."""
