@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from satsym import instance
-from satsym.analysis.equilibrium import linearise
+from satsym.analysis.linear.equilibrium import linearise
 from satsym.cli import main
 from satsym.kernels import load
 

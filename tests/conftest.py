@@ -12,7 +12,7 @@ import pytest
 # Before NumPy is loaded: on small matrices threads gain nothing, and those of two workers take each other's time.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from tests.faults import found, ledger, noted, verdicts
+from tests.support.faults import found, ledger, noted, verdicts
 
 __all__ = ["found", "ledger", "noted", "verdicts"]
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from satsym.analysis import classical
-from satsym.analysis.signals import excesses, spans_of, totals
+from satsym.analysis.classical import law as classical
+from satsym.analysis.classical.signals import excesses, spans_of, totals
 from satsym.instance import Instance
 from satsym.solution import Array, Solution
-from satsym.solve import solve
+from satsym.solvers import solve
 from satsym.status import BadInput
 
 SAMPLES = 2000

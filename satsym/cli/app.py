@@ -13,19 +13,19 @@ from typing import Any
 import click
 
 from satsym import __version__
-from satsym.cli.analyse import analyse
-from satsym.cli.audit import audit
-from satsym.cli.compare import compare
-from satsym.cli.derive import derive
-from satsym.cli.doctor import doctor
-from satsym.cli.instances import instances
-from satsym.cli.latex import latex
-from satsym.cli.lqr import lqr
-from satsym.cli.models import models
+from satsym.cli.commands.analyse import analyse
+from satsym.cli.commands.audit import audit
+from satsym.cli.commands.compare import compare
+from satsym.cli.commands.derive import derive
+from satsym.cli.commands.doctor import doctor
+from satsym.cli.commands.instances import instances
+from satsym.cli.commands.latex import latex
+from satsym.cli.commands.lqr import lqr
+from satsym.cli.commands.models import models
+from satsym.cli.commands.plot import plot
+from satsym.cli.commands.simulate import simulate
+from satsym.cli.commands.solve import solve
 from satsym.cli.output import Unheard, complain, hearable, silence, unless_unwritable
-from satsym.cli.plot import plot
-from satsym.cli.simulate import simulate
-from satsym.cli.solve import solve
 from satsym.cli.stopping import stopped
 from satsym.status import BadInput, ExitCode
 from satsym.wording import printable

@@ -23,8 +23,8 @@ def exact(model: Kernels) -> dict[str, Any] | None:
     from satsym.symbolic import DerivationError
     from satsym.symbolic.analysis import NotExact, analyse
     from satsym.symbolic.analysis.listing import exact_object
-    from satsym.symbolic.library import derivation
-    from satsym.symbolic.linear import system_of
+    from satsym.symbolic.linear.matrices import system_of
+    from satsym.symbolic.lookup.library import derivation
 
     try:
         return exact_object(analyse(system_of(derivation(model.spec.name))))

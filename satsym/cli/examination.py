@@ -142,8 +142,7 @@ def _trial() -> Finding:
     """A small problem, solved."""
     name = f"solve {TRIAL}"
     try:
-        from satsym import instance
-        from satsym import solve as solvers
+        from satsym import instance, solvers
 
         solution = solvers.solve(instance.load(TRIAL))
     except Exception as error:

@@ -27,7 +27,7 @@ def emit(text: str) -> None:
 
 def emit_json(value: Mapping[str, Any]) -> None:
     """Write an object to stdout as JSON."""
-    from satsym.report.files import to_json
+    from satsym.report.results.files import to_json
 
     emit(to_json(value))
 

@@ -10,7 +10,7 @@ from satsym.status import BadInput
 from satsym.wording import printable
 
 if TYPE_CHECKING:
-    from satsym.report.files import Content
+    from satsym.report.results.files import Content
     from satsym.solution import Flight, Solution
 
 RESULTS = "results"
@@ -28,7 +28,7 @@ def folder_for(name: str, command: str, out: Path | None, plot: bool) -> Path | 
     """
     folder = out or (Path(RESULTS, name, command) if plot else None)
     if folder:
-        from satsym.report.files import check_writable
+        from satsym.report.results.files import check_writable
 
         check_writable(folder)
     return folder
@@ -38,7 +38,7 @@ def save(folder: Path | None, result: Mapping[str, Any], files: Mapping[str, Con
     """Replace what a folder holds of earlier results, if there is one to write to; the files that were written."""
     if folder is None:
         return []
-    from satsym.report import sets
+    from satsym.report.results import sets
 
     return sets.write(folder, result, files)
 
@@ -47,7 +47,8 @@ def trajectory_files(folder: Path | None, found: Solution | Flight, plot: bool) 
     """Trajectory and, where asked for, pictures: name -> content; none where nothing is to be written."""
     if folder is None:
         return {}
-    from satsym.report import plots, trajectory
+    from satsym.report import plots
+    from satsym.report.results import trajectory
 
     return trajectory.contents(found) | (plots.pictures(found) if plot else {})
 
@@ -66,7 +67,7 @@ def saved_folder(name: str, command: str | None) -> Path:
     BadInput
         If there are none.
     """
-    from satsym.report.sets import written_at
+    from satsym.report.results.sets import written_at
 
     home = Path(RESULTS, name)
     there = {home / each: written_at(home / each) for each in ([command] if command else DRAWN)}

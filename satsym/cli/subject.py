@@ -37,7 +37,7 @@ def find(name: str) -> Instance | Kernels:
 def begins(command: str, given: Instance | Kernels, status: Status) -> dict[str, Any]:
     """What the object of a command about it begins with."""
     from satsym.kernels import Kernels
-    from satsym.report.results import head
+    from satsym.report.results.objects import head
 
     if isinstance(given, Kernels):
         return head(command, given.spec, None, status)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from satsym.codegen.printers import LARGEST_PRODUCT
-from satsym.symbolic.control_sets import PROJECTIONS
+from satsym.symbolic.principle.control_sets import PROJECTIONS
 
 Assignment = tuple[sp.Symbol, sp.Expr]
 

@@ -8,14 +8,14 @@ import sympy as sp
 
 from satsym.codegen import switching
 from satsym.spec import Variable, names
-from satsym.symbolic.attraction import inertial_state, strength_of
-from satsym.symbolic.control_sets import bounds
 from satsym.symbolic.derivation import Derivation
-from satsym.symbolic.gyrostat import resolved
-from satsym.symbolic.linear_notation import matrix_symbols
+from satsym.symbolic.kepler.attraction import inertial_state, strength_of
+from satsym.symbolic.kinds.gyrostat import resolved
+from satsym.symbolic.linear.notation import matrix_symbols
 from satsym.symbolic.model import Linearised, symbols_of, t
 from satsym.symbolic.notation import costate_of, given, multipliers, on_reference, target
-from satsym.symbolic.switching_notation import COMPANION
+from satsym.symbolic.principle.control_sets import bounds
+from satsym.symbolic.switching.notation import COMPANION
 
 ARGUMENTS = tuple("t x original u lam nu gain riccati state_weight control_weight p bounds final".split())
 """Names of arguments, in the order in which every function takes those it has."""

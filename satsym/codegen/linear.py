@@ -11,9 +11,9 @@ from satsym.codegen.functions import Function, symbols
 from satsym.symbolic.algebra import definitions_of
 from satsym.symbolic.analysis import matrix_exponential, routh, spectrum
 from satsym.symbolic.derivation import Derivation
-from satsym.symbolic.linear import analysable, coefficients_of, system_of
-from satsym.symbolic.linear_notation import matrix_symbols
-from satsym.symbolic.lqr import MOST_INPUTS, MOST_STATES, inverse, riccati_operator
+from satsym.symbolic.linear.matrices import analysable, coefficients_of, system_of
+from satsym.symbolic.linear.notation import matrix_symbols
+from satsym.symbolic.linear.regulator import MOST_INPUTS, MOST_STATES, inverse, riccati_operator
 from satsym.symbolic.model import Linearised
 
 

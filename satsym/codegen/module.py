@@ -17,10 +17,10 @@ from satsym.codegen.switching import switches
 from satsym.kernels.contract import TUPLES
 from satsym.kernels.digest import sealed
 from satsym.spec import ProblemSpec, Variable
-from satsym.symbolic.attraction import strength_of
 from satsym.symbolic.derivation import Derivation, Equation
+from satsym.symbolic.kepler.attraction import strength_of
 from satsym.symbolic.model import t, variables_of
-from satsym.symbolic.switching_curve import states_of
+from satsym.symbolic.switching.curve import states_of
 
 
 def render(derivation: Derivation, source: str) -> str:

@@ -11,7 +11,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-from satsym.report.files import write_text
+from satsym.report.results.files import write_text
 
 SUFFIXES = (".py", ".tex")
 KEPT = "__init__.py"
@@ -68,7 +68,7 @@ def _rendered(job: tuple[Path, str]) -> dict[str, str]:
     """The two files of one problem."""
     from satsym import kernels
     from satsym.codegen import module, verify
-    from satsym.report import latex
+    from satsym.report.latex import document as latex
     from satsym.symbolic import derive, loader
     from satsym.symbolic.convention import in_convention, is_minimum
 

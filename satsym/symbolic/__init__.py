@@ -2,10 +2,10 @@
 
 from satsym.spec import Variable
 from satsym.symbolic.derivation import Check, Conclusion, Derivation, DerivationError, Equation, Step
+from satsym.symbolic.kinds.rotation_models import COMMAND, ClosedLoop, Gyrostat, Motor, Reduced, Scaled, s
 from satsym.symbolic.model import Definition, FirstOrder, Linearised, Model, Newton, Output, Problem, symbols_of, t
 from satsym.symbolic.notation import rate_of
 from satsym.symbolic.pipeline import derive
-from satsym.symbolic.rotation_models import COMMAND, ClosedLoop, Gyrostat, Motor, Reduced, Scaled, s
 
 __all__ = [
     "COMMAND",

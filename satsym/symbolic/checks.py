@@ -10,8 +10,8 @@ from typing import Any, TypeAlias
 import mpmath as mp
 import sympy as sp
 
-from satsym.symbolic.control_sets import MPMATH_FUNCTIONS
 from satsym.symbolic.derivation import Check, DerivationError
+from satsym.symbolic.principle.control_sets import MPMATH_FUNCTIONS
 
 DIGITS = 30
 LIMIT = 1e-15

@@ -8,9 +8,9 @@ from typing import Any
 import sympy as sp
 
 from satsym.symbolic import notation as n
-from satsym.symbolic import rotation_declared
 from satsym.symbolic.algebra import definitions_of
 from satsym.symbolic.derivation import Derivation, DerivationError
+from satsym.symbolic.kinds import rotation_declared
 from satsym.symbolic.model import FirstOrder, Linearised, Model, Newton, Problem, symbols_of
 
 

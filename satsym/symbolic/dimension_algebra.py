@@ -7,7 +7,8 @@ from typing import Any, TypeAlias
 
 import sympy as sp
 
-from satsym.symbolic import control_sets, switches
+from satsym.symbolic.principle import control_sets
+from satsym.symbolic.switching import minimisers as switches
 
 Dimension: TypeAlias = Mapping[str, sp.Expr]
 """Exact exponents of base dimensions, without zeros; empty for plain numbers."""

@@ -13,7 +13,6 @@ import sympy as sp
 
 from satsym import units
 from satsym.status import BadInput
-from satsym.symbolic import control_sets, linear_dimensions, rotation_dimensions, switching_dimensions
 from satsym.symbolic import notation as n
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Step
 from satsym.symbolic.dimension_algebra import (
@@ -26,8 +25,12 @@ from satsym.symbolic.dimension_algebra import (
     product,
     written,
 )
+from satsym.symbolic.kinds import rotation_dimensions
+from satsym.symbolic.kinds.rotation_models import Scaled
+from satsym.symbolic.linear import dimensions as linear_dimensions
 from satsym.symbolic.model import FirstOrder, Newton, Problem, symbols_of, variables_of
-from satsym.symbolic.rotation_models import Scaled
+from satsym.symbolic.principle import control_sets
+from satsym.symbolic.switching import dimensions as switching_dimensions
 
 AGREEMENT = "dimensions agree"
 """The claim of the check that every step gets."""

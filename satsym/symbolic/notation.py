@@ -7,9 +7,12 @@ from collections.abc import Collection, Iterable
 import sympy as sp
 
 from satsym.spec import Variable
-from satsym.symbolic import control_sets, linear_notation, rotation_notation, switching_notation
 from satsym.symbolic.derivation import Derivation, DerivationError
+from satsym.symbolic.kinds import rotation_notation
+from satsym.symbolic.linear import notation as linear_notation
 from satsym.symbolic.model import Linearised, Model, Newton, Problem, symbols_of, variables_of
+from satsym.symbolic.principle import control_sets
+from satsym.symbolic.switching import notation as switching_notation
 
 TIME, FINAL_TIME = sp.Symbol("t", real=True), sp.Symbol("t_f", real=True)
 HAMILTONIAN, MINIMISED = sp.Symbol("H", real=True), sp.Symbol("H_star", real=True)

@@ -8,35 +8,25 @@ from typing import TypeAlias
 
 import sympy as sp
 
-from satsym.symbolic import (
-    attraction,
-    closed_loop,
-    conic,
-    dimensions,
-    effort,
-    gyrostat,
-    linearised,
-    lqr,
-    mechanics,
-    motion,
-    outputs,
-    point_steps,
-    pontryagin,
-    reduced,
-    scaled,
-    singular,
-    stability_steps,
-    step_answers,
-    structure_steps,
-    switching,
-    switching_curve,
-    transversality,
-)
+from satsym.symbolic import dimensions
 from satsym.symbolic.declared import refuse_foreign_symbols, refuse_misfits
 from satsym.symbolic.derivation import Derivation, DerivationError, Step
+from satsym.symbolic.kepler import attraction, conic
+from satsym.symbolic.kepler import points as point_steps
+from satsym.symbolic.kinds import closed_loop, gyrostat, linearised, reduced, scaled, step_answers
+from satsym.symbolic.kinds import newton as mechanics
+from satsym.symbolic.kinds.rotation_models import ClosedLoop, Gyrostat, Reduced, Scaled
+from satsym.symbolic.linear import regulator as lqr
+from satsym.symbolic.linear import stability as stability_steps
+from satsym.symbolic.linear import structure as structure_steps
 from satsym.symbolic.model import FirstOrder, Linearised, Model, Newton, Problem
+from satsym.symbolic.motion import outputs
+from satsym.symbolic.motion import steps as motion
 from satsym.symbolic.notation import begin
-from satsym.symbolic.rotation_models import ClosedLoop, Gyrostat, Reduced, Scaled
+from satsym.symbolic.principle import effort, pontryagin, transversality
+from satsym.symbolic.switching import curve as switching_curve
+from satsym.symbolic.switching import functions as switching
+from satsym.symbolic.switching import singular
 
 MaybeStep: TypeAlias = Callable[[Derivation], Step | None]
 """A step function; ``None`` from it means that the step does not apply to this model."""

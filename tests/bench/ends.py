@@ -36,7 +36,7 @@ Solver = Callable[[], np.ndarray]
 def satsym() -> Solver:
     """The shipped instance, without its certificate, at as many points of time as CasADi's program has."""
     from satsym.instance import load
-    from satsym.solve import two_point
+    from satsym.solvers import two_point
 
     case = load("return-to-orbit")
     case = replace(case, solver=structs.replace(case.solver, steps=DEGREE * INTERVALS))
@@ -57,7 +57,7 @@ def compiled() -> Solver:
 
 def _repeated(compiled: bool) -> Solver:
     from satsym.instance import load
-    from satsym.solve.repeated import Repeated
+    from satsym.solvers.repeated import Repeated
 
     repeated = Repeated(load("return-to-orbit"), compiled)
     return lambda: repeated.solve(cold=True).lam[:, 0]

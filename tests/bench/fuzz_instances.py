@@ -16,8 +16,8 @@ from pathlib import Path
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from tests.fuzzing import faults, ran
-from tests.mutations import mutated
+from tests.support.fuzzing import faults, ran
+from tests.support.mutations import mutated
 
 CASES = 2000
 COMMANDS = ("solve", "solve", "solve", "simulate", "simulate", "analyse", "lqr")

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from satsym.cli import main
-from tests.ledger_fuzz import ledger
+from tests.support.ledger_fuzz import ledger
 
 ADDRESS_SPACE = 4 << 30
 """Bytes that the process may map; what it holds is reported."""

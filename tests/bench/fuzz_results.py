@@ -22,11 +22,11 @@ import msgspec
 
 from satsym import instance
 from satsym.cli.saving import trajectory_files
-from satsym.report import sets
-from satsym.report.results import solution_object
-from satsym.solve import solve
-from tests.damage import damaged
-from tests.fuzzing import faults, ran
+from satsym.report.results import sets
+from satsym.report.results.objects import solution_object
+from satsym.solvers import solve
+from tests.support.damage import damaged
+from tests.support.fuzzing import faults, ran
 
 NAME = "return-to-orbit-006"
 CASES = 200

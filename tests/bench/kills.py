@@ -22,8 +22,8 @@ from pathlib import Path
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from satsym.report import sets
-from satsym.report.set_list import LIST
+from satsym.report.results import sets
+from satsym.report.results.set_list import LIST
 from satsym.status import BadInput
 
 KILLS = 100

@@ -143,7 +143,7 @@ def closed(of: Orbits, _: float) -> np.ndarray:
 
 def _steps(backend: str, method: str) -> Method:
     from satsym.kernels import load
-    from satsym.solve import batch
+    from satsym.solvers.simulation import batch
 
     kernels = load("two_body")
     if backend == "numba":

@@ -36,7 +36,7 @@ def problems(count: int) -> Problems:
 
 def largest_residual(P: np.ndarray, given: Problems) -> float:
     """By one judge for all of them."""
-    from satsym.analysis.riccati import residual
+    from satsym.analysis.regulator.riccati import residual
 
     A, Q, R = given
     return max(residual(a, INPUT @ INPUT.T / r, q, p) for a, q, r, p in zip(A, Q, R, P, strict=False))
@@ -60,7 +60,7 @@ def one(rounds: int = 15) -> Table:
 
 def many(rounds: int = 3) -> Table:
     """Ten thousand: gains, Riccati solutions and residuals."""
-    from satsym.analysis import batch
+    from satsym.analysis.regulator import batch
 
     given = problems(COUNT)
     A, Q, R = given
@@ -80,8 +80,8 @@ def many(rounds: int = 3) -> Table:
 
 
 def _satsym(A: np.ndarray, Q: np.ndarray, R: np.ndarray) -> Solver:
-    from satsym.analysis.linear import system
-    from satsym.analysis.lqr import lqr
+    from satsym.analysis.linear.system import system
+    from satsym.analysis.regulator.lqr import lqr
 
     given = system(A, INPUT)
     return lambda: lqr(given, Q, R).P

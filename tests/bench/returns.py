@@ -18,24 +18,24 @@ from functools import partial
 from pathlib import Path
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 
 import numpy as np
 import records
 from samples import EASY, HARD
 
 from satsym.instance import Instance
-from satsym.solve import two_point
-from satsym.solve.certificate import certify
-from satsym.solve.certificate.conditions import boundary_residual
-from satsym.solve.certificate.conjugate import conjugate
-from satsym.solve.certificate.flow import flow
-from satsym.solve.certificate.segments import segments
-from satsym.solve.collocation import paths
-from satsym.solve.collocation.cold_start import from_path
-from satsym.solve.collocation.problem import TwoPoint
-from satsym.solve.collocation.scaling import two_point as scaled
-from satsym.solve.iteration import Limits
+from satsym.solvers import two_point
+from satsym.solvers.certificate import certify
+from satsym.solvers.certificate.conditions import boundary_residual
+from satsym.solvers.certificate.conjugate import conjugate
+from satsym.solvers.certificate.flow import flow
+from satsym.solvers.certificate.segments import segments
+from satsym.solvers.cold_start import paths
+from satsym.solvers.cold_start.ways import from_path
+from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.collocation.scaling import two_point as scaled
+from satsym.solvers.iteration import Limits
 
 POPULATIONS = {"easy": EASY, "hard": HARD, "eight": HARD}
 WORKERS = min(2, os.cpu_count() or 1)

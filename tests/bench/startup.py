@@ -14,7 +14,7 @@ from timing import Samples
 IMPORTS = (
     "numpy",
     "satsym.kernels",
-    "satsym.solve",
+    "satsym.solvers",
     "sympy",
     "scipy.integrate",
     "matplotlib.pyplot",

@@ -12,15 +12,15 @@ from dataclasses import replace
 from pathlib import Path
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 
 import numpy as np
 from machine import described
 from switching_closed_forms import least_time
 
 from satsym import instance
-from satsym.solve.certificate import certify
-from satsym.solve.switching import solving
+from satsym.solvers.certificate import certify
+from satsym.solvers.switching import solving
 
 
 def main(count: int, certified: bool) -> None:

@@ -16,8 +16,8 @@ import numpy as np
 from satsym.analysis.orbits import kepler
 from satsym.instance import Instance
 from satsym.solution import Array
-from satsym.solve import closed_loop
-from satsym.solve.closed_loop import Law
+from satsym.solvers.simulation import closed_loop
+from satsym.solvers.simulation.closed_loop import Law
 from satsym.status import BadInput
 
 SAMPLES = 97

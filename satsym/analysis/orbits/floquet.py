@@ -16,7 +16,7 @@ from satsym.analysis.orbits.elements import Elements
 from satsym.analysis.orbits.monodromy import Monodromy, monodromy
 from satsym.analysis.orbits.point import Complex
 from satsym.analysis.orbits.rotating import TurningAxes, turning_axes
-from satsym.solve.integrate import NotFinite
+from satsym.solvers.simulation.extrapolation import NotFinite
 
 COMPUTED, NO_PERIOD, COLLISION, NOT_RESOLVED = "computed", "no period", "collision", "not resolved"
 VERDICT = "Lyapunov unstable, orbitally stable"

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from satsym import kernels
-from satsym.analysis.linear import Array
+from satsym.analysis.linear.system import Array
 from satsym.analysis.orbits.conic import Conic
 from satsym.analysis.orbits.elements import Elements
 from satsym.analysis.orbits.point import CARTESIAN
@@ -101,7 +101,7 @@ def monodromy(orbit: Elements, from_apoapsis: bool = True) -> Monodromy:
     ------
     ValueError
         If the orbit is not closed.
-    satsym.solve.integrate.NotFinite
+    satsym.solvers.simulation.extrapolation.NotFinite
         If it passes the centre too closely to be integrated.
     """
     if orbit.period is None or orbit.semi_major_axis is None:

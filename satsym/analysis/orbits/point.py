@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym import kernels
-from satsym.analysis.equilibrium import jacobians
-from satsym.analysis.linear import Array
+from satsym.analysis.linear.equilibrium import jacobians
+from satsym.analysis.linear.system import Array
 from satsym.analysis.orbits.elements import Elements
 from satsym.analysis.orbits.states import checked
 from satsym.instance import Instance

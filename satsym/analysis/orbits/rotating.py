@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from satsym import kernels
-from satsym.analysis.equilibrium import jacobians
-from satsym.analysis.linear import LinearSystem, system
+from satsym.analysis.linear.equilibrium import jacobians
+from satsym.analysis.linear.spectrum import Eigenvalue, spectrum
+from satsym.analysis.linear.system import LinearSystem, system
 from satsym.analysis.orbits.elements import Elements
-from satsym.analysis.spectrum import Eigenvalue, spectrum
 
 MODEL = "hill"
 NEARLY_CIRCULAR = 0.1

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from satsym.kernels import Kernels
-from satsym.solve.integrate import Array, integrate
+from satsym.solvers.simulation.extrapolation import Array, integrate
 
 ACCURACY = 1e-14
 """Largest error of a step, relative to the size of the states: what is below is lost in rounding."""
@@ -41,7 +41,7 @@ def transition(
 
     Raises
     ------
-    satsym.solve.integrate.NotFinite
+    satsym.solvers.simulation.extrapolation.NotFinite
         If the motion does not last as long.
     """
     n, rest = len(start), (0.0,) * len(model.spec.controls)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from satsym.report import files
+from satsym.report.results import files
 from satsym.solution import Flight, Solution
 
 

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from satsym.report import files
-from satsym.report.comparison import unit_of
 from satsym.report.plots import display, legend, style
+from satsym.report.results import files
+from satsym.report.terminal.comparison import unit_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -119,7 +119,7 @@ def _until(case: Case) -> float:
 
 
 def _totals(figure: Figure, grid: Any, row: int, cases: Sequence[Case]) -> None:
-    from satsym.analysis.performance import SETTLED
+    from satsym.analysis.classical.performance import SETTLED
 
     control = cases[0].instance.model.spec.controls[0]
     bars = (("transition_time", "transition time"), (f"{control.symbol}_total", "total impulse"))

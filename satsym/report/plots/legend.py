@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from satsym.report.plots import style
-from satsym.report.plots.orbit import Orbit
+from satsym.report.plots.orbits.scenes import Orbit
 from satsym.report.plots.reading import read
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.series import Series

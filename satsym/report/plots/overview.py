@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from satsym.report.plots import legend, orbit, series, style
+from satsym.report.plots import legend, series, style
 from satsym.report.plots.display import number, shortened, unit_text
+from satsym.report.plots.orbits import scenes as orbit
 from satsym.report.plots.panels import small_multiples
 from satsym.report.plots.scene import Scene
 from satsym.solution import Solution

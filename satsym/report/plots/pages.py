@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from satsym.report.plots import legend, series, style
-from satsym.report.plots import orbit as space
+from satsym.report.plots.orbits import scenes as space
 from satsym.report.plots.panels import small_multiples
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.series import Series

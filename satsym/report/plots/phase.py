@@ -11,7 +11,7 @@ from satsym.report.plots import display, style
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from satsym.analysis.structure import Analysis
+    from satsym.analysis.linear.structure import Analysis
 
 POINTS = 41
 """Of the grid on which directions are computed, along each axis."""

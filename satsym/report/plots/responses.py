@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from satsym.analysis.feedback import Design
+    from satsym.analysis.regulator.feedback import Design
 
 Array = NDArray[np.floating[Any]]
 LINEAR: dict[str, Any] = {"linewidth": 2.0, "zorder": 3.0}
@@ -27,7 +27,7 @@ BEYOND = 1.5
 
 def page(design: Design, case: Instance) -> Figure:
     """Each state without control and with the gain, side by side; below them the inputs, and what they cost."""
-    from satsym.analysis.responses import responses
+    from satsym.analysis.regulator.responses import responses
 
     found, spec = responses(design, case), design.about.model.spec
     units = (v.unit for v in (*spec.states, *spec.controls, *spec.parameters))
@@ -96,7 +96,7 @@ def _curve(
 
 def reach(design: Design, case: Instance) -> Figure | None:
     """How far each state alone may be off for the exact motion to return; nothing where only a linear one is known."""
-    from satsym.analysis.basin import basin
+    from satsym.analysis.regulator.basin import basin
 
     if not design.about.nonlinear or design.regulator.horizon is not None:
         return None

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from satsym.report.plots import curves
 from satsym.report.plots.display import formula, plain
 from satsym.report.plots.scene import Scene
-from satsym.report.unit_names import cost_per, time_unit
+from satsym.report.results.unit_names import cost_per, time_unit
 from satsym.solution import Flight
 
 Array = NDArray[np.floating[Any]]

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
-from satsym.report import files
 from satsym.report.plots import style
+from satsym.report.results import files
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from satsym.analysis.feedback import Design
+    from satsym.analysis.linear.structure import Analysis
     from satsym.analysis.orbits.survey import Survey
-    from satsym.analysis.structure import Analysis
+    from satsym.analysis.regulator.feedback import Design
 
 Pictures: TypeAlias = dict[str, files.Content]
 """Name -> content of each file."""
@@ -32,14 +32,15 @@ def of_analysis(found: Analysis, formats: Sequence[str] = ("png",)) -> Pictures:
     dict
         Name -> content of each file.
     """
-    from satsym.report.plots import phase, plane
+    from satsym.report.plots import phase
+    from satsym.report.plots.orbits import plane
 
     return _drawn({"eigenvalues": lambda: plane.of_analysis(found), "phase": lambda: phase.portrait(found)}, formats)
 
 
 def of_orbit(found: Survey, formats: Sequence[str] = ("png",)) -> Pictures:
     """Draw an orbit: ``orbit``, ``point`` (eigenvalues at its start) and, of a closed one, ``multipliers``."""
-    from satsym.report.plots import conics, plane, unit_circle
+    from satsym.report.plots.orbits import conics, plane, unit_circle
 
     pictures: dict[str, Callable[[], Figure | None]] = {
         "orbit": lambda: conics.page(found),
@@ -51,7 +52,8 @@ def of_orbit(found: Survey, formats: Sequence[str] = ("png",)) -> Pictures:
 
 def of_design(design: Design, formats: Sequence[str] = ("png",)) -> Pictures:
     """Draw a regulator: ``eigenvalues``; of an instance also ``responses``; of a nonlinear model also ``basin``."""
-    from satsym.report.plots import plane, responses
+    from satsym.report.plots import responses
+    from satsym.report.plots.orbits import plane
 
     pictures: dict[str, Callable[[], Figure | None]] = {"eigenvalues": lambda: plane.of_design(design)}
     if design.instance is not None and design.instance.tf is not None:

@@ -142,7 +142,7 @@ def analyse(subject: LinearSystem | Derivation | Model) -> Analysis:
 
 def _system(subject: Derivation | Model) -> LinearSystem:
     """The matrices of a model; the steps of derivations import this package, hence not above."""
-    from satsym.symbolic.linear import system_of
+    from satsym.symbolic.linear.matrices import system_of
     from satsym.symbolic.model import Model
     from satsym.symbolic.pipeline import derive
 

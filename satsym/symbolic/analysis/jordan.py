@@ -7,14 +7,7 @@ from dataclasses import dataclass
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
-from satsym.symbolic.analysis.components import (
-    Component,
-    components,
-    eigenvector,
-    images,
-    whole,
-    without_common_factor,
-)
+from satsym.symbolic.analysis.components import Component, components, eigenvector, images, whole, without_common_factor
 from satsym.symbolic.analysis.field import Field
 from satsym.symbolic.analysis.spectrum import Spectrum
 

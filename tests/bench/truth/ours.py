@@ -65,7 +65,8 @@ def _serve(pipe: Connection) -> None:
 
 def answer(case: Case, path: Path) -> dict[str, Any]:
     """Solve an instance file with satsym; what came of it, with costs in the units of the case."""
-    from satsym import instance, solve
+    from satsym import instance
+    from satsym import solvers as solve
     from satsym.status import BadInput
 
     wall, processor = time.perf_counter(), time.process_time()

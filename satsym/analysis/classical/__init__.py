@@ -1,0 +1,1 @@
+"""The classical laws of one axis, and how well they follow a command."""

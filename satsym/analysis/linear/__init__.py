@@ -1,0 +1,1 @@
+"""Linear systems: where they come from, their stability, ranks and spectra."""

@@ -1,0 +1,181 @@
+"""Controllability and observability: ranks, what is out of reach, and Kalman's decomposition.
+
+Ranks are decided on the system in units that suit it (:mod:`satsym.analysis.linear.scaling`), by the staircase of
+singular value decompositions, which never forms A^k B: what the inputs move directly, what that moves, and so on. A
+singular value below ``TOLERANCE`` times the size of the system is zero. So the ranks are exactly those of a system
+that differs from the given one by less than that.
+
+Sources: R. E. Kalman, Mathematical description of linear dynamical systems, SIAM J. Control 1 (1963);
+P. M. Van Dooren, The generalized eigenstructure problem in linear system theory, IEEE TAC 26 (1981);
+M. L. J. Hautus, Controllability and observability conditions, Indagationes Mathematicae 31 (1969).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from satsym.analysis.linear.scaling import scaled
+from satsym.analysis.linear.spectrum import Eigenvalue, spectrum
+from satsym.analysis.linear.system import Array, LinearSystem
+
+TOLERANCE = 1e-10
+
+
+@dataclass(frozen=True, eq=False)
+class Reach:
+    """How much of a system its inputs move, or how much of it its outputs show.
+
+    Attributes
+    ----------
+    matrix
+        Kalman's matrix, in the system's units: (B, AB, ...), shape (n, n m), or C over CA over ..., shape (n k, n).
+    rank
+        Dimension of what is moved or shown.
+    lost
+        The modes that are not moved, or do not show.
+    alone
+        The same for each input or output by itself, by name; empty in these.
+    """
+
+    matrix: Array
+    rank: int
+    lost: tuple[Eigenvalue, ...]
+    alone: Mapping[str, Reach]
+
+    @property
+    def complete(self) -> bool:
+        """Whether the system is controllable, or observable."""
+        return not self.lost
+
+
+def controllability(given: LinearSystem) -> Reach:
+    """What the inputs move, all together and each alone."""
+    fitted, power = scaled(given), given.B
+    blocks = [power]
+    for _ in given.states[1:]:
+        power = given.A @ power
+        blocks.append(power)
+
+    def reach(inputs: list[int], alone: Mapping[str, Reach]) -> Reach:
+        rank, _, form = staircase(fitted.A, fitted.B[:, inputs])
+        lost = spectrum(form[rank:, rank:] * fitted.rate) if rank < len(form) else ()
+        return Reach(np.hstack([block[:, inputs] for block in blocks]), rank, lost, alone)
+
+    alone = {name: reach([j], {}) for j, name in enumerate(given.inputs)}
+    return reach(list(range(len(given.inputs))), alone)
+
+
+def observability(given: LinearSystem) -> Reach:
+    """What the outputs show, as what would move if the system ran along transposed arrows."""
+    return _dual(controllability(transposed(given)), len(given.states))
+
+
+def _dual(found: Reach, n: int) -> Reach:
+    """The blocks of the matrix below one another, each transposed."""
+    stacked = found.matrix.reshape(n, n, -1).transpose(1, 2, 0).reshape(-1, n)
+    return Reach(stacked, found.rank, found.lost, {name: _dual(each, n) for name, each in found.alone.items()})
+
+
+def transposed(given: LinearSystem) -> LinearSystem:
+    """The dual system: A', with outputs for inputs."""
+    return LinearSystem(
+        given.A.T, given.C.T, given.B.T, given.D.T, given.states, given.outputs, given.inputs, given.name
+    )
+
+
+def staircase(A: Array, B: Array) -> tuple[int, Array, Array]:
+    """Orthogonal coordinates in which what the inputs reach comes first.
+
+    Parameters
+    ----------
+    A, B
+        Of a scaled system.
+
+    Returns
+    -------
+    rank : int
+        Number r of coordinates that are reached.
+    basis : array of shape (n, n)
+        The coordinates, as columns.
+    form : array of shape (n, n)
+        A in them; below its first r rows the first r columns vanish.
+    """
+    n = len(A)
+    basis, form, block, reached = np.eye(n), A.copy(), B, 0
+    limit = TOLERANCE * (float(np.linalg.norm(np.hstack([A, B]), 2)) or 1.0)
+    while reached < n and block.size:
+        left, singular, _ = np.linalg.svd(block)
+        rank = int((singular > limit).sum())
+        if rank == 0:
+            break
+        basis[:, reached:] = basis[:, reached:] @ left
+        form[:, reached:] = form[:, reached:] @ left
+        form[reached:] = left.T @ form[reached:]
+        block = form[reached + rank :, reached : reached + rank]
+        reached += rank
+    return reached, basis, form
+
+
+def hautus(given: LinearSystem) -> tuple[tuple[complex, int], ...]:
+    """The test of Popov, Belevitch and Hautus: each eigenvalue s with the rank of (A - s, B).
+
+    The inputs move the modes of those at which the rank is full.
+    """
+    fitted = scaled(given)
+    limit = TOLERANCE * fitted.size
+    found = []
+    for each in spectrum(given.A):
+        pencil = np.hstack([fitted.A - each.value / fitted.rate * np.eye(len(fitted.A)), fitted.B])
+        found.append((each.value, int((np.linalg.svd(pencil, compute_uv=False) > limit).sum())))
+    return tuple(found)
+
+
+@dataclass(frozen=True, eq=False)
+class KalmanForm:
+    """Kalman's decomposition: coordinates in four groups, by whether inputs move and outputs show them.
+
+    Attributes
+    ----------
+    T
+        Old coordinates from new ones, x = T z, shape (n, n).
+    sizes
+        Dimensions: moved and hidden; moved and shown; neither; shown only.
+    A, B, C
+        The system in the new coordinates; what couples a group to one that it cannot act on is zero up to rounding.
+    """
+
+    T: Array
+    sizes: tuple[int, int, int, int]
+    A: Array
+    B: Array
+    C: Array
+
+
+def kalman(given: LinearSystem) -> KalmanForm:
+    """Kalman's decomposition of a system."""
+    fitted = scaled(given)
+    n = len(given.states)
+    moved, basis, _ = staircase(fitted.A, fitted.B)
+    shown, dual, _ = staircase(fitted.A.T, fitted.C.T)
+    reach, hidden = basis[:, :moved], dual[:, shown:]
+    _, sine, right = np.linalg.svd(reach - hidden @ (hidden.T @ reach))  # of the angles between the two subspaces
+    outside = int((sine > TOLERANCE).sum())
+    shared = moved - outside
+    rest, both = reach @ right[:outside].T, reach @ right[outside:].T
+    neither = _beyond(both, hidden, n - shown - shared)
+    known = np.hstack([both, rest, neither])
+    last = _beyond(known, np.eye(n), n - known.shape[1])
+    T = fitted.states[:, None] * np.hstack([known, last])
+    sizes = (shared, moved - shared, neither.shape[1], last.shape[1])
+    inverse = np.linalg.inv(T)
+    return KalmanForm(T, sizes, inverse @ given.A @ T, inverse @ given.B, given.C @ T)
+
+
+def _beyond(known: Array, among: Array, count: int) -> Array:
+    """So many orthonormal directions in the span of those given, orthogonal to those known."""
+    orthonormal = np.linalg.qr(known)[0]
+    left, _, _ = np.linalg.svd(among - orthonormal @ (orthonormal.T @ among))
+    return left[:, :count]

@@ -1,0 +1,120 @@
+"""Eigenvalues with their multiplicities and Jordan blocks, decided numerically with stated tolerances.
+
+An eigenvalue of algebraic multiplicity m comes out of any algorithm as m numbers, up to the m-th root of the rounding
+error apart; their mean is accurate. Neighbours are therefore tried as one eigenvalue s, and kept together only if the
+null spaces of A - s, (A - s)^2, ... together have m dimensions. These dimensions also tell the Jordan blocks (Weyr's
+characteristic); they are found by deflation, never by forming powers (Golub and Wilkinson, SIAM Review 18, 1976).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.analysis.linear.scaling import scaled
+from satsym.analysis.linear.system import Array, system
+
+NULL = 1e-9
+"""A singular value below this, relative to the size of the matrix, is zero: so eigenvalues that are nearer to one
+another are taken for one."""
+
+SPREAD = 1e-12
+"""The m numbers that stand for an eigenvalue of multiplicity m are at most the m-th root of this apart."""
+
+AXIS = 1e-11
+"""A real or imaginary part below this, relative to the size of the matrix, is zero."""
+
+
+@dataclass(frozen=True)
+class Eigenvalue:
+    """An eigenvalue of a matrix.
+
+    Attributes
+    ----------
+    value
+        Exactly real, or exactly on the imaginary axis, where it is so within the tolerance.
+    blocks
+        Sizes of its Jordan blocks, the largest first.
+    """
+
+    value: complex
+    blocks: tuple[int, ...]
+
+    @property
+    def algebraic(self) -> int:
+        """Multiplicity as a root of the characteristic polynomial."""
+        return sum(self.blocks)
+
+    @property
+    def geometric(self) -> int:
+        """Number of independent eigenvectors."""
+        return len(self.blocks)
+
+
+def spectrum(A: Array) -> tuple[Eigenvalue, ...]:
+    """Eigenvalues of a real square matrix, the largest real part first.
+
+    Parameters
+    ----------
+    A
+        Shape (n, n), in any units.
+    """
+    fitted = scaled(system(A))
+    size = float(np.exp2(np.rint(np.log2(np.linalg.norm(fitted.A, 2) or 1.0))))  # a power of two adds no error
+    numbers = np.linalg.eigvals(fitted.A / size).astype(complex)
+    found = [
+        Eigenvalue(_clean(value) * size * fitted.rate, _blocks(weyr))
+        for value, weyr in _told_apart(fitted.A / size, numbers, _tree(numbers))
+    ]
+    return tuple(sorted(found, key=lambda each: (-each.value.real, abs(each.value.imag), -each.value.imag)))
+
+
+def _tree(numbers: NDArray[np.complexfloating]) -> Any:
+    """The numbers joined nearest first, as a binary tree."""
+    if len(numbers) == 1:
+        return None
+    from scipy.cluster.hierarchy import linkage, to_tree
+
+    pairs = np.triu_indices(len(numbers), 1)
+    return to_tree(linkage(np.abs(numbers[:, None] - numbers)[pairs], "single"))
+
+
+def _told_apart(A: Array, numbers: NDArray[np.complexfloating], tree: Any) -> list[tuple[complex, list[int]]]:
+    """Eigenvalues among these numbers, each with the dimensions that each power of A - s adds to its null space."""
+    if tree is None or tree.is_leaf():
+        return [(complex(numbers[0 if tree is None else tree.id]), [1])]
+    together = numbers[tree.pre_order()]
+    mean, count = complex(together.mean()), len(together)
+    if np.abs(together - mean).max() <= SPREAD ** (1.0 / count):
+        weyr = _weyr(A, _clean(mean))
+        if sum(weyr) == count:
+            return [(mean, weyr)]
+    return [found for branch in (tree.left, tree.right) for found in _told_apart(A, numbers, branch)]
+
+
+def _weyr(A: Array, value: complex) -> list[int]:
+    """By how much each power of A - s enlarges the null space."""
+    rest = A - value * np.eye(len(A)) if value.imag else A - value.real * np.eye(len(A))
+    found: list[int] = []
+    while len(rest):
+        _, singular, right = np.linalg.svd(rest)
+        rank = int((singular > NULL).sum())
+        if rank == len(rest):
+            break
+        found.append(len(rest) - rank)
+        kept = right[:rank]
+        rest = kept @ rest @ kept.conj().T
+    return found
+
+
+def _blocks(weyr: list[int]) -> tuple[int, ...]:
+    """Sizes of Jordan blocks: as many of size k or more as the k-th power adds dimensions."""
+    return tuple(sum(added > i for added in weyr) for i in range(weyr[0]))
+
+
+def _clean(value: complex) -> complex:
+    real = value.real if abs(value.real) > AXIS else 0.0
+    return complex(real, value.imag if abs(value.imag) > AXIS else 0.0)

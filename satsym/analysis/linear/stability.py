@@ -1,0 +1,67 @@
+"""Stability of a linear system, with the reason."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from satsym.analysis.linear.spectrum import Eigenvalue
+
+ASYMPTOTIC, MARGINAL, UNSTABLE = "asymptotically stable", "marginally stable", "unstable"
+
+
+@dataclass(frozen=True)
+class Stability:
+    """A verdict on x' = A x.
+
+    Attributes
+    ----------
+    verdict
+        ``"asymptotically stable"``, ``"marginally stable"`` or ``"unstable"``; ``None`` where nothing decides.
+    reason
+        In a sentence: the eigenvalue that decides, and why.
+    decides
+        Whether the same holds for small deviations from the equilibrium of a nonlinear system that this is the
+        linearisation of (Lyapunov's indirect method): not where eigenvalues on the imaginary axis had to decide.
+    """
+
+    verdict: str | None
+    reason: str
+    decides: bool
+
+
+def stability(eigenvalues: Sequence[Eigenvalue]) -> Stability:
+    """The verdict that eigenvalues and Jordan blocks give.
+
+    Parameters
+    ----------
+    eigenvalues
+        As :func:`satsym.analysis.linear.spectrum.spectrum` gives them.
+    """
+    rightmost = max(eigenvalues, key=lambda each: each.value.real)
+    if rightmost.value.real > 0.0:
+        return Stability(UNSTABLE, f"the eigenvalue {shown(rightmost.value)} has a positive real part", True)
+    if rightmost.value.real < 0.0:
+        return Stability(ASYMPTOTIC, f"all real parts are negative, the largest is {rightmost.value.real:.6g}", True)
+    axis = [each for each in eigenvalues if each.value.real == 0.0]
+    worst = max(axis, key=lambda each: each.blocks[0])
+    size = worst.blocks[0]
+    if size > 1:
+        growth = "t" if size == 2 else f"t^{size - 1}"
+        reason = (
+            f"the eigenvalue {shown(worst.value)} on the imaginary axis has a Jordan block of size {size} "
+            f"(multiplicity {worst.algebraic}, {worst.geometric} eigenvector{'s' * (worst.geometric > 1)}), "
+            f"so that deviations grow like {growth}"
+        )
+        return Stability(UNSTABLE, reason, False)
+    listed = ", ".join(shown(each.value) for each in axis if each.value.imag >= 0.0)
+    reason = f"on the imaginary axis lie {listed}, in Jordan blocks of size 1 only, and nothing lies to its right"
+    return Stability(MARGINAL, reason, False)
+
+
+def shown(value: complex) -> str:
+    """An eigenvalue, or the pair that a complex one forms with its conjugate, in a sentence."""
+    if value.imag == 0.0:
+        return f"{value.real + 0.0:.6g}"
+    real = f"{value.real:.6g} " if value.real else ""
+    return f"{real}\N{PLUS-MINUS SIGN}{' ' if real else ''}{abs(value.imag):.6g}i"

@@ -1,0 +1,1 @@
+"""Linear-quadratic regulators: Riccati equations, and the motions under their gains."""

@@ -1,0 +1,210 @@
+"""Linear-quadratic regulators: the gain K that minimises the integral of x'Qx + u'Ru (no 1/2) with u = -K x."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from satsym.analysis.linear.equilibrium import Linearisation
+from satsym.analysis.linear.polynomials import characteristic
+from satsym.analysis.linear.ranks import controllability, observability
+from satsym.analysis.linear.routh import Routh, routh
+from satsym.analysis.linear.spectrum import Eigenvalue
+from satsym.analysis.linear.stability import shown
+from satsym.analysis.linear.system import Array, LinearSystem, system
+from satsym.analysis.regulator import riccati
+from satsym.analysis.regulator.doubling import flow
+from satsym.instance import Instance, LqrOptions, weights
+from satsym.status import BadInput
+
+DOUBTFUL = 1e-6
+"""A closed loop that decays more slowly than this, relative to its fastest eigenvalue, may be a rounding error."""
+
+
+@dataclass(frozen=True, eq=False)
+class Regulator:
+    """An optimal gain, and what it does.
+
+    Attributes
+    ----------
+    system
+        What it is for, with the active inputs alone.
+    Q, R
+        Weights, shapes (n, n) and (m, m).
+    horizon
+        Length of time over which the cost is counted; ``None`` where it is infinite. If it is finite, K and P are
+        those at its beginning.
+    K, P
+        Shapes (m, n) and (n, n); x'Px is the cost to go.
+    eigenvalues
+        Of A - B K, the largest real part first, shape (n,).
+    residual
+        Of the Riccati equation, relative to its terms; of the differential one where the horizon is finite.
+    error
+        Estimated, of P, relative to P in units in which its diagonal elements are 1: what Newton's method would still
+        change, with residuals in twice the precision. ``None`` where the horizon is finite.
+    """
+
+    system: LinearSystem
+    Q: Array
+    R: Array
+    horizon: float | None
+    K: Array
+    P: Array
+    eigenvalues: NDArray[np.complexfloating]
+    residual: float
+    error: float | None = None
+
+    @cached_property
+    def closed_loop(self) -> LinearSystem:
+        """The system under u = -K x."""
+        return self.system.with_feedback(self.K)
+
+    @cached_property
+    def polynomial(self) -> Array:
+        """Characteristic polynomial of the closed loop, monic, highest power first."""
+        return characteristic(self.closed_loop.A)
+
+    @cached_property
+    def routh(self) -> Routh:
+        """Routh array of the closed loop."""
+        return routh(self.polynomial.tolist(), self.eigenvalues.tolist())
+
+    def cost(self, deviation: ArrayLike) -> float:
+        """The least cost from a deviation on, of shape (n,)."""
+        x = np.asarray(deviation, dtype=float)
+        return float(x @ self.P @ x)
+
+    def gains(self, steps: int) -> Array:
+        """K at evenly spaced times from the beginning of a finite horizon to its end, shape (steps + 1, m, n)."""
+        if self.horizon is None:
+            return np.broadcast_to(self.K, (steps + 1, *self.K.shape))
+        step = flow(self.system.A, riccati.cost_of_control(self.system.B, self.R), self.Q, self.horizon / steps)
+        P = [np.zeros_like(self.P)]
+        for _ in range(steps):
+            P.append(step.before(P[-1]))
+        return np.linalg.solve(self.R, self.system.B.T @ np.array(P[::-1]))
+
+
+def lqr(given: LinearSystem, Q: ArrayLike, R: ArrayLike, horizon: float | None = None) -> Regulator:
+    """The regulator of a linear system, all of whose inputs are active.
+
+    Parameters
+    ----------
+    given
+        See :meth:`LinearSystem.with_inputs` for choosing inputs.
+    Q, R
+        Weights, shapes (n, n) and (m, m), or the diagonals; symmetric, Q positive semidefinite, R positive definite.
+    horizon
+        Length of time, infinite by default; nothing is paid at its end but what was paid until then.
+
+    Raises
+    ------
+    BadInput
+        If the weights are not such, or, for an infinite horizon, the inputs cannot steady a mode that does not decay,
+        or the weights do not see one on the imaginary axis.
+    """
+    q_rows, r_rows = weights.checked(
+        np.asarray(Q, dtype=float).tolist(), np.asarray(R, dtype=float).tolist(), len(given.states), len(given.inputs)
+    )
+    q, r = np.array(q_rows), np.array(r_rows)
+    A, B, G = given.A, given.B, riccati.cost_of_control(given.B, r)
+    rate: Array | float = 0.0
+    error: float | None = None
+    if horizon is None:
+        P, eigenvalues, error = _stabilising(given, q, r)
+    else:
+        run = flow(A, G, q, horizon)
+        P, rate = run.T, run.E.T @ q @ run.E
+        eigenvalues = np.linalg.eigvals(A - G @ P).astype(complex)
+    order = np.lexsort((-eigenvalues.imag, np.abs(eigenvalues.imag), -eigenvalues.real))
+    return Regulator(
+        system=given,
+        Q=q,
+        R=r,
+        horizon=horizon,
+        K=np.linalg.solve(r, B.T @ P),
+        P=P,
+        eigenvalues=eigenvalues[order],
+        residual=riccati.residual(A, G, q, P, rate),
+        error=error,
+    )
+
+
+def regulator(about: Linearisation, options: LqrOptions | None = None) -> Regulator:
+    """The regulator of a linearised model.
+
+    Parameters
+    ----------
+    about
+        Whose coefficients must be constant.
+    options
+        Of an instance; by default all inputs are active, and all weights are 1.
+
+    Raises
+    ------
+    BadInput
+        As :func:`lqr`; or if the coefficients depend on time, or there is no control.
+    """
+    given = about.system
+    if not given.inputs:
+        raise BadInput(f"model {given.name} has no control, so there is nothing to regulate it with")
+    if not about.constant:
+        raise BadInput(
+            f"the linearisation of {given.name} depends on time, and a constant gain is optimal for none such; "
+            "linearise about another motion"
+        )
+    if options is None:
+        return lqr(given, np.ones(len(given.states)), np.ones(len(given.inputs)))
+    return lqr(given.with_inputs(options.inputs), options.Q, options.R, options.horizon)
+
+
+def required(case: Instance) -> LqrOptions:
+    """The [lqr] table of an instance.
+
+    Raises
+    ------
+    BadInput
+        If it has none.
+    """
+    if case.lqr is None:
+        raise BadInput(f"{case.name}: [lqr]: missing; add a table with the weights Q and R")
+    return case.lqr
+
+
+def _stabilising(given: LinearSystem, Q: Array, R: Array) -> tuple[Array, NDArray[np.complexfloating], float]:
+    """P, the closed-loop eigenvalues and the error; why there are none is looked for where there seem to be none."""
+    try:
+        found = riccati.stabilising(given.A, given.B, Q, R)
+    except riccati.NoSolution:
+        why = _obstacle(given, Q) or "[lqr] Q, R: no accurate gain is found; choose weights nearer together"
+        raise BadInput(why) from None
+    eigenvalues = found[1]
+    if eigenvalues.real.max() > -DOUBTFUL * np.abs(eigenvalues).max() and (why := _obstacle(given, Q)):
+        raise BadInput(why)
+    return found
+
+
+def _obstacle(given: LinearSystem, Q: Array) -> str:
+    """Why no gain is best; empty if there is one."""
+    stuck = [each for each in controllability(given).lost if each.value.real >= 0.0]
+    if stuck:
+        return (
+            f"[lqr] inputs: not stabilisable, {' and '.join(given.inputs)} cannot move the mode s = {_listed(stuck)}, "
+            "which does not decay; add an input"
+        )
+    seen = system(given.A, given.B, Q, states=given.states, inputs=given.inputs)
+    unseen = [each for each in observability(seen).lost if each.value.real == 0.0]
+    if unseen:
+        return (
+            f"[lqr] Q: not detectable, the mode s = {_listed(unseen)} on the imaginary axis costs nothing, so no gain "
+            "is best; weigh a state that takes part in it"
+        )
+    return ""
+
+
+def _listed(modes: list[Eigenvalue]) -> str:
+    return ", ".join(shown(each.value) for each in modes if each.value.imag >= 0.0)

@@ -1,0 +1,9 @@
+"""The audit: what documents print, held against what is derived, row by row."""
+
+from satsym.auditing.judged import VERDICTS, Judged
+from satsym.auditing.ledger.contents import Ledger
+from satsym.auditing.ledger.documents import locate, refuse_unknown_items, shipped
+from satsym.auditing.ledger.load import read
+from satsym.auditing.run import audit
+
+__all__ = ["VERDICTS", "Judged", "Ledger", "audit", "locate", "read", "refuse_unknown_items", "shipped"]

@@ -1,0 +1,1 @@
+"""What is wrong with a printed formula: the smallest edit that puts it right, or what it lacks."""

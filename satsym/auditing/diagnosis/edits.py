@@ -1,0 +1,244 @@
+"""All single edits of a printed formula, the smallest first: what a slip of the pen, or of an index, does.
+
+The size of an edit is that of its kind: a sign is smaller than an index, an index smaller than a number, and so on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from fractions import Fraction
+from itertools import combinations
+from typing import Protocol
+
+from satsym.auditing.diagnosis.rewriting import over_symbol, regrouped, shortened, times, times_symbol, without_factor
+from satsym.formula.tree import (
+    ONE,
+    Add,
+    Call,
+    Div,
+    Mul,
+    Neg,
+    Node,
+    Num,
+    Path,
+    Pow,
+    Sym,
+    children,
+    constant,
+    number,
+    replaced,
+    walk,
+)
+
+
+class Change(IntEnum):
+    """Kinds of edits, from the smallest to the largest."""
+
+    SIGN = 1
+    INDEX = 2
+    FACTOR = 3
+    EXPONENT = 4
+    FUNCTION = 5
+    BRACKET = 6
+    SYMBOL = 7
+    DROPPED_FACTOR = 8
+    DROPPED_TERM = 9
+    INVERTED = 10
+    MISSING_FACTOR = 11
+    MISSING_TERM = 12
+    TERM = 13
+    ENTRY = 14
+
+
+@dataclass(frozen=True)
+class Edit:
+    """One change of one part.
+
+    Attributes
+    ----------
+    change
+        Its kind.
+    path
+        Where the part stands.
+    old, new
+        The part before and after.
+    result
+        The whole formula after it.
+    times
+        At how many places, where it is the same slip at several.
+    """
+
+    change: Change
+    path: Path
+    old: Node
+    new: Node
+    result: Node
+    times: int = 1
+
+
+class Letters(Protocol):
+    """What an edit needs to know of a notation."""
+
+    def family(self, name: str) -> list[str]:
+        """Other symbols, those that differ by an index first."""
+
+    def is_slip(self, one: str, other: str) -> bool:
+        """Whether two symbols differ by an index alone."""
+
+
+_EXACT = tuple(
+    Fraction(n, d) for n, d in ((2, 1), (1, 2), (3, 1), (1, 3), (4, 1), (1, 4), (3, 2), (2, 3), (6, 1), (1, 6))
+)
+"""Factors that are forgotten or written too often."""
+_FEW = 6
+"""Places of which all choices are tried."""
+_STEPS = (1, -1, 2, -2)
+_FUNCTIONS = {"sin": ("cos",), "cos": ("sin",), "min": ("max",), "max": ("min",), "sinh": ("cosh",), "cosh": ("sinh",)}
+
+
+def single_edits(formula: Node, letters: Letters, usable: Callable[[str], bool] = lambda _: True) -> list[Edit]:
+    """Every edit of one place, the smallest first; among equals in the order of the print.
+
+    Parameters
+    ----------
+    formula
+        As printed.
+    letters
+        The notation it is printed in.
+    usable
+        Which symbols may be put in.
+    """
+    found: list[Edit] = []
+    for path, node in walk(formula):
+        if not in_exponent(formula, path):
+            for change, new in _changes(formula, path, node, letters, usable):
+                found.append(Edit(change, path, node, new, replaced(formula, path, new)))
+    return sorted(found, key=lambda edit: edit.change)
+
+
+def repeated_edits(formula: Node, letters: Letters, usable: Callable[[str], bool] = lambda _: True) -> Iterator[Edit]:
+    """The same slip at several places: one symbol for another, or a factor too many, wherever it stands.
+
+    Every choice of two places or more is tried if there are few, else all of them and all but one.
+    """
+    names = list(dict.fromkeys(node.name for _, node in walk(formula) if isinstance(node, Sym)))
+    for name in names:
+        places = [path for path, node in walk(formula) if node == Sym(name) and not in_exponent(formula, path)]
+        for other in letters.family(name):
+            if usable(other) and letters.is_slip(name, other):
+                for chosen in _choices(places):
+                    yield _everywhere(Change.INDEX, formula, chosen, Sym(name), lambda _: Sym(other))  # noqa: B023
+    factors = {factor: None for _, node in walk(formula) if isinstance(node, Mul) for factor in node.factors}
+    for factor in factors:
+        places = [path for path, node in walk(formula) if isinstance(node, Mul) and factor in node.factors]
+        for chosen in _choices(places):
+            yield _everywhere(Change.DROPPED_FACTOR, formula, chosen, factor, lambda node: without_factor(node, factor))  # noqa: B023
+
+
+def _everywhere(change: Change, formula: Node, places: Sequence[Path], old: Node, rule: Callable[[Node], Node]) -> Edit:
+    result = formula
+    for path in sorted(places, key=lambda path: (len(path), path), reverse=True):  # the inner places first
+        result = replaced(result, path, rule(at(result, path)))
+    return Edit(change, (), old, rule(old) if change is Change.INDEX else ONE, result, len(places))
+
+
+def _choices(places: Sequence[Path]) -> Iterator[tuple[Path, ...]]:
+    sizes = range(len(places), 1, -1) if len(places) <= _FEW else (len(places), len(places) - 1)
+    for size in sizes:
+        yield from combinations(places, size)
+
+
+def at(formula: Node, path: Path) -> Node:
+    """The part at a place."""
+    for step in path:
+        formula = children(formula)[step]
+    return formula
+
+
+def in_exponent(formula: Node, path: Path) -> bool:
+    """Whether a place is inside an exponent: it is changed as a whole."""
+    node = formula
+    for step in path:
+        if isinstance(node, Pow) and step == 1:
+            return True
+        node = children(node)[step]
+    return False
+
+
+def _changes(
+    formula: Node, path: Path, node: Node, letters: Letters, usable: Callable[[str], bool]
+) -> Iterator[tuple[Change, Node]]:
+    direct, parent = _parent(formula, path), _owner(formula, path)
+    is_term = not isinstance(node, Neg) and (parent is None or isinstance(parent, Add | Call))
+    if not isinstance(direct, Neg) and (
+        parent is None or isinstance(parent, Add | Call) or _is_sum_to_a_power(node, parent)
+    ):
+        yield Change.SIGN, node.operand if isinstance(node, Neg) else Neg(node)
+    if is_term:
+        for factor in _EXACT:
+            yield Change.FACTOR, times(node, factor)
+    if isinstance(node, Sym):
+        for other in letters.family(node.name):
+            if usable(other):
+                yield (Change.INDEX if letters.is_slip(node.name, other) else Change.SYMBOL), Sym(other)
+    if isinstance(node, Num):
+        for value in _near(node.value):
+            yield Change.FACTOR, number(value)
+    yield from _powers(node, direct)
+    if isinstance(node, Call):
+        for other in _FUNCTIONS.get(node.function, ()):
+            yield Change.FUNCTION, Call(other, node.arguments, node.named)
+    for is_term_gone, new in shortened(node):
+        yield (Change.DROPPED_TERM if is_term_gone else Change.DROPPED_FACTOR), new
+    yield from ((Change.BRACKET, new) for new in regrouped(node))
+    if isinstance(node, Div):
+        yield Change.INVERTED, Div(node.denominator, node.numerator)
+    if is_term:
+        for name in _names(letters, formula):
+            if usable(name):
+                yield Change.MISSING_FACTOR, times_symbol(node, Sym(name))
+                yield Change.MISSING_FACTOR, over_symbol(node, Sym(name))
+
+
+def _is_sum_to_a_power(node: Node, parent: Node | None) -> bool:
+    return isinstance(parent, Pow) and isinstance(node, Add)
+
+
+def _powers(node: Node, parent: Node | None) -> Iterator[tuple[Change, Node]]:
+    if isinstance(node, Pow):
+        exponent = constant(node.exponent) or Fraction(0)
+        for other in dict.fromkeys([*(exponent + step for step in _STEPS), -exponent]):
+            if other == 1:
+                yield Change.EXPONENT, node.base
+            elif other:
+                yield Change.EXPONENT, Pow(node.base, number(other))
+    elif isinstance(node, Sym | Call | Add) and not isinstance(parent, Pow):
+        for power in (2, 3, -1):
+            yield Change.EXPONENT, Pow(node, number(power))
+
+
+def _near(value: Fraction) -> list[Fraction]:
+    steps = [value + step for step in (1, -1, 2, -2)] if value.denominator == 1 else []
+    return [other for other in dict.fromkeys([*(value * f for f in _EXACT), *steps]) if other > 0]
+
+
+def _names(letters: Letters, formula: Node) -> list[str]:
+    """Symbols that a factor may be missing of: those of the formula first, then the others of the notation."""
+    inside = list(dict.fromkeys(node.name for _, node in walk(formula) if isinstance(node, Sym)))
+    others = letters.family(inside[0]) if inside else letters.family("")
+    return [*inside, *(name for name in others if name not in inside)]
+
+
+def _parent(formula: Node, path: Path) -> Node | None:
+    node, current = None, formula
+    for step in path:
+        node, current = current, children(current)[step]
+    return node
+
+
+def _owner(formula: Node, path: Path) -> Node | None:
+    """What a part belongs to: a minus in front of a term belongs to the term."""
+    parent = _parent(formula, path)
+    return _owner(formula, path[:-1]) if isinstance(parent, Neg) else parent

@@ -1,0 +1,120 @@
+"""What a formula lacks, as one short term in the document's symbols: from the difference, not by trial."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from satsym.auditing.diagnosis.edits import Change, Edit
+from satsym.auditing.judge.equations import Equal, Multiple
+from satsym.auditing.judge.plan import Plan
+from satsym.auditing.ledger.scopes import CONSTANTS
+from satsym.formula.angles import TooManyTerms, terms_of
+from satsym.formula.calculus import product, raised, total
+from satsym.formula.reading import NAME
+from satsym.formula.tree import (
+    ONE,
+    ZERO,
+    Add,
+    Div,
+    Mul,
+    Neg,
+    Node,
+    Num,
+    Path,
+    Sym,
+    children,
+    number,
+    replaced,
+    size,
+    symbols,
+)
+
+_LARGEST_TERM = 14
+"""Nodes of a term that is worth naming."""
+
+
+def mended_terms(plan: Plan, indices: Sequence[int]) -> list[tuple[int, Edit]]:
+    """Edits of one term, found from the difference, with the cell of each; the smallest first.
+
+    The term is one that a sum lacks, or one that ought to be another.
+    """
+    found: list[tuple[int, int, int, Edit]] = []
+    for i in indices:
+        for gap in () if isinstance(plan.printed[i], Num) else _gaps(plan, i):
+            for path, node, slope in _linear_places(plan.printed[i]):
+                for change, at, old, new, term in _mended(plan, gap, path, node, slope):
+                    edit = Edit(change, at, old, new, replaced(plan.printed[i], at, new))
+                    found.append((change, size(term), i, edit))
+    return [(i, edit) for *_, i, edit in sorted(found, key=lambda entry: entry[:3])]
+
+
+def _mended(
+    plan: Plan, gap: Node, path: Path, node: Node, slope: Node
+) -> Iterator[tuple[Change, Path, Node, Node, Node]]:
+    """A sum with one more term, or with another one in the place of one of its terms; and that term."""
+    terms = node.terms if isinstance(node, Add) else () if node == ZERO else (node,)
+    term = _single_term(plan, gap, slope, ZERO)
+    if term is not None:
+        yield Change.MISSING_TERM, path, node, Add((*terms, term)) if terms else term, term
+    for k, other in enumerate(node.terms if isinstance(node, Add) else ()):
+        term = _single_term(plan, gap, slope, other)
+        if term is not None:
+            change = Change.FACTOR if _is_multiple(term, other) else Change.TERM
+            yield change, (*path, k), other, term, term
+
+
+def _is_multiple(term: Node, other: Node) -> bool:
+    """Whether two terms differ by a number alone."""
+    try:
+        return list(terms_of(Div(term, other)).coefficients) == [()]
+    except TooManyTerms:
+        return False
+
+
+def _gaps(plan: Plan, index: int) -> Iterator[Node]:
+    """What a cell lacks, in our names."""
+    if isinstance(plan, Equal):
+        yield plan.gap(index)
+    elif isinstance(plan, Multiple):
+        yield from plan.gaps(index)
+
+
+def _linear_places(formula: Node) -> Iterator[tuple[Path, Node, Node]]:
+    """Sums, and the whole, that the formula depends on linearly; each with its factor."""
+
+    def places(node: Node, path: Path, slope: Node) -> Iterator[tuple[Path, Node, Node]]:
+        if isinstance(node, Add) or not path:
+            yield path, node, slope
+        for k, child in enumerate(children(node)):
+            if isinstance(node, Add):
+                yield from places(child, (*path, k), slope)
+            elif isinstance(node, Neg):
+                yield from places(child, (*path, k), Neg(slope))
+            elif isinstance(node, Div) and k == 0:
+                yield from places(child, (*path, k), Div(slope, node.denominator))
+            elif isinstance(node, Mul):
+                rest = (*node.factors[:k], *node.factors[k + 1 :])
+                yield from places(child, (*path, k), Mul((slope, *rest)))
+
+    yield from places(formula, (), ONE)
+
+
+def _single_term(plan: Plan, gap: Node, slope: Node, beside: Node) -> Node | None:
+    """The gap over the slope, and a term that is there, if they make one short term in the document's symbols."""
+    try:
+        terms = terms_of(total([Div(gap, plan.normal(slope)), plan.normal(beside)])).coefficients
+    except TooManyTerms:
+        return None
+    if len(terms) != 1:
+        return None
+    ((key, (real, imaginary)),) = terms.items()
+    if imaginary or not all(NAME.match(name) for name, _ in key):
+        return None
+    above = [raised(Sym(name), power) for name, power in key if power > 0]
+    below = [raised(Sym(name), -power) for name, power in key if power < 0]
+    top = product([number(abs(real).numerator), *above])
+    bottom = product([number(real.denominator), *below])
+    term = top if bottom == ONE else Div(top, bottom)
+    printed = plan.bench.theirs(plan.row, Neg(term) if real < 0 else term)
+    known = {*plan.meanings, *CONSTANTS}
+    return printed if size(printed) <= _LARGEST_TERM and symbols(printed) <= known else None

@@ -1,0 +1,268 @@
+"""What is wrong with a printed formula: the smallest edit that puts it right.
+
+Edits are tried in a prime field at two points; what passes is proved by both engines. First exchanges of rows and
+columns, then single edits from the smallest kind to the largest, then a term that is missing, then pairs of small
+edits. Where nothing is found, the difference is all that can be said.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+from satsym.auditing.diagnosis.edits import Change, Edit, repeated_edits, single_edits
+from satsym.auditing.diagnosis.lacking import mended_terms
+from satsym.auditing.diagnosis.rewriting import over_symbol, times_symbol
+from satsym.auditing.judge.equations import Equal
+from satsym.auditing.judge.plan import Never, Plan
+from satsym.formula import field
+from satsym.formula.bound import BoundPoint
+from satsym.formula.tree import Node, Sym, replaced
+from satsym.symbolic.lookup.formulas import NotAFormula
+
+PAIRS = 50
+"""Pairs of edits that are proved, of those that pass at two points."""
+_MOST_ENTRIES = 6
+
+
+@dataclass(frozen=True)
+class Remedy:
+    """Edits that put a printed thing right together.
+
+    Attributes
+    ----------
+    edits
+        Each with the number of its cell.
+    cells
+        All cells after the edits.
+    exchange
+        Said instead of edits: which rows, columns or entries are exchanged.
+    """
+
+    edits: tuple[tuple[int, Edit], ...]
+    cells: tuple[Node, ...]
+    exchange: str = ""
+
+
+def remedy(plan: Plan) -> Remedy | None:
+    """The smallest edits that put a printed thing right; ``None`` if none were found."""
+    if isinstance(plan, Never):
+        return None
+    try:
+        return _remedy(plan)
+    except NotAFormula:
+        return None
+
+
+def _remedy(plan: Plan) -> Remedy | None:
+    wrong = _wrong_cells(plan)
+    if len(wrong) > 1:
+        found = _exchanged(plan)
+        if found is not None:
+            return found
+        if isinstance(plan, Equal):
+            return _entry_by_entry(plan, wrong)
+    cells = wrong if isinstance(plan, Equal) else range(len(plan.printed))
+    return (
+        _single(plan, cells)
+        or _first(plan, mended_terms(plan, cells))
+        or _entry(plan, cells)
+        or _repeated(plan, cells)
+        or _pair(plan, cells)
+        or _edit_and_factor(plan, cells)
+    )
+
+
+def _wrong_cells(plan: Plan) -> list[int]:
+    if isinstance(plan, Equal):
+        return [i for i, cell in enumerate(plan.printed) if not plan.cell_holds(i, cell)]
+    return list(range(len(plan.printed)))
+
+
+def _with(plan: Plan, index: int, node: Node) -> tuple[Node, ...]:
+    return (*plan.printed[:index], node, *plan.printed[index + 1 :])
+
+
+def _edits(plan: Plan, index: int) -> list[Edit]:
+    return single_edits(plan.printed[index], plan.bench.scope(plan.row), plan.useful.__contains__)
+
+
+def _first(plan: Plan, edits: Iterable[tuple[int, Edit]]) -> Remedy | None:
+    """The first edit that puts everything right."""
+    for i, edit in edits:
+        cells = _with(plan, i, edit.result)
+        if plan.may_hold(cells) and plan.is_right(cells):
+            return Remedy(((i, edit),), cells)
+    return None
+
+
+def _single(plan: Plan, indices: Sequence[int]) -> Remedy | None:
+    edits = [(i, edit) for i in indices for edit in _edits(plan, i)]
+    return _first(plan, sorted(edits, key=lambda entry: entry[1].change))
+
+
+def _repeated(plan: Plan, indices: Sequence[int]) -> Remedy | None:
+    """The same slip at several places of one cell."""
+    letters, usable = plan.bench.scope(plan.row), plan.useful.__contains__
+    return _first(plan, ((i, edit) for i in indices for edit in repeated_edits(plan.printed[i], letters, usable)))
+
+
+def _entry(plan: Plan, indices: Sequence[int]) -> Remedy | None:
+    """The one wrong entry of a matrix, replaced as a whole."""
+    if not isinstance(plan, Equal) or not isinstance(plan.row.printed, tuple) or len(indices) != 1:
+        return None
+    edit = _whole(plan, indices[0])
+    return Remedy(((indices[0], edit),), _with(plan, indices[0], edit.result))
+
+
+def _whole(plan: Equal, index: int) -> Edit:
+    aim = plan.bench.theirs(plan.row, plan.targets[index])
+    return Edit(Change.ENTRY, (), plan.printed[index], aim, aim)
+
+
+def _pair(plan: Plan, indices: Sequence[int]) -> Remedy | None:
+    """Two edits whose effects add up to what is lacking, as those of different terms do.
+
+    The effect of each is measured by itself, so that partners are looked up instead of tried.
+    """
+    try:
+        points = plan.points
+        lacking = [
+            [-values[0] for values in plan.residuals(point, plan.printed) if len(values) == 1] for point in points
+        ]
+    except (field.NoValue, field.Undecided):
+        return None
+    if not lacking[0]:
+        return None
+    effects: list[tuple[int, Edit, tuple[int, ...]]] = []
+    for i in indices:
+        for edit in _edits(plan, i):
+            effect = _effect(plan, points, lacking, _with(plan, i, edit.result))
+            if effect is not None and any(effect):
+                effects.append((i, edit, effect))
+    partners: dict[tuple[int, ...], list[tuple[int, Edit]]] = {}
+    for i, edit, effect in effects:
+        partners.setdefault(effect, []).append((i, edit))
+    found: list[tuple[int, tuple[tuple[int, Edit], tuple[int, Edit]]]] = []
+    for wanted in zip(*lacking, strict=True):
+        for i, first, effect in effects:
+            missing = tuple((w - e) % field.PRIME for w, e in zip(wanted, effect, strict=True))
+            for k, second in partners.get(missing, ()):
+                if (i, first.path) < (k, second.path) and (i != k or second.path[: len(first.path)] != first.path):
+                    found.append((first.change + second.change, ((i, first), (k, second))))
+    for _, pair in sorted(found, key=lambda entry: entry[0])[:PAIRS]:
+        cells = plan.printed
+        for i, edit in pair:
+            cells = (*cells[:i], replaced(cells[i], edit.path, edit.new), *cells[i + 1 :])
+        if plan.may_hold(cells) and plan.is_right(cells):
+            return Remedy(pair, cells)
+    return None
+
+
+def _effect(
+    plan: Plan, points: Sequence[BoundPoint], lacking: Sequence[Sequence[int]], cells: Sequence[Node]
+) -> tuple[int, ...] | None:
+    """By how much an edit changes the difference, at each point."""
+    try:
+        return tuple(
+            (next(plan.residuals(point, cells))[0] + before[0]) % field.PRIME
+            for point, before in zip(points, lacking, strict=True)
+        )
+    except field.NoValue:
+        return None
+
+
+def _edit_and_factor(plan: Plan, indices: Sequence[int]) -> Remedy | None:
+    """An edit of one cell after which nothing but a symbol is lacking, as a factor or below the line.
+
+    The symbol is told from the quotient of what the cell ought to be and what it is after the edit.
+    """
+    if not isinstance(plan, Equal) or len(indices) != 1:
+        return None
+    (i,) = indices
+    try:
+        aims = [point.base.value(plan.targets[i]) for point in plan.points]
+        known = {name: [point.symbol(name) for point in plan.points] for name in sorted(plan.useful)}
+    except (field.NoValue, field.Undecided):
+        return None
+    for edit in sorted(_edits(plan, i), key=lambda edit: edit.change):
+        try:
+            values = [point.value(edit.result) for point in plan.points]
+        except field.NoValue:
+            continue
+        for name, sizes in known.items():
+            factored = _missing_factor(aims, values, sizes)
+            right = factored(edit.result, Sym(name)) if factored else edit.result
+            cells = _with(plan, i, right)
+            if factored and plan.is_right(cells):
+                second = Edit(Change.MISSING_FACTOR, (), edit.result, right, right)
+                return Remedy(((i, edit), (i, second)), cells)
+    return None
+
+
+def _missing_factor(
+    aims: Sequence[int], values: Sequence[int], sizes: Sequence[int]
+) -> Callable[[Node, Sym], Node] | None:
+    """How values become what they ought to be with one more factor of these sizes, point by point; if they do."""
+    found = list(zip(aims, values, sizes, strict=True))
+    if all((aim - value * factor) % field.PRIME == 0 for aim, value, factor in found):
+        return times_symbol
+    if all((aim * factor - value) % field.PRIME == 0 for aim, value, factor in found):
+        return over_symbol
+    return None
+
+
+def _entry_by_entry(plan: Equal, wrong: Sequence[int]) -> Remedy | None:
+    """Wrong entries put right one by one: by an edit, or by what ought to stand there."""
+    if len(wrong) > _MOST_ENTRIES:
+        return None
+    edits: list[tuple[int, Edit]] = []
+    for i in wrong:
+        found = next(
+            (
+                edit
+                for edit in _edits(plan, i)
+                if plan.alone(i).may_hold((edit.result,)) and plan.cell_holds(i, edit.result)
+            ),
+            None,
+        )
+        if found is None:
+            found = _whole(plan, i)
+        edits.append((i, found))
+    fixed = dict(edits)
+    return Remedy(tuple(edits), tuple(fixed[i].result if i in fixed else cell for i, cell in enumerate(plan.printed)))
+
+
+def _exchanged(plan: Plan) -> Remedy | None:
+    """Two rows, columns or entries of a matrix in each other's place, or rows for columns."""
+    printed = plan.row.printed
+    if not isinstance(printed, tuple):
+        return None
+    m, n = len(printed), len(printed[0])
+    for said, order in _exchanges(m, n):
+        cells = tuple(plan.printed[k] for k in order)
+        if cells != plan.printed and plan.may_hold(cells) and plan.is_right(cells):
+            return Remedy((), cells, said)
+    return None
+
+
+def _exchanges(m: int, n: int) -> Iterator[tuple[str, list[int]]]:
+    place = [[i * n + j for j in range(n)] for i in range(m)]
+    for i in range(m):
+        for k in range(i + 1, m):
+            rows = list(place)
+            rows[i], rows[k] = rows[k], rows[i]
+            yield f"rows {i + 1} and {k + 1} are exchanged", [e for row in rows for e in row]
+    for j in range(n):
+        for k in range(j + 1, n):
+            order = list(range(n))
+            order[j], order[k] = order[k], order[j]
+            yield f"columns {j + 1} and {k + 1} are exchanged", [row[c] for row in place for c in order]
+    if m == n:
+        yield "rows stand for columns", [place[j][i] for i in range(m) for j in range(n)]
+    for a in range(m * n):
+        for b in range(a + 1, m * n):
+            order = list(range(m * n))
+            order[a], order[b] = b, a
+            one, other = (f"({k // n + 1}, {k % n + 1})" for k in (a, b))
+            yield f"the entries {one} and {other} are exchanged", order

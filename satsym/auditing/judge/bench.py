@@ -1,0 +1,284 @@
+"""Both engines, set up for a row: names, addresses and printed rows as each of them needs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, TypeAlias
+
+from satsym.auditing.ledger import documents
+from satsym.auditing.ledger.contents import Ledger, Row
+from satsym.auditing.ledger.scopes import Scope, self_named
+from satsym.auditing.ledger.vocabulary import is_address
+from satsym.formula.budget import Allowance, OverBudget
+from satsym.formula.calculus import Calculus
+from satsym.formula.evaluation import Engine
+from satsym.formula.tree import Equality, Node, Sym, Text, substituted, symbols, walk
+from satsym.formula.values import Matrix, Relation, Sources, Value
+from satsym.formula.writing import written
+from satsym.status import BadInput
+from satsym.symbolic.lookup import library
+from satsym.symbolic.lookup.library import Names
+from satsym.symbolic.lookup.operations import Sympy
+from satsym.wording import shown, suggestion
+
+Formula: TypeAlias = Node | Equality | tuple[tuple[Node, ...], ...]
+
+Replacements: TypeAlias = Mapping[str, Formula]
+"""Key of a row -> what is taken instead of what it prints, in our names."""
+
+
+@dataclass(frozen=True)
+class Both:
+    """A value by each engine."""
+
+    trees: Value
+    exact: Value
+
+
+@dataclass(eq=False)
+class Bench:
+    """What rows of one ledger are judged with."""
+
+    ledger: Ledger
+
+    def __post_init__(self) -> None:
+        self.allowance = Allowance(counted=not documents.comes_with_satsym(self.ledger.path))
+        self.rows = {row.key: row for row in self.ledger.rows}
+        self._meanings: dict[str, Mapping[str, Node]] = {}
+        self._derived: dict[tuple[str, str], Both] = {}
+        self._targets: dict[str, Both] = {}
+
+    def scope(self, row: Row) -> Scope:
+        """The notation of a row."""
+        return self.ledger.scopes[row.table.scope]
+
+    @cached_property
+    def models(self) -> tuple[str, ...]:
+        """Derivations that the ledger names, that of the document first."""
+        found = dict.fromkeys([self.ledger.document.model] if self.ledger.document.model else [])
+        formulas = [f for row in self.ledger.rows for f in (row.holds, row.follows)]
+        trees = [side for formula in formulas for side in _sides(formula)]
+        trees += [meaning for scope in self.ledger.scopes.values() for meaning in scope.meanings.values()]
+        for tree in trees:
+            for _, part in walk(tree):
+                if isinstance(part, Text) and is_address(part.value):
+                    found[part.value.partition(":")[0]] = None
+        return tuple(found)
+
+    @cached_property
+    def names(self) -> Names:
+        """The names that rows may use: one symbol for each, in all rows."""
+        own = dict.fromkeys(self_named(self.ledger.scopes), False)
+        return library.names(self.models, own | {n: table.positive for n, table in self.ledger.symbols.items()})
+
+    @cached_property
+    def dimensions(self) -> Any:
+        """Dimensions of all names that have one."""
+        return library.dimensions_of(self.models, {name: table.unit for name, table in self.ledger.symbols.items()})
+
+    def plain_expression(self, formula: Node) -> Any:
+        """A formula in our names as an expression of sympy's, in which definitions keep their names.
+
+        Raises
+        ------
+        NotAFormula
+            If it has addresses or matrices in it.
+        """
+        return library.from_tree(formula, lambda name: library.named(name, self.names))
+
+    def target(self, row: Row) -> Both:
+        """What a row is held against."""
+        formula = row.holds
+        assert formula is not None
+        if row.key not in self._targets:
+            self._targets[row.key] = self._both(row, lambda engine: engine.value(formula), self._ours)
+        return self._targets[row.key]
+
+    def same_target(self, one: Row, other: Row) -> bool:
+        """Whether two rows are held against the same thing, by whatever name."""
+        if any(row.holds is None or row.printed is None for row in (one, other)):
+            return False
+        return one.table.holds == other.table.holds or bool(
+            (shared := self._telling(one)) and shared == self._telling(other)
+        )
+
+    def _telling(self, row: Row) -> str:
+        """The target as text, if it is particular enough that no other thing is likely to be the same.
+
+        A general statement, whose symbols stand for whole derived things, prints none of them.
+        """
+        meanings = self.scope(row).meanings
+        used = {name for cell in _cells(row.printed) for name in symbols(cell) if name in meanings}
+        if any(isinstance(part, Text) for name in used for _, part in walk(meanings[name])):
+            return ""
+        found = self.target(row)
+        trees, exact = found.trees, found.exact
+        if isinstance(trees, Relation) and isinstance(trees.lhs, Sym):
+            trees, exact = trees.rhs, exact.rhs
+        names = symbols(trees) if isinstance(trees, Node) else set()
+        return str(exact) if len(names) > 1 else ""
+
+    def follows(self, row: Row, replacements: Replacements | None = None) -> Both:
+        """What follows from the rows it is said to follow from."""
+        formula = row.follows
+        assert formula is not None
+        return self._both(row, lambda engine: engine.value(formula), self._theirs, replacements or {})
+
+    def printed(self, row: Row, formula: Node) -> Both:
+        """A part of what a row prints."""
+        ours = self.scope(row).ours(formula)
+        return self._both(row, lambda engine: engine.value(ours), self._ours)
+
+    def meanings(self, row: Row) -> Mapping[str, Node]:
+        """The document's symbols as trees without addresses; those that are matrices are left out."""
+        known = self._meanings.get(row.table.scope)
+        if known is not None:
+            return known
+        found: dict[str, Node] = {}
+        engine = self._engine(row, Calculus, self._ours, {})
+        for name, meaning in self.scope(row).meanings.items():
+            try:
+                value = engine.value(meaning)
+            except OverBudget:
+                raise
+            except BadInput:
+                continue
+            if not isinstance(value, Matrix | Relation):
+                found[name] = value
+        self._meanings[row.table.scope] = found
+        return found
+
+    def theirs(self, row: Row, formula: Node) -> Node:
+        """A formula of ours in the document's symbols, where it has one for what we name; those of the row first."""
+        inside = {name for side in _cells(row.printed) for name in symbols(side)}
+        names: dict[str, Node] = {}
+        meanings = self.meanings(row)
+        for name in sorted(meanings, key=lambda name: name not in inside):
+            meaning = meanings[name]
+            if isinstance(meaning, Sym):
+                names.setdefault(meaning.name, Sym(name))
+        return substituted(formula, names)
+
+    def solved(self, row: Row, relation: Both, name: str) -> Both | None:
+        """An equation solved for a symbol it is linear in; ``None`` if it is not, or does not have it."""
+        trees, exact = self.engines(row)
+        if name not in symbols(relation.trees.lhs) | symbols(relation.trees.rhs):
+            return None
+        try:
+            return Both(trees.solution(relation.trees, name), exact.solution(relation.exact, name))
+        except OverBudget:
+            raise
+        except BadInput:
+            return None
+
+    def engines(self, row: Row) -> tuple[Calculus, Sympy]:
+        """Both engines, for formulas in our names."""
+        return self._engine(row, Calculus, self._ours, {}), self._engine(row, Sympy, self._ours, {})
+
+    def unused(self) -> str:
+        """A name that no formula has."""
+        taken = {*self.names.symbols, *(name for scope in self.ledger.scopes.values() for name in scope.meanings)}
+        return next(name for name in ("s", *(f"s{i}" for i in range(1000))) if name not in taken)
+
+    def _both(
+        self,
+        row: Row,
+        evaluate: Callable[[Engine], Value],
+        naming: Callable[..., Any],
+        replacements: Replacements | None = None,
+    ) -> Both:
+        trees, exact = (self._engine(row, kind, naming, replacements or {}) for kind in (Calculus, Sympy))
+        return Both(evaluate(trees), evaluate(exact))
+
+    def _engine(self, row: Row, kind: type, naming: Callable[..., Any], replacements: Replacements) -> Any:
+        by_trees = kind is Calculus
+        shared = self.names
+
+        def name(text: str) -> Any:
+            return naming(row, text, kind)
+
+        def address(text: str) -> Any:
+            found = self._at(row, text)
+            return found.trees if by_trees else found.exact
+
+        def other(key: str) -> Any:
+            return self._of_row(self.rows[key], kind, replacements.get(key))
+
+        def symbol(text: str) -> str:
+            return self._symbol_meant(row, text) if naming == self._theirs else text
+
+        sources: Sources[Any] = Sources(name, address, other, symbol)
+        return Calculus(sources, shared.positive) if by_trees else Sympy(sources)
+
+    def _at(self, row: Row, address: str) -> Both:
+        """A derived thing in the order of the document, looked up once for each notation."""
+        key = row.table.scope, address
+        if key not in self._derived:
+            found = library.at(address, self.names, lambda entries: self._order(row, entries))
+            self._derived[key] = Both(library.in_trees(found), found)
+        return self._derived[key]
+
+    def _ours(self, row: Row, name: str, kind: type) -> Any:
+        shared = self.names
+        if name not in shared.symbols and name not in shared.definitions and name not in ("I", "pi"):
+            raise BadInput(
+                f"{shown(name)} is no name of {' or '.join(self.models) or 'a derivation'}; "
+                f"{suggestion(name, sorted(shared.symbols))} (a symbol of your own: [symbols])"
+            )
+        return shared.tree(name) if kind is Calculus else shared.expression(name)
+
+    def _theirs(self, row: Row, name: str, kind: type) -> Any:
+        meaning = self.scope(row).meanings.get(name)
+        if meaning is None:
+            return self._ours(row, name, kind)
+        return self._engine(row, kind, self._ours, {}).value(meaning)
+
+    def _symbol_meant(self, row: Row, name: str) -> str:
+        """The symbol of ours that a symbol of the document means."""
+        meaning = self.scope(row).meanings.get(name, Sym(name))
+        if not isinstance(meaning, Sym):
+            raise BadInput(f"{shown(name)} means {written(meaning)}: differentiate by, or replace, what is one symbol")
+        return meaning.name
+
+    def _of_row(self, row: Row, kind: type, instead: Formula | None) -> Any:
+        engine = self._engine(row, kind, self._ours, {})
+        formula = instead if instead is not None else in_ours(row.printed, self.scope(row))
+        if isinstance(formula, tuple):
+            return Matrix(tuple(tuple(engine.scalar(entry) for entry in line) for line in formula))
+        if isinstance(formula, Equality) and isinstance(engine.value(formula.rhs), Matrix):
+            return engine.value(formula.rhs)
+        return engine.value(formula)
+
+    def _order(self, row: Row, entries: tuple[str, ...]) -> tuple[int, ...]:
+        """Places of our names in the document's order, where its notation states one for all of them."""
+        scope = self.scope(row)
+        for listed in scope.orders.values():
+            places = []
+            for symbol in listed:
+                inside = [name for name in entries if name in symbols(scope.meanings[symbol])]
+                places += [entries.index(name) for name in inside] if len(inside) == 1 else []
+            if sorted(places) == list(range(len(entries))):
+                return tuple(places)
+        return tuple(range(len(entries)))
+
+
+def in_ours(formula: Formula | None, scope: Scope) -> Formula:
+    """A printed formula in our names."""
+    if isinstance(formula, tuple):
+        return tuple(tuple(scope.ours(entry) for entry in line) for line in formula)
+    if isinstance(formula, Equality):
+        return Equality(scope.ours(formula.lhs), scope.ours(formula.rhs))
+    assert formula is not None
+    return scope.ours(formula)
+
+
+def _cells(formula: Formula | None) -> list[Node]:
+    return [cell for line in formula for cell in line] if isinstance(formula, tuple) else _sides(formula)
+
+
+def _sides(formula: Node | Equality | None) -> list[Node]:
+    if formula is None:
+        return []
+    return [formula.lhs, formula.rhs] if isinstance(formula, Equality) else [formula]

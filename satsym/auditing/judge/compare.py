@@ -1,0 +1,99 @@
+"""How what is printed is compared with what it is held against: which plan fits the two."""
+
+from __future__ import annotations
+
+from satsym.auditing.judge.bench import Bench, Both, Formula
+from satsym.auditing.judge.equations import Equal, Multiple
+from satsym.auditing.judge.matrices import EqualMatrix, SameRoots, Spans
+from satsym.auditing.judge.plan import Never, Plan
+from satsym.auditing.ledger.contents import Row
+from satsym.formula.bound import unbound
+from satsym.formula.tree import ZERO, Equality, Node, Sym, symbols
+from satsym.formula.values import Kernel, Matrix, Relation, Roots
+from satsym.status import BadInput
+from satsym.symbolic.lookup import formulas
+
+
+def plans(bench: Bench, row: Row, printed: Formula, target: Both) -> list[Plan]:
+    """How a printed formula may be compared with its target: it is right if one of the plans holds.
+
+    Raises
+    ------
+    BadInput
+        If the two are of kinds that cannot be compared.
+    """
+    trees = target.trees
+    if isinstance(printed, tuple):
+        return [_of_matrix(bench, row, printed, target)]
+    if isinstance(trees, Roots | Kernel):
+        raise BadInput('eigenvalues(...) and nullspace(...) are compared with a list: kind = "matrix"')
+    if isinstance(trees, Matrix):
+        side = printed.rhs if isinstance(printed, Equality) and isinstance(printed.lhs, Sym) else printed
+        if isinstance(side, Equality):
+            raise BadInput("an equation between matrices: print the matrix of one side")
+        return [EqualMatrix(bench, row, side, target)]
+    if isinstance(trees, Relation):
+        return _of_relation(bench, row, printed, target)
+    if not isinstance(printed, Equality):
+        return [Equal(bench, row, (printed,), ("",), (target,))]
+    if ZERO in (printed.lhs, printed.rhs):
+        return [Multiple(bench, row, printed, Both(Relation(trees, ZERO), Relation(target.exact, formulas.ZERO)))]
+    if _is_label(printed):
+        return [Equal(bench, row, (printed.rhs,), ("",), (target,))]
+    raise BadInput("an equation of two expressions is held against one expression; hold it against an equation")
+
+
+def _is_label(printed: Equality) -> bool:
+    """Whether the left-hand side only names what is on the right."""
+    return isinstance(printed.lhs, Sym) and printed.lhs.name not in symbols(printed.rhs)
+
+
+def _of_relation(bench: Bench, row: Row, printed: Node | Equality, target: Both) -> list[Plan]:
+    relation = target.trees
+    lhs, rhs = (Both(getattr(relation, name), getattr(target.exact, name)) for name in ("lhs", "rhs"))
+    if not isinstance(printed, Equality):
+        if relation.lhs == ZERO:
+            return [Multiple(bench, row, Equality(printed, ZERO), target)]
+        return [Equal(bench, row, (printed,), ("",), (rhs,))]
+    meanings = bench.meanings(row)
+    if unbound(printed.lhs, meanings) | unbound(printed.rhs, meanings):
+        raise BadInput("a symbol that means a matrix stands in an equation between expressions")
+    if ZERO not in (relation.lhs, relation.rhs):
+        for mine, other in ((printed.lhs, printed.rhs), (printed.rhs, printed.lhs)):
+            if Equal(bench, row, (mine,), ("",), (lhs,)).may_hold((mine,)):
+                return [Equal(bench, row, (other,), ("",), (rhs,))]
+    found: list[Plan] = [Multiple(bench, row, printed, target)]
+    if isinstance(printed.lhs, Sym) and _is_label(printed):
+        meaning = bench.scope(row).meanings[printed.lhs.name]
+        if isinstance(meaning, Sym):
+            solved = bench.solved(row, target, meaning.name)
+            return found if solved is None else [Equal(bench, row, (printed.rhs,), ("",), (solved,)), *found]
+        defined = Equal(bench, row, (printed.lhs,), ("",), (rhs,)).may_hold((printed.lhs,))
+        if isinstance(relation.lhs, Sym) and defined:  # the notation defines the symbol as the equation does
+            found.append(Equal(bench, row, (printed.rhs,), ("",), (rhs,)))
+    return found
+
+
+def _of_matrix(bench: Bench, row: Row, printed: tuple[tuple[Node, ...], ...], target: Both) -> Plan:
+    cells = [entry for line in printed for entry in line]
+    m, n = len(printed), len(printed[0])
+    labels = [f"{i}, {j}" for i in range(1, m + 1) for j in range(1, n + 1)]
+    trees = target.trees
+    if isinstance(trees, Roots):
+        if len(cells) != trees.of.shape[0]:
+            roots = SameRoots(bench, row, cells, target).targets
+            return Never(bench, row, cells, labels, roots, f"{len(cells)} are printed, there are {len(roots)}")
+        return SameRoots(bench, row, cells, target)
+    if isinstance(trees, Kernel):
+        return Spans(bench, row, cells, labels, n, target)
+    if not isinstance(trees, Matrix):
+        raise BadInput("a matrix is held against an expression; hold it against a matrix")
+    targets = [
+        Both(one, other)
+        for rows in zip(trees.rows, target.exact.rows, strict=True)
+        for one, other in zip(*rows, strict=True)
+    ]
+    if trees.shape != (m, n):
+        why = f"{m} by {n} is printed, it is {trees.shape[0]} by {trees.shape[1]}"
+        return Never(bench, row, cells, labels, [formulas.to_tree(t.exact) for t in targets], why)
+    return Equal(bench, row, cells, labels, targets)

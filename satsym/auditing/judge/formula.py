@@ -1,0 +1,95 @@
+"""Equations and matrices: compared with what is derived, diagnosed where they differ, their dimensions checked."""
+
+from __future__ import annotations
+
+from satsym.auditing import sentences
+from satsym.auditing.diagnosis.smallest_edit import remedy
+from satsym.auditing.judge.bench import Bench, Formula, in_ours
+from satsym.auditing.judge.compare import plans
+from satsym.auditing.judge.equations import Equal, Multiple
+from satsym.auditing.judge.plan import Never, Plan
+from satsym.auditing.ledger.contents import Row
+from satsym.auditing.outcome import Outcome
+from satsym.formula.tree import Equality, Node
+from satsym.formula.writing import written
+from satsym.symbolic.lookup import library
+
+
+def judge(bench: Bench, row: Row) -> Outcome:
+    """Judge an equation or a matrix by itself."""
+    assert row.printed is not None
+    ways = plans(bench, row, row.printed, bench.target(row))
+    fault = dimension_fault(bench, row)
+    for compared in ways:
+        if compared.is_right(compared.printed):
+            derived = shown(compared, compared.printed)
+            if fault and not _target_fault(bench, compared):
+                return Outcome(row, True, derived, compared, unit=True, remark=sentences.inhomogeneous(fault))
+            return Outcome(row, True, derived, compared)
+    compared, found = next(((way, fix) for way in ways if (fix := remedy(way)) is not None), (ways[0], None))
+    derived = shown(compared, found.cells if found else None)
+    why = compared.why if isinstance(compared, Never) else ""
+    remark = sentences.wrong_formula(compared.labels, found, "" if found else compared.difference(), why)
+    if fault:
+        remark += sentences.also_inhomogeneous(fault)
+    return Outcome(row, False, derived, compared, found, remark=remark)
+
+
+def shown(compared: Plan, cells: tuple[Node, ...] | None) -> str:
+    """The right formula as text: that of the cells, else the target in the document's symbols."""
+    row = compared.row
+    if cells is None:
+        cells = tuple(compared.bench.theirs(row, target) for target in compared.targets)
+        if len(cells) != len(compared.printed):
+            return ", ".join(map(written, cells))
+    texts = [written(cell) for cell in cells]
+    if isinstance(row.printed, tuple):
+        columns = len(row.printed[0])
+        lines = [texts[i : i + columns] for i in range(0, len(texts), columns)]
+        return "[" + ", ".join(f"[{', '.join(line)}]" for line in lines) + "]"
+    if isinstance(row.printed, Equality) and len(texts) == 1:
+        sides = row.printed
+        reversed_ = texts and sides.rhs not in compared.printed
+        return f"{texts[0]} = {written(sides.rhs)}" if reversed_ else f"{written(sides.lhs)} = {texts[0]}"
+    return " = ".join(texts)
+
+
+def corrected(outcome: Outcome) -> Formula:
+    """What the row ought to print, in our names."""
+    compared, row = outcome.plan, outcome.row
+    assert compared is not None
+    scope = compared.bench.scope(row)
+    cells = tuple(map(scope.ours, outcome.remedy.cells)) if outcome.remedy else tuple(compared.targets)
+    if isinstance(row.printed, tuple):
+        columns = len(row.printed[0])
+        return tuple(cells[i : i + columns] for i in range(0, len(cells), columns))
+    if isinstance(row.printed, Equality):
+        if isinstance(compared, Multiple):
+            return Equality(cells[0], cells[1])
+        lhs = scope.ours(row.printed.lhs)
+        return Equality(lhs, cells[0])
+    return cells[0]
+
+
+def dimension_fault(bench: Bench, row: Row) -> str:
+    """Why a printed formula is not homogeneous; empty where it is, or where that is not known."""
+    formula = in_ours(row.printed, bench.scope(row))
+    known = bench.dimensions
+    if isinstance(formula, tuple):
+        return ""  # the entries of a matrix have dimensions of their own
+    sides = (formula.lhs, formula.rhs) if isinstance(formula, Equality) else (formula,)
+    try:
+        exact = [bench.plain_expression(side) for side in sides]
+    except library.NotAFormula:
+        return ""
+    return library.inhomogeneity(exact, known)
+
+
+def _target_fault(bench: Bench, compared: Plan) -> bool:
+    """Whether what is held against is not homogeneous either, as where a length was put to one."""
+    if not isinstance(compared, Equal | Multiple):
+        return True
+    exact = [bench.plain_expression(target) for target in compared.targets]
+    return any(library.inhomogeneity([side], bench.dimensions) for side in exact) or bool(
+        isinstance(compared, Multiple) and library.inhomogeneity(exact, bench.dimensions)
+    )

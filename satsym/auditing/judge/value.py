@@ -1,0 +1,93 @@
+"""Numbers and units: recomputed with what the document states, and compared with the printed digits."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from satsym.auditing import quantities, sentences
+from satsym.auditing.judge.bench import Bench
+from satsym.auditing.ledger.contents import Row
+from satsym.auditing.outcome import Outcome
+from satsym.formula.tree import Equality, Node
+from satsym.formula.values import Kernel, Matrix, Relation, Roots
+from satsym.status import BadInput
+from satsym.symbolic.lookup import formulas, library
+
+_ROUNDING = 1e-12
+_ZEROS = 6
+"""Digits that claim nothing and are written all the same, before a power of ten is."""
+
+
+def number(bench: Bench, row: Row) -> Outcome:
+    """Judge a printed number."""
+    printed = quantities.printed_number(str(row.table.printed))
+    tree = row.holds
+    assert tree is not None
+    if quantities.is_numeric(tree):
+        return _measured(bench, row, printed, tree)
+    return _exact(bench, row, printed)
+
+
+def _measured(bench: Bench, row: Row, printed: quantities.PrintedNumber, tree: Node | Equality) -> Outcome:
+    assert not isinstance(tree, Equality)
+    inputs = {**bench.ledger.inputs, **row.table.inputs}
+    found = quantities.evaluated(tree, inputs)
+    stated = quantities.in_base_units(f"1 {printed.unit}" if printed.unit != "1" else "1")
+    if dict(stated.dimension) != dict(found.dimension):
+        wanted = library.written_dimension(found.dimension)
+        derived = f"{found.value:.6g} {quantities.base_unit(found.dimension)}"
+        remark = sentences.wrong_unit(library.written_dimension(stated.dimension), wanted)
+        return Outcome(row, False, derived, unit=True, remark=remark)
+    value = found.value / quantities.scale(printed.unit)
+    unit = "" if printed.unit == "1" else f" {printed.unit}"
+    derived = f"{_rounded(value, printed)}{unit}"
+    right = abs(value - float(printed.value)) <= float(printed.half_unit) * (1 + _ROUNDING)
+    evidence = {"recomputed": value, "allowed": float(printed.half_unit)}
+    gap = value - float(printed.value)
+    cut_off = value * gap > 0 and abs(gap) < 2 * float(printed.half_unit)
+    remark = "" if right else sentences.wrong_number(derived, cut_off)
+    return Outcome(row, right, derived, remark=remark, evidence=evidence)
+
+
+def _exact(bench: Bench, row: Row, printed: quantities.PrintedNumber) -> Outcome:
+    target = bench.target(row)
+    if isinstance(target.exact, Matrix | Relation | Roots | Kernel):
+        raise BadInput("a number is held against a matrix or an equation; hold it against an expression")
+    by_sympy, by_trees = (
+        formulas.as_number(value) for value in (target.exact, formulas.from_tree(target.trees, bench.names.expression))
+    )
+    if by_sympy is None or by_sympy != by_trees:
+        raise BadInput(f"a number is held against {formulas.text(target.exact)}, which is none")
+    right = abs(by_sympy - printed.value) <= printed.half_unit
+    derived = str(by_sympy)
+    return Outcome(row, right, derived, remark="" if right else sentences.wrong_number(derived, False))
+
+
+def _rounded(value: float, printed: quantities.PrintedNumber) -> str:
+    """The value with one digit more than is printed."""
+    step = printed.half_unit * 2 / 10
+    if step >= 1:
+        digits = len(str(int(abs(value) / step)))
+        return f"{value:.0f}" if digits + _ZEROS >= len(str(int(abs(value)))) else f"{value:.{digits}g}"
+    places = 0
+    while Fraction(1, 10**places) > step:
+        places += 1
+    return f"{value:.{places}f}" if places < 12 else f"{value:.6g}"
+
+
+def unit(bench: Bench, row: Row) -> Outcome:
+    """Judge a printed unit by its dimension."""
+    printed = {base: Fraction(power) for base, power in _dimension(str(row.table.printed)).items()}
+    assert row.holds is not None
+    assert not isinstance(row.holds, Equality)
+    found = library.dimension(bench.plain_expression(row.holds), bench.dimensions) or {}
+    derived = library.written_dimension(found)
+    right = printed == found
+    remark = "" if right else sentences.wrong_unit(library.written_dimension(printed), derived)
+    return Outcome(row, right, derived, unit=not right, remark=remark)
+
+
+def _dimension(text: str) -> dict[str, int | Fraction]:
+    from satsym import units
+
+    return dict(units.dimension(text)) if text.strip() not in ("", "1") else {}

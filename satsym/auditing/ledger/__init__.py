@@ -1,0 +1,1 @@
+"""Ledgers: what documents print, read from TOML and checked."""

@@ -1,0 +1,81 @@
+"""A ledger, read: what a document prints, and what each thing is to be held against."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from satsym.auditing.ledger.schema import DocumentTable, RowTable, SymbolTable
+from satsym.auditing.ledger.scopes import Scope
+from satsym.auditing.predicates import Finding, Question
+from satsym.formula.tree import Call, Equality, Node, Text, calls
+
+
+@dataclass(frozen=True)
+class Row:
+    """One printed thing, read.
+
+    Attributes
+    ----------
+    table
+        As the ledger has it.
+    key
+        The item and its part: how other rows name it.
+    line
+        Where it stands in the file.
+    printed
+        The printed formula in the document's symbols: an expression, an equality, rows of expressions (matrix), or
+        ``None`` where what is printed is not a formula.
+    holds
+        What it is held against, in our names; ``None`` where a predicate judges.
+    follows
+        How the document says it follows, over printed rows, in the document's symbols.
+    asks
+        The predicate that judges it.
+    """
+
+    table: RowTable
+    key: str
+    line: int
+    printed: Node | Equality | tuple[tuple[Node, ...], ...] | None = None
+    holds: Node | Equality | None = None
+    follows: Node | Equality | None = None
+    asks: Callable[[Question], Finding] | None = None
+
+    @property
+    def uses(self) -> list[str]:
+        """Keys of the rows it is said to follow from."""
+        return list(dict.fromkeys(row_key(call) for call in calls_in(self.follows) if call.function == "row"))
+
+
+@dataclass(frozen=True)
+class Ledger:
+    """What a document prints."""
+
+    path: Path
+    name: str
+    document: DocumentTable
+    scopes: Mapping[str, Scope]
+    symbols: Mapping[str, SymbolTable]
+    inputs: Mapping[str, str]
+    rows: tuple[Row, ...]
+
+    def uncovered(self) -> list[str]:
+        """Numbers of the document that have no row."""
+        covered = {row.table.item for row in self.rows}
+        return [number for number in self.document.numbers if number not in covered]
+
+
+def row_key(call: Call) -> str:
+    """The key that ``row['item']`` or ``row['item', 'part']`` names."""
+    return " ".join(argument.value for argument in call.arguments if isinstance(argument, Text))
+
+
+def calls_in(formula: Node | Equality | None) -> Iterator[Call]:
+    """Function calls in an expression or an equality."""
+    if isinstance(formula, Equality):
+        yield from calls(formula.lhs)
+        yield from calls(formula.rhs)
+    elif formula is not None:
+        yield from calls(formula)

@@ -1,0 +1,240 @@
+"""Reading a ledger: every formula of it is read and checked before anything is derived or any library loaded.
+
+The order is that of cost: first everything that is text, then the predicates, whose modules must be imported, then
+the units, for which pint is loaded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from satsym.auditing import language, predicates, quantities
+from satsym.auditing.ledger import documents, rows, schema, vocabulary
+from satsym.auditing.ledger import scopes as notation
+from satsym.auditing.ledger.contents import Ledger, Row, calls_in, row_key
+from satsym.auditing.ledger.positions import positions
+from satsym.auditing.ledger.schema import DocumentTable, RowTable, SymbolTable, WrongKey
+from satsym.auditing.ledger.scopes import Scope, WrongScope
+from satsym.formula import budget, reading
+from satsym.formula.tree import Node, substituted
+from satsym.formula.weight import Scales
+from satsym.instance import files
+from satsym.status import BadInput
+from satsym.wording import printable, shown, suggestion
+
+TABLES = ("format", "document", "scope", "symbols", "inputs", "derived", "row")
+
+
+def read(path: Path) -> Ledger:
+    """Read a ledger.
+
+    Raises
+    ------
+    BadInput
+        With one line, ``FILE:LINE: what is wrong; what to do``.
+    """
+    try:
+        tree = files.read(path)
+    except BadInput as error:
+        raise BadInput(f"{printable(str(path), 200)}: {error}") from None
+    allowance = budget.Allowance(counted=not documents.comes_with_satsym(path))
+    return allowance.within(budget.READING, lambda: _Reader(path, tree).ledger(documents.named(path)))
+
+
+class _Reader:
+    """Reads table by table; what is wrong is told with the line it stands in."""
+
+    def __init__(self, path: Path, tree: dict[str, Any]) -> None:
+        self._path = path
+        self._tree = tree
+        self._where = positions(path.read_text(encoding="utf-8-sig"))
+
+    def ledger(self, name: str) -> Ledger:
+        """The ledger, checked."""
+        self._refuse_unknown_tables()
+        document = self._document()
+        self._symbols = self._entries("symbols", _symbol)
+        self._inputs = self._entries("inputs", _input)
+        self._derived: dict[str, Node] = {}
+        self._scales = Scales()
+        self._derived = self._entries("derived", self._expression, self._derived)
+        self._scopes = self._read_scopes()
+        self._known = vocabulary.vocabulary(self._symbols, self._scopes)
+        self._check_scopes()
+        tables = self._tree.get("row", [])
+        if not isinstance(tables, list) or not tables:
+            raise self._bad("row: no rows; write one [[row]] for each thing that is printed")
+        found = [self._row(i, entry) for i, entry in enumerate(tables)]
+        self._check_references(found)
+        found = [self._asking(i, row) for i, row in enumerate(found)]
+        self._check_units(found)
+        return Ledger(self._path, name, document, self._scopes, self._symbols, self._inputs, tuple(found))
+
+    def _refuse_unknown_tables(self) -> None:
+        for key in self._tree:
+            if key not in TABLES:
+                raise self._bad(f"{printable(key)}: unknown key; {suggestion(key, TABLES)}", key, key)
+        stated = self._tree.get("format")
+        if stated != schema.FORMAT:
+            raise self._bad(f"format: got {shown(stated)}; write format = {schema.FORMAT}", "", "format")
+
+    def _document(self) -> DocumentTable:
+        with self._telling("document", ""):
+            found: DocumentTable = schema.table(self._tree.get("document", {}), DocumentTable)
+        with self._telling("document", "model"):
+            if found.model:
+                vocabulary.check_model(found.model)
+        with self._telling("document", "key"):
+            reading.checked_name(found.key)
+        return found
+
+    def _entries(
+        self, table: str, read_entry: Callable[..., Any], into: dict[str, Any] | None = None
+    ) -> dict[str, Any]:
+        """The entries of a table of names."""
+        found = {} if into is None else into
+        for name, entry in self._mapping(table).items():
+            with self._telling(table, name):
+                reading.checked_name(name)
+                found[name] = read_entry(entry)
+        return found
+
+    def _expression(self, entry: object) -> Node:
+        if not isinstance(entry, str):
+            raise BadInput(f"got {shown(entry)}; write an expression in quotes")
+        found = substituted(reading.expression(entry, language.JUDGING, judging=True), self._derived)
+        self._scales.checked(found)
+        return found
+
+    def _read_scopes(self) -> dict[str, Scope]:
+        tables = {"main": {}, **self._mapping("scope")}
+        for name, entry in tables.items():
+            with self._telling("scope", name):
+                if not isinstance(entry, dict):
+                    raise BadInput(f"got {shown(entry)}; write a table [scope.{printable(name)}]")
+        try:
+            return notation.scopes(tables, self._derived)
+        except WrongScope as error:
+            raise self._bad(str(error), f"scope.{error.scope}", error.key) from None
+
+    def _check_scopes(self) -> None:
+        for scope in self._scopes.values():
+            for key in self._tree.get("scope", {}).get(scope.name, {}):
+                if key in scope.meanings:
+                    with self._telling(f"scope.{scope.name}", key):
+                        self._known.check(scope.meanings[key])
+
+    def _row(self, index: int, entry: object) -> Row:
+        title = printable(str(entry.get("item", index + 1))) if isinstance(entry, dict) else str(index + 1)
+        with self._telling("row", "", index, title):
+            table: RowTable = schema.table(entry, RowTable)
+        key = f"{table.item} {table.part}".strip()
+        row = Row(table, key, self._where.line("row", index))
+        with self._telling("row", "scope", index, key):
+            if table.scope not in self._scopes:
+                raise BadInput(f"no scope {shown(table.scope)}; {suggestion(table.scope, self._scopes)}")
+        if not table.legible:
+            return row
+        scope = self._scopes[table.scope]
+        with self._telling("row", "holds", index, key):
+            if not table.holds:
+                raise BadInput("missing; write an address, an expression over addresses, or a predicate")
+            call = rows.predicate_call(table)
+        with self._telling("row", "printed", index, key):
+            row = replace(row, printed=rows.printed(table, scope, call is not None))
+        with self._telling("row", "inputs", index, key):
+            for value in table.inputs.values():
+                _input(value)
+        with self._telling("row", "holds", index, key):
+            if call is None:
+                row = replace(row, holds=rows.held_against(table, self._derived, self._known, self._inputs))
+        with self._telling("row", "from", index, key):
+            if table.follows:
+                row = replace(row, follows=rows.follows(table, self._derived, self._known, scope))
+        return row
+
+    def _asking(self, index: int, row: Row) -> Row:
+        """The row with its predicate, if that is what judges it."""
+        call = rows.predicate_call(row.table) if row.table.legible and row.holds is None else None
+        if call is None:
+            return row
+        with self._telling("row", "holds", index, row.key):
+            return replace(row, asks=predicates.bound(call.function, rows.arguments(call)))
+
+    def _check_references(self, found: Sequence[Row]) -> None:
+        by_key: dict[str, Row] = {}
+        for index, row in enumerate(found):
+            with self._telling("row", "item", index, row.key):
+                if row.key in by_key:
+                    raise BadInput("there is another row of this name; give them a different part")
+            by_key[row.key] = row
+        for index, row in enumerate(found):
+            for key, formula in (("holds", row.holds), ("from", row.follows)):
+                with self._telling("row", key, index, row.key):
+                    _check_rows_named(row, formula, by_key)
+
+    def _check_units(self, found: Sequence[Row]) -> None:
+        for name, text in self._inputs.items():
+            with self._telling("inputs", name):
+                quantities.in_base_units(text)
+        for name, symbol in self._symbols.items():
+            with self._telling("symbols", name):
+                quantities.check_unit(symbol.unit or "1")
+        for index, row in enumerate(found):
+            if row.table.legible and row.table.kind in ("number", "unit"):
+                with self._telling("row", "printed", index, row.key):
+                    text = str(row.table.printed)
+                    quantities.check_unit(text if row.table.kind == "unit" else quantities.printed_number(text).unit)
+            with self._telling("row", "inputs", index, row.key):
+                for text in row.table.inputs.values():
+                    quantities.in_base_units(text)
+
+    def _mapping(self, name: str) -> dict[str, Any]:
+        found = self._tree.get(name, {})
+        if not isinstance(found, dict):
+            raise self._bad(f"{name}: got {shown(found)}; write a table [{name}]", name, name)
+        return found
+
+    @contextmanager
+    def _telling(self, table: str, key: str, index: int = 0, row: str = "") -> Iterator[None]:
+        """Adds to what is wrong where it stands."""
+        try:
+            yield
+        except WrongKey as error:
+            where = f"row {row}: " if table == "row" else f"[{table}] "
+            raise self._bad(f"{where}{error}", table, error.key, index) from None
+        except (BadInput, budget.Spent) as error:
+            where = f"row {printable(row)}: {key}: " if table == "row" else f"[{table}] {printable(key)}: "
+            raise self._bad(f"{where}{error}", table, key, index) from None
+
+    def _bad(self, message: str, table: str = "", key: str = "", index: int = 0) -> BadInput:
+        line = self._where.line(table, index, key)
+        return BadInput(f"{printable(str(self._path), 200)}:{line}: {message}")
+
+
+def _check_rows_named(row: Row, formula: Any, by_key: Mapping[str, Row]) -> None:
+    for call in calls_in(formula):
+        if call.function == "row":
+            name = row_key(call)
+            if name == row.key:
+                raise BadInput("a row cannot follow from itself")
+            if name not in by_key or by_key[name].printed is None:
+                raise BadInput(f"no formula in a row {shown(name)}; {suggestion(name, by_key)}")
+
+
+def _symbol(entry: object) -> SymbolTable:
+    if isinstance(entry, str):
+        return SymbolTable(unit=entry)
+    found: SymbolTable = schema.table(entry, SymbolTable)
+    return found
+
+
+def _input(entry: object) -> str:
+    if not isinstance(entry, str):
+        raise BadInput(f'got {shown(entry)}; write a number with its unit in quotes, such as "6378 km"')
+    quantities.printed_number(entry)
+    return entry

@@ -1,0 +1,128 @@
+"""Reading one row of a ledger: its formulas in the safe language, its predicate with literal arguments."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from satsym.auditing import language, quantities
+from satsym.auditing.ledger import scopes as notation
+from satsym.auditing.ledger import vocabulary
+from satsym.auditing.ledger.schema import RowTable
+from satsym.auditing.ledger.scopes import Scope
+from satsym.auditing.ledger.vocabulary import Vocabulary
+from satsym.formula import reading
+from satsym.formula.tree import Call, Equality, Grid, Neg, Node, Num, Sym, Text, substituted
+from satsym.formula.weight import Scales
+from satsym.status import BadInput
+from satsym.wording import shown, suggestion
+
+PREDICATED = ("table", "claim")
+"""Kinds of rows that only a predicate can judge."""
+FORMULAS = ("equation", "algorithm")
+"""Kinds of rows that print one formula, unless a predicate judges them."""
+_EXAMPLE = "such as \"returns(instance='its-thesis')\""
+
+
+def printed(table: RowTable, scope: Scope, by_predicate: bool) -> Node | Equality | tuple[tuple[Node, ...], ...] | None:
+    """The printed formula; ``None`` for kinds of rows that print none, and where a predicate judges."""
+    if table.kind == "number":
+        quantities.printed_number(_one_text(table))
+    if by_predicate or table.kind not in (*FORMULAS, "matrix"):
+        if not table.printed:
+            raise BadInput("missing; write what is printed")
+        return None
+    if table.kind in FORMULAS:
+        formula = reading.statement(_one_text(table))
+        _refuse_unknown(formula, scope)
+        return formula
+    if isinstance(table.printed, str) or not table.printed:
+        raise BadInput('write a list of rows, such as [["0", "1"], ["3*omega**2", "0"]]')
+    lines = [(line,) if isinstance(line, str) else line for line in table.printed]
+    if len({len(line) for line in lines}) > 1 or not lines[0]:
+        raise BadInput("the rows differ in length")
+    entries = tuple(tuple(reading.expression(text) for text in line) for line in lines)
+    for line in entries:
+        for entry in line:
+            _refuse_unknown(entry, scope)
+    return entries
+
+
+def held_against(
+    table: RowTable, derived: Mapping[str, Node], known: Vocabulary, inputs: Mapping[str, str]
+) -> Node | Equality:
+    """The formula that a row is held against."""
+    if vocabulary.is_address(table.holds):
+        formula: Node | Equality = Text(table.holds.strip())
+    else:
+        formula = _with(reading.statement(table.holds, language.JUDGING, judging=True), derived)
+    if table.kind == "number" and quantities.is_numeric(formula):
+        quantities.check(formula, {**inputs, **table.inputs})
+    else:
+        known.check(formula)
+    return formula
+
+
+def follows(table: RowTable, derived: Mapping[str, Node], known: Vocabulary, scope: Scope) -> Node | Equality:
+    """How a row is said to follow from others."""
+    formula = _with(reading.statement(table.follows, language.JUDGING, judging=True), derived)
+    for name in sorted(notation.names_used(formula)):
+        if not scope.knows(name) and not known.knows(name):
+            raise BadInput(f"{shown(name)} is no symbol of [scope.{scope.name}]; {suggestion(name, scope.meanings)}")
+    return formula
+
+
+def predicate_call(table: RowTable) -> Call | None:
+    """``holds`` as the call of a predicate; ``None`` if it is a formula or an address."""
+    name, bracket, _ = table.holds.partition("(")
+    name = name.strip()
+    if table.kind not in PREDICATED and (not bracket or name in language.JUDGING or not reading.NAME.match(name)):
+        return None
+    tree = reading.expression(table.holds, {name: (0, language.MANY)}, judging=True)
+    if isinstance(tree, Call) and tree.function == name:
+        if tree.arguments:
+            raise BadInput(f"{name} takes its arguments by name, {_EXAMPLE}")
+        return tree
+    if table.kind in PREDICATED:
+        raise BadInput(f"a {table.kind} is judged by a predicate, {_EXAMPLE}")
+    return None
+
+
+def arguments(call: Call) -> dict[str, Any]:
+    """What a predicate is given: texts, numbers, truth values, lists."""
+    return {name: _literal(value) for name, value in call.named}
+
+
+def _one_text(table: RowTable) -> str:
+    if not isinstance(table.printed, str) or not table.printed:
+        raise BadInput("write what is printed as one text in quotes")
+    return table.printed
+
+
+def _refuse_unknown(formula: Node | Equality, scope: Scope) -> None:
+    for name in sorted(notation.names_used(formula)):
+        if not scope.knows(name):
+            raise BadInput(f"{shown(name)} is no symbol of [scope.{scope.name}]; {suggestion(name, scope.meanings)}")
+
+
+def _literal(node: Node) -> Any:
+    if isinstance(node, Text):
+        return node.value
+    if isinstance(node, Num):
+        return int(node.value) if node.value.denominator == 1 else float(node.value)
+    if isinstance(node, Neg) and isinstance(node.operand, Num):
+        return -_literal(node.operand)
+    if isinstance(node, Grid):
+        return tuple(_literal(entry) for entry in node.entries)
+    if isinstance(node, Sym) and node.name in ("true", "false"):
+        return node.name == "true"
+    raise BadInput("the arguments of a predicate are texts, numbers, true, false, or lists of these, by name")
+
+
+def _with(formula: Node | Equality, derived: Mapping[str, Node]) -> Node | Equality:
+    if isinstance(formula, Equality):
+        found: Node | Equality = Equality(substituted(formula.lhs, derived), substituted(formula.rhs, derived))
+    else:
+        found = substituted(formula, derived)
+    Scales().checked(found)
+    return found

@@ -1,0 +1,145 @@
+"""Scopes: what a document's symbols mean in our names, section by section."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from satsym.auditing.language import JUDGING
+from satsym.formula import reading
+from satsym.formula.tree import Equality, Node, Sym, calls, substituted, symbols
+from satsym.formula.weight import Scales
+from satsym.formula.writing import written
+from satsym.status import BadInput
+from satsym.wording import shown, suggestion
+
+LISTS = ("states", "controls", "outputs")
+"""Keys of a scope that say in which order the document numbers things."""
+CONSTANTS = frozenset({"I", "pi"})
+"""Names that mean the same everywhere: the imaginary unit and the number."""
+
+
+@dataclass(frozen=True)
+class Scope:
+    """The notation of a part of a document.
+
+    Attributes
+    ----------
+    name
+        As the ledger has it.
+    meanings
+        The document's symbol -> our expression.
+    orders
+        ``states``, ``controls``, ``outputs`` -> the document's symbols in its order, where it states one.
+    """
+
+    name: str
+    meanings: Mapping[str, Node]
+    orders: Mapping[str, tuple[str, ...]]
+
+    def knows(self, name: str) -> bool:
+        """Whether a printed formula may use the name."""
+        return name in self.meanings or name in CONSTANTS
+
+    def ours(self, printed: Node) -> Node:
+        """A printed formula in our names."""
+        found = substituted(printed, self.meanings)
+        Scales().checked(found)
+        return found
+
+    def family(self, name: str) -> list[str]:
+        """Symbols that differ from this one by their index alone, as ``x1`` and ``x2`` do; then the others."""
+        stem = _stem(name)
+        others = [symbol for symbol in self.meanings if symbol != name]
+        return sorted(others, key=lambda symbol: (_stem(symbol) != stem, others.index(symbol)))
+
+    def is_slip(self, one: str, other: str) -> bool:
+        """Whether two symbols differ by an index alone."""
+        return _stem(one) == _stem(other)
+
+
+class WrongScope(BadInput):
+    """A scope cannot be read; ``scope`` and ``key`` say where."""
+
+    def __init__(self, scope: str, key: str, message: str) -> None:
+        super().__init__(f"[scope.{scope}] {key}: {message}" if key else f"[scope.{scope}]: {message}")
+        self.scope, self.key = scope, key
+
+
+def scopes(tables: Mapping[str, Mapping[str, object]], derived: Mapping[str, Node]) -> dict[str, Scope]:
+    """All scopes of a ledger, each with what it extends.
+
+    Raises
+    ------
+    WrongScope
+        For the first entry that cannot be read.
+    """
+    found: dict[str, Scope] = {}
+
+    def resolve(name: str, asking: tuple[str, ...]) -> Scope:
+        if name in asking:
+            raise WrongScope(asking[-1], "extends", f"goes round in a circle: {' -> '.join((*asking, name))}")
+        if name not in found:
+            base = tables[name].get("extends")
+            below = None
+            if base is not None:
+                if not isinstance(base, str) or base not in tables:
+                    raise WrongScope(name, "extends", f"no scope {shown(base)}; {suggestion(str(base), tables)}")
+                below = resolve(base, (*asking, name))
+            found[name] = _scope(name, tables[name], below, derived)
+        return found[name]
+
+    return {name: resolve(name, ()) for name in tables}
+
+
+def ambiguities(found: Mapping[str, Scope]) -> dict[str, dict[str, list[str]]]:
+    """Symbols that mean different things in different scopes: symbol -> meaning -> scopes."""
+    meanings: dict[str, dict[str, list[str]]] = {}
+    for scope in found.values():
+        for symbol, meaning in scope.meanings.items():
+            meanings.setdefault(symbol, {}).setdefault(written(meaning), []).append(scope.name)
+    return {symbol: by_meaning for symbol, by_meaning in meanings.items() if len(by_meaning) > 1}
+
+
+def _scope(name: str, table: Mapping[str, object], below: Scope | None, derived: Mapping[str, Node]) -> Scope:
+    meanings = dict(below.meanings) if below else {}
+    orders = dict(below.orders) if below else {}
+    for key, value in table.items():
+        if key == "extends":
+            continue
+        if key in LISTS:
+            if not isinstance(value, list) or not all(isinstance(entry, str) for entry in value):
+                raise WrongScope(name, key, f'got {shown(value)}; write a list of names, such as ["x1", "x2"]')
+            orders[key] = tuple(value)
+            continue
+        if not isinstance(value, str):
+            raise WrongScope(name, key, f"got {shown(value)}; write our expression in quotes")
+        try:
+            reading.checked_name(key)
+            meanings[key] = substituted(reading.expression(value, JUDGING, judging=True), derived)
+            Scales().checked(meanings[key])
+        except BadInput as error:
+            raise WrongScope(name, key, str(error)) from None
+        if any(call.function == "row" for call in calls(meanings[key])):
+            raise WrongScope(name, key, "a notation cannot depend on a row")
+    for key, entries in orders.items():
+        for entry in entries:
+            if entry not in meanings:
+                raise WrongScope(name, key, f"{shown(entry)} is no symbol of this scope; {suggestion(entry, meanings)}")
+    return Scope(name, meanings, orders)
+
+
+def names_used(tree: Node | Equality) -> set[str]:
+    """Names in an expression or an equality."""
+    if isinstance(tree, Equality):
+        return symbols(tree.lhs) | symbols(tree.rhs)
+    return symbols(tree)
+
+
+def self_named(found: Mapping[str, Scope]) -> set[str]:
+    """Symbols that a scope maps to themselves: the document's own, which no derivation need know."""
+    return {key for scope in found.values() for key, value in scope.meanings.items() if value == Sym(key)}
+
+
+def _stem(name: str) -> str:
+    return "".join("#" if character.isdigit() else character for character in name)

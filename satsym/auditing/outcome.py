@@ -1,0 +1,46 @@
+"""What judging a row found, before rows are looked at together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from satsym.auditing.diagnosis.smallest_edit import Remedy
+from satsym.auditing.judge.plan import Plan
+from satsym.auditing.ledger.contents import Row
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """One row, judged by itself.
+
+    Attributes
+    ----------
+    right
+        Whether it equals what it is held against; ``None`` where it cannot be read or decided.
+    derived
+        What is right, in the document's symbols.
+    plan, remedy
+        Of a formula: how it was compared, and what puts it right.
+    sound, artefact, unit, slip
+        As a predicate says; ``unit``: only the unit is wrong.
+    remark
+        A sentence for the diagnosis.
+    evidence
+        Measured numbers.
+    command
+        What recomputes it, if not the audit of the row.
+    """
+
+    row: Row
+    right: bool | None
+    derived: str = ""
+    plan: Plan | None = None
+    remedy: Remedy | None = None
+    sound: bool = True
+    artefact: bool = False
+    unit: bool = False
+    slip: bool = False
+    remark: str = ""
+    evidence: Mapping[str, object] = field(default_factory=dict)
+    command: str = ""

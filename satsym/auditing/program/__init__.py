@@ -1,0 +1,1 @@
+"""Printed programs: parsed, measured and followed, never executed."""

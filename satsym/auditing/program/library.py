@@ -1,0 +1,173 @@
+"""What a printed program may import and call: a little of NumPy, SciPy and matplotlib; drawing is only noted down."""
+
+from __future__ import annotations
+
+import ast
+import math
+import operator
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from satsym.auditing.program.sizes import MAX_SIZE, formatted, made, numeric
+from satsym.formula import budget
+from satsym.formula.budget import OverBudget
+from satsym.status import BadInput
+from satsym.wording import shown
+
+MAX_STATES = 100
+"""States of an initial value problem: an implicit method solves linear equations of that size at every step."""
+DRAWING = frozenset("figure plot scatter title xlabel ylabel legend grid axis show savefig".split())
+BINARY: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: operator.pow,
+}
+COMPARED: Mapping[type[ast.cmpop], Callable[[Any, Any], Any]] = {
+    ast.LtE: operator.le,
+    ast.Lt: operator.lt,
+    ast.GtE: operator.ge,
+    ast.Gt: operator.gt,
+    ast.Eq: operator.eq,
+}
+_KEYWORDS = frozenset({"t_eval", "rtol", "atol", "method"})
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A call of matplotlib's: what was called, with which arguments."""
+
+    name: str
+    arguments: tuple[Any, ...]
+    named: Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Module:
+    """A module, or what ``solve_ivp`` returns: attributes by name."""
+
+    name: str
+    attributes: Mapping[str, Any]
+
+
+@dataclass
+class Outside:
+    """What a program leaves behind beside its variables: printed lines, drawings, and how often rates were asked."""
+
+    said: list[str] = field(default_factory=list)
+    drawn: list[Drawing] = field(default_factory=list)
+    evaluations: list[int] = field(default_factory=list)
+
+
+def modules(outside: Outside) -> Mapping[str, Module]:
+    """The modules that a program may import, by their full names."""
+    numpy = Module(
+        "numpy",
+        {
+            "sqrt": _sqrt,
+            "array": _array,
+            "hstack": _hstack,
+            "linspace": _linspace,
+            "zeros": lambda shape: np.zeros(_shape(shape)),
+            "eye": lambda n: np.eye(_shape((n, n))[0]),
+            "linalg": Module("numpy.linalg", {"norm": lambda a: np.linalg.norm(numeric(a))}),
+            "pi": math.pi,
+        },
+    )
+    draw = {name: _noted(outside, name) for name in DRAWING}
+    return {
+        "numpy": numpy,
+        "matplotlib.pyplot": Module("matplotlib.pyplot", draw),
+        "scipy.integrate": Module("scipy.integrate", {"solve_ivp": _solver(outside)}),
+        "scipy.linalg": Module("scipy.linalg", {"eig": _eig}),
+    }
+
+
+def builtins(outside: Outside) -> Mapping[str, Any]:
+    """Functions that need no import."""
+    return {
+        "all": all,
+        "any": any,
+        "abs": abs,
+        "len": len,
+        "print": lambda *a: outside.said.append(formatted([" ".join(map(str, a))])),
+    }
+
+
+def _shape(shape: object) -> tuple[int, ...]:
+    sizes = shape if isinstance(shape, tuple) else (shape,)
+    if not all(isinstance(n, int) and 0 <= n <= MAX_SIZE for n in sizes) or math.prod(sizes) > MAX_SIZE:
+        if not all(isinstance(n, int) for n in sizes):
+            raise TypeError(f"an array of the size {shown(shape)}")
+        made(max([0, *sizes]) if min([0, *sizes]) < 0 else math.prod(sizes))
+        raise ValueError("an array of a negative size")
+    made(math.prod(sizes))
+    return sizes
+
+
+def _array(entries: object) -> Any:
+    found = numeric(entries)
+    return np.asarray(found, dtype=np.result_type(found, float))
+
+
+def _sqrt(*arguments: Any, **named: Any) -> Any:
+    if len(arguments) != 1 or named:
+        raise BadInput("np.sqrt of more than one thing, or by name, is not known here")
+    return np.sqrt(numeric(arguments[0]))
+
+
+def _hstack(parts: Sequence[Any]) -> Any:
+    found = [numeric(part) for part in parts]
+    made(sum(part.size for part in found))
+    return np.hstack(found)
+
+
+def _linspace(first: float, last: float, number: int) -> Any:
+    return np.linspace(first, last, _shape(number)[0])
+
+
+def _noted(outside: Outside, name: str) -> Callable[..., None]:
+    def note(*arguments: Any, **named: Any) -> None:
+        outside.drawn.append(Drawing(name, arguments, named))
+
+    return note
+
+
+def _eig(matrix: Any) -> tuple[Any, Any]:
+    from scipy import linalg
+
+    found = numeric(matrix)
+    budget.charge(numbers=max((0, *found.shape)) ** 3)
+    values, vectors = linalg.eig(found)
+    return values, vectors
+
+
+def _solver(outside: Outside) -> Callable[..., Module]:
+    def solve_ivp(rates: Callable[..., Any], span: Any, start: Any, **named: Any) -> Module:
+        from scipy import integrate
+
+        if unknown := set(named) - _KEYWORDS:
+            raise BadInput(f"solve_ivp with {', '.join(sorted(unknown))}; known are {', '.join(sorted(_KEYWORDS))}")
+        count = numeric(start).size
+        if count > MAX_STATES:
+            raise OverBudget(f"solve_ivp with more than {MAX_STATES} states")
+        made(count * numeric(named.get("t_eval", ())).size)
+
+        def counted(t: float, y: Any) -> Any:
+            budget.charge(numbers=10 * count)
+            return rates(t, y)
+
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # such as a tolerance that is raised to what is possible
+            done = integrate.solve_ivp(counted, span, start, **named)
+        if not done.success:
+            raise BadInput(f"solve_ivp: {done.message}")
+        outside.evaluations.append(int(done.nfev))
+        return Module("solution", {"t": done.t, "y": done.y})
+
+    return solve_ivp

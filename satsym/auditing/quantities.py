@@ -1,0 +1,204 @@
+"""Numbers with units: what a document states, what follows from it, and what its printed digits claim."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from satsym import units
+from satsym.auditing.constants import PUBLISHED
+from satsym.formula.reading import FUNCTIONS, MAX_DIGITS
+from satsym.formula.tree import Add, Call, Div, Equality, Mul, Neg, Node, Num, Pow, Sym, Text, constant, walk
+from satsym.status import BadInput
+from satsym.wording import shown, suggestion
+
+_PRINTED = re.compile(
+    r" *(?P<sign>[-+]?) *(?P<whole>[0-9]*)(?:\.(?P<part>[0-9]*))?(?:[eE](?P<power>[-+]?[0-9]{1,3}))? *"
+)
+_BASES = {
+    "[length]": "m",
+    "[time]": "s",
+    "[mass]": "kg",
+    "[current]": "ampere",
+    "[temperature]": "kelvin",
+    "[substance]": "mole",
+    "[luminosity]": "candela",
+}
+_FLOATS = {name: getattr(math, name) for name in "sin cos tan sqrt exp log asin acos atan sinh cosh tanh atan2".split()}
+_FLOATS |= {"abs": abs, "min": min, "max": max}
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A value in base units, and the exponents of its dimension."""
+
+    value: float
+    dimension: Mapping[str, Fraction]
+
+
+@dataclass(frozen=True)
+class PrintedNumber:
+    """Digits and what they claim: the value, give or take half a unit in the last place, in the printed unit."""
+
+    text: str
+    value: Fraction
+    half_unit: Fraction
+    unit: str
+
+
+def printed_number(text: str) -> PrintedNumber:
+    """Read digits and a unit; zeros at the end of a whole number are not significant, those after a point are.
+
+    Raises
+    ------
+    BadInput
+        If the text does not begin with a number.
+    """
+    match = _PRINTED.match(text)
+    if match is None or not (match["whole"] or match["part"]):
+        raise BadInput(f'{shown(text)} is not a number with a unit; write for instance "35786 km"')
+    part, power = match["part"], int(match["power"] or 0)
+    digits = f"{match['whole']}{part or ''}"
+    if len(digits) > MAX_DIGITS:
+        raise BadInput(f"{shown(text)} has more than {MAX_DIGITS} digits; nothing is measured so exactly")
+    significant = digits if part is not None else digits.rstrip("0") or "0"
+    last = power - len(part or "") + len(digits) - len(significant)
+    value = Fraction(int(digits)) * Fraction(10) ** (power - len(part or ""))
+    unit = text[match.end() :].strip() or "1"
+    return PrintedNumber(text, -value if match["sign"] == "-" else value, Fraction(10) ** last / 2, unit)
+
+
+def check_unit(unit: str) -> None:
+    """Refuse a unit that is unknown. This loads pint.
+
+    Raises
+    ------
+    BadInput
+        If it is.
+    """
+    if unit.strip() not in ("", "1"):
+        units.dimension(unit)
+
+
+def in_base_units(text: str) -> Quantity:
+    """A number with a unit, in base units."""
+    number = printed_number(text)
+    dimension = {base: Fraction(power) for base, power in units.dimension(number.unit).items()}
+    if number.unit == "1":
+        return Quantity(float(number.value), dimension)
+    one = units.parse_quantity(f"1 {number.unit}", base_unit(dimension))
+    return Quantity(float(number.value) * one, dimension)
+
+
+def scale(unit: str) -> float:
+    """How many base units one unit is."""
+    return in_base_units(f"1 {unit}").value if unit != "1" else 1.0
+
+
+def base_unit(dimension: Mapping[str, Fraction]) -> str:
+    """The product of base units of a dimension.
+
+    Raises
+    ------
+    BadInput
+        For a dimension with broken exponents, which no printed unit has.
+    """
+    if any(power.denominator != 1 or base not in _BASES for base, power in dimension.items()):
+        raise BadInput("a unit with broken exponents")
+    return "*".join(f"{_BASES[base]}^{int(power)}" for base, power in dimension.items()) or "1"
+
+
+def check(tree: Node | Equality, inputs: Mapping[str, str]) -> None:
+    """Refuse names in the formula of a number that are neither stated by the document nor published constants.
+
+    Raises
+    ------
+    BadInput
+        For the first of them.
+    """
+    if isinstance(tree, Equality):
+        raise BadInput("is an equality; write the expression of the number")
+    known = {*inputs, *PUBLISHED, "pi"}
+    for _, part in walk(tree):
+        if isinstance(part, Sym) and part.name not in known:
+            raise BadInput(
+                f"{shown(part.name)} is neither in [inputs] nor a published constant; {suggestion(part.name, known)}"
+            )
+
+
+def is_numeric(tree: Node | Equality) -> bool:
+    """Whether the formula needs nothing derived, only numbers."""
+    return not isinstance(tree, Equality) and all(
+        not isinstance(part, Text) and (not isinstance(part, Call) or part.function in FUNCTIONS)
+        for _, part in walk(tree)
+    )
+
+
+def evaluated(tree: Node, inputs: Mapping[str, str]) -> Quantity:
+    """The value of a formula over stated and published quantities.
+
+    Raises
+    ------
+    BadInput
+        If it puts together what has different dimensions, or has no value.
+    """
+    try:
+        found = _evaluated(tree, inputs)
+    except (ArithmeticError, ValueError) as error:
+        raise BadInput(f"the formula has no value ({error})") from None
+    if not math.isfinite(found.value):
+        raise BadInput("the formula has no finite value")
+    return found
+
+
+def _evaluated(tree: Node, inputs: Mapping[str, str]) -> Quantity:
+    if isinstance(tree, Num):
+        return Quantity(float(tree.value), {})
+    if isinstance(tree, Sym):
+        if tree.name == "pi" and "pi" not in inputs:
+            return Quantity(math.pi, {})
+        return in_base_units(inputs.get(tree.name) or PUBLISHED[tree.name].quantity)
+    if isinstance(tree, Neg):
+        operand = _evaluated(tree.operand, inputs)
+        return Quantity(-operand.value, operand.dimension)
+    if isinstance(tree, Add):
+        terms = [_evaluated(term, inputs) for term in tree.terms]
+        return Quantity(math.fsum(term.value for term in terms), _same(terms))
+    if isinstance(tree, Mul | Div):
+        parts = (
+            tree.factors if isinstance(tree, Mul) else (tree.numerator, Pow(tree.denominator, Neg(Num(Fraction(1)))))
+        )
+        product = Quantity(1.0, {})
+        for part in parts:
+            factor = _evaluated(part, inputs)
+            product = Quantity(product.value * factor.value, _sum(product.dimension, factor.dimension, Fraction(1)))
+        return product
+    if isinstance(tree, Pow):
+        base, exponent = _evaluated(tree.base, inputs), constant(tree.exponent) or Fraction(0)
+        return Quantity(base.value ** float(exponent), _sum({}, base.dimension, exponent))
+    if isinstance(tree, Call) and tree.function in _FLOATS:
+        arguments = [_evaluated(argument, inputs) for argument in tree.arguments]
+        if tree.function in ("abs", "min", "max"):
+            return Quantity(_FLOATS[tree.function](*(a.value for a in arguments)), _same(arguments))
+        if tree.function == "sqrt":
+            return Quantity(math.sqrt(arguments[0].value), _sum({}, arguments[0].dimension, Fraction(1, 2)))
+        shared = _same(arguments)
+        if shared and tree.function != "atan2":
+            raise BadInput(f"{tree.function} needs a plain number")
+        return Quantity(_FLOATS[tree.function](*(a.value for a in arguments)), {})
+    raise BadInput("only numbers and their functions may stand here")
+
+
+def _same(quantities: list[Quantity]) -> Mapping[str, Fraction]:
+    first = quantities[0].dimension
+    if any(quantity.dimension != first for quantity in quantities):
+        raise BadInput("the formula adds or compares quantities of different dimensions")
+    return first
+
+
+def _sum(one: Mapping[str, Fraction], other: Mapping[str, Fraction], times: Fraction) -> dict[str, Fraction]:
+    total = {base: one.get(base, Fraction(0)) + times * other.get(base, Fraction(0)) for base in {*one, *other}}
+    return {base: total[base] for base in sorted(total) if total[base]}

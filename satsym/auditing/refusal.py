@@ -1,0 +1,68 @@
+"""What keeps a row from being judged, as one line that names it: bad input, or more work than a row may take."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from typing import TypeVar
+
+from satsym.auditing.judge.bench import Bench
+from satsym.auditing.ledger.contents import Row
+from satsym.formula.budget import Limit
+from satsym.status import BadInput
+from satsym.wording import printable
+
+T = TypeVar("T")
+_BREAKS = (ArithmeticError, ValueError, TypeError, LookupError, AttributeError, RuntimeWarning)
+"""What a predicate stops with where its arguments make no sense together."""
+
+
+class Refused(BadInput):
+    """A row cannot be judged; the message names it."""
+
+
+def named(bench: Bench, row: Row, limit: Limit, work: Callable[[], T], where: str = "") -> T:
+    """Do some work for a row, within a limit.
+
+    Parameters
+    ----------
+    where
+        The key of the row that is to blame, such as ``"from"``.
+
+    Raises
+    ------
+    Refused
+        With the line of the row, its name, and what is wrong; of another row, where the work met that first.
+    """
+    try:
+        return bench.allowance.within(limit, work)
+    except Refused:
+        raise
+    except BadInput as error:
+        why = str(error)
+    except (RecursionError, MemoryError):
+        why = "is nested too deep, or too large; split it into rows"
+    path = printable(str(bench.ledger.path), 200)
+    raise Refused(f"{path}:{row.line}: row {printable(row.key)}: {f'{where}: ' if where else ''}{why}")
+
+
+def asked(holds: str, ask: Callable[[], T]) -> T:
+    """What a predicate answers.
+
+    A number that is none, which NumPy only warns of, is no answer: every comparison with it is false.
+
+    Raises
+    ------
+    BadInput
+        If it stops in the middle of its arithmetic.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            warnings.simplefilter("error", RuntimeWarning)
+            return ask()
+    except _BREAKS as error:
+        why = printable(" ".join(str(error).split()), 100)
+        raise BadInput(
+            f"{printable(holds, 100)} has no value ({why}); check its arguments, and what is printed"
+        ) from None

@@ -1,0 +1,103 @@
+"""One ledger from the first row to the last."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import TYPE_CHECKING
+
+from satsym.auditing.ledger.contents import Ledger, Row
+from satsym.auditing.predicates import Question, Told
+from satsym.formula import budget
+from satsym.wording import printable
+
+if TYPE_CHECKING:
+    from satsym.auditing.judge.bench import Bench
+    from satsym.auditing.judged import Judged
+    from satsym.auditing.outcome import Outcome
+
+
+def audit(ledger: Ledger, items: Sequence[str] = (), announce: Callable[[str], None] = lambda _: None) -> list[Judged]:
+    """Judge the rows of a ledger.
+
+    Parameters
+    ----------
+    ledger
+        As it was read.
+    items
+        Items, or items with their parts, to judge; all by default. Rows that bear on them are judged, too.
+    announce
+        Told what comes next.
+
+    Raises
+    ------
+    BadInput
+        If a row names what no derivation has, or is held against what it cannot be compared with.
+    """
+    from satsym.auditing.judge.bench import Bench
+    from satsym.auditing.verdict import verdicts
+
+    bench = Bench(ledger)
+    wanted = [row.key for row in ledger.rows if not items or row.table.item in items or row.key in items]
+    needed = _bearing(bench, wanted) if items else set(wanted)
+    rows = [row for row in ledger.rows if row.key in needed]
+    outcomes = []
+    for i, row in enumerate(rows, start=1):
+        announce(f"{ledger.document.key}: row {i} of {len(rows)}, {printable(row.key)}")
+        outcomes.append(_counted(bench, row))
+    return verdicts(bench, outcomes, wanted)
+
+
+def _outcome(bench: Bench, row: Row) -> Outcome:
+    from satsym.auditing import refusal
+    from satsym.auditing.judge import formula, value
+    from satsym.auditing.outcome import Outcome
+
+    if not row.table.legible:
+        return Outcome(row, None)
+    if row.asks is not None:
+        table, ledger = row.table, bench.ledger
+        inputs = {**ledger.inputs, **table.inputs}
+        document = Told("row", {key: other.table.printed for key, other in bench.rows.items()})
+        question = Question(
+            row.key, table.kind, table.printed, table.columns, inputs, table.scope, ledger.scopes, document
+        )
+        found = refusal.asked(table.holds, partial(row.asks, question))
+        return Outcome(
+            row,
+            found.holds,
+            found.derived,
+            sound=found.sound,
+            artefact=found.artefact,
+            unit=found.unit,
+            slip=found.slip,
+            remark=found.remark,
+            evidence=found.evidence,
+            command=found.command,
+        )
+    judges = {"number": value.number, "unit": value.unit}
+    return judges.get(row.table.kind, formula.judge)(bench, row)
+
+
+def _counted(bench: Bench, row: Row) -> Outcome:
+    """The outcome of a row, within what a row may take."""
+    from satsym.auditing import refusal
+
+    limit = budget.FORMULA if row.asks is None else budget.PREDICATE
+    return refusal.named(bench, row, limit, lambda: _outcome(bench, row))
+
+
+def _bearing(bench: Bench, wanted: Sequence[str]) -> set[str]:
+    """Keys of rows that the verdicts of some rows depend on: what they use, what uses them, and the same target."""
+    from satsym.auditing import refusal
+
+    rows = bench.ledger.rows
+    found = set(wanted)
+    for row in (bench.rows[key] for key in wanted):
+        found.update(row.uses)
+        for other in rows:
+            if row.key in other.uses:
+                found.update([other.key, *other.uses])
+            if refusal.named(bench, other, budget.FORMULA, partial(bench.same_target, row, other)):
+                found.add(other.key)
+    return found

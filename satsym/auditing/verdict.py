@@ -1,0 +1,171 @@
+"""Verdicts: what the outcomes of single rows mean in the light of the whole document."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+
+from satsym.auditing import refusal, sentences
+from satsym.auditing.judge.bench import Bench, Formula
+from satsym.auditing.judge.compare import plans
+from satsym.auditing.judge.formula import corrected
+from satsym.auditing.judged import Judged, Verdict
+from satsym.auditing.ledger.contents import Row
+from satsym.auditing.outcome import Outcome
+from satsym.formula import budget
+from satsym.formula.values import Kernel, Roots
+
+FORMULAS = ("equation", "matrix")
+"""Kinds of rows that may be misprinted; a line of a program is executed, and a number is claimed."""
+
+
+def verdicts(bench: Bench, outcomes: Sequence[Outcome], wanted: Sequence[str] | None = None) -> list[Judged]:
+    """The verdict of each row.
+
+    Parameters
+    ----------
+    bench
+        What the rows were judged with.
+    outcomes
+        Of all rows, in order.
+    wanted
+        Keys of the rows to give; all by default.
+    """
+    by_key = {outcome.row.key: outcome for outcome in outcomes}
+    context = _Context(bench, by_key)
+    chosen = [o for o in outcomes if wanted is None or o.row.key in wanted]
+    return [refusal.named(bench, o.row, budget.VERDICT, partial(context.judged, o)) for o in chosen]
+
+
+class _Context:
+    """The rows of a document beside each other."""
+
+    def __init__(self, bench: Bench, outcomes: Mapping[str, Outcome]) -> None:
+        self._bench = bench
+        self._outcomes = outcomes
+        self._right: dict[str, Formula] = {}
+        self._known: dict[tuple[str, tuple[str, ...]], bool] = {}
+
+    def judged(self, outcome: Outcome) -> Judged:
+        verdict, said = self._verdict(outcome)
+        row, document = outcome.row, self._bench.ledger.document.key
+        command = outcome.command or recompute(self._bench.ledger.name, row.key)
+        numbers = "; ".join(f"{name} = {_shown(value)}" for name, value in outcome.evidence.items())
+        return Judged(
+            document=document,
+            item=row.table.item,
+            part=row.table.part,
+            kind=row.table.kind,
+            says=row.table.says,
+            where=row.table.where,
+            printed=row.table.printed,
+            derived=outcome.derived,
+            verdict=verdict,
+            diagnosis=" ".join(filter(None, said)) if verdict != "confirmed" else "",
+            evidence=f"{numbers}; {command}" if numbers else command,
+        )
+
+    def _verdict(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
+        row = outcome.row
+        if not row.table.legible:
+            return "illegible", [sentences.illegible(row.table.says)]
+        if row.asks is not None:
+            return self._of_predicate(outcome)
+        if outcome.unit:
+            return "unit error", [outcome.remark]
+        if not outcome.right and row.table.kind in FORMULAS:
+            return self._of_wrong_formula(outcome)
+        if not outcome.right:
+            return "wrong", [outcome.remark]
+        if row.follows is not None and not self._follows(row, {}) and not self._follows_once_mended(row):
+            return "unsound", [sentences.unsound(row.uses)]
+        return "confirmed", []
+
+    def _of_predicate(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
+        derived, remark = outcome.derived, sentences.sentence(outcome.remark)
+        if outcome.right is None:
+            return "illegible", [sentences.undecided(derived), remark]
+        if outcome.artefact:
+            return "artefact", [sentences.artefact(derived), remark]
+        if outcome.right:
+            return ("confirmed", []) if outcome.sound else ("unsound", [sentences.unsound_claim(derived), remark])
+        if outcome.slip:
+            return "misprint", [sentences.misprinted_claim(derived), remark]
+        return "unit error" if outcome.unit else "wrong", [sentences.false_claim(derived), remark]
+
+    def _of_wrong_formula(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
+        row = outcome.row
+        same = [o for o in self._outcomes.values() if o is not outcome and self._bench.same_target(o.row, row)]
+        right_elsewhere = [o.row.key for o in same if o.right]
+        slips = [o.row.key for o in same if o.right is False and o.remedy and _same(o, outcome)]
+        carried, mended = self._used_by(row)
+        verdict: Verdict = "wrong" if carried and not right_elsewhere else "misprint"
+        source = self._wrong_among(row.uses) if row.follows is not None and self._follows(row, {}) else []
+        return verdict, [
+            outcome.remark,
+            sentences.right_elsewhere(right_elsewhere) if right_elsewhere else "",
+            sentences.follows_from_wrong(source) if source else "",
+            sentences.carried_on(carried) if carried else "",
+            sentences.not_carried_on(mended) if mended else "",
+            sentences.same_slip(slips) if slips else "",
+        ]
+
+    def _used_by(self, row: Row) -> tuple[list[str], list[str]]:
+        """Rows that carry the error on, and rows that follow from the right formula only."""
+        carried, mended = [], []
+        for other in self._outcomes.values():
+            if row.key in other.row.uses and other.plan is not None:
+                as_printed = self._follows(other.row, {})
+                put_right = self._follows(other.row, {row.key: self._corrected(row.key)})
+                if as_printed and not put_right:
+                    carried.append(other.row.key)
+                elif put_right and not as_printed:
+                    mended.append(other.row.key)
+        return carried, mended
+
+    def _follows_once_mended(self, row: Row) -> bool:
+        wrong = self._wrong_among(row.uses)
+        return bool(wrong) and self._follows(row, {key: self._corrected(key) for key in wrong})
+
+    def _wrong_among(self, keys: Sequence[str]) -> list[str]:
+        """Formulas that differ from what they are held against."""
+        return [key for key in keys if self._outcomes[key].plan is not None and not self._outcomes[key].right]
+
+    def _follows(self, row: Row, replacements: Mapping[str, Formula]) -> bool:
+        """Whether a row follows from the rows it names, some of them replaced."""
+        asked = row.key, tuple(replacements)
+        if asked not in self._known:
+            work = partial(self._follows_from, row, replacements)
+            self._known[asked] = refusal.named(self._bench, row, budget.VERDICT, work, "from")
+        return self._known[asked]
+
+    def _follows_from(self, row: Row, replacements: Mapping[str, Formula]) -> bool:
+        assert row.printed is not None
+        value = self._bench.follows(row, replacements)
+        if isinstance(value.trees, Roots | Kernel) and not isinstance(row.printed, tuple):
+            return False
+        ways = plans(self._bench, row, row.printed, value)
+        return any(way.may_hold(way.printed) and way.is_right(way.printed) for way in ways)
+
+    def _corrected(self, key: str) -> Formula:
+        if key not in self._right:
+            self._right[key] = corrected(self._outcomes[key])
+        return self._right[key]
+
+
+def recompute(document: str, key: str) -> str:
+    """The command that recomputes a row."""
+    return f'satsym audit {document} --item "{key}"'
+
+
+def _same(one: Outcome, other: Outcome) -> bool:
+    """Whether two rows are put right by the same change."""
+    if one.remedy is None or other.remedy is None:
+        return False
+    return [(e.change, e.old, e.new) for _, e in one.remedy.edits] == [
+        (e.change, e.old, e.new) for _, e in other.remedy.edits
+    ] and bool(one.remedy.edits)
+
+
+def _shown(value: object) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,61 @@
+"""``satsym audit``: what documents print, judged."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from satsym.cli.options import json_option, place_option
+from satsym.cli.output import emit, emit_json, live
+from satsym.status import ExitCode
+
+EXAMPLES = """\b
+Examples:
+  satsym audit                          all documents that come with satsym
+  satsym audit its_thesis --item 4.27   one equation, recomputed
+  satsym audit my_ledger.toml --latex report.tex
+  satsym audit --coverage               which numbers of the documents have no row"""
+
+
+@click.command(epilog=EXAMPLES)
+@click.argument("ledgers", metavar="[LEDGER]...", nargs=-1)
+@json_option
+@place_option("--latex", metavar="FILE", help="Write a report for LaTeX, too.")
+@click.option("--item", "items", metavar="X", multiple=True, help="Judge this item alone; may be repeated.")
+@click.option("--coverage", is_flag=True, help="List the document's numbers that have no row; judge nothing.")
+@click.option("--fresh", is_flag=True, help="Compute anew, whatever is in the cache.")
+def audit(
+    ledgers: tuple[str, ...], as_json: bool, latex: Path | None, items: tuple[str, ...], coverage: bool, fresh: bool
+) -> ExitCode:
+    """Judge what documents print.
+
+    Equations, matrices, numbers, units, tables, algorithms and claims are held against what satsym derives. LEDGER is
+    a document that comes with satsym, or a TOML file that lists what a document prints and what each item
+    is to be held against. Verdicts are computed, never read. The exit code is 0 whatever they are.
+    """
+    from satsym import auditing
+    from satsym.auditing import cache
+    from satsym.report.terminal import audit as reporting
+
+    paths = [auditing.locate(name) for name in ledgers] if ledgers else auditing.shipped()
+    read = [auditing.read(path) for path in paths]
+    auditing.refuse_unknown_items(read, items)
+    if coverage:
+        if as_json:
+            emit_json(reporting.coverage_object(read))
+        else:
+            emit(reporting.coverage_text(read))
+        return ExitCode.DONE
+    with live() as line:
+        judged = {x.document.key: cache.audit(x, items, line.show, fresh=fresh) for x in read}
+    if latex is not None:
+        from satsym.report.latex.audit import render
+        from satsym.report.results.files import write_text
+
+        write_text(latex, render(read, judged))
+    if as_json:
+        emit_json(reporting.audit_object([row for rows in judged.values() for row in rows]))
+    else:
+        emit(reporting.audit_text(read, judged))
+    return ExitCode.DONE

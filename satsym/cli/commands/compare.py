@@ -1,0 +1,76 @@
+"""``satsym compare``: several instances of one system, side by side."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from satsym.cli.options import json_option, out_option, plot_option
+from satsym.cli.output import complain, emit, emit_json
+from satsym.cli.saving import folder_for, save
+from satsym.status import ExitCode
+
+if TYPE_CHECKING:
+    from satsym.analysis.comparison import Range
+    from satsym.instance import Instance
+    from satsym.report.results.files import Content
+
+EXAMPLES = """\b
+Examples:
+  satsym compare lapan-classical lapan-minimum-time lapan-minimum-energy
+  satsym compare lapan-classical lapan-minimum-time lapan-minimum-time-100s --plot
+  satsym compare lapan-classical lapan-minimum-time --range    for other dampings and commands"""
+
+SHARES = (0.25, 0.5, 1.0, 2.0, 4.0)
+"""Of the instance's damping and command, in a range."""
+
+
+@click.command(epilog=EXAMPLES)
+@click.argument("subjects", metavar="X...", nargs=-1, required=True)
+@json_option
+@click.option("--range", "ranged", is_flag=True, help="Vary damping and command of the first instance's law.")
+@out_option
+@plot_option("compare")
+def compare(subjects: tuple[str, ...], as_json: bool, ranged: bool, out: Path | None, plot: bool) -> ExitCode:
+    """Fly or solve instances of one system, and set the numbers that describe them side by side.
+
+    An instance that states a law ([classical]) is flown under it, any other is solved. Totals, largest and last
+    values, durations. NAME, where results go, is that of the first X.
+    """
+    from satsym import instance
+    from satsym.analysis import comparison
+    from satsym.report.terminal.comparison import comparison_object, comparison_text
+    from satsym.report.terminal.solution import with_files
+
+    loaded = [instance.load(subject) for subject in subjects]
+    folder = folder_for(loaded[0].name, "compare", out, plot)
+    over = _range(loaded[0]) if ranged else None
+    cases = comparison.compare(loaded)
+    result = comparison_object(cases, over)
+    pages: dict[str, Content] = {}
+    if folder and plot:
+        from satsym.report.plots import comparison as plots
+
+        pages = plots.pictures(cases)
+    saved = save(folder, result, pages)
+    if as_json:
+        emit_json(result)
+    else:
+        emit(with_files(comparison_text(cases, over), saved))
+    for case in cases:
+        if not case.answered:
+            complain(f"{case.instance.name}: {case.message}")
+    if not all(case.answered for case in cases):
+        return ExitCode.NO_ANSWER
+    failed = any(case.verdict == "failed" for case in cases)
+    return ExitCode.CERTIFICATE_FAILED if failed else ExitCode.DONE
+
+
+def _range(case: Instance) -> Range:
+    from satsym.analysis.comparison import ranged
+
+    options = case.classical
+    damping, command = (options.damping or 0.0, options.command) if options else (0.0, 0.0)
+    return ranged(case, [share * damping for share in SHARES], [share * command for share in SHARES])

@@ -1,0 +1,99 @@
+"""``satsym derive``: from derivation files to kernels and typeset derivations."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import click
+
+from satsym.cli.derivations import checkout, explained
+from satsym.cli.options import place_option
+from satsym.cli.output import complain, emit, live
+from satsym.status import ExitCode
+
+EXAMPLES = """\b
+Examples:
+  satsym derive                         all of derivations/ into generated/ (in a checkout)
+  satsym derive --check                 does generated/ still say what derivations/ says?
+  satsym derive my_model.py --out DIR   your own; then write model = "DIR/NAME" in an instance
+
+A derivation file is Python and is executed: derive only files that you trust."""
+
+SIGNATURE = "Written by satsym from "
+"""What the machine writes says so, and nothing else is ever removed."""
+
+
+@click.command(epilog=EXAMPLES)
+@click.argument("files", metavar="[FILE]...", nargs=-1)
+@place_option("--out", metavar="DIR", help="Write there instead of to the checkout's generated/.")
+@click.option("--check", is_flag=True, help="Write nothing; print what would change, and exit with 6 if anything does.")
+def derive(files: tuple[str, ...], out: Path | None, check: bool) -> ExitCode:
+    """Derive kernels and LaTeX from derivation files.
+
+    Takes the FILEs, or where none is named all that come with satsym, and writes NAME.py and NAME.tex for each
+    problem. Every step is checked by machine, and so is every generated function, before anything is written.
+    """
+    from satsym.report import artefacts
+    from satsym.report.results.files import check_writable
+    from satsym.symbolic import loader
+
+    paths = [loader.find(file) for file in files] if files else loader.shipped()
+    folder = out or _checked_in(paths)
+    whole = not files and out is None
+    if not check:
+        check_writable(folder)
+    with live() as line, explained():
+        rendered = artefacts.render(paths, lambda name: line.show(f"derived {name} ..."))
+    if check:
+        return _compare(artefacts.differences(rendered, folder, whole), folder, _command(files, out))
+    changed = {name: text for name, text in rendered.items() if not _holds(folder / name, text)}
+    artefacts.write(changed, folder)
+    done = [f"{folder / name}  {'written' if name in changed else 'unchanged'}" for name in rendered]
+    if whole:
+        done += _leftovers_removed(folder, rendered)
+    emit("\n".join(done))
+    return ExitCode.DONE
+
+
+def _checked_in(paths: Sequence[Path]) -> Path:
+    """The checkout's generated/, if that is where the results of all these files belong."""
+    home = checkout()
+    if home is None:
+        raise click.UsageError("--out DIR is needed, because this satsym is no checkout.")
+    for path in paths:
+        if path.resolve().parent != home / "derivations":
+            raise click.UsageError(f"--out DIR is needed, because {path} is not in {home / 'derivations'}.")
+    return home / "generated"
+
+
+def _command(files: Sequence[str], out: Path | None) -> str:
+    return shlex.join(["satsym", "derive", *files, *(["--out", str(out)] if out else ())])
+
+
+def _compare(differences: Sequence[str], folder: Path, command: str) -> ExitCode:
+    if not differences:
+        emit(f"{folder} is what the derivations say")
+        return ExitCode.DONE
+    emit("".join(differences))
+    complain(f"{folder} is not what the derivations say; run: {command}")
+    return ExitCode.STALE
+
+
+def _holds(path: Path, text: str) -> bool:
+    return path.is_file() and path.read_bytes() == text.encode()
+
+
+def _leftovers_removed(folder: Path, rendered: Mapping[str, str]) -> list[str]:
+    """Remove what satsym once wrote and would not write now; a line for each file that no derivation leads to."""
+    from satsym.report.artefacts import KEPT, SUFFIXES
+
+    lines = []
+    for path in sorted(folder.iterdir()):
+        if path.suffix in SUFFIXES and path.name not in (*rendered, KEPT):
+            ours = SIGNATURE in path.read_text("utf-8", "replace")
+            if ours:
+                path.unlink()
+            lines.append(f"{path}  {'removed' if ours else 'is not from satsym; remove it'}: no derivation leads to it")
+    return lines

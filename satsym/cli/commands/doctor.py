@@ -1,0 +1,36 @@
+"""``satsym doctor``: whether everything is here that satsym needs."""
+
+from __future__ import annotations
+
+import click
+
+from satsym.cli.options import json_option
+from satsym.cli.output import emit, emit_json, live
+from satsym.status import ExitCode
+
+EXAMPLES = """\b
+Example:
+  satsym doctor
+
+Exit codes: 0 all that is required is here, 1 something required is broken."""
+
+
+@click.command(epilog=EXAMPLES)
+@json_option
+def doctor(as_json: bool) -> ExitCode:
+    """Examine the installation.
+
+    Looks at versions, extras, programs and shipped files, and solves a small problem.
+    """
+    from satsym.cli.examination import examine
+    from satsym.report.terminal.table import table
+
+    with live() as line:
+        findings = examine(lambda name: line.show(f"examining {name} ..."))
+    healthy = not any(finding.broken for finding in findings)
+    if as_json:
+        emit_json({"healthy": healthy, "findings": [finding.as_object() for finding in findings]})
+    else:
+        rows = [(f.mark, f.name, f.value, f.note) for f in findings]
+        emit("\n".join(table([("", "what", "found", "note"), *rows], indent="")))
+    return ExitCode.DONE if healthy else ExitCode.UNFORESEEN

@@ -1,0 +1,56 @@
+"""``satsym latex``: a derivation, typeset."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from satsym.cli.options import place_option
+from satsym.cli.output import emit, live
+from satsym.status import ExitCode
+
+if TYPE_CHECKING:
+    from satsym.symbolic.model import Convention
+
+EXAMPLES = r"""
+Examples:
+  satsym latex polar_orbit -o polar_orbit.tex
+  satsym latex my_model.py --fragment   for \input in a document of your own
+  satsym latex my_model.py:my_problem   one of several in a file"""
+
+
+@click.command(epilog=f"\b{EXAMPLES}")
+@click.argument("name")
+@place_option("-o", "--output", metavar="FILE", help="Write there instead of to stdout.")
+@click.option(
+    "--lang", "language", type=click.Choice(("en", "id")), default="en", help="Language of the text.", show_default=True
+)
+@click.option("--fragment", is_flag=True, help="Without a preamble, to be included.")
+@click.option(
+    "--convention",
+    type=click.Choice(("minimum", "maximum")),
+    help="Whether H is to be minimised or maximised; as the derivation file says unless given.",
+)
+def latex(name: str, output: Path | None, language: str, fragment: bool, convention: Convention | None) -> ExitCode:
+    """Typeset a derivation.
+
+    NAME is a shipped model (`satsym models` lists them) or a derivation file. It is derived anew, and each step is
+    checked by machine, before anything is written.
+    """
+    from satsym.cli.derivations import explained, find
+    from satsym.report.latex import document as typesetting
+    from satsym.report.results.files import write_text
+    from satsym.symbolic import derive
+    from satsym.symbolic.convention import in_convention
+
+    with live() as line, explained():
+        line.show(f"deriving {name} ...")
+        derivation = derive(in_convention(find(name), convention))
+    text = typesetting.render(derivation, language=language, standalone=not fragment)
+    if output is None:
+        emit(text)
+    else:
+        write_text(output, text)
+    return ExitCode.DONE

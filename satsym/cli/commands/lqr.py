@@ -1,0 +1,56 @@
+"""``satsym lqr``: the best linear feedback for quadratic costs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from satsym.cli.options import json_option, out_option, plot_option
+from satsym.cli.output import emit, emit_json
+from satsym.cli.saving import folder_for, save
+from satsym.status import ExitCode, Status
+
+if TYPE_CHECKING:
+    from satsym.report.results.files import Content
+
+EXAMPLES = """\b
+Examples:
+  satsym lqr uny-lqr                    the gain of a thesis, with all it printed and more
+  satsym lqr geo-lqr --plot             geostationary, weights from allowed deviations, with pictures
+  satsym lqr clohessy_wiltshire         a model: all inputs, all weights 1"""
+
+
+@click.command(epilog=EXAMPLES)
+@click.argument("subject", metavar="X")
+@json_option
+@out_option
+@plot_option("lqr")
+def lqr(subject: str, as_json: bool, out: Path | None, plot: bool) -> ExitCode:
+    """Find the gain that costs least: u = -K x for the deviation x.
+
+    X is an instance with an [lqr] table, or a model, whose weights are then all 1; shipped, or the path of one. The
+    cost is the integral of x'Qx + u'Ru, without a factor 1/2.
+    """
+    from satsym.analysis.regulator.feedback import designed
+    from satsym.cli.subject import begins, find
+    from satsym.report.results.linear import regulator_object
+    from satsym.report.terminal.linear import regulator_text
+    from satsym.report.terminal.solution import with_files
+
+    given = find(subject)
+    folder = folder_for(Path(subject).stem, "lqr", out, plot)
+    design = designed(given)
+    result = begins("lqr", given, Status.CONVERGED) | regulator_object(design)
+    pictures: dict[str, Content] = {}
+    if folder and plot:
+        from satsym.report.plots.systems import of_design
+
+        pictures = of_design(design)
+    saved = save(folder, result, pictures)
+    if as_json:
+        emit_json(result)
+    else:
+        emit(with_files(regulator_text(design), saved))
+    return ExitCode.DONE

@@ -1,0 +1,91 @@
+"""``satsym plot``: pictures of a result that was saved before."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from satsym.cli.options import json_option, place_option, subject_argument
+from satsym.cli.output import emit, emit_json
+from satsym.cli.saving import saved_folder, split
+from satsym.status import BadInput, ExitCode
+from satsym.wording import printable
+
+if TYPE_CHECKING:
+    from satsym.report.results.files import Content
+    from satsym.report.results.sets import Found
+    from satsym.solution import Flight, Solution
+
+KINDS = ("png", "pdf")
+
+EXAMPLES = """\b
+Examples:
+  satsym solve soft-return --plot       results and pictures
+  satsym plot soft-return --format pdf --format png    the pictures again, for print and screen
+  satsym plot soft-return/simulate      of another command than the last one
+  satsym plot soft-return --from run    of what `satsym solve soft-return --out run` wrote"""
+
+
+@click.command(epilog=EXAMPLES)
+@subject_argument
+@place_option(
+    "--from",
+    "source",
+    metavar="DIR",
+    help="Where its trajectory.npz and result.json are; by default the newest of results/X/solve, results/X/simulate.",
+)
+@place_option("--out", metavar="DIR", help="Where pictures go; by default there too.")
+@click.option(
+    "--format",
+    "kinds",
+    metavar="KIND",
+    type=click.Choice(KINDS),
+    multiple=True,
+    default=("png",),
+    help=f"One of: {', '.join(KINDS)}; may be given several times. By default png.",
+)
+@json_option
+def plot(subject: str, source: Path | None, out: Path | None, kinds: tuple[str, ...], as_json: bool) -> ExitCode:
+    """Draw a saved result, without solving again.
+
+    X is the instance that was solved or simulated with --out or --plot, or X/COMMAND for what that command wrote. A
+    result that is not whole any more is refused.
+    """
+    from satsym import instance
+    from satsym.report import plots
+    from satsym.report.results import trajectory
+    from satsym.report.results.files import check_writable
+    from satsym.report.results.objects import head
+    from satsym.report.terminal.solution import with_files
+
+    name, command = split(subject)
+    case = instance.load(name)
+    source = source or saved_folder(case.name, command)
+    check_writable(out or source)
+    result, found = trajectory.read(case, source)
+    if command not in (None, found.command):
+        raise BadInput(f"{printable(str(source))}: holds the result of {found.command}, not of {command}")
+    pictures = plots.pictures(result, tuple(dict.fromkeys(kinds)))
+    saved = _save(out or source, found, result, pictures) if pictures else []
+    if as_json:
+        begins = head("plot", case.model.spec, case.name, result.status)
+        emit_json(begins | {"pictures": [str(path) for path in saved]})
+    else:
+        emit(with_files(case.title or case.name, saved) if saved else "there is no trajectory to draw")
+    return ExitCode.DONE
+
+
+def _save(folder: Path, found: Found, result: Solution | Flight, pictures: Mapping[str, Content]) -> list[Path]:
+    """Add pictures to the set they are of; or make them a set of their own, which replaces none but of pictures."""
+    from satsym.report.results import sets
+    from satsym.report.results.objects import head
+
+    if folder.resolve() == found.folder.resolve():
+        return sets.extend(found, pictures)
+    if (other := sets.command_of(folder)) not in (None, "plot"):
+        raise BadInput(f"{printable(str(folder))}: holds the result of {other}; give another folder for pictures")
+    case = result.instance
+    return sets.write(folder, head("plot", case.model.spec, case.name, result.status), pictures)[:-1]

@@ -1,0 +1,63 @@
+"""``satsym simulate``: the motion of an instance under a given control law."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from satsym.cli.options import json_option, plot_option, subject_argument, trajectory_option
+from satsym.cli.output import complain, emit, emit_json, in_colour
+from satsym.cli.saving import folder_for, save, trajectory_files
+from satsym.status import ExitCode
+
+FEEDBACKS = ("none", "lqr", "classical", "switching", "pulses")
+"""Control laws to fly with; here once more, because ``--help`` loads no solver."""
+
+EXAMPLES = """\b
+Examples:
+  satsym simulate its-thesis            where the satellite goes if nobody steers it
+  satsym simulate its-thesis --plot     with pictures, into results/its-thesis/simulate
+  satsym simulate geo-lqr --feedback lqr    the nonlinear motion under the linear law
+  satsym simulate lapan-classical       a pitch manoeuvre under the law that it states
+  satsym simulate lapan-minimum-time --feedback switching    the same in least time, by the switching curve
+  satsym simulate lapan-minimum-time --feedback pulses       the same by a sensor of the position alone"""
+
+
+@click.command(epilog=EXAMPLES)
+@subject_argument
+@click.option(
+    "--feedback",
+    type=click.Choice(FEEDBACKS),
+    default=None,
+    metavar="LAW",
+    help=f"One of: {', '.join(FEEDBACKS)}; by default classical where the instance states such a law, else none.",
+)
+@json_option
+@trajectory_option
+@plot_option("simulate")
+def simulate(subject: str, feedback: str | None, as_json: bool, out: Path | None, plot: bool) -> ExitCode:
+    """Follow the motion under a control law.
+
+    X is a shipped instance (`satsym instances` lists them) or the path of a TOML file. The motion is followed from
+    the initial state to the final time, and what ought to be conserved is measured.
+    """
+    from satsym import instance
+    from satsym.analysis.regulator.feedback import simulate as simulated
+    from satsym.report.results.objects import flight_object
+    from satsym.report.terminal.solution import flight_text, with_files
+
+    case = instance.load(subject)
+    folder = folder_for(case.name, "simulate", out, plot)
+    flight = simulated(case, feedback)
+    result = flight_object(flight)
+    saved = save(folder, result, trajectory_files(folder, flight, plot))
+    if as_json:
+        emit_json(result)
+    else:
+        emit(with_files(flight_text(flight, in_colour()), saved))
+    if flight.status.answered:
+        return ExitCode.DONE
+    if as_json:  # its object has no key for the reason
+        complain(f"{flight.status.value}: {flight.message}")
+    return ExitCode.NO_ANSWER

@@ -1,0 +1,98 @@
+"""``satsym solve``: the optimum of an instance."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from satsym.cli.options import json_option, plot_option, subject_argument, trajectory_option
+from satsym.cli.output import emit, emit_json, in_colour, live
+from satsym.cli.saving import folder_for, save, trajectory_files
+from satsym.status import ExitCode, Verdict
+
+if TYPE_CHECKING:
+    from satsym.instance import Instance
+
+METHODS = ("auto", "sweep", "collocation", "shooting", "linear", "bang-bang")
+"""What ``[solver] method`` may say; here once more, because ``--help`` loads no schema."""
+
+EXAMPLES = """\b
+Examples:
+  satsym solve soft-return --plot       results and pictures into results/soft-return/solve
+  satsym solve my_case.toml --json      the numbers alone, for another program
+
+Exit codes: 0 converged, 3 the instance cannot be used, 4 there is no answer (its status says why),
+5 an answer whose certificate fails."""
+
+
+def _positive(_context: click.Context, _option: click.Parameter, value: float | None) -> float | None:
+    if value is not None and not 0.0 < value < math.inf:
+        raise click.BadParameter(f"{value} is not a positive number.")
+    return value
+
+
+@click.command(epilog=EXAMPLES)
+@subject_argument
+@json_option
+@trajectory_option
+@plot_option("solve")
+@click.option(
+    "--method", type=click.Choice(METHODS), metavar="METHOD", help=f"Instead of the instance's: {', '.join(METHODS)}."
+)
+@click.option("--steps", type=click.IntRange(2, 10**7), metavar="N", help="Steps of the grid.")
+@click.option("--tolerance", type=float, callback=_positive, metavar="EPS", help="Largest residual of an answer.")
+def solve(
+    subject: str,
+    as_json: bool,
+    out: Path | None,
+    plot: bool,
+    method: str | None,
+    steps: int | None,
+    tolerance: float | None,
+) -> ExitCode:
+    """Find the control that costs least.
+
+    X is a shipped instance (`satsym instances` lists them) or the path of a TOML file. A summary is printed;
+    states, controls and costates over time go into files with --out or --plot. METHOD, N and EPS replace what
+    [solver] says in the instance.
+    """
+    from satsym import instance, solvers
+    from satsym.report.results.objects import solution_object
+    from satsym.report.terminal.solution import progress_line, solution_text, with_files
+
+    case = _changed(instance.load(subject), method=method, steps=steps, tolerance=tolerance)
+    folder = folder_for(case.name, "solve", out, plot)
+    with live() as line:
+        solution = solvers.solve(case, progress=lambda iteration: line.show(progress_line(iteration)))
+    if case.limits:
+        from dataclasses import replace
+
+        from satsym.analysis.comparison import limits_passed
+
+        solution = replace(solution, message=limits_passed(solution) or solution.message)
+    result = solution_object(solution)
+    saved = save(folder, result, trajectory_files(folder, solution, plot))
+    if as_json:
+        emit_json(result)
+    else:
+        emit(with_files(solution_text(solution, in_colour()), saved))
+    if not solution.status.answered:
+        return ExitCode.NO_ANSWER
+    failed = solution.certificate is not None and solution.certificate.verdict is Verdict.FAILED
+    return ExitCode.CERTIFICATE_FAILED if failed else ExitCode.DONE
+
+
+def _changed(case: Instance, **options: Any) -> Instance:
+    """The instance with the solver options that the command line gave."""
+    given = {name: value for name, value in options.items() if value is not None}
+    if not given:
+        return case
+    import msgspec
+
+    from satsym.instance.options import solver
+
+    return replace(case, solver=solver(msgspec.structs.replace(case.solver, **given), case.model.spec))

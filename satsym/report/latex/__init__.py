@@ -1,0 +1,1 @@
+"""Derivations and audits as LaTeX documents."""

@@ -1,0 +1,187 @@
+"""Numbered, aligned equations from signed terms, broken where they are too long for a line."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from satsym.report.latex.tex import label
+from satsym.report.latex.width import width
+from satsym.symbolic.latex.terms import Piece, Term, joined
+
+LINE = 35.0
+"""Width in em that an equation may take beside its number: 160 mm of 11-point type."""
+INDENT = 1.0
+"""What a continued line is moved in by, in em; twice that within parentheses."""
+
+STRUT = r"\vphantom{\bigg|}"
+"""Makes room for fractions in a row of a matrix."""
+TOGETHER = 8
+"""Lines of the longest group of equations that no page may break."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One numbered equation.
+
+    Attributes
+    ----------
+    address
+        Its label.
+    left, right
+        Terms of both sides.
+    also
+        Something the left side also equals, written between both sides.
+    end
+        Something both sides also equal, written at the end.
+    """
+
+    address: str
+    left: tuple[Term, ...]
+    right: tuple[Term, ...]
+    also: str = ""
+    end: str = ""
+
+    @property
+    def left_tex(self) -> str:
+        """The left side on one line."""
+        return joined(self.left) + (f" = {self.also}" if self.also else "")
+
+    @property
+    def tag(self) -> str:
+        """The command that labels it."""
+        return rf"\label{{{label(self.address)}}}"
+
+
+def array(cells: Sequence[Sequence[str]]) -> str:
+    """A matrix; one entry alone stands without parentheses."""
+    if len(cells) == len(cells[0]) == 1:
+        return cells[0][0]
+    rows = [" & ".join(row) for row in cells]
+    rows = [row.replace(r"\frac", r"\dfrac") + (STRUT if r"\frac" in row else "") for row in rows]
+    body = r" \\ ".join(rows)
+    return rf"\left(\begin{{array}}{{@{{}}{'c' * len(cells[0])}@{{}}}} {body} \end{{array}}\right)"
+
+
+def display(rows: Sequence[Row]) -> str:
+    """The equations, aligned at their equals signs, in as many environments as their widths ask for."""
+    blocks: list[list[Row]] = []
+    for row in rows:
+        alone = _left_is_long(row)
+        if not blocks or alone or _left_is_long(blocks[-1][-1]):
+            blocks.append([])
+        blocks[-1].append(row)
+    return "\n".join(map(_block, blocks))
+
+
+def columns(rows: Sequence[Row], names: Sequence[str]) -> str | None:
+    """The equations with the terms of each name below each other; ``None`` if they do not fit, or gain nothing."""
+    cells = [_cells(row, names) for row in rows]
+    used = [k for k in range(len(names) + 1) if any(row[k] for row in cells)]
+    if len(used) < 2 or sum(sum(map(bool, row)) > 1 for row in cells) < 2:
+        return None
+    widths = [max(width(joined(row[k])) + 1.3 for row in cells) for k in used]
+    if max(width(row.left_tex) for row in rows) + sum(widths) > LINE:
+        return None
+    lines = []
+    for row, parts in zip(rows, cells, strict=True):
+        written = [_cell(parts, k, first=place == 0) for place, k in enumerate(used)] if any(parts) else ["0"]
+        lines.append(f"{row.left_tex} &= {' && '.join(written).rstrip(' &')} {row.tag}")
+    return _environment(f"alignat}}{{{len(used)}", lines, "alignat")
+
+
+def broken(terms: Sequence[Term], limit: float) -> list[str]:
+    """A sum on as few lines as fit the limit, of like lengths; lines after the first begin with their indent."""
+    pieces: list[Piece] = []
+    for place, term in enumerate(terms):
+        whole = term.signed(first=place == 0)
+        pieces += [Piece(whole)] if width(whole) <= limit else term.signed_pieces(first=place == 0)
+    starts = _best_breaks(pieces, limit)
+    lines = []
+    for begin, end in pairwise([*starts, len(pieces)]):
+        text = " ".join(p.tex for p in pieces[begin:end])
+        indent = (r"\qquad " if pieces[begin].depth else r"\quad ") + "{}" if begin else ""
+        lines.append(indent + text)
+    return lines
+
+
+def _best_breaks(pieces: Sequence[Piece], limit: float) -> list[int]:
+    """Where lines begin: the fewest lines, then the most even ones, rather outside parentheses than inside."""
+    widths = [width(p.tex) for p in pieces]
+    best: list[tuple[tuple[int, float], list[int]]] = [((0, 0.0), [])]
+    for end in range(1, len(pieces) + 1):
+        choices = []
+        for begin in range(end):
+            depth = pieces[begin].depth
+            indent = INDENT * (1 + bool(depth)) if begin else 0.0
+            length = indent + sum(widths[begin:end])
+            if length > limit and end - begin > 1:
+                continue
+            (lines, cost), starts = best[begin]
+            cost += length**2 + (0.4 * limit) ** 2 * depth * bool(begin)
+            choices.append(((lines + 1, cost), [*starts, begin]))
+        best.append(min(choices))
+    return best[-1][1]
+
+
+def _left_is_long(row: Row) -> bool:
+    left, right = width(row.left_tex), width(joined(row.right))
+    return left > 0.4 * LINE and left + right + 1.3 > LINE
+
+
+def _block(rows: list[Row]) -> str:
+    if len(rows) == 1 and _left_is_long(rows[0]):
+        return _environment("equation", [f"{_both_sides_broken(rows[0])} {rows[0].tag}"])
+    room = LINE - max(width(row.left_tex) for row in rows) - 1.3
+    lines = []
+    for row in rows:
+        right = broken(row.right, room)
+        body = f"{row.left_tex} &= " + " \\\\\n  &".join(right) + (f" = {row.end}" if row.end else "")
+        if len(right) > 1:
+            body = f"\\begin{{split}}\n  {body}\n  \\end{{split}}"
+        elif len(rows) == 1:
+            body = body.replace(" &= ", " = ", 1)
+        lines.append(f"{body} {row.tag}")
+    return _environment("align" if len(rows) > 1 else "equation", lines)
+
+
+def _both_sides_broken(row: Row) -> str:
+    """A long left side above the right one."""
+    left = broken(row.left, LINE)
+    right = broken(row.right, LINE - 2 * INDENT - 1.3)
+    lines = [f"&{line}" for line in left] + [rf"&\qquad = {right[0]}"] + [rf"&\qquad\quad {line}" for line in right[1:]]
+    return "\\begin{split}\n  " + " \\\\\n  ".join(lines) + "\n  \\end{split}"
+
+
+def _environment(opening: str, lines: Sequence[str], closing: str = "") -> str:
+    last, tall = len(lines) - 1, any(r"\begin{array}" in line for line in lines)
+    height = sum(1 + line.count(r"\\") for line in lines)
+    breakable = [tall or (height > TOGETHER and 0 < k < last - 1) for k in range(last)]
+    ends = [r" \displaybreak[1] \\" if b else r" \\" for b in breakable]
+    body = "\n  ".join(line + end for line, end in zip(lines, [*ends, ""], strict=True))
+    return f"\\begin{{{opening}}}\n  {body}\n\\end{{{closing or opening}}}"
+
+
+def _cells(row: Row, names: Sequence[str]) -> list[list[Term]]:
+    """Terms of the right side by the first of the names in them; the last cell is for terms with none."""
+    cells: list[list[Term]] = [[] for _ in range(len(names) + 1)]
+    for term in row.right:
+        if term.tex != "0":
+            cells[next((k for k, name in enumerate(names) if name in term.names), len(names))].append(term)
+    return cells
+
+
+def _cell(parts: Sequence[Sequence[Term]], k: int, *, first: bool) -> str:
+    """One cell; a sign that begins an equation stands in the column of the signs."""
+    terms = parts[k]
+    if not terms:
+        return ""
+    text = joined(terms)
+    if any(parts[:k]):
+        return "{}" + " ".join(t.signed(first=False) for t in terms)
+    if first:
+        return text
+    if terms[0].negative:
+        return "{}- " + text[1:]
+    return rf"\phantom{{{{}}+{{}}}} {text}"

@@ -1,0 +1,168 @@
+"""Printed formulas in LaTeX: their own symbols, as a hand would write them, broken where they are wide."""
+
+from __future__ import annotations
+
+import re
+from itertools import pairwise
+
+from satsym.formula.tree import Add, Call, Div, Equality, Mul, Neg, Node, Num, Pow, Sym, constant
+from satsym.formula.writing import written
+from satsym.report.latex.tex import escape
+from satsym.report.latex.width import width
+
+WIDEST = 34.0
+"""Width of a line, in em of the main font."""
+
+_GREEK = frozenset(
+    "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi chi psi "
+    "omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega".split()
+)
+_ACCENTS = {"dot": r"\dot", "ddot": r"\ddot", "hat": r"\hat", "bar": r"\bar", "vector": r"\vec"}
+_FUNCTIONS = {
+    "asin": "arcsin",
+    "acos": "arccos",
+    "atan": "arctan",
+    "atan2": "operatorname{atan2}",
+    "norm": "operatorname{norm}",
+}
+_BASE = re.compile(r"([A-Za-z]+?)([0-9]+[A-Za-z0-9]*)?\Z")
+_SUM, _PRODUCT, _ATOM = range(3)
+
+
+def formula(tree: Node | Equality) -> str:
+    """A formula on one line."""
+    if isinstance(tree, Equality):
+        return f"{formula(tree.lhs)} = {formula(tree.rhs)}"
+    return _tex(tree)[0]
+
+
+def display(tree: Node | Equality) -> str:
+    """A displayed formula, on several lines if it is wide."""
+    lines = _lines(tree)
+    if len(lines) == 1:
+        return f"\\[ {lines[0]} \\]"
+    body = " \\\\\n".join(f"&{line}" if k == 0 else f"&\\quad {line}" for k, line in enumerate(lines))
+    return f"\\[ \\begin{{aligned}}\n{body}\n\\end{{aligned}} \\]"
+
+
+def matrix(entries: list[list[Node]]) -> str:
+    """A displayed matrix."""
+    rows = " \\\\ ".join(" & ".join(map(formula, row)) for row in entries)
+    return f"\\[ \\begin{{pmatrix}} {rows} \\end{{pmatrix}} \\]"
+
+
+def symbol(name: str) -> str:
+    """How a name is typeset: ``x1`` has an index, ``d_x1`` and ``r_dot`` a dot, ``lambda`` is a letter."""
+    letter, index, star = _parts(name)
+    return f"{letter}{f'_{{{index}}}' if index else ''}{star}"
+
+
+def _parts(name: str) -> tuple[str, str, str]:
+    """Letter with its accents, index and star."""
+    if name.startswith("d_") and len(name) > 2:
+        letter, index, star = _parts(name[2:])
+        return rf"\dot{{{letter}}}", index, star
+    head, _, last = name.rpartition("_")
+    if head and last in _ACCENTS:
+        letter, index, star = _parts(head)
+        return rf"{_ACCENTS[last]}{{{letter}}}", index, star
+    if head and last == "star":
+        letter, index, _ = _parts(head)
+        return letter, index, "^{*}"
+    base, _, rest = name.partition("_")
+    match = _BASE.match(base)
+    letters, digits = (match[1], match[2] or "") if match else (base, "")
+    if letters in _GREEK:
+        letter = rf"\{letters}"
+    else:
+        letter = letters if len(letters) == 1 else rf"\mathrm{{{letters}}}"
+    return letter, ",".join(filter(None, [digits, *(_index(part) for part in rest.split("_") if part)])), ""
+
+
+def _index(part: str) -> str:
+    if part in _GREEK:
+        return rf"\{part}"
+    return part if len(part) == 1 or part.isdigit() else rf"\mathrm{{{part}}}"
+
+
+def _lines(tree: Node | Equality) -> list[str]:
+    whole = formula(tree)
+    right = tree.rhs if isinstance(tree, Equality) else tree
+    if width(whole) <= WIDEST or not isinstance(right, Add):
+        return [whole]
+    lines = [f"{formula(tree.lhs)} = " if isinstance(tree, Equality) else ""]
+    for k, term in enumerate(right.terms):
+        piece = _signed(term, first=k == 0)
+        if k and width(lines[-1] + piece) > WIDEST:
+            lines.append("")
+        lines[-1] += piece
+    return [line.strip() for line in lines]
+
+
+def _signed(term: Node, first: bool) -> str:
+    negative = isinstance(term, Neg)
+    inner = term.operand if isinstance(term, Neg) else term
+    sign = "-" if negative else "" if first else "+"
+    return f" {sign} {_bound(inner, _PRODUCT)}" if sign and not first else f"{sign}{_bound(inner, _PRODUCT)}"
+
+
+def _tex(node: Node) -> tuple[str, int]:
+    """The LaTeX of a node, and how tightly it binds."""
+    if isinstance(node, Num):
+        return written(node) if node.value.denominator == 1 or "/" not in written(node) else _fraction(node), _ATOM
+    if isinstance(node, Sym):
+        return symbol(node.name), _ATOM
+    if isinstance(node, Neg):
+        return f"-{_bound(node.operand, _PRODUCT)}", _SUM
+    if isinstance(node, Add):
+        return "".join(_signed(term, first=k == 0) for k, term in enumerate(node.terms)), _SUM
+    if isinstance(node, Mul):
+        return _product(node), _PRODUCT
+    if isinstance(node, Div):
+        return rf"\frac{{{_tex(node.numerator)[0]}}}{{{_tex(node.denominator)[0]}}}", _ATOM
+    if isinstance(node, Pow):
+        return _power(node), _PRODUCT
+    if isinstance(node, Call):
+        return _call(node), _ATOM
+    return rf"\text{{{escape(written(node))}}}", _ATOM
+
+
+def _bound(node: Node, least: int) -> str:
+    text, binding = _tex(node)
+    return text if binding >= least else rf"\left({text}\right)"
+
+
+def _fraction(node: Num) -> str:
+    return rf"\frac{{{node.value.numerator}}}{{{node.value.denominator}}}"
+
+
+def _product(node: Mul) -> str:
+    pieces = [_bound(factor, _PRODUCT) for factor in node.factors]
+    joined = pieces[0]
+    for before, piece in pairwise(pieces):
+        numbers = before[-1].isdigit() and piece[0].isdigit()
+        joined += rf" \cdot {piece}" if numbers else rf" {piece}"
+    return joined
+
+
+def _power(node: Pow) -> str:
+    exponent = constant(node.exponent)
+    if exponent is not None and exponent.denominator == 2 and exponent.numerator == 1:
+        return rf"\sqrt{{{_tex(node.base)[0]}}}"
+    accented = isinstance(node.base, Sym) and node.base.name.endswith("_star")
+    base = _bound(node.base, _ATOM)
+    return rf"{{{base}}}^{{{_tex(node.exponent)[0]}}}" if not accented else rf"({base})^{{{_tex(node.exponent)[0]}}}"
+
+
+def _call(node: Call) -> str:
+    arguments = ", ".join(_tex(argument)[0] for argument in node.arguments)
+    if node.function == "sqrt":
+        return rf"\sqrt{{{arguments}}}"
+    if node.function == "abs":
+        return rf"\left|{arguments}\right|"
+    if node.function == "exp":
+        return rf"e^{{{arguments}}}"
+    name = _FUNCTIONS.get(node.function, node.function)
+    if name == "sign":
+        name = r"operatorname{sgn}"
+    return rf"\{name}\left({arguments}\right)"

@@ -1,0 +1,145 @@
+"""Matrices as matrices: long entries get names and follow below, and a matrix too wide even so becomes a list."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from satsym.report.latex import tex
+from satsym.report.latex.equations import LINE, Row, array, display
+from satsym.report.latex.width import width
+from satsym.report.texts import Texts
+from satsym.symbolic import Derivation, Equation, Step
+from satsym.symbolic.latex.terms import plain
+from satsym.symbolic.latex.typeset import NamedMatrix, Typesetter, matrices
+
+DEFINED = {
+    "A": r"A = \frac{\partial\mathbf{f}}{\partial\mathbf{x}}",
+    "B": r"B = \frac{\partial\mathbf{f}}{\partial\mathbf{u}}",
+    "C": r"C = \frac{\partial\mathbf{g}}{\partial\mathbf{x}}",
+    "D": r"D = \frac{\partial\mathbf{g}}{\partial\mathbf{u}}",
+    "H": r"H_{\mathbf{uu}} = \frac{\partial^2 H}{\partial\mathbf{u}^2}",
+}
+"""What a matrix stands for, by the prefix that the names of its entries have."""
+GAP = 1.0
+"""Between columns, in em."""
+
+
+def with_matrices(
+    derivation: Derivation, step: Step, texts: Texts, typeset: Typesetter
+) -> tuple[str, list[str]] | None:
+    """The equations of a step that are entries of matrices, and the addresses that got numbers of their own.
+
+    ``None`` if there are no matrices. Entries without a number of their own share that of their matrix.
+    """
+    found = matrices(derivation, step)
+    if not found:
+        return None
+    address = f"{derivation.name}:{step.name}"
+    shown, listed = [], []
+    for matrix in found:
+        written, named = _written(matrix, typeset)
+        if written is None:
+            listed.append(matrix)
+        else:
+            shown.append((matrix, written, named))
+    rows = [Row(f"{address}.{m.prefix}", plain(DEFINED.get(m.prefix, m.prefix)), plain(w)) for m, w, _ in shown]
+    parts = [display(rows)] if rows else []
+    for back, (matrix, _, named) in zip(range(len(shown) - 1, -1, -1), shown, strict=True):
+        parts.append(_also(back, address, [e for e in matrix.equations if e not in named.values()]))
+    for _, _, named in shown:
+        if named:
+            parts.append(texts.get("groups", "entries"))
+            entries = [Row(f"{address}.{e.name}", plain(name), typeset.terms(e.rhs)) for name, e in named.items()]
+            parts.append(display(entries))
+            rows += entries
+    for matrix in listed:
+        parts.append(texts.get("groups", "nonzero", matrix=DEFINED.get(matrix.prefix, matrix.prefix)))
+        entries = [
+            Row(f"{address}.{e.name}", plain(name), typeset.terms(e.rhs))
+            for name, e in _places(matrix, matrix.prefix)
+            if not typeset.is_zero(e.rhs)
+        ]
+        zero = [e for e in matrix.equations if typeset.is_zero(e.rhs)]
+        parts += [display(entries), _also(0, address, zero)]
+        rows += entries
+    return "\n".join(p for p in parts if p), [row.address for row in rows]
+
+
+def matrix_rows(address: str, name: str, matrix: Any, typeset: Typesetter) -> tuple[list[Row], list[Row]]:
+    """An equation whose right-hand side is a matrix, and those that its long entries need, or all of its entries."""
+    cells = [[typeset.tex(matrix[i, j]) for j in range(matrix.cols)] for i in range(matrix.rows)]
+    head, _, _ = name.partition(" = ")
+    letter = head.lower() if head.isalpha() and len(head) == 1 else "m"
+    written, named = fitted(cells, LINE - width(name) - 2.0, letter)
+    mirrored = matrix.is_symmetric()
+    if written is not None and not (named and mirrored):
+        places = [Row(f"{address}.{i}.{j}", plain(text), typeset.terms(matrix[i, j])) for text, (i, j) in named.items()]
+        return [Row(address, plain(name), plain(array(written)))], places
+    first, *rest = [
+        Row(f"{address}.{i}.{j}", plain(_indexed(name, i, j)), typeset.terms(matrix[i, j]))
+        for i in range(matrix.rows)
+        for j in range(matrix.cols)
+        if not typeset.is_zero(matrix[i, j]) and not (mirrored and j < i)
+    ]
+    return [replace(first, address=address), *rest], []
+
+
+def _indexed(name: str, i: int, j: int) -> str:
+    """An entry of what the name stands for; zero stays zero."""
+    return name if name == "0" else rf"({name.partition(' = ')[0]})_{{{i + 1},{j + 1}}}"
+
+
+def fitted(
+    cells: Sequence[Sequence[str]], room: float, letter: str
+) -> tuple[list[list[str]] | None, dict[str, tuple[int, int]]]:
+    """The cells, the longest of them replaced by names until they fit, and the names; ``None`` if nothing helps."""
+    if _total(cells) <= room:
+        return [list(row) for row in cells], {}
+    widths = {(i, j): width(cell) for i, row in enumerate(cells) for j, cell in enumerate(row)}
+    for limit in sorted(set(widths.values()), reverse=True):
+        long = [(i, j) for (i, j), w in widths.items() if w >= limit and cells[i][j] != "0"]
+        named = {_place(letter, i, j, cells): (i, j) for i, j in long}
+        names = {place: name for name, place in named.items()}
+        short = [[names.get((i, j), cell) for j, cell in enumerate(row)] for i, row in enumerate(cells)]
+        if _total(short) <= room:
+            return short, named
+    return None, {}
+
+
+def _written(matrix: NamedMatrix, typeset: Typesetter) -> tuple[str | None, dict[str, Equation]]:
+    """The matrix, and which entries it shows by a name; ``None`` if it is too wide even so."""
+    room = LINE - width(DEFINED.get(matrix.prefix, matrix.prefix)) - 2.0
+    cells = [["0" if e is None else typeset.tex(e.rhs) for e in row] for row in matrix.entries]
+    short, named = fitted(cells, room, matrix.prefix.lower())
+    if short is None:
+        return None, {}
+    entries = {name: matrix.entries[i][j] for name, (i, j) in named.items()}
+    return array(short), {name: e for name, e in entries.items() if e is not None}
+
+
+def _place(letter: str, i: int, j: int, cells: Sequence[Sequence[Any]]) -> str:
+    """The letter with indices that stand for an entry."""
+    comma = "," if max(len(cells), len(cells[0])) > 9 else ""
+    return f"{letter}_{{{i + 1}{comma}{j + 1}}}"
+
+
+def _places(matrix: NamedMatrix, letter: str) -> list[tuple[str, Equation]]:
+    """Entries with the letter and indices that stand for them."""
+    return [
+        (_place(letter, i, j, matrix.entries), entry)
+        for i, row in enumerate(matrix.entries)
+        for j, entry in enumerate(row)
+        if entry is not None
+    ]
+
+
+def _total(cells: Sequence[Sequence[str]]) -> float:
+    return sum(max(map(width, column)) + GAP for column in zip(*cells, strict=True))
+
+
+def _also(back: int, address: str, equations: Sequence[Equation]) -> str:
+    """Labels for what shares the number of an equation, counted back from the last one."""
+    labels = ",".join(tex.label(f"{address}.{e.name}") for e in equations)
+    return rf"\satsymalso{{{back}}}{{{labels}}}%" if labels else ""

@@ -1,0 +1,205 @@
+"""The equations of one step, typeset: most as they stand, some in the way that suits what they say."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from satsym.report.latex import tex
+from satsym.report.latex.equations import Row, columns, display
+from satsym.report.latex.matrices import matrix_rows, with_matrices
+from satsym.report.texts import Texts
+from satsym.symbolic import Conclusion, Derivation, Equation, Step
+from satsym.symbolic.convention import worded
+from satsym.symbolic.latex.terms import plain
+from satsym.symbolic.latex.typeset import Typesetter
+
+
+@dataclass(frozen=True)
+class Context:
+    """What typesetting a step needs besides the step."""
+
+    derivation: Derivation
+    texts: Texts
+    typeset: Typesetter
+
+    def address(self, step: Step) -> str:
+        """The address of a step."""
+        return f"{self.derivation.name}:{step.name}"
+
+    def costates(self) -> list[str]:
+        """Names of the costates, in the order of the states."""
+        return [self.typeset.costate(v.symbol) for v in self.derivation.model.states]
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A step's equations in LaTeX, and the addresses of the first and the last that got numbers of their own."""
+
+    body: str
+    first: str
+    last: str
+
+
+def shown(context: Context, step: Step) -> Shown:
+    """Typeset the equations of a step."""
+    found = with_matrices(context.derivation, step, context.texts, context.typeset)
+    if found:
+        body, addresses = found
+        return Shown(body, addresses[0], addresses[-1])
+    return WAYS.get(step.name, _as_they_stand)(context, step)
+
+
+def _as_they_stand(context: Context, step: Step) -> Shown:
+    if any(e.rhs.is_Matrix for e in step.equations):
+        return _with_whole_matrices(context, step)
+    return _display([_row(context, step, e) for e in step.equations])
+
+
+def _with_whole_matrices(context: Context, step: Step) -> Shown:
+    """Matrices among the equations; long entries that matrices show by name follow theirs."""
+    parts: list[str] = []
+    waiting: list[Row] = []
+    shown: list[Row] = []
+    for e in step.equations:
+        rows, entries = _rows(context, step, e)
+        waiting += rows
+        shown += rows
+        if entries:
+            parts += [display(waiting), context.texts.get("groups", "entries"), display(entries)]
+            waiting = []
+    body = "\n".join([*parts, *([display(waiting)] if waiting else [])])
+    return Shown(body, shown[0].address, shown[-1].address)
+
+
+def _rows(context: Context, step: Step, equation: Equation) -> tuple[list[Row], list[Row]]:
+    if equation.rhs.is_Matrix:
+        address = f"{context.address(step)}.{equation.name}"
+        return matrix_rows(address, context.typeset.tex(equation.lhs), equation.rhs, context.typeset)
+    if equation.name == "characteristic_polynomial":
+        return [_polynomial(context, step, equation)], []
+    return [_row(context, step, equation)], []
+
+
+def _polynomial(context: Context, step: Step, equation: Equation) -> Row:
+    """A polynomial by falling powers."""
+    terms = [term for power in context.typeset.by_powers(equation.rhs) for term in power]
+    address = f"{context.address(step)}.{equation.name}"
+    return Row(address, context.typeset.terms(equation.lhs), tuple(terms))
+
+
+def conclusion(context: Context, said: Conclusion) -> str:
+    """The sentence of a conclusion, with its expressions filled in; tuples as enumerations."""
+    fill = {
+        place: context.texts.listed([f"${text}$" for text in context.typeset.items(value)])
+        for place, value in said.values.items()
+    }
+    return context.texts.get("conclusions", said.key, **fill)
+
+
+def _stationarity(context: Context, step: Step) -> Shown:
+    """The conditions as derivatives of H, then what they say of the controls."""
+    symbol = context.typeset.symbol
+    conditions = [
+        Row(
+            f"{context.address(step)}.{e.name}",
+            plain(_derivative(symbol(e.name))),
+            context.typeset.terms(e.rhs),
+            end="0",
+        )
+        for e in step.equations
+        if context.typeset.is_zero(e.lhs)
+    ]
+    solved = [_row(context, step, e) for e in step.equations if not context.typeset.is_zero(e.lhs)]
+    words = context.texts.get("groups", "solved" if len(conditions) > 1 else "solved_one")
+    return Shown(f"{display(conditions)}\n{words}\n{display(solved)}", conditions[0].address, solved[-1].address)
+
+
+def _state_equations(context: Context, step: Step) -> Shown:
+    symbol = context.typeset.symbol
+    costates = dict(zip((v.symbol for v in context.derivation.model.states), context.costates(), strict=True))
+    return _display([_row(context, step, e, also=_derivative(symbol(costates[e.name]))) for e in step.equations])
+
+
+def _costate_equations(context: Context, step: Step) -> Shown:
+    """Terms with the same costate below each other, if they fit."""
+    symbol = context.typeset.symbol
+    rows = [_row(context, step, e, also=f"-{_derivative(symbol(e.name))}") for e in step.equations]
+    in_order = [
+        Row(row.address, row.left, context.typeset.terms(e.rhs, plus_first=False), row.also)
+        for row, e in zip(rows, step.equations, strict=True)
+    ]
+    in_columns = columns(in_order, context.costates())
+    return Shown(in_columns, rows[0].address, rows[-1].address) if in_columns else _display(rows)
+
+
+def _at_the_end(context: Context, step: Step) -> Shown:
+    end = context.typeset.at("t_f")
+    return _display([_row(context, step, e, typeset=end) for e in step.equations])
+
+
+def _boundary_conditions(context: Context, step: Step) -> Shown:
+    """Initial state, final costates and final time apart, then the boundary types in words."""
+    texts, problem = context.texts, context.derivation.problem
+    assert problem is not None
+    states = [v.symbol for v in context.derivation.model.states]
+    start, end = context.typeset.at("t_0"), context.typeset.at("t_f")
+    groups: dict[str, list[Row]] = {"initial": [], "costates": [], "final_time": [], "": []}
+    for e in step.equations:
+        group = "initial" if e.name in states else "costates" if e.name in context.costates() else e.name
+        group = group if group in groups else ""
+        groups[group].append(_row(context, step, e, typeset=start if group == "initial" else end))
+    parts = []
+    for group, rows in groups.items():
+        heading = group if group == "initial" else worded(group, problem)
+        parts += [texts.get("groups", heading)] if group and rows else []
+        parts += [display(rows)] if rows else []
+    numbers = {group: numbers_of(rows[0].address, rows[-1].address) for group, rows in groups.items() if rows}
+    curve = worded("curve", problem)
+    types = [texts.get("boundary", key, **numbers) for key in ("none", "time", "state", curve, "both")]
+    items = "\n".join(rf"  \item {text}" for text in types)
+    parts.append(f"{texts.get('boundary', 'intro')}\n\\begin{{enumerate}}\\satsymtogether\n{items}\n\\end{{enumerate}}")
+    if problem.terminal_constraints:
+        parts.append(texts.get("boundary", "constraints"))
+    rows = [row for group in groups.values() for row in group]
+    return Shown("\n".join(parts), rows[0].address, rows[-1].address)
+
+
+def quantities(context: Context, step: Step) -> str:
+    """What the step names, in words where the texts have some: the conserved quantities."""
+    table, found = "conserved", []
+    for e in step.equations:
+        word = context.texts.find(table, e.name) or context.texts.find(table, e.name.partition("_")[0])
+        found.append(f"{word or ''} ${context.typeset.tex(e.lhs)}$".strip())
+    return context.texts.listed(found)
+
+
+WAYS: dict[str, Callable[[Context, Step], Shown]] = {
+    "stationarity": _stationarity,
+    "state_equations": _state_equations,
+    "costate_equations": _costate_equations,
+    "boundary_conditions": _boundary_conditions,
+    "boundary_residual": _at_the_end,
+    "lqr_stationarity": _stationarity,
+    "lqr_costates": _costate_equations,
+}
+
+
+def numbers_of(first: str, last: str) -> str:
+    """The equation number of an address, or the range of two."""
+    ends = dict.fromkeys((tex.label(first), tex.label(last)))
+    return "--".join(rf"\eqref{{{label}}}" for label in ends)
+
+
+def _derivative(by: str) -> str:
+    return rf"\frac{{\partial H}}{{\partial {by}}}"
+
+
+def _display(rows: Sequence[Row]) -> Shown:
+    return Shown(display(rows), rows[0].address, rows[-1].address)
+
+
+def _row(context: Context, step: Step, equation: Equation, also: str = "", typeset: Typesetter | None = None) -> Row:
+    typeset = typeset or context.typeset
+    left, right = typeset.terms(equation.lhs), typeset.terms(equation.rhs)
+    return Row(f"{context.address(step)}.{equation.name}", left, right, also)

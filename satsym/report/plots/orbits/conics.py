@@ -1,0 +1,230 @@
+"""The orbit that a motion follows, to scale: the whole conic with its foci and apses, and what is flown of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.analysis.orbits.kepler import propagate
+from satsym.report.plots import display, legend, style
+from satsym.report.plots.views import View, views
+from satsym.report.terminal.table import figure
+from satsym.status import BadInput
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from satsym.analysis.orbits.elements import Elements
+    from satsym.analysis.orbits.survey import Survey
+
+Array = NDArray[np.floating[Any]]
+POINTS = 2000
+APART = 0.02
+"""Eccentricity from which the foci can be told apart in the picture."""
+LEAST_REACH, MOST_REACH = 5.0, 40.0
+"""How far from the centre an open orbit is drawn, in units of the nearest distance or that of the start."""
+CENTRE: dict[str, Any] = {"marker": "o", "markersize": 9.0, "color": "#E0A800", "linestyle": "none", "zorder": 3.9}
+EMPTY: dict[str, Any] = {"marker": "x", "markersize": 7.0, "color": style.GREY, "linestyle": "none", "zorder": 3.8}
+NEAREST: dict[str, Any] = {
+    "marker": "v",
+    "markersize": 7.0,
+    "color": style.VERMILION,
+    "linestyle": "none",
+    "zorder": 4.0,
+}
+FARTHEST: dict[str, Any] = {"marker": "^", "markersize": 7.0, "color": style.GREEN, "linestyle": "none", "zorder": 4.0}
+CONIC: dict[str, Any] = {"color": style.GREY, "linewidth": 1.1, "linestyle": (0, (5, 3)), "zorder": 2.1}
+ASYMPTOTE: dict[str, Any] = {"color": style.GREY, "linewidth": 0.9, "linestyle": ":", "zorder": 1.9}
+SIDE = 5.4
+"""Of a panel, in inches."""
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """What is drawn of an orbit, in the model's unit of length; curves have shape (3, N), points (3,).
+
+    Attributes
+    ----------
+    curve
+        The whole conic, of an open one as much as has room.
+    flown
+        The motion of the instance, once round at most; ``None`` where its time is free, or it meets the centre.
+    start, nearest, farthest, empty
+        The last is the focus that nothing is in; ``None`` where there is none.
+    asymptotes
+        Two rays from their common point, shape (3, 2) each; empty but for a hyperbola.
+    """
+
+    curve: Array
+    flown: Array | None
+    start: Array
+    nearest: Array | None
+    farthest: Array | None
+    empty: Array | None
+    asymptotes: tuple[Array, ...]
+
+    @classmethod
+    def of(cls, found: Survey) -> Drawn:
+        """Sample the curves of an orbit."""
+        orbit, flown = found.elements, _flown(found)
+        axis, e = orbit.semi_major_axis, orbit.eccentricity
+        start = orbit.position
+        if orbit.parameter == 0.0 or orbit.inclination is None:
+            end = orbit.towards * (orbit.apoapsis or LEAST_REACH * orbit.distance)
+            return cls(np.vstack([np.zeros(3), end]).T, flown, start, None, None, None, ())
+        reach = max(LEAST_REACH * orbit.periapsis, orbit.distance)
+        if flown is not None:
+            reach = max(reach, float(np.linalg.norm(flown, axis=0).max()))
+        reach = min(reach, MOST_REACH * max(orbit.periapsis, orbit.distance))
+        nearest = orbit.periapsis * orbit.towards
+        closed = orbit.period is not None and axis is not None
+        return cls(
+            curve=_ellipse(orbit) if closed else _open(orbit, reach),
+            flown=flown,
+            start=start,
+            nearest=None if orbit.periapsis_argument is None else nearest,
+            farthest=-orbit.apoapsis * orbit.towards
+            if orbit.apoapsis and orbit.periapsis_argument is not None
+            else None,
+            empty=-2.0 * axis * e * orbit.towards if closed and axis and e > APART else None,
+            asymptotes=_asymptotes(orbit, reach) if axis is not None and not closed and -axis * e < reach else (),
+        )
+
+
+def page(found: Survey) -> Figure:
+    """The orbit at equal scales: in its plane, and unless that is one of coordinates also from along the axes."""
+    drawn, case = Drawn.of(found), found.case
+    planes = views([drawn.curve], (r"$x$", r"$y$", r"$z$"))
+    columns = min(2, len(planes))
+    rows = -(-len(planes) // columns)
+    title = case.title or case.name
+    sheet = style.titled(title, SIDE * columns + (1.6 if columns == 1 else 0.0), (SIDE - 0.2) * rows + 1.2)
+    grid = sheet.add_gridspec(rows, columns)
+    unit = display.length_unit(v.unit for v in case.model.spec.states)
+    for i, view in enumerate(planes):
+        axes = sheet.add_subplot(grid[i])
+        factor, readable = _panel(axes, drawn, view, unit)
+        if i == 0:
+            axes.set_title(", ".join(filter(None, [view.title, _caption(found.elements, factor, readable)])))
+    legend.below(sheet, _entries(found, drawn))
+    return sheet
+
+
+def _panel(axes: Axes, drawn: Drawn, view: View, unit: str) -> tuple[float, str]:
+    """Draw a panel, and give the unit of its axes in that of the model, and its name."""
+    curves = [c for c in (drawn.curve, drawn.flown) if c is not None]
+    seen = np.hstack([view.axes @ curve for curve in curves] + [np.zeros((2, 1))])
+    low, high = seen.min(axis=1), seen.max(axis=1)
+    centre, half = 0.5 * (low + high), 0.54 * float((high - low).max())
+    furthest = float(np.abs(centre).max()) + half
+    factor, readable = display.length_scale(unit, furthest)
+    exponent = display.exponent_for(furthest / factor)
+    scale = 10.0**-exponent / factor
+    axes.set_aspect("equal")
+    axes.set_xlim((centre[0] - half) * scale, (centre[0] + half) * scale)
+    axes.set_ylim((centre[1] - half) * scale, (centre[1] + half) * scale)
+    for ray in drawn.asymptotes:
+        axes.plot(*(view.axes @ ray * scale), **ASYMPTOTE)
+    axes.plot(*(view.axes @ drawn.curve * scale), **CONIC)
+    if drawn.flown is not None:
+        axes.plot(*(view.axes @ drawn.flown * scale), color=style.STATE, **style.MAIN)
+    marks = (
+        (np.zeros(3), CENTRE),
+        (drawn.empty, EMPTY),
+        (drawn.nearest, NEAREST),
+        (drawn.farthest, FARTHEST),
+        (drawn.start, {"color": style.STATE, "markerfacecolor": "none", **style.START, "markersize": 11.0}),
+    )
+    for point, look in marks:
+        if point is not None:
+            axes.plot(*(view.axes @ point[:, None] * scale), **look)
+    axes.set_xlabel(display.labelled(view.labels[0], readable, exponent))
+    axes.set_ylabel(display.labelled(view.labels[1], readable, exponent))
+    return factor, readable
+
+
+def _caption(orbit: Elements, factor: float, unit: str) -> str:
+    """The kind of orbit, and the numbers that its shape shows."""
+    called = "" if unit == "1" else f" {unit}"
+    apses = [(orbit.periapsis, "nearest"), (orbit.apoapsis, "farthest")]
+    shown = [f"{what} {figure(value / factor)}{called}" for value, what in apses if value]
+    return ", ".join([f"{orbit.conic.value}: e = {figure(orbit.eccentricity)}", *shown])
+
+
+def _entries(found: Survey, drawn: Drawn) -> list[legend.Entry]:
+    orbit = found.elements
+    once_round = found.case.tf is not None and found.case.tf - found.case.t0 >= (orbit.period or np.inf)
+    entries: list[legend.Entry] = [] if once_round else [(legend.line(**CONIC), orbit.conic.value)]
+    if drawn.flown is not None:
+        entries.append((legend.line(color=style.STATE, **style.MAIN), _flight(found)))
+    start = {"color": style.STATE, "markerfacecolor": "none", **style.START, "markersize": 11.0}
+    entries += [(legend.line(**start), "start"), (legend.line(**CENTRE), "centre, a focus")]
+    if drawn.empty is not None:
+        entries.append((legend.line(**EMPTY), "empty focus"))
+    if drawn.nearest is not None:
+        entries.append((legend.line(**NEAREST), "periapsis"))
+    if drawn.farthest is not None:
+        entries.append((legend.line(**FARTHEST), "apoapsis"))
+    if drawn.asymptotes:
+        entries.append((legend.line(**ASYMPTOTE), "asymptotes"))
+    return entries
+
+
+def _flight(found: Survey) -> str:
+    case = found.case
+    assert case.tf is not None
+    span = case.tf - case.t0
+    factor, unit = display.time_scale((v.unit for v in case.model.spec.states), span)
+    return f"motion, {figure(span / factor, 4)} {unit}".removesuffix(" 1")
+
+
+def _flown(found: Survey) -> Array | None:
+    """The motion without control from the start to the final time, at most once round."""
+    orbit, case = found.elements, found.case
+    if case.tf is None:
+        return None
+    duration = min(case.tf - case.t0, orbit.period or np.inf)
+    try:
+        places, _ = propagate(
+            orbit.position[:, None], orbit.velocity[:, None], orbit.mu, np.linspace(0.0, duration, POINTS)
+        )
+    except BadInput:
+        return None
+    return places
+
+
+def _ellipse(orbit: Elements) -> Array:
+    """Evenly in the eccentric anomaly, so that both ends of a long ellipse are smooth."""
+    assert orbit.semi_major_axis is not None
+    angle = np.linspace(0.0, 2.0 * np.pi, POINTS)
+    across = np.sqrt(orbit.semi_major_axis * orbit.parameter)
+    return np.asarray(
+        np.outer(orbit.towards, orbit.semi_major_axis * (np.cos(angle) - orbit.eccentricity))
+        + np.outer(orbit.ahead, across * np.sin(angle))
+    )
+
+
+def _open(orbit: Elements, reach: float) -> Array:
+    """A parabola or hyperbola up to a distance, evenly in the tangent of half the true anomaly."""
+    e = orbit.eccentricity
+    cosine = (orbit.parameter / reach - 1.0) / e
+    last = np.sqrt(max(0.0, 1.0 - cosine) / (1.0 + cosine))
+    tangent = np.linspace(-last, last, POINTS)
+    angle = 2.0 * np.arctan(tangent)
+    radius = orbit.parameter / (1.0 + e * np.cos(angle))
+    return np.asarray(np.outer(orbit.towards, radius * np.cos(angle)) + np.outer(orbit.ahead, radius * np.sin(angle)))
+
+
+def _asymptotes(orbit: Elements, reach: float) -> tuple[Array, ...]:
+    """Rays from the centre of a hyperbola, which lies beyond its periapsis."""
+    assert orbit.semi_major_axis is not None
+    e, middle = orbit.eccentricity, -orbit.semi_major_axis * orbit.eccentricity * orbit.towards
+    rays = []
+    for side in (-1.0, 1.0):
+        away = (-orbit.towards + side * np.sqrt(e * e - 1.0) * orbit.ahead) / e
+        rays.append(np.vstack([middle, middle + away * (reach + np.linalg.norm(middle))]).T)
+    return tuple(rays)

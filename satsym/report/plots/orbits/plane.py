@@ -1,0 +1,125 @@
+"""Eigenvalues in the complex plane, of the open and the closed loop, and at a point of an orbit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from satsym.report.plots import display, legend, style
+from satsym.spec import ProblemSpec
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from satsym.analysis.linear.spectrum import Eigenvalue
+    from satsym.analysis.linear.structure import Analysis
+    from satsym.analysis.orbits.survey import Survey
+    from satsym.analysis.regulator.feedback import Design
+
+OPEN: dict[str, Any] = {
+    "color": style.BLUE,
+    "marker": "o",
+    "markersize": 10.0,
+    "markerfacecolor": "none",
+    "markeredgewidth": 1.6,
+    "linestyle": "none",
+    "zorder": 3.0,
+    "clip_on": False,
+}
+CLOSED: dict[str, Any] = {
+    "color": style.VERMILION,
+    "marker": "X",
+    "markersize": 9.0,
+    "markeredgecolor": "white",
+    "markeredgewidth": 0.7,
+    "linestyle": "none",
+    "zorder": 3.5,
+    "clip_on": False,
+}
+EXACT: dict[str, Any] = {
+    "color": style.VERMILION,
+    "marker": "+",
+    "markersize": 14.0,
+    "linestyle": "none",
+    "zorder": 3.5,
+}
+MARGIN = 1.25
+"""Half the width of the axes, relative to the eigenvalue that is furthest from zero."""
+SIDE = 6.6
+"""Of the page, in inches."""
+
+
+def of_analysis(found: Analysis) -> Figure:
+    """The eigenvalues of a model, with their multiplicities."""
+    spec = found.about.model.spec
+    page = style.titled(spec.title, SIDE, SIDE)
+    axes = page.subplots()
+    axes.set_title(f"eigenvalues: {found.stability.verdict or 'undecided'}")
+    factor = _plane(axes, spec, [each.value for each in found.eigenvalues])
+    _open_loop(axes, found.eigenvalues, factor)
+    return page
+
+
+def of_design(design: Design) -> Figure:
+    """The eigenvalues before and after the loop is closed."""
+    from satsym.analysis.linear.spectrum import spectrum
+
+    spec, before, after = design.about.model.spec, spectrum(design.about.system.A), design.regulator.eigenvalues
+    page = style.titled(design.title, SIDE, SIDE + 0.3)
+    axes = page.subplots()
+    axes.set_title("eigenvalues")
+    factor = _plane(axes, spec, [*(each.value for each in before), *after.tolist()])
+    _open_loop(axes, before, factor)
+    axes.plot(after.real * factor, after.imag * factor, **CLOSED)
+    entries = [(legend.line(**OPEN), "without control"), (legend.line(**CLOSED), "with $u = -K\\,x$")]
+    legend.below(page, entries)
+    return page
+
+
+def of_point(found: Survey) -> Figure:
+    """The eigenvalues at the start of an orbit, beside their closed form, and the verdict of the rule of the signs."""
+    case, point = found.case, found.point
+    page = style.titled(case.title or case.name, SIDE, SIDE + 0.5)
+    axes = page.subplots()
+    axes.set_title(f'the rule says "{point.rule_verdict}" of every orbit: no point of one is an equilibrium')
+    factor = _plane(axes, case.model.spec, point.closed_form.tolist(), 'the rule: "stable"')
+    axes.plot(point.eigenvalues.real * factor, point.eigenvalues.imag * factor, **OPEN)
+    axes.plot(point.closed_form.real * factor, point.closed_form.imag * factor, **EXACT)
+    for value in (point.closed_form[1], point.closed_form[3]):
+        axes.annotate("2-fold", (0.0, value.imag * factor), (12.0, -3.0), textcoords="offset points", color=style.SOFT)
+    closed_form = r"$\pm\sqrt{2\mu/r^3}$ and twice $\pm i\sqrt{\mu/r^3}$"
+    legend.below(page, [(legend.line(**OPEN), "computed"), (legend.line(**EXACT), closed_form)])
+    return page
+
+
+def _plane(axes: Axes, spec: ProblemSpec, values: list[complex], left: str = "stable") -> float:
+    """Draw the plane with its left half named, and give the model's units of time in that of the axes."""
+    furthest = float(np.abs(values).max()) or 1.0
+    units = (v.unit for v in (*spec.states, *spec.controls, *spec.parameters))
+    factor, unit = display.time_scale(units, 2.0 * np.pi / furthest)
+    reach = MARGIN * furthest * factor
+    axes.set_xlim(-reach, reach)
+    axes.set_ylim(-reach, reach)
+    axes.set_aspect("equal")
+    axes.axvspan(-reach, 0.0, color=style.GREEN, alpha=0.07, linewidth=0.0, zorder=1.0)
+    axes.axvline(0.0, color=style.INK, linewidth=1.1, zorder=2.0)
+    axes.axhline(0.0, color=style.GREY, linewidth=0.8, zorder=1.9)
+    axes.text(-0.97 * reach, -0.97 * reach, left, color=style.GREEN, fontsize=10.0)
+    per_time = "" if unit == "1" else f"1/{unit}"
+    axes.set_xlabel(display.labelled(r"$\mathrm{Re}\,s$", per_time or "1"))
+    axes.set_ylabel(display.labelled(r"$\mathrm{Im}\,s$", per_time or "1"))
+    return factor
+
+
+def _open_loop(axes: Axes, found: Iterable[Eigenvalue], factor: float) -> None:
+    """Circles, with the sizes of the Jordan blocks beside those that are multiple."""
+    for each in found:
+        at = (each.value.real * factor, each.value.imag * factor)
+        axes.plot([at[0]], [at[1]], **OPEN)
+        if each.algebraic > 1:
+            blocks = "block" if each.geometric == 1 else "blocks"
+            said = f"{each.algebraic}-fold, Jordan {blocks} {' + '.join(map(str, each.blocks))}"
+            axes.annotate(said, at, (9.0, 8.0), textcoords="offset points", fontsize=9.0, color=style.SOFT)

@@ -1,0 +1,164 @@
+"""The objects that ``--json`` prints and result.json holds: in the model's order, and without NaN or infinity."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from satsym import __version__
+from satsym.report.results.unit_names import units
+from satsym.spec import ProblemSpec, Variable
+from satsym.status import Status
+
+if TYPE_CHECKING:
+    from satsym.instance import Instance
+    from satsym.solution import Array, Certificate, Flight, Solution
+
+
+SCHEMA = 1
+"""Version of these objects: it grows where a key changes its meaning or goes."""
+
+
+def head(command: str, spec: ProblemSpec, instance: str | None, status: Status) -> dict[str, Any]:
+    """What the object of every command begins with.
+
+    Parameters
+    ----------
+    instance
+        Its name; ``None`` where the command is about a model, or about several instances.
+    """
+    return {
+        "satsym": __version__,
+        "schema": SCHEMA,
+        "command": command,
+        "model": spec.name,
+        "instance": instance,
+        "status": status.value,
+        "units": units(spec),
+    }
+
+
+def solution_object(solution: Solution) -> dict[str, Any]:
+    """What ``satsym solve --json`` prints.
+
+    Returns
+    -------
+    dict
+        Keys in a fixed order. States and costates by the state's name; ``None`` where a number is not finite.
+        ``switching_times`` are those of all controls together, each once, sorted.
+    """
+    spec, states = solution.instance.model.spec, solution.instance.model.spec.state_names
+    switches = {float(t) for times in solution.switching_times for t in times}
+    return head("solve", spec, solution.instance.name, solution.status) | {
+        "method": solution.method,
+        "message": solution.status.explain(solution.message),
+        "boundary_type": solution.instance.boundary_type,
+        "objective": number(solution.objective),
+        "t_final": _last(solution.times),
+        "x_final": _named(states, map(_last, solution.x)),
+        "costate_initial": _named(states, map(_first, solution.lam)),
+        "switching_times": sorted(switches),
+        "iterations": solution.iterations,
+        "wall_s": number(solution.wall_s),
+        "certificate": certificate_object(solution.certificate) if solution.certificate else None,
+    }
+
+
+def certificate_object(certificate: Certificate) -> dict[str, Any]:
+    """The certificate of a solution, as JSON has it."""
+    return {
+        "verdict": certificate.verdict.value,
+        "boundary_residual": number(certificate.boundary_residual),
+        "dynamics_defect": number(certificate.dynamics_defect),
+        "stationarity": number(certificate.stationarity),
+        "hamiltonian_drift": number(certificate.hamiltonian_drift),
+        "legendre_clebsch": number(certificate.legendre_clebsch),
+        "conjugate_time": number(certificate.conjugate_time),
+        "checks": [
+            {"name": c.name, "value": number(c.value), "limit": number(c.limit), "passed": c.passed}
+            for c in certificate.checks
+        ],
+        "competitors": [
+            {
+                "kind": c.kind.value,
+                "tried": c.tried,
+                "solved": c.solved,
+                "unanswered": c.unanswered,
+                "cheapest": number(c.cheapest),
+            }
+            for c in certificate.competitors
+        ],
+        "not_checked": [kind.value for kind in certificate.not_checked],
+    }
+
+
+def flight_object(flight: Flight) -> dict[str, Any]:
+    """What ``satsym simulate --json`` prints; see :func:`solution_object`."""
+    return head("simulate", flight.instance.model.spec, flight.instance.name, flight.status) | {
+        "feedback": flight.feedback,
+        "t_final": _last(flight.times),
+        "x_final": _named(flight.instance.model.spec.state_names, map(_last, flight.x)),
+        "invariants": {
+            name: {"initial": number(kept.initial), "drift": number(kept.drift)}
+            for name, kept in flight.invariants.items()
+        },
+        "metrics": {name: number(value) for name, value in flight.metrics.items()},
+    }
+
+
+def model_object(spec: ProblemSpec) -> dict[str, Any]:
+    """A model, as ``satsym models --json`` lists it."""
+    return {
+        "name": spec.name,
+        "title": spec.title,
+        "source": spec.source,
+        "states": [_variable(v) | {"kind": v.kind} for v in spec.states],
+        "controls": [_variable(v) for v in spec.controls],
+        "parameters": [_variable(v) | {"default": v.default} for v in spec.parameters],
+        "control_set": spec.control_set,
+        "has_cost": spec.has_cost,
+        "has_terminal_cost": spec.has_terminal_cost,
+        "has_reference": spec.has_reference,
+        "invariants": [v.symbol for v in spec.invariants],
+    }
+
+
+def instance_object(instance: Instance) -> dict[str, Any]:
+    """An instance, as ``satsym instances --json`` lists it; ``tf`` is ``None`` where it is free."""
+    return {
+        "name": instance.name,
+        "title": instance.title,
+        "model": instance.model.spec.name,
+        "boundary_type": instance.boundary_type,
+        "t0": instance.t0,
+        "tf": instance.tf,
+        "bounded": bounded(instance),
+    }
+
+
+def bounded(instance: Instance) -> bool:
+    """Whether anything limits the control."""
+    return any(math.isfinite(bound) for bound in (*instance.lower, *instance.upper, instance.max_norm))
+
+
+def number(value: float | None) -> float | None:
+    """A finite float, without the sign of a zero; ``None`` for anything else."""
+    value = math.nan if value is None else float(value)
+    return value + 0.0 if math.isfinite(value) else None
+
+
+def _variable(variable: Variable) -> dict[str, Any]:
+    return {"name": variable.symbol, "unit": variable.unit, "meaning": variable.meaning}
+
+
+def _named(names: Sequence[str], values: Iterable[float | None]) -> dict[str, float | None]:
+    return dict(zip(names, values, strict=True))
+
+
+def _first(row: Array) -> float | None:
+    return number(row[0]) if len(row) else None
+
+
+def _last(row: Array) -> float | None:
+    return number(row[-1]) if len(row) else None

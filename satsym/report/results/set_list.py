@@ -1,0 +1,120 @@
+"""The list in the ``result.json`` of a set, and whether files are what it says; see :mod:`satsym.report.results.sets`."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+from typing import IO
+
+import msgspec
+
+from satsym.report.results.files import opened
+from satsym.status import BadInput
+from satsym.wording import printable, shown
+
+LIST = "result.json"
+
+MOST_FILES = 200
+LONGEST_LIST = 2**24
+"""Bytes of a result.json that are read."""
+LARGEST = 2**31
+"""Bytes of a file in a set."""
+LARGEST_READ = 2**28
+"""Bytes of a file that is read into memory: what instances may ask for makes half of that at most."""
+BLOCK = 2**20
+
+
+class Listed(msgspec.Struct, frozen=True):
+    """A file in the list of its set."""
+
+    bytes: int
+    sha256: str
+
+
+class _List(msgspec.Struct):
+    """What of result.json tells which files belong to it; those of older versions list none."""
+
+    files: dict[str, Listed] | None = None
+    command: str = ""
+
+
+def unusable(path: Path, why: str) -> BadInput:
+    """The complaint about a file of a set, with what writes such a set."""
+    return BadInput(
+        f"{printable(str(path), 120)}: {why}; `satsym solve X --out {printable(str(path.parent), 120)}` writes it anew"
+    )
+
+
+def decoded(path: Path) -> tuple[bytes, str, dict[str, Listed]]:
+    """Text, command and files of a result.json.
+
+    Raises
+    ------
+    BadInput
+        If it cannot be read, or lists none or what no set has.
+    """
+    try:
+        with opened(path) as (stream, size):
+            if size > LONGEST_LIST:
+                raise unusable(path, "cannot be read (it is too long)")
+            raw = stream.read(size)
+        found = msgspec.json.decode(raw, type=_List)
+    except OSError as error:
+        raise unusable(path, f"cannot be opened ({error.strerror or 'not a file'})") from None
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise unusable(path, f"cannot be read ({printable(str(error))})") from None
+    if found.files is None:
+        raise unusable(path, "does not list its files, as results of this version do")
+    wrong = next((name for name, each in found.files.items() if not _sound(name, each)), None)
+    if wrong is not None or len(found.files) > MOST_FILES:
+        which = shown(wrong) if wrong is not None else f"more than {MOST_FILES}"
+        raise unusable(path, f"lists files that no set has: {which}")
+    return raw, found.command, found.files
+
+
+def _sound(name: str, each: Listed) -> bool:
+    """Whether a set may have such a file: a plain name in its own folder."""
+    plain = name.isprintable() and 0 < len(name) <= 100 and name[0] not in ". " and not set("/\\:") & set(name)
+    return plain and name != LIST and 0 <= each.bytes <= LARGEST
+
+
+def is_listed(path: Path, listed: Listed) -> bool:
+    """Whether a file is the one that is listed; its size is looked at first."""
+    try:
+        with opened(path) as (stream, size):
+            return size == listed.bytes and _digest(stream) == listed.sha256
+    except OSError:
+        return False
+
+
+def content(path: Path, listed: Listed) -> bytes:
+    """The content of a listed file, which is known to be the right one.
+
+    Raises
+    ------
+    BadInput
+        If it is too large, or not the right one after all.
+    """
+    if listed.bytes > LARGEST_READ:
+        raise unusable(path, f"is larger than {LARGEST_READ} bytes")
+    try:
+        with opened(path) as (stream, _):
+            found = stream.read(listed.bytes + 1)
+    except OSError as error:
+        raise unusable(path, f"cannot be opened ({error.strerror or 'not a file'})") from None
+    if hashlib.sha256(found).hexdigest() != listed.sha256:
+        raise unusable(path, "has changed while it was read")
+    return found
+
+
+def listed_as(path: Path) -> Listed:
+    """A file as a list has it."""
+    with opened(path) as (stream, size):
+        return Listed(size, _digest(stream))
+
+
+def _digest(stream: IO[bytes]) -> str:
+    found = hashlib.sha256()
+    while block := stream.read(BLOCK):
+        found.update(block)
+    return found.hexdigest()

@@ -1,0 +1,241 @@
+"""Files of a result that belong together: replaced as a whole, and read only as a whole.
+
+A set is what its ``result.json`` lists, with sizes and digests. Several files cannot take their places in one step, so
+a set is replaced in steps after each of which a process may be killed, and :func:`read` still finds all of the old set
+or all of the new one:
+
+1. The new files and their list are written into a hidden folder, which no reader looks into.
+2. That folder gets the name ``.satsym-next``. From here on the new set is the one that counts.
+3. Files of the old set that the new one does not have are removed; the new files take their places, the list last.
+
+Whoever writes next completes step 3 and removes what step 1 left. Readers change nothing: they look for each file in
+``.satsym-next`` first, and know it by its digest.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Collection, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from satsym.report.results.files import Content, store, text, to_json, unwritable
+from satsym.report.results.locking import locked
+from satsym.report.results.set_list import LIST, Listed, content, decoded, is_listed, listed_as, unusable
+from satsym.status import BadInput
+from satsym.wording import printable
+
+NEXT = ".satsym-next"
+STAGING = ".satsym-new-"
+
+
+@dataclass(frozen=True)
+class Found:
+    """A set that was read.
+
+    Attributes
+    ----------
+    folder
+        Where it is.
+    command
+        That wrote it.
+    result
+        The text of its result.json.
+    listed
+        Its other files.
+    contents
+        Of those that were wanted, the content.
+    """
+
+    folder: Path
+    command: str
+    result: bytes
+    listed: Mapping[str, Listed]
+    contents: Mapping[str, bytes]
+
+
+def write(folder: Path, result: Mapping[str, Any], files: Mapping[str, Content]) -> list[Path]:
+    """Replace the set of a folder, which is made if need be; other files in it are left alone.
+
+    Parameters
+    ----------
+    result
+        What result.json holds, without the list ``files``, which is added.
+    files
+        Name -> content of all other files.
+
+    Returns
+    -------
+    list of Path
+        Of the files in their order, result.json last.
+
+    Raises
+    ------
+    BadInput
+        If the folder cannot be written to.
+    """
+    return _write(folder, result, files, None)
+
+
+def extend(found: Found, files: Mapping[str, Content]) -> list[Path]:
+    """Add files to a set that was read, or replace them in it; paths of these files.
+
+    Its result.json keeps its time, because the result is as old as before.
+
+    Raises
+    ------
+    BadInput
+        If the folder cannot be written to, or the set has been replaced since it was read.
+    """
+    result = msgspec.json.decode(found.result)
+    del result["files"]
+    return _write(found.folder, result, files, found)[:-1]
+
+
+def read(folder: Path, wanted: Collection[str] = ()) -> Found:
+    """The set of a folder, with every file checked against the list.
+
+    Parameters
+    ----------
+    wanted
+        Files whose content is wanted, as far as the set has them.
+
+    Raises
+    ------
+    BadInput
+        If there is none, or a file is missing or is not what the list says.
+    """
+    if not folder.is_dir():
+        return _verified(folder, folder / LIST, wanted)
+    try:
+        with locked(folder, shared=True):
+            return _counting(folder, wanted)
+    except OSError as error:
+        raise unusable(folder / LIST, f"cannot be opened ({error.strerror or 'not a file'})") from None
+
+
+def written_at(folder: Path) -> int | None:
+    """When the set of a folder was written, in nanoseconds; ``None`` where there is none."""
+    for place in (folder / NEXT / LIST, folder / LIST):
+        with suppress(OSError):
+            return place.stat().st_mtime_ns
+    return None
+
+
+def command_of(folder: Path) -> str | None:
+    """The command that wrote the set of a folder, ``None`` where there is none.
+
+    Raises
+    ------
+    BadInput
+        If its result.json cannot be read.
+    """
+    place = next((p for p in (folder / NEXT / LIST, folder / LIST) if p.exists()), None)
+    return None if place is None else printable(decoded(place)[1])
+
+
+def _counting(folder: Path, wanted: Collection[str]) -> Found:
+    """The set that counts: the next one if it is complete, else that in place."""
+    with suppress(BadInput):
+        return _verified(folder, folder / NEXT / LIST, wanted)
+    return _verified(folder, folder / LIST, wanted)
+
+
+def _verified(folder: Path, path: Path, wanted: Collection[str]) -> Found:
+    raw, command, listed = decoded(path)
+    contents = {}
+    for name, each in listed.items():
+        place = next((p for p in (path.parent / name, folder / name) if is_listed(p, each)), None)
+        if place is None:
+            raise unusable(folder / name, f"is not the file that {LIST} lists, but missing or another")
+        if name in wanted:
+            contents[name] = content(place, each)
+    return Found(folder, command, raw, listed, contents)
+
+
+def _write(folder: Path, result: Mapping[str, Any], files: Mapping[str, Content], found: Found | None) -> list[Path]:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with locked(folder):
+            _recover(folder)
+            if found is not None and decoded(folder / LIST)[0] != found.result:
+                raise BadInput(f"{printable(str(folder))}: has been written anew meanwhile; try again")
+            for name in (*files, LIST):
+                if (folder / name).is_dir():
+                    raise BadInput(f"{printable(str(folder / name))}: is a folder; remove it, or give another place")
+            _stage(folder, result, files, found)
+            _install(folder)
+    except OSError as error:
+        raise unwritable(folder, error) from None
+    return [folder / name for name in (*files, LIST)]
+
+
+def _stage(folder: Path, result: Mapping[str, Any], files: Mapping[str, Content], found: Found | None) -> None:
+    """Steps 1 and 2; whatever stops them, short of a kill, leaves nothing."""
+    staging = folder / f"{STAGING}{os.getpid()}"
+    staging.mkdir()
+    try:
+        for name, written in files.items():
+            store(staging / name, written)
+        listed = dict(found.listed) if found else {}
+        listed |= {name: listed_as(staging / name) for name in files}
+        plain = {name: msgspec.structs.asdict(each) for name, each in listed.items()}
+        store(staging / LIST, text(to_json({**result, "files": plain})))
+        if found and (then := written_at(folder)) is not None:
+            os.utime(staging / LIST, ns=(then, then))
+        _flush(staging)
+        staging.rename(folder / NEXT)
+    except BaseException:
+        shutil.rmtree(staging, ignore_errors=True)
+        raise
+    _flush(folder)
+
+
+def _install(folder: Path) -> None:
+    """Step 3, from wherever it was interrupted."""
+    source = folder / NEXT
+    _, _, listed = decoded(source / LIST)
+    for name, each in _listed_before(folder).items():
+        if name not in listed and is_listed(folder / name, each):
+            (folder / name).unlink()
+    for name in (*listed, LIST):
+        if (source / name).exists():
+            (source / name).replace(folder / name)
+    shutil.rmtree(source)
+    _flush(folder)
+
+
+def _recover(folder: Path) -> None:
+    """Complete what a killed process has begun, or undo it."""
+    if (folder / NEXT).exists():
+        try:
+            _verified(folder, folder / NEXT / LIST, ())
+        except BadInput:
+            shutil.rmtree(folder / NEXT)
+        else:
+            _install(folder)
+    for leftover in folder.glob(f"{STAGING}*"):
+        shutil.rmtree(leftover)
+
+
+def _flush(folder: Path) -> None:
+    """Have the system write down the names in a folder, where it can be asked to."""
+    if os.name == "posix":
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            with suppress(OSError):  # not every file system can
+                os.fsync(handle)
+        finally:
+            os.close(handle)
+
+
+def _listed_before(folder: Path) -> dict[str, Listed]:
+    try:
+        return decoded(folder / LIST)[2]
+    except BadInput:
+        return {}

@@ -1,0 +1,221 @@
+"""Trajectories as files, and results read back from them."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.report.results import arrays, sets
+from satsym.report.results.files import Content
+from satsym.report.results.set_list import LIST, unusable
+from satsym.solution import Flight, Invariant, Iteration, Solution
+from satsym.status import Status
+from satsym.wording import printable
+
+if TYPE_CHECKING:
+    from satsym.instance import Instance
+    from satsym.spec import ProblemSpec
+
+Stored = dict[str, NDArray[Any]]
+
+ARRAYS = "trajectory.npz"
+COMMANDS = ("solve", "simulate")
+"""Those whose results hold a trajectory."""
+
+_LAW = re.compile(r"[a-z][a-z-]{0,29}\Z")
+"""How methods and feedbacks are called."""
+
+SAME = 1e-9
+"""Difference of initial states that is none, relative to their size along the way."""
+
+
+class _Kept(msgspec.Struct):
+    """A conserved quantity in result.json."""
+
+    initial: float | None
+    drift: float | None
+
+
+class _Result(msgspec.Struct):
+    """What of result.json is read back; the rest is in the trajectory."""
+
+    command: str
+    model: str
+    instance: str
+    method: str = ""
+    message: str = ""
+    objective: float | None = None
+    iterations: int = 0
+    wall_s: float | None = None
+    feedback: str = ""
+    invariants: dict[str, _Kept] = {}
+    metrics: dict[str, float | None] = {}
+
+
+def contents(found: Solution | Flight) -> dict[str, Content]:
+    """``trajectory.npz`` and ``trajectory.csv`` of a solution or a flight.
+
+    The first holds ``times`` (N+1), ``x`` (n, N+1), ``u`` (m, N+1), for a solution ``lam`` (n, N+1), the names in
+    ``states`` and ``controls``, and the ``status``; for a solution also ``history`` (2, K), cost and residual of each
+    iteration, and ``switching`` (2, M), controls by their number from 0 and the times at which they meet or leave a
+    bound. The second has a header and a line for each node: time, states, controls, costates as ``lambda_STATE``; its
+    numbers read back exactly.
+    """
+    spec = found.instance.model.spec
+    arrays: dict[str, Any] = {"times": found.times, "x": found.x, "u": found.u}
+    header = ["t", *spec.state_names, *spec.control_names]
+    # dtype, because an array of no names would be one of floats.
+    more: dict[str, Any] = {
+        "states": np.array(spec.state_names, dtype=str),
+        "controls": np.array(spec.control_names, dtype=str),
+        "status": np.array(found.status.value),
+    }
+    if isinstance(found, Solution):
+        arrays["lam"] = found.lam
+        header += [f"lambda_{name}" for name in spec.state_names]
+        met = [(i, time) for i, times in enumerate(found.switching_times) for time in times]
+        more["history"] = np.array([(one.objective, one.residual) for one in found.history]).reshape(-1, 2).T
+        more["switching"] = np.array(met, dtype=float).reshape(-1, 2).T
+
+    def lines() -> Iterator[bytes]:
+        yield (",".join(header) + "\n").encode()
+        for row in np.vstack(list(arrays.values())).T:
+            yield (",".join(map(repr, row.tolist())) + "\n").encode()
+
+    return {
+        "trajectory.npz": lambda stream: np.savez(stream, **arrays, **more),
+        "trajectory.csv": lambda stream: stream.writelines(lines()),
+    }
+
+
+def read(instance: Instance, folder: Path) -> tuple[Solution | Flight, sets.Found]:
+    """What ``satsym solve`` or ``satsym simulate`` wrote into a folder; without the certificate of a solution.
+
+    Parameters
+    ----------
+    instance
+        Of which the folder holds a result.
+    folder
+        With a whole set of files, see :mod:`satsym.report.results.sets`.
+
+    Returns
+    -------
+    The result, and the set that it comes from.
+
+    Raises
+    ------
+    BadInput
+        If one of the files is missing or damaged, or belongs to another instance.
+    """
+    found = sets.read(folder, [ARRAYS])
+    listing, place = folder / LIST, folder / ARRAYS
+    result, spec = _result(listing, found.result), instance.model.spec
+    if (result.model, result.instance) != (spec.name, instance.name):
+        theirs = printable(f"{result.instance} (model {result.model})")
+        raise unusable(listing, f"is of {theirs}, not of {instance.name} (model {spec.name})")
+    if result.command not in COMMANDS or ARRAYS not in found.contents:
+        raise unusable(listing, f"is of `satsym {printable(result.command)}`, which leaves no trajectory")
+    if not _LAW.match(result.method if result.command == "solve" else result.feedback):
+        raise unusable(listing, "names no method and no feedback")
+    try:
+        stored = arrays.unpacked(found.contents[ARRAYS])
+    except ValueError as error:
+        raise unusable(place, f"cannot be read ({printable(str(error), 120)})") from None
+    if not _fits(stored, spec, result.command == "solve"):
+        raise unusable(place, f"does not hold what a trajectory of {spec.name} has")
+    if not _starts_at(stored["x"], instance.initial):
+        raise unusable(place, f"starts elsewhere than {instance.name}, which has changed since")
+    make = _solution if result.command == "solve" else _flight
+    return make(instance, result, stored), found
+
+
+def _solution(instance: Instance, result: _Result, stored: Stored) -> Solution:
+    controls, met = stored["switching"]
+    return Solution(
+        instance=instance,
+        method=result.method,
+        status=Status(str(stored["status"])),
+        message=result.message,
+        objective=_float(result.objective),
+        times=stored["times"],
+        x=stored["x"],
+        u=stored["u"],
+        lam=stored["lam"],
+        switching_times=tuple(tuple(met[controls == i].tolist()) for i in range(len(stored["u"]))),
+        iterations=result.iterations,
+        history=tuple(Iteration(k, float(cost), float(left)) for k, (cost, left) in enumerate(stored["history"].T)),
+        wall_s=_float(result.wall_s),
+    )
+
+
+def _flight(instance: Instance, result: _Result, stored: Stored) -> Flight:
+    return Flight(
+        instance=instance,
+        feedback=result.feedback,
+        status=Status(str(stored["status"])),
+        message=result.message,
+        times=stored["times"],
+        x=stored["x"],
+        u=stored["u"],
+        invariants={name: Invariant(_float(k.initial), _float(k.drift)) for name, k in result.invariants.items()},
+        metrics={name: _float(value) for name, value in result.metrics.items()},
+    )
+
+
+def _result(path: Path, content: bytes) -> _Result:
+    try:
+        found = msgspec.json.decode(content, type=_Result)
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise unusable(path, f"cannot be read ({printable(str(error))})") from None
+    return found
+
+
+def _fits(stored: Stored, spec: ProblemSpec, solved: bool) -> bool:
+    """Whether the arrays have the names, shapes and kinds that :func:`contents` gives them, and times that pass."""
+    texts = {"states": list(spec.state_names), "controls": list(spec.control_names)}
+    numbers = {"times", "x", "u"} | ({"lam", "history", "switching"} if solved else set())
+    if stored.keys() != {"status", *texts, *numbers}:
+        return False
+    count = stored["times"].size
+    shapes: dict[str, tuple[int, ...]] = {
+        "times": (count,),
+        "x": (len(spec.states), count),
+        "u": (len(spec.controls), count),
+    }
+    if solved:
+        shapes |= {"lam": shapes["x"]} | {name: (2, stored[name].size // 2) for name in ("history", "switching")}
+    return (
+        all(stored[name].tolist() == names for name, names in texts.items())
+        and all(stored[name].shape == shape and stored[name].dtype.kind == "f" for name, shape in shapes.items())
+        and stored["status"].tolist() in [status.value for status in Status]
+        and _passes(stored)
+    )
+
+
+def _passes(stored: Stored) -> bool:
+    """Whether times are numbers that do not decrease, where there is any motion; switching times are always numbers."""
+    times, switching = stored["times"], stored.get("switching", np.empty(0))
+    nothing = not np.isfinite(stored["x"]).any()
+    return bool(
+        np.isfinite(switching).all() and (nothing or (np.isfinite(times).all() and (np.diff(times) >= 0).all()))
+    )
+
+
+def _starts_at(x: NDArray[Any], initial: Sequence[float]) -> bool:
+    """Whether the first of some states is the given one, where it is known, but for rounding."""
+    if not x.shape[1]:
+        return True
+    with np.errstate(all="ignore"):
+        off = np.abs(x[:, 0] - initial)
+        return not (off > SAME * np.nanmax(np.abs(x), axis=1, initial=0.0)).any()
+
+
+def _float(value: float | None) -> float:
+    return math.nan if value is None else value

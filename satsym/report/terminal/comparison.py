@@ -1,0 +1,115 @@
+"""A comparison of instances for people and for programs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from satsym.report.results.objects import head, number
+from satsym.report.results.unit_names import units
+from satsym.report.terminal.solution import joined
+from satsym.report.terminal.table import figure, table
+from satsym.status import Status
+
+if TYPE_CHECKING:
+    from satsym.analysis.comparison import Case, Range
+
+LEFT_OUT = ("gain_rate", "gain_state")
+"""Metrics of one law alone."""
+
+
+def metrics_of(cases: Sequence[Case]) -> dict[str, list[float | None]]:
+    """Each metric that any case has, with its value for each of them."""
+    keys = dict.fromkeys(key for case in cases for key in case.metrics if key not in LEFT_OUT)
+    return {key: [case.metrics.get(key) for case in cases] for key in keys}
+
+
+def comparison_object(cases: Sequence[Case], over: Range | None = None) -> dict[str, Any]:
+    """What ``satsym compare --json`` prints."""
+    specs = [case.instance.model.spec for case in cases]
+    status = Status.CONVERGED if all(case.answered for case in cases) else Status.NOT_CONVERGED
+    begins = head("compare", specs[0], None, status)
+    if any(spec.name != specs[0].name for spec in specs):
+        begins |= {"model": None, "units": {name: unit for spec in specs for name, unit in units(spec).items()}}
+    found: dict[str, Any] = begins | {
+        "instances": [
+            {
+                "instance": case.instance.name,
+                "model": case.instance.model.spec.name,
+                "how": case.how,
+                "answered": case.answered,
+                "verdict": case.verdict,
+                "message": case.message,
+                "switching_times": list(case.switching_times),
+            }
+            for case in cases
+        ],
+        "metrics": {
+            key: {
+                case.instance.name: None if value is None else number(value)
+                for case, value in zip(cases, values, strict=True)
+            }
+            for key, values in metrics_of(cases).items()
+        },
+    }
+    if over is not None:
+        found["range"] = {
+            "dampings": over.dampings.tolist(),
+            "commands": over.commands.tolist(),
+            "control_peak": over.control_peak.tolist(),
+            "impulse": over.impulse.tolist(),
+            "peaks": {name: values.tolist() for name, values in over.peaks.items()},
+        }
+    return found
+
+
+def comparison_text(cases: Sequence[Case], over: Range | None = None) -> str:
+    """The metrics side by side, what is to be said of each case, and a range if there is one."""
+    names = [case.instance.name for case in cases]
+    rows = [
+        (key, *("" if value is None else figure(value, 8) for value in values), unit_of(cases, key))
+        for key, values in metrics_of(cases).items()
+    ]
+    said = [
+        (case.instance.name, case.how, case.verdict or ("" if case.answered else "no answer"), case.message)
+        for case in cases
+    ]
+    blocks = [
+        table([("metric", *names, "unit"), *rows], right=range(1, len(names) + 1)),
+        table([("instance", "how", "certificate", "message"), *said]),
+    ]
+    return joined([*blocks, _range(cases[0], over)] if over else blocks)
+
+
+def _range(case: Case, over: Range) -> list[str]:
+    limits = case.instance.limits
+    watched = [name for name in over.peaks if name in limits]
+    header = ("damping", "command", "control peak", "impulse", *(f"{name} peak" for name in watched), "")
+    rows = []
+    for i, damping in enumerate(over.dampings):
+        for j, command in enumerate(over.commands):
+            beyond = [name for name in watched if over.peaks[name][i, j] > limits[name]]
+            rows.append(
+                (
+                    *(figure(v) for v in (damping, command, over.control_peak[i, j], over.impulse[i, j])),
+                    *(figure(over.peaks[name][i, j]) for name in watched),
+                    f"past the limit of {', '.join(beyond)}" if beyond else "",
+                )
+            )
+    return [
+        f"  {case.instance.name} for other dampings and commands",
+        *table([header, *rows], right=range(len(header) - 1)),
+    ]
+
+
+def unit_of(cases: Sequence[Case], key: str) -> str:
+    """The unit of a metric, after its variable and what it is of it."""
+    if key in ("transition_time", "first_reached", "settling_time"):
+        return "s" if any(v.unit != "1" for v in cases[0].instance.model.spec.states) else ""
+    name, _, kind = key.rpartition("_")
+    for case in cases:
+        spec = case.instance.model.spec
+        for v in (*spec.states, *spec.quantities, *spec.controls):
+            if v.symbol == name and v.unit != "1":
+                return {"total": f"{v.unit}*s", "effort": f"({v.unit})**2*s", "energy": "J"}.get(kind, v.unit)
+    return f"{cases[0].instance.model.spec.controls[0].unit}*s" if key == "impulse" else ""

@@ -1,0 +1,59 @@
+"""Lists of models and instances, and one model in full, as plain text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from satsym.report.results.objects import bounded
+from satsym.report.terminal.table import figure, table
+from satsym.spec import ProblemSpec, Variable
+
+if TYPE_CHECKING:
+    from satsym.instance import Instance
+
+
+def models_text(specs: Iterable[ProblemSpec]) -> str:
+    """A line for each model."""
+    header = ("model", "states", "controls", "title")
+    rows = [(s.name, ", ".join(s.state_names), ", ".join(s.control_names), s.title) for s in specs]
+    return "\n".join(table([header, *rows], indent=""))
+
+
+def instances_text(instances: Iterable[Instance]) -> str:
+    """A line for each instance."""
+    header = ("instance", "model", "type", "final time", "bounded", "title")
+    rows = [
+        (
+            each.name,
+            each.model.spec.name,
+            str(each.boundary_type),
+            "free" if each.tf is None else figure(each.tf),
+            "yes" if bounded(each) else "no",
+            each.title,
+        )
+        for each in instances
+    ]
+    return "\n".join(table([header, *rows], right=(2, 3), indent=""))
+
+
+def model_text(spec: ProblemSpec) -> str:
+    """Everything that an instance of the model can name."""
+    kinds = {None: "no cost", "free": "any control", "box": "each control between its bounds", "ball": "bounded norm"}
+    blocks = [
+        [spec.title, f"{spec.name}, from {spec.source}: {kinds[spec.control_set]}"],
+        _variables("state", spec.states),
+        _variables("control", spec.controls),
+        _variables("parameter", spec.parameters),
+    ]
+    if spec.has_reference:
+        blocks.append(['  It has a reference: [final] may say "reference" for any state.'])
+    return "\n\n".join("\n".join(block) for block in blocks if block)
+
+
+def _variables(word: str, variables: Iterable[Variable]) -> list[str]:
+    rows = [
+        (v.symbol, "" if v.default is None else figure(v.default), "" if v.unit == "1" else v.unit, v.meaning)
+        for v in variables
+    ]
+    return table([(word, "default", "unit", "meaning"), *rows], right=(1,)) if rows else []

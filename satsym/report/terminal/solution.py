@@ -1,0 +1,235 @@
+"""What a solution or a flight says to people, as plain text."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from satsym.instance import Instance
+from satsym.report.results.unit_names import cost_per, time_unit
+from satsym.report.terminal.table import figure, table
+from satsym.solution import Array, Certificate, Flight, Iteration, Solution
+from satsym.status import Status, Verdict
+from satsym.wording import counted
+
+WIDTH = 100
+SHOWN_TIMES = 6
+"""Switching times of one control that are listed."""
+
+_AT_BOUND = 1e-9
+_BOUNDARY = {
+    1: "final time and final state given",
+    2: "final time free, final state given",
+    3: "final time given, final state free or partly so",
+    4: "final time free, final state on the reference",
+    5: "final time and final state free",
+}
+
+
+def solution_text(solution: Solution, colour: bool = False) -> str:
+    """Summary of a solution.
+
+    Parameters
+    ----------
+    solution
+        Whatever its status.
+    colour
+        Whether the status is coloured.
+    """
+    instance = solution.instance
+    unit = time_unit(instance.model.spec)
+    facts = [
+        ("cost J", figure(solution.objective, 10)),
+        ("final time", f"{figure(_last(solution.times), 10)} {unit}".rstrip()),
+        ("boundary type", f"{instance.boundary_type}, {_BOUNDARY[instance.boundary_type]}"),
+    ]
+    blocks = [
+        _heading(instance, solution.status, f"{solution.method}, {_effort(solution)}", colour),
+        _message(solution.status, solution.message),
+    ]
+    if solution.status in (Status.INFEASIBLE, Status.NO_MINIMISER):
+        return joined(blocks)  # there is no last attempt at an answer, for there is none
+    blocks += [
+        table([("", ""), *facts])[1:],
+        _states(solution.instance, solution.times, solution.x, solution.lam),
+        _controls(instance, solution.times, solution.u),
+        _switching(solution, unit),
+        _certificate(solution.certificate) if solution.certificate else [],
+    ]
+    return joined(blocks)
+
+
+def flight_text(flight: Flight, colour: bool = False) -> str:
+    """Summary of a flight; see :func:`solution_text`."""
+    instance = flight.instance
+    unit = time_unit(instance.model.spec)
+    facts = [("final time", f"{figure(_last(flight.times), 10)} {unit}".rstrip())]
+    kept = [(name, figure(i.initial, 10), figure(i.drift, 3)) for name, i in flight.invariants.items()]
+    metrics = [(name, figure(value, 10)) for name, value in flight.metrics.items()]
+    blocks = [
+        _heading(instance, flight.status, f"feedback {flight.feedback}", colour),
+        _message(flight.status, flight.message),
+        table([("", ""), *facts])[1:],
+        _states(instance, flight.times, flight.x, None),
+        table([("invariant", "initial", "drift"), *kept], right=(1, 2)) if kept else [],
+        table([("metric", "value"), *metrics], right=(1,)) if metrics else [],
+    ]
+    return joined(blocks)
+
+
+def with_files(text: str, saved: Sequence[Path]) -> str:
+    """The summary with what was written, and where."""
+    if not saved:
+        return text
+    places: dict[Path, list[str]] = {}
+    for path in saved:
+        places.setdefault(path.parent, []).append(path.name)
+    lines = [_wrapped(f"written to {folder}: {', '.join(names)}") for folder, names in places.items()]
+    return joined([text.splitlines(), *lines])
+
+
+def progress_line(iteration: Iteration) -> str:
+    """One iteration of a solver, for the live line."""
+    return f"iteration {iteration.number}   J {figure(iteration.objective, 8)}   residual {iteration.residual:.1e}"
+
+
+def _certificate(certificate: Certificate) -> list[str]:
+    """The verdict, what it was compared with, and each check with its limit; a failed one says so."""
+    rows = [
+        (c.name, figure(abs(c.value), 2), "ok" if c.passed else f"FAILED, limit {figure(c.limit, 2)}")
+        for c in certificate.checks
+    ]
+    compared = [
+        (c.kind.value, str(c.tried), str(c.unanswered), figure(c.cheapest, 10))
+        for c in certificate.competitors
+        if c.tried
+    ]
+    header = ("competitors", "tried", "unanswered", "cheapest costs")
+    return [
+        *_wrapped(f"certificate: {_verdict(certificate)}"),
+        *table([("", "", ""), *rows], right=(1,))[1:],
+        *(["", *table([header, *compared], right=(1, 2, 3))] if compared else []),
+    ]
+
+
+def _verdict(certificate: Certificate) -> str:
+    """The verdict in words, with what was not checked."""
+    words = certificate.verdict.value
+    solved = sum(c.solved for c in certificate.competitors)
+    if certificate.verdict is Verdict.CERTIFIED and solved:
+        words += f": strict local minimum; {counted(solved, 'competitor')} of these kinds compared, none cheaper"
+    missing = ", ".join(kind.value for kind in certificate.not_checked)
+    return f"{words}; not checked: {missing}" if missing else words
+
+
+def joined(blocks: Sequence[Sequence[str]]) -> str:
+    """Blocks of lines, an empty line between those that have any."""
+    return "\n\n".join("\n".join(block) for block in blocks if block)
+
+
+def _heading(instance: Instance, status: Status, how: str, colour: bool) -> list[str]:
+    word = f"\x1b[{32 if status.answered else 31}m{status.value}\x1b[0m" if colour else status.value
+    return [*filter(None, [instance.title]), f"{instance.name}, model {instance.model.spec.name}: {word} ({how})"]
+
+
+def _effort(solution: Solution) -> str:
+    return f"{counted(solution.iterations, 'iteration')}, {figure(solution.wall_s, 2)} s"
+
+
+def _message(status: Status, message: str) -> list[str]:
+    return _wrapped(status.explain(message))
+
+
+def _wrapped(text: str) -> list[str]:
+    return textwrap.wrap(text, WIDTH, initial_indent="  ", subsequent_indent="  ", break_on_hyphens=False)
+
+
+def _states(instance: Instance, times: Array, x: Array, lam: Array | None) -> list[str]:
+    """A line for each state: where it starts and ends, where it was to end, and its costate."""
+    spec = instance.model.spec
+    reference = _reference(instance, times)
+    rows = [("state", "initial", "final", "given", "reference", "difference", "unit", "costate at t0", "unit")]
+    for i, state in enumerate(spec.states):
+        final = _last(x[i])
+        off = "" if reference is None else figure(_difference(instance, state.symbol, final, reference[i]), 3)
+        rows.append(
+            (
+                state.symbol,
+                figure(instance.initial[i]),
+                figure(final),
+                _given(instance, state.symbol),
+                "" if reference is None else figure(reference[i]),
+                off,
+                "" if state.unit == "1" else state.unit,
+                "" if lam is None else figure(float(lam[i][0]) if len(lam[i]) else math.nan, 10),
+                "" if lam is None or state.unit == "1" else cost_per(state.unit),
+            )
+        )
+    return table(rows, right=(*range(1, 6), 7))
+
+
+def _difference(instance: Instance, name: str, value: float, reference: float) -> float:
+    turn_does_not_count = name in instance.solver.free_angles and math.isfinite(value)
+    return math.remainder(value - reference, math.tau) if turn_does_not_count else value - reference
+
+
+def _given(instance: Instance, name: str) -> str:
+    value = instance.final.get(name)
+    if value is None:
+        return "free" if instance.final else ""
+    return value if isinstance(value, str) else figure(value)
+
+
+def _reference(instance: Instance, times: Array) -> Sequence[float] | None:
+    """The reference at the final time, where the model has one."""
+    if not instance.model.spec.has_reference or not len(times):
+        return None
+    values: Sequence[float] = instance.model.reference(float(times[-1]), instance.parameters)
+    return values
+
+
+def _controls(instance: Instance, times: Array, u: Array) -> list[str]:
+    """A line for each control, and one for their norm where it is bounded."""
+    spec = instance.model.spec
+    rows = [("control", "least", "greatest", "bounds", "at a bound", "unit")]
+    for i, control in enumerate(spec.controls):
+        limits = (instance.lower[i], instance.upper[i]) if spec.control_set == "box" else (-math.inf, math.inf)
+        unit = "" if control.unit == "1" else control.unit
+        rows.append((control.symbol, *_range(times, u[i], limits), unit))
+    if spec.control_set == "ball" and math.isfinite(instance.max_norm):
+        norm = np.sqrt((u * u).sum(axis=0))
+        rows.append(("norm", *_range(times, norm, (-math.inf, instance.max_norm)), ""))
+    return table(rows, right=(1, 2, 4))
+
+
+def _range(times: Array, row: Array, limits: tuple[float, float]) -> tuple[str, str, str, str]:
+    """Least and greatest value, the bounds, and how much of the time is spent at one of them."""
+    if not len(row):
+        return "-", "-", "", ""
+    extremes = figure(float(row.min())), figure(float(row.max()))
+    finite = [bound for bound in limits if math.isfinite(bound)]
+    if not finite:
+        return *extremes, "", ""
+    lower, upper = (figure(limit) if math.isfinite(limit) else "" for limit in limits)
+    words = f"[{lower}, {upper}]" if lower and upper else f"at least {lower}" if lower else f"at most {upper}"
+    at_bound = np.logical_or.reduce([np.abs(row - bound) <= _AT_BOUND * max(1.0, abs(bound)) for bound in finite])
+    share = float(np.trapezoid(at_bound.astype(float), times)) / float(times[-1] - times[0])
+    return *extremes, words, f"{100.0 * share:.3g} %"
+
+
+def _switching(solution: Solution, unit: str) -> list[str]:
+    rows = []
+    for control, times in zip(solution.instance.model.spec.control_names, solution.switching_times, strict=True):
+        if times:
+            more = f" and {len(times) - SHOWN_TIMES} more" if len(times) > SHOWN_TIMES else ""
+            listed = ", ".join(figure(t) for t in times[:SHOWN_TIMES])
+            rows.append(("meets or leaves a bound:", control, f"at {listed}{more} {unit}".rstrip()))
+    return table([("", "", ""), *rows])[1:] if rows else []
+
+
+def _last(row: Array) -> float:
+    return float(row[-1]) if len(row) else math.nan

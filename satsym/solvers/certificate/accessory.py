@@ -1,0 +1,219 @@
+"""The second variation as a matrix: what small changes of the control on short pieces make of the cost.
+
+The accessory problem has the linearised motion, the second derivatives of H and the form at the end (Bryson and Ho,
+Applied Optimal Control, 6.3). On controls that are constant on pieces it is a quadratic form in finitely many numbers;
+where that has a negative eigenvalue, so has the second variation itself. It knows nothing of conjugate times.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.grid import Grid, interleave
+from satsym.solution import Solution
+from satsym.solvers.certificate.end_form import end_form
+from satsym.solvers.certificate.flow import unit_sizes
+from satsym.solvers.certificate.jacobi import kernel
+
+Array = NDArray[np.floating[Any]]
+
+PIECES = 50
+"""On which the control's change is constant."""
+
+LEFT = 1e-3
+"""Share of a piece, or of the largest response of a control, below which a bound leaves nothing of a direction."""
+
+NUDGE = 1e-6
+"""Relative change of states and costates that shows how the control law follows them."""
+
+DROWNED = 1e-8
+"""Share of the least weight of a control's change that rounding of the form may come to."""
+
+
+@dataclass(frozen=True, eq=False)
+class Accessory:
+    """The second variation on pieces.
+
+    Attributes
+    ----------
+    form
+        In the controls' changes, normed so that these alone would give the unit matrix, and the change of a free final
+        time in units of the duration, shape (P, P).
+    ties
+        Rows that vanish where the end is as given, shape (c, P).
+    sizes
+        Of the boundary residuals that these ties are about, shape (c,).
+    controls
+        Changes of the controls at nodes and midpoints of the grid by the former, shape (m, 2 N + 1, P).
+    duration
+        Change of the final time by the former, shape (P,).
+    """
+
+    form: Array
+    ties: Array
+    sizes: Array
+    controls: Array
+    duration: Array
+
+    @property
+    def least(self) -> tuple[float, Array]:
+        """The least eigenvalue where the end is kept, and its direction, shape (P,); infinite without any."""
+        free = kernel(self.ties)
+        if not free.shape[1]:
+            return float("inf"), np.zeros(len(self.form))
+        values, vectors = np.linalg.eigh(free.T @ self.form @ free)
+        return float(values[0]), free @ vectors[:, 0]
+
+
+def accessory(solution: Solution, grid: Grid) -> Accessory | None:
+    """The second variation of a solution.
+
+    Parameters
+    ----------
+    solution
+        Whose.
+    grid
+        On which the linearised motion is integrated.
+
+    Returns
+    -------
+    Accessory
+        ``None`` where numbers fail, or motions part so quickly that rounding drowns the form.
+    """
+    times = interleave(grid.nodes, grid.midpoints)
+    z = np.array([np.interp(times, solution.times, row) for row in np.concatenate([solution.x, solution.lam])])
+    linear = _Linear.of(solution, times, z)
+    if linear is None:
+        return None
+    states, weights = _sensitivities(linear, grid)
+    n, pieces, free_time = states.shape[1], states.shape[2], int(solution.instance.tf is None)
+    weighed = linear.restoring * interleave(grid.node_weights, grid.midpoint_weights)[:, None, None] @ states
+    inside = np.tensordot(states, weighed, axes=((0, 1), (0, 1)))
+    arriving = np.zeros((n + free_time, pieces + free_time))
+    arriving[:n, :pieces], arriving[n:, pieces:] = states[-1], np.eye(free_time)
+    end = end_form(solution, linear.scale)
+    form = arriving.T @ end.form @ arriving
+    form[:pieces, :pieces] += inside + np.eye(pieces)
+    largest = max(np.abs(inside).max(initial=0.0), (np.abs(end.form) @ arriving**2).max(initial=0.0))
+    if not largest * np.finfo(float).eps < DROWNED:
+        return None
+    controls = np.zeros((weights.shape[1], len(times), pieces + free_time))
+    controls[:, :, :pieces] = (linear.feedback @ states + linear.direct @ weights).transpose(1, 0, 2)
+    duration = np.append(np.zeros(pieces), np.full(free_time, grid.tf - grid.t0))
+    return Accessory(form, end.ties @ arriving, end.sizes, controls, duration)
+
+
+@dataclass(frozen=True, eq=False)
+class _Linear:
+    """The accessory problem at M times: x' = motion x + push w, costs (x' restoring x + w'w) / 2, in scaled states.
+
+    Controls change by feedback x + direct w; effective projects on those w that bounds leave.
+    """
+
+    scale: Array
+    motion: Array
+    push: Array
+    restoring: Array
+    feedback: Array
+    direct: Array
+    effective: Array
+
+    @classmethod
+    def of(cls, solution: Solution, t: Array, z: Array) -> _Linear | None:
+        instance, n = solution.instance, len(z) // 2
+        model, p, bounds = instance.model, instance.parameters, instance.bounds
+        scale = unit_sizes(solution)
+        slopes = np.asarray(model.canonical_jacobian_batch(t, z[:n], z[n:], p, bounds)).transpose(2, 0, 1)
+        slopes = slopes * (scale / scale[:, None])
+        law = _law_slopes(solution, t, z, scale)
+        u = np.asarray(model.control_law_batch(t, z[:n], z[n:], p, bounds))
+        by_control = np.asarray(model.jacobian_u_batch(t, z[:n], u, p)).transpose(2, 0, 1) / scale[:n, None]
+        if not (np.isfinite(slopes).all() and np.isfinite(law).all() and np.isfinite(by_control).all()):
+            return None
+        # The law follows the costates as -K B', with the inverse K of H_uu where no bound holds, and zero elsewhere.
+        inverse = -law[:, :, n:] @ np.linalg.pinv(by_control.transpose(0, 2, 1))
+        size = np.sqrt(np.maximum(np.einsum("kii->ki", inverse).max(axis=0), 0.0))[:, None]
+        size[size == 0.0] = 1.0
+        values, axes = np.linalg.eigh((inverse + inverse.transpose(0, 2, 1)) / (2.0 * size * size.T))
+        root = (axes * np.sqrt(np.maximum(values, 0.0))[:, None, :]) @ axes.transpose(0, 2, 1)
+        effective = (axes * (values > LEFT)[:, None, :]) @ axes.transpose(0, 2, 1)
+        restoring = -(slopes[:, n:, :n] + slopes[:, n:, :n].transpose(0, 2, 1)) / 2.0
+        return cls(
+            scale, slopes[:, :n, :n], by_control * size.T @ root, restoring, law[:, :, :n], size * root, effective
+        )
+
+
+def _law_slopes(solution: Solution, t: Array, z: Array, scale: Array) -> Array:
+    """The control law by scaled states and costates, by differences, shape (M, m, 2n)."""
+    instance, n = solution.instance, len(z) // 2
+    size = np.maximum(np.abs(z).max(axis=1), NUDGE * scale)
+    columns = []
+    for i in range(2 * n):
+        nudge = np.zeros((2 * n, 1))
+        nudge[i] = NUDGE * size[i]
+        ahead, behind = (
+            np.asarray(instance.model.control_law_batch(t, y[:n], y[n:], instance.parameters, instance.bounds))
+            for y in (z + nudge, z - nudge)
+        )
+        columns.append((ahead - behind) * (scale[i] / (2.0 * NUDGE * size[i])))
+    return np.stack(columns, axis=2).transpose(1, 0, 2)
+
+
+def _sensitivities(linear: _Linear, grid: Grid) -> tuple[Array, Array]:
+    """States at nodes and midpoints, shape (2N+1, n, P), and controls there, (2N+1, m, P), by P changes.
+
+    By the classical Runge-Kutta method and, for the midpoints, Hermite's interpolation; each change is constant on
+    its piece and costs half its square.
+    """
+    n, edges = linear.motion.shape[1], np.linspace(0, grid.steps, min(PIECES, grid.steps) + 1).round().astype(int)
+    piece, shapes = np.repeat(np.arange(len(edges) - 1), np.diff(edges)), _shapes(linear, grid, edges)
+    changes = shapes.shape[2]
+    own, steps = shapes[piece], _steps(linear, grid)
+    driven = steps[:, :n, n:] @ own
+    states = np.zeros((grid.steps + 1, n, changes))
+    for k in range(grid.steps):
+        states[k + 1] = steps[k, :n, :n] @ states[k] + driven[k]
+    begun, ended = states[:-1], states[1:]
+    slopes = [
+        linear.motion[at] @ here + linear.push[at] @ own
+        for at, here in ((slice(0, -2, 2), begun), (slice(2, None, 2), ended))
+    ]
+    between = (begun + ended) / 2.0 + grid.widths[:, None, None] / 8.0 * (slopes[0] - slopes[1])
+    # To be simulated, changes go linearly from the middle of a piece to that of the next.
+    times, middles = interleave(grid.nodes, grid.midpoints), (grid.nodes[edges[1:]] + grid.nodes[edges[:-1]]) / 2.0
+    hats = np.array([np.interp(times, middles, row) for row in np.eye(len(middles))]).T
+    weights = np.tensordot(hats, shapes, axes=1)
+    course = interleave(states.transpose(1, 2, 0), between.transpose(1, 2, 0)).transpose(2, 0, 1)
+    return course, weights
+
+
+def _shapes(linear: _Linear, grid: Grid, edges: NDArray[np.intp]) -> Array:
+    """What the changes are on each piece, shape (pieces, m, P): of what bounds leave there of the controls."""
+    m, reach = linear.push.shape[2], linear.effective
+    steps = (reach[:-2:2] + 4.0 * reach[1::2] + reach[2::2]) * (grid.widths[:, None, None] / 6.0)
+    shares = np.add.reduceat(steps, edges[:-1], axis=0)
+    values, axes = np.linalg.eigh(shares)
+    kept = values > LEFT * (grid.nodes[edges[1:]] - grid.nodes[edges[:-1]])[:, None]
+    unit = axes / np.sqrt(np.where(kept, values, 1.0))[:, None, :]
+    found = np.zeros((len(shares), m, len(shares), m))
+    every = np.arange(len(shares))
+    found[every, :, every, :] = unit
+    return found.reshape(len(shares), m, -1)[:, :, kept.ravel()]
+
+
+def _steps(linear: _Linear, grid: Grid) -> Array:
+    """States at the ends of steps by states and controls at their beginnings, the latter kept, (N, n+m, n+m)."""
+    n, m = linear.push.shape[1:]
+    both = np.zeros((len(linear.motion), n + m, n + m))
+    both[:, :n, :n], both[:, :n, n:] = linear.motion, linear.push
+    first, middle, last, h = both[:-2:2], both[1::2], both[2::2], grid.widths[:, None, None]
+    one = first
+    two = middle + middle @ one * (h / 2.0)
+    three = middle + middle @ two * (h / 2.0)
+    four = last + last @ three * h
+    found: Array = np.eye(n + m) + h / 6.0 * (one + 2.0 * (two + three) + four)
+    return found

@@ -1,0 +1,389 @@
+"""Competitors: admissible motions that might be cheaper. The certificate names each kind it has compared.
+
+None starts where the solver did, and how far each may go is limited by work, so that what is found is the same on
+every machine; only time that is up can end it before, and that is said.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from satsym.instance import Guess, Instance
+from satsym.solution import Competitors, Kind, Solution
+from satsym.solvers.certificate.flow import products, unit_sizes
+from satsym.solvers.control import control_set
+from satsym.solvers.iteration import Limits
+from satsym.solvers.revolutions import shifted
+
+if TYPE_CHECKING:
+    from satsym.solvers.collocation.curve import Curve
+    from satsym.solvers.collocation.problem import TwoPoint
+    from satsym.solvers.collocation.sqp import Found
+    from satsym.solvers.symmetry import Rotation, Spiral
+
+WORK = 15_000
+"""Columns that may be linearised for one attempt; a revolution has some 30 of them an iteration."""
+
+SEEDS = 4
+"""Starts that are drawn, of each kind."""
+
+BENT = (0.3, 1.0)
+"""Amplitudes of what is added to a straight line, in sizes of the states."""
+
+SOFT = (0.1, 0.01)
+"""Softness of bounds with which saturated structures are looked for."""
+
+TURNS = 3
+"""Numbers of revolutions that are tried."""
+
+EARLIER = (0.6, 0.8, 0.95)
+"""Shares of the duration after which a competitor has arrived, and coasts."""
+
+SHORTER_AND_LONGER = (0.4, 0.5, 0.6, 0.7, 0.8, 1.25, 1.5, 2.0)
+"""Durations beside one that was chosen, as shares of it."""
+
+HIDDEN = 1e-14
+"""Share of their size by which states are rounded in the end: costs differ by what that is worth, whatever they are."""
+
+ROUGH, SAME = 1e-2, 1e-9
+"""Relative errors of costs, on the mesh of a cold start and refined; the latter makes no difference."""
+
+SAMPLES = 401
+"""Values of a guess that leads to a cheaper competitor."""
+
+
+@dataclass(frozen=True, eq=False)
+class Competitor:
+    """A competitor that was found.
+
+    Attributes
+    ----------
+    problem
+        Of which it is an extremal.
+    curve
+        Its states and costates, scaled.
+    cost
+        The cost J.
+    """
+
+    problem: TwoPoint
+    curve: Curve
+    cost: float
+
+
+Attempt = Callable[[Limits], Competitor | None]
+"""Looks for a competitor that is cheaper than a cost, or says what it costs roughly."""
+
+
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """What competitors of one kind came to.
+
+    Attributes
+    ----------
+    summary
+        As the certificate has it.
+    margin
+        How much dearer the cheapest is, relative to the cost; negative where it is cheaper, infinite without any.
+    cheapest
+        That one.
+    interrupted
+        Whether time was up before all were tried.
+    """
+
+    summary: Competitors
+    margin: float
+    cheapest: Competitor | None
+    interrupted: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """All kinds that a problem allows.
+
+    Attributes
+    ----------
+    kinds
+        Those that were compared.
+    not_checked
+        Those that nobody tried, of which nothing was solved, or for which time was up.
+    """
+
+    kinds: tuple[Compared, ...]
+    not_checked: tuple[Kind, ...]
+
+    @property
+    def interrupted(self) -> list[Kind]:
+        """Those for which time was up."""
+        return [c.summary.kind for c in self.kinds if c.interrupted]
+
+    @property
+    def better(self) -> Competitor | None:
+        """The cheapest of all that are cheaper than the solution."""
+        cheaper = [c for c in self.kinds if c.margin < -SAME and c.cheapest is not None]
+        return min(cheaper, key=lambda c: c.margin).cheapest if cheaper else None
+
+
+def compared(solution: Solution, deadline: float, seed: int = 0) -> Comparison:
+    """Compare a solution with competitors of every kind.
+
+    Parameters
+    ----------
+    solution
+        With an answer.
+    deadline
+        On the clock of ``time.perf_counter``.
+    seed
+        Of starts that are drawn: another one where a solution was found from such a start.
+    """
+    kinds, missing = [], []
+    for kind, attempts in _attempts(solution, seed):
+        found = _tried(solution, kind, attempts, deadline)
+        if found is None:
+            missing.append(kind)
+            continue
+        kinds.append(found)
+        if found.interrupted or not found.summary.solved:
+            missing.append(kind)
+    return Comparison(tuple(kinds), tuple(missing))
+
+
+def guess(competitor: Competitor, solution: Solution) -> Instance:
+    """The instance of a solution that starts from a competitor."""
+    problem, instance = competitor.problem, solution.instance
+    names = instance.model.spec.state_names
+    end = competitor.problem.instance.t0 + problem.elapsed(competitor.curve.theta)
+    last = end if instance.tf is None else max(instance.tf, end)
+    n, times = len(names), np.linspace(instance.t0, last, SAMPLES)
+    tau = np.minimum((times - instance.t0) / (end - instance.t0), 1.0)
+    z = competitor.curve(tau) * problem.scale.both
+    z[:n] += (np.array(instance.initial) - np.array(problem.instance.initial))[:, None]
+    coasting = times > end
+    if coasting.any():  # arrived on the reference before the end
+        z[:n, coasting] = np.array([instance.model.reference(t, instance.parameters) for t in times[coasting]]).T
+        z[n:, coasting] = 0.0
+    rows = [tuple(row) for row in z.tolist()]
+    start = Guess(dict(zip(names, rows[:n], strict=True)), dict(zip(names, rows[n:], strict=True)))
+    return replace(instance, guess=start, tf_guess=end if instance.tf is None else None)
+
+
+def _tried(solution: Solution, kind: Kind, attempts: list[Attempt], deadline: float) -> Compared | None:
+    """Every attempt at a kind; ``None`` where there is none."""
+    if not attempts:
+        return None
+    found: list[Competitor] = []
+    tried, interrupted = 0, False
+    for attempt in attempts:
+        limits = Limits(200, deadline, work=WORK)
+        with np.errstate(all="ignore"):
+            competitor = attempt(limits)
+        interrupted = limits.late
+        if interrupted:
+            break
+        tried += 1
+        if competitor is not None:
+            found.append(competitor)
+    cheapest = min(found, key=lambda one: one.cost, default=None)
+    cost = cheapest.cost if cheapest else float("nan")
+    dearer = margin(cost, solution.objective, coarse=SAME, hidden=hidden(solution))
+    return Compared(Competitors(kind, tried, len(found), cost), dearer, cheapest, interrupted)
+
+
+def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Attempt]]]:
+    """Kinds that the problem of a solution allows, with what is tried of each; nothing where nobody knows how."""
+    from satsym.solvers.collocation.scaling import two_point
+    from satsym.solvers.symmetry import rotation
+
+    instance, cost = solution.instance, solution.objective
+    lasting = float(solution.times[-1]) - instance.t0
+    fixed = replace(instance, tf=instance.t0 + lasting, tf_guess=None, guess=Guess())
+    problem = two_point(fixed, lasting)
+    rng = np.random.default_rng(seed)
+
+    def leading(paths: Any, softness: float = 1.0) -> list[Attempt]:
+        return [_from_path(problem, path, softness, cost) for path in paths]
+
+    yield Kind.STARTS, leading(_bent(problem, rng))
+    if np.isfinite(instance.bounds).any():
+        starts = zip(_bent(problem, rng), SOFT * SEEDS, strict=False)
+        soft = [_from_path(problem, path, softness, cost) for path, softness in starts]
+        yield Kind.SATURATION, [*soft, *_from_corners(problem, cost)]
+    angles = [name for name in instance.solver.free_angles if name in instance.final]
+    turned = [two_point(shifted(fixed, {name: turns}), lasting) for name in angles for turns in (-1, 1)]
+    around: list[Attempt] = [_cold(one, cost) for one in turned]
+    if problem.fixed.all() and not angles and (rotating := rotation(fixed)):
+        around = [_from_spiral(problem, spiral, cost) for spiral in _spirals(solution, problem, rotating)]
+    elif not angles and not problem.fixed.all() and rotation(fixed):
+        yield Kind.REVOLUTIONS, []
+    if around:
+        yield Kind.REVOLUTIONS, around
+    if instance.tf is None:
+        yield Kind.DURATIONS, [_lasting(instance, share * lasting, cost) for share in SHORTER_AND_LONGER]
+    if instance.tf is not None and _on_reference(solution):
+        final: dict[str, float | Literal["reference"]] = dict.fromkeys(instance.model.spec.state_names, "reference")
+        sooner = [share * lasting for share in EARLIER]
+        early = [two_point(replace(fixed, tf=instance.t0 + t, final=final), t) for t in sooner]
+        yield Kind.EARLIER, [_cold(one, cost) for one in early]
+
+
+def _from_path(problem: TwoPoint, path: Callable[[Any], Any], softness: float, cost: float) -> Attempt:
+    """The minimum within the bounds to which a path of states leads."""
+    from satsym.solvers.collocation.soft_bounds import within_bounds
+
+    def attempt(limits: Limits) -> Competitor | None:
+        found = within_bounds(problem, path, limits, softness)
+        return None if found.curve is None else _accurate(problem, found.curve, cost)
+
+    return attempt
+
+
+def _from_spiral(problem: TwoPoint, spiral: Spiral, cost: float) -> Attempt:
+    """The minimum within the bounds with a number of turns."""
+    from satsym.solvers.cold_start.path_of_turns import along_turns
+
+    return lambda limits: _bounded(problem, along_turns(problem.widened(float("inf")), spiral, limits), cost, limits)
+
+
+def _from_corners(problem: TwoPoint, cost: float) -> list[Attempt]:
+    """The cheapest extremal to which controls at the corners of their box lead, where nothing is asked of the end."""
+    from satsym.solvers.cold_start.swept import swept
+
+    if problem.fixed.any():
+        return []
+
+    def attempt(limits: Limits) -> Competitor | None:
+        found = (_accurate(problem, curve, cost) for curve in swept(problem, limits) if curve is not None)
+        return min(filter(None, found), key=lambda one: one.cost, default=None)
+
+    return [attempt]
+
+
+def _lasting(instance: Instance, duration: float, cost: float) -> Attempt:
+    """The minimum over the duration next to a given one; that of the given one where bounds are in its way."""
+    from satsym.solvers.cold_start.duration_trials import Trials
+    from satsym.solvers.collocation.continuation import kept
+
+    free = replace(instance, guess=Guess(), tf_guess=None)
+
+    def attempt(limits: Limits) -> Competitor | None:
+        trials = Trials(free, limits, duration)
+        rough = trials.cold(duration, quick=True)
+        if rough is None:
+            return None
+        least = trials.freed(rough)
+        if least is not None and kept(least.problem.widened(0.0), least.start.found.curve):
+            return _accurate(least.problem.widened(0.0), least.start.found.curve, cost)
+        given = replace(rough.problem, widening=0.0)
+        return _bounded(given, rough.start.found, cost, limits)
+
+    return attempt
+
+
+def _cold(problem: TwoPoint, cost: float) -> Attempt:
+    """The minimum within the bounds to which the first ways of the cold start lead."""
+    from satsym.solvers.cold_start.ways import cold_start
+
+    def attempt(limits: Limits) -> Competitor | None:
+        start = cold_start(problem, limits, quick=True)
+        return None if start.way == "none" else _bounded(problem, start.found, cost, limits)
+
+    return attempt
+
+
+def _bounded(problem: TwoPoint, found: Found, cost: float, limits: Limits) -> Competitor | None:
+    """The minimum within the bounds to which one without them leads."""
+    from satsym.solvers.collocation.soft_bounds import within_found
+
+    if not found.minimum or not found.curve.in_domain(problem.positive):
+        return None
+    rough = Competitor(problem, found.curve, found.cost * problem.scale.cost)
+    if rough.cost > cost + ROUGH * abs(cost):  # what is dearer without the bounds is so within them
+        return rough
+    inside = within_found(problem, found, limits)
+    return None if inside.curve is None else _accurate(problem, inside.curve, cost)
+
+
+def _accurate(problem: TwoPoint, curve: Curve, cost: float) -> Competitor | None:
+    """A minimum with its cost, as rough as its mesh where it is clearly dearer than another cost."""
+    from satsym.solvers.collocation.continuation import kept
+    from satsym.solvers.collocation.refinement import refine
+    from satsym.solvers.collocation.system import System
+
+    rough = System(problem, curve.mesh, curve.order).cost(curve) * problem.scale.cost
+    if rough > cost + ROUGH * abs(cost):
+        return Competitor(problem, curve, rough)
+    refined = refine(problem, curve, SAME, keep_nodes=not kept(problem, curve))
+    if not refined.converged or not refined.curve.in_domain(problem.positive):
+        return None
+    exact = System(problem, refined.curve.mesh, refined.curve.order).cost(refined.curve) * problem.scale.cost
+    return Competitor(problem, refined.curve, exact)
+
+
+def _bent(problem: TwoPoint, rng: np.random.Generator) -> Iterator[Callable[[Any], Any]]:
+    """Paths that are drawn, of both amplitudes in turn."""
+    from satsym.solvers.cold_start import paths
+
+    for k in range(SEEDS):
+        yield paths.bent(problem, rng, BENT[k % len(BENT)])
+
+
+def _spirals(solution: Solution, problem: TwoPoint, around: Rotation) -> list[Spiral]:
+    """Paths of other numbers of revolutions than the solution's, the likeliest first."""
+    from satsym.solvers.symmetry import spirals, turns
+
+    own = turns(around, solution.x)
+    return [one for one in spirals(problem, TURNS + 1, around) if abs(one.turns - own) > 0.5]
+
+
+def none_conceivable(solution: Solution) -> bool:
+    """Whether no control can cost less: the state costs nothing, and the control is the least of the running cost.
+
+    So it is where all costates vanish, neither the terminal nor the running cost depends on the state, and no control
+    makes the latter smaller: looked at for states and controls drawn all around those of the solution.
+    """
+    if solution.lam.any() or solution.instance.model.spec.multipliers:
+        return False
+    instance, model = solution.instance, solution.instance.model
+    rng, p, t = np.random.default_rng(0), instance.parameters, solution.times
+    x = solution.x + unit_sizes(solution)[: len(solution.x), None] * rng.uniform(-2.0, 2.0, solution.x.shape)
+    positive = [i for i, state in enumerate(model.spec.states) if state.positive]
+    x[positive] = solution.x[positive] * rng.uniform(0.2, 5.0, solution.x[positive].shape)
+    size = np.abs(solution.u).max(initial=0.0) or 1.0
+    u = control_set.project(
+        instance, solution.u + size * 10.0 ** rng.uniform(-3.0, 3.0) * rng.normal(size=solution.u.shape)
+    )
+    slopes = model.costate_rate_batch(t, x, u, solution.lam, p)
+    ends = [model.terminal_gradient(float(t[-1]), tuple(row), p) for row in x.T[:20]]
+    least = np.asarray(model.running_cost_batch(t, x, solution.u, p)) <= model.running_cost_batch(t, x, u, p)
+    return not np.any(slopes) and not np.any(ends) and bool(np.all(least))
+
+
+def hidden(solution: Solution) -> float:
+    """The difference of costs that rounding hides."""
+    return HIDDEN * products(solution)
+
+
+def _on_reference(solution: Solution) -> bool:
+    """Whether the whole final state is the reference's, and coasting on it is admissible."""
+    instance, spec = solution.instance, solution.instance.model.spec
+    if not spec.has_reference or instance.final.keys() != set(spec.state_names):
+        return False
+    curve = np.array(instance.model.reference(float(solution.times[-1]), instance.parameters))
+    none = np.zeros((len(spec.controls), 1))
+    there = np.allclose(solution.x[:, -1], curve, rtol=1e-9, atol=1e-12)
+    return bool(there and (control_set.project(instance, none) == none).all())
+
+
+def margin(competitor: float, cost: float, coarse: float = 0.0, hidden: float = 0.0) -> float:
+    """How much dearer a competitor is, relative to the cost.
+
+    Differences below ``coarse``, or of costs below ``hidden``, are its own error.
+    """
+    if not np.isfinite(competitor):
+        return float("inf")
+    margin = (competitor - cost) / max(abs(cost), 1e-300)
+    return 0.0 if abs(margin) < coarse or abs(competitor - cost) < hidden else margin

@@ -1,0 +1,105 @@
+"""Necessary conditions, and that of Legendre and Clebsch, measured along the flow."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.solution import Solution
+from satsym.solvers.certificate.end_form import fixed_states, multipliers
+from satsym.solvers.certificate.flow import FAINT, NEGLIGIBLE, Flow, products, typical, undriven, unit_sizes
+from satsym.solvers.collocation.scaling import final_argument
+
+Array = NDArray[np.floating[Any]]
+
+CANCELLED = 1e-5
+"""Share of the products of states and costates below which a cost is what is left of larger terms, or of rounding."""
+
+
+def boundary_residual(solution: Solution, flow: Flow) -> float:
+    """Largest residual at the right end of the flow, each relative to the size of what it compares.
+
+    A given state is compared with its own size or, where the control moves the end by less, with that, down to a
+    share of its size that rounding allows; a costate with its size and with that of the terms of the gradient
+    of the terminal cost, which may cancel almost: an error of the state then counts alike in both. A terminal
+    constraint is compared with what the states contribute to it.
+    """
+    instance, model = solution.instance, solution.instance.model
+    n = len(instance.initial)
+    tf, x, lam = float(flow.times[-1]), tuple(flow.x[:, -1].tolist()), tuple(flow.lam[:, -1].tolist())
+    final = final_argument(instance)
+    nu, residual = multipliers(instance, tf, x, lam)
+    fixed, (state, costate) = fixed_states(instance), typical(solution)
+    slopes = np.array(model.boundary_jacobian(tf, x, lam, nu, instance.parameters, instance.bounds, final))
+    gradient = np.abs(slopes.reshape(len(residual), -1)[:-1, :n]) @ state
+    least = np.minimum(state, NEGLIGIBLE * unit_sizes(solution)[:n])
+    rows = np.where(fixed, np.maximum(state * _moved(solution, flow, state), least), np.maximum(costate, gradient[:n]))
+    found = np.abs(residual[:n]) / rows
+    constraints = np.abs(residual[n:-1]) / np.maximum(gradient[n:], 1e-300)
+    parts = [*found, *constraints]
+    if instance.tf is None:
+        rates = np.array(model.canonical(tf, x, lam, instance.parameters, instance.bounds))
+        parts.append(abs(residual[-1]) / max(float(np.abs(flow.lam[:, -1] * rates[:n]).sum()), 1e-300))
+    return float(max(parts))
+
+
+def _moved(solution: Solution, flow: Flow, state: Array) -> float:
+    """How far the control moves the end, relative to the sizes of the states, at most one."""
+    without = undriven(solution)
+    if without is None:
+        return 1.0
+    return float(np.minimum((np.abs(flow.x[:, -1] - without) / state).max(), 1.0))
+
+
+def dynamics_defect(solution: Solution, flow: Flow) -> float:
+    """Largest distance of the solver's states and costates from the flow, relative to the size of each.
+
+    Sizes as :func:`typical` has them. Compared at those nodes of the solver that are stations, and at the ends.
+    """
+    here = np.clip(np.searchsorted(flow.times, solution.times), 1, len(flow.times) - 1)
+    here -= solution.times - flow.times[here - 1] < flow.times[here] - solution.times
+    same = np.abs(flow.times[here] - solution.times) <= 1e-12 * max(abs(float(flow.times[-1])), 1e-300)
+    state, costate = typical(solution, FAINT)
+    parts = [
+        (np.abs(mine[:, here[same]] - theirs[:, same]).max(axis=1) / size).max()
+        for mine, theirs, size in ((flow.x, solution.x, state), (flow.lam, solution.lam, costate))
+    ]
+    return float(max(parts))
+
+
+def off_cost(solution: Solution, flow: Flow) -> float:
+    """Difference of the stated cost from that along the flow, relative to it; what cancels counts as a share of H."""
+    size = max(abs(flow.cost), CANCELLED * products(solution), 1e-300)
+    return float(abs(flow.cost - solution.objective) / size)
+
+
+def stationarity(solution: Solution) -> float:
+    """Largest difference of the control from the one that minimises H, relative to the largest control."""
+    instance = solution.instance
+    law = instance.model.control_law_batch(
+        solution.times, solution.x, solution.lam, instance.parameters, instance.bounds
+    )
+    size = max(float(np.abs(solution.u).max()), float(np.abs(law).max()))
+    return float(np.abs(law - solution.u).max() / size) if size > 0.0 else 0.0
+
+
+def hamiltonian_drift(solution: Solution, flow: Flow) -> float | None:
+    """Largest change of H along the flow, relative to the terms it consists of; ``None`` with explicit time."""
+    instance, model = solution.instance, solution.instance.model
+    if not model.spec.autonomous:
+        return None
+    u = model.control_law_batch(flow.times, flow.x, flow.lam, instance.parameters, instance.bounds)
+    h = np.asarray(model.hamiltonian_batch(flow.times, flow.x, u, flow.lam, instance.parameters))
+    terms = np.abs(flow.lam * model.dynamics_batch(flow.times, flow.x, u, instance.parameters)).sum(axis=0).max()
+    return float(np.abs(h - h[0]).max() / max(terms, np.abs(h).max(), 1e-300))
+
+
+def legendre_clebsch(solution: Solution) -> float:
+    """Smallest eigenvalue of H_uu along the trajectory; positive where the strict condition holds."""
+    instance, model = solution.instance, solution.instance.model
+    hessian = np.asarray(
+        model.control_hessian_batch(solution.times, solution.x, solution.u, solution.lam, instance.parameters)
+    )
+    return float(np.linalg.eigvalsh(hessian.transpose(2, 0, 1)).min()) if len(hessian) else float("inf")

@@ -1,0 +1,71 @@
+"""The second-order conditions of a solution whose controls follow from states and costates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from satsym.solution import Check, Solution
+from satsym.solvers.certificate.end_form import end_form
+from satsym.solvers.certificate.jacobi import end_curvature, first_passage, followed
+from satsym.solvers.certificate.segments import Segments, between
+
+FLAT = 1e-9
+"""Relative curvature in the free end below which nobody can tell whether there is any."""
+
+NOT_STRICT = "not strict: other controls cost the same"
+
+
+@dataclass(frozen=True)
+class Conjugate:
+    """What neighbouring extremals from the same initial state say.
+
+    Attributes
+    ----------
+    resolved
+        Whether they could be followed.
+    passed
+        Conjugate times after the start, with their multiplicity.
+    time
+        The first of these, or ``None``.
+    touching
+        Whether the final time may be one, as far as can be told.
+    curvature
+        Least one of the cost in what is free at the end, relative; infinite where nothing is.
+    """
+
+    resolved: bool
+    passed: int = 0
+    time: float | None = None
+    touching: bool = False
+    curvature: float = float("inf")
+
+    @property
+    def checks(self) -> list[Check]:
+        """Each is a deficit that must not be positive."""
+        if not self.resolved:
+            return [Check("conjugate times not resolved", 1.0, 0.0)]
+        found = [Check("conjugate times", float(self.passed), 0.0)]
+        if self.curvature < float("inf"):
+            found.append(Check("curvature in the free end", float(not self.curvature > -FLAT), 0.0))
+        if self.passed == 0 and (self.touching or abs(self.curvature) <= FLAT):
+            found.append(Check(NOT_STRICT, 1.0, 0.0))
+        return found
+
+
+def conjugate(solution: Solution, along: Segments | None) -> Conjugate:
+    """Count conjugate times, and measure the curvature in the free end.
+
+    Parameters
+    ----------
+    solution
+        An extremal.
+    along
+        Its linearisation, or ``None`` where there is none.
+    """
+    phases = None if along is None else followed(along.transition)
+    if along is None or phases is None:
+        return Conjugate(resolved=False)
+    time = first_passage(along.times, phases, lambda station, t: between(solution, along, station, t))
+    curvature = end_curvature(phases.frames[-1], end_form(solution, along.scale))
+    passed = int(phases.passed[-1])
+    return Conjugate(curvature == curvature, passed, time, phases.touching, curvature)

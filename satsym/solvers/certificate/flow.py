@@ -1,0 +1,149 @@
+"""The canonical flow, integrated again from the initial state and costates of a solution."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.solution import Solution
+from satsym.solvers.collocation.scaling import two_point
+from satsym.solvers.failures import FAILURES
+from satsym.solvers.simulation.extrapolation import integrate
+
+Array = NDArray[np.floating[Any]]
+
+TOLERANCE = 1e-13
+"""Error of a step, relative to the size of each component."""
+
+FINEST = 4.0 * np.finfo(float).eps
+"""Share of the terms of a rate below which a step cannot tell what they add up to."""
+
+ROUGHLY = 1e-9
+"""Error of a step where only the size of what is found matters."""
+
+NEGLIGIBLE = 1e-3
+"""Share of its unit, or of the largest product with its partner, at which something small counts."""
+
+ROUNDED = 1e-13
+"""Share of its unit up to which a costate may be made of rounding."""
+
+SMALL, FAINT = 1e-4, 1e-6
+"""Share of its unit at which a smaller costate counts: states are rounded, and with them what a costate must be at
+the end; the flow from the initial costates is not, but that it depends on the states."""
+
+STATIONS = 64
+"""Times at which the flow is compared with the solver's trajectory."""
+
+
+@dataclass(frozen=True, eq=False)
+class Flow:
+    """States and costates along the canonical equations.
+
+    Attributes
+    ----------
+    times
+        Stations, shape (K,), switching times among them.
+    x, lam
+        States and costates there, shapes (n, K).
+    cost
+        Of the whole motion, the terminal cost included.
+    """
+
+    times: Array
+    x: Array
+    lam: Array
+    cost: float
+
+
+def flow(solution: Solution) -> Flow | None:
+    """Integrate from the initial state and costates; ``None`` where the flow is not finite."""
+    instance, model = solution.instance, solution.instance.model
+    n, p, bounds = len(instance.initial), instance.parameters, instance.bounds
+    start, end = float(solution.times[0]), float(solution.times[-1])
+    kinks = [t for times in solution.switching_times for t in times if start < t < end]
+    stations = np.unique(np.concatenate([np.linspace(start, end, STATIONS + 1), kinks]))
+    sizes = np.maximum(np.concatenate(typical(solution, FAINT)), _resolved(solution) / STATIONS)
+
+    def rates(t: float, y: Array) -> Array:
+        x, lam = tuple(y[:n].tolist()), tuple(y[n : 2 * n].tolist())
+        cost = model.running_cost(t, x, model.control_law(t, x, lam, p, bounds), p)
+        return np.array([*model.canonical(t, x, lam, p, bounds), cost])
+
+    values = np.concatenate([instance.initial, solution.lam[:, 0], [0.0]])
+    scale = np.append(sizes, sizes[:n] @ sizes[n:])
+    found = [values]
+    try:
+        for piece in integrate(rates, stations, values, TOLERANCE, scale):
+            found.append(piece.end)
+    except FAILURES:
+        return None
+    table = np.array(found)
+    x, lam = table[:, :n].T, table[:, n : 2 * n].T
+    cost = float(table[-1, -1]) + float(model.terminal_cost(end, tuple(x[:, -1].tolist()), p))
+    return Flow(stations, x, lam, cost)
+
+
+def undriven(solution: Solution) -> Array | None:
+    """Where the motion would end without any control, shape (n,); ``None`` where that is nowhere."""
+    instance, model = solution.instance, solution.instance.model
+    none, p = (0.0,) * len(model.spec.controls), instance.parameters
+
+    def rates(t: float, x: Array) -> Array:
+        return np.array(model.dynamics(t, tuple(x.tolist()), none, p))
+
+    times = np.array([float(solution.times[0]), float(solution.times[-1])])
+    try:
+        return integrate(rates, times, np.array(instance.initial), ROUGHLY, typical(solution)[0])[0].end
+    except FAILURES:
+        return None
+
+
+def _resolved(solution: Solution) -> Array:
+    """Sizes below which errors would be held to less than the rates are rounded by over the whole time, shape (2n,).
+
+    Steps would shrink for ever in vain: a rate may be a small difference of large terms.
+    """
+    instance, model = solution.instance, solution.instance.model
+    z = np.abs(np.concatenate([solution.x, solution.lam]))
+    slopes = model.canonical_jacobian_batch(
+        solution.times, solution.x, solution.lam, instance.parameters, instance.bounds
+    )
+    terms = np.einsum("ijk,jk->ik", np.abs(slopes), z).max(axis=1)
+    found: Array = FINEST / TOLERANCE * abs(float(solution.times[-1] - solution.times[0])) * terms
+    return found
+
+
+def unit_sizes(solution: Solution) -> Array:
+    """Of states and costates, those of the scaled problem, shape (2n,)."""
+    found: Array = two_point(solution.instance, float(solution.times[-1] - solution.times[0])).scale.both[:, 0]
+    return found
+
+
+def products(solution: Solution) -> float:
+    """The sum of the products of states and costates at their largest: what a share of the states is worth."""
+    state, costate = typical(solution, ROUNDED)
+    return float(state @ costate)
+
+
+def typical(solution: Solution, faint: float = SMALL) -> tuple[Array, Array]:
+    """Sizes to which errors of states and costates are held, shapes (n,).
+
+    Each its largest magnitude along the way, but what is far below its unit counts as a share of that: states are
+    rounded, and what they move is no better. A costate also counts as a share of what the largest product of state
+    and costate makes of it.
+
+    Parameters
+    ----------
+    solution
+        Whose.
+    faint
+        The share of their unit at which smaller costates count.
+    """
+    n, unit = len(solution.x), unit_sizes(solution)
+    state = np.maximum(np.abs(solution.x).max(axis=1), NEGLIGIBLE * unit[:n])
+    costate = np.abs(solution.lam).max(axis=1)
+    product = float((state * costate).max())
+    return state, np.maximum(np.maximum(costate, faint * unit[n:]), NEGLIGIBLE * product / state)

@@ -1,0 +1,213 @@
+"""Jacobi's condition: conjugate times, each as often as neighbouring extremals meet there, and the free end.
+
+Neighbouring extremals from the same initial state span, in states X and costates Lambda, a Lagrangian plane. In
+W = -(X + i Lambda)(X - i Lambda)^-1, which is unitary and symmetric, the plane is seen whatever its basis: X is
+singular where an eigenvalue is one, as often as it occurs. Under Legendre's condition eigenphases go through zero
+upwards only, so that as many conjugate times have passed as phases have gone through a full turn (Arnold, On a
+characteristic class entering into conditions of quantization, 1967; Agrachev and Sachkov, Control Theory from the
+Geometric Viewpoint, 21). All phases leave zero at the start; those of directions out of the control's reach, or not
+reached yet, stay there. Two phases that pass together are seen as well as one, which a determinant's sign is blind to.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.solvers.certificate.end_form import EndForm
+
+Array = NDArray[np.floating[Any]]
+TURN = 2.0 * np.pi
+
+TOUCHED = 1e-7
+"""Phases this close to a full turn have made it, as far as can be told."""
+
+AFRESH = 8
+"""Steps after which the basis is made orthonormal: within so many it does not become a bad one."""
+
+INDEPENDENT = 1e-9
+"""Least singular value, relative, of ties at the end that are different ones."""
+
+MIXTURES = (0.4, 1.0, 2.1)
+"""Angles at which real and imaginary parts are mixed."""
+
+PARTS, ROUNDS = 16, 6
+"""Of a step in which a conjugate time is looked for, and how often it is taken apart."""
+
+
+@dataclass(frozen=True, eq=False)
+class Phases:
+    """Eigenphases of the field of neighbouring extremals.
+
+    Attributes
+    ----------
+    values
+        Followed continuously from zero, in ascending order, shape (K, n).
+    frames
+        Orthonormal bases of the planes, shape (K, 2n, n).
+    """
+
+    values: Array
+    frames: Array
+
+    @property
+    def passed(self) -> NDArray[np.intp]:
+        """Conjugate times passed so far, with their multiplicity, station by station, shape (K,)."""
+        return _passed(self.values)
+
+    @property
+    def touching(self) -> bool:
+        """Whether a phase ends so close to a full turn that no-one can tell whether it has made it."""
+        turns = np.round(self.values[-1] / TURN)
+        return bool(((turns >= 1.0) & (np.abs(self.values[-1] - turns * TURN) <= TOUCHED)).any())
+
+
+def followed(transition: Array) -> Phases | None:
+    """Phases from station to station.
+
+    Parameters
+    ----------
+    transition
+        Symplectic matrices from each station to the next, shape (K-1, 2n, 2n), in each of which the sum of the phases
+        turns by less than pi.
+
+    Returns
+    -------
+    Phases
+        ``None`` where numbers fail.
+    """
+    n = transition.shape[1] // 2
+    frames = [np.concatenate([np.zeros((n, n)), np.eye(n)])]
+    for k, matrix in enumerate(transition):
+        begin = frames[-1] if k % AFRESH else np.linalg.qr(frames[-1])[0]
+        frames.append(matrix @ begin)
+    if not np.isfinite(frames).all():
+        return None
+    every = np.linalg.qr(np.array(frames))[0]
+    values = [np.zeros(n)]
+    for new in _angles(every)[1:]:
+        values.append(_continued(values[-1], new))
+    return Phases(np.array(values), every)
+
+
+def _angles(frames: Array) -> Array:
+    """Eigenphases modulo a turn, shape (M, n)."""
+    n = frames.shape[2]
+    upper, lower = (frames[:, rows].transpose(0, 2, 1) for rows in (slice(n), slice(n, None)))
+    plane = -np.linalg.solve(upper - 1j * lower, upper + 1j * lower)  # the transpose, which is the same
+    found: Array = np.angle(np.linalg.eigvals(plane)) % TURN
+    return found
+
+
+def _continued(before: Array, angles: Array) -> Array:
+    """Phases that go on from those before to given angles, keeping their order round the circle."""
+    residues = np.mod(before, TURN)
+    order = np.argsort(residues)
+    ahead = np.sort(angles)
+    moved = float(ahead.sum() - residues.sum())
+    # Their sum moves by less than half a turn: so many of the largest come from a turn before.
+    shift = round((np.angle(np.exp(1j * moved)) - moved) / TURN)
+    places = np.arange(len(before)) + shift
+    after = ahead[places % len(before)] + TURN * (places // len(before))
+    found = np.empty_like(before)
+    found[order] = before[order] + after - residues[order]
+    return np.sort(found)
+
+
+def first_passage(times: Array, phases: Phases, between: Callable[[int, Array], Array]) -> float | None:
+    """The first conjugate time, or ``None``.
+
+    Parameters
+    ----------
+    times
+        Of the stations, shape (K,).
+    phases
+        There.
+    between
+        Transitions from a station to given times until the next, shape (M, 2n, 2n).
+    """
+    after = np.flatnonzero(phases.passed > 0)
+    if not len(after):
+        return float(times[-1]) if phases.touching else None
+    station = int(after[0]) - 1
+    early, late = float(times[station]), float(times[station + 1])
+    for _ in range(ROUNDS):
+        inner = np.linspace(early, late, PARTS + 1)[1:]
+        angles = _angles(np.linalg.qr(between(station, inner) @ phases.frames[station])[0])
+        values = np.array([_continued(phases.values[station], new) for new in angles])
+        met = np.append(_passed(values)[:-1] > 0, True)  # at the end it has been met
+        first = int(np.argmax(met))
+        early, late = (float(inner[first - 1]) if first else early), float(inner[first])
+    return (early + late) / 2.0
+
+
+def _passed(values: Array) -> NDArray[np.intp]:
+    """Full turns that phases have made, together, shape (K,)."""
+    found: NDArray[np.intp] = np.maximum(np.floor(values / TURN), 0.0).sum(axis=1).astype(np.intp)
+    return found
+
+
+def end_curvature(frame: Array, end: EndForm) -> float:
+    """The least curvature of the cost in what is free at the end, relative; infinite where nothing is.
+
+    In the directions of the eigenvectors of W, the cost to come is curved by the cotangent of half a phase, if no
+    conjugate time has passed. Directions that are hardly reached are measured by what they cost.
+
+    Parameters
+    ----------
+    frame
+        Basis of the plane of neighbouring extremals at the end, shape (2n, n), orthonormal.
+    end
+        What the end adds, in the same units.
+    """
+    n = frame.shape[1]
+    phases, axes = _eigen(frame)
+    within = np.clip(phases, 0.0, TURN)
+    weight = np.where(within < np.pi / 2.0, np.sqrt(np.tan(np.minimum(within, np.pi / 2.0) / 2.0)), 1.0)
+    # weight^2 cot(phase / 2), without the quotient of small numbers
+    along = np.where(within < np.pi / 2.0, 1.0, 1.0 / np.tan(np.clip(within, 1.0, TURN - 1e-12) / 2.0))
+    size = len(end.form)
+    turn = np.eye(size)
+    turn[:n, :n] = axes * weight
+    form = turn.T @ end.form @ turn
+    form[:n, :n] += np.diag(along)
+    free = kernel(end.ties @ turn)
+    if not free.shape[1]:
+        return float("inf")
+    reduced = free.T @ form @ free
+    unit = 1.0 / np.sqrt(np.maximum(np.abs(np.diag(reduced)), 1e-300))
+    return float(np.linalg.eigvalsh(reduced * np.outer(unit, unit)).min())
+
+
+def _eigen(frame: Array) -> tuple[Array, Array]:
+    """Eigenphases in [0, 2 pi), but for rounding below zero, and real orthonormal eigenvectors."""
+    n = frame.shape[1]
+    upper, lower = frame[:n], frame[n:]
+    plane = -np.linalg.solve((upper - 1j * lower).T, (upper + 1j * lower).T).T
+    plane = (plane + plane.T) / 2.0
+    # Real and imaginary part commute: a mixture of both has the eigenvectors of both, if it keeps phases apart.
+    mixed = [np.linalg.eigh(plane.real * np.cos(share) + plane.imag * np.sin(share))[1] for share in MIXTURES]
+    turned = [axes.T @ plane @ axes for axes in mixed]
+    best = int(np.argmin([np.abs(one - np.diag(np.diag(one))).max() for one in turned]))
+    phases = np.angle(np.diag(turned[best])) % TURN
+    return np.where(phases > TURN - TOUCHED, 0.0, phases), mixed[best]
+
+
+def kernel(ties: Array) -> Array:
+    """Orthonormal directions that ties leave free, shape (k, f).
+
+    Parameters
+    ----------
+    ties
+        Rows, shape (c, k).
+    """
+    if not ties.size:
+        return np.eye(ties.shape[1])
+    _, values, rows = np.linalg.svd(ties)
+    rank = int((values > INDEPENDENT * max(float(values.max(initial=0.0)), 1e-300)).sum())
+    found: Array = rows[rank:].T
+    return found

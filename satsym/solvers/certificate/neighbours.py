@@ -1,0 +1,223 @@
+"""Competitors close by: the control changed where the second variation gains most, corrected until the end is met."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.grid import Grid, interleave
+from satsym.instance import Instance
+from satsym.solution import Check, Competitors, Kind, Solution
+from satsym.solvers.certificate.accessory import Accessory, accessory
+from satsym.solvers.certificate.competitors import HIDDEN, hidden, margin
+from satsym.solvers.certificate.end_form import fixed_states
+from satsym.solvers.certificate.flow import products, typical
+from satsym.solvers.collocation.scaling import final_argument
+from satsym.solvers.control import control_set
+
+Array = NDArray[np.floating[Any]]
+
+STEPS = ((200, 1e-3), (800, 1e-3), (3200, 1e-2))
+"""RK4 steps with which neighbours are compared, on as many as the solution itself, and the relative distance from the
+solution's end within which these follow it; the fewest that do."""
+
+AMPLITUDES = (0.05, 0.01)
+"""Of departures from the control to both sides, relative to the largest control, and of the final time's change."""
+
+SADDLE = 1e-4
+"""Curvature below zero by more than this is no error of the grid's."""
+
+DEARER = 1e-9
+"""Relative margin by which a neighbour may seem cheaper: its own error."""
+
+CORRECTIONS = 12
+MISSED = 1e-9
+"""Miss of the end up to which a neighbour counts as feasible, relative to its size and to how far the control moves it.
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class Neighbours:
+    """What neighbours came to.
+
+    Attributes
+    ----------
+    margin
+        How much dearer the cheapest pair of opposite ones is in the mean, relative to the cost; infinite where none
+        could be simulated.
+    curvature
+        The least of the second variation on short pieces of the control, in units of what the change of the control
+        costs; infinite where the end leaves no choice, NaN where it could not be resolved.
+    competitors
+        How many, and the cheapest.
+    """
+
+    margin: float
+    curvature: float
+    competitors: Competitors
+
+    @property
+    def checks(self) -> list[Check]:
+        """Each is a deficit that must not be positive."""
+        found = []
+        if math.isfinite(self.curvature):
+            found.append(Check("second variation on pieces of the control", float(self.curvature < -SADDLE), 0.0))
+        if math.isfinite(self.margin):
+            found.append(Check(f"cheaper by: {Kind.NEIGHBOURS.value}", max(0.0, -self.margin), DEARER))
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Simulations:
+    """Simulations of one instance with as many steps.
+
+    Attributes
+    ----------
+    instance
+        What is simulated.
+    rows
+        Indices of the boundary residuals that tie the final state.
+    scale
+        Sizes of these.
+    steps
+        Of each simulation.
+    end
+        The final time.
+    missed
+        Relative distance of the end to which the solution's own control leads from the solution's.
+    """
+
+    instance: Instance
+    rows: NDArray[np.intp]
+    scale: Array
+    steps: int
+    end: float
+    missed: float = 0.0
+
+    def grid(self, longer: float = 0.0) -> Grid:
+        """To a final time that much later."""
+        return Grid.uniform(self.instance.t0, self.end + longer, self.steps)
+
+    def __call__(self, control: Array, grid: Grid) -> tuple[float, Array]:
+        """The cost of a control at nodes and midpoints, shape (m, 2 N + 1), and what ties the end, in sizes."""
+        x, running = self.motion(control, grid)
+        instance, end = self.instance, tuple(x[:, -1].tolist())
+        terminal = instance.model.terminal_cost(grid.tf, end, instance.parameters)
+        none, nu = (0.0,) * len(end), (0.0,) * len(instance.model.spec.multipliers)
+        arguments = none, nu, instance.parameters, instance.bounds, final_argument(instance)
+        residual = np.array(instance.model.boundary(grid.tf, end, *arguments))
+        return running + terminal, residual[self.rows] / self.scale
+
+    def motion(self, control: Array, grid: Grid) -> tuple[Array, float]:
+        """States at the nodes and the integral of the running cost."""
+        instance = self.instance
+        x, _, running = instance.model.forward(
+            grid.nodes, instance.initial, control[:, ::2], control[:, 1::2], instance.parameters
+        )
+        return x, running
+
+
+def neighbours(solution: Solution) -> Neighbours:
+    """The cheapest neighbour in the direction in which the second variation is least."""
+    nothing = Neighbours(float("inf"), float("nan"), Competitors(Kind.NEIGHBOURS, 2 * len(AMPLITUDES), 0, float("nan")))
+    simulations = simulations_of(solution)
+    if simulations is None:
+        return nothing
+    grid = simulations.grid()
+    second = accessory(solution, grid)
+    if second is None:
+        return nothing
+    curvature, direction = second.least
+    if not np.isfinite(curvature):
+        return Neighbours(float("inf"), curvature, Competitors(Kind.NEIGHBOURS, 0, 0, float("nan")))
+    simulations, u = replace(simulations, scale=second.sizes), stated_control(solution, grid)
+    reference = simulations(u, grid)
+    moved = float(np.abs(reference[1] - simulations(np.zeros_like(u), grid)[1]).max(initial=0.0))
+    missed = MISSED * min(1.0, max(moved, HIDDEN / MISSED))
+    size = _size(second, direction, float(np.abs(u).max()) or 1.0)
+    if not size > 0.0:  # every control is saturated throughout
+        return Neighbours(float("inf"), float("inf"), Competitors(Kind.NEIGHBOURS, 0, 0, float("nan")))
+    unit = direction / size
+    search = _Search(simulations, second, solution, reference[1], missed)
+    # The grid's own end may make one side cheaper: that is of first order, and cancels in the mean of both.
+    means = [(search.corrected(a * unit) + search.corrected(-a * unit)) / 2.0 for a in AMPLITUDES]
+    solved = [cost for cost in means if np.isfinite(cost)]
+    cheapest = min(solved, default=float("inf"))
+    stated = solution.objective + (cheapest - reference[0])  # without what simulating makes of both
+    # To another end than the solution's, its control is not the best, by the square of the distance.
+    own = max(hidden(solution), simulations.missed**2 * max(products(solution), abs(reference[0])))
+    own = max(own, abs(reference[0] - solution.objective))  # nor does a grid tell less than it is off itself
+    return Neighbours(
+        margin(cheapest, reference[0], hidden=own),
+        curvature,
+        Competitors(Kind.NEIGHBOURS, 2 * len(means), 2 * len(solved), stated if solved else float("nan")),
+    )
+
+
+def _size(second: Accessory, direction: Array, largest: float) -> float:
+    """Of a direction: of the change of the control, or of the final time, relative to their own."""
+    lasting = float(np.abs(second.duration).max()) or 1.0
+    longer = abs(float(second.duration @ direction)) / lasting
+    return max(float(np.abs(second.controls @ direction).max()) / largest, longer)
+
+
+@dataclass(frozen=True, eq=False)
+class _Search:
+    simulations: Simulations
+    second: Accessory
+    solution: Solution
+    end: Array
+    missed: float
+
+    def corrected(self, change: Array) -> float:
+        """The cost of a neighbour once its end is as the solution's; infinite where it cannot be made so."""
+        response, tried = self.second.ties, change[:0]
+        for _ in range(CORRECTIONS):
+            cost, reached = self._simulated(change)
+            gap = reached - self.end
+            miss = float(np.abs(gap).max(initial=0.0))
+            if miss <= self.missed:
+                return cost
+            if not np.isfinite(miss):
+                break
+            if len(tried):  # Broyden: the response as the last correction found it
+                response = response + np.outer(gap, tried) / float(tried @ tried)
+                if not np.isfinite(response).all():
+                    break
+            tried = -np.linalg.lstsq(response, gap, rcond=None)[0]
+            change = change + tried
+        return float("inf")
+
+    def _simulated(self, change: Array) -> tuple[float, Array]:
+        longer = float(self.second.duration @ change)
+        grid, before = self.simulations.grid(longer), self.simulations.grid()
+        at, times = interleave(grid.nodes, grid.midpoints), interleave(before.nodes, before.midpoints)
+        by = np.array([np.interp(at, times, row) for row in self.second.controls @ change])
+        control = control_set.project(self.simulations.instance, stated_control(self.solution, grid) + by)
+        return self.simulations(control, grid)
+
+
+def simulations_of(solution: Solution) -> Simulations | None:
+    """Simulations with the fewest steps with which the solution's own control leads to its end."""
+    instance, n = solution.instance, len(solution.x)
+    size, _ = typical(solution)
+    fixed = np.flatnonzero(fixed_states(instance))
+    tied = n + np.arange(len(instance.model.spec.multipliers))
+    for steps, limit in STEPS:
+        found = Simulations(instance, np.append(fixed, tied), np.ones(1), steps, float(solution.times[-1]))
+        grid = found.grid()
+        x, _ = found.motion(stated_control(solution, grid), grid)
+        missed = float((np.abs(x[:, -1] - solution.x[:, -1]) / size).max())
+        if missed < limit:
+            return replace(found, missed=missed)
+    return None
+
+
+def stated_control(solution: Solution, grid: Grid) -> Array:
+    """The control of a solution at nodes and midpoints, shape (m, 2 N + 1)."""
+    times = interleave(grid.nodes, grid.midpoints)
+    return np.array([np.interp(times, solution.times, row) for row in solution.u])

@@ -1,0 +1,143 @@
+"""What lies below an extremal that is no minimum: motions to descend from, or a cost that falls without end.
+
+The control is changed along the direction in which the second variation is least, to both sides. Where twice as large a
+change, again and again, leaves the end as it is asked for and the cost falls at least in proportion, no control is the
+best one: of linear problems with quadratic costs this decides, of others it is evidence.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.grid import Grid
+from satsym.instance import Guess
+from satsym.solution import Solution
+from satsym.solvers.certificate.accessory import accessory
+from satsym.solvers.certificate.flow import unit_sizes
+from satsym.solvers.certificate.neighbours import Simulations, simulations_of, stated_control
+from satsym.solvers.control import control_set
+
+Array = NDArray[np.floating[Any]]
+
+DOUBLINGS = 12
+"""Of the change, from the size of the control on that moves the state by its own size."""
+
+FALLS = 6
+"""Last ones of these over which the cost must fall at least in proportion."""
+
+PROPORTIONAL = 1.9
+"""Growth of the fall from one doubling to the next that counts so."""
+
+KEPT = 1e-6
+"""Relative miss of the end beside what the change would have moved it."""
+
+
+DEPARTED = (0.5, -0.5, 0.1, -0.1)
+"""Shares of that size by which a motion departs from a saddle."""
+
+
+@dataclass(frozen=True)
+class Fall:
+    """A cost that falls without end.
+
+    Attributes
+    ----------
+    sizes
+        The largest control of each motion.
+    costs
+        What these cost.
+    """
+
+    sizes: tuple[float, ...]
+    costs: tuple[float, ...]
+
+    @property
+    def message(self) -> str:
+        """One line."""
+        costs, sizes = (", ".join(f"{value:.4g}" for value in row[-3:]) for row in (self.costs, self.sizes))
+        return f"the cost is unbounded below: controls up to {sizes} cost {costs}"
+
+
+def fall(solution: Solution) -> Fall | None:
+    """The fall of the cost from an extremal that is no minimum; ``None`` where none shows.
+
+    Parameters
+    ----------
+    solution
+        With a given final time; controls that have bounds are not asked.
+    """
+    found = None if np.isfinite(solution.instance.bounds).any() else _downhill(solution)
+    if found is None:
+        return None
+    simulations, grid, u, change = found
+    falls = (_doubled(simulations, grid, u, sign * change) for sign in (1.0, -1.0))
+    return next(filter(None, falls), None)
+
+
+def departures(solution: Solution) -> list[Guess]:
+    """Motions to both sides of an extremal that is no minimum, along which the cost falls at first; none elsewhere."""
+    found = _downhill(solution)
+    if found is None:
+        return []
+    simulations, grid, u, change = found
+    names, guesses = solution.instance.model.spec.state_names, []
+    for share in DEPARTED:
+        x, _ = simulations.motion(control_set.project(solution.instance, u + share * change), grid)
+        if np.isfinite(x).all() and solution.instance.model.in_domain(x):
+            guesses.append(Guess(state=dict(zip(names, map(tuple, x.tolist()), strict=True))))
+    return guesses
+
+
+def _downhill(solution: Solution) -> tuple[Simulations, Grid, Array, Array] | None:
+    """The control of an extremal on a grid, and the change along which the second variation is most negative."""
+    simulations = simulations_of(solution)
+    if solution.instance.tf is None or simulations is None:
+        return None
+    grid = simulations.grid()
+    second = accessory(solution, grid)
+    if second is None:
+        return None
+    curvature, direction = second.least
+    shape = second.controls @ direction
+    largest = float(np.abs(shape).max(initial=0.0))
+    if not (curvature < 0.0 and largest > 0.0):
+        return None
+    unit = max(float(np.abs(solution.u).max()), _natural(solution, shape)) / largest
+    return simulations, grid, stated_control(solution, grid), unit * shape
+
+
+def _natural(solution: Solution, shape: Array) -> float:
+    """The size of a control that moves the state by its own size over the duration."""
+    instance, lasting = solution.instance, float(solution.times[-1] - solution.times[0])
+    u, x, t = (np.asarray(row)[..., :1] for row in (solution.u, solution.x, solution.times))
+    by_control = np.abs(np.asarray(instance.model.jacobian_u_batch(t, x, u, instance.parameters))).max(axis=(1, 2))
+    size = unit_sizes(solution)[: len(solution.x)]
+    response = float((by_control / size).max()) * lasting
+    return 1.0 / response if response > 0.0 else float(np.abs(shape).max())
+
+
+def _doubled(simulations: Simulations, grid: Grid, u: Array, change: Array) -> Fall | None:
+    """What changes of a control by more and more cost, where they fall without end."""
+    instance = simulations.instance
+    cost, end = simulations(u, grid)
+    _, pushed = simulations(u + change, grid)
+    falls, sizes, costs = [], [], []
+    for k in range(DOUBLINGS):
+        control = u + 2.0**k * change
+        now, reached = simulations(control, grid)
+        x, _ = simulations.motion(control, grid)
+        if not np.isfinite(now) or not instance.model.in_domain(x):
+            return None
+        moved = 2.0**k * max(1.0, float(np.abs(pushed).max(initial=0.0)))
+        if np.abs(reached - end).max(initial=0.0) > KEPT * moved:
+            return None
+        falls.append(cost - now)
+        sizes.append(float(np.abs(control).max()))
+        costs.append(now)
+    last = np.array(falls[-FALLS - 1 :])
+    endless = (last > 0.0).all() and (last[1:] >= PROPORTIONAL * last[:-1]).all()
+    return Fall(tuple(sizes), tuple(costs)) if endless else None

@@ -1,0 +1,196 @@
+"""The canonical equations, linearised from node to node of a solution: how neighbouring extremals go on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.solution import Solution
+from satsym.solvers.certificate.flow import unit_sizes
+from satsym.solvers.failures import FAILURES
+from satsym.solvers.simulation.extrapolation import leap
+
+Array = NDArray[np.floating[Any]]
+
+FEWEST = 64
+"""Segments."""
+
+MOST = 20_000
+"""Steps: neighbouring extremals that turn about each other more often are not followed."""
+
+TURN = np.pi / 2.0
+"""Largest turn within a step of the sum of all phases, see :mod:`satsym.solvers.certificate.jacobi`; less than pi, so
+that it is known from where it begins and ends."""
+
+SHARE = 0.75
+"""Of the largest turn, that segments between nodes are to have."""
+
+COLUMNS = 5
+"""Of the extrapolation table, for transitions; errors of phases matter only where they are a full turn."""
+
+BEYOND = 1e16
+"""Growth at which nothing is left of a number's digits."""
+
+SWEEPS = 12
+"""Through all units."""
+
+SAME = 1e-9
+"""Share of the duration by which a node and a switching time may differ that are one."""
+
+
+@dataclass(frozen=True, eq=False)
+class Segments:
+    """Steps from node to node of a solution, and how their ends follow their beginnings.
+
+    Attributes
+    ----------
+    times
+        Stations: the nodes and what lies between, where steps are shorter than segments, shape (K,).
+    begins
+        States and costates where each step begins, shape (2n, K-1).
+    transition
+        From each station to the next by states and costates in units of ``scale``, shape (K-1, 2n, 2n).
+    scale
+        Units of states and costates, shape (2n,). The products of the two are all the same, so that transitions
+        are symplectic.
+    nodes
+        Indices of the solution's times at which segments begin, and of the last.
+    steps
+        In each segment.
+    """
+
+    times: Array
+    begins: Array
+    transition: Array
+    scale: Array
+    nodes: NDArray[np.intp]
+    steps: int
+
+    @property
+    def growth(self) -> float:
+        """By how much errors of the initial values grow at most, in units of the scale."""
+        total, found = np.eye(len(self.scale)), 1.0
+        for matrix in self.transition:
+            total = matrix @ total
+            found = max(found, float(np.abs(total).max()))
+            if not found < BEYOND:
+                return float("inf")
+        return found
+
+
+def segments(solution: Solution) -> Segments | None:
+    """Integrate from node to node; ``None`` where that is not finite or takes more than ``MOST`` steps."""
+    times, z = solution.times, values(solution)
+    slopes = _slopes(solution, times, z)
+    if not np.isfinite(slopes).all():
+        return None
+    scale = balanced(unit_sizes(solution), slopes, float(times[-1] - times[0]))
+    turned = np.append(0.0, np.cumsum(_turning(slopes, scale, np.diff(times))))
+    if turned[-1] > MOST * TURN:
+        return None
+    nodes = _nodes(solution, turned)
+    steps = max(1, int(np.ceil(np.diff(turned[nodes]).max() / TURN)))
+    try:
+        return _linearised(solution, nodes, steps, scale)
+    except FAILURES:
+        return None
+
+
+def between(solution: Solution, found: Segments, station: int, times: Array) -> Array:
+    """Transitions from a station to times until the next, shape (M, 2n, 2n)."""
+    begin = float(found.times[station])
+    z = np.repeat(found.begins[:, station : station + 1], len(times), axis=1)
+    return _leapt(solution, found.scale, np.full(len(times), begin), z, times - begin)[1]
+
+
+def values(solution: Solution) -> Array:
+    """States and costates at the nodes, shape (2n, N+1)."""
+    return np.concatenate([solution.x, solution.lam])
+
+
+def _slopes(solution: Solution, t: Array, z: Array) -> Array:
+    """The canonical rates by states and costates, shape (M, 2n, 2n)."""
+    instance, n = solution.instance, len(z) // 2
+    batch = instance.model.canonical_jacobian_batch(t, z[:n], z[n:], instance.parameters, instance.bounds)
+    found: Array = np.asarray(batch).transpose(2, 0, 1)
+    return found
+
+
+def balanced(scale: Array, slopes: Array, duration: float) -> Array:
+    """The scale with other units, in which neighbouring extremals turn as slowly and evenly as may be.
+
+    The squares of all rates together are least, by one unit after the other (Osborne, On pre-conditioning of
+    matrices, 1960), where a unit far from the one given counts as a rate of one over the duration.
+    """
+    n = len(scale) // 2
+    size = np.abs(slopes * (scale / scale[:, None])).max(axis=0)
+    response = float(size[:n, n:].max())
+    if not response > 0.0:
+        return scale
+    costates = 1.0 / (response * duration)  # so that the response is one over the duration
+    unit = np.repeat([1.0, costates], n)
+    square, least = (size * unit / unit[:, None]) ** 2, 1.0 / duration**2
+    change = np.ones(2 * n)
+    for _ in range(SWEEPS):
+        for move in np.concatenate([np.append(np.eye(n), -np.eye(n), axis=1), np.repeat([[0.0, 1.0]], n, axis=1)]):
+            rates, power = square * (change / change[:, None]) ** 2, move - move[:, None]
+            rising, falling = (float((rates * np.maximum(sign * power, 0.0)).sum()) for sign in (1.0, -1.0))
+            moved = float(change[np.argmax(move)] ** 2)
+            change = change * ((falling + least / moved) / (rising + least * moved)) ** (move / 8.0)
+    return scale * unit * change
+
+
+def _turning(slopes: Array, scale: Array, widths: Array) -> Array:
+    """By how much the sum of the phases turns at most between neighbouring nodes, shape (M-1,).
+
+    It turns at twice the trace of the Hessian of H on an n-dimensional space.
+    """
+    n = len(scale) // 2
+    scaled = slopes * (scale / scale[:, None])
+    rate = 2.0 * np.sqrt(n) * np.linalg.norm(scaled, axis=(1, 2))
+    found: Array = np.maximum(rate[1:], rate[:-1]) * widths
+    return found
+
+
+def _nodes(solution: Solution, turned: Array) -> NDArray[np.intp]:
+    """Indices of the nodes where segments begin: evenly in time, dense enough, switching times among them."""
+    times, last = solution.times, len(solution.times) - 1
+    lasting = float(times[-1] - times[0])
+    even = np.searchsorted(times, np.linspace(times[0], times[-1], FEWEST + 1)[1:-1])
+    dense = np.searchsorted(turned, np.arange(SHARE * TURN, turned[-1], SHARE * TURN)) - 1
+    switches = np.array([t for own in solution.switching_times for t in own])
+    met = [int(k) for t in switches if np.abs(times[k := int(np.abs(times - t).argmin())] - t) <= SAME * lasting]
+    return np.unique(np.clip(np.concatenate([[0, last], even, dense, met]), 0, last).astype(np.intp))
+
+
+def _linearised(solution: Solution, nodes: NDArray[np.intp], steps: int, scale: Array) -> Segments:
+    begun, widths = solution.times[nodes][:-1], np.diff(solution.times[nodes]) / steps
+    begins, transition = [values(solution)[:, nodes[:-1]]], []
+    for step in range(steps):
+        after, matrices = _leapt(solution, scale, begun + step * widths, begins[-1], widths)
+        begins.append(after)
+        transition.append(matrices)
+    stations = np.append((begun[:, None] + np.arange(steps) * widths[:, None]).ravel(), solution.times[-1])
+    every = np.stack(transition, axis=1).reshape(-1, len(scale), len(scale))
+    before = np.stack(begins[:-1], axis=2).reshape(len(scale), -1)
+    return Segments(stations, before, every, scale, nodes, steps)
+
+
+def _leapt(solution: Solution, scale: Array, t: Array, z: Array, h: Array) -> tuple[Array, Array]:
+    """Where steps from many beginnings end, shape (2n, M), and their transitions, (M, 2n, 2n)."""
+    instance, size, n = solution.instance, len(z), len(z) // 2
+
+    def rates(t: Array, y: Array) -> Array:
+        found = np.empty_like(y)
+        found[:size] = instance.model.canonical_batch(t, y[:n], y[n:size], instance.parameters, instance.bounds)
+        slopes = _slopes(solution, t, y[:size]) * (scale / scale[:, None])
+        varied = slopes @ y[size:].reshape(size, size, -1).transpose(2, 0, 1)
+        found[size:] = varied.transpose(1, 2, 0).reshape(size * size, -1)
+        return found
+
+    unity = np.repeat(np.eye(size).reshape(-1, 1), len(t), axis=1)
+    reached = leap(rates, t, np.concatenate([z, unity]), h, COLUMNS)
+    return reached[:size], reached[size:].reshape(size, size, -1).transpose(2, 0, 1)

@@ -1,0 +1,94 @@
+"""What exact arcs are compared with, kind by kind, and what comes of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from satsym.instance import Instance
+from satsym.solution import Check, Competitors, Kind, Solution
+from satsym.solvers.certificate.competitors import margin
+from satsym.solvers.certificate.switching import competitors as switching_competitors
+from satsym.solvers.certificate.switching.needles import needles
+from satsym.solvers.iteration import Limits
+
+DEARER = 1e-9
+"""Relative margin by which a competitor may seem cheaper: its own error."""
+
+COARSE = {Kind.NEIGHBOURS: 1e-11, Kind.DURATIONS: 1e-6}
+"""Relative difference of costs that is none: where it is not ``DEARER``."""
+
+WORK = 400_000
+"""Columns that smoothing may take."""
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """What competitors came to.
+
+    Attributes
+    ----------
+    checks
+        One for each kind, by how much the cheapest undercuts the solution; and one for each kind for which time was up.
+    competitors, not_checked
+        As in :class:`satsym.solution.Certificate`.
+    """
+
+    checks: tuple[Check, ...] = ()
+    competitors: tuple[Competitors, ...] = ()
+    not_checked: tuple[Kind, ...] = ()
+
+
+def allowed(instance: Instance) -> list[Kind]:
+    """Kinds of competitors that a problem has."""
+    durations = [Kind.DURATIONS] if instance.tf is None else []
+    return [Kind.NEIGHBOURS, Kind.SIGNS, *durations, Kind.STARTS]
+
+
+def compared(solution: Solution, limits: Limits) -> Comparison:
+    """Compare a solution with all kinds; what the clock ends is not checked."""
+    sources: tuple[Callable[[], Iterable[Competitors | None]], ...] = (
+        lambda: [needles(solution, limits)],
+        lambda: switching_competitors.compared(solution, limits),
+        lambda: [_smoothed(solution, limits)],
+    )
+    found: dict[Kind, Competitors] = {}
+    with np.errstate(all="ignore"):
+        for source in sources:
+            for one in () if limits.late else source():
+                if one is not None and not limits.late:
+                    found[one.kind] = _both(found[one.kind], one) if one.kind in found else one
+    kinds = allowed(solution.instance)
+    missing = tuple(kind for kind in kinds if kind not in found)
+    checks = [_check(solution, one) for one in found.values()]
+    if limits.late:
+        checks += [Check(f"time was up before: {kind.value}", 1.0, 0.0) for kind in missing]
+    return Comparison(tuple(checks), tuple(found[kind] for kind in kinds if kind in found), missing)
+
+
+def _check(solution: Solution, one: Competitors) -> Check:
+    dearer = margin(one.cheapest, solution.objective, coarse=COARSE.get(one.kind, DEARER)) if one.solved else 0.0
+    return Check(f"cheaper by: {one.kind.value}", max(0.0, -dearer), DEARER)
+
+
+def _both(one: Competitors, other: Competitors) -> Competitors:
+    """Two sets of a kind as one."""
+    cheapest = [each.cheapest for each in (one, other) if each.solved]
+    return Competitors(
+        one.kind, one.tried + other.tried, one.solved + other.solved, min(cheapest, default=float("nan"))
+    )
+
+
+def _smoothed(solution: Solution, limits: Limits) -> Competitors | None:
+    """Extremals that smoothing leads to, and controls held at a corner, where nothing is given at the end."""
+    from satsym.solvers.switching.solving import others
+
+    instance = solution.instance
+    moderate = replace(limits, work=limits.meter.spent + WORK)
+    found = others(instance, float(solution.times[-1]) - instance.t0, moderate)
+    if not found:
+        return None
+    costs = [float(exact.trajectory.cost(instance)) for exact, _ in found]
+    return Competitors(Kind.STARTS, len(costs), len(costs), min(costs))

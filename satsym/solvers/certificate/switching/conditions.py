@@ -1,0 +1,240 @@
+"""The certificate of exact arcs: the extremal again by other means, strict switching, second variation, competitors."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+from satsym.solution import Certificate, Check, Kind, Solution
+from satsym.solvers.certificate import conditions
+from satsym.solvers.certificate.flow import Flow
+from satsym.solvers.certificate.switching.comparison import Comparison, allowed, compared
+from satsym.solvers.certificate.switching.convexity import convex
+from satsym.solvers.certificate.switching.end_switches import with_end_switches
+from satsym.solvers.certificate.switching.next_switch import OutOfTime, TooMuchWork
+from satsym.solvers.certificate.switching.replay import EVALUATIONS, Replay, replay
+from satsym.solvers.certificate.switching.stated_arcs import decided_by_none
+from satsym.solvers.certificate.switching.variation import variation
+from satsym.solvers.iteration import MOST, Limits
+from satsym.solvers.switching.linear.linear_motion import linear_motion
+from satsym.solvers.switching.newton import switching
+from satsym.solvers.switching.structure import SINGULAR
+from satsym.status import Verdict
+
+Array = NDArray[np.floating[Any]]
+
+RESIDUAL, DEFECT, STATIONARY, DRIFT, TIMES, COST = 1e-9, 1e-7, 1e-8, 1e-9, 1e-9, 1e-8
+"""Largest boundary residual, defect, violation of the minimum of H, change of H, of switching times and of the cost,
+relative."""
+
+STRICT = 1e-6
+"""Least rate of a switching function at a switch, relative to its size over the duration; least distance between
+switches and least distance of a switching function from its zero elsewhere, relative as well."""
+
+CLOSE = 0.01
+"""Share of the duration around a switch within which a switching function may be as small as it likes."""
+
+CURVED = 1e-7
+"""Least relative curvature in the switching times."""
+
+
+def certify(solution: Solution) -> Certificate:
+    """Certify exact arcs; see :func:`satsym.solvers.certificate.certify`."""
+    seconds = max(solution.instance.solver.max_seconds - solution.wall_s, 0.0)
+    limits = Limits(MOST, time.perf_counter() + seconds)
+    try:
+        again, failed = replay(solution, limits), "flow from the initial costates is finite"
+    except TooMuchWork:
+        again, failed = None, f"flow from the initial costates is integrated within {EVALUATIONS} evaluations"
+    except OutOfTime:
+        check = Check("time was up before: flow from the initial costates", 1.0, 0.0)
+        return _without_flow(Verdict.EXTREMAL_ONLY, check, tuple(allowed(solution.instance)))
+    if again is None:
+        return _without_flow(Verdict.FAILED, Check(failed, 1.0, 0.0), ())
+    first = _first_order(solution, again)
+    second: list[Check] = []
+    comparison = Comparison()
+    if all(c.passed for c in first):
+        comparison = compared(solution, limits)
+        second = [*_sufficient(solution, again), *comparison.checks]
+    verdict = Verdict.of(all(c.passed for c in first), all(c.passed for c in second))
+    measured = {c.name: c.value for c in (*first, *second)}
+    return Certificate(
+        verdict=verdict,
+        boundary_residual=measured["boundary residual"],
+        dynamics_defect=measured["dynamics defect"],
+        stationarity=measured["stationarity"],
+        hamiltonian_drift=measured.get("hamiltonian drift"),
+        legendre_clebsch=_legendre(again),
+        conjugate_time=None,
+        checks=(*first, *second),
+        competitors=comparison.competitors,
+        not_checked=comparison.not_checked,
+    )
+
+
+def _without_flow(verdict: Verdict, check: Check, not_checked: tuple[Kind, ...]) -> Certificate:
+    missing = float("nan")
+    return Certificate(verdict, missing, missing, missing, None, missing, None, (check,), not_checked=not_checked)
+
+
+def _first_order(solution: Solution, again: Replay) -> list[Check]:
+    instance, n = solution.instance, len(solution.instance.initial)
+    flow = Flow(again.times, again.z[:n], again.z[n:], again.cost)
+    checks = [
+        Check("boundary residual", conditions.boundary_residual(solution, flow), RESIDUAL),
+        Check("dynamics defect", conditions.dynamics_defect(solution, flow), DEFECT),
+        Check("switching times", _moved(solution, again), TIMES),
+        Check("stationarity", _excess(solution), STATIONARY),
+        Check("cost", conditions.off_cost(solution, flow), COST),
+        Check("outside the domain", float(not instance.model.in_domain(again.z[:n])), 0.0),
+    ]
+    if any(piece.field.singular is not None for piece in again.pieces):
+        checks.append(Check("switching function on singular arcs", _off_singular(again), STATIONARY))
+    if instance.model.spec.autonomous:
+        checks.append(Check("hamiltonian drift", _drift(solution, again), DRIFT))
+    return checks
+
+
+def _sufficient(solution: Solution, again: Replay) -> list[Check]:
+    """Each is a deficit that must not be positive."""
+    free = [decided_by_none(solution, control) for control in range(len(solution.u))]
+    extended = with_end_switches(again, _along(again)[0])
+    rates, gap, distance = _strictness(again, extended, free)
+    checks = [Check("not strict: other controls cost the same", 1.0, 0.0)] if any(free) else []
+    checks += [
+        Check("switching is not strict", float(not rates > STRICT), 0.0),
+        Check("switches coincide", float(not gap > STRICT), 0.0),
+        Check("switching function vanishes on an arc", float(not distance > STRICT), 0.0),
+    ]
+    if any(SINGULAR in piece.field.levels for piece in again.pieces):
+        checks.append(Check("generalised legendre-clebsch", float(not _legendre(again) > 0.0), 0.0))
+        checks.append(Check("no proof of a minimum along singular arcs: not convex", float(not convex(solution)), 0.0))
+    elif not any(free):
+        second = variation(solution.instance, extended)
+        flat = second is None or not second.curvature > CURVED
+        checks.append(Check("second variation in the switching times", float(flat), 0.0))
+    return checks
+
+
+def _moved(solution: Solution, again: Replay) -> float:
+    """Largest change of a switching time relative to the duration; infinite where their numbers differ."""
+    lasting = float(solution.times[-1] - solution.times[0])
+    worst = 0.0
+    for control, times in enumerate(solution.switching_times):
+        found = again.switching_times(control)
+        if len(found) != len(times):
+            return float("inf")
+        worst = max([worst, *(abs(a - b) / lasting for a, b in zip(found, times, strict=True))])
+    return worst
+
+
+def _excess(solution: Solution) -> float:
+    """By how much H exceeds its minimum over the box at most, relative to its terms, or a control its box."""
+    instance, model = solution.instance, solution.instance.model
+    p, u = instance.parameters, solution.u
+    sigma = np.asarray(model.switching_function_batch(solution.times, solution.x, solution.lam, p))
+    weight = np.asarray(model.magnitude_weight_batch(solution.times, solution.x, p))
+    low, high = (np.array(bounds)[:, None] for bounds in (instance.lower, instance.upper))
+    rest = np.minimum(np.maximum(0.0, low), high)
+    least = np.min([sigma * v + weight * np.abs(v) for v in np.broadcast_arrays(low, high, rest, u)[:3]], axis=0)
+    outside = (np.maximum(np.maximum(low - u, u - high), 0.0) / np.maximum(high - low, 1e-300)).max(initial=0.0)
+    excess = (sigma * u + weight * np.abs(u) - least).max(initial=0.0)
+    return float(excess / max(_terms(instance, solution.times, solution.x, solution.lam, u), 1e-300) + outside)
+
+
+def _terms(instance: Instance, t: Array, x: Array, lam: Array, u: Array) -> float:
+    """The largest sum of the terms that H consists of beside the running cost."""
+    rates = instance.model.dynamics_batch(t, x, u, instance.parameters)
+    return float(np.abs(lam * rates).sum(axis=0).max())
+
+
+def _off_singular(again: Replay) -> float:
+    """Largest switching function on singular arcs, where it is to vanish, relative to its size elsewhere."""
+    sizes, _ = _along(again)
+    worst = 0.0
+    for piece in again.pieces:
+        control, field = piece.field.singular, piece.field
+        if control is not None:
+            inside = (again.times >= piece.start) & (again.times <= piece.end)
+            x, lam = again.z[: field.n, inside], again.z[field.n :, inside]
+            sigma = field.model.switching_function_batch(again.times[inside], x, lam, field.p)[control]
+            worst = max(worst, float(np.abs(sigma).max(initial=0.0)) / sizes[control])
+    return worst
+
+
+def _drift(solution: Solution, again: Replay) -> float:
+    """Largest change of H along the replay, relative to the terms it consists of."""
+    instance, n = solution.instance, len(solution.instance.initial)
+    x, lam = again.z[:n], again.z[n:]
+    h = np.asarray(instance.model.hamiltonian_batch(again.times, x, again.u, lam, instance.parameters))
+    terms = _terms(instance, again.times, x, lam, again.u)
+    return float(np.abs(h - h[0]).max() / max(terms, float(np.abs(h).max()), 1e-300))
+
+
+def _legendre(again: Replay) -> float:
+    """The least generalised Legendre-Clebsch expression on singular arcs; NaN without any."""
+    values = [
+        piece.field.legendre(t, z.tolist())
+        for piece in again.pieces
+        if piece.field.singular is not None
+        for t, z in ((piece.start, piece.before), (piece.end, piece.after))
+    ]
+    return min(values, default=float("nan"))
+
+
+def _strictness(again: Replay, extended: Replay, free: list[bool]) -> tuple[float, float, float]:
+    """Least rate of a switching function at a switch, least time between switches, and least distance elsewhere.
+
+    Switches of controls that are free to do what they like are left out.
+    """
+    pieces = extended.pieces
+    start, end = pieces[0].start, pieces[-1].end
+    lasting = end - start
+    sizes, marks = _along(again)
+    switches = [piece for piece in again.pieces if piece.switched is not None and not free[piece.switched]]
+    rates = [float("inf")]
+    for k, piece in enumerate(pieces[:-1]):
+        control = piece.switched
+        assert control is not None
+        if free[control] or SINGULAR in (piece.field.levels[control], pieces[k + 1].field.levels[control]):
+            continue
+        for field in (piece.field, pieces[k + 1].field):
+            _, rate = switching(field, piece.end, piece.after.tolist(), control)
+            rates.append(abs(rate) * lasting / sizes[control])
+    # In a convex problem switches of different controls may coincide: each of them is decided by its own sign.
+    each = [None] if linear_motion(again.pieces[0].field.instance) is None else range(len(free))
+    rows = [[piece.end for piece in switches if control in (None, piece.switched)] for control in each]
+    gaps = np.concatenate([np.diff([start, *row, end]) for row in rows]) / lasting
+    distances = [float("inf")]
+    for control, (times, margin) in enumerate(marks):
+        if free[control]:
+            continue
+        own = extended.switching_times(control)
+        away = np.min([np.abs(times - t) for t in own], axis=0) if own else np.full(len(times), np.inf)
+        far = (away > CLOSE * lasting) & np.isfinite(margin)
+        distances.append(float((margin[far] / sizes[control]).min(initial=np.inf)))
+    return min(rates), float(gaps.min()), min(distances)
+
+
+def _along(again: Replay) -> tuple[list[float], list[tuple[Array, Array]]]:
+    """Sizes of the switching functions, and their distances from the values at which they would switch."""
+    pieces = again.pieces
+    n, model, p = pieces[0].field.n, pieces[0].field.model, pieces[0].field.p
+    sigma = np.asarray(model.switching_function_batch(again.times, again.z[:n], again.z[n:], p))
+    weight = np.broadcast_to(model.magnitude_weight_batch(again.times, again.z[:n], p), sigma.shape)
+    sizes = [max(float((np.abs(s) + w).max()), 1e-300) for s, w in zip(sigma, weight, strict=True)]
+    singular = np.zeros(sigma.shape, bool)
+    for piece in pieces:
+        if piece.field.singular is not None:
+            singular[piece.field.singular] |= (again.times >= piece.start) & (again.times <= piece.end)
+    marks = []
+    for i, (s, w) in enumerate(zip(sigma, weight, strict=True)):
+        equal = pieces[0].field.instance.lower[i] == pieces[0].field.instance.upper[i]
+        margin = np.abs(np.abs(s) - w)
+        marks.append((again.times, np.where(singular[i] | equal, np.inf, margin)))
+    return sizes, marks

@@ -1,0 +1,65 @@
+"""Switches at the very ends: where a free final state makes a switching function vanish there.
+
+Such an extremal switches strictly if it does so at these switches too, each followed or preceded by an arc of no length
+whose end may move like any other.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.solvers.certificate.switching.replay import Piece, Replay
+from satsym.solvers.switching.field import Field
+from satsym.solvers.switching.newton import switching
+from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER
+
+Array = NDArray[np.floating[Any]]
+
+AT_SWITCH = 1e-9
+"""Distance of a switching function from where it switches, relative to its size, that is none."""
+
+
+def with_end_switches(again: Replay, sizes: list[float]) -> Replay:
+    """The replay with an arc of no length at an end where a control is just about to switch.
+
+    Parameters
+    ----------
+    again
+        The replay.
+    sizes
+        Of the switching functions.
+    """
+    pieces = list(again.pieces)
+    first, last = pieces[0], pieces[-1]
+    for control, size in enumerate(sizes):
+        if (level := _beyond(last.field, last.end, last.after, control, size)) is not None:
+            field = _at(pieces[-1].field, control, level)
+            pieces[-1] = replace(pieces[-1], switched=control)
+            pieces.append(Piece(field, last.end, last.end, last.after, last.after, None, np.eye(len(last.after))))
+        if (level := _beyond(first.field, first.start, first.before, control, size)) is not None:
+            field = _at(pieces[0].field, control, level)
+            same = np.eye(len(first.before))
+            pieces.insert(0, Piece(field, first.start, first.start, first.before, first.before, control, same))
+    return replace(again, pieces=pieces)
+
+
+def _beyond(field: Field, t: float, z: Array, control: int, size: float) -> int | None:
+    """The level on the other side of the switch that a control is at; ``None`` where it is at none."""
+    here, level = z.tolist(), field.levels[control]
+    if level == SINGULAR or field.instance.lower[control] == field.instance.upper[control]:
+        return None
+    sigma, weight = switching(field, t, here, control)[0], field.weight(t, here, control)
+    if abs(abs(sigma) - weight) > AT_SWITCH * size:
+        return None
+    if weight == 0.0:
+        return UPPER if level == LOWER else LOWER
+    return (LOWER if sigma > 0.0 else UPPER) if level == REST else REST
+
+
+def _at(field: Field, control: int, level: int) -> Field:
+    levels = (*field.levels[:control], level, *field.levels[control + 1 :])
+    return Field(field.instance, levels)

@@ -1,0 +1,207 @@
+"""A switching extremal, integrated again from its initial costates: the exact law, with its own switches.
+
+Where the law switches is found from the signs of the switching functions, not taken from the solver; SciPy's DOP853
+integrates, which the solver does not use. Only where singular arcs begin and end, which no sign shows, is the solver's.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+from satsym.solution import Solution
+from satsym.solvers.certificate.flow import typical
+from satsym.solvers.certificate.switching.next_switch import at_once, integrated, next_switch, solved
+from satsym.solvers.certificate.switching.stated_arcs import Stated, arcs, decided_by_none
+from satsym.solvers.failures import FAILURES
+from satsym.solvers.iteration import Limits
+from satsym.solvers.switching.cold_start.recognition import levels as best_levels
+from satsym.solvers.switching.field import Field
+from satsym.solvers.switching.newton import switching
+from satsym.solvers.switching.structure import REST, SINGULAR
+
+Array = NDArray[np.floating[Any]]
+
+MOST_SWITCHES = 200
+
+EVALUATIONS = 1_000_000
+"""Of the rates that it may take."""
+
+TOUCHING = 1e-4
+"""A change of sign so shortly before a singular arc, as a share of the arc before it, is where its zero is touched."""
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """An arc of the replay.
+
+    Attributes
+    ----------
+    field
+        Its equations, with the levels of the controls.
+    start, end
+        Times.
+    before, after
+        States and costates there, shape (2n,).
+    switched
+        The control whose switch ends it; ``None`` at the final time.
+    transition
+        Derivatives of ``after`` by ``before``, shape (2n, 2n).
+    """
+
+    field: Field
+    start: float
+    end: float
+    before: Array
+    after: Array
+    switched: int | None
+    transition: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Replay:
+    """The extremal again.
+
+    Attributes
+    ----------
+    pieces
+        Its arcs.
+    times, z, u
+        The solver's nodes, and the ends of the arcs: shapes (K,), (2n, K), (m, K).
+    cost
+        Of the motion, the terminal cost included.
+    """
+
+    pieces: list[Piece]
+    times: Array
+    z: Array
+    u: Array
+    cost: float
+
+    def switching_times(self, control: int) -> list[float]:
+        """Of one control."""
+        return [piece.end for piece in self.pieces if piece.switched == control]
+
+
+def replay(solution: Solution, within: Limits | None = None) -> Replay | None:
+    """Integrate again; ``None`` where the motion is not finite or switches without end.
+
+    Raises
+    ------
+    OutOfTime, TooMuchWork
+        If that takes longer than it may.
+    """
+    within = within or Limits(MOST_SWITCHES, float("inf"))
+    limits = replace(within, work=within.meter.spent + EVALUATIONS)
+    instance = solution.instance
+    sizes = np.concatenate(typical(solution))
+    z, t, end = np.concatenate([instance.initial, solution.lam[:, 0]]), instance.t0, float(solution.times[-1])
+    stated = [arcs(solution, control) for control in range(len(instance.lower))]
+    settled = [
+        decided_by_none(solution, i) for i in range(len(stated))
+    ]  # no sign shows their switches: the solver's stand
+    stations = np.unique(solution.times)
+    pieces: list[Piece] = []
+    rows: list[tuple[Array, Array, Array]] = []
+    cost = 0.0
+    try:
+        levels = _first_levels(instance, stated, settled, z, t, end)
+        while len(pieces) <= MOST_SWITCHES:
+            field = Field(instance, levels)
+            piece, levels = _piece(stated, settled, field, t, end, z, sizes, limits)
+            pieces.append(piece)
+            row, added = _stations(piece, stations, sizes, limits)
+            rows.append(row)
+            t, z, cost = piece.end, piece.after, cost + added
+            if piece.switched is None:
+                times, values, controls = (np.concatenate(part, axis=-1) for part in zip(*rows, strict=True))
+                cost += float(instance.model.terminal_cost(t, z[: len(instance.initial)].tolist(), instance.parameters))
+                return Replay(pieces, times, values, controls, cost)
+    except FAILURES:
+        return None
+    return None
+
+
+def _first_levels(
+    instance: Instance, stated: Stated, settled: list[bool], z: Array, t: float, end: float
+) -> tuple[int, ...]:
+    """Levels at the start: where a switching function vanishes, its rate decides."""
+    n, m = len(instance.initial), len(instance.lower)
+    resting = Field(instance, (REST,) * m)
+    found = []
+    for i in range(m):
+        if settled[i] or stated[i][0][2] == SINGULAR:
+            found.append(stated[i][0][2])
+            continue
+        sigma, rate = switching(resting, t, z.tolist(), i)
+        weight = float(instance.model.magnitude_weight(t, tuple(z[:n]), instance.parameters)[i])
+        size = max(abs(sigma), weight, abs(rate) * (end - t))
+        if min(abs(abs(sigma) - weight), abs(sigma)) <= 1e-10 * size:
+            sigma += rate * 1e-6 * (end - t)
+        found.append(int(best_levels(instance, i, np.array([sigma]), np.array([weight]))[0]))
+    return tuple(found)
+
+
+def _piece(
+    stated: Stated,
+    settled: list[bool],
+    field: Field,
+    start: float,
+    end: float,
+    z: Array,
+    sizes: Array,
+    limits: Limits,
+) -> tuple[Piece, tuple[int, ...]]:
+    """The arc from a time to the next switch, and the levels after it."""
+    together = at_once(field, settled, start, end, z, sizes)
+    if together is not None:
+        piece = Piece(field, start, start, z, z, together[0], np.eye(len(z)))
+        return piece, _with(field.levels, *together)
+    known = [
+        (now[1], i, after[2])
+        for i, row in enumerate(stated)
+        for now, after in pairwise(row)
+        if (settled[i] or SINGULAR in (now[2], after[2])) and now[1] > start + 1e-12 * (end - start)
+    ]
+    until, switched, level = min(known, default=(end, None, None))
+    met = next_switch(field, settled, start, until, z, sizes, limits)
+    touching = met is not None and met[1] == switched and until - met[0] < TOUCHING * (until - start)
+    if met is not None and not touching:
+        until, switched = met
+        level = None
+    after, transition = integrated(field, start, until, z, sizes, limits)
+    piece = Piece(field, start, until, z, after, switched, transition)
+    if switched is None:
+        return piece, field.levels
+    if level is None:
+        sigma, rate = switching(field, until, after.tolist(), switched)
+        ahead = sigma + rate * 1e-6 * (end - start)
+        weight = field.weight(until, after.tolist(), switched)
+        level = int(best_levels(field.instance, switched, np.array([ahead]), np.array([weight]))[0])
+    return piece, _with(field.levels, switched, level)
+
+
+def _with(levels: tuple[int, ...], control: int, level: int) -> tuple[int, ...]:
+    return (*levels[:control], level, *levels[control + 1 :])
+
+
+def _stations(piece: Piece, nodes: Array, sizes: Array, limits: Limits) -> tuple[tuple[Array, Array, Array], float]:
+    """The arc at its ends and at the nodes between, as SciPy interpolates its steps; and its running cost."""
+    field, rows = piece.field, len(piece.before)
+    times = np.concatenate([[piece.start], nodes[(nodes > piece.start) & (nodes < piece.end)], [piece.end]])
+
+    def rates(t: float, y: Array) -> list[float]:
+        z = y[:rows].tolist()
+        return [*field.rates(t, z), field.model.running_cost(t, z[: field.n], field.control(t, z), field.p)]
+
+    z, cost = np.stack([piece.before, piece.after], axis=1)[:, [0] * (len(times) - 1) + [1]], 0.0
+    if piece.end > piece.start:
+        start, scale = np.append(piece.before, 0.0), np.append(sizes, sizes[: field.n] @ sizes[field.n :])
+        found = solved(rates, (piece.start, piece.end), start, scale, limits, t_eval=times)
+        z[:, 1:-1], cost = found.y[:rows, 1:-1], float(found.y[rows, -1])
+    return (times, z, field.along(times, z)[0]), cost

@@ -1,0 +1,72 @@
+"""The arcs of each control as a solution states them, and whether any sign could tell them."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from satsym.solution import Solution
+from satsym.solvers.switching.field import Field
+from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER
+from satsym.solvers.switching.trajectory import deciding
+
+UNDECIDED = 1e-9
+"""Relative distance of a switching function from where it switches, at which no sign can be told."""
+
+MOSTLY = 0.9
+"""Share of the nodes of an arc at which a control is at its level: a switching time may be stated wrongly."""
+
+OFF = 1e-9
+"""Distance of a control from its levels, relative to the width of its range, at which it is singular."""
+
+
+Stated = list[list[tuple[float, float, int]]]
+
+
+def arcs(solution: Solution, control: int) -> list[tuple[float, float, int]]:
+    """Start, end and level of each arc of a control, read from a solution: what matters is which are singular."""
+    instance = solution.instance
+    low, high = instance.lower[control], instance.upper[control]
+    times = [instance.t0, *solution.switching_times[control], float(solution.times[-1])]
+    weighs = instance.model.magnitude_weight(instance.t0, instance.initial, instance.parameters)[control] > 0.0
+    resting = weighs or indifferent(solution, control)
+    near = {LOWER: low, UPPER: high} | ({REST: min(max(0.0, low), high)} if resting else {})
+    found = []
+    for start, end in pairwise(times):
+        inside = (solution.times > start) & (solution.times < end)
+        values = solution.u[control, inside]
+        on = {k: float((np.abs(values - v) <= OFF * (high - low)).mean()) for k, v in near.items() if len(values)}
+        likeliest = max(on, key=lambda k: on[k], default=REST if resting else LOWER)
+        found.append((start, end, likeliest if resting or on.get(likeliest, 1.0) >= MOSTLY else SINGULAR))
+    return found
+
+
+def decided_by_none(solution: Solution, control: int) -> bool:
+    """Whether no sign tells where a control switches, although none of its arcs is singular."""
+    if solution.instance.lower[control] == solution.instance.upper[control]:
+        return False
+    return undecided(solution, control) > 1.0 - MOSTLY and all(k != SINGULAR for *_, k in arcs(solution, control))
+
+
+def indifferent(solution: Solution, control: int) -> bool:
+    """Whether a control may do what it likes all along, as far as H shows, with no singular arc to follow."""
+    if undecided(solution, control) < MOSTLY:
+        return False
+    instance, k = solution.instance, len(solution.times) // 2
+    levels = tuple(SINGULAR if i == control else LOWER for i in range(len(instance.lower)))
+    z = np.concatenate([solution.x[:, k], solution.lam[:, k]])
+    slope = abs(Field(instance, levels).legendre(float(solution.times[k]), z.tolist()))
+    size = float((np.abs(solution.x).max(axis=1) * np.abs(solution.lam).max(axis=1)).sum())
+    room = instance.upper[control] - instance.lower[control]
+    return not slope * room**2 > UNDECIDED * size / float(solution.times[-1] - solution.times[0])
+
+
+def undecided(solution: Solution, control: int) -> float:
+    """The share of nodes at which a switching function is at the very value at which the control switches."""
+    instance = solution.instance
+    model, p = instance.model, instance.parameters
+    sigma = np.asarray(model.switching_function_batch(solution.times, solution.x, solution.lam, p))
+    weight = np.broadcast_to(model.magnitude_weight_batch(solution.times, solution.x, p), sigma.shape)
+    margin, sizes = np.abs(np.abs(sigma) - weight), (np.abs(sigma) + weight).max(axis=1)
+    return float((margin[control] <= UNDECIDED * deciding(instance, sizes)[control]).mean())

@@ -1,0 +1,131 @@
+"""The second variation of a bang-bang extremal in its switching times and its final time.
+
+With the levels given, a control is its switching times. The Hessian of the Lagrangian in these, on the kernel of the
+derivatives of what is given at the end, is positive where the extremal, if it switches strictly, is a strict strong
+local minimum (Agrachev, Stefani and Zezza, Strong optimality for a bang-bang trajectory, SIAM Journal on Control and
+Optimization 41, 2002; Osmolovskii and Maurer, Applications to Regular and Bang-Bang Control, 2012).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+from satsym.solvers.certificate.switching.replay import Replay
+from satsym.solvers.collocation.scaling import final_argument
+from satsym.solvers.switching.newton import switching
+
+Array = NDArray[np.floating[Any]]
+
+RANK = 1e-9
+"""Smallest singular value, relative to the largest, of a derivative that counts."""
+
+
+@dataclass(frozen=True, eq=False)
+class Variation:
+    """First and second derivatives in the times.
+
+    Attributes
+    ----------
+    hessian
+        Of the Lagrangian, shape (P, P), in units of time that make its diagonal entries comparable.
+    constraints
+        What is given at the end by the times, shape (c, P).
+    asymmetry
+        Of the Hessian, relative: zero but for errors of integration.
+    """
+
+    hessian: Array
+    constraints: Array
+    asymmetry: float
+
+    @property
+    def kernel(self) -> Array:
+        """Directions in which the end stays as given, shape (P, k)."""
+        if not self.constraints.size:
+            return np.eye(self.hessian.shape[0])
+        scaled = self.constraints / np.maximum(np.abs(self.constraints).max(axis=1, keepdims=True), 1e-300)
+        _, values, rows = np.linalg.svd(scaled)
+        rank = int((values > RANK * max(float(values.max(initial=0.0)), 1e-300)).sum())
+        return np.asarray(rows[rank:].T)
+
+    @property
+    def curvature(self) -> float:
+        """Smallest eigenvalue on that kernel, relative; infinite where the end fixes all times."""
+        directions = self.kernel
+        if not directions.shape[1]:
+            return float("inf")
+        reduced = directions.T @ (self.hessian + self.hessian.T) @ directions / 2.0
+        size = max(float(np.abs(self.hessian).max(initial=0.0)), 1e-300)
+        return float(np.linalg.eigvalsh(reduced).min() / size)
+
+
+def variation(instance: Instance, again: Replay) -> Variation | None:
+    """The derivatives; ``None`` where the costates at the end do not determine those at the start."""
+    n, free_time = len(instance.initial), instance.tf is None
+    switches = [piece for piece in again.pieces if piece.switched is not None]
+    count = len(switches) + free_time
+    total = np.zeros((2 * n, n + count))
+    total[n:, :n] = np.eye(n)
+    rows, begun = [], None
+    for k, piece in enumerate(again.pieces):
+        total = total.copy()
+        if begun is not None:
+            total[:, begun] -= piece.field.rates(piece.start, piece.before.tolist())
+        total = piece.transition @ total
+        begun = n + k if piece.switched is not None or free_time else None
+        if begun is not None:
+            total[:, begun] += piece.field.rates(piece.end, piece.after.tolist())
+        if piece.switched is not None:
+            rows.append(_jump_row(again, k, total, n + k))
+    slopes, last_row = _end(instance, again, total, free_time)
+    fixed = np.array(final_argument(instance)).reshape(3, -1)[:2].any(axis=0)
+    adjoint = slopes[:n].copy()
+    adjoint[fixed] = total[n:][fixed]
+    try:
+        by_times = -np.linalg.solve(adjoint[:, :n], adjoint[:, n:])
+    except np.linalg.LinAlgError:
+        return None
+    if free_time:
+        rows.append(last_row)
+    table = np.array(rows).reshape(count, n + count)
+    hessian = table[:, n:] + table[:, :n] @ by_times
+    constraints = slopes[:n][fixed] if fixed.any() else np.zeros((0, n + count))
+    extra = slopes[n : len(slopes)]
+    constraints = np.concatenate([constraints, extra])
+    by = constraints[:, n:] + constraints[:, :n] @ by_times
+    size = max(float(np.abs(hessian).max(initial=0.0)), 1e-300)
+    return Variation(hessian, by, float(np.abs(hessian - hessian.T).max(initial=0.0) / size))
+
+
+def _jump_row(again: Replay, k: int, total: Array, column: int) -> Array:
+    """The derivative of the jump of H at a switch, which is that of the cost by its time, by all unknowns."""
+    before, after = again.pieces[k], again.pieces[k + 1]
+    control, t, z = before.switched, before.end, before.after.tolist()
+    assert control is not None
+    u, v = before.field.control(t, z)[control], after.field.control(t, z)[control]
+    by_weight, weight_rate = before.field.weight_gradient(t, z, control)
+    _, rate = switching(before.field, t, z, control)
+    gradient = (u - v) * before.field.gradient(t, z, control) + (abs(u) - abs(v)) * by_weight
+    row = gradient @ total
+    row[column] += (u - v) * rate + (abs(u) - abs(v)) * weight_rate - gradient @ np.array(before.field.rates(t, z))
+    return np.asarray(row)
+
+
+def _end(instance: Instance, again: Replay, total: Array, free_time: bool) -> tuple[Array, Array]:
+    """Rows of the generated boundary function by costates and times: of states and constraints, and of the time."""
+    n, last = len(instance.initial), again.pieces[-1]
+    model, z, t = instance.model, last.after.tolist(), last.end
+    u = last.field.control(t, z)
+    c = len(model.spec.multipliers)
+    held = (*u, *u, *instance.bounds[2 * len(u) :])
+    arguments = (t, tuple(z[:n]), tuple(z[n:]), (0.0,) * c, instance.parameters, held, final_argument(instance))
+    by = np.array(model.boundary_jacobian(*arguments)).reshape(n + c + 1, -1)
+    slopes = by[:, : 2 * n] @ total
+    if free_time:
+        slopes[:, -1] += by[:, -1]
+    return slopes[:-1], slopes[-1]

@@ -1,0 +1,154 @@
+"""From measured conditions to a verdict."""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import Any
+
+import numpy as np
+
+from satsym.solution import Certificate, Check, Solution
+from satsym.solvers import revolutions
+from satsym.solvers.certificate import competitors, conditions
+from satsym.solvers.certificate.competitors import Compared, Comparison, Competitor
+from satsym.solvers.certificate.conjugate import Conjugate, conjugate
+from satsym.solvers.certificate.flow import TOLERANCE, Flow, flow
+from satsym.solvers.certificate.junctions import correction, node_by_node
+from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
+from satsym.solvers.certificate.neighbours import Neighbours, neighbours
+from satsym.solvers.certificate.segments import Segments, segments
+from satsym.status import Verdict
+
+RESIDUAL, DEFECT, STATIONARY, DRIFT, COST = 1e-9, 1e-7, 1e-8, 1e-9, 1e-8
+"""Largest boundary residual, defect, violation of stationarity, change of H and error of the stated cost."""
+
+DEARER = 1e-9
+"""Relative margin by which a competitor may seem cheaper: its own error."""
+
+
+OF_FLOW, OF_SEGMENTS = "dynamics defect", "junction defect"
+"""Distances of the solution from the flow from the initial costates, or of segments between nodes from the next node.
+"""
+
+
+def certify(solution: Solution) -> Certificate | None:
+    """Certify a solution; ``None`` where there is nothing to certify.
+
+    Returns
+    -------
+    Certificate
+        ``certified``: a strict local optimum, with no cheaper competitor among the kinds that it lists.
+        ``extremal only``: the first-order conditions hold, a sufficient one does not. ``failed``: not even the
+        former hold.
+    """
+    return examined(solution, time.perf_counter() + solution.instance.solver.max_seconds)[0]
+
+
+def examined(solution: Solution, deadline: float, seed: int = 0) -> tuple[Certificate | None, Competitor | None]:
+    """The certificate of a solution, and the cheapest competitor if one is cheaper than it.
+
+    Parameters
+    ----------
+    solution
+        Whatever its status.
+    deadline
+        On the clock of ``time.perf_counter``; what is not compared by then is said.
+    seed
+        Of starts that are drawn.
+    """
+    if not solution.status.answered:
+        return None, None
+    certificate, competitor = _judged(solution, deadline, seed)
+    return with_kernels_examined(certificate, solution), competitor
+
+
+def _judged(solution: Solution, deadline: float, seed: int) -> tuple[Certificate, Competitor | None]:
+    """The certificate that the kernels give, whatever they are worth, and the cheapest competitor."""
+    if solution.instance.model.spec.switching:
+        from satsym.solvers.certificate.switching import conditions as switching
+
+        with np.errstate(all="ignore"):
+            return switching.certify(solution), None
+    solution = revolutions.as_stated(solution)
+    with np.errstate(all="ignore"):
+        along = segments(solution)
+        first = _first_order(solution, along)
+        if not first:
+            return _without_flow(), None
+        field = conjugate(solution, along)
+        second: list[Check] = []
+        close, others = None, Comparison((), ())
+        if all(c.passed for c in first):
+            close = neighbours(solution)
+            second = _sufficient(solution, field, close)
+            if competitors.none_conceivable(solution):
+                second.append(Check("cheaper by: anything", 0.0, 0.0))
+            else:
+                others = competitors.compared(solution, deadline, seed)
+                second += [_cheaper(kind) for kind in others.kinds if math.isfinite(kind.margin)]
+                second += [Check(f"time was up before: {kind.value}", 1.0, 0.0) for kind in others.interrupted]
+    verdict = Verdict.of(all(c.passed for c in first), all(c.passed for c in second))
+    measured: dict[str, Any] = {c.name: c.value for c in (*first, *second)}
+    certificate = Certificate(
+        verdict=verdict,
+        boundary_residual=measured["boundary residual"],
+        dynamics_defect=measured[OF_FLOW] if OF_FLOW in measured else measured[OF_SEGMENTS],
+        stationarity=measured["stationarity"],
+        hamiltonian_drift=measured.get("hamiltonian drift"),
+        legendre_clebsch=conditions.legendre_clebsch(solution),
+        conjugate_time=field.time,
+        checks=(*first, *second),
+        competitors=(*((close.competitors,) if close else ()), *(kind.summary for kind in others.kinds)),
+        not_checked=others.not_checked,
+    )
+    return certificate, others.better
+
+
+def _cheaper(found: Compared) -> Check:
+    """That no competitor of a kind is cheaper."""
+    return Check(f"cheaper by: {found.summary.kind.value}", max(0.0, -found.margin), DEARER)
+
+
+def _first_order(solution: Solution, along: Segments | None) -> list[Check]:
+    """What is measured along the flow from the initial costates, or node by node where that flow can tell nothing.
+
+    So it is where it misses, and its own rounding grows beyond what may be missed. Empty where neither is finite.
+    """
+    recomputed = flow(solution)
+    checks = _along(solution, recomputed, OF_FLOW) if recomputed else []
+    if (checks and all(c.passed for c in checks)) or along is None or not along.growth * TOLERANCE > RESIDUAL:
+        return checks
+    reached = node_by_node(solution, along)
+    if reached is None:
+        return checks
+    moved = Check("correction of the nodes", correction(solution, along, reached), DEFECT)
+    return [*_along(solution, reached, OF_SEGMENTS), moved]
+
+
+def _along(solution: Solution, recomputed: Flow, defect: str) -> list[Check]:
+    model = solution.instance.model
+    checks = [
+        Check("boundary residual", conditions.boundary_residual(solution, recomputed), RESIDUAL),
+        Check(defect, conditions.dynamics_defect(solution, recomputed), DEFECT),
+        Check("stationarity", conditions.stationarity(solution), STATIONARY),
+        Check("cost", conditions.off_cost(solution, recomputed), COST),
+        Check("outside the domain", float(not model.in_domain(recomputed.x)), 0.0),
+    ]
+    drift = conditions.hamiltonian_drift(solution, recomputed)
+    return checks if drift is None else [*checks, Check("hamiltonian drift", drift, DRIFT)]
+
+
+def _sufficient(solution: Solution, field: Conjugate, close: Neighbours) -> list[Check]:
+    """Each is a deficit that must not be positive."""
+    return [
+        Check("legendre-clebsch", float(not conditions.legendre_clebsch(solution) > 0.0), 0.0),
+        *field.checks,
+        *close.checks,
+    ]
+
+
+def _without_flow() -> Certificate:
+    missing = float("nan")
+    check = Check("flow from the initial costates is finite", 1.0, 0.0)
+    return Certificate(Verdict.FAILED, missing, missing, missing, None, missing, None, (check,))

@@ -1,0 +1,1 @@
+"""From nothing to an extremal: initial guesses, and paths of easier problems."""

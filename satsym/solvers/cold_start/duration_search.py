@@ -1,0 +1,226 @@
+"""The cost at given durations: which ones are tried, how far up and down that goes, and where minima lie between."""
+
+from __future__ import annotations
+
+from itertools import count, pairwise
+
+from satsym.solvers.cold_start.duration_trials import Minimum, Trials, Try
+
+RATIO = 2.0**0.5
+"""Of neighbouring durations."""
+
+LONGER, SHORTER, SMALLEST = 2.0, 0.4, 1.002
+"""Powers of the ratio after a step that succeeded and one that failed, and the ratio at which that is given up."""
+
+AROUND_GUESS = (-2, 2)
+AROUND_SCALE = (-2, 8)
+FEWER = (3, 5)
+"""Powers of the ratio that are tried at first: around a stated guess, around the motion's own time scale, and of
+that where each one costs great effort."""
+
+MOST_SCALES, LEAST_SCALES = 64.0, 1e-7
+"""Durations, in units of the first one, at which a search gives up that has no reason of its own to end."""
+
+LONG = 8.0
+"""A cost that falls over durations of such a ratio, where time costs nothing, falls for ever."""
+
+MOST_INTERVALS = 300
+"""Mesh beyond which no longer durations are tried: about fifty revolutions."""
+
+FAR_DEARER, RISES = 3.0, 3
+"""No longer durations are tried either once the cost has risen that many times running, and so far."""
+
+FAILURES = 3
+"""Nor once that many durations running have given no extremal, after one that has."""
+
+BISECTIONS = 12
+SLACK = 1e-2
+"""Share of a duration by which a minimum may lie beside its bracket: signs of slopes near zero are not sure, because
+cold starts end before their extremals are accurate."""
+
+
+class Search:
+    """Durations tried so far, in order.
+
+    Attributes
+    ----------
+    trials
+        Solve for given durations.
+    tries
+        Those that were solved for, the shortest first.
+    """
+
+    def __init__(self, trials: Trials, effort: bool) -> None:
+        self.trials, self.limits = trials, trials.limits
+        self.tries: list[Try] = []
+        self._quick, self._effort = True, effort
+
+    @property
+    def cheapest(self) -> Try:
+        """Of all durations tried."""
+        return min(self.tries, key=lambda t: t.cost)
+
+    @property
+    def falls_to_the_shortest(self) -> bool:
+        """Whether the shortest duration is the cheapest, and shorter ones would be cheaper still."""
+        return self.tries[0] is self.cheapest and self.tries[0].slope > 0.0
+
+    @property
+    def falls_to_the_longest(self) -> bool:
+        """Whether the longest duration is the cheapest, and longer ones would be cheaper still."""
+        return self.tries[-1] is self.cheapest and self.tries[-1].slope <= 0.0
+
+    @property
+    def ends_at_nothing(self) -> bool:
+        """Whether the cost was followed down to where durations are next to nothing, and that is the cheapest."""
+        return self.falls_to_the_shortest and self._least(self.tries[0])
+
+    @property
+    def ends_in_a_fall(self) -> bool:
+        """Whether long durations are the cheapest, and nothing ever makes longer ones dearer."""
+        longest = self.tries[-1]
+        far = longest.duration >= LONG * self.tries[0].duration * (1.0 - 1e-9)
+        return self.falls_to_the_longest and longest.floor <= 0.0 and far
+
+    def flat(self, least: float) -> bool:
+        """Whether costs at all durations differ by no more than this."""
+        costs = [t.cost for t in self.tries]
+        return len(costs) >= 3 and max(costs) - min(costs) <= least
+
+    @property
+    def brackets(self) -> list[tuple[Try, Try]]:
+        """Neighbours between which the cost has a minimum, the cheapest first."""
+        found = [(a, b) for a, b in pairwise(self.tries) if _minimum_between(a, b)]
+        return sorted(found, key=lambda pair: min(t.cost for t in pair))
+
+    def scan(self, around: float, powers: tuple[int, int], quick: bool) -> None:
+        """Solve for durations upwards, then downwards, as far as that may pay.
+
+        Parameters
+        ----------
+        around, powers
+            A duration, and powers of the ratio that are tried at first.
+        quick
+            Whether without great effort.
+        """
+        self._quick = quick
+        self._upwards(around, *powers)
+        if self.tries:
+            self._walk(down=False)
+            self._walk(down=True)
+
+    def minimum(self, a: Try, b: Try) -> Minimum | None:
+        """The minimum between two durations."""
+        for _ in range(BISECTIONS):
+            near = a if abs(a.slope) <= abs(b.slope) else b
+            found = self.trials.freed(near)
+            if found and a.duration * (1.0 - SLACK) <= found.duration <= b.duration * (1.0 + SLACK):
+                return found
+            if self.limits.expired:
+                return None
+            middle = self._solved((a.duration * b.duration) ** 0.5, near)
+            if middle is None:
+                return None
+            halves = [pair for pair in ((a, middle), (middle, b)) if _minimum_between(*pair)]
+            if not halves:
+                return None
+            a, b = min(halves, key=lambda pair: min(t.cost for t in pair))
+        return None
+
+    def confirmed(self, best: Minimum) -> Minimum:
+        """That minimum, or a cheaper one from where the other ways of the cold start lead with the same duration."""
+        hard = self._quick and best.start.found.hard
+        again = self.trials.cold(best.duration, quick=False) if hard else None
+        if again is None or again.cost >= best.cost * (1.0 - 1e-6):
+            return best
+        other = self.trials.freed(again)
+        return other if other and other.cost < best.cost else best
+
+    def is_cheapest(self, best: Minimum, least: float) -> bool:
+        """Whether none of the durations tried costs less than a minimum, but for this much."""
+
+        def dearer(than: Try) -> bool:
+            return best.cost > than.cost * (1.0 + 1e-9) + least
+
+        return not any(dearer(t) and dearer(self.trials.sharpened(t)) for t in self.tries)
+
+    def _upwards(self, around: float, low: int, high: int) -> None:
+        """Solve for durations of a fixed ratio, from the shortest on."""
+        failures = 0
+        for power in count(low):
+            duration = around * RATIO**power
+            if self.limits.expired or failures >= FAILURES or not self._longer_may_pay(duration, power <= high):
+                return
+            found = self.trials.cold(duration, self._quick)
+            self._keep(found)
+            failures = 0 if found or not self.tries else failures + 1
+
+    def _longer_may_pay(self, duration: float, planned: bool) -> bool:
+        """Whether the next longer duration may be the cheapest so far."""
+        if not self.tries:
+            return planned
+        last, costs = self.tries[-1], [t.cost for t in self.tries]
+        if len(last.start.found.curve.mesh) > MOST_INTERVALS:
+            return False
+        rising = len(costs) > RISES and all(a < b for a, b in pairwise(costs[-RISES - 1 :]))
+        if rising and last.cost > FAR_DEARER * min(costs):
+            return False
+        if last.floor > 0.0:
+            return duration < self._dearest()
+        falls = last.cost <= min(costs) and last.duration >= LONG * self.tries[0].duration
+        return planned or (not falls and duration <= MOST_SCALES * self.trials.first)
+
+    def _walk(self, down: bool) -> None:
+        """On from the shortest or the longest duration while the cost falls that way, in smaller steps where need be.
+
+        At last with effort, where that is worth it.
+        """
+        growth = RATIO
+        while not self.limits.expired:
+            edge = self.tries[0 if down else -1]
+            if not (self._shorter_may_pay(edge) if down else self._still_longer_may_pay(edge)):
+                return
+            found = self._solved(self._next(edge, growth, down), edge)
+            if found is None and growth**SHORTER <= SMALLEST:
+                growth = RATIO
+                found = self.trials.cold(self._next(edge, growth, down), quick=False) if self._effort else None
+                if found is None:
+                    return
+            self._keep(found)
+            growth **= LONGER if found else SHORTER
+
+    def _next(self, edge: Try, growth: float, down: bool) -> float:
+        return edge.duration / growth if down else min(edge.duration * growth, self._dearest())
+
+    def _least(self, edge: Try) -> bool:
+        return edge.duration <= LEAST_SCALES * self.trials.first
+
+    def _shorter_may_pay(self, edge: Try) -> bool:
+        """Whether the cost, if it went on to fall as steeply down to no time at all, would become the least so far."""
+        least = edge.cost - edge.slope * edge.duration
+        return edge.slope > 0.0 and least < self.cheapest.cost and not self._least(edge)
+
+    def _still_longer_may_pay(self, edge: Try) -> bool:
+        """Whether the cost still falls at the longest duration, before time alone would cost more."""
+        fine = len(edge.start.found.curve.mesh) > MOST_INTERVALS
+        return edge.slope <= 0.0 and edge.duration < self._dearest() * (1.0 - 1e-9) and not fine
+
+    def _dearest(self) -> float:
+        """From which duration on time alone costs more than the cheapest motion; the longest tried where it is free."""
+        longest = self.tries[-1]
+        return self.cheapest.cost / longest.floor if longest.floor > 0.0 else longest.duration
+
+    def _solved(self, duration: float, near: Try) -> Try | None:
+        """The problem of a duration near another one: from nothing where that is easy, else from that extremal."""
+        found = None if near.start.found.hard else self.trials.cold(duration, self._quick)
+        return found or self.trials.beside(near, duration)
+
+    def _keep(self, found: Try | None) -> None:
+        if found:
+            self.tries = sorted([*self.tries, found], key=lambda t: t.duration)
+
+
+def _minimum_between(a: Try, b: Try) -> bool:
+    """Whether the cost, if smooth, has a minimum between a duration and a longer one."""
+    falls, rises = a.slope <= 0.0, b.slope > 0.0
+    return (falls and rises) or (falls and b.cost > a.cost) or (rises and a.cost > b.cost)

@@ -1,0 +1,140 @@
+"""Free final time: the cost over the duration, and its minimum.
+
+Given durations make problems that the cold start solves. Their costs, and the residual of the final time (which is
+the derivative of the cost by it), bracket the minima over the duration; from the cheapest ones Newton's method goes
+on with the duration as an unknown. Where nothing weighs time the cost may fall for ever, where nothing else is asked
+for it may fall down to no time at all: that is said, with costs.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from satsym.instance import Instance
+from satsym.solvers.cold_start.duration_search import AROUND_GUESS, AROUND_SCALE, FEWER, Search
+from satsym.solvers.cold_start.duration_trials import Trials, Try
+from satsym.solvers.cold_start.ways import Start
+from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.control.control_set import without_bounds
+from satsym.solvers.iteration import Limits
+from satsym.status import Status
+
+POLISHED = 3
+"""Brackets, the cheapest first, in which a minimum is looked for."""
+
+FLAT = 1e-12
+"""Costs at all durations that differ by less, relative to the problem's own scale, leave the duration open."""
+
+
+@dataclass(frozen=True, eq=False)
+class Chosen:
+    """What came of the choice of a duration.
+
+    Attributes
+    ----------
+    problem
+        With the free duration, which starts at the one that was found.
+    start
+        The extremal found for it, or the last attempt.
+    status, message
+        ``CONVERGED``, or why there is no minimum, and a sentence.
+    """
+
+    problem: TwoPoint
+    start: Start
+    status: Status
+    message: str
+
+
+def free_duration(instance: Instance, limits: Limits, effort: bool = True) -> Chosen:
+    """Find the duration that costs least, without bounds; with effort, also where the straight line leads nowhere."""
+    scale = time_scale(instance)
+    guess = scale if instance.tf_guess is None else instance.tf_guess - instance.t0
+    trials = Trials(instance, limits, guess)
+    search = Search(trials, effort)
+    for around, powers, quick in _plans(instance, scale, guess):
+        if not search.tries and (quick or effort):
+            search.scan(around, powers, quick)
+    if not search.tries:
+        return _unsolved(trials, limits)
+    if search.flat(FLAT * trials.unit):
+        message = f"nothing decides the final time: {_costs(search.tries[-3:])}; fix it"
+        return _none(trials, Status.NO_MINIMISER, message)
+    brackets = search.brackets
+    found = [minimum for minimum in (search.minimum(a, b) for a, b in brackets[:POLISHED]) if minimum]
+    best = search.confirmed(min(found, key=lambda minimum: minimum.cost)) if found else None
+    if best and search.is_cheapest(best, FLAT * trials.unit):
+        others = f"cheapest of {len(brackets)} minima over the duration" if len(brackets) > 1 else "minimum over time"
+        return Chosen(best.problem, best.start, Status.CONVERGED, others)
+    if limits.expired:
+        return _none(trials, Status.TIME_LIMIT, "time was up before a duration was found")
+    return _none(trials, *_why(search))
+
+
+def time_scale(instance: Instance) -> float:
+    """One over the largest rate of the motion at the start: of the eigenvalues of f_x without control; one if zero."""
+    n = len(instance.initial)
+    nothing = tuple([0.0] * n)
+    slopes = instance.model.canonical_jacobian(
+        instance.t0, instance.initial, nothing, instance.parameters, without_bounds(instance)
+    )
+    fastest = np.abs(np.linalg.eigvals(np.array(slopes).reshape(2 * n, 2 * n)[:n, :n])).max()
+    return 1.0 / float(fastest) if np.isfinite(fastest) and fastest > 0.0 else 1.0
+
+
+def _plans(instance: Instance, scale: float, guess: float) -> list[tuple[float, tuple[int, int], bool]]:
+    """Where durations are looked for, one place after the other: around what, at which powers, and whether quickly."""
+    if instance.tf_guess is None:
+        return [(scale, AROUND_SCALE, True), (scale, FEWER, False)]
+    return [(guess, AROUND_GUESS, True), (scale, AROUND_SCALE, True), (guess, (0, 0), False)]
+
+
+def _unsolved(trials: Trials, limits: Limits) -> Chosen:
+    if limits.expired:
+        return _none(trials, Status.TIME_LIMIT, "time was up before any duration was solved for")
+    return _none(trials, Status.NOT_CONVERGED, "no extremal found at any duration that was tried")
+
+
+def _why(search: Search) -> tuple[Status, str]:
+    """Why there is no minimum, or none was found."""
+    if search.ends_in_a_fall:
+        costs = _costs(_records(search.tries))
+        return Status.NO_MINIMISER, f"longer is always cheaper: {costs}; put a weight on time, or fix the final time"
+    if search.ends_at_nothing:
+        advice = "weigh time less, ask something of the final state, or fix the final time"
+        return Status.NO_MINIMISER, f"shorter is always cheaper: {_costs(_spread(search.tries))}; {advice}"
+    if search.falls_to_the_longest:
+        costs = _costs(_records(search.tries))
+        return Status.NOT_CONVERGED, f"the cost still falls at the longest duration tried: {costs}; give a tf_guess"
+    if search.falls_to_the_shortest:
+        costs = _costs(search.tries[:3])
+        return Status.NOT_CONVERGED, f"the cost still falls at the shortest duration solved: {costs}; give a tf_guess"
+    return Status.NOT_CONVERGED, f"no minimum over the duration settles near {search.cheapest.duration:g}"
+
+
+def _none(trials: Trials, status: Status, message: str) -> Chosen:
+    """No minimum; the last attempt is kept for the record."""
+    problem, found = trials.last
+    return Chosen(problem, Start(replace(found, reason=message), "none", trials.steps, {}), status, message)
+
+
+def _records(tries: list[Try]) -> list[Try]:
+    """The last three that were cheaper than all shorter ones."""
+    records: list[Try] = []
+    for found in tries:
+        if not records or found.cost < records[-1].cost:
+            records.append(found)
+    return records[-3:]
+
+
+def _spread(tries: list[Try]) -> list[Try]:
+    """The shortest, the longest of those over which the cost falls down to it, and one between."""
+    falling = next((i for i in range(1, len(tries)) if tries[i].cost < tries[i - 1].cost), len(tries))
+    return [tries[i] for i in sorted({0, (falling - 1) // 2, falling - 1})]
+
+
+def _costs(tries: list[Try]) -> str:
+    durations = ", ".join(f"{t.duration:.4g}" for t in tries)
+    return f"cost {', '.join(f'{t.cost:.4g}' for t in tries)} at durations {durations}"

@@ -1,0 +1,128 @@
+"""A cold start for hard problems: from a motion without control the initial state is moved to the given one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.solvers.cold_start import paths
+from satsym.solvers.collocation import mesh as meshes
+from satsym.solvers.collocation.arclength import Point
+from satsym.solvers.collocation.curve import Curve, Step
+from satsym.solvers.collocation.descent import descended
+from satsym.solvers.collocation.gauss import STAGES
+from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.collocation.sqp import OUTGROWN, Found, minimise
+from satsym.solvers.collocation.system import System
+from satsym.solvers.iteration import Limits
+
+Array = NDArray[np.floating[Any]]
+Between = Callable[[Array, Array, float], Array]
+"""A state between two others, by its share of the way."""
+
+FIRST_MOVE, SMALLEST_MOVE, MOST_STEPS = 0.25, 2e-3, 500
+
+
+def along_problems(problem: TwoPoint, between: Between, limits: Limits) -> Found | None:
+    """Move the initial state from a motion without control to the given one; ``None`` where there is no such motion.
+
+    It coasts backwards from an end that is given, or costs nothing. Where the minima that one follows come to an
+    end, the minimisation goes on from the last one to whatever lies below.
+
+    Parameters
+    ----------
+    problem
+        Without bounds.
+    between
+        The initial states on the way.
+    limits
+        When to stop.
+    """
+    coasting = paths.coasting_to_the_end(problem)
+    if coasting is None:
+        return None
+    away, home = coasting(np.zeros(1))[:, 0], problem.initial
+
+    def path(share: float) -> TwoPoint:
+        return problem.starting_at(between(away, home, share))
+
+    return followed(problem, path, paths.curve(problem, coasting), limits)
+
+
+def followed(problem: TwoPoint, path: Callable[[float], TwoPoint], curve: Curve, limits: Limits) -> Found:
+    """Follow the minima of problems from the first one to a problem, which is the last.
+
+    Parameters
+    ----------
+    problem
+        Without bounds.
+    path
+        The problem at a share of the way, in the units of the last.
+    curve
+        A guess of the first one's minimum.
+    limits
+        When to stop.
+    """
+    at, move, steps = 0.0, FIRST_MOVE, 0
+    tangent: Step | None = None
+    while steps < MOST_STEPS and move >= SMALLEST_MOVE and not limits.expired:
+        there = min(1.0, at + move)
+        guess = _predicted(problem, curve, tangent, there - at)
+        system = System(path(there), curve.mesh, STAGES)
+        last = there == 1.0
+        found = minimise(
+            system, guess, limits, 1e-7 if last else 1e-3, (6 if move > 0.03 else 14) + 4 * last, meshes.COARSEST
+        )
+        steps += max(found.iterations, 1)
+        if found.reason == OUTGROWN:
+            if found.curve.in_domain(problem.positive):
+                curve, tangent = curve.on(meshes.laid(problem, found.curve), STAGES), None
+            move *= 0.7
+        elif found.minimum:
+            at, curve = there, found.curve
+            if last:
+                return replace(found, iterations=steps, hard=True)
+            tangent = _tangent(Point(path, at, curve))
+            mesh = meshes.laid(problem, curve)
+            if abs(len(mesh) - len(curve.mesh)) > 0.15 * len(curve.mesh):
+                curve, tangent = curve.on(mesh, STAGES), None
+            move *= 1.6 if found.iterations <= 5 else 1.0
+        else:
+            move *= 0.4
+    below = descended(problem, curve, STAGES, 1e-7, limits)
+    if below.minimum:
+        return replace(below, iterations=steps + below.iterations, hard=True)
+    reason = f"the path of problems ends after {at:.0%} of its way"
+    return Found(curve, reason, float("inf"), steps + below.iterations, True)
+
+
+def geometric(a: Array, b: Array, share: float) -> Array:
+    """From one state to another: geometrically where both have the same sign, else straight."""
+    same = a * b > 0.0
+    ratio = np.where(same, b, 1.0) / np.where(same, a, 1.0)
+    found: Array = np.where(same, a * np.abs(ratio) ** share, a + (b - a) * share)
+    return found
+
+
+def straight(a: Array, b: Array, share: float) -> Array:
+    """From one state to another on the straight line."""
+    return a + (b - a) * share
+
+
+def _predicted(problem: TwoPoint, curve: Curve, tangent: Step | None, move: float) -> Curve:
+    if tangent is None:
+        return curve
+    ahead = curve.moved(tangent, move)
+    falls = any((ahead.stages[i] < 0.5 * curve.stages[i]).any() for i in problem.positive)
+    return curve if falls else ahead
+
+
+def _tangent(point: Point) -> Step | None:
+    try:
+        return point.response()
+    except np.linalg.LinAlgError:
+        return None

@@ -1,0 +1,157 @@
+"""Guesses of the states: straight lines, and motions without control."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.grid import Grid
+from satsym.solvers.collocation import mesh as meshes
+from satsym.solvers.collocation.curve import Curve, stage_times
+from satsym.solvers.collocation.gauss import STAGES
+from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.collocation.scaling import straight
+from satsym.solvers.control import control_set
+
+Array = NDArray[np.floating[Any]]
+States = Callable[[Array], Array]
+"""Scaled states, shape (n, M), at M times tau in [0, 1]."""
+
+POINTS = 41
+"""Points of a path at which the mesh is laid."""
+
+WAVES = 4
+"""Of a path that is drawn."""
+
+STEPS = 4000
+"""RK4 steps of a motion without control."""
+
+
+def first(problem: TwoPoint) -> States:
+    """Where to begin: as guessed, else on the straight line to the end, or where that is free without control."""
+    coasting = None if problem.fixed.any() else _coasting(problem, problem.initial, backwards=False)
+    path = _under_guess(problem) or coasting or _line(problem)
+    guessed, names = problem.instance.guess.state, problem.instance.model.spec.state_names
+    if not guessed:
+        return path
+
+    def overlaid(tau: Array) -> Array:
+        states = path(tau)
+        for name, values in guessed.items():
+            states[names.index(name)] = _series(values, tau) / problem.scale.state[names.index(name)]
+        return states
+
+    return overlaid
+
+
+def bent(problem: TwoPoint, rng: np.random.Generator, amplitude: float) -> States:
+    """The path where one begins, with waves that are drawn; states that must be positive stay so."""
+    path = first(problem)
+    waves = amplitude * rng.standard_normal((problem.states, WAVES)) / np.arange(1.0, WAVES + 1.0)
+
+    def drawn(tau: Array) -> Array:
+        states = path(tau)
+        numbers = np.arange(1.0, WAVES + 1.0)
+        both, one = (np.sin(np.pi * np.outer(row, tau)) for row in (numbers, numbers - 0.5))
+        added = np.where(problem.fixed[:, None], waves @ both, waves @ one)  # a free end moves as well
+        positive = list(problem.positive)
+        found = states + added
+        found[positive] = states[positive] * np.exp(added[positive])
+        return np.asarray(found)
+
+    return drawn
+
+
+def start(problem: TwoPoint) -> Curve:
+    """Where to begin as a curve, with the costates that are guessed."""
+    begun, n = curve(problem, first(problem)), problem.states
+    times = stage_times(begun.mesh, STAGES)
+    for name, values in problem.instance.guess.costate.items():
+        i = n + problem.instance.model.spec.state_names.index(name)
+        unit = problem.scale.both[i, 0]
+        begun.nodes[i] = _series(values, begun.mesh) / unit
+        begun.stages[i] = _series(values, times.ravel()).reshape(times.shape) / unit
+    return begun
+
+
+def _series(values: Sequence[float], tau: Array) -> Array:
+    """Values evenly spaced over [0, 1], straight lines between."""
+    found: Array = np.interp(tau, np.linspace(0.0, 1.0, len(values)), values)
+    return found
+
+
+def coasting_to_the_end(problem: TwoPoint) -> States | None:
+    """The motion without control that arrives where the end should be, if there is one."""
+    end = _end_without_costates(problem)
+    return None if end is None else _coasting(problem, end, backwards=True)
+
+
+def curve(problem: TwoPoint, path: States) -> Curve:
+    """A path as a curve without costates, on a mesh that resolves it."""
+    tau = np.linspace(0.0, 1.0, POINTS)
+    return on(problem, path, meshes.along(problem, tau, path(tau), problem.theta))
+
+
+def on(problem: TwoPoint, path: States, mesh: Array) -> Curve:
+    """A path as a curve without costates on a mesh, shape (N+1,)."""
+    n, at = problem.states, stage_times(mesh, STAGES)
+    nodes, stages = np.zeros((2 * n, len(mesh))), np.zeros((2 * n, *at.shape))
+    nodes[:n], stages[:n] = path(mesh), path(at.ravel()).reshape(n, *at.shape)
+    return Curve(mesh, nodes, stages, problem.theta)
+
+
+def _line(problem: TwoPoint) -> States:
+    line = straight(problem)
+    return lambda tau: line[:, :1] + (line[:, 1:] - line[:, :1]) * tau
+
+
+def _under_guess(problem: TwoPoint) -> States | None:
+    """The motion under the control that is guessed, if it is, and stays in the domain."""
+    instance, values = problem.instance, problem.instance.guess.control
+    if not values:
+        return None
+    nodes = np.linspace(0.0, 1.0, 2 * STEPS + 1)
+    names = instance.model.spec.control_names
+    u = np.array([_series(values.get(name, (0.0,)), nodes) for name in names])
+    u = control_set.project(instance, u)
+    times = instance.t0 + problem.duration * nodes[::2]
+    x, _, _ = instance.model.forward(times, instance.initial, u[:, ::2], u[:, 1::2], instance.parameters)
+    if not np.isfinite(x).all() or not instance.model.in_domain(x):
+        return None
+    return lambda tau: np.array([np.interp(tau, nodes[::2], row) for row in x / problem.scale.state[:, None]])
+
+
+def _coasting(problem: TwoPoint, state: Array, backwards: bool) -> States | None:
+    """The motion without control through a scaled state; ``None`` where it leaves the domain."""
+    instance, grid = problem.instance, Grid.uniform(0.0, 1.0, STEPS)
+    times = instance.t0 + problem.duration * (1.0 - grid.nodes if backwards else grid.nodes)
+    none = np.zeros((len(instance.model.spec.controls), STEPS + 1))
+    start = tuple((state * problem.scale.state).tolist())
+    x, _, _ = instance.model.forward(times, start, none, none[:, 1:], instance.parameters)
+    if not np.isfinite(x).all() or not instance.model.in_domain(x):
+        return None
+    found = (x[:, ::-1] if backwards else x) / problem.scale.state[:, None]
+    return lambda tau: np.array([np.interp(tau, grid.nodes, row) for row in found])
+
+
+def _end_without_costates(problem: TwoPoint) -> Array | None:
+    """A final state where costates may be zero: where a state is free, the terminal cost must not depend on it."""
+    instance, free = problem.instance, ~problem.fixed
+    if problem.free_time or instance.model.spec.multipliers:
+        return None
+    end = straight(problem)[:, 1] * problem.scale.state
+    candidates = [end]
+    tf = instance.t0 + problem.duration
+    if instance.model.spec.has_reference:
+        curve = np.array(instance.model.reference(tf, instance.parameters))
+        candidates.insert(0, np.where(free, curve, end))
+    for candidate in candidates:
+        gradient = instance.model.terminal_gradient(tf, tuple(candidate.tolist()), instance.parameters)
+        slopes = np.array(gradient) * problem.scale.state / problem.scale.cost
+        if not (np.abs(slopes[free]) > 1e-12).any():
+            found: Array = candidate / problem.scale.state
+            return found
+    return None

@@ -1,0 +1,98 @@
+"""From controls at the corners of their box, swept until they settle, to extremals within the bounds.
+
+Where nothing is asked of the end, costates belong to every control, and a sweep begins wherever one likes: also where
+the straight line and all that starts from it see nothing but a maximum (a reward at the end, say).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import islice, product
+from typing import Any
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Guess, Instance
+from satsym.solvers.collocation import mesh as meshes
+from satsym.solvers.collocation.continuation import kinks, settled, through
+from satsym.solvers.collocation.curve import Curve, stage_times
+from satsym.solvers.collocation.gauss import STAGES
+from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.iteration import Limits
+from satsym.solvers.sweep import solving as forward_backward
+
+Array = NDArray[np.floating[Any]]
+
+STEPS, SWEEPS, SECONDS = 200, 60, 10.0
+"""Of each sweep, their number, and a time that none of them takes."""
+
+ROUGH = 1e-5
+"""Residual at which sweeps end: Newton's method goes on from there."""
+
+MOST = 8
+"""Corners that are tried."""
+
+
+def swept(problem: TwoPoint, limits: Limits) -> Iterator[Curve | None]:
+    """An extremal from every corner of the box, or ``None`` where that leads to none; nothing where that cannot be.
+
+    Parameters
+    ----------
+    problem
+        With its bounds, a given duration, and an end of which nothing is asked.
+    limits
+        When to stop; counts work.
+    """
+    instance = problem.instance
+    finite = np.isfinite(instance.lower).all() and np.isfinite(instance.upper).all()
+    if not loose(problem) or instance.model.spec.control_set != "box" or not finite:
+        return
+    names = instance.model.spec.control_names
+    for corner in islice(product(*zip(instance.lower, instance.upper, strict=True)), MOST):
+        if limits.expired:
+            return
+        yield from_control(problem, {name: (value,) for name, value in zip(names, corner, strict=True)}, limits)
+
+
+def loose(problem: TwoPoint) -> bool:
+    """Whether nothing is asked of the end, nor of the final time."""
+    return not problem.fixed.any() and not problem.unknowns
+
+
+def from_control(problem: TwoPoint, control: Mapping[str, Sequence[float]], limits: Limits) -> Curve | None:
+    """The extremal within the bounds to which sweeps lead from controls by name, evenly spaced values of each."""
+    limits.spend(SWEEPS * STEPS)
+    found = forward_backward.solve(_starting_at(problem.instance, control))
+    if not (np.isfinite(found.x).all() and np.isfinite(found.lam).all()):
+        return None
+    z = np.concatenate([found.x, found.lam]) / problem.scale.both
+    tau = (found.times - found.times[0]) / (found.times[-1] - found.times[0])
+    curve = _curve(problem, tau, z, meshes.along(problem, tau, z[: problem.states], problem.theta))
+    curve = _curve(problem, tau, z, through(kinks(problem, curve), len(curve.mesh) - 1))
+    bounded = settled(problem, curve, STAGES, len(curve.mesh) - 1, limits)
+    return bounded.curve if bounded.converged and bounded.curve.in_domain(problem.positive) else None
+
+
+def _curve(problem: TwoPoint, tau: Array, z: Array, mesh: Array) -> Curve:
+    """States and costates at times (M,) on a mesh."""
+    at = stage_times(mesh, STAGES)
+    nodes, stages = (np.array([np.interp(where, tau, row) for row in z]) for where in (mesh, at.ravel()))
+    return Curve(mesh, nodes, stages.reshape(len(z), *at.shape), problem.theta)
+
+
+def _starting_at(instance: Instance, control: Mapping[str, Sequence[float]]) -> Instance:
+    """The instance for a quick sweep that begins with a control."""
+    options = msgspec.structs.replace(
+        instance.solver,
+        steps=STEPS,
+        max_iterations=SWEEPS,
+        max_seconds=SECONDS,
+        tolerance=ROUGH,
+        relaxation=None,
+        backend="python",
+    )
+    start = Guess(control={name: tuple(values) for name, values in control.items()})
+    return replace(instance, solver=options, guess=start)

@@ -1,0 +1,195 @@
+"""Bounds on the control: tightened from where they do not bind, then mesh nodes put on the kinks they cause.
+
+With the projected control law the canonical equations stay one system; its solutions have kinks where a bound
+is met or left. Newton converges if it starts near, so the bounds move in as far as they can at a time.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.solvers.collocation.curve import Curve, Path, stage_times
+from satsym.solvers.collocation.newton import newton
+from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.collocation.system import System
+from satsym.solvers.control import control_set
+from satsym.solvers.control.corners import zero
+from satsym.solvers.iteration import Limits
+
+Array = NDArray[np.floating[Any]]
+
+FIRST_SHARE = 0.35
+"""Of the largest violation, by which the bounds move in first."""
+
+FASTER = 1.7
+QUICK = 6
+"""Newton corrections up to which the next move is longer."""
+
+SHORTEST = 1e-4
+"""Share of the largest violation below which a move is given up."""
+
+SAMPLES = 12
+"""Points in each interval between which a kink is looked for."""
+
+STILL = 1e-11
+SETTLING = 12
+"""Times that nodes are moved to the kinks, and the share of the horizon by which these may then still move."""
+
+CLOSEST = 1e-7
+"""Smallest distance of two kinks that get nodes of their own, as a share of the horizon."""
+
+
+@dataclass(frozen=True, eq=False)
+class Bounded:
+    """An extremal with bounds.
+
+    Attributes
+    ----------
+    curve
+        The last one found.
+    kinks
+        For each bound that is met, increasing times in [0, 1].
+    reached
+        How much of the way from no bounds to the bounds was made; one where they are kept.
+    converged
+        Whether it satisfies the bounds and its kinks stand still.
+    iterations
+        Newton corrections.
+    """
+
+    curve: Curve
+    kinks: Array
+    reached: float
+    converged: bool
+    iterations: int
+
+
+def tighten(problem: TwoPoint, free: Curve, order: int, limits: Limits) -> Bounded:
+    """From the extremal without bounds to the one with them.
+
+    Parameters
+    ----------
+    problem
+        With its bounds.
+    free
+        An extremal of the same problem without them.
+    order
+        Stages.
+    limits
+        When to stop.
+    """
+    worst = _violation(problem, free)
+    if worst <= 0.0:
+        return Bounded(free, np.zeros(0), 1.0, True, 0)
+    count = max(10, len(free.mesh) - 1)
+    curve, width, move, total = free, worst, FIRST_SHARE * worst, 0
+    while width > 0.0:
+        narrower = max(width - move, 0.0)
+        narrower = 0.0 if narrower < 1e-3 * worst else narrower
+        step = problem.widened(narrower)
+        mesh = through(kinks(step, curve), count)
+        outcome = newton(System(step, mesh, order), curve.on(mesh, order), tolerance=1e-6, most=15)
+        limits.spend((outcome.iterations if outcome else 1) * (len(mesh) - 1) * order)
+        if outcome is None or not outcome.converged:
+            move /= 2.0
+            if move < SHORTEST * worst or limits.expired:
+                return Bounded(curve, kinks(problem, curve), 1.0 - width / worst, False, total)
+            continue
+        total += outcome.iterations
+        curve, width = outcome.curve, narrower
+        if limits.watch:
+            limits.watch(System(step, mesh, order).cost(curve) * step.scale.cost, width / worst)
+        move *= FASTER if outcome.iterations <= QUICK else 1.0
+    found = settled(problem, curve, order, count, limits)
+    return replace(found, iterations=total + found.iterations)
+
+
+def kinks(problem: TwoPoint, curve: Path) -> Array:
+    """Times in (0, 1) at which the control law of a curve meets or leaves a bound, increasing."""
+    return np.unique(np.concatenate([np.zeros(0), *by_bound(problem, curve)]))
+
+
+def by_bound(problem: TwoPoint, curve: Path) -> list[Array]:
+    """The same, bound by bound, in the order of :func:`satsym.solvers.control.control_set.excess`."""
+    limits = control_set.widened(problem.instance, problem.widening)
+    if not np.isfinite(limits).any():
+        return [np.zeros(0) for _ in limits]
+    inside = np.linspace(1e-9, 1.0 - 1e-9, SAMPLES)
+    tau = np.unique((curve.mesh[:-1, None] + np.diff(curve.mesh)[:, None] * inside).ravel())
+
+    def excess(at: Array) -> Array:
+        law = problem.control(at, curve(at), curve.theta, bounded=False)
+        return control_set.excess(problem.instance, law, problem.widening)
+
+    def distance_at(row: int, at: float) -> float:
+        return float(excess(np.array([at]))[row, 0])
+
+    values = excess(tau)
+    found: list[Array] = []
+    for row, distance in enumerate(values):
+        signs = np.sign(distance) if np.isfinite(distance).all() else np.ones(len(tau))
+        changes = np.flatnonzero(signs[:-1] * signs[1:] < 0)
+        found.append(np.array([zero(partial(distance_at, row), tau[k], tau[k + 1]) for k in changes]))
+    return found
+
+
+def kept(problem: TwoPoint, curve: Curve) -> bool:
+    """Whether the control law without bounds keeps them."""
+    return _violation(problem, curve) <= 0.0
+
+
+def _violation(problem: TwoPoint, curve: Curve) -> float:
+    """By how much the control law without bounds leaves the control set; negative where there are none."""
+    if not np.isfinite(problem.instance.bounds).any():
+        return -np.inf
+    tau = stage_times(curve.mesh, curve.order).ravel()
+    law = problem.control(tau, curve.flat, curve.theta, bounded=False)
+    return control_set.violation(problem.instance, law)
+
+
+def through(points: Array, count: int) -> Array:
+    """A mesh of about ``count`` intervals with nodes on the given points, shape (N+1,)."""
+    inner = points[(points > CLOSEST) & (points < 1.0 - CLOSEST)]
+    ends = np.concatenate([[0.0], inner, [1.0]])
+    ends = ends[np.concatenate([[True], np.diff(ends) > CLOSEST])]
+    ends[-1] = 1.0
+    parts = np.maximum(1, np.ceil(np.diff(ends) * count)).astype(int)
+    pieces = [a + (b - a) * np.arange(k) / k for a, b, k in zip(ends[:-1], ends[1:], parts, strict=True)]
+    return np.concatenate([*pieces, [1.0]])
+
+
+def settled(problem: TwoPoint, curve: Curve, order: int, count: int, limits: Limits) -> Bounded:
+    """Solve within the bounds, from a curve nearby, with nodes on the kinks until these stand still.
+
+    Parameters
+    ----------
+    problem
+        With its bounds.
+    curve
+        Where to begin.
+    order
+        Stages; two more are taken.
+    count
+        Intervals, about.
+    limits
+        Count work.
+    """
+    before: Array | None = None
+    now, total = kinks(problem, curve), 0
+    for _ in range(SETTLING):
+        if before is not None and len(before) == len(now) and np.abs(now - before).max(initial=0.0) < STILL:
+            return Bounded(curve, now, 1.0, True, total)
+        mesh = through(now, count)
+        outcome = newton(System(problem, mesh, order + 2), curve.on(mesh, order + 2), most=15)
+        if outcome is None or not outcome.converged:
+            break
+        limits.spend(outcome.iterations * (len(mesh) - 1) * (order + 2))
+        total += outcome.iterations
+        curve, before = outcome.curve, now
+        now = kinks(problem, curve)
+    return Bounded(curve, now, 1.0, False, total)

@@ -1,0 +1,133 @@
+"""A curve of states and costates: polynomials on the intervals of a mesh, with the extra unknowns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.solvers.collocation.gauss import interpolation, lagrange, scheme
+
+Array = NDArray[np.floating[Any]]
+
+
+SMALL = 1e-4
+"""Smaller scaled costates count at this size: states are rounded, and so are costates by as much at least."""
+
+
+class Path(Protocol):
+    """States and costates over the scaled time tau in [0, 1], smooth between the nodes of a mesh; extra unknowns."""
+
+    @property
+    def mesh(self) -> Array:
+        """Nodes in [0, 1], shape (N+1,)."""
+
+    @property
+    def nodes(self) -> Array:
+        """Values there, shape (2n, N+1)."""
+
+    @property
+    def theta(self) -> Array:
+        """Extra unknowns, shape (e,)."""
+
+    def __call__(self, tau: Array) -> Array:
+        """Values at ``tau`` in [0, 1], shape (2n, M)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """Values at the nodes of a mesh and at the Gauss points between them.
+
+    Attributes
+    ----------
+    mesh
+        Nodes in [0, 1], shape (N+1,).
+    nodes
+        Values there, shape (2n, N+1).
+    stages
+        Values at the s Gauss points of each interval, shape (2n, N, s).
+    theta
+        Extra unknowns, shape (e,).
+    """
+
+    mesh: Array
+    nodes: Array
+    stages: Array
+    theta: Array
+
+    @property
+    def order(self) -> int:
+        """Number s of stages."""
+        return int(self.stages.shape[2])
+
+    @property
+    def flat(self) -> Array:
+        """The stage values in order of time, shape (2n, N s)."""
+        return self.stages.reshape(len(self.stages), -1)
+
+    def __call__(self, tau: Array) -> Array:
+        """Values at ``tau`` in [0, 1], shape (2n, M)."""
+        tau = np.asarray(tau, dtype=float)
+        interval = np.clip(np.searchsorted(self.mesh, tau, side="right") - 1, 0, len(self.mesh) - 2)
+        table = lagrange(self.order, (tau - self.mesh[interval]) / np.diff(self.mesh)[interval])
+        known = np.concatenate([self.nodes[:, :-1, None], self.stages], axis=2).transpose(1, 0, 2)
+        values: Array = (known[interval] @ table[:, :, None])[..., 0].T
+        return values
+
+    def on(self, mesh: Array, order: int) -> Curve:
+        """The same curve, as far as that can be, on another mesh or with another number of stages."""
+        if mesh is self.mesh:
+            return self if order == self.order else self.with_stages(order)
+        tau = stage_times(mesh, order)
+        stages = self(tau.ravel()).reshape(len(self.nodes), *tau.shape)
+        return Curve(mesh, self(mesh), stages, self.theta)
+
+    def with_stages(self, order: int) -> Curve:
+        """The same polynomials by their values at another number of Gauss points."""
+        known = np.concatenate([self.nodes[:, :-1, None], self.stages], axis=2)
+        return Curve(self.mesh, self.nodes, known @ interpolation(self.order, order).T, self.theta)
+
+    def in_domain(self, positive: tuple[int, ...]) -> bool:
+        """Whether the states of these indices are positive everywhere."""
+        return all(self.stages[i].min() > 0.0 and self.nodes[i].min() > 0.0 for i in positive)
+
+    def moved(self, step: Step, length: float) -> Curve:
+        """The curve after a share of a step."""
+        return Curve(
+            self.mesh,
+            self.nodes + length * step.nodes,
+            self.stages + length * step.stages,
+            self.theta + length * step.theta,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """A change of a curve, in the same shapes."""
+
+    nodes: Array
+    stages: Array
+    theta: Array
+
+    def size(self, curve: Curve, small: float = SMALL) -> float:
+        """Largest change: states relative to their size (at least one), costates relative to theirs (``small``)."""
+        sizes = np.maximum(_largest(curve.nodes, curve.stages), (1.0, small))
+        found = (_largest(self.nodes, self.stages) / sizes).max()
+        if len(self.theta):
+            found = np.maximum(found, abs(self.theta[-1]) / max(abs(curve.theta[-1]), 1e-300))
+        return float(found)
+
+
+def _largest(nodes: Array, stages: Array) -> Array:
+    """The largest state and the largest costate."""
+    both = np.concatenate([nodes, stages.reshape(len(stages), -1)], axis=1)
+    largest: Array = np.abs(both).reshape(2, -1).max(axis=1)
+    return largest
+
+
+def stage_times(mesh: Array, order: int) -> Array:
+    """Gauss points of each interval, shape (N, s)."""
+    times: Array = mesh[:-1, None] + np.diff(mesh)[:, None] * scheme(order).nodes
+    return times

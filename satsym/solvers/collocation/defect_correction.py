@@ -1,0 +1,174 @@
+"""A solution made accurate between its nodes as well: defect corrections on more points, at no new linearisation.
+
+Gauss collocation with s stages is right to order 2s at the nodes, but between them its polynomials are right to
+order s + 1 only. On more points of each interval the defect shows what they miss; how it travels to the end of
+the interval, and on to all other nodes, is known from the linearisation at hand, whose fundamental matrices
+X(tau) are inverted without a solve, being symplectic.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.solvers.collocation.curve import SMALL, Curve, Step
+from satsym.solvers.collocation.gauss import interpolation, scheme
+from satsym.solvers.collocation.linearised import Linearised
+from satsym.solvers.collocation.system import System
+
+Array = NDArray[np.floating[Any]]
+
+POINTS = 16
+"""Of each interval."""
+
+MOST = 6
+CONTRACTION = 0.1
+"""Corrections that shrink less are not worth another."""
+
+ROUNDING = 3e-15
+"""Corrections of this size show nothing any more, and residuals of this size are none."""
+
+FAINT = 1e-5
+"""Share of the size of the states: costates that move them by less are rounded too much to be known as well as others.
+"""
+
+LITTLE = 1e-2
+"""Scaled costates above this are known as well as any others."""
+
+FAINTEST = 1e-6
+"""Scaled costates from which nobody need ask whether they do anything."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sharpened:
+    """A curve after its defect corrections.
+
+    Attributes
+    ----------
+    curve
+        On the same mesh, with more stages.
+    error
+        Estimate of its error, relative as in :meth:`Step.size`: the last correction, or what its polynomials leave
+        out.
+    omitted
+        The latter interval by interval, shape (N,).
+    """
+
+    curve: Curve
+    error: float
+    omitted: Array
+
+
+def sharpen(curve: Curve, linearised: Linearised, tolerance: float) -> Sharpened | None:
+    """Correct a solution of collocation equations until its error is below a tolerance, as far as that goes.
+
+    Parameters
+    ----------
+    curve
+        The solution.
+    linearised
+        The linearised equations there or nearby, on the same mesh with the same stages.
+    tolerance
+        Largest error.
+
+    Returns
+    -------
+    Sharpened or None
+        ``None`` where corrections are not finite or do not shrink.
+    """
+    system = System(linearised.system.problem, curve.mesh, POINTS)
+    onto = interpolation(curve.order, POINTS)
+    fundamental = linearised.fundamental(onto)
+    inverse = _inverted(fundamental)
+    fine, before = curve.with_stages(POINTS), float("inf")
+    small = _faint(linearised) if np.abs(curve.nodes[len(curve.nodes) // 2 :]).max() < LITTLE else SMALL
+    for _ in range(MOST):
+        step = _correction(system, fine, linearised, onto, fundamental, inverse)
+        size = step.size(fine, small)
+        if not size < before:
+            # Near rounding corrections no longer shrink.
+            if before > tolerance:
+                return None
+            size = before
+            break
+        fine, contraction = fine.moved(step, 1.0), size / before
+        if contraction > CONTRACTION:
+            break
+        # Corrections keep shrinking by the same factor: from the second on, each foretells the next.
+        before, size = size, size * contraction if np.isfinite(before) else size
+        if size < max(CONTRACTION * tolerance, ROUNDING):
+            break
+    omitted = _omitted(fine, small)
+    return Sharpened(_without_rounding(system, fine), max(size, float(omitted.max())), omitted)
+
+
+def _faint(linearised: Linearised) -> float:
+    """The size at which smaller scaled costates count: that which moves the states by :data:`FAINT` of their size.
+
+    What the ends of the states ask of the costates, and how the rounding of states shows in these, is the same
+    response.
+    """
+    problem = linearised.system.problem
+    n, e = problem.states, problem.unknowns
+    met = np.zeros((linearised.system.intervals, linearised.system.rows))
+    starts = [(unit, np.zeros(n + e)) for unit in np.eye(n)]
+    ends = [(np.zeros(n), unit) for unit in np.eye(n, n + e)[problem.fixed]]
+    asked = [linearised.matching.correction(met, start, end)[0][:, n:] for start, end in starts + ends]
+    largest = float(np.abs(asked).max())
+    return max(SMALL, FAINT * largest) if np.isfinite(largest) else SMALL
+
+
+def _without_rounding(system: System, curve: Curve) -> Curve:
+    """The curve with costates that do nothing set to zero: where no control is needed they are noise of both signs.
+
+    They do nothing if the residual of the equations is the same without them, but for rounding.
+    """
+    n = len(curve.nodes) // 2
+    if max(np.abs(curve.nodes[n:]).max(), np.abs(curve.stages[n:]).max()) >= FAINTEST:
+        return curve
+    nodes, stages = curve.nodes.copy(), curve.stages.copy()
+    nodes[n:], stages[n:] = 0.0, 0.0
+    without = replace(curve, nodes=nodes, stages=stages)
+    left, kept, size = system.residual(without), system.residual(curve), max(1.0, float(np.abs(nodes).max()))
+    parts = ((left.stages, kept.stages), (left.ends, kept.ends), (left.start, kept.start), (left.finish, kept.finish))
+    done = max(float(np.abs(a - b).max()) for a, b in parts)
+    return without if done <= ROUNDING * size else curve
+
+
+def _correction(
+    system: System, fine: Curve, linearised: Linearised, onto: Array, fundamental: Array, inverse: Array
+) -> Step:
+    """What the defect on the fine points says, as a step."""
+    residual, own = system.residual(fine), system.scheme
+    defect = (residual.stages @ own.inverse.T).transpose(1, 2, 0)
+    carried = (inverse @ defect[..., None])[..., 0]
+    local = -(fundamental @ (own.matrix @ carried)[..., None])[..., 0]
+    arrived = -(linearised.matching.transition @ (own.weights @ carried)[..., None])[..., 0]
+    # The polynomial through the fine points ends elsewhere than where the next interval begins.
+    nodes, theta = linearised.matching.correction(arrived - residual.ends.T, residual.start, residual.finish)
+    stages = local + linearised.spread(nodes, theta, onto)
+    return Step(nodes.T, stages.transpose(2, 0, 1), theta)
+
+
+def _inverted(matrices: Array) -> Array:
+    """Inverses of symplectic matrices [[A, B], [C, D]]: [[D', -B'], [-C', A']]."""
+    n = matrices.shape[-1] // 2
+    transposed = matrices.swapaxes(-1, -2)
+    found = np.empty_like(matrices)
+    found[..., :n, :n], found[..., n:, n:] = transposed[..., n:, n:], transposed[..., :n, :n]
+    found[..., :n, n:], found[..., n:, :n] = -transposed[..., n:, :n], -transposed[..., :n, n:]
+    return found
+
+
+def _omitted(curve: Curve, small: float) -> Array:
+    """What polynomials of this degree leave out, judged by their last two coefficients, relative, shape (N,)."""
+    n = len(curve.nodes) // 2
+    known = np.concatenate([curve.nodes[:, :-1, None], curve.stages], axis=2)
+    last = np.abs(known @ scheme(curve.order).coefficients[-2:].T).max(axis=2)
+    size = np.abs(known).reshape(2 * n, -1).max(axis=1)
+    scale = np.repeat([max(1.0, size[:n].max()), max(size[n:].max(), small)], n)
+    found: Array = (last / scale[:, None]).max(axis=0)
+    return found

@@ -1,0 +1,88 @@
+"""The linearised collocation equations, factored: corrections of nodes, extra unknowns and all between the nodes.
+
+With the stages eliminated, what remains couples neighbouring nodes only.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.solvers.collocation.curve import Step
+from satsym.solvers.collocation.elimination import Blocks
+from satsym.solvers.collocation.matching import Matching
+
+if TYPE_CHECKING:
+    from satsym.solvers.collocation.system import Residual, System
+
+Array = NDArray[np.floating[Any]]
+
+
+class Linearised:
+    """A factored linearisation, ready for right-hand sides.
+
+    Attributes
+    ----------
+    matching
+        What remains: the system of the nodes and the extra unknowns.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        blocks: Blocks,
+        matching: Matching,
+        response: Array,
+        extra: Array,
+        residual: Residual,
+        local: Array,
+    ) -> None:
+        self.system, self.matching, self._blocks, self._response = system, matching, blocks, response
+        self._extra, self._residual, self._local_step = extra, residual, local
+
+    def step(self, residual: Residual) -> Step:
+        """The Newton correction for a residual."""
+        local = self._local(residual)
+        defects = np.einsum("j,ija->ia", self.system.scheme.end, local) - residual.ends.T
+        nodes, theta = self.matching.correction(defects, residual.start, residual.finish)
+        stages = local + self.spread(nodes, theta, None)
+        return Step(nodes.T, stages.transpose(2, 0, 1), theta)
+
+    def spread(self, nodes: Array, theta: Array, onto: Array | None) -> Array:
+        """What corrections of the nodes and the extra unknowns do between the nodes.
+
+        Parameters
+        ----------
+        nodes, theta
+            As from :meth:`Matching.correction`.
+        onto
+            Interpolation from the start and the stages of an interval to other points; ``None``: the stages.
+
+        Returns
+        -------
+        array of shape (N, points, 2n)
+        """
+        count, s, n = self.system.intervals, self.system.order, self.system.rows
+        inner = (nodes[:-1, None] @ self._response).reshape(count, s, n)
+        for value, extra in zip(theta, self._extra.transpose(1, 0, 2, 3), strict=True):
+            inner = inner + value * extra
+        if onto is None:
+            return inner
+        return onto[:, 1:] @ inner + onto[:, :1] * nodes[:-1, None]
+
+    def fundamental(self, onto: Array) -> Array:
+        """How values between the nodes follow the start of their interval, shape (N, points, 2n, 2n)."""
+        count, s, n = self.system.intervals, self.system.order, self.system.rows
+        inner = self._response.reshape(count, n, s, n)
+        found: Array = np.einsum("kj,ibja->ikab", onto[:, 1:], inner)
+        found += onto[:, 0, None, None] * np.eye(n)
+        return found
+
+    def _local(self, residual: Residual) -> Array:
+        """Corrections of the stages that keep the nodes, shape (N, s, 2n); known already for the first residual."""
+        shape = (self.system.intervals, self.system.order, self.system.rows)
+        if residual is self._residual:
+            return self._local_step.reshape(shape)
+        return self._blocks.solve(residual.by_interval[:, None]).reshape(shape)

@@ -1,0 +1,57 @@
+"""Meshes that follow the motion: no interval longer than the fastest mode takes for a given angle."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.solvers.collocation.curve import Curve, stage_times
+from satsym.solvers.collocation.problem import TwoPoint
+
+Array = NDArray[np.floating[Any]]
+
+TURN = 1.0
+"""Angle, in radians, that the fastest mode may pass in one interval. With less than about six intervals a turn the
+collocation equations have solutions of their own."""
+
+COARSEST = 2.5 * TURN
+"""Angle in one interval beyond which the mesh is laid anew."""
+
+FEWEST, MOST = 6, 400
+
+
+def laid(problem: TwoPoint, curve: Curve) -> Array:
+    """The mesh for the states of a curve, shape (N+1,)."""
+    n = problem.states
+    tau = np.concatenate([curve.mesh[:-1, None], stage_times(curve.mesh, curve.order)], axis=1)
+    x = np.concatenate([curve.nodes[:n, :-1, None], curve.stages[:n]], axis=2)
+    return along(problem, tau.ravel(), x.reshape(n, -1), curve.theta)
+
+
+def along(problem: TwoPoint, tau: Array, x: Array, theta: Array) -> Array:
+    """The mesh for a path of states.
+
+    Parameters
+    ----------
+    tau
+        Increasing times in [0, 1], shape (M,).
+    x
+        Scaled states there, shape (n, M).
+    theta
+        Extra unknowns.
+    """
+    n = problem.states
+    slopes = problem.jacobian(tau, np.concatenate([x, np.zeros_like(x)]), theta)[:n, :n]
+    speed = np.abs(np.linalg.eigvals(slopes.transpose(2, 0, 1))).max(axis=1)
+    speed = np.maximum(speed, speed.mean() / 2.0)
+    speed[1:-1] = np.maximum(speed[1:-1], np.maximum(speed[:-2], speed[2:]))
+    angle = np.concatenate([[0.0], np.cumsum((speed[1:] + speed[:-1]) / 2.0 * np.diff(tau))])
+    wanted = angle[-1] * problem.elapsed(theta) / TURN
+    count = int(min(max(FEWEST, np.ceil(wanted)), MOST)) if np.isfinite(wanted) else FEWEST
+    mesh = (
+        np.interp(np.linspace(0.0, angle[-1], count + 1), angle, tau) if angle[-1] > 0 else np.linspace(0, 1, count + 1)
+    )
+    mesh[0], mesh[-1] = 0.0, 1.0
+    return mesh

@@ -1,0 +1,98 @@
+"""Newton's method on the collocation equations, from a good curve: damped by the natural monotonicity test.
+
+Exact Jacobians make it converge quadratically, also where bounds are active (the equations are then only
+semismooth). The test compares simplified corrections, so it does not depend on how equations are scaled
+(Deuflhard, Newton Methods for Nonlinear Problems, 3.3).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.solvers.collocation.curve import Curve, Step
+from satsym.solvers.collocation.linearised import Linearised
+from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.collocation.system import System
+
+Array = NDArray[np.floating[Any]]
+
+KEEP = 0.3
+"""Share of a positive state that a step must leave."""
+
+SURE = 1e-4
+"""Corrections below this are taken whole."""
+
+SHORTEST = 1e-3
+FLOOR = 1e-9
+"""Corrections below this that no longer shrink are rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """Where Newton ended.
+
+    Attributes
+    ----------
+    curve
+        The last one.
+    converged
+        Whether the last correction was small enough.
+    iterations
+        Number of corrections.
+    linearised
+        The last linearisation.
+    whole
+        Whether no correction had to be cut.
+    """
+
+    curve: Curve
+    converged: bool
+    iterations: int
+    linearised: Linearised
+    whole: bool
+
+
+def newton(system: System, start: Curve, tolerance: float = 1e-12, most: int = 12) -> Outcome | None:
+    """Newton from a curve on the system's mesh; ``None`` where the equations are singular or not finite."""
+    problem, curve = system.problem, start
+    residual = system.residual(curve)
+    before, whole = float("inf"), True
+    for iteration in range(1, most + 1):
+        try:
+            linearised = system.linearised(curve, residual, system.jacobian(curve))
+            step = linearised.step(residual)
+        except np.linalg.LinAlgError:
+            return None
+        size = step.size(curve)
+        if not np.isfinite(size):
+            return None
+        length = within_domain(problem, curve, step)
+        whole = whole and length == 1.0
+        while True:
+            trial = curve.moved(step, length)
+            residual = system.residual(trial)
+            if size < SURE or linearised.step(residual).size(trial) <= (1.0 - length / 4.0) * size:
+                break
+            length, whole = length / 2.0, False
+            if length < SHORTEST:
+                return Outcome(curve, False, iteration, linearised, whole)
+        curve = trial
+        if size < tolerance or (size < FLOOR and size > 0.2 * before):
+            return Outcome(curve, True, iteration, linearised, whole)
+        before = size
+    return Outcome(curve, False, most, linearised, whole)
+
+
+def within_domain(problem: TwoPoint, curve: Curve, step: Step) -> float:
+    """The longest part of a step, at most all of it, that leaves positive states positive and the duration sane."""
+    length = 1.0
+    for i in problem.positive:
+        fall = max((-step.stages[i] / curve.stages[i]).max(), (-step.nodes[i] / curve.nodes[i]).max())
+        length = min(length, (1.0 - KEEP) / max(1.0 - KEEP, fall))
+    if problem.free_time:
+        length = min(length, 0.5 * curve.theta[-1] / max(abs(step.theta[-1]), 1e-300))
+    return length

@@ -1,0 +1,273 @@
+"""An instance as a two-point boundary value problem in scaled variables: all that collocation and shooting see.
+
+States are divided by their size along the way, costates by energy over that, so that kilometres and seconds at
+geostationary height look like radius one: everything is of order one, and the response of the states to the
+costates at most so over the horizon.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+from satsym.solvers.control import control_set
+from satsym.solvers.control.regularised import sloping, smoothed_cost, smoothed_law
+
+Array = NDArray[np.floating[Any]]
+
+PLACES, SAME = 8, 1e-9
+"""Times at which derivatives are compared, and the relative difference that may be rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class Scale:
+    """Units of the scaled problem.
+
+    Attributes
+    ----------
+    state
+        Of each state, shape (n,).
+    cost
+        Of the cost; a costate has the unit cost over state.
+    """
+
+    state: Array
+    cost: float
+
+    @cached_property
+    def both(self) -> Array:
+        """Of states and costates, shape (2n, 1)."""
+        return np.concatenate([self.state, self.cost / self.state])[:, None]
+
+    @cached_property
+    def ratio(self) -> Array:
+        """What turns a Jacobian into the scaled one, shape (2n, 2n, 1)."""
+        return (self.both.T / self.both)[:, :, None]
+
+
+@dataclass(frozen=True, eq=False)
+class TwoPoint:
+    """The canonical equations from the given initial state to the right end that an instance asks for.
+
+    Unknowns are z = (states, costates), scaled, over tau in [0, 1], and ``theta``: the multipliers of terminal
+    constraints (scaled by the cost), then the duration where it is free.
+
+    Attributes
+    ----------
+    instance
+        What is solved.
+    final
+        The ``final`` argument of the boundary functions: given, on reference, target, state by state.
+    duration
+        tf - t0; where it is free, where to start.
+    scale
+        Units.
+    widening
+        By how much every bound of the control is moved outwards; infinite: no bounds.
+    softness
+        Share of what the control law without bounds exceeds them by that is granted: zero where bounds are kept. That
+        is the law where exceeding them costs as its square, so a soft problem is one of optimal control as well.
+    forcing
+        What is added to the rates of the states, scaled, shape (n, N) at times tau (N,); nothing by default.
+    """
+
+    instance: Instance
+    final: tuple[float, ...]
+    duration: float
+    scale: Scale
+    widening: float = 0.0
+    softness: float = 0.0
+    forcing: Callable[[Array], Array] | None = None
+
+    @property
+    def states(self) -> int:
+        """Number n of states."""
+        return len(self.instance.model.spec.states)
+
+    @property
+    def free_time(self) -> bool:
+        """Whether the duration is unknown."""
+        return self.instance.tf is None
+
+    @cached_property
+    def unknowns(self) -> int:
+        """Length of ``theta``."""
+        return len(self.instance.model.spec.multipliers) + self.free_time
+
+    @cached_property
+    def theta(self) -> Array:
+        """Where ``theta`` starts: no multipliers, the first guess of the duration."""
+        start = np.zeros(self.unknowns)
+        if self.free_time:
+            start[-1] = self.duration
+        return start
+
+    @cached_property
+    def initial(self) -> Array:
+        """The initial state, scaled."""
+        return np.array(self.instance.initial) / self.scale.state
+
+    def starting_at(self, initial: Array) -> TwoPoint:
+        """The same problem from another initial state, scaled."""
+        return replace(self, instance=replace(self.instance, initial=tuple((initial * self.scale.state).tolist())))
+
+    @cached_property
+    def positive(self) -> tuple[int, ...]:
+        """Indices of the states that must stay positive."""
+        return tuple(i for i, v in enumerate(self.instance.model.spec.states) if v.positive)
+
+    @cached_property
+    def bounds(self) -> tuple[float, ...]:
+        """The ``bounds`` argument of kernels, widened."""
+        return control_set.widened(self.instance, self.widening)
+
+    def widened(self, widening: float) -> TwoPoint:
+        """The same problem with other bounds."""
+        return replace(self, widening=widening)
+
+    def softened(self, softness: float) -> TwoPoint:
+        """The same problem with bounds of another softness."""
+        return replace(self, softness=softness)
+
+    def forced(self, forcing: Callable[[Array], Array], share: float) -> TwoPoint:
+        """The same problem with a share of a forcing."""
+        return replace(self, forcing=(lambda tau: share * forcing(tau)) if share else None)
+
+    def elapsed(self, theta: Array) -> float:
+        """The duration."""
+        return float(theta[-1]) if self.free_time else self.duration
+
+    def _arguments(self, tau: Array, z: Array, theta: Array) -> tuple[Array, Array, Array, tuple[float, ...]]:
+        t = self.instance.t0 + self.elapsed(theta) * tau
+        physical = z * self.scale.both
+        return t, physical[: self.states], sloping(self.instance, physical[self.states :]), self.instance.parameters
+
+    def rates(self, tau: Array, z: Array, theta: Array) -> Array:
+        """dz/dt, shape (2n, N), at ``tau`` (N,) and ``z`` (2n, N)."""
+        found: Array = self._blended(self.instance.model.canonical_batch, z.shape, tau, z, theta) / self.scale.both
+        if self.forcing is not None:
+            found[: self.states] += self.forcing(tau)
+        return found
+
+    def jacobian(self, tau: Array, z: Array, theta: Array) -> Array:
+        """The rates by z, shape (2n, 2n, N)."""
+        shape = (len(z), *z.shape)
+        return self._blended(self.instance.model.canonical_jacobian_batch, shape, tau, z, theta) * self.scale.ratio
+
+    def _blended(self, kernel: Any, shape: tuple[int, ...], tau: Array, z: Array, theta: Array) -> Array:
+        """A kernel of the canonical equations; with soft bounds a mean: they are affine in the control."""
+        arguments = self._arguments(tau, z, theta)
+        found = np.empty(shape, z.dtype)  # given, so that kernels need not find out shapes and types
+        kernel(*arguments, self.bounds, out=found)
+        if self.softness:
+            without = np.empty(shape, z.dtype)
+            kernel(*arguments, control_set.without_bounds(self.instance), out=without)
+            found += self.softness * (without - found)
+        return found
+
+    def drift(self, tau: Array, z: Array, theta: Array) -> Array | float:
+        """The rates by explicit time, shape (2n, N)."""
+        if self.instance.model.spec.autonomous:
+            return 0.0
+        slopes: Array = self.instance.model.canonical_drift_batch(*self._arguments(tau, z, theta), self.bounds)
+        return slopes / self.scale.both
+
+    def running_cost(self, tau: Array, z: Array, theta: Array) -> Array:
+        """The integrand of the cost under the control law, scaled, shape (N,)."""
+        t, x, lam, p = self._arguments(tau, z, theta)
+        model = self.instance.model
+        if model.spec.switching:
+            u = smoothed_law(self.instance, self.bounds, t, x, lam)
+            return smoothed_cost(self.instance, self.bounds, t, x, u) / self.scale.cost
+        u = model.control_law_batch(t, x, lam, p, self.bounds)
+        beyond = 0.0
+        if self.softness:
+            over = np.asarray(model.control_law_batch(t, x, lam, p, control_set.without_bounds(self.instance))) - u
+            weight = np.asarray(model.control_hessian_batch(t, x, u, lam, p))
+            beyond = self.softness * (1.0 - self.softness) / 2.0 * np.einsum("ik,ijk,jk->k", over, weight, over)
+            u = u + self.softness * over
+        return (np.asarray(model.running_cost_batch(t, x, u, p)) + beyond) / self.scale.cost
+
+    def terminal_cost(self, end: Array, theta: Array) -> float:
+        """S at the end, scaled."""
+        x = tuple((end[: self.states] * self.scale.state).tolist())
+        tf = self.instance.t0 + self.elapsed(theta)
+        return float(self.instance.model.terminal_cost(tf, x, self.instance.parameters)) / self.scale.cost
+
+    def control(self, tau: Array, z: Array, theta: Array, bounded: bool = True) -> Array:
+        """The control law, in the model's units, shape (m, N)."""
+        bounds = self.bounds if bounded else control_set.without_bounds(self.instance)
+        if self.instance.model.spec.switching:
+            t, x, lam, _ = self._arguments(tau, z, theta)
+            return smoothed_law(self.instance, bounds, t, x, lam)
+        law: Array = self.instance.model.control_law_batch(*self._arguments(tau, z, theta), bounds)
+        return law
+
+    @cached_property
+    def linear(self) -> bool:
+        """Whether canonical equations and ends are linear: their derivatives are the same at places that are drawn.
+
+        An extremal that is no minimum then has no minimum beside it either: the cost has none.
+        """
+        rng, tau = np.random.default_rng(0), np.linspace(0.0, 1.0, PLACES)
+        places = rng.uniform(0.5, 1.5, (2, 2 * self.states, PLACES))
+        here, there = (self.jacobian(tau, place, self.theta) for place in places)
+        ends = [self.boundary_slopes(place[:, -1], self.theta + k) for k, place in enumerate(places)]
+        pairs = [(here, there), *zip(*ends, strict=True)]
+        return all((np.abs(a - b) <= SAME * np.abs(a).max(initial=0.0)).all() for a, b in pairs)
+
+    def boundary(self, end: Array, theta: Array) -> Array:
+        """Residuals at the right end, scaled, shape (n + e,).
+
+        Parameters
+        ----------
+        end
+            z at the end, shape (2n,).
+        theta
+            Extra unknowns, shape (e,).
+        """
+        residual = np.array(self.instance.model.boundary(*self._at_the_end(end, theta)))
+        return residual[: len(self._row_scale)] / self._row_scale
+
+    def boundary_slopes(self, end: Array, theta: Array) -> tuple[Array, Array]:
+        """Derivatives of the former by ``end`` and ``theta``, shapes (n + e, 2n) and (n + e, e)."""
+        n, e = self.states, self.unknowns
+        slopes = np.array(self.instance.model.boundary_jacobian(*self._at_the_end(end, theta)))
+        # The kernel has a row and a column for the duration, free or not.
+        shown = slopes.reshape(n + e + 1 - self.free_time, -1)[: n + e, : 2 * n + e]
+        scaled = shown * self._slope_scale[:, : 2 * n + e]
+        return scaled[:, : 2 * n], scaled[:, 2 * n :]
+
+    def _at_the_end(self, end: Array, theta: Array) -> tuple[Any, ...]:
+        """Arguments of the boundary functions."""
+        n, multipliers = self.states, self.unknowns - self.free_time
+        physical = (end * self.scale.both[:, 0]).tolist()
+        tf = self.instance.t0 + self.elapsed(theta)
+        nu = tuple((theta[:multipliers] * self.scale.cost).tolist())
+        return tf, tuple(physical[:n]), tuple(physical[n:]), nu, self.instance.parameters, self.bounds, self.final
+
+    @cached_property
+    def fixed(self) -> NDArray[np.bool_]:
+        """Which states have their end given or on the reference, shape (n,)."""
+        n = self.states
+        return np.array(self.final[:n]) + np.array(self.final[n : 2 * n]) > 0
+
+    @cached_property
+    def _slope_scale(self) -> Array:
+        multipliers = np.full(self.unknowns - self.free_time, self.scale.cost)
+        columns: Array = np.concatenate([self.scale.both[:, 0], multipliers, [1.0]])
+        return columns / self._row_scale[:, None]
+
+    @cached_property
+    def _row_scale(self) -> Array:
+        own = np.where(self.fixed, self.scale.state, self.scale.cost / self.scale.state)
+        rest = np.ones(self.unknowns)
+        if self.free_time:
+            rest[-1] = self.scale.cost / self.duration
+        return np.concatenate([own, rest])

@@ -1,0 +1,153 @@
+"""Accuracy: defect corrections on many points of each interval, and where these are not enough a finer mesh."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.solvers.collocation.continuation import kinks
+from satsym.solvers.collocation.curve import SMALL, Curve
+from satsym.solvers.collocation.defect_correction import Sharpened, sharpen
+from satsym.solvers.collocation.gauss import STAGES
+from satsym.solvers.collocation.linearised import Linearised
+from satsym.solvers.collocation.newton import newton
+from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.collocation.system import System
+
+Array = NDArray[np.floating[Any]]
+
+NEAR = 1e-3
+"""Last correction of Newton's method from which defect corrections converge quickly."""
+
+AIM = 1e-3
+"""Share of the tolerance that is aimed at: errors of the initial costates grow a thousandfold and more on the way."""
+
+LEAST = 1e-13
+"""What rounding allows."""
+
+ROUNDS = 8
+MOST_INTERVALS = 400
+FEWEST, LARGEST_SPLIT = 0.6, 4.0
+"""Bounds of the change in the density of the mesh in one round."""
+
+ROOM = 0.25
+"""Share of an interval by which a node may be moved to a kink; one that is farther from all nodes gets its own."""
+
+SPARE = 0.1
+"""Share of the error aimed at that the next mesh is laid for."""
+
+
+@dataclass(frozen=True, eq=False)
+class Refined:
+    """A curve with an estimate of its error.
+
+    Attributes
+    ----------
+    curve
+        The answer.
+    error
+        Estimated error, at the nodes and between them, relative as in :meth:`Step.size`.
+    converged
+        Whether that is below the tolerance.
+    iterations
+        Newton corrections that were needed.
+    """
+
+    curve: Curve
+    error: float
+    converged: bool
+    iterations: int
+
+
+def refine(
+    problem: TwoPoint, curve: Curve, tolerance: float, keep_nodes: bool = False, known: Linearised | None = None
+) -> Refined:
+    """Refine a solution until the error is far below a tolerance; below it is enough if that is all one can get.
+
+    Parameters
+    ----------
+    problem
+        What is solved.
+    curve
+        A solution of collocation equations on some mesh.
+    tolerance
+        Largest error.
+    keep_nodes
+        Whether nodes lie on kinks: intervals are only split, and nodes follow the kinks as these become accurate.
+    known
+        The linearised equations at the curve or nearby, if it is a solution with :data:`STAGES` stages already.
+    """
+    total, best, aim = 0, Refined(curve, float("inf"), False, 0), max(AIM * tolerance, LEAST)
+    for _ in range(ROUNDS):
+        if known is None:
+            outcome = newton(System(problem, curve.mesh, STAGES), curve.on(curve.mesh, STAGES), tolerance=NEAR)
+            total += outcome.iterations if outcome else 0
+            if outcome and outcome.converged:
+                curve, known = outcome.curve, outcome.linearised
+        sharpened = sharpen(curve, known, aim) if known else None
+        met = kinks(problem, sharpened.curve) if sharpened and keep_nodes else np.zeros(0)
+        error = max(sharpened.error, _misplaced(problem, sharpened.curve, met)) if sharpened else float("inf")
+        better = error < 0.5 * best.error
+        if sharpened and error < best.error:
+            best = Refined(sharpened.curve, error, error < tolerance, total)
+        if best.error < aim or (best.converged and not better):
+            break
+        density = _density(sharpened, aim) if sharpened else np.full(len(curve.mesh) - 1, 2.0)
+        if density.sum() > MOST_INTERVALS:
+            break
+        curve = sharpened.curve if sharpened else curve
+        mesh = _followed(_split(curve.mesh, density), met) if keep_nodes else _spread(curve.mesh, density)
+        curve, known = curve.on(mesh, STAGES), None
+    return best
+
+
+def _density(sharpened: Sharpened, aim: float) -> Array:
+    """Wanted intervals for each present one, from what its polynomials leave out."""
+    ratio = sharpened.omitted / (SPARE * aim)
+    found: Array = np.clip(ratio ** (1.0 / sharpened.curve.order), FEWEST, LARGEST_SPLIT)
+    return found
+
+
+def _misplaced(problem: TwoPoint, curve: Curve, met: Array) -> float:
+    """What kinks off the nodes leave out: the rates on one side of a kink, followed up to the node beside it."""
+    if not len(met):
+        return 0.0
+    node = curve.mesh[np.abs(met[:, None] - curve.mesh).argmin(axis=1)]
+    followed, free = (one.rates(node, curve(node), curve.theta) for one in (problem, problem.widened(float("inf"))))
+    n, size = problem.states, np.abs(curve.nodes).reshape(2, -1).max(axis=1)
+    jump = np.abs(followed - free).reshape(2, n, -1).max(axis=1) / np.maximum(size, (1.0, SMALL))[:, None]
+    return float((jump.max(axis=0) * np.abs(met - node)).max()) * problem.elapsed(curve.theta) / 2.0
+
+
+def _followed(mesh: Array, met: Array) -> Array:
+    """A mesh whose nodes have followed the kinks, the others in proportion; kinks far from all nodes get their own."""
+    before, after, own = [0.0], [0.0], []
+    for kink in met:
+        k = int(np.abs(mesh - kink).argmin())
+        room = ROOM * np.diff(mesh)[max(k - 1, 0) : k + 1].min()
+        if 0 < k < len(mesh) - 1 and abs(mesh[k] - kink) < room and mesh[k] > before[-1]:
+            before.append(float(mesh[k]))
+            after.append(float(kink))
+        elif abs(mesh[k] - kink) >= room:
+            own.append(float(kink))
+    moved = np.interp(mesh, [*before, 1.0], [*after, 1.0])
+    return np.unique(np.concatenate([moved, own]))
+
+
+def _split(mesh: Array, density: Array) -> Array:
+    """Every interval in equal parts."""
+    parts = np.ceil(density - 0.05).astype(int)
+    inner = [a + (b - a) * np.arange(k) / k for a, b, k in zip(mesh[:-1], mesh[1:], parts, strict=True)]
+    return np.concatenate([*inner, mesh[-1:]])
+
+
+def _spread(mesh: Array, density: Array) -> Array:
+    """The errors equally distributed over a new mesh."""
+    count = max(int(np.ceil(density.sum())), len(density) + 1)
+    cumulated = np.concatenate([[0.0], np.cumsum(density)]) / density.sum()
+    spread = np.interp(np.linspace(0.0, 1.0, count + 1), cumulated, mesh)
+    spread[0], spread[-1] = mesh[0], mesh[-1]
+    return spread

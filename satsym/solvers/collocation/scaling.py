@@ -1,0 +1,86 @@
+"""From an instance to its scaled two-point problem."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+from satsym.solvers.collocation.problem import Scale, TwoPoint
+from satsym.solvers.control import control_set
+from satsym.solvers.control.regularised import sloping
+
+Array = NDArray[np.floating[Any]]
+
+POINTS = 9
+"""Points of the straight line at which sizes and responses are looked at."""
+
+NO_SLOPE = 1e-40
+"""Of costates that are none, see :func:`satsym.solvers.control.regularised.sloping`."""
+
+NEGLIGIBLE = 1e-3
+"""A state this much smaller along the way than what it does to the others is scaled by the latter."""
+
+
+def two_point(instance: Instance, duration: float) -> TwoPoint:
+    """The scaled problem of an instance.
+
+    Parameters
+    ----------
+    instance
+        What is to be solved.
+    duration
+        tf - t0; where it is free, a first guess.
+    """
+    final = final_argument(instance)
+    start, end = np.array(instance.initial), _end(instance, final, duration)
+    return TwoPoint(instance, final, duration, _scale(instance, start, end, duration))
+
+
+def final_argument(instance: Instance) -> tuple[float, ...]:
+    """The ``final`` argument of the boundary functions."""
+    wanted = [instance.final.get(name) for name in instance.model.spec.state_names]
+    given = [float(isinstance(value, float | int)) for value in wanted]
+    on_reference = [float(value == "reference") for value in wanted]
+    target = [float(value) if isinstance(value, float | int) else 0.0 for value in wanted]
+    return (*given, *on_reference, *target)
+
+
+def _end(instance: Instance, final: tuple[float, ...], duration: float) -> Array:
+    """Where the motion should end, as far as that is known; elsewhere the initial state."""
+    n = len(instance.initial)
+    given, on_reference, target = (np.array(final[k * n : (k + 1) * n]) for k in range(3))
+    end = np.where(given > 0, target, np.array(instance.initial))
+    if on_reference.any():
+        curve = np.array(instance.model.reference(instance.t0 + duration, instance.parameters))
+        end = np.where(on_reference > 0, curve, end)
+    return end
+
+
+def straight(problem: TwoPoint) -> Array:
+    """The straight line's two ends in scaled states, shape (n, 2)."""
+    end = _end(problem.instance, problem.final, problem.duration)
+    return np.stack([problem.initial, end / problem.scale.state], axis=1)
+
+
+def _scale(instance: Instance, start: Array, end: Array, duration: float) -> Scale:
+    """Sizes of the states along the straight line; the cost that makes the response to costates one."""
+    n, model = len(start), instance.model
+    path = start[:, None] + (end - start)[:, None] * np.linspace(0.0, 1.0, POINTS)
+    times = instance.t0 + duration * np.linspace(0.0, 1.0, POINTS)
+    free = control_set.without_bounds(instance)
+    none = sloping(instance, np.zeros_like(path))
+    slopes = np.abs(model.canonical_jacobian_batch(times, path, none, instance.parameters, free)).max(axis=2)
+    slopes[slopes < NO_SLOPE] = 0.0
+    size = np.abs(path).max(axis=1)
+    for j in range(n):
+        through = [
+            size[i] / (slopes[i, j] * duration) for i in range(n) if i != j and slopes[i, j] > 0.0 and size[i] > 0.0
+        ]
+        least = min(through, default=1.0)
+        if size[j] < NEGLIGIBLE * least:
+            size[j] = least
+    response = (slopes[:n, n:] / np.outer(size, size)).max()
+    return Scale(size, 1.0 / (duration * response) if response > 0.0 else 1.0)

@@ -1,0 +1,81 @@
+"""Whether an extremal is a minimum: the number of directions in which the second variation is negative.
+
+Node by node, the states are eliminated from the quadratic form of the discretised second variation; its pivots
+are matrices between the fields of extremals from the left and through the right neighbour. A negative pivot
+before the end is a conjugate time (Jacobi); what is free at the end adds its own pivots. For costates that are
+the gradient of the cost to go, as here, the field from a fixed start gives the left part -Lambda X^-1.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.solvers.collocation.curve import Path
+from satsym.solvers.collocation.matching import Matching
+from satsym.solvers.collocation.problem import TwoPoint
+
+Array = NDArray[np.floating[Any]]
+
+
+def negative_directions(problem: TwoPoint, path: Path, matching: Matching) -> int:
+    """Number of negative eigenvalues of the discretised second variation; zero at a strict local minimum.
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        If a field of extremals is singular at a node.
+    """
+    n, transition = problem.states, matching.transition
+    # The field of extremals from the start, by its costates as a function of its states: Lambda X^-1.
+    slope = _right_divided(transition[0][n:, n:], transition[0][:n, n:])
+    left = np.empty((len(transition) - 1, n, n))
+    for i, matrix in enumerate(transition[1:]):
+        arrived = matrix[:, :n] + matrix[:, n:] @ slope
+        left[i], slope = arrived[:n], _right_divided(arrived[n:], arrived[:n])
+    pivots = np.linalg.solve(-transition[1:, :n, n:], left)
+    count = _negative(pivots)
+    return count + _at_the_end(problem, path, slope) + _of_the_duration(problem, matching)
+
+
+def _right_divided(a: Array, b: Array) -> Array:
+    """The matrix a b^-1."""
+    found: Array = np.linalg.solve(b.T, a.T).T
+    return found
+
+
+def _at_the_end(problem: TwoPoint, path: Path, slope: Array) -> int:
+    """Negative pivots of the final states that are free, within the terminal constraints."""
+    n = problem.states
+    free = np.flatnonzero(~problem.fixed)
+    if not len(free):
+        return 0
+    by_end, _ = problem.boundary_slopes(path.nodes[:, -1], path.theta)
+    # Rows of free states read lambda - S_x - nu' psi_x, so minus their derivative is the Hessian of S + nu' psi.
+    pivot = (-by_end[:n, :n] - slope)[np.ix_(free, free)]
+    constraints = problem.unknowns - problem.free_time
+    if constraints:
+        slopes = by_end[n : n + constraints, :n][:, free]
+        within = np.linalg.svd(slopes)[2][np.linalg.matrix_rank(slopes) :].T
+        pivot = within.T @ pivot @ within
+    return _negative(pivot[None])
+
+
+def _of_the_duration(problem: TwoPoint, matching: Matching) -> int:
+    """One if the cost has a maximum in the duration: its second derivative along the extremals is negative."""
+    if not problem.free_time:
+        return 0
+    reduced = matching.reduced()
+    # With the multipliers eliminated first, the pivot of the duration is a ratio of determinants.
+    rest = reduced[:-1, :-1]
+    pivot = np.linalg.det(reduced) / (np.linalg.det(rest) if len(rest) else 1.0)
+    return int(pivot < 0.0)
+
+
+def _negative(matrices: Array) -> int:
+    """Negative eigenvalues of the symmetric parts, over a stack of matrices."""
+    if not matrices.size:
+        return 0
+    return int((np.linalg.eigvalsh(matrices + matrices.transpose(0, 2, 1)) < 0.0).sum())

@@ -1,0 +1,108 @@
+"""Bounds made hard by and by: minima within them that are not reached from the minimum without bounds.
+
+Where exceeding a bound costs as its square, the problem has no bounds and can be minimised from any path; as that is
+weighed more and more its minima tend to those within the bounds, or, where none of the paths nearby can keep them,
+their cost grows without end (a quadratic penalty: Nocedal and Wright, Numerical Optimization, 17.1).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.solvers.cold_start.from_path import from_path
+from satsym.solvers.collocation import mesh as meshes
+from satsym.solvers.collocation.continuation import kept, settled
+from satsym.solvers.collocation.curve import Curve
+from satsym.solvers.collocation.gauss import STAGES
+from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.collocation.sqp import OUTGROWN, Found, minimise
+from satsym.solvers.collocation.system import System
+from satsym.solvers.iteration import Limits
+
+Array = NDArray[np.floating[Any]]
+
+HARDER = 0.1
+"""Softness of each problem, as a share of that of the one before."""
+
+HARDEST, HARD = 1e-6, 1e-2
+"""Softness at which this ends, and from which on the bounds themselves are tried."""
+
+TOLERANCE, MOST, TRIED = 1e-5, 40, 60
+"""Size of the last step of each minimisation; steps of one, and of the first."""
+
+BLOCKED = 5.0
+"""Growth of the cost from one softness to the next, tenfold where bounds cannot be kept, that shows it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Hardened:
+    """Where hard bounds led.
+
+    Attributes
+    ----------
+    curve
+        An extremal within the bounds, its mesh with nodes where they are met; ``None`` where none was found.
+    blocked
+        Whether the cost of keeping them grew without end.
+    iterations
+        Steps.
+    """
+
+    curve: Curve | None
+    blocked: bool
+    iterations: int
+
+
+def within_bounds(problem: TwoPoint, path: Callable[[Array], Array], limits: Limits, softness: float = 1.0) -> Hardened:
+    """The minimum within the bounds to which a path of states leads.
+
+    Parameters
+    ----------
+    problem
+        With its bounds, and a given duration.
+    path
+        Scaled states, shape (n, M), at M times tau.
+    limits
+        When to stop.
+    softness
+        Of the first problem: one for that without bounds.
+    """
+    first = from_path(problem.softened(softness), path, limits, TRIED)
+    if not first.minimum or not first.curve.in_domain(problem.positive):
+        return Hardened(None, False, first.iterations)
+    return within_found(problem, first, limits, softness)
+
+
+def within_found(problem: TwoPoint, first: Found, limits: Limits, softness: float = 1.0) -> Hardened:
+    """The extremal within the bounds to which a minimum leads that was found with soft ones, or without any."""
+    if kept(problem, first.curve):
+        return Hardened(first.curve, False, first.iterations)
+    curve, cost, steps, grown = first.curve, first.cost, first.iterations, 0
+    while softness > HARDEST and not limits.expired:
+        softness *= HARDER
+        found = _softer(problem.softened(softness), curve, limits)
+        steps += found.iterations
+        if not found.minimum or not found.curve.in_domain(problem.positive):
+            break
+        grown = grown + 1 if found.cost > BLOCKED * abs(cost) else 0
+        curve, cost = found.curve, found.cost
+        if softness <= HARD and grown < 2:
+            bounded = settled(problem, curve, STAGES, max(10, len(curve.mesh) - 1), limits)
+            steps += bounded.iterations
+            if bounded.converged and bounded.curve.in_domain(problem.positive):
+                return Hardened(bounded.curve, False, steps)
+    return Hardened(None, grown >= 2, steps)
+
+
+def _softer(problem: TwoPoint, curve: Curve, limits: Limits) -> Found:
+    """The minimum of the next problem, on a mesh that is laid anew where the curve outgrows it."""
+    found = minimise(System(problem, curve.mesh, curve.order), curve, limits, TOLERANCE, MOST, meshes.COARSEST)
+    if found.reason != OUTGROWN:
+        return found
+    curve = found.curve.on(meshes.laid(problem, found.curve), STAGES)
+    return minimise(System(problem, curve.mesh, curve.order), curve, limits, TOLERANCE, MOST, meshes.COARSEST)

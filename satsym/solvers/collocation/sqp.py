@@ -1,0 +1,262 @@
+"""Newton's method made global by what lies behind the equations: a minimisation with constraints.
+
+A curve of states and costates holds a control (through the control law) and multipliers, so a full Newton step
+on the canonical equations is a step of sequential quadratic programming. Hence steps are measured by an exact
+penalty function; where the second variation is not positive, the Newton step is no descent and the
+Gauss-Newton step is taken, whose quadratic programme is convex: the costates' own rates by the states are
+evaluated without costates. A second-order correction keeps the penalty from refusing good steps.
+(Nocedal and Wright, Numerical Optimization, chapter 18.)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.solvers.collocation.curve import Curve, Step
+from satsym.solvers.collocation.linearised import Linearised
+from satsym.solvers.collocation.newton import within_domain
+from satsym.solvers.collocation.second_variation import negative_directions
+from satsym.solvers.collocation.system import Residual, System
+from satsym.solvers.iteration import Limits
+
+Array = NDArray[np.floating[Any]]
+
+CLOSE = 1e-3
+"""Below this size of a full Newton step, Newton's convergence needs no guarding."""
+
+CUT = 0.2
+"""A Newton step that had to be cut below this share is followed by a Gauss-Newton step."""
+
+SHARES = (1.0, 0.8, 0.5, 0.0)
+"""Shares of the costates with which their own rates by the states are evaluated: the first for which the second
+variation is positive is taken. One is Newton, zero Gauss-Newton, whose quadratic programme is always convex."""
+
+SHORTEST = 1e-6
+SUFFICIENT = 1e-4
+CORRECTED = 4
+"""Shares of a step that are tried with a second-order correction as well."""
+
+OUTGROWN = "the curve outgrew its mesh"
+PROBE = 1e-6
+"""Step with which the slope of the cost along a direction is measured."""
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """Where the minimisation ended.
+
+    Attributes
+    ----------
+    curve
+        The last one.
+    reason
+        ``"minimum"``, ``"saddle"`` (an extremal that is no minimum), or why there is none.
+    cost
+        Scaled cost there.
+    iterations
+        Number of steps.
+    hard
+        Whether the way was not straight: a Gauss-Newton step after the first, or a step cut short. Other minima
+        may then be cheaper.
+    linearised
+        The equations there, where they are at hand.
+    """
+
+    curve: Curve
+    reason: str
+    cost: float
+    iterations: int
+    hard: bool
+    linearised: Linearised | None = None
+
+    @property
+    def minimum(self) -> bool:
+        """Whether it is a strict local minimum of the discretised problem."""
+        return self.reason == "minimum"
+
+
+def minimise(
+    system: System,
+    start: Curve,
+    limits: Limits,
+    tolerance: float = 1e-7,
+    most: int = 80,
+    coarsest: float = float("inf"),
+) -> Found:
+    """Minimise the cost from a curve without costates, over all curves that solve the problem.
+
+    Parameters
+    ----------
+    system
+        Collocation equations of a problem without bounds.
+    start
+        A curve on the system's mesh: a guess of the states without costates, or an extremal of a neighbouring
+        problem.
+    limits
+        When to stop, and who watches.
+    tolerance
+        Size of the last step.
+    most
+        Steps.
+    coarsest
+        Largest angle by which the motion may turn in one interval. A mesh that is too coarse has minima that the
+        problem does not have, so the minimisation stops when its curve outgrows the mesh.
+    """
+    n, problem, curve = system.problem.states, system.problem, start
+    residual, cost = system.residual(curve), system.cost(curve)
+    violated = system.infeasibility(residual)
+    penalty: Array = np.zeros(len(violated))
+    share, hard, newton, close = 1.0, False, False, False
+    for iteration in range(most):
+        first = not curve.stages[n:].any()
+        jacobian = system.jacobian(curve)
+        limits.spend(curve.flat.shape[1])
+        if iteration and coarsest < float("inf") and system.largest_turn(curve, jacobian) > coarsest:
+            return Found(curve, OUTGROWN, cost, iteration, True)
+        avoid = newton and share < CUT
+        linearised, newton = _direction(system, curve, residual, jacobian, avoid, trusted=close)
+        if linearised is None:
+            return Found(curve, "the equations are singular", cost, iteration, True)
+        hard = hard or not (newton or first)
+        step = linearised.step(residual)
+        size = step.size(curve.moved(step, 1.0))
+        if not np.isfinite(size):
+            return Found(curve, "not finite", cost, iteration, True)
+        if limits.expired:
+            return Found(curve, "time was up", cost, iteration, True)
+        limits.tell(cost * problem.scale.cost, size)
+        if size < tolerance:
+            curve = curve.moved(step, 1.0)
+            return Found(curve, _kind(system, curve), system.cost(curve), iteration + 1, hard)
+        close = newton and size < CLOSE and share == 1.0
+        penalty = _raised(penalty, _multipliers(curve, step, n, len(violated)))
+        at = _Merit(system, curve, cost, violated, penalty, linearised, step)
+        found = _searched(at, within_domain(problem, curve, step), whole=close)
+        if found is None:
+            return Found(curve, "no descent", cost, iteration, True)
+        curve, residual, share, halved = found
+        limits.spend(int(curve.flat.shape[1] * -np.log2(share)) if halved else 0)
+        hard = hard or halved
+        cost, violated = system.cost(curve), system.infeasibility(residual)
+    return Found(curve, f"no convergence in {most} steps", cost, most, True)
+
+
+@dataclass(frozen=True, eq=False)
+class _Merit:
+    """A curve from which a step is to be taken, and the exact penalty function by which it is measured."""
+
+    system: System
+    curve: Curve
+    cost: float
+    violated: Array
+    penalty: Array
+    linearised: Linearised
+    step: Step
+
+    @property
+    def value(self) -> float:
+        """Of the penalty function, at the curve."""
+        return float(self.cost + self.penalty @ self.violated)
+
+    def slope(self) -> float:
+        """Its derivative along the step."""
+        ahead = self.curve.moved(self.step, PROBE)
+        return float((self.system.cost(ahead) - self.cost) / PROBE - self.penalty @ self.violated)
+
+    def measured(self, curve: Curve, residual: Residual) -> float:
+        """Its value at another curve; infinite where it is not a number."""
+        value = self.system.cost(curve) + self.penalty @ self.system.infeasibility(residual)
+        return float(value) if np.isfinite(value) else float("inf")
+
+
+def _searched(at: _Merit, share: float, whole: bool) -> tuple[Curve, Residual, float, bool] | None:
+    """The curve after the largest share of the step that descends, its residual, the share, and whether it was halved.
+
+    Parameters
+    ----------
+    at
+        From where.
+    share
+        To begin with.
+    whole
+        Whether that is taken as it is.
+    """
+    slope, value, tried = min(at.slope(), 0.0), at.value, 0
+    while share >= SHORTEST:
+        trial = at.curve.moved(at.step, share)
+        residual = at.system.residual(trial)
+        enough = value + SUFFICIENT * share * slope + 1e-9 * abs(value)
+        if whole or at.measured(trial, residual) <= enough:
+            return trial, residual, share, tried > 0
+        corrected = _corrected(at.system, at.curve, trial, residual, at.linearised) if tried < CORRECTED else None
+        if corrected is not None:
+            residual = at.system.residual(corrected)
+            if at.measured(corrected, residual) <= enough:
+                return corrected, residual, share, tried > 0
+        tried, share = tried + 1, share / 2.0
+    return None
+
+
+def _direction(
+    system: System, curve: Curve, residual: Residual, jacobian: Array, avoid: bool, trusted: bool
+) -> tuple[Linearised | None, bool]:
+    """The linearisation to step with, and whether it is Newton's."""
+    n = system.problem.states
+    without_costates = not curve.stages[n:].any()
+    bare = jacobian
+    if not without_costates:
+        stages, nodes = curve.stages.copy(), curve.nodes.copy()
+        stages[n:], nodes[n:] = 0.0, 0.0
+        bare = jacobian.copy()
+        bare[n:, :n] = system.jacobian(replace(curve, stages=stages, nodes=nodes))[n:, :n]
+    shares = (0.0,) if without_costates else (1.0, 0.0) if trusted else SHARES[int(avoid) :]
+    for share in shares:
+        try:
+            linearised = system.linearised(curve, residual, share * jacobian + (1.0 - share) * bare)
+            if trusted or share == 0.0 or negative_directions(system.problem, curve, linearised.matching) == 0:
+                return linearised, share == 1.0
+        except np.linalg.LinAlgError:
+            continue
+    return None, False
+
+
+def _kind(system: System, curve: Curve) -> str:
+    """``"minimum"`` or ``"saddle"``."""
+    try:
+        linearised = system.linearised(curve, system.residual(curve), system.jacobian(curve))
+        negative = negative_directions(system.problem, curve, linearised.matching)
+    except np.linalg.LinAlgError:
+        return "the equations are singular"
+    return "minimum" if negative == 0 else "saddle"
+
+
+def _multipliers(curve: Curve, step: Step, n: int, count: int) -> Array:
+    """Largest multipliers after the full step: of each state's equation, then of the terminal constraints."""
+    costates = np.abs(curve.stages[n:] + step.stages[n:]).reshape(n, -1).max(axis=1)
+    return np.concatenate([costates, np.abs(curve.theta + step.theta)[: count - n]])
+
+
+def _raised(penalty: Array, multipliers: Array) -> Array:
+    """Penalties above the multipliers, lowered again where they have become far too large."""
+    found: Array = np.where(
+        penalty < 1.1 * multipliers,
+        2.0 * multipliers,
+        np.where(penalty > 10.0 * multipliers, 4.0 * multipliers, penalty),
+    )
+    return found
+
+
+def _corrected(system: System, curve: Curve, trial: Curve, residual: Residual, linearised: Linearised) -> Curve | None:
+    """The trial after a second-order correction of the equations of motion; ``None`` outside the domain."""
+    n = system.problem.states
+    stages, ends = residual.stages.copy(), residual.ends.copy()
+    stages[n:], ends[n:] = 0.0, 0.0
+    corrected = trial.moved(linearised.step(replace(residual, stages=stages, ends=ends)), 1.0)
+    for i in system.problem.positive:
+        if not (corrected.stages[i] > 0.1 * curve.stages[i]).all():
+            return None
+    return corrected

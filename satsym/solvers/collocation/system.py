@@ -1,0 +1,144 @@
+"""The collocation equations: residuals for all stages at once, and their exact linearisation.
+
+Stages are eliminated interval by interval, all intervals in one call.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.solvers.collocation.curve import Curve, stage_times
+from satsym.solvers.collocation.elimination import Blocks
+from satsym.solvers.collocation.gauss import Scheme, scheme
+from satsym.solvers.collocation.linearised import Linearised
+from satsym.solvers.collocation.matching import Matching
+from satsym.solvers.collocation.problem import TwoPoint
+
+Array = NDArray[np.floating[Any]]
+
+
+@dataclass(frozen=True, eq=False)
+class Residual:
+    """By how much the equations of a curve fail.
+
+    Attributes
+    ----------
+    stages
+        Z - z_i - h A F(Z), shape (2n, N, s).
+    ends
+        z_{i+1} minus the end of the interval's polynomial, shape (2n, N).
+    start, finish
+        At the boundary, shapes (n,) and (n + e,).
+    rates
+        A F(Z), shape (2n, N, s): the change of the stages by the duration, apart from explicit time.
+    """
+
+    stages: Array
+    ends: Array
+    start: Array
+    finish: Array
+    rates: Array
+
+    @property
+    def by_interval(self) -> Array:
+        """Minus the residuals of the stages, interval by interval, shape (N, s 2n)."""
+        found: Array = -self.stages.transpose(1, 2, 0).reshape(self.stages.shape[1], -1)
+        return found
+
+
+class System:
+    """The collocation equations of a problem on a mesh."""
+
+    def __init__(self, problem: TwoPoint, mesh: Array, order: int) -> None:
+        self.problem, self.mesh, self.order = problem, mesh, order
+        self.scheme: Scheme = scheme(order)
+        self.widths: Array = np.diff(mesh)
+        self.tau: Array = stage_times(mesh, order).ravel()
+        self.intervals, self.rows = len(mesh) - 1, 2 * problem.states
+        self._matrix = self.widths[:, None, None] * self.scheme.matrix
+
+    def cost(self, curve: Curve) -> float:
+        """The scaled cost J along a curve, under the control law of its stages."""
+        problem, theta = self.problem, curve.theta
+        running = problem.running_cost(self.tau, curve.flat, theta).reshape(self.intervals, self.order)
+        integral = float((running @ self.scheme.weights) @ self.widths)
+        return problem.elapsed(theta) * integral + problem.terminal_cost(curve.nodes[:, -1], theta)
+
+    def residual(self, curve: Curve) -> Residual:
+        """How far a curve is from a solution."""
+        problem, theta = self.problem, curve.theta
+        shape = (self.rows, self.intervals, self.order)
+        rates = problem.rates(self.tau, curve.flat, theta).reshape(shape)
+        grown = self.widths[:, None] * (rates @ self.scheme.matrix.T)
+        differences = curve.stages - curve.nodes[:, :-1, None]
+        return Residual(
+            stages=differences - problem.elapsed(theta) * grown,
+            ends=curve.nodes[:, 1:] - curve.nodes[:, :-1] - differences @ self.scheme.end,
+            start=curve.nodes[: problem.states, 0] - problem.initial,
+            finish=problem.boundary(curve.nodes[:, -1], theta),
+            rates=grown,
+        )
+
+    def infeasibility(self, residual: Residual) -> Array:
+        """Summed violation of what multipliers are for, shape (n + constraints,).
+
+        First the equations of motion with the given ends, state by state; then the terminal constraints.
+        """
+        n, problem = self.problem.states, self.problem
+        by_stage = np.abs(residual.stages[:n] @ self.scheme.inverse.T) @ self.scheme.weights
+        finish = np.abs(residual.finish)
+        ends = np.abs(residual.ends[:n]).sum(axis=1) + np.abs(residual.start) + np.where(problem.fixed, finish[:n], 0.0)
+        constraints = finish[n : n + problem.unknowns - problem.free_time]
+        return np.concatenate([by_stage.sum(axis=1) + ends, constraints])
+
+    def jacobian(self, curve: Curve) -> Array:
+        """The rates by z at all stages, shape (2n, 2n, N s)."""
+        return self.problem.jacobian(self.tau, curve.flat, curve.theta)
+
+    def largest_turn(self, curve: Curve, jacobian: Array) -> float:
+        """The largest angle that the fastest mode of the motion passes in one interval, in radians."""
+        n = self.problem.states
+        at_middles = jacobian[:n, :n, self.order // 2 :: self.order]
+        speed = np.abs(np.linalg.eigvals(at_middles.transpose(2, 0, 1))).max(axis=1)
+        return float((speed * self.widths).max()) * self.problem.elapsed(curve.theta)
+
+    def linearised(self, curve: Curve, residual: Residual, jacobian: Array) -> Linearised:
+        """Eliminate the stages and factor what remains.
+
+        Raises
+        ------
+        numpy.linalg.LinAlgError
+            If the equations are singular here.
+        """
+        n, s, count, e = self.rows, self.order, self.intervals, self.problem.unknowns
+        by_stage = np.ascontiguousarray(jacobian.reshape(n, n, count, s).transpose(2, 0, 3, 1))
+        grown = (-self.problem.elapsed(curve.theta)) * self._matrix
+        matrix = (grown[:, :, None, :, None] * by_stage[:, None]).reshape(count, s * n, s * n)
+        matrix.reshape(count, -1)[:, :: s * n + 1] += 1.0
+        blocks = Blocks(matrix)
+        by_stages = np.zeros((count, n + 1 + e, s, n))
+        by_stages[:, np.arange(n), :, np.arange(n)] = 1.0
+        right: Array = by_stages.reshape(count, n + 1 + e, s * n)
+        right[:, n] = residual.by_interval
+        if self.problem.free_time:
+            right[:, -1] = self._by_duration(curve, residual).transpose(1, 2, 0).reshape(count, -1)
+        solved = blocks.solve(right)
+        response = solved[:, :n]
+        transition = np.einsum("j,ibja->iab", self.scheme.end, response.reshape(count, n, s, n))
+        transition[:, np.arange(n), np.arange(n)] += 1.0 - self.scheme.end.sum()
+        extra = solved[:, n + 1 :].reshape(count, e, s, n)
+        by_theta = (self.scheme.end @ extra).swapaxes(1, 2)
+        matching = Matching(transition, by_theta, *self.problem.boundary_slopes(curve.nodes[:, -1], curve.theta))
+        return Linearised(self, blocks, matching, response, extra, residual, solved[:, n])
+
+    def _by_duration(self, curve: Curve, residual: Residual) -> Array:
+        """Minus the derivative of the stage residuals by the duration, shape (2n, N, s)."""
+        drift = self.problem.drift(self.tau, curve.flat, curve.theta)
+        if np.ndim(drift) == 0:
+            return residual.rates
+        explicit = (np.asarray(drift) * self.tau).reshape(residual.rates.shape) @ self.scheme.matrix.T
+        return residual.rates + self.problem.elapsed(curve.theta) * self.widths[:, None] * explicit

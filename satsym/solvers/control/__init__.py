@@ -1,0 +1,1 @@
+"""The set of admissible controls, where a control meets its bounds, and laws that are regularised."""

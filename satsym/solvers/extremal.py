@@ -1,0 +1,137 @@
+"""What the methods for given ends share: limits, history, turns of angles, and how an extremal becomes a solution."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from satsym.instance import Instance
+from satsym.solution import Array, Iteration, Progress, Solution
+from satsym.solvers import revolutions
+from satsym.solvers.collocation.continuation import by_bound
+from satsym.solvers.collocation.curve import Curve, Path
+from satsym.solvers.collocation.problem import Scale, TwoPoint
+from satsym.solvers.failures import FAILURES
+from satsym.solvers.iteration import Limits, watched
+from satsym.solvers.revolutions import TURN, Best
+from satsym.status import Status
+
+
+@dataclass(frozen=True, eq=False)
+class Extremal:
+    """What solving came to.
+
+    Attributes
+    ----------
+    problem
+        The two-point problem, with its bounds.
+    path
+        States, costates and extra unknowns, scaled.
+    cost
+        The cost J; infinite where there is no answer.
+    status, message
+        Outcome.
+    iterations
+        Linear systems that were solved.
+    """
+
+    problem: TwoPoint
+    path: Path
+    cost: float
+    status: Status
+    message: str
+    iterations: int
+
+
+Method = Callable[[Instance, Limits, bool], Extremal]
+"""From an instance to an extremal; the last argument says whether with great effort."""
+
+
+def without_numbers(instance: Instance, error: Exception) -> Extremal:
+    """No answer, because arithmetic failed on the way."""
+    n, duration = len(instance.initial), 1.0 if instance.tf is None else instance.tf - instance.t0
+    problem = TwoPoint(instance, (0.0,) * 3 * n, duration, Scale(np.ones(n), 1.0))
+    nothing = np.full((2 * n, 2), np.nan)
+    path = Curve(np.array([0.0, 1.0]), nothing, nothing[:, :1, None], problem.theta)
+    message = f"arithmetic fails on the way ({error})"
+    return Extremal(problem, path, float("inf"), Status.NON_FINITE, message, 0)
+
+
+def solved(instance: Instance, progress: Progress | None, name: str, method: Method) -> Solution:
+    """Solve an instance by a method, with the cheapest number of turns.
+
+    Parameters
+    ----------
+    instance
+        With final states given, on the reference or free, and a final time that is given or free.
+    progress
+        Called after each step of the method, and each phase.
+    name
+        Of the method.
+    method
+        Finds an extremal; warnings about arithmetic are off while it does.
+    """
+    began = time.perf_counter()
+    limits, history = watched(instance, progress)
+
+    def guarded(one: Instance, effort: bool) -> Extremal:
+        try:
+            return method(one, limits, effort)
+        except FAILURES as error:
+            return without_numbers(one, error)
+
+    with np.errstate(all="ignore"):
+        best = revolutions.cheapest(instance, limits, guarded, lambda found: found.cost)
+        return _solution(instance, name, best, tuple(history), limits, began)
+
+
+def _solution(
+    instance: Instance,
+    method: str,
+    best: Best[Extremal],
+    history: tuple[Iteration, ...],
+    limits: Limits,
+    began: float,
+) -> Solution:
+    extremal = best.answer
+    problem, path = extremal.problem, extremal.path
+    n, m = problem.states, len(instance.model.spec.controls)
+    tau = np.unique(np.concatenate([np.linspace(0.0, 1.0, instance.solver.steps + 1), path.mesh]))
+    scaled = limits.in_blocks(path, tau)
+    z = scaled * problem.scale.both
+    for name, turns in best.turns.items():
+        z[instance.model.spec.state_names.index(name)] += turns * TURN
+    elapsed = problem.elapsed(path.theta)
+    status, message = extremal.status, "; ".join(part for part in (extremal.message, best.message) if part)
+    if best.endless and instance.tf is None:
+        costs = ", ".join(f"{value:.4g}" for value in best.endless)
+        message = f"more turns are always cheaper: the last three numbers cost {costs}; fix the final time"
+        status = Status.NO_MINIMISER
+    u = problem.control(tau, scaled, path.theta)
+    if status in (Status.INFEASIBLE, Status.NO_MINIMISER, Status.NON_FINITE):
+        z, u = np.full_like(z, np.nan), np.full_like(u, np.nan)  # what was tried on the way is no answer
+    met = by_bound(problem, path) if status.answered else []
+    return Solution(
+        instance=instance,
+        method=method,
+        status=status,
+        message=message,
+        objective=extremal.cost if status.answered else float("nan"),
+        times=instance.t0 + elapsed * tau,
+        x=z[:n],
+        u=u,
+        lam=z[n:],
+        switching_times=tuple(_times(met, i, m, instance.t0, elapsed) for i in range(m)),
+        iterations=extremal.iterations,
+        history=history,
+        wall_s=time.perf_counter() - began,
+    )
+
+
+def _times(met: list[Array], control: int, controls: int, t0: float, elapsed: float) -> tuple[float, ...]:
+    """Switching times of a control; on a ball the bound is everyone's."""
+    rows = met[control::controls] if len(met) > 1 else met
+    return tuple(sorted(t0 + elapsed * float(tau) for row in rows for tau in row))

@@ -1,0 +1,121 @@
+"""A solution with its certificate; where that knows a cheaper competitor, the solution to which this leads instead."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+import msgspec
+import numpy as np
+
+from satsym.instance import Guess, Instance
+from satsym.solution import Progress, Solution
+from satsym.solvers.certificate.competitors import SAMPLES, Competitor, guess
+from satsym.solvers.certificate.saddle import departures, fall
+from satsym.solvers.certificate.verdict import examined
+from satsym.status import Status, Verdict
+
+ROUNDS = 3
+"""Cheaper competitors that are taken for the solution, one after the other."""
+
+Solver = Callable[[Instance, Progress | None], Solution]
+
+
+def improved(solver: Solver, instance: Instance, progress: Progress | None) -> Solution:
+    """Solve an instance, and again from each competitor that is cheaper than what was found.
+
+    An instance with a guess of its own has the solution to which that leads: what is cheaper is only said.
+
+    Parameters
+    ----------
+    solver
+        Of a method.
+    instance
+        What to solve.
+    progress
+        Called after each iteration.
+    """
+    began = time.perf_counter()
+    deadline = began + instance.solver.max_seconds
+    solution = solver(instance, progress)
+    certificate, better = examined(solution, deadline)
+    if better is not None and instance.guess:
+        message = f"{solution.message}; another extremal costs less, {better.cost:.10g}: leave out [guess] to have it"
+        solution, better = replace(solution, message=message), None
+    for seed in range(1, ROUNDS + 1):
+        again = None if better is None else _from(better, solver, solution, progress, deadline)
+        if again is None:
+            break
+        certificate, better = examined(again, deadline, seed)
+        solution = again
+    if certificate is not None and certificate.verdict is Verdict.EXTREMAL_ONLY:
+        endless = bottomless(solution)
+        if endless is not None:
+            return endless
+        lower = None if instance.guess else _departed(solver, solution, progress, deadline)
+        if lower is not None:
+            solution, certificate = lower, examined(lower, deadline, ROUNDS + 1)[0]
+    return replace(solution, certificate=certificate, wall_s=time.perf_counter() - began)
+
+
+def bottomless(solution: Solution) -> Solution | None:
+    """No answer, where what was found is stationary and other controls cost ever less; ``None`` where none shows."""
+    endless = None if solution.instance.model.spec.switching else fall(solution)
+    if endless is None:
+        return None
+    x, u, lam = (np.full_like(row, np.nan) for row in (solution.x, solution.u, solution.lam))
+    return replace(
+        solution,
+        status=Status.NO_MINIMISER,
+        message=f"{endless.message}; weigh the control or time more, shorten the time, or bound the control",
+        objective=float("nan"),
+        x=x,
+        u=u,
+        lam=lam,
+        switching_times=tuple(() for _ in solution.switching_times),
+        certificate=None,
+    )
+
+
+def starting_from(solution: Solution) -> Instance:
+    """The instance of a solution with its states and costates as the guess, resampled evenly."""
+    instance, names = solution.instance, solution.instance.model.spec.state_names
+    times = np.linspace(float(solution.times[0]), float(solution.times[-1]), SAMPLES)
+    rows = [tuple(np.interp(times, solution.times, row).tolist()) for row in (*solution.x, *solution.lam)]
+    n = len(names)
+    start = Guess(dict(zip(names, rows[:n], strict=True)), dict(zip(names, rows[n:], strict=True)))
+    return replace(instance, guess=start)
+
+
+def _departed(solver: Solver, solution: Solution, progress: Progress | None, deadline: float) -> Solution | None:
+    """What a saddle's descents lead to; ``None`` where that is not cheaper."""
+    if solution.instance.model.spec.switching:
+        return None
+    for start in departures(solution):
+        found = _again(replace(solution.instance, guess=start), solver, solution, progress, deadline)
+        if found is not None:
+            return found
+    return None
+
+
+def _from(
+    better: Competitor, solver: Solver, solution: Solution, progress: Progress | None, deadline: float
+) -> Solution | None:
+    """The solution to which a competitor leads; ``None`` where that is not cheaper, or time is up."""
+    return _again(guess(better, solution), solver, solution, progress, deadline)
+
+
+def _again(
+    start: Instance, solver: Solver, solution: Solution, progress: Progress | None, deadline: float
+) -> Solution | None:
+    """The solution to which an instance with a guess leads; ``None`` where it is not cheaper, or time is up."""
+    instance, left = solution.instance, deadline - time.perf_counter()
+    if left <= 0.0:
+        return None
+    options = msgspec.structs.replace(instance.solver, max_seconds=left)
+    found = solver(replace(start, solver=options), progress)
+    if not found.status.answered or not found.objective < solution.objective:
+        return None
+    message = f"{found.message}; the first extremal found costs {solution.objective:.6g}"
+    return replace(found, instance=instance, message=message, iterations=found.iterations + solution.iterations)

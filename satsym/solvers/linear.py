@@ -1,0 +1,191 @@
+"""Linear problems in closed form: canonical equations that are linear in states and costates, with linear ends.
+
+With the state transition matrices of the Hamiltonian system all conditions together are one linear system (Bryson
+and Ho, Applied Optimal Control, 5.3). Those of an autonomous system are matrix exponentials; where time enters, they
+come from the variational equations. Several of them, one behind the other, keep growing modes from drowning others.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+from satsym.solution import Progress, Solution
+from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.collocation.scaling import two_point
+from satsym.solvers.control import control_set
+from satsym.solvers.extremal import Extremal, solved
+from satsym.solvers.iteration import Limits
+from satsym.solvers.shooting.arcs import MOST_STEPS, Arcs, sufficient
+from satsym.solvers.shooting.newton import doubled, linearised, residual
+from satsym.solvers.two_point import unfinished
+from satsym.status import BadInput, Status
+from satsym.wording import counted
+
+Array = NDArray[np.floating[Any]]
+
+PLACES = 8
+"""Times at which derivatives are compared, at two random places each."""
+
+SAME = 1e-9
+"""Relative difference of derivatives that may be rounding."""
+
+TURN = 2.0
+"""What the fastest mode may do on one arc, in radians or powers of e."""
+
+MOST_ARCS = 2000
+GAUSS = 16
+"""Points at which the running cost is taken on each arc: what these leave out is below rounding."""
+
+ACCURACY = 1e-11
+"""Error of arcs that are integrated, with half of the steps that make the answer."""
+
+CONTRADICTED = 1e-6
+"""Remaining violation, in scaled variables, of conditions that cannot all be met."""
+
+
+def solve(instance: Instance, progress: Progress | None = None) -> Solution:
+    """Solve a linear instance.
+
+    Parameters
+    ----------
+    instance
+        With a given final time, final states given, on the reference or free, and bounds that are not met.
+    progress
+        Called once.
+
+    Raises
+    ------
+    BadInput
+        If it is not linear, with the reason.
+    """
+    return solved(instance, progress, "linear", _extremal)
+
+
+@dataclass(frozen=True, eq=False)
+class Exponential(Arcs):
+    """Arcs of an autonomous linear system, by matrix exponentials."""
+
+    def variations(self) -> tuple[Array, Array]:
+        """As of :class:`Arcs`."""
+        flows = self._flows(np.diff(self.mesh))
+        ends = flows[:, :-1, :-1] @ self.nodes.T[:-1, :, None] + flows[:, :-1, -1:]
+        return ends[:, :, 0].T, flows[:, :-1, :-1]
+
+    def ends(self) -> Array:
+        """As of :class:`Arcs`."""
+        return self.variations()[0]
+
+    def __call__(self, tau: Array) -> Array:
+        """As of :class:`Arcs`."""
+        arc = np.clip(np.searchsorted(self.mesh, tau, side="right") - 1, 0, len(self.mesh) - 2)
+        flows = self._flows(tau - self.mesh[arc])
+        values: Array = (flows[:, :-1, :-1] @ self.nodes.T[arc, :, None] + flows[:, :-1, -1:])[:, :, 0].T
+        return values
+
+    def cost(self) -> float:
+        """As of :class:`Arcs`, by Gauss quadrature."""
+        points, weights = np.polynomial.legendre.leggauss(GAUSS)
+        widths = np.diff(self.mesh)[:, None]
+        tau = (self.mesh[:-1, None] + widths * (points + 1.0) / 2.0).ravel()
+        running = self.problem.running_cost(tau, self(tau), self.theta)
+        integral = float(running @ (widths * weights / 2.0).ravel())
+        return self.problem.elapsed(self.theta) * integral + self.terminal_cost
+
+    @cached_property
+    def _generator(self) -> Array:
+        """Of the motion by tau, with what drives it as a last column, shape (2n + 1, 2n + 1)."""
+        here, tau = np.append(self.problem.initial, np.zeros(self.problem.states))[:, None], np.zeros(1)
+        slopes = self.problem.jacobian(tau, here, self.theta)[:, :, 0]
+        driven = self.problem.rates(tau, here, self.theta) - slopes @ here
+        found = np.zeros((len(slopes) + 1, len(slopes) + 1))
+        found[:-1] = np.append(slopes, driven, axis=1) * self.problem.elapsed(self.theta)
+        return found
+
+    def _flows(self, widths: Array) -> Array:
+        """State transition matrices over these shares of the duration, shape (M, 2n + 1, 2n + 1)."""
+        from scipy.linalg import expm
+
+        flows: Array = expm(self._generator * widths[:, None, None])
+        return flows
+
+
+def _extremal(instance: Instance, limits: Limits, effort: bool) -> Extremal:
+    if instance.tf is None:
+        raise _refusal(instance, "its final time is free")
+    problem = two_point(instance, instance.tf - instance.t0)
+    free = problem.widened(float("inf"))
+    arcs = _arcs(free)
+    if not _linear(free):
+        return Extremal(problem, arcs, float("inf"), Status.NON_FINITE, "the canonical equations are not finite", 0)
+    try:
+        matching, wrong = linearised(arcs)
+        arcs = arcs.moved(*matching.correction(wrong.defects, wrong.start, wrong.finish), 1.0)
+        arcs, error = doubled(arcs, matching)
+    except np.linalg.LinAlgError:
+        error = float("nan")
+    if not (error <= instance.solver.tolerance and _violation(arcs) <= CONTRADICTED):
+        message = (
+            "the conditions contradict each other or leave costates open: the end may be out of the control's reach"
+        )
+        return unfinished(problem, arcs, message, 1, limits)
+    tau = np.linspace(0.0, 1.0, instance.solver.steps + 1)
+    control = limits.in_blocks(lambda part: problem.control(part, arcs(part), arcs.theta, bounded=False), tau)
+    if control_set.violation(instance, control) > 0.0:
+        raise _refusal(instance, "bounds on its control are met")
+    cost = arcs.cost() * problem.scale.cost
+    limits.tell(cost, error)
+    kind = "matrix exponentials" if isinstance(arcs, Exponential) else "variational equations"
+    message = f"closed form by {kind} on {counted(len(arcs.widths), 'arc')}, estimated error {error:.0e}"
+    return Extremal(problem, arcs, cost, Status.CONVERGED, message, 1)
+
+
+def _linear(problem: TwoPoint) -> bool:
+    """Whether derivatives are finite; an instance for which they differ between random places is refused."""
+    n, names, rng = problem.states, problem.instance.model.spec.state_names, np.random.default_rng(0)
+    tau, places = np.linspace(0.0, 1.0, PLACES), rng.standard_normal((2, 2 * n, PLACES))
+    places[:, list(problem.positive)] = np.abs(places[:, list(problem.positive)])
+    here, there = (problem.jacobian(tau, place, problem.theta) for place in places)
+    if not np.isfinite(here).all() or not np.isfinite(there).all():
+        return False
+    differs = ~(np.abs(here - there) <= SAME * np.abs(here).max()).all(axis=2)
+    if differs.any():
+        row, column = np.argwhere(differs)[0]
+        symbols = [*names, *(f"the costate of {name}" for name in names)]
+        raise _refusal(problem.instance, f"how the rate of {symbols[row]} follows {symbols[column]} depends on both")
+    extra = rng.standard_normal((2, problem.unknowns))
+    ends = [problem.boundary_slopes(place[:, -1], theta) for place, theta in zip(places, extra, strict=True)]
+    if not all(np.allclose(a, b, SAME, SAME) for a, b in zip(*ends, strict=True)):
+        raise _refusal(problem.instance, "its terminal cost is not quadratic, or a terminal constraint is not linear")
+    return True
+
+
+def _arcs(problem: TwoPoint) -> Arcs:
+    """Arcs on which no mode of the motion does much, not solved yet."""
+    n, theta = problem.states, problem.theta
+    tau = np.linspace(0.0, 1.0, PLACES)
+    slopes = problem.jacobian(tau, np.ones((2 * n, PLACES)), theta).transpose(2, 0, 1)
+    fastest = float(np.abs(np.linalg.eigvals(np.nan_to_num(slopes))).max()) * problem.duration
+    mesh = np.linspace(0.0, 1.0, int(np.clip(np.ceil(fastest / TURN), 1, MOST_ARCS)) + 1)
+    nodes = np.ones((2 * n, len(mesh)))
+    if problem.instance.model.spec.autonomous:
+        return Exponential(problem, mesh, nodes, theta)
+    arcs = Arcs(problem, mesh, nodes, theta)
+    return sufficient(arcs, ACCURACY) or arcs.with_steps(MOST_STEPS)
+
+
+def _violation(arcs: Arcs) -> float:
+    """Of all conditions at most."""
+    wrong = residual(arcs, arcs.ends())
+    return float(max(np.abs(part).max() for part in (wrong.defects, wrong.start, wrong.finish)))
+
+
+def _refusal(instance: Instance, reason: str) -> BadInput:
+    return BadInput(
+        f'{instance.name}: solver.method: {instance.model.spec.name} is not linear: {reason}; use method "collocation"'
+    )

@@ -1,0 +1,227 @@
+"""How near to the given end a control within its bounds can come: evidence that an instance is infeasible.
+
+The miss is minimised alone, whatever it costs, from several controls, with the gradient by the adjoint equation.
+Where the least miss is not zero, no control near these arrives; that is evidence, not a proof, and the distance
+itself is never called a solution.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.grid import Grid
+from satsym.solvers.collocation.curve import Path
+from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.iteration import Limits
+
+Array = NDArray[np.floating[Any]]
+
+STEPS = 200
+ROUNDS = 150
+"""Iterations from each start."""
+
+DRAWN, PIECES = 4, 5
+"""Starts that are drawn, and constant pieces of each."""
+
+ARRIVED = 1e-4
+"""Relative miss that the grid and the minimisation may leave of none."""
+
+
+@dataclass(frozen=True, eq=False)
+class Nearest:
+    """The nearest end that was found.
+
+    Attributes
+    ----------
+    missed
+        By how much each given final state is missed, in the model's units, by its name, and each terminal constraint,
+        by its multiplier's.
+    distance
+        The largest of them, relative to the size of its state along the way.
+    starts
+        Controls from which the miss was minimised.
+    """
+
+    missed: dict[str, float]
+    distance: float
+    starts: int
+
+    @property
+    def arrives(self) -> bool:
+        """Whether that is no miss."""
+        return self.distance <= ARRIVED
+
+    @property
+    def message(self) -> str:
+        """One line."""
+        misses = ", ".join(f"{name} by {value:.3g}" for name, value in self.missed.items())
+        return (
+            f"no control within its bounds was found that reaches the given end: "
+            f"the nearest of {self.starts} local searches misses {misses}"
+        )
+
+
+def nearest(problem: TwoPoint, path: Path, limits: Limits) -> Nearest | None:
+    """Minimise the miss of the given end.
+
+    Parameters
+    ----------
+    problem
+        With its bounds, and a given final time.
+    path
+        States and costates whose control law, cut to the bounds, is one of the starts.
+    limits
+        When to stop.
+
+    Returns
+    -------
+    Nearest or None
+        ``None`` where the final time is free, where time was up first, or where nothing could be simulated.
+    """
+    from scipy.optimize import minimize
+
+    if problem.free_time or not (problem.fixed.any() or problem.unknowns):
+        return None
+    reach = _Reach(problem)
+
+    def stop(_: Array) -> None:
+        if limits.expired:
+            raise StopIteration
+
+    law = problem.control(reach.tau, path(reach.tau), path.theta, bounded=False)
+    starts = [np.zeros_like(law), law, law / 2.0, *_drawn(problem, reach)]
+    best, tried = None, 0
+    for start in starts:
+        if limits.expired:
+            return None
+        with np.errstate(all="ignore"):
+            found = minimize(
+                reach.miss,
+                reach.parameters(start).ravel(),
+                jac=True,
+                method="L-BFGS-B",
+                bounds=reach.box,
+                callback=stop,
+                options={"maxiter": ROUNDS, "maxcor": 20, "ftol": 1e-15, "gtol": 1e-10},
+            )
+        tried += 1
+        if np.isfinite(found.fun) and (best is None or found.fun < best.fun):
+            best = found
+        if best is not None and best.fun <= ARRIVED**2 / 2.0:
+            break
+    if best is None:
+        return None
+    gap = reach.gap(best.x)
+    if gap is None:
+        return None
+    spec, units = problem.instance.model.spec, [*problem.scale.state, *(1.0 for _ in range(problem.unknowns))]
+    names = [*spec.state_names, *(f"the constraint of {v.symbol}" for v in spec.multipliers)]
+    missed = {names[i]: float(gap[k] * units[i]) for k, i in enumerate(reach.rows)}
+    return Nearest(missed, float(np.abs(gap).max()), tried)
+
+
+def _drawn(problem: TwoPoint, reach: _Reach) -> list[Array]:
+    """Controls that are drawn within the bounds, constant for a few pieces each."""
+    rng, instance, nodes = np.random.default_rng(0), problem.instance, len(reach.tau)
+    low, high = (np.array(row)[:, None] for row in (instance.lower, instance.upper))
+    if reach._round:
+        low, high = -instance.max_norm * np.ones((reach.controls, 1)), instance.max_norm * np.ones((reach.controls, 1))
+    if not (np.isfinite(low).all() and np.isfinite(high).all()):
+        return []
+    piece = np.minimum(np.arange(nodes) * PIECES // nodes, PIECES - 1)
+    return [(low + (high - low) * rng.uniform(size=(reach.controls, PIECES)))[:, piece] for _ in range(DRAWN)]
+
+
+class _Reach:
+    """Where controls lead that are straight between the nodes of a uniform grid."""
+
+    def __init__(self, problem: TwoPoint) -> None:
+        instance = problem.instance
+        assert instance.tf is not None
+        self.problem, self.grid = problem, Grid.uniform(instance.t0, instance.tf, STEPS)
+        self.tau = np.linspace(0.0, 1.0, STEPS + 1)
+        self.rows = np.append(np.flatnonzero(problem.fixed), problem.states + np.arange(problem.unknowns))
+        self.controls = len(instance.model.spec.controls)
+
+    @property
+    def box(self) -> list[tuple[float, float]] | None:
+        """Bounds of the parameters: the controls themselves, but on a ball all vectors that are mapped into it."""
+        instance = self.problem.instance
+        if instance.model.spec.control_set != "box":
+            return None
+        pairs = zip(instance.lower, instance.upper, strict=True)
+        return [pair for pair in pairs for _ in range(STEPS + 1)]
+
+    def parameters(self, u: Array) -> Array:
+        """Parameters of a control, cut to its bounds."""
+        instance = self.problem.instance
+        if self._round:
+            size = np.linalg.norm(u, axis=0) / instance.max_norm
+            inside = np.minimum(size, 0.9)
+            return (
+                u
+                / instance.max_norm
+                * np.where(size > 0.0, inside / np.maximum(size, 1e-300), 1.0)
+                / np.sqrt(1.0 - inside**2)
+            )
+        if instance.model.spec.control_set == "box":
+            lower, upper = (np.array(row)[:, None] for row in (instance.lower, instance.upper))
+            return np.minimum(np.maximum(u, lower), upper)
+        return u
+
+    @property
+    def _round(self) -> bool:
+        instance = self.problem.instance
+        return instance.model.spec.control_set == "ball" and np.isfinite(instance.max_norm)
+
+    def control(self, parameters: Array) -> Array:
+        """The control, shape (m, N + 1)."""
+        found = parameters.reshape(self.controls, -1)
+        if self._round:
+            found = self.problem.instance.max_norm * found / np.sqrt(1.0 + (found**2).sum(axis=0))
+        return found
+
+    def reached(self, u: Array) -> tuple[Array, Array, Array]:
+        """States at the nodes, the scaled miss of what ties the end, and its derivatives by the scaled final state."""
+        problem, instance = self.problem, self.problem.instance
+        middle = (u[:, 1:] + u[:, :-1]) / 2.0
+        x, _, _ = instance.model.forward(self.grid.nodes, instance.initial, u, middle, instance.parameters)
+        end = np.append(x[:, -1] / problem.scale.state, np.zeros(problem.states))
+        slopes, _ = problem.boundary_slopes(end, problem.theta)
+        return x, problem.boundary(end, problem.theta)[self.rows], slopes[self.rows, : problem.states]
+
+    def gap(self, parameters: Array) -> Array | None:
+        """The scaled miss; ``None`` where the motion is not finite."""
+        _, gap, _ = self.reached(self.control(parameters))
+        return gap if np.isfinite(gap).all() else None
+
+    def miss(self, parameters: Array) -> tuple[float, Array]:
+        """Half the squared miss, and its gradient."""
+        problem, instance = self.problem, self.problem.instance
+        u = self.control(parameters)
+        x, gap, slopes = self.reached(u)
+        if not np.isfinite(x).all() or not instance.model.in_domain(x):
+            return 1e10, np.zeros_like(parameters)
+        n = problem.states
+        by_x = instance.model.jacobian_x_batch(self.grid.nodes, x, u, instance.parameters)
+        by_u = instance.model.jacobian_u_batch(self.grid.nodes, x, u, instance.parameters)
+        adjoint = np.zeros((n, STEPS + 1))
+        adjoint[:, -1] = (gap @ slopes) / problem.scale.state
+        width, transposed = self.grid.nodes[1] - self.grid.nodes[0], by_x.transpose(2, 1, 0)
+        # Trapezoids: second order is plenty for a direction of descent.
+        one = np.eye(n)
+        backwards = np.linalg.solve(one - width / 2.0 * transposed[:-1], one + width / 2.0 * transposed[1:])
+        for k in range(STEPS, 0, -1):
+            adjoint[:, k - 1] = backwards[k - 1] @ adjoint[:, k]
+        weights = np.full(STEPS + 1, width)
+        weights[[0, -1]] /= 2.0
+        slope = np.einsum("ijk,ik->jk", by_u, adjoint) * weights
+        if self._round:
+            v = parameters.reshape(self.controls, -1)
+            length = np.sqrt(1.0 + (v**2).sum(axis=0))
+            slope = instance.max_norm * (slope / length - v * (v * slope).sum(axis=0) / length**3)
+        return float(gap @ gap) / 2.0, slope.ravel()

@@ -1,0 +1,210 @@
+"""One instance solved again and again, for other initial states and parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from importlib.util import find_spec
+
+import numpy as np
+
+from satsym.instance import Instance
+from satsym.instance.resolve import value_of
+from satsym.solution import Array, Solution
+from satsym.solvers.extremal import Extremal, solved, without_numbers
+from satsym.solvers.failures import FAILURES
+from satsym.solvers.iteration import Limits, watched
+from satsym.solvers.repeated.by_collocation import ByCollocation
+from satsym.solvers.repeated.means import Means
+from satsym.spec import Variable
+from satsym.status import BadInput, Status
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What solving once more came to.
+
+    Attributes
+    ----------
+    status, message
+        Outcome, and one sentence for people.
+    objective
+        The cost J; NaN where there is none.
+    times, x, lam
+        Nodes, shape (N+1,), with states and costates there, shapes (n, N+1), in the model's units.
+    way
+        From where it was found: ``"last answer"``, ``"straight line"`` or ``"cold start"``.
+    extremal
+        The same in scaled variables.
+    """
+
+    status: Status
+    message: str
+    objective: float
+    times: Array
+    x: Array
+    lam: Array
+    way: str
+    extremal: Extremal
+
+
+class Repeated:
+    """An instance to be solved many times, with other initial states or parameters.
+
+    Making it solves the instance once, from a cold start. From then on it starts from the last answer, or from a
+    straight line, and only if neither leads to an extremal from a cold start. With numba (extra ``fast``) that is
+    shooting with compiled functions, and compiling takes seconds; without it collocation, which keeps scales and mesh.
+
+    Parameters
+    ----------
+    instance
+        What is solved. Given final states, the final time and bounds stay as they are.
+    compiled
+        Whether to compile; by default wherever numba is installed.
+
+    Attributes
+    ----------
+    answer
+        The last one.
+
+    Raises
+    ------
+    BadInput
+        If the model has no cost, its controls switch, angles are to count modulo a turn, or numba is asked for and
+        not installed.
+
+    Examples
+    --------
+    ::
+
+        repeated = Repeated(instance.load("return-to-orbit"))
+        answer = repeated.solve(initial=(1.12, 0.0, 0.0, 0.9))
+        answer.objective, answer.lam[:, 0]
+        certify(repeated.solution(answer))
+    """
+
+    def __init__(self, instance: Instance, compiled: bool | None = None) -> None:
+        if not instance.model.spec.has_cost:
+            raise BadInput(
+                f"{instance.name}: model {instance.model.spec.name} has no cost, so there is nothing to solve"
+            )
+        if instance.model.spec.switching:
+            raise BadInput(
+                f"{instance.name}: the controls of {instance.model.spec.name} switch, which cannot be solved again "
+                "and again; solve each instance by itself"
+            )
+        if instance.solver.free_angles:
+            raise BadInput(
+                f"{instance.name}: [solver] free_angles: turns are not looked for again and again; remove it"
+            )
+        compiled = find_spec("numba") is not None if compiled is None else compiled
+        self._means = _shooting() if compiled else ByCollocation()
+        self._case = replace(instance, model=instance.model.compiled()) if compiled else instance
+        self.answer = self.solve(cold=True)
+
+    def solve(
+        self, initial: Sequence[float] | None = None, parameters: Sequence[float] | None = None, cold: bool = False
+    ) -> Answer:
+        """Solve once more.
+
+        Parameters
+        ----------
+        initial, parameters
+            In the model's order and units; the instance's where they are left out.
+        cold
+            Whether to leave the last answer aside.
+
+        Returns
+        -------
+        Answer
+            The extremal near the last answer; or, from a straight line or a cold start, near a strict local minimum
+            of the problem without bounds. Only :func:`certify` tells whether it is a minimum within them.
+
+        Raises
+        ------
+        ValueError
+            If there are not as many numbers as states or parameters.
+        BadInput
+            If one of them is not finite or outside its domain.
+        """
+        spec = self._case.model.spec
+        case = replace(
+            self._case,
+            initial=_numbers(initial, self._case.initial, spec.states, "initial"),
+            parameters=_numbers(parameters, self._case.parameters, spec.parameters, "parameters"),
+        )
+        limits, _ = watched(case, None)
+        with np.errstate(all="ignore"):
+            self.answer = _answer(*self._found(case, limits, cold))
+        return self.answer
+
+    def _found(self, case: Instance, limits: Limits, cold: bool) -> tuple[Extremal, str]:
+        """An extremal, or why there is none, and from where it was found."""
+        quick = {"last answer": self._means.near, "straight line": self._means.straight}
+        for way, attempt in quick.items():
+            if cold and way == "last answer":
+                continue
+            try:
+                found = attempt(case, limits)
+            except FAILURES:
+                continue
+            if found:
+                return found, way
+        try:
+            return self._means.cold(case, limits), "cold start"
+        except FAILURES as error:
+            return without_numbers(case, error), "cold start"
+
+    def solution(self, answer: Answer) -> Solution:
+        """All of an answer, with times of switching, as other solvers give it; takes as long as they do.
+
+        Raises
+        ------
+        ValueError
+            If there was none.
+        """
+        if not answer.status.answered:
+            raise ValueError(f"no answer: {answer.message}")
+
+        def method(instance: Instance, limits: Limits, effort: bool) -> Extremal:
+            return self._means.full(answer.extremal, limits)
+
+        return solved(answer.extremal.problem.instance, None, self._means.name, method)
+
+
+def _shooting() -> Means:
+    """Imported late: it needs SciPy, which takes longer to load than most instances to solve."""
+    from satsym.solvers.repeated.by_shooting import ByShooting
+
+    return ByShooting()
+
+
+def _answer(found: Extremal, way: str) -> Answer:
+    problem, path, answered = found.problem, found.path, found.status.answered
+    z = path.nodes * problem.scale.both
+    return Answer(
+        status=found.status,
+        message=found.message,
+        objective=found.cost if answered else float("nan"),
+        times=problem.instance.t0 + problem.elapsed(path.theta) * path.mesh,
+        x=z[: problem.states],
+        lam=z[problem.states :],
+        way=way,
+        extremal=found,
+    )
+
+
+def _numbers(
+    given: Sequence[float] | None, own: tuple[float, ...], variables: Sequence[Variable], name: str
+) -> tuple[float, ...]:
+    if given is None:
+        return own
+    if len(given) != len(own):
+        raise ValueError(f"{name} must hold {len(own)} numbers, not {len(given)}")
+    return tuple(_number(float(value), v, f"[{name}] {v.symbol}") for value, v in zip(given, variables, strict=True))
+
+
+def _number(value: float, variable: Variable, key: str) -> float:
+    if not np.isfinite(value):
+        raise BadInput(f"{key}: {value} is not finite; give a number")
+    return value_of(variable, value, key)

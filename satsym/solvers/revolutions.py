@@ -1,0 +1,162 @@
+"""Angles whose final value counts modulo a turn: which number of turns costs least.
+
+A final angle a turn further is the same as an initial angle a turn less, the model being the same a turn away; so
+each number of turns is an ordinary instance. The numbers next to the best one are solved as well.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from satsym.grid import Grid
+from satsym.instance import Instance
+from satsym.solution import Solution
+from satsym.solvers.cold_start.durations import time_scale
+from satsym.solvers.iteration import Limits
+
+Answer = TypeVar("Answer")
+TURN = 2.0 * math.pi
+MOST_MOVES = 6
+"""Moves from one number of turns to a cheaper neighbour; after so many there may be no end to it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Best(Generic[Answer]):
+    """The cheapest number of turns.
+
+    Attributes
+    ----------
+    answer
+        What solving with it gave.
+    turns
+        Turns added to the final value of each angle.
+    message
+        Which number won, and what its neighbours cost; empty where no angle counts modulo a turn.
+    endless
+        Costs of the last numbers of turns where they fall without end in sight: after all moves, or up to a
+        neighbour that has no answer.
+    """
+
+    answer: Answer
+    turns: dict[str, int]
+    message: str
+    endless: tuple[float, ...] = ()
+
+
+def cheapest(
+    instance: Instance, limits: Limits, solve: Callable[[Instance, bool], Answer], cost: Callable[[Answer], float]
+) -> Best[Answer]:
+    """Solve with the number of turns that costs least.
+
+    Parameters
+    ----------
+    instance
+        Names the angles.
+    limits
+        When to stop.
+    solve, cost
+        From an instance to an answer, with great effort or not, and its cost: infinite where there is none. The
+        first number of turns is worth the effort, its neighbours are not.
+    """
+    angles = [name for name in instance.solver.free_angles if name in instance.final]
+    at = _natural(instance, angles)
+    if not angles:
+        return Best(solve(instance, True), {}, "")
+    known: dict[tuple[int, ...], Answer] = {}
+
+    def costs(turns: tuple[int, ...]) -> float:
+        if turns not in known:
+            if known and limits.expired:
+                return math.inf
+            known[turns] = solve(shifted(instance, dict(zip(angles, turns, strict=True))), not known)
+        return cost(known[turns])
+
+    path = [costs(at)]
+    for _ in range(MOST_MOVES):
+        best = min(_neighbours(at), key=costs)
+        if costs(best) >= costs(at):
+            break
+        at = best
+        path.append(costs(at))
+    turns = dict(zip(angles, at, strict=True))
+    others = {k: costs(k) for k in _neighbours(at)}
+    lost = len(path) > 2 and any(math.isinf(value) for value in others.values())
+    endless = tuple(path[-3:]) if lost or len(path) > MOST_MOVES else ()
+    return Best(known[at], turns, _message(angles, at, others), endless)
+
+
+def shifted(instance: Instance, turns: dict[str, int]) -> Instance:
+    """The instance whose initial angles are so many turns less."""
+    names = instance.model.spec.state_names
+    initial = tuple(x - TURN * turns.get(name, 0) for name, x in zip(names, instance.initial, strict=True))
+    return replace(instance, initial=initial)
+
+
+def as_stated(solution: Solution) -> Solution:
+    """A solution with as many turns taken off its angles, throughout, as make them end as stated."""
+    instance, names = solution.instance, solution.instance.model.spec.state_names
+    turns: dict[str, int] = {}
+    for name in instance.solver.free_angles:
+        if name in instance.final:
+            row = names.index(name)
+            goal = _goal(instance, row, instance.final[name], float(solution.times[-1]))
+            turns[name] = round((float(solution.x[row, -1]) - goal) / TURN)
+    if not any(turns.values()):
+        return solution
+    x = solution.x - TURN * np.array([turns.get(name, 0) for name in names])[:, None]
+    return replace(solution, instance=shifted(instance, turns), x=x)
+
+
+def _goal(instance: Instance, row: int, wanted: float | str, tf: float) -> float:
+    """A stated final value."""
+    return float(instance.model.reference(tf, instance.parameters)[row] if isinstance(wanted, str) else wanted)
+
+
+def _neighbours(at: tuple[int, ...]) -> list[tuple[int, ...]]:
+    """One turn less or more of one angle."""
+    return [(*at[:i], at[i] + step, *at[i + 1 :]) for i in range(len(at)) for step in (-1, 1)]
+
+
+def _natural(instance: Instance, angles: list[str]) -> tuple[int, ...]:
+    """The turns that the motion without control comes closest to; with a free final time, in a typical one."""
+    none = tuple([0] * len(angles))
+    if not angles:
+        return none
+    end = instance.tf if instance.tf is not None else instance.tf_guess
+    if end is None:
+        end = instance.t0 + TURN * time_scale(instance)
+    grid = Grid.uniform(instance.t0, end, 2000)
+    idle = np.zeros((len(instance.model.spec.controls), grid.steps + 1))
+    x, _, _ = instance.model.forward(grid.nodes, instance.initial, idle, idle[:, 1:], instance.parameters)
+    names = instance.model.spec.state_names
+    if not np.isfinite(x).all() or not instance.model.in_domain(x):
+        return none
+    found = []
+    for name in angles:
+        row = names.index(name)
+        goal = _goal(instance, row, instance.final[name], end)
+        found.append(round((float(x[row, -1]) - goal) / TURN))
+    return tuple(found)
+
+
+def _message(angles: list[str], at: tuple[int, ...], others: dict[tuple[int, ...], float]) -> str:
+    parts = []
+    for i, name in enumerate(angles):
+        less, more = (others[(*at[:i], at[i] + step, *at[i + 1 :])] for step in (-1, 1))
+        parts.append(f"{name} {_turns(at[i])}; a turn less {_costing(less)}, a turn more {_costing(more)}")
+    return "; ".join(parts)
+
+
+def _turns(count: int) -> str:
+    if not count:
+        return "ends as stated"
+    return f"ends {abs(count)} turn{'s' if abs(count) > 1 else ''} {'above' if count > 0 else 'below'} what is stated"
+
+
+def _costing(value: float) -> str:
+    return f"costs {value:.6g}" if math.isfinite(value) else "has no answer"

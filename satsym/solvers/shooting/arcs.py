@@ -1,0 +1,192 @@
+"""Arcs: the canonical equations from each node to the next, with how their ends follow their starts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.shooting.runge_kutta import ORDER, advance
+
+Array = NDArray[np.floating[Any]]
+
+MOST_STEPS = 32
+"""Of one arc; where more are needed, more arcs are better."""
+
+FAINT = 1e-2
+"""Costates whose scaled size is below this are compared at this size: a return from so near feels the rounding of the
+states as a larger share of its costates."""
+
+ASYMPTOTIC = 1e-3
+"""Error below which it falls with the steps as the order promises."""
+
+
+@dataclass(frozen=True, eq=False)
+class Arcs:
+    """States and costates at the nodes of a mesh, from where the canonical equations take their course.
+
+    Attributes
+    ----------
+    problem
+        The two-point problem.
+    mesh
+        Nodes in [0, 1], shape (N+1,). Kinks must be among them, or the order is lost; with compiled kernels only the
+        path between the nodes asks for that.
+    nodes
+        Values there, shape (2n, N+1).
+    theta
+        Extra unknowns, shape (e,).
+    steps
+        Number S of integration steps in each arc.
+    """
+
+    problem: TwoPoint
+    mesh: Array
+    nodes: Array
+    theta: Array
+    steps: int = 1
+
+    @cached_property
+    def widths(self) -> Array:
+        """Lengths of the steps, shape (N,)."""
+        found: Array = np.diff(self.mesh) / self.steps
+        return found
+
+    def moved(self, nodes: Array, theta: Array, length: float) -> Arcs:
+        """The same after a share of a correction; its first argument in shape (N+1, 2n)."""
+        return replace(self, nodes=self.nodes + length * nodes.T, theta=self.theta + length * theta)
+
+    def with_steps(self, steps: int) -> Arcs:
+        """The same with another number of steps."""
+        return replace(self, steps=steps)
+
+    def size(self, nodes: Array, theta: Array) -> float:
+        """Largest change: of states, relative to their size (at least one), of costates and a free duration."""
+        n = self.problem.states
+        x, lam = max(1.0, np.abs(self.nodes[:n]).max()), max(FAINT, np.abs(self.nodes[n:]).max())
+        changes = [np.abs(nodes[:, :n]).max() / x, np.abs(nodes[:, n:]).max() / lam]
+        if self.problem.free_time:
+            changes.append(abs(theta[-1] / self.theta[-1]))
+        return float(max(changes))
+
+    @cached_property
+    def course(self) -> tuple[Array, Array]:
+        """Times and values at the beginnings of all steps and at the end, shapes (N S + 1,) and (2n, N S + 1)."""
+        times, values = self._beginnings(), [self.nodes[:, :-1]]
+        for tau in times[:-1]:
+            values.append(advance(self._slope, tau, values[-1], self.widths))
+        flat = np.stack(values, axis=2).reshape(len(self.nodes), -1)
+        return np.append(np.stack(times, axis=1).ravel(), 1.0), np.append(flat, self.nodes[:, -1:], axis=1)
+
+    def ends(self) -> Array:
+        """Where the arcs end, shape (2n, N)."""
+        if self._compiled:
+            return self._flight()[0].T / self.problem.scale.both
+        values = self.nodes[:, :-1]
+        for tau in self._beginnings():
+            values = advance(self._slope, tau, values, self.widths)
+        return values
+
+    def variations(self) -> tuple[Array, Array]:
+        """The ends of the arcs, shape (2n, N), and how they follow their starts, shape (N, 2n, 2n).
+
+        The latter from the variational equations, by the same steps.
+        """
+        if self._compiled:
+            ends, _, transition = self._flight()
+            return ends.T / self.problem.scale.both, transition * self.problem.scale.ratio[:, :, 0]
+        rows = len(self.nodes)
+        values = np.zeros((rows, 1 + rows, len(self.widths)))
+        values[:, 0] = self.nodes[:, :-1]
+        values[:, 1:] = np.eye(rows)[:, :, None]
+        for tau in self._beginnings():
+            values[:] = advance(self._varied_slope, tau, values, self.widths)
+        return values[:, 0], values[:, 1:].transpose(2, 0, 1)
+
+    def by_theta(self, ends: Array, transition: Array) -> Array:
+        """How the ends of the arcs follow the extra unknowns, shape (N, 2n, e): only a duration shifts their times."""
+        problem, mesh, theta = self.problem, self.mesh, self.theta
+        found = np.zeros((len(transition), len(self.nodes), problem.unknowns))
+        if problem.free_time:
+            begun = problem.rates(mesh[:-1], self.nodes[:, :-1], theta) * mesh[:-1]
+            ended = problem.rates(mesh[1:], ends, theta) * mesh[1:]
+            found[:, :, -1] = ended.T - (transition @ begun.T[:, :, None])[:, :, 0]
+        return found
+
+    def __call__(self, tau: Array) -> Array:
+        """Values at ``tau`` in [0, 1], shape (2n, M): a shorter step from where the last one before begins."""
+        times, values = self.course
+        step = np.clip(np.searchsorted(times, tau, side="right") - 1, 0, len(times) - 2)
+        return advance(self._slope, times[step], values[:, step], tau - times[step])
+
+    def cost(self) -> float:
+        """The cost J, scaled, with its integral by the same method."""
+        if self._compiled:
+            return self._flight()[1] / self.problem.scale.cost + self.terminal_cost
+        problem, theta, elapsed = self.problem, self.theta, self.problem.elapsed(self.theta)
+        times, values = self.course
+
+        def slope(tau: Array, y: Array) -> Array:
+            running = problem.running_cost(tau, y[:-1], theta)
+            return np.append(self._slope(tau, y[:-1]), elapsed * running[None], axis=0)
+
+        start = np.append(values[:, :-1], np.zeros((1, len(times) - 1)), axis=0)
+        running = advance(slope, times[:-1], start, np.diff(times))[-1]
+        return float(running.sum()) + self.terminal_cost
+
+    @property
+    def terminal_cost(self) -> float:
+        """S at the end, scaled."""
+        return self.problem.terminal_cost(self.nodes[:, -1], self.theta)
+
+    @property
+    def _compiled(self) -> bool:
+        return self.problem.instance.model.backend == "numba"
+
+    def _flight(self) -> Any:
+        """What compiled functions say: ends, cost and transition in the model's units."""
+        from satsym.solvers.shooting.compiled import flight
+
+        problem, instance = self.problem, self.problem.instance
+        times = instance.t0 + problem.elapsed(self.theta) * self.mesh
+        nodes = np.ascontiguousarray((self.nodes * problem.scale.both).T)
+        return flight(instance.model)(times, nodes, self.steps, instance.parameters, problem.bounds)
+
+    def _slope(self, tau: Array, values: Array) -> Array:
+        """Rates by tau, shape (2n, M)."""
+        return self.problem.elapsed(self.theta) * self.problem.rates(tau, values, self.theta)
+
+    def _varied_slope(self, tau: Array, values: Array) -> Array:
+        """The same with those of the variations, which are the other columns of values, shape (2n, 1 + 2n, N)."""
+        elapsed, z = self.problem.elapsed(self.theta), values[:, 0]
+        slopes = self.problem.jacobian(tau, z, self.theta).transpose(2, 0, 1)
+        found = np.empty_like(values)
+        found[:, 0] = self._slope(tau, z)
+        found[:, 1:] = elapsed * (slopes @ values[:, 1:].transpose(2, 0, 1)).transpose(1, 2, 0)
+        return found
+
+    def _beginnings(self) -> list[Array]:
+        """Of the first steps of all arcs, of the second steps, and so on."""
+        return [self.mesh[:-1] + k * self.widths for k in range(self.steps)]
+
+
+def sufficient(arcs: Arcs, tolerance: float) -> Arcs | None:
+    """The arcs with as many steps as their ends need to be right within a tolerance; ``None`` where these are too many.
+
+    The error is estimated from two runs with few steps, one with half as many (Richardson), and goes down as the
+    order promises.
+    """
+    steps, coarse = 1, arcs.with_steps(1).ends()
+    while 2 * steps <= MOST_STEPS:
+        steps *= 2
+        fine = arcs.with_steps(steps).ends()
+        error = arcs.size((fine - coarse).T, np.zeros_like(arcs.theta)) / (2**ORDER - 1)
+        if error < ASYMPTOTIC:
+            needed = int(np.ceil(steps * (error / tolerance) ** (1.0 / ORDER)))
+            return arcs.with_steps(max(needed, 1)) if needed <= MOST_STEPS else None
+        coarse = fine
+    return None

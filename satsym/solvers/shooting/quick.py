@@ -1,0 +1,128 @@
+"""Newton's method for good starts, undamped, on compiled arcs; quick to say that a start was not good enough.
+
+The corrections of all nodes follow from those of the initial costates and of the extra unknowns (condensing), which
+leaves a system as small as the boundary (Bock and Plitt, A Multiple Shooting Algorithm for Direct Solution of
+Optimal Control Problems, 1984).
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.kernels import Kernels
+from satsym.solvers.shooting.arcs import MOST_STEPS, Arcs
+from satsym.solvers.shooting.compiled import Compiled, Numbers, flight, njit, packed
+from satsym.solvers.shooting.newton import within_domain
+from satsym.solvers.shooting.runge_kutta import ORDER
+
+Array = NDArray[np.floating[Any]]
+
+MOST = 12
+LOST = 30.0
+"""Size of a correction that leads nowhere."""
+
+CLOSE = 1e-7
+"""Size of a correction after which twice as many steps show the error: what is left to correct is about its square."""
+
+
+def quick_newton(arcs: Arcs, tolerance: float) -> tuple[Arcs, float, int]:
+    """Newton on arcs of a compiled model, until the error is below a tolerance.
+
+    Parameters
+    ----------
+    arcs
+        Where to start, with enough steps.
+    tolerance
+        Largest error, estimated from twice as many steps (Richardson).
+
+    Returns
+    -------
+    arcs, error, iterations
+        The last arcs, with twice as many steps; their estimated error, infinite where Newton failed; corrections.
+    """
+    shown = False
+    for iteration in range(1, MOST + 1):
+        try:
+            nodes, theta = _correction(arcs)
+        except np.linalg.LinAlgError:
+            break
+        arcs = arcs.moved(nodes, theta, within_domain(arcs, nodes, theta))
+        size = arcs.size(nodes, theta)
+        error = size / (2**ORDER - 1)
+        if not size < LOST or arcs.steps > 2 * MOST_STEPS:
+            break
+        if shown and error <= tolerance:
+            return arcs, error, iteration
+        shown = size < CLOSE
+        if shown:
+            arcs = arcs.with_steps(2 * arcs.steps)
+    return arcs, float("inf"), iteration
+
+
+def _correction(arcs: Arcs) -> tuple[Array, Array]:
+    """Corrections of the nodes, shape (N+1, 2n), and of the extra unknowns."""
+    problem, case, n = arcs.problem, arcs.problem.instance, arcs.problem.states
+    field = spread(case.model, problem.free_time)(
+        np.ascontiguousarray(arcs.nodes.T),
+        problem.initial,
+        arcs.mesh,
+        case.t0 + problem.elapsed(arcs.theta) * arcs.mesh,
+        arcs.steps,
+        case.parameters,
+        problem.bounds,
+        problem.scale.both[:, 0],
+    )
+    end = arcs.nodes[:, -1], arcs.theta
+    residual, (by_end, by_theta) = problem.boundary(*end), problem.boundary_slopes(*end)
+    slopes = by_end @ field[-1]
+    matrix = np.concatenate([slopes[:, :n], by_theta], axis=1)
+    matrix[:, len(matrix) - problem.free_time :] += slopes[:, n:-1]
+    found = np.linalg.solve(matrix, -residual - slopes[:, -1])
+    start = np.concatenate([found[:n], found[len(found) - problem.free_time :], [1.0]])
+    return field @ start, found[n:]
+
+
+@lru_cache(maxsize=16)
+def spread(model: Kernels, free_time: bool) -> Compiled:
+    """How nodes follow what is unknown at the start if all arcs are to meet, compiled at its first call.
+
+    ``(nodes, initial, mesh, times, steps, p, bounds, scale) -> field`` in scaled variables: the columns of the field,
+    shape (N+1, 2n, k), are what each initial costate does, what the duration does where it is free, and what
+    closes the gaps between the arcs and at the start.
+    """
+    n = len(model.spec.states)
+    rows, last = 2 * n, n + free_time
+    arcs, vector, rates = flight(model), packed(n), model.functions["canonical"]
+
+    @njit()
+    def field(
+        nodes: Array, initial: Array, mesh: Array, times: Array, steps: int, p: Numbers, bounds: Numbers, scale: Array
+    ) -> Array:
+        ends, _, transition = arcs(times, nodes * scale, steps, p, bounds)
+        found, begun = np.zeros((len(mesh), rows, last + 1)), np.zeros(rows)
+        for j in range(n):
+            found[0, n + j, j] = 1.0
+            found[0, j, last] = initial[j] - nodes[0, j]
+        for i in range(len(mesh) - 1):
+            if free_time:
+                there = nodes[i] * scale
+                now = rates(times[i], vector(there, 0, 1), vector(there, n, 1), p, bounds)
+                then = rates(times[i + 1], vector(ends[i], 0, 1), vector(ends[i], n, 1), p, bounds)
+                for j in range(rows):
+                    begun[j] = mesh[i] * now[j] / scale[j]
+                    found[i + 1, j, n] = mesh[i + 1] * then[j] / scale[j]
+            for j in range(rows):
+                found[i + 1, j, last] = ends[i, j] / scale[j] - nodes[i + 1, j]
+                for m in range(rows):
+                    slope = transition[i, j, m] * scale[m] / scale[j]
+                    for k in range(last + 1):
+                        found[i + 1, j, k] += slope * found[i, m, k]
+                    if free_time:
+                        found[i + 1, j, n] -= slope * begun[m]
+        return found
+
+    return field

@@ -1,0 +1,140 @@
+"""Shooting from a cold start: enough arcs and steps, and within bounds nodes on the kinks."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from satsym.instance import Instance
+from satsym.solution import Array, Progress, Solution
+from satsym.solvers.cold_start.ways import Start
+from satsym.solvers.collocation.continuation import kinks, through
+from satsym.solvers.collocation.curve import Path
+from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.extremal import Extremal, solved
+from satsym.solvers.iteration import Limits
+from satsym.solvers.shooting.arcs import Arcs, sufficient
+from satsym.solvers.shooting.newton import Outcome, doubled, newton
+from satsym.solvers.shooting.runge_kutta import ORDER
+from satsym.solvers.two_point import explained, from_cold_start, inside, outside, unfinished
+from satsym.status import Status
+from satsym.wording import counted
+
+ACCURACY = 1e-11
+"""Error of an arc during Newton's method, at first. Twice as many steps, which make the answer, have a 256th of it."""
+
+REFINEMENTS = 3
+"""Times that every arc is halved where Newton fails."""
+
+LEAST = 10
+"""Arcs of a problem whose bounds are met."""
+
+STILL = 1e-11
+SETTLING = 12
+"""Times that nodes are moved to the kinks, and the share of the horizon by which these may then still move."""
+
+
+def solve(instance: Instance, progress: Progress | None = None) -> Solution:
+    """Solve an instance by multiple shooting.
+
+    Parameters
+    ----------
+    instance
+        With final states given, on the reference or free, and a final time that is given or free.
+    progress
+        Called after each iteration of the cold start, and each phase.
+
+    Returns
+    -------
+    Solution
+        With status ``converged`` when the estimated error is within the instance's tolerance; it is as a rule
+        near the last digits, whatever that tolerance.
+
+    Raises
+    ------
+    BadInput
+        If the instance asks for compiled kernels and numba is not installed.
+    """
+    if instance.solver.backend == "numba":
+        instance = replace(instance, model=instance.model.compiled())
+    return solved(instance, progress, "shooting", from_nothing)
+
+
+def from_nothing(instance: Instance, limits: Limits, effort: bool) -> Extremal:
+    """The extremal to which a cold start leads; see :func:`satsym.solvers.two_point.from_cold_start`."""
+    return from_cold_start(instance, limits, effort, _accurate)
+
+
+def extremal(problem: TwoPoint, start: Path, limits: Limits) -> Extremal:
+    """The extremal within bounds that is near a path of states and costates.
+
+    Nodes are put on the kinks that bounds cause, until these stand still; then the error decides on the steps.
+
+    Parameters
+    ----------
+    problem
+        What is solved.
+    start
+        Where to start.
+    limits
+        When to stop, and who is told the cost of what was found.
+    """
+    tolerance, accuracy = problem.instance.solver.tolerance, ACCURACY
+    met, mesh, total = kinks(problem, start), start.mesh, 0
+    count = max(LEAST, len(mesh) - 2 - len(met))  # with a remainder of an arc between neighbouring kinks, no more arcs
+    path, why = start, "the times at which bounds are met do not settle"
+    for _ in range(SETTLING):
+        mesh = through(met, count) if len(met) else mesh
+        outcome = _shot(problem, path, mesh, accuracy, limits)
+        path, mesh, total = outcome.arcs, outcome.arcs.mesh, total + outcome.iterations
+        if outcome.matching is None:
+            why = f"Newton's method fails on {len(mesh) - 1} arcs"
+            break
+        before, met = met, kinks(problem, path)
+        if len(met) == len(before) and np.abs(met - before).max(initial=0.0) < STILL:
+            arcs, error = doubled(outcome.arcs, outcome.matching)
+            limits.tell(arcs.cost() * problem.scale.cost, error)
+            if error <= tolerance and not problem.instance.model.in_domain(arcs.course[1]):
+                why = "the extremal leaves the domain"
+                return Extremal(problem, arcs, float("inf"), Status.LEFT_DOMAIN, why, total)
+            if error <= tolerance:
+                return converged(arcs, error, total)
+            accuracy /= 2**ORDER
+            why = f"the estimated error stays at {error:.0e} on {_said(arcs)}"
+    return unfinished(problem, start, why, total, limits)
+
+
+def converged(arcs: Arcs, error: float, iterations: int) -> Extremal:
+    """The extremal that arcs are, with their estimated error."""
+    problem = arcs.problem
+    message = f"estimated error {error:.0e} on {_said(arcs)}"
+    return Extremal(problem, arcs, arcs.cost() * problem.scale.cost, Status.CONVERGED, message, iterations)
+
+
+def _accurate(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
+    """From an extremal of low order without bounds to an accurate one within them."""
+    bounded = inside(problem, start, start.found.curve, limits)
+    steps = start.steps + bounded.iterations
+    if bounded.reached < 1.0:
+        return explained(outside(problem, bounded.curve, bounded, steps, limits), limits)
+    found = explained(extremal(problem, bounded.curve, limits), limits)
+    return replace(found, iterations=steps + found.iterations)
+
+
+def _shot(problem: TwoPoint, start: Path, mesh: Array, accuracy: float, limits: Limits) -> Outcome:
+    """Newton from a path with nodes on a mesh, or on a finer one if it fails there."""
+    total = 0
+    for _ in range(REFINEMENTS + 1):
+        arcs = Arcs(problem, mesh, start(mesh), start.theta)
+        stepped = sufficient(arcs, accuracy)
+        outcome = newton(stepped, limits) if stepped else Outcome(arcs, None, 0)
+        total += outcome.iterations
+        if outcome.matching or limits.expired:
+            break
+        mesh = np.insert(mesh, np.arange(1, len(mesh)), (mesh[1:] + mesh[:-1]) / 2.0)
+    return replace(outcome, iterations=total)
+
+
+def _said(arcs: Arcs) -> str:
+    return f"{counted(len(arcs.widths), 'arc')} of {counted(arcs.steps, 'step')}"

@@ -1,0 +1,1 @@
+"""Motions under a given control or law, one or many at once."""

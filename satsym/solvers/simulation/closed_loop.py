@@ -1,0 +1,146 @@
+"""The motion under a control law, which may have kinks: SciPy's DOP853, by small tolerances."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+from satsym.kernels.core import Function
+from satsym.solution import Array
+from satsym.solvers.control import control_set
+from satsym.solvers.iteration import Limits
+from satsym.solvers.simulation import blocks
+
+Control: TypeAlias = Callable[[float, Sequence[float]], Sequence[float]]
+
+MOST_EVALUATIONS = 100_000
+"""Of the rates in one run; a motion that needs more is on its way to a singularity."""
+
+EVERY = 256
+"""Evaluations between two looks at the clock."""
+
+
+@dataclass(frozen=True)
+class Law:
+    """A control law.
+
+    Attributes
+    ----------
+    name
+        As results call it.
+    control
+        The controls at a time and state, in the model's order; bounds are not its business.
+    """
+
+    name: str
+    control: Control
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A motion under a law.
+
+    Attributes
+    ----------
+    x, u
+        States (n, N+1) and controls (m, N+1) at the nodes, NaN after an early end.
+    steps
+        That the integrator took.
+    left_domain
+        Whether a state that must be positive vanished and so ended it.
+    """
+
+    x: Array
+    u: Array
+    steps: int
+    left_domain: bool
+
+
+def fly(
+    instance: Instance,
+    law: Law,
+    nodes: Array,
+    tolerance: float,
+    dynamics: Function | None = None,
+    limits: Limits | None = None,
+) -> Run:
+    """Follow the motion under the admissible controls next to the law's.
+
+    Parameters
+    ----------
+    nodes
+        Times, shape (N+1,).
+    tolerance
+        Of each step, relative to the size of each state.
+    dynamics
+        Rates of change of the states, if not those of the model: a function of t, x, u and p on floats.
+    limits
+        Of the time, if it has any.
+
+    Raises
+    ------
+    TimeUp
+        If the time is over.
+    """
+    from scipy.integrate import solve_ivp
+
+    f, p, within = dynamics or instance.model.dynamics, instance.parameters, control_set.nearest(instance)
+    count = 0
+
+    def rates(t: float, x: Array) -> Any:
+        nonlocal count
+        count += 1
+        if limits is not None and count % EVERY == 0:
+            limits.check()
+        if count > MOST_EVALUATIONS:
+            return [math.nan] * len(x)
+        try:
+            state = x.tolist()
+            return f(t, state, within(law.control(t, state)), p)
+        except ArithmeticError:
+            return [math.nan] * len(x)
+
+    positive = [i for i, state in enumerate(instance.model.spec.states) if state.positive]
+
+    def boundary(_t: float, x: Array) -> float:
+        return float(min(x[i] for i in positive))
+
+    boundary.terminal = True  # type: ignore[attr-defined]
+    start = np.array(instance.initial)
+    with np.errstate(all="ignore"):
+        found = solve_ivp(
+            rates,
+            (float(nodes[0]), float(nodes[-1])),
+            start,
+            method="DOP853",
+            t_eval=nodes,
+            rtol=tolerance,
+            atol=tolerance * _sizes(instance, nodes, limits),
+            events=boundary if positive else None,
+        )
+    x = np.full((len(start), len(nodes)), np.nan)
+    x[:, : found.y.shape[1]] = found.y
+
+    def wanted(part: NDArray[Any]) -> Array:
+        columns = zip(found.t[part].tolist(), found.y[:, part].T.tolist(), strict=True)
+        return np.array([law.control(t, column) for t, column in columns]).T
+
+    u = np.full((len(instance.model.spec.controls), len(nodes)), np.nan)
+    every = np.arange(len(found.t))
+    met = wanted(every) if limits is None else limits.in_blocks(wanted, every)
+    u[:, : len(every)] = control_set.project(instance, met)
+    return Run(x, u, found.nfev // 12, found.status == 1)
+
+
+def _sizes(instance: Instance, nodes: Array, limits: Limits | None) -> Array:
+    """What counts as large for each state: how large it becomes without control."""
+    rest = np.zeros((len(instance.model.spec.controls), len(nodes)))
+    x, _, _ = blocks.forward(instance.model, nodes, instance.initial, rest, rest[:, 1:], instance.parameters, limits)
+    sizes = np.nan_to_num(np.abs(x), nan=0.0, posinf=0.0).max(axis=1)
+    return np.where(sizes > 0.0, sizes, 1.0)

@@ -1,0 +1,211 @@
+"""Simulation: the motion of an instance from its initial state, as accurate as its tolerance asks."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from satsym.grid import Grid
+from satsym.instance import Instance
+from satsym.solution import Array, Flight, Invariant
+from satsym.solvers import out_of_time
+from satsym.solvers.control import control_set
+from satsym.solvers.iteration import Limits, TimeUp, watched
+from satsym.solvers.simulation import blocks, closed_loop
+from satsym.solvers.simulation.balances import balances
+from satsym.solvers.simulation.closed_loop import Law
+from satsym.status import BadInput, Status
+
+RICHARDSON = 2.0**4 - 1.0
+"""The distance between two runs of RK4, one with half the steps, is so many times the error of the better one."""
+MARGIN = 0.1
+"""Share of the tolerance that the estimated error may take: estimates can be low."""
+
+SHARPER, LEAST_TOLERANCE = 0.01, 3e-14
+"""Under a law: the tolerance of a run relative to that before, and the least that is more than rounding."""
+GAINED = 10.0
+"""So many times is such a run better at least; nearly by as much as its tolerance, where the law has no kinks."""
+
+ROUNDING = 100.0 * float(np.finfo(float).eps)
+"""Relative change of the initial state whose effect is taken for that of rounding. More steps do not make the error
+smaller, and a state that is small because large terms cancel (the radial velocity on a nearly circular orbit) feels it.
+"""
+
+MOST_STEPS = 2**20
+"""More are used only where the instance asks for more than half as many itself."""
+
+HOPELESS = 64
+"""Times the given steps at which a motion outside the domain is given up: until then the steps may be too long."""
+
+FASTEST = 2.0**6
+"""So many times does half the step make the error smaller at most: sixteen times in the end, more on the way there. A
+run that could not become accurate enough even so, before the steps are too many, is the last: motions that come close
+to a singularity would take longest, to no avail.
+"""
+
+
+@np.errstate(all="ignore")  # numbers out of range are a status
+def simulate(instance: Instance, law: Law | None = None) -> Flight:
+    """Integrate the motion, twice, until the two runs agree: with RK4, or under a law with DOP853.
+
+    Parameters
+    ----------
+    instance
+        With a given final time.
+    law
+        What controls it; by default there is no control, or the admissible one next to none.
+
+    Returns
+    -------
+    Flight
+        At the instance's number of steps; ``metrics`` has the steps that were needed and the estimated
+        error, relative to the size of each state or, where more, to the size at which rounding alone
+        causes that error.
+
+    Raises
+    ------
+    BadInput
+        If the final time is free.
+    """
+    if instance.tf is None:
+        raise BadInput(f"{instance.name}: time.tf: a simulation needs a number, not a free final time")
+    limits, _ = watched(instance, None)
+    try:
+        return _simulated(instance, law, limits)
+    except TimeUp:
+        return out_of_time.flight(instance, law.name if law else "none")
+
+
+def _simulated(instance: Instance, law: Law | None, limits: Limits) -> Flight:
+    assert instance.tf is not None
+    times = Grid.uniform(instance.t0, instance.tf, instance.solver.steps).nodes
+    if law is None:
+        x, steps, error = _uncontrolled(instance, limits)
+        u, left = np.repeat(_control(instance), len(times), axis=1), False
+    else:
+        run, error = _controlled(instance, law, times, limits)
+        x, u, steps, left = run.x, run.u, run.steps, run.left_domain
+    status = Status.LEFT_DOMAIN if left else _status(instance, x, error, limits)
+    return Flight(
+        instance=instance,
+        feedback=law.name if law else "none",
+        status=status,
+        message=_message(status, error, steps),
+        times=times,
+        x=x,
+        u=u,
+        invariants=(_invariants(instance, times, x) if not u.any() else {}) | balances(instance, times, x, u),
+        metrics=_metrics(instance, x) | {"steps": float(steps), "estimated_error": error},
+    )
+
+
+def _control(instance: Instance) -> Array:
+    """No control, or the admissible one next to it; shape (m, 1)."""
+    return control_set.project(instance, np.zeros((len(instance.model.spec.controls), 1)))
+
+
+def _uncontrolled(instance: Instance, limits: Limits) -> tuple[Array, int, float]:
+    """States at the nodes by RK4, halving the step until two runs agree; steps; and the estimated error."""
+    coarse_steps, sufficient = instance.solver.steps, MARGIN * instance.solver.tolerance
+    steps, x, error = coarse_steps, _fly(instance, coarse_steps, limits), float("nan")
+    most = max(MOST_STEPS, 2 * coarse_steps)
+    while 2 * steps <= most and (steps < HOPELESS * coarse_steps or _sound(instance, x)):
+        try:
+            finer = _fly(instance, 2 * steps, limits)
+        except TimeUp:  # what there is stays, with the error of the run before
+            break
+        steps, coarse, x, before = 2 * steps, x, finer, error
+        error = _difference(coarse, x[:, ::2]) / RICHARDSON
+        if error > 0.25 * before:  # no longer fourth order
+            error = _difference(coarse, x[:, ::2], _rounding(instance, x, steps, limits) / sufficient) / RICHARDSON
+        if error <= sufficient or error > instance.solver.tolerance * FASTEST ** np.log2(most / steps):
+            break
+        if limits.expired:
+            break
+    return x[:, :: steps // coarse_steps], steps, error
+
+
+def _controlled(instance: Instance, law: Law, times: Array, limits: Limits) -> tuple[closed_loop.Run, float]:
+    """The motion under a law, with smaller tolerances until two runs agree; and the estimated error."""
+    sufficient = MARGIN * instance.solver.tolerance
+    tolerance, error = sufficient, float("nan")
+    run = closed_loop.fly(instance, law, times, tolerance, limits=limits)
+    while not error <= sufficient and tolerance > LEAST_TOLERANCE and np.isfinite(run.x).all() and not limits.expired:
+        tolerance, coarse = max(SHARPER * tolerance, LEAST_TOLERANCE), run
+        try:
+            run = closed_loop.fly(instance, law, times, tolerance, limits=limits)
+        except TimeUp:
+            break
+        error = _difference(coarse.x, run.x) / GAINED
+    return run, error
+
+
+def _fly(instance: Instance, steps: int, limits: Limits) -> Array:
+    assert instance.tf is not None
+    grid = Grid.uniform(instance.t0, instance.tf, steps)
+    u = np.repeat(_control(instance), steps + 1, axis=1)
+    x, _, _ = blocks.forward(instance.model, grid.nodes, instance.initial, u, u[:, 1:], instance.parameters, limits)
+    return x
+
+
+def _sound(instance: Instance, x: Array) -> bool:
+    return bool(np.isfinite(x).all()) and instance.model.in_domain(x)
+
+
+def _rounding(instance: Instance, x: Array, steps: int, limits: Limits) -> Array:
+    """What rounding can do to each state, shape (n, 1)."""
+    nudged = replace(instance, initial=tuple(value * (1.0 + ROUNDING) for value in instance.initial))
+    with np.errstate(invalid="ignore"):
+        effect: Array = np.abs(_fly(nudged, steps, limits) - x).max(axis=1, keepdims=True)
+    return effect
+
+
+def _difference(coarse: Array, fine: Array, least: Array | float = 0.0) -> float:
+    """Distance between two runs relative to the size of each state, or a least size."""
+    with np.errstate(invalid="ignore"):
+        size = np.maximum(np.abs(fine).max(axis=1, keepdims=True), np.maximum(least, np.finfo(float).tiny))
+        return float((np.abs(coarse - fine) / size).max())
+
+
+def _status(instance: Instance, x: Array, error: float, limits: Limits) -> Status:
+    if not np.isfinite(x).all():
+        return Status.NON_FINITE
+    if not instance.model.in_domain(x):
+        return Status.LEFT_DOMAIN
+    if error <= instance.solver.tolerance:
+        return Status.CONVERGED
+    return Status.TIME_LIMIT if limits.expired else Status.NOT_CONVERGED
+
+
+def _message(status: Status, error: float, steps: int) -> str:
+    if status is Status.CONVERGED:
+        return f"two runs, one of them with fewer steps, agree to {error:.0e}"
+    if status is Status.TIME_LIMIT:
+        return f"time was up: {steps} steps leave an estimated error of {error:.0e}; {status.advice}"
+    if status is Status.NOT_CONVERGED:
+        return f"even {steps} steps leave an estimated error of {error:.0e}: the motion comes close to a singularity"
+    return f"the motion is not finite: {status.advice}" if status is Status.NON_FINITE else status.advice
+
+
+def _invariants(instance: Instance, times: Array, x: Array) -> dict[str, Invariant]:
+    spec = instance.model.spec
+    if not spec.invariants or not np.isfinite(x).all():
+        return {}
+    values = instance.model.invariants_batch(times, x, instance.parameters)
+    return {
+        v.symbol: Invariant(float(row[0]), float(np.abs(row - row[0]).max()))
+        for v, row in zip(spec.invariants, values, strict=True)
+    }
+
+
+def _metrics(instance: Instance, x: Array) -> dict[str, float]:
+    """Extremes of each state, and how far from the reference the motion ends."""
+    spec = instance.model.spec
+    found: dict[str, float] = {}
+    for name, row in zip(spec.state_names, x, strict=True):
+        found |= {f"{name}_min": float(row.min()), f"{name}_max": float(row.max())}
+    if spec.has_reference:
+        curve = instance.model.reference(instance.tf, instance.parameters)
+        found |= {f"{name}_error": float(row[-1] - c) for name, row, c in zip(spec.state_names, x, curve, strict=True)}
+    return found

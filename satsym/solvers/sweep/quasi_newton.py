@@ -1,0 +1,184 @@
+"""Projected quasi-Newton descent on the control, with the gradient that the sweep yields.
+
+In the metric of H_uu the Hessian of J is the identity plus a smoothing operator, so a limited-memory method
+that starts from the identity converges quickly and independently of the grid. Where a bound holds the control, the
+step goes to the control law instead (a two-metric projection: Bertsekas, SIAM J. Control Optim. 20, 1982); on the
+sphere that bounds a ball the descent continues along the sphere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from satsym.solution import Iteration
+from satsym.solvers.control import control_set
+from satsym.solvers.sweep.sweeps import Array, Forward, Sweep, SweepProblem, backward, forward
+from satsym.solvers.sweep.tangent import Tangent, tangent
+from satsym.status import Status
+
+MEMORY = 20
+"""Pairs kept. Few are needed: a terminal cost on n states adds n large eigenvalues."""
+
+SUFFICIENT = 1e-4
+"""Share of the decrease predicted by the gradient that a step must achieve (Armijo)."""
+
+SHORTEST, SHORTEST_CLOSE = 2.0**-40, 2.0**-20
+"""Step length below which the direction is given up, far from the optimum and close to it."""
+
+CLOSE = 1e-2
+"""Residual below which a step may be accepted because it reduces the residual. Gradient and J are both
+fourth-order approximations but not of each other; near the optimum J can no longer tell which step is better."""
+
+NOTICEABLE = 1e-9
+"""Relative decrease of J below which it is no evidence: rounding and the discretisation are of this size."""
+
+ROUNDING = 30.0
+"""A residual within this factor of what a change of the last digit causes cannot be reduced."""
+
+TINY = 1e-9
+"""Residual below which rounding is looked at before each step, lest many steps be spent on the last digits."""
+
+SURE = 3.0
+"""The factor of ``ROUNDING`` while steps that reduce the residual are still found."""
+
+
+@dataclass(frozen=True, eq=False)
+class Descent:
+    """Where the descent is.
+
+    Attributes
+    ----------
+    sweep
+        The current control with all that is known about it.
+    pairs
+        Recent (step, change of gradient) pairs in the scaled control, newest last.
+    stalled
+        Whether no step could be found from here.
+    """
+
+    sweep: Sweep
+    pairs: tuple[tuple[Array, Array], ...] = ()
+    stalled: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class QuasiNewton:
+    """The method, from a starting motion that must be usable."""
+
+    problem: SweepProblem
+    start: Forward
+    tolerance: float
+
+    def init(self) -> Descent:
+        """Sweep the starting control."""
+        return Descent(backward(self.problem, self.start))
+
+    def measure(self, state: Descent, number: int) -> Iteration:
+        """Cost and residual."""
+        return Iteration(number, state.sweep.objective, state.sweep.residual)
+
+    def terminate(self, state: Descent) -> tuple[Status, str] | None:
+        """Converged when control and control law agree."""
+        residual = state.sweep.residual
+        if residual <= self.tolerance:
+            return Status.CONVERGED, "control and control law agree"
+        factor = ROUNDING if state.stalled else SURE if residual <= TINY else 0.0
+        if factor and residual <= factor * _rounding(self.problem, state.sweep):
+            return Status.CONVERGED, f"control and control law agree to {residual:.0e}, as far as rounding allows"
+        if not state.stalled:
+            return None
+        return Status.NOT_CONVERGED, f"no step decreases the cost further; residual {residual:.1e}"
+
+    def step(self, state: Descent) -> Descent:
+        """One projected step with backtracking; after a failure once more without memory."""
+        for pairs in (state.pairs, ()):
+            found = self._search(state.sweep, pairs)
+            if found is not None:
+                return Descent(found, self._remember(pairs, state.sweep, found))
+        return replace(state, stalled=True)
+
+    def _scale(self, sweep: Sweep, free: Tangent) -> Array:
+        """Square roots of weight times Hessian of H: in the control so scaled, J is nearly the identity's quadratic."""
+        instance = self.problem.instance
+        h_uu = self.problem.kernels.control_hessian_batch(
+            self.problem.times, sweep.forward.x, sweep.u, sweep.lam, instance.parameters
+        )
+        return np.sqrt(self.problem.weights * np.einsum("iik->ik", h_uu) * free.curvature)
+
+    def _direction(self, sweep: Sweep, pairs: Sequence[tuple[Array, Array]]) -> tuple[Array, Array]:
+        """The step in the control, and the gradient of J on the fine grid as far as the control can follow it."""
+        free = tangent(self.problem, sweep)
+        scale = self._scale(sweep, free)
+        gradient = free.along(self.problem.weights * sweep.gradient)
+        descent = -_inverse_hessian(pairs, free.free(gradient / scale), free) / scale
+        return np.where(free.moves, descent, sweep.step), gradient
+
+    def _search(self, sweep: Sweep, pairs: Sequence[tuple[Array, Array]]) -> Sweep | None:
+        """Backtrack along the projected direction until the cost, or close to the end the residual, decreases."""
+        direction, gradient = self._direction(sweep, pairs)
+        if not np.sum(gradient * direction) < 0.0:
+            return None
+        length, shortest = 1.0, SHORTEST_CLOSE if sweep.residual < CLOSE else SHORTEST
+        while length > shortest:
+            u = control_set.project(self.problem.instance, sweep.u + length * direction)
+            predicted = float(np.sum(gradient * (u - sweep.u)))
+            motion = forward(self.problem, u)
+            if motion.usable:
+                decrease = sweep.objective - motion.objective
+                if decrease >= -SUFFICIENT * predicted and decrease > NOTICEABLE * abs(sweep.objective):
+                    return backward(self.problem, motion)
+                if sweep.residual < CLOSE:
+                    trial = backward(self.problem, motion)
+                    if trial.residual <= (1.0 - 0.1 * length) * sweep.residual:
+                        return trial
+                length *= _shrink(motion.objective - sweep.objective, predicted)
+            else:
+                length *= 0.25
+        return None
+
+    def _remember(
+        self, pairs: Sequence[tuple[Array, Array]], before: Sweep, after: Sweep
+    ) -> tuple[tuple[Array, Array], ...]:
+        then, now = tangent(self.problem, before), tangent(self.problem, after)
+        scale = self._scale(after, now)
+        step = scale * (after.u - before.u)
+        change = self.problem.weights * (now.along(after.gradient) - then.along(before.gradient)) / scale
+        return (*pairs, (step, change))[-MEMORY:]
+
+
+def _rounding(problem: SweepProblem, sweep: Sweep) -> float:
+    """A residual that rounding alone causes: the law's response to a change in the last digits."""
+    nudged = sweep.u * (1.0 + 4.0 * np.finfo(float).eps)
+    instance = problem.instance
+    initial = tuple(float(np.nextafter(value, np.inf)) for value in instance.initial)
+    moved = replace(problem, instance=replace(instance, initial=initial))
+    motion = forward(moved, nudged)
+    if not motion.usable:
+        return 0.0
+    change = np.abs(backward(moved, motion).law - sweep.law).max(initial=0.0)
+    return float(change / max(np.abs(sweep.law).max(initial=0.0), np.finfo(float).tiny))
+
+
+def _shrink(change: float, predicted: float) -> float:
+    """Factor to the minimum of the parabola through the known values, kept within [0.1, 0.5]."""
+    curvature = change - predicted
+    return float(min(0.5, max(0.1, -predicted / (2.0 * curvature)))) if curvature > 0.0 else 0.5
+
+
+def _inverse_hessian(pairs: Sequence[tuple[Array, Array]], gradient: Array, free: Tangent) -> Array:
+    """The L-BFGS two-loop recursion in the free directions, from the identity (Nocedal and Wright, 7.4)."""
+    q = gradient.copy()
+    used = []
+    for step, change in reversed(pairs):
+        s, y = free.free(step), free.free(change)
+        curvature = np.sum(s * y)
+        if curvature > 1e-12 * np.sum(y * y):
+            weight = np.sum(s * q) / curvature
+            q -= weight * y
+            used.append((s, y, curvature, weight))
+    for s, y, curvature, weight in reversed(used):
+        q += (weight - np.sum(y * q) / curvature) * s
+    return q

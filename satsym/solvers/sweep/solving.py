@@ -1,0 +1,210 @@
+"""The forward-backward sweep method for a given final time and a free final state (boundary type 3).
+
+Solve on a uniform grid; where the control meets bounds, put nodes at the kinks and solve again from there,
+until the kinks stay where they are: between kinks everything is smooth and the sweep is fourth order.
+"""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from satsym.grid import Grid
+from satsym.instance import Instance
+from satsym.kernels import Kernels
+from satsym.solution import Iteration, Progress, Solution
+from satsym.solvers.control import control_set
+from satsym.solvers.control import corners as kinks
+from satsym.solvers.iteration import Limits, Run, iterate
+from satsym.solvers.sweep.quasi_newton import Descent, QuasiNewton
+from satsym.solvers.sweep.relaxation import Relaxation, Relaxed
+from satsym.solvers.sweep.sweeps import Array, Forward, Sweep, SweepProblem, forward, unbounded_law
+from satsym.status import Status
+
+ROUNDS = 6
+"""Times that nodes are moved to the kinks, at the most."""
+
+SETTLED = 1e-9
+"""Kinks that move by less than this share of the horizon stay."""
+
+WORTH_COMPILING = 20_000
+"""Steps from which compiled kernels pay for their compilation within one run."""
+
+ITERATIONS = {"quasi-Newton": 500, "relaxation": 20_000}
+
+
+def solve(instance: Instance, progress: Progress | None = None) -> Solution:
+    """Minimise the cost over the control by sweeping.
+
+    Parameters
+    ----------
+    instance
+        With a given final time and a free final state.
+    progress
+        Called after each iteration.
+
+    Returns
+    -------
+    Solution
+        With status ``converged`` when control and control law agree to the instance's tolerance.
+    """
+    began = time.perf_counter()
+    if instance.tf is None or instance.final:
+        raise ValueError("the sweep needs a given final time and a free final state")
+    kernels = _kernels(instance)
+    rule = "relaxation" if instance.solver.relaxation else "quasi-Newton"
+    limits = Limits(instance.solver.max_iterations or ITERATIONS[rule], began + instance.solver.max_seconds)
+    problem = SweepProblem(instance, kernels, Grid.uniform(instance.t0, instance.tf, instance.solver.steps), limits)
+    start = forward(problem, _starting_control(problem))
+    if not start.usable:
+        return _without_answer(problem, start, time.perf_counter() - began)
+    run = _run(problem, start, limits, progress)
+    history = run.history
+    switches = switching_times(problem, run.state.sweep)
+    for _ in range(ROUNDS):
+        if not any(switches) or not _improvable(run):
+            break
+        before = switches
+        moved = _with_kinks(problem, switches)
+        start = forward(moved, _carried_over(problem, run.state.sweep, moved))
+        if not start.usable:
+            break
+        run = _run(moved, start, limits, progress)
+        history = _continued(history, run.history)
+        problem = moved
+        switches = switching_times(problem, run.state.sweep)
+        if _settled(before, switches, instance.tf - instance.t0):
+            break
+    return _solution(problem, run, history, switches, time.perf_counter() - began)
+
+
+def switching_times(problem: SweepProblem, sweep: Sweep) -> tuple[tuple[float, ...], ...]:
+    """For each control, when it meets or leaves a bound (on a ball: the same times for all); never, if it is fixed."""
+    instance = problem.instance
+    m = len(instance.model.spec.controls)
+    distances = control_set.excess(instance, unbounded_law(problem, sweep))
+    if instance.model.spec.control_set == "box":
+        fixed = np.tile(np.equal(instance.lower, instance.upper), 2)
+        distances[fixed] = np.inf
+    found = [kinks.zeros(problem.times, row) if np.isfinite(row).all() else [] for row in distances]
+    if len(found) == 1:
+        found = found * m
+    return tuple(tuple(sorted(t for row in found[i::m] for t in row)) for i in range(m))
+
+
+def _kernels(instance: Instance) -> Kernels:
+    backend, steps = instance.solver.backend, instance.solver.steps
+    if backend == "numba" or (backend == "auto" and steps >= WORTH_COMPILING and _numba_installed()):
+        return instance.model.compiled()
+    return instance.model
+
+
+def _numba_installed() -> bool:
+    from importlib.util import find_spec
+
+    return find_spec("numba") is not None
+
+
+def _starting_control(problem: SweepProblem) -> Array:
+    """The guess where there is one, else no control, or the admissible one next to it."""
+    instance, times = problem.instance, problem.times
+    u = np.zeros((len(instance.model.spec.controls), len(times)))
+    for i, name in enumerate(instance.model.spec.control_names):
+        if values := instance.guess.control.get(name):
+            u[i] = np.interp(times, np.linspace(times[0], times[-1], len(values)), values)
+    return control_set.project(instance, u)
+
+
+def _run(
+    problem: SweepProblem, start: Forward, limits: Limits, progress: Progress | None
+) -> Run[Descent] | Run[Relaxed]:
+    options = problem.instance.solver
+    if options.relaxation:
+        return iterate(Relaxation(problem, start, options.tolerance, options.relaxation), limits, progress)
+    return iterate(QuasiNewton(problem, start, options.tolerance), limits, progress)
+
+
+def _improvable(run: Run[Descent] | Run[Relaxed]) -> bool:
+    """Whether nodes at the kinks can help: also a descent that is stuck may be so for the kinks within its steps."""
+    return run.status is Status.CONVERGED or (isinstance(run.state, Descent) and run.state.stalled)
+
+
+def _with_kinks(problem: SweepProblem, switches: tuple[tuple[float, ...], ...]) -> SweepProblem:
+    uniform = Grid.uniform(problem.grid.t0, problem.grid.tf, problem.instance.solver.steps)
+    points = sorted({t for times in switches for t in times})
+    return SweepProblem(problem.instance, problem.kernels, uniform.with_kinks(points), problem.limits)
+
+
+def _carried_over(problem: SweepProblem, sweep: Sweep, onto: SweepProblem) -> Array:
+    """The control on another grid, interpolated before it is projected so that its kinks stay sharp."""
+    smooth = unbounded_law(problem, sweep)
+    u = np.array([np.interp(onto.times, problem.times, row) for row in smooth])
+    return control_set.project(problem.instance, u)
+
+
+def _settled(before: tuple[tuple[float, ...], ...], after: tuple[tuple[float, ...], ...], horizon: float) -> bool:
+    return all(
+        len(old) == len(new) and np.allclose(old, new, rtol=0.0, atol=SETTLED * horizon)
+        for old, new in zip(before, after, strict=True)
+    )
+
+
+def _continued(history: tuple[Iteration, ...], more: tuple[Iteration, ...]) -> tuple[Iteration, ...]:
+    offset = len(history)
+    return history + tuple(Iteration(offset + i.number, i.objective, i.residual) for i in more)
+
+
+def _solution(
+    problem: SweepProblem,
+    run: Run[Descent] | Run[Relaxed],
+    history: tuple[Iteration, ...],
+    switches: tuple[tuple[float, ...], ...],
+    wall_s: float,
+) -> Solution:
+    sweep = run.state.sweep
+    return Solution(
+        instance=problem.instance,
+        method="sweep",
+        status=run.status,
+        message=_explained(problem, sweep, run),
+        objective=sweep.objective,
+        times=problem.grid.nodes,
+        x=sweep.forward.x[:, ::2],
+        u=sweep.u[:, ::2],
+        lam=sweep.lam[:, ::2],
+        switching_times=switches,
+        iterations=len(history) - 1,
+        history=history,
+        wall_s=wall_s,
+    )
+
+
+def _explained(problem: SweepProblem, sweep: Sweep, run: Run[Descent] | Run[Relaxed]) -> str:
+    if run.status is not Status.CONVERGED:
+        return run.message
+    if not sweep.lam.any() and not sweep.u.any():
+        return f"{run.message}; without control all costates vanish"
+    return run.message
+
+
+def _without_answer(problem: SweepProblem, start: Forward, wall_s: float) -> Solution:
+    """The starting motion leaves the domain or is not finite, so there is nothing to improve on."""
+    n = len(problem.instance.model.spec.states)
+    status = Status.NON_FINITE if start.in_domain else Status.LEFT_DOMAIN
+    what = "is not finite" if start.in_domain else "leaves the domain"
+    return Solution(
+        instance=problem.instance,
+        method="sweep",
+        status=status,
+        message=f"the motion under the starting control {what}",
+        objective=float("nan"),
+        times=problem.grid.nodes,
+        x=start.x[:, ::2],
+        u=start.u[:, ::2],
+        lam=np.full((n, problem.grid.steps + 1), np.nan),
+        switching_times=tuple(() for _ in problem.instance.model.spec.controls),
+        iterations=0,
+        history=(),
+        wall_s=wall_s,
+    )

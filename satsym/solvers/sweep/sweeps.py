@@ -1,0 +1,146 @@
+"""One forward-backward sweep: states forward, costates backward, and the control that they ask for.
+
+Controls, states and costates are held on the fine grid of nodes and midpoints, shape (rows, 2N+1), even
+columns being nodes. The backward sweep is the adjoint of the forward one, so it yields the gradient H_u of
+the cost (Bryson and Ho, Applied Optimal Control, 2.2 and 7.2).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.grid import Grid, interleave
+from satsym.instance import Instance
+from satsym.kernels import Kernels
+from satsym.solvers.control.control_set import without_bounds
+from satsym.solvers.iteration import Limits
+from satsym.solvers.simulation import blocks
+
+Array = NDArray[np.floating[Any]]
+
+
+@dataclass(frozen=True, eq=False)
+class SweepProblem:
+    """What a sweep needs to know: an instance with a free final state, its kernels, a grid, and when to stop."""
+
+    instance: Instance
+    kernels: Kernels
+    grid: Grid
+    limits: Limits | None = None
+
+    @cached_property
+    def times(self) -> Array:
+        """Nodes and midpoints, shape (2N+1,)."""
+        return interleave(self.grid.nodes, self.grid.midpoints)
+
+    @cached_property
+    def weights(self) -> Array:
+        """Simpson weights on the fine grid, shape (2N+1,)."""
+        return interleave(self.grid.node_weights, self.grid.midpoint_weights)
+
+
+@dataclass(frozen=True, eq=False)
+class Forward:
+    """A control and the motion it causes.
+
+    Attributes
+    ----------
+    u, x
+        Controls and states on the fine grid.
+    objective
+        The cost J; NaN where the motion is not finite.
+    in_domain
+        Whether the motion stays where the model has a meaning.
+    """
+
+    u: Array
+    x: Array
+    objective: float
+    in_domain: bool
+
+    @property
+    def usable(self) -> bool:
+        """Whether costates can be computed along it."""
+        return self.in_domain and bool(np.isfinite(self.objective))
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep:
+    """A motion with its costates and what they say about the control.
+
+    Attributes
+    ----------
+    forward
+        The motion.
+    lam
+        Costates on the fine grid.
+    law
+        The admissible control that minimises H at these states and costates.
+    gradient
+        H_u: the derivative of J by the control, per unit of time.
+    """
+
+    forward: Forward
+    lam: Array
+    law: Array
+    gradient: Array
+
+    @property
+    def u(self) -> Array:
+        """The control that was swept with."""
+        return self.forward.u
+
+    @property
+    def objective(self) -> float:
+        """Its cost J."""
+        return self.forward.objective
+
+    @property
+    def step(self) -> Array:
+        """From the control to the one that the sweep asks for; zero at an extremal."""
+        return self.law - self.u
+
+    @property
+    def residual(self) -> float:
+        """Largest change the sweep asks for, relative to the largest control."""
+        size = max(np.abs(self.u).max(initial=0.0), np.abs(self.law).max(initial=0.0))
+        return float(np.abs(self.step).max(initial=0.0) / size) if size > 0.0 else 0.0
+
+
+def forward(problem: SweepProblem, u: Array) -> Forward:
+    """Integrate the states under a control on the fine grid, shape (m, 2N+1)."""
+    instance, kernels = problem.instance, problem.kernels
+    p, grid = instance.parameters, problem.grid
+    x, x_mid, running = blocks.forward(kernels, grid.nodes, instance.initial, u[:, ::2], u[:, 1::2], p, problem.limits)
+    fine = interleave(x, x_mid)
+    if not np.isfinite(fine).all():
+        return Forward(u, fine, float("nan"), in_domain=True)
+    terminal = kernels.terminal_cost(grid.tf, tuple(x[:, -1].tolist()), p)
+    return Forward(u, fine, running + terminal, kernels.in_domain(fine))
+
+
+def backward(problem: SweepProblem, motion: Forward) -> Sweep:
+    """Complete a usable motion with its costates, the control law and the gradient."""
+    instance, kernels = problem.instance, problem.kernels
+    p, grid, x, u = instance.parameters, problem.grid, motion.x, motion.u
+    lam_f = kernels.terminal_gradient(grid.tf, tuple(x[:, -1].tolist()), p)
+    motion_at, control_at = (x[:, ::2], x[:, 1::2]), (u[:, ::2], u[:, 1::2])
+    nodes, mids = blocks.backward(kernels, grid.nodes, lam_f, motion_at, control_at, p, problem.limits)
+    lam = interleave(nodes, mids)
+    law = kernels.control_law_batch(problem.times, x, lam, p, instance.bounds)
+    gradient = kernels.stationarity_batch(problem.times, x, u, lam, p)
+    return Sweep(motion, lam, law, gradient)
+
+
+def unbounded_law(problem: SweepProblem, sweep: Sweep) -> Array:
+    """The control that would minimise H if there were no bounds, shape (m, 2N+1)."""
+    bounds = without_bounds(problem.instance)
+    law: Array = problem.kernels.control_law_batch(
+        problem.times, sweep.forward.x, sweep.lam, problem.instance.parameters, bounds
+    )
+    return law

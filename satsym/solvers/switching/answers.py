@@ -1,0 +1,63 @@
+"""What a solver of switching problems hands back."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from satsym.instance import Instance
+from satsym.solution import Iteration, Solution
+from satsym.solvers.switching.attempt import Exact
+from satsym.solvers.switching.cold_start.homotopy import Stopped
+from satsym.status import Status
+
+
+def answered(instance: Instance, exact: Exact, way: str, history: tuple[Iteration, ...], began: float) -> Solution:
+    """Exact arcs as a solution."""
+    at, structure, trajectory = exact.refined.at, exact.refined.structure, exact.trajectory
+    nodes = np.linspace(instance.t0, at.end, instance.solver.steps + 1)
+    times, z, u = trajectory.grid(nodes)
+    n = len(instance.initial)
+    status = Status.CONVERGED if instance.model.in_domain(z[:n]) else Status.LEFT_DOMAIN
+    plural = "" if structure.switches == 1 else "es"
+    message = (
+        f"structure {structure.name}, {structure.switches} switch{plural}, residual {exact.refined.residual:.0e}, "
+        f"from {way}"
+    )
+    return Solution(
+        instance=instance,
+        method="bang-bang",
+        status=status,
+        message=message,
+        objective=trajectory.cost(instance),
+        times=times,
+        x=z[:n],
+        u=u,
+        lam=z[n:],
+        switching_times=tuple(tuple(own.tolist()) for own in structure.by_control(at.times)),
+        iterations=exact.iterations,
+        history=history,
+        wall_s=time.perf_counter() - began,
+    )
+
+
+def without(instance: Instance, stopped: Stopped, history: tuple[Iteration, ...], began: float) -> Solution:
+    """Why there is no answer."""
+    n, m = len(instance.initial), len(instance.lower)
+    end = instance.tf if instance.tf is not None else instance.t0 + 1.0
+    return Solution(
+        instance=instance,
+        method="bang-bang",
+        status=stopped.status,
+        message=stopped.message,
+        objective=float("nan"),
+        times=np.array([instance.t0, end]),
+        x=np.full((n, 2), np.nan),
+        u=np.full((m, 2), np.nan),
+        lam=np.full((n, 2), np.nan),
+        switching_times=((),) * m,
+        iterations=len(history),
+        history=history,
+        wall_s=time.perf_counter() - began,
+    )

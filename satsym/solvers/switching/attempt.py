@@ -1,0 +1,217 @@
+"""From a guessed structure to an extremal of exact arcs: Newton, and repairs of the structure where that shows faults.
+
+An arc whose length comes out negative is dropped; where a control is not at the level that minimises H, an arc at the
+better level is put in.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+from satsym.solvers.failures import FAILURES, tried
+from satsym.solvers.iteration import Limits
+from satsym.solvers.switching.cold_start.recognition import Guess
+from satsym.solvers.switching.newton import Equations, Refined, solve
+from satsym.solvers.switching.trajectory import Trajectory, Violation, violations
+
+Array = NDArray[np.floating[Any]]
+
+REPAIRS = 8
+"""Changes of a guessed structure before it is given up."""
+
+SOLVED = 1e-10
+"""Largest relative residual of an extremal."""
+
+SIZED = 1e-6
+"""Share of its size in a guess that a state has at least in the extremal."""
+
+EVALUATED = 250
+"""Evaluations of an arc, roughly: how the work of corrections is counted."""
+
+NO_TIME = 1e-11
+"""An arc shorter than this share of the duration is none."""
+
+
+@dataclass(frozen=True, eq=False)
+class Exact:
+    """An extremal of exact arcs that minimises H all along.
+
+    Attributes
+    ----------
+    refined, trajectory
+        Its structure with its times, and the arcs.
+    iterations
+        Corrections of all attempts.
+    """
+
+    refined: Refined
+    trajectory: Trajectory
+    iterations: int
+
+
+def attempt(instance: Instance, first: Guess, limits: Limits) -> Exact | None:
+    """Make a guess exact, with repairs; ``None`` where that leads nowhere."""
+    return tried(lambda: _attempt(instance, first, limits))
+
+
+def _attempt(instance: Instance, first: Guess, limits: Limits) -> Exact | None:
+    at, met, iterations = first, {first.structure}, 0
+    while len(met) <= REPAIRS and not limits.expired:
+        found = _solved(instance, at, limits)
+        if found is None:
+            return None
+        iterations += found.iterations
+        limits.spend(EVALUATED * found.iterations * len(found.arcs))
+        start, end = instance.t0, found.at.end
+        shortest = _shortest(found, start)
+        if shortest is not None and shortest[0] < -NO_TIME * (end - start):
+            at = _dropped(found, *shortest[1:])
+        else:
+            exact = _collapsed(instance, found)
+            if exact is None:
+                return None
+            faults = violations(exact[1])
+            if limits.watch:
+                limits.watch(exact[1].cost(instance), max((fault.amount for fault in faults), default=found.residual))
+            if not faults:
+                return Exact(*exact, iterations)
+            worst = max(faults, key=lambda fault: fault.amount)
+            at = _inserted(exact[0], exact[1], worst)
+        if at.structure in met:
+            return None
+        met.add(at.structure)
+    return None
+
+
+def nearest(instance: Instance, at: Guess, limits: Limits, known: Array | None = None) -> Refined | None:
+    """The extremal of a structure, or what comes nearest to one by least squares; ``None`` where nothing settles.
+
+    Parameters
+    ----------
+    known
+        Sizes of states and costates, if not those of the guess.
+    """
+    equations = Equations(instance, at.structure, sizes(instance, at) if known is None else known, at.end - instance.t0)
+    return solve(equations, equations.start(at.costates, at.times, at.end), limits.watch)
+
+
+def _solved(instance: Instance, at: Guess, limits: Limits) -> Refined | None:
+    """The extremal of a structure, exact in units of its own states: those of a guess may be far larger."""
+    found = nearest(instance, at, limits)
+    for last in (False, True):
+        if found is None or found.residual > SOLVED or not found.at.end > instance.t0:
+            return None
+        own = replace(found, sizes=_own_sizes(instance, found))
+        residual = _residual(instance, own)
+        if residual <= SOLVED or last:
+            return replace(own, residual=residual) if residual <= SOLVED else None
+        here = Guess(found.structure, found.at.times, found.at.costates, found.at.end)
+        found = nearest(instance, here, limits, own.sizes)
+    return None
+
+
+def _residual(instance: Instance, found: Refined) -> float:
+    """The largest residual of arcs, relative to their sizes."""
+    equations = Equations(instance, found.structure, found.sizes, found.at.end - instance.t0)
+    return float(np.abs(equations.residual(found.at, found.arcs)[0]).max(initial=0.0))
+
+
+def _own_sizes(instance: Instance, found: Refined) -> Array:
+    """Sizes of states as the arcs show them, by where they end and how fast they move; those of costates as known."""
+    n = len(instance.initial)
+    states = np.maximum(given(instance), SIZED * found.sizes[:n])
+    for arc in found.arcs:
+        for t, z in ((arc.start, arc.before), (arc.end, arc.after)):
+            moved = (arc.end - arc.start) * np.array(arc.field.rates(t, z.tolist())[:n])
+            states = np.maximum(states, np.maximum(np.abs(z[:n]), np.abs(moved)))
+    return np.concatenate([states, found.sizes[n:]])
+
+
+def given(instance: Instance) -> Array:
+    """Sizes of what is given of each state at its ends."""
+    final = map(instance.final.get, instance.model.spec.state_names)
+    given = [abs(v) if isinstance(v, float | int) else 0.0 for v in final]
+    return np.maximum(np.abs(np.array(instance.initial)), np.array(given))
+
+
+def sizes(instance: Instance, at: Guess) -> Array:
+    """Sizes of states and costates: given ends and what controls do in the duration; costates as they are guessed."""
+    n = len(instance.initial)
+    states = given(instance)
+    equations = Equations(instance, at.structure, np.ones(2 * n), at.end - instance.t0)
+    try:
+        arcs = equations.arcs(equations.start(at.costates, at.times, at.end), slopes=False)
+        for arc in arcs:
+            states = np.maximum(states, np.abs(arc.after[:n]))
+    except FAILURES:
+        pass
+    states = np.where(states > 0.0, states, 1.0)
+    costates = np.abs(at.costates)
+    cost = float((states * costates).max())
+    return np.concatenate([states, np.maximum(costates, 1e-3 * cost / states if cost > 0.0 else 1.0)])
+
+
+def _shortest(found: Refined, start: float) -> tuple[float, int, int] | None:
+    """Length, control and number of the shortest arc; ``None`` without switches."""
+    lengths = found.structure.durations(found.at.times, start, found.at.end)
+    arcs = [(float(value), i, k) for i, row in enumerate(lengths) if len(row) > 1 for k, value in enumerate(row)]
+    return min(arcs) if arcs else None
+
+
+def _dropped(found: Refined, control: int, arc: int) -> Guess:
+    structure, kept = found.structure.without_arc(control, arc)
+    times = found.at.times[kept]
+    return Guess(structure, times, found.at.costates, found.at.end)
+
+
+def _collapsed(instance: Instance, found: Refined) -> tuple[Refined, Trajectory] | None:
+    """Without arcs that have no length, if what is left still solves the equations."""
+    start, end = instance.t0, found.at.end
+    while True:
+        shortest = _shortest(found, start)
+        if shortest is None or shortest[0] > NO_TIME * (end - start):
+            break
+        left = _dropped(found, *shortest[1:])
+        at = replace(found.at, times=left.times)
+        equations = Equations(instance, left.structure, found.sizes, end - start)
+        found = replace(found, structure=left.structure, at=at, arcs=equations.arcs(at, slopes=False))
+        found = replace(found, residual=_residual(instance, found))
+    if found.residual > SOLVED:
+        return None
+    return found, Trajectory.of(found.arcs, found.sizes)
+
+
+def _inserted(found: Refined, trajectory: Trajectory, fault: Violation) -> Guess:
+    """With an arc at the better level where the control is at a worse one."""
+    own = found.structure.by_control(found.at.times)
+    times, row = own[fault.control], found.structure.levels[fault.control]
+    middle = (fault.start + fault.end) / 2.0
+    arc = int(np.searchsorted(times, middle))
+    begin = times[arc - 1] if arc > 0 else trajectory.arcs[0].start
+    end = times[arc] if arc < len(times) else found.at.end
+    level, present = fault.level, row[arc]
+    near = 1e-9 * (trajectory.arcs[-1].end - trajectory.arcs[0].start)
+    if fault.start <= begin + near:
+        levels = (*row[:arc], level, *row[arc:]) if arc == 0 or row[arc - 1] != level else row
+        moved = np.insert(times, arc, fault.end) if levels is not row else _moved(times, arc - 1, fault.end)
+    elif fault.end >= end - near:
+        last = arc == len(times)
+        levels = (*row[: arc + 1], level, *row[arc + 1 :]) if last or row[arc + 1] != level else row
+        moved = np.insert(times, arc, fault.start) if levels is not row else _moved(times, arc, fault.start)
+    else:
+        levels = (*row[: arc + 1], level, present, *row[arc + 1 :])
+        moved = np.insert(times, arc, [fault.start, fault.end])
+    own[fault.control] = moved
+    structure = found.structure.with_levels(fault.control, levels)
+    return Guess(structure, np.concatenate(own), found.at.costates, found.at.end)
+
+
+def _moved(times: Array, place: int, to: float) -> Array:
+    changed = times.copy()
+    changed[place] = to
+    return changed

@@ -1,0 +1,173 @@
+"""From nothing to smoothed extremals, less and less smoothed.
+
+Without bounds the companion of a switching problem is a problem of least effort, which collocation solves from a cold
+start. Its bounds are then brought in, the weight of |u| is, and the smoothing is taken away, each step starting from
+the last solution.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+from satsym.solvers.cold_start.durations import free_duration
+from satsym.solvers.cold_start.ways import cold_start
+from satsym.solvers.collocation.curve import Curve
+from satsym.solvers.collocation.newton import newton
+from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.collocation.scaling import two_point
+from satsym.solvers.collocation.system import System
+from satsym.solvers.control.control_set import violation
+from satsym.solvers.control.regularised import companion
+from satsym.solvers.iteration import Limits
+from satsym.solvers.switching.cold_start.least_effort import (
+    NEAR_FULL,
+    WITHIN,
+    Smoothed,
+    first_duration,
+    follow,
+    of_size,
+)
+from satsym.status import Status
+
+Array = NDArray[np.floating[Any]]
+
+LEVELS = 12
+SHARPER = 4.0
+"""By so much less is smoothed at each level."""
+
+
+@dataclass(frozen=True)
+class Stopped(Exception):
+    """The way from nothing to the problem ends early.
+
+    Attributes
+    ----------
+    status, message
+        What came of it.
+    problem, curve
+        The last companion that was solved, if any.
+    """
+
+    status: Status
+    message: str
+    problem: TwoPoint | None = None
+    curve: Curve | None = None
+
+
+def path(instance: Instance, limits: Limits) -> Iterator[Smoothed]:
+    """Smoothed extremals, less and less smoothed.
+
+    Raises
+    ------
+    Stopped
+        Where there is none, or the way to the bounds is blocked.
+    """
+    problem, curve = (instance.tf is None and _long(instance, limits)) or _bounded(instance, limits)
+    smoothing = problem.bounds[-2]
+
+    def weighed(share: float) -> TwoPoint:
+        return replace(problem, instance=companion(instance, smoothing, share))
+
+    curve, reached = follow(weighed, curve, limits)
+    if reached < 1.0:
+        raise Stopped(Status.NOT_CONVERGED, f"the weight of |u| could be brought in only {reached:.0%}", problem, curve)
+    problem = weighed(1.0)
+    yield Smoothed(problem, curve)
+    for _ in range(LEVELS):
+        before = smoothing
+
+        def sharper(share: float, before: float = before, problem: TwoPoint = problem) -> TwoPoint:
+            return replace(problem, instance=companion(instance, before * SHARPER**-share, 1.0))
+
+        curve, reached = follow(sharper, curve, limits)
+        if reached == 0.0:
+            raise Stopped(Status.NOT_CONVERGED, f"less smoothing than {smoothing:.1e} was not reached", problem, curve)
+        smoothing *= SHARPER**-reached
+        problem = replace(problem, instance=companion(instance, smoothing, 1.0))
+        yield Smoothed(problem, curve)
+
+
+def _long(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve] | None:
+    """A free duration so long that bounds do not bind, and the smoothing for which it is the best.
+
+    Where |u| costs, it may be far too little smoothing to bring that in.
+    """
+    if any(instance.model.magnitude_weight(instance.t0, instance.initial, instance.parameters)):
+        return None
+    found = of_size(instance, WITHIN, limits)
+    if found is None:
+        return None
+    problem, curve = found.problem, found.curve
+    z = (curve.nodes[:, -1] * problem.scale.both[:, 0]).tolist()
+    n, t, p = problem.states, instance.t0 + problem.duration, instance.parameters
+    u = tuple(problem.control(np.ones(1), curve.nodes[:, -1:], curve.theta)[:, 0].tolist())
+    effort = sum(v * v for v in u) / 2.0
+    growth = effort + sum(a * b for a, b in zip(z[n:], instance.model.dynamics(t, z[:n], u, p), strict=True))
+    idle = tuple(min(max(0.0, low), high) for low, high in zip(instance.lower, instance.upper, strict=True))
+    smoothing = -instance.model.running_cost(t, z[:n], idle, p) / growth if growth else 0.0
+    if not 0.0 < smoothing < float("inf"):
+        return None
+    eased = two_point(companion(instance, smoothing, 0.0), problem.duration)
+    ratio = np.ones((2 * n, 1))
+    ratio[n:] = smoothing * problem.scale.both[n:] / eased.scale.both[n:]
+    ratio[:n] = problem.scale.both[:n] / eased.scale.both[:n]
+    curve = Curve(
+        curve.mesh, curve.nodes * ratio, curve.stages * ratio[:, :, None], np.append(curve.theta, problem.duration)
+    )
+    outcome = newton(System(eased, curve.mesh, curve.order), curve, tolerance=1e-5)
+    return (eased, outcome.curve) if outcome is not None and outcome.converged else None
+
+
+def _bounded(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve]:
+    """From no bounds to the bounds, well smoothed."""
+    problem, curve = _unbounded(companion(instance, first_smoothing(instance), 0.0), limits)
+    worst = max(_violation(problem, curve), 0.0)
+
+    def bounded(share: float) -> TwoPoint:
+        return problem.widened((1.0 - share) * worst)
+
+    if worst > 0.0:
+        curve, reached = follow(bounded, curve, limits)
+        if reached < 1.0:
+            message = f"bounds could be brought in only {min(reached, 0.99):.0%} of the way from where they do not bind"
+            raise Stopped(Status.NOT_CONVERGED, message, problem, curve)
+    return problem.widened(0.0), curve
+
+
+def first_smoothing(instance: Instance) -> float:
+    """The smoothing at which the largest control costs about as much again as time, state and |u| do."""
+    model, p, x = instance.model, instance.parameters, instance.initial
+    m = len(instance.lower)
+    largest = [max(abs(low), abs(high)) for low, high in zip(instance.lower, instance.upper, strict=True)]
+    cost = max(
+        abs(model.running_cost(instance.t0, x, tuple(u), p)) for u in (instance.lower, instance.upper, (0.0,) * m)
+    )
+    effort = sum(value * value for value in largest)
+    return 2.0 * (cost or 1.0) / effort if effort > 0.0 else 1.0
+
+
+def _unbounded(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve]:
+    """The companion without bounds, solved."""
+    if instance.tf is None:
+        near = of_size(instance, NEAR_FULL, limits) if instance.tf_guess is None else None
+        duration = first_duration(instance) if near is None else near.problem.duration
+        chosen = free_duration(replace(instance, tf_guess=instance.t0 + duration), limits)
+        if not chosen.status.answered:
+            raise Stopped(chosen.status, chosen.message, chosen.problem, chosen.start.found.curve)
+        return chosen.problem, chosen.start.found.curve
+    problem = two_point(instance, instance.tf - instance.t0)
+    start = cold_start(problem, limits)
+    if start.way == "none":
+        raise Stopped(Status.NOT_CONVERGED, f"no extremal found: {start.found.reason}", problem, start.found.curve)
+    return problem, start.found.curve
+
+
+def _violation(problem: TwoPoint, curve: Curve) -> float:
+    tau = np.linspace(0.0, 1.0, 201)
+    return violation(problem.instance, problem.control(tau, curve(tau), curve.theta, bounded=False))

@@ -1,0 +1,148 @@
+"""Which structure a smoothed extremal has: bounds, coasts and singular arcs, told from its switching functions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+from satsym.solvers.collocation.curve import Path
+from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER, Structure
+
+Array = NDArray[np.floating[Any]]
+
+SAMPLES = 12
+"""Points in each interval of a mesh at which switching functions are looked at."""
+
+INSIDE = 0.03
+"""Share of the width of its range by which a control is off both bounds, where it may be singular."""
+
+LONG = 0.02
+"""Share of the duration that a singular arc has at least; shorter ones are switches that are smoothed."""
+
+
+@dataclass(frozen=True, eq=False)
+class Guess:
+    """Where to look for an extremal of exact arcs.
+
+    Attributes
+    ----------
+    structure, times
+        Levels and switching times.
+    costates
+        At the start.
+    end
+        The final time.
+    """
+
+    structure: Structure
+    times: Array
+    costates: Array
+    end: float
+
+
+@dataclass(frozen=True, eq=False)
+class Sample:
+    """A smoothed extremal at many times.
+
+    Attributes
+    ----------
+    times, z, u
+        Shapes (N,), (2n, N), (m, N), in the model's units.
+    sigma, weight
+        Switching functions and weights of |u|, shapes (m, N).
+    """
+
+    times: Array
+    z: Array
+    u: Array
+    sigma: Array
+    weight: Array
+
+
+def sample(problem: TwoPoint, path: Path) -> Sample:
+    """A smoothed extremal as it is."""
+    shares = np.linspace(0.0, 1.0, SAMPLES, endpoint=False)
+    tau = np.append((path.mesh[:-1, None] + np.diff(path.mesh)[:, None] * shares).ravel(), 1.0)
+    scaled = path(tau)
+    z, n, instance = scaled * problem.scale.both, problem.states, problem.instance
+    times = instance.t0 + problem.elapsed(path.theta) * tau
+    sigma = np.asarray(instance.model.switching_function_batch(times, z[:n], z[n:], instance.parameters))
+    weight = np.asarray(instance.model.magnitude_weight_batch(times, z[:n], instance.parameters))
+    u = problem.control(tau, scaled, path.theta)
+    return Sample(times, z, u, sigma, np.broadcast_to(weight, sigma.shape))
+
+
+def guess(instance: Instance, seen: Sample, singular: NDArray[np.bool_] | None = None) -> Guess:
+    """The structure of a sample.
+
+    Parameters
+    ----------
+    singular
+        Where controls are taken for singular, shape (m, N); by default nowhere.
+    """
+    rows: list[tuple[int, ...]] = []
+    times: list[float] = []
+    for i, (sigma, weight) in enumerate(zip(seen.sigma, seen.weight, strict=True)):
+        here = levels(instance, i, sigma, weight)
+        if singular is not None:
+            here = np.where(singular[i], SINGULAR, here)
+        row, switches = _passages(seen.times, here, sigma, weight)
+        rows.append(row)
+        times += switches
+    n = len(instance.initial)
+    return Guess(Structure(tuple(rows)), np.array(times), seen.z[n:, 0], float(seen.times[-1]))
+
+
+def levels(instance: Instance, control: int, sigma: Array, weight: Array) -> NDArray[np.int64]:
+    """The level that minimises H for values of a switching function."""
+    low, high = instance.lower[control], instance.upper[control]
+    if low == high:
+        return np.full(len(sigma), LOWER)
+    found = np.where(sigma > weight, LOWER, np.where(sigma < -weight, UPPER, REST))
+    if not weight.any():  # a zero between two signs belongs to either
+        return np.where(sigma > 0.0, LOWER, UPPER)
+    if low >= 0.0:
+        return np.where(found == LOWER, REST, found)
+    return np.where(found == UPPER, REST, found) if high <= 0.0 else found
+
+
+def inside(instance: Instance, seen: Sample) -> NDArray[np.bool_]:
+    """Where controls without a weight of their magnitude are off both bounds for long, shape (m, N)."""
+    low, high = (np.array(bounds)[:, None] for bounds in (instance.lower, instance.upper))
+    off = INSIDE * (high - low)
+    free = (seen.u > low + off) & (seen.u < high - off) & (seen.weight == 0.0)
+    least = LONG * (seen.times[-1] - seen.times[0])
+    for row in free:
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], row.astype(int), [0]])))
+        for first, last in zip(edges[::2], edges[1::2] - 1, strict=True):
+            if seen.times[last] - seen.times[first] < least:
+                row[first : last + 1] = False
+    return np.asarray(free)
+
+
+def _passages(
+    times: Array, here: NDArray[np.int64], sigma: Array, weight: Array
+) -> tuple[tuple[int, ...], list[float]]:
+    """Levels one after the other, and the times between them; from bound to bound by way of rest if |u| costs."""
+    row, switches = [int(here[0])], []
+    for k in np.flatnonzero(np.diff(here)):
+        before, after = int(here[k]), int(here[k + 1])
+        if SINGULAR in (before, after):
+            switches.append(float(times[k] + times[k + 1]) / 2.0)
+            row.append(after)
+            continue
+        through = [after]
+        if weight[k] > 0.0 and before * after < 0:
+            through = [REST, after]
+        for level in through:
+            target = float(weight[k]) * -np.sign(row[-1] + level) if weight[k] > 0.0 else 0.0
+            a, b = float(sigma[k]) - target, float(sigma[k + 1]) - target
+            share = min(max(a / (a - b), 0.0), 1.0) if a != b else 0.5
+            switches.append(float(times[k] + share * (times[k + 1] - times[k])))
+            row.append(level)
+    return tuple(row), switches

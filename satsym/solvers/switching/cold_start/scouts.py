@@ -1,0 +1,268 @@
+"""Motions under controls that switch at seeded times, made to arrive as cheaply as their arcs allow: many at once.
+
+No costates are involved: what arrives is an admissible motion, whether it is an extremal or not. Steps of fixed length
+show roughly what one costs; which of them are worth exact arcs is decided by that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+from satsym.solvers.collocation.scaling import final_argument
+from satsym.solvers.iteration import Limits
+from satsym.solvers.simulation.extrapolation import integrate
+from satsym.solvers.switching.cold_start.plans import Plans, Scout
+from satsym.solvers.switching.structure import LOWER, UPPER
+
+Array = NDArray[np.floating[Any]]
+
+LEAST, MOST, QUICK = 6, 24, 2.5
+"""Runge-Kutta steps of an arc, and how many for each unit of the motion's quickest rate times its length."""
+
+ROUNDS, LAST = 24, 7
+"""Corrections of the lengths of arcs, the last of which only make the motion arrive."""
+
+BOLD, CALMER = 0.3, 0.9
+"""Largest change for the sake of the cost, as a share of the duration, and how it shrinks from one to the next."""
+
+LARGEST = 0.5
+"""Share of the duration by which an arc may change at once so that the motion arrives."""
+
+GROWN, BACK, FORTH = 1.5, 0.3, 1.6
+"""A miss that is so many times larger after a change is none to go on from: the change is taken back but for a share,
+and the next ones are smaller, and larger again where that goes well."""
+
+NUDGE = 1e-6
+"""Difference that derivatives are taken over, as a share of the duration."""
+
+ARRIVED = 1e-4
+"""Largest miss of the end, relative to the sizes of states."""
+
+POLISHED, THERE = 6, 1e-10
+"""Corrections that make an arrival exact, and the largest miss that it then has."""
+
+TOLERANCE = 1e-13
+"""Error of a step of its integration, relative to sizes."""
+
+RANK = 1e-9
+
+NOISE = 1e-4
+"""Share of a slope below which what is left of it is the error of a difference."""
+
+
+def scouted(
+    instance: Instance, plans: Plans, sizes: Array, limits: Limits, ends: Array, rounds: int = ROUNDS
+) -> list[Scout]:
+    """What of these plans arrives, the cheapest first.
+
+    Parameters
+    ----------
+    sizes
+        Of states, shape (n,).
+    limits
+        Spent by the points at which a motion is looked at.
+    ends
+        The final time of each plan, where it is given or to be kept, NaN where it is free; shape (M,).
+    rounds
+        Corrections of the lengths of arcs.
+    """
+    wanted = _Wanted(instance, sizes, np.flatnonzero(_final(instance)[:2].any(axis=0)), ends)
+    steps = _Steps.of(instance, limits)
+    lengths = plans.lengths.copy()
+    span = lengths.sum(axis=0)
+    before, missed, trust = lengths, np.full(lengths.shape[1], np.inf), np.full(lengths.shape[1], LARGEST)
+    for round_ in range(rounds):
+        if limits.expired:
+            return []
+        value, _, slopes, gradient = _derivatives(instance, plans.levels, lengths, NUDGE * span, wanted, steps)
+        miss = np.abs(value).max(axis=0, initial=0.0)
+        worse = ~(miss <= np.maximum(GROWN * missed, ARRIVED)) & (round_ > 0)
+        trust = np.where(worse, trust * BACK, np.minimum(trust * FORTH, LARGEST))
+        lengths = np.where(worse, before + BACK * (lengths - before), lengths)  # and look there again
+        before, missed = np.where(worse, before, lengths), np.where(worse, missed, miss)
+        bold = BOLD * CALMER**round_ if round_ < rounds - LAST else 0.0
+        moved = np.maximum(lengths + _step(value, slopes, gradient, lengths, trust * span, bold / LARGEST), 0.0)
+        lengths = np.where(worse, lengths, moved)
+        span = np.maximum(lengths.sum(axis=0), 1e-9 * span)
+    return _arrived(wanted, Plans(plans.levels, lengths), steps, ARRIVED)
+
+
+def exactly(instance: Instance, scouts: list[Scout], sizes: Array, limits: Limits, ends: Array) -> list[Scout]:
+    """Those of some scouts that arrive to the last digits, the cheapest first; their numbers are as they were.
+
+    Parameters
+    ----------
+    ends
+        The final time of each scout, where it is given or to be kept, NaN where it is free; shape (M,).
+    """
+    if not scouts:
+        return []
+    plans = Plans(np.stack([one.levels for one in scouts], axis=2), np.stack([one.lengths for one in scouts], axis=1))
+    wanted = _Wanted(instance, sizes, np.flatnonzero(_final(instance)[:2].any(axis=0)), ends)
+    steps = _Steps(float("nan"), limits)
+    lengths = plans.lengths
+    for _ in range(POLISHED):
+        if limits.expired:
+            return []
+        span = lengths.sum(axis=0)
+        value, _, slopes, gradient = _derivatives(instance, plans.levels, lengths, NUDGE * span, wanted, steps)
+        if float(np.abs(value).max(initial=0.0)) <= THERE / 10.0:
+            break
+        lengths = np.maximum(lengths + _step(value, slopes, gradient, lengths, LARGEST * span, 0.0), 0.0)
+    found = _arrived(wanted, Plans(plans.levels, lengths), steps, THERE)
+    return [replace(one, number=scouts[one.number].number) for one in found]
+
+
+def _arrived(wanted: _Wanted, plans: Plans, steps: _Steps, closely: float) -> list[Scout]:
+    """The plans that arrive, the cheapest first."""
+    instance, lengths = wanted.instance, plans.lengths
+    x, costs = _flown(instance, plans.levels, lengths, steps)
+    missed = np.abs(wanted.gap(instance.t0 + lengths.sum(axis=0), x)).max(axis=0, initial=0.0)
+    arrived = (missed <= closely) & np.isfinite(costs) & np.isfinite(x).all(axis=0)
+    order = [k for k in np.argsort(costs).tolist() if arrived[k]]
+    return [Scout(k, plans.levels[:, :, k], lengths[:, k], float(costs[k])) for k in order]
+
+
+def _final(instance: Instance) -> Array:
+    """What is given at the end: whether by numbers, whether on the reference, and the numbers; shape (3, n)."""
+    return np.array(final_argument(instance)).reshape(3, -1)
+
+
+@dataclass(frozen=True, eq=False)
+class _Wanted:
+    """What is asked of the end: states that are given, relative to their sizes, and perhaps the final time."""
+
+    instance: Instance
+    sizes: Array
+    rows: NDArray[np.intp]
+    ends: Array
+
+    def gap(self, times: Array, x: Array) -> Array:
+        """By how much it is missed, shape (c, N), for one motion or several of each plan in turn."""
+        given, on_reference, target = _final(self.instance)[:, :, None]
+        goal = given * target
+        if on_reference.any():
+            curve = np.array([self.instance.model.reference(t, self.instance.parameters) for t in times.tolist()]).T
+            goal = goal + on_reference * curve
+        missed = ((x - goal) / self.sizes[:, None])[self.rows]
+        ends = np.repeat(self.ends, len(times) // len(self.ends))
+        late = np.where(np.isfinite(ends), (times - ends) / (ends - self.instance.t0), 0.0)
+        return np.concatenate([missed, late[None]])
+
+
+@dataclass(frozen=True)
+class _Steps:
+    """How arcs are integrated, and who counts what that takes.
+
+    Attributes
+    ----------
+    quickest
+        Rate of the motion, by which the number of steps of fixed length is chosen; NaN for steps as long as errors
+        allow.
+    """
+
+    quickest: float
+    limits: Limits
+
+    @classmethod
+    def of(cls, instance: Instance, limits: Limits) -> _Steps:
+        """Of fixed length, as the motion at its start asks for."""
+        n, u = len(instance.initial), tuple(np.clip(0.0, instance.lower, instance.upper).tolist())
+        slopes = np.array(instance.model.jacobian_x(instance.t0, instance.initial, u, instance.parameters))
+        return cls(float(np.abs(np.linalg.eigvals(slopes.reshape(n, n))).max(initial=0.0)), limits)
+
+    def along(self, rates: Callable[[Array, Array], Array], t: Array, y: Array, length: Array) -> Array:
+        """Values at the ends of arcs that begin at times t, shape (N,), with values y, shape (d, N)."""
+        if np.isfinite(self.quickest):
+            return self._fixed(rates, t, y, length)
+        size = np.maximum(np.abs(y).max(axis=1, keepdims=True), 1e-300) + 0.0 * y
+
+        def within(share: float, flat: Array) -> Array:
+            self.limits.spend(len(t))
+            return np.asarray((length * rates(t + share * length, flat.reshape(y.shape))).ravel())
+
+        end = integrate(within, np.array([0.0, 1.0]), y.ravel(), TOLERANCE, size.ravel(), 1.0)[0].end
+        return end.reshape(y.shape)
+
+    def _fixed(self, rates: Callable[[Array, Array], Array], t: Array, y: Array, length: Array) -> Array:
+        longest = float(np.max(length, initial=0.0, where=np.isfinite(length)))
+        count = int(min(max(LEAST, np.ceil(QUICK * self.quickest * longest)), MOST))
+        self.limits.spend(count * len(length))
+        h = length / count
+        for _ in range(count):
+            f1 = rates(t, y)
+            f2 = rates(t + h / 2.0, y + h / 2.0 * f1)
+            f3 = rates(t + h / 2.0, y + h / 2.0 * f2)
+            f4 = rates(t + h, y + h * f3)
+            y, t = y + h / 6.0 * (f1 + 2.0 * (f2 + f3) + f4), t + h
+        return y
+
+
+def _derivatives(
+    instance: Instance, levels: NDArray[np.int64], lengths: Array, nudge: Array, wanted: _Wanted, steps: _Steps
+) -> tuple[Array, Array, Array, Array]:
+    """Misses (c, M) and costs (M,) of all plans, and both by the lengths of arcs: (M, c, K) and (M, K)."""
+    count, many = lengths.shape
+    moved = np.repeat(lengths[:, :, None], count + 1, axis=2)
+    for k in range(count):
+        moved[k, :, k + 1] += nudge
+    shape = (many, count + 1)
+    x, cost = _flown(instance, np.repeat(levels[..., None], count + 1, axis=3), moved, steps)
+    times = instance.t0 + moved.sum(axis=0).ravel()
+    gaps = wanted.gap(times, x).reshape(-1, *shape)
+    costs = cost.reshape(shape)
+    slopes = (gaps[:, :, 1:] - gaps[:, :, :1]) / nudge[:, None]
+    gradient = (costs[:, 1:] - costs[:, :1]) / nudge[:, None]
+    return gaps[:, :, 0], costs[:, 0], slopes.transpose(1, 0, 2), gradient
+
+
+def _flown(instance: Instance, levels: NDArray[np.int64], lengths: Array, steps: _Steps) -> tuple[Array, Array]:
+    """Where plans lead, shape (n, N), and at what cost, (N,): infinite beyond the domain."""
+    model, p, n = instance.model, instance.parameters, len(instance.initial)
+    many = int(np.prod(lengths.shape[1:]))
+    low, high = (np.array(row)[:, None] for row in (instance.lower, instance.upper))
+    rest = np.clip(0.0, low, high)
+    positive = [k for k, state in enumerate(model.spec.states) if state.positive]
+    y, t = np.repeat(np.append(instance.initial, 0.0)[:, None], many, axis=1), np.full(many, instance.t0)
+    for arc, length in zip(levels.reshape(len(levels), -1, many), lengths.reshape(len(lengths), many), strict=True):
+        u = np.where(arc == LOWER, low, np.where(arc == UPPER, high, rest))
+
+        def rates(t: Array, y: Array, u: Array = u) -> Array:
+            cost = np.broadcast_to(np.asarray(model.running_cost_batch(t, y[:n], u, p)), t.shape)
+            return np.concatenate([model.dynamics_batch(t, y[:n], u, p), cost[None]])
+
+        y = steps.along(rates, t, y, length)
+        y[n] += np.where((y[positive] > 0.0).all(axis=0), 0.0, np.inf)
+        t = t + length
+    x, cost = y[:n], y[n]
+    if model.spec.has_terminal_cost:
+        cost = cost + np.asarray(model.terminal_cost_batch(t, x, p))
+    return x, cost
+
+
+def _step(value: Array, slopes: Array, gradient: Array, lengths: Array, largest: Array, bold: float) -> Array:
+    """How lengths of arcs change, shape (K, M): towards the end, and downhill along what leaves it where it is."""
+    usable = np.isfinite(slopes).all(axis=(1, 2)) & np.isfinite(gradient).all(axis=1) & np.isfinite(value).all(axis=0)
+    slopes, gradient = (np.where(usable.reshape(-1, *[1] * (part.ndim - 1)), part, 0.0) for part in (slopes, gradient))
+    value = np.where(usable, value, 0.0)
+    free = np.ones(gradient.shape, bool)
+    step = np.zeros_like(gradient)
+    for _ in range(2):  # arcs of no length that would shrink stay as they are
+        table = slopes * free[:, None]
+        inverse = np.linalg.pinv(table, rcond=RANK)
+        towards = -np.einsum("mkc,cm->mk", inverse, value)
+        towards *= np.minimum(1.0, largest / np.maximum(np.abs(towards).max(axis=1), 1e-300))[:, None]
+        downhill = np.where(free, -gradient, 0.0)
+        steepest = np.abs(downhill).max(axis=1)
+        downhill = downhill - np.einsum("mkc,mcl,ml->mk", inverse, table, downhill)
+        size = np.abs(downhill).max(axis=1)
+        downhill *= np.where(size > NOISE * steepest, bold * largest / np.maximum(size, 1e-300), 0.0)[:, None]
+        step = towards + downhill
+        free &= ~((lengths.T <= 0.0) & (step < 0.0))
+    return np.asarray(np.where(free, step, 0.0).T)

@@ -1,0 +1,195 @@
+"""The extremal equations with each control at its level, and derivatives of switching functions."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+from satsym.solvers.switching.structure import LOWER, SINGULAR, UPPER
+
+Array = NDArray[np.floating[Any]]
+
+NUDGE = 1e-30
+"""Imaginary step of derivatives: exact, for nothing is subtracted."""
+
+PLACES, WEIGHTS = np.array([-2.0, -1.0, 1.0, 2.0]), np.array([1.0, -8.0, 8.0, -1.0]) / 12.0
+SHIFT = 1e-3
+"""Places and weights of a central difference of fourth order, and its step as a share of the duration."""
+
+
+class Field:
+    """Rates of states and costates while every control keeps its level.
+
+    Parameters
+    ----------
+    instance
+        Model, parameters and bounds.
+    levels
+        One for each control. At most one of them is singular: it keeps the switching function at zero.
+    """
+
+    def __init__(self, instance: Instance, levels: tuple[int, ...]) -> None:
+        self.instance, self.levels = instance, levels
+        self.model, self.p, self.n = instance.model, instance.parameters, len(instance.initial)
+        self.held = tuple(
+            high if level == UPPER else low if level == LOWER else min(max(0.0, low), high)
+            for level, low, high in zip(levels, instance.lower, instance.upper, strict=True)
+        )
+        self.singular = levels.index(SINGULAR) if SINGULAR in levels else None
+
+    def control(self, t: float, z: list[float]) -> tuple[float, ...]:
+        """The controls, shape (m,)."""
+        return self.held if self.singular is None else self._feedback(t, z)[0]
+
+    def rates(self, t: float, z: list[float]) -> list[float]:
+        """dz/dt, 2n numbers."""
+        x, lam, u = z[: self.n], z[self.n :], self.control(t, z)
+        return [*self.model.dynamics(t, x, u, self.p), *self.model.costate_rate(t, x, u, lam, self.p)]
+
+    def linearised(self, t: float, z: list[float]) -> tuple[Array, Array]:
+        """dz/dt, shape (2n,), and its derivatives by z, shape (2n, 2n)."""
+        u, by_point, by_control = (self.held, None, None) if self.singular is None else self._feedback(t, z)
+        x, lam = z[: self.n], z[self.n :]
+        rates = np.array([*self.model.dynamics(t, x, u, self.p), *self.model.costate_rate(t, x, u, lam, self.p)])
+        held = np.array(self.model.extremal_jacobian(t, x, u, lam, self.p)).reshape(2 * self.n, 2 * self.n)
+        if by_point is None or by_control is None:
+            return rates, held
+        # The control keeps the second derivative of the switching function at zero: the gradient of the first
+        # derivative times the rates, and what time does besides.
+        slope = (self._turning(t, z, u, rates) + by_point @ held) / (by_point @ by_control)
+        return rates, held - np.outer(by_control, slope)
+
+    def along(self, t: Array, z: Array) -> tuple[Array, Array]:
+        """Controls (m, N) and rates (2n, N) at many points at once."""
+        x, lam = z[: self.n], z[self.n :]
+        u = np.empty((len(self.held), z.shape[1]))
+        u[:] = np.array(self.held)[:, None]
+        if self.singular is not None:
+            base, slope = self._accelerations(t, z)
+            u[self.singular] = -base / slope
+        found = np.empty_like(z)  # given, so that kernels need not find out shapes
+        self.model.dynamics_batch(t, x, u, self.p, out=found[: self.n])
+        self.model.costate_rate_batch(t, x, u, lam, self.p, out=found[self.n :])
+        return u, found
+
+    def gradient(self, t: float, z: list[float], control: int) -> Array:
+        """A switching function by states and costates, shape (2n,).
+
+        By the states it is what the control does to the costates, taken with both signs so that a weight of |u|
+        falls out; by the costates what it does to the states.
+        """
+        x, lam = z[: self.n], z[self.n :]
+        unit = [float(i == control) for i in range(len(self.held))]
+        there = self.model.costate_rate(t, x, unit, lam, self.p)
+        back = self.model.costate_rate(t, x, [-value for value in unit], lam, self.p)
+        by_state = [(b - a) / 2.0 for a, b in zip(there, back, strict=True)]
+        return np.array([*by_state, *self._column(t, x, self.held, control)])
+
+    def weight(self, t: float, z: list[float], control: int) -> float:
+        """The weight of the magnitude of a control."""
+        return float(self.model.magnitude_weight(t, z[: self.n], self.p)[control])
+
+    def weight_gradient(self, t: float, z: list[float], control: int) -> tuple[Array, float]:
+        """That weight by states and costates, shape (2n,), and its rate along the extremal."""
+        f = self.model.dynamics(t, z[: self.n], self.control(t, z), self.p)
+        steps = np.concatenate([np.eye(self.n), np.array(f)[:, None]], axis=1)
+        x = np.array(z[: self.n])[:, None] + 1j * NUDGE * steps
+        times = t + 1j * NUDGE * np.append(np.zeros(self.n), 1.0)
+        found = np.broadcast_to(self.model.magnitude_weight_batch(times, x, self.p)[control], times.shape).imag / NUDGE
+        return np.concatenate([found[:-1], np.zeros(self.n)]), float(found[-1])
+
+    def rate_gradient(self, t: float, z: list[float], control: int) -> Array:
+        """The rate of a switching function by states and costates, shape (2n,)."""
+        return self._rate_slopes(t, z, self.control(t, z), control)[:-1]
+
+    def legendre(self, t: float, z: list[float]) -> float:
+        """The generalised Legendre-Clebsch expression of the singular control; positive where it is strict."""
+        return -float(self._accelerations(np.array([t]), np.array(z)[:, None])[1][0])
+
+    def _with(self, value: float) -> tuple[float, ...]:
+        assert self.singular is not None
+        return (*self.held[: self.singular], value, *self.held[self.singular + 1 :])
+
+    def _column(self, t: float, x: list[float], u: tuple[float, ...], control: int | None = None) -> Array:
+        """What a control does to the rates of the states, shape (n,)."""
+        which = self.singular if control is None else control
+        return np.array(self.model.jacobian_u(t, x, u, self.p)).reshape(self.n, -1)[:, which]
+
+    def _accelerations(self, t: Array, z: Array) -> tuple[Array, Array]:
+        """Second derivative of the switching function in time without the singular control, and by that control.
+
+        The rate of the switching function, differentiated along the extremal by an imaginary step.
+        """
+        assert self.singular is not None
+        count = z.shape[1]
+        u = np.repeat(np.array([self._with(0.0), self._with(1.0)]).T, count, axis=1)
+        times, both = np.concatenate([t, t]), np.concatenate([z, z], axis=1)
+        x, lam = both[: self.n], both[self.n :]
+        f = np.asarray(self.model.dynamics_batch(times, x, u, self.p))
+        g = np.asarray(self.model.costate_rate_batch(times, x, u, lam, self.p))
+        ahead = (times + 1j * NUDGE, x + 1j * NUDGE * f, u, lam + 1j * NUDGE * g)
+        found = np.asarray(self.model.switching_rate_batch(*ahead, self.p))[self.singular].imag / NUDGE
+        return found[:count], found[count:] - found[:count]
+
+    def _rate_slopes(self, t: float, z: list[float], u: tuple[float, ...], control: int) -> Array:
+        """The rate of a switching function by states, costates and explicit time, shape (2n + 1,)."""
+        count = 2 * self.n + 1
+        columns = np.array([*z, t], dtype=complex)[:, None] + 1j * NUDGE * np.eye(count)
+        x, lam, times = columns[: self.n], columns[self.n : -1], columns[-1]
+        held, found = np.repeat(np.array(u)[:, None], count, axis=1), np.empty((len(u), count), dtype=complex)
+        self.model.switching_rate_batch(times, x, held, lam, self.p, out=found)
+        return np.asarray(found[control].imag / NUDGE)
+
+    def _feedback(self, t: float, z: list[float]) -> tuple[tuple[float, ...], Array, Array]:
+        """The controls on a singular arc; the gradient of the rate of its switching function; what it does to z."""
+        assert self.singular is not None
+        x, lam, idle = z[: self.n], z[self.n :], self._with(0.0)
+        gradient = self.gradient(t, z, self.singular)
+        by_control = np.concatenate([gradient[self.n :], -gradient[: self.n]])
+        slopes = self._rate_slopes(t, z, idle, self.singular)
+        rates = [*self.model.dynamics(t, x, idle, self.p), *self.model.costate_rate(t, x, idle, lam, self.p), 1.0]
+        acting = float(slopes[:-1] @ by_control)
+        value = -float(slopes @ rates) / acting if acting else math.nan
+        if not math.isfinite(value):
+            raise ArithmeticError("the second derivative of the switching function does not determine the control")
+        return self._with(value), slopes[:-1], by_control
+
+    def _turning(self, t: float, z: list[float], u: tuple[float, ...], rates: Array) -> Array:
+        """How the gradient of the rate of its switching function changes along a singular arc, shape (2n,).
+
+        It consists of first derivatives that were generated, so that an imaginary step along the motion gives its
+        change to the last digits, which an integrator that is to find so many asks for. Only how the effect of the
+        control depends on time explicitly, which it seldom does, takes a difference besides.
+        """
+        assert self.singular is not None
+        n, unit, here = self.n, np.zeros(len(u)), np.array(z)
+        unit[self.singular] = 1.0
+        x, lam = np.repeat((here + 1j * NUDGE * rates)[:, None], 3, axis=1).reshape(2, n, 3)
+        controls, times = np.stack([np.array(u), unit, -unit], axis=1), np.full(3, t + 1j * NUDGE)
+        f = np.empty((2 * n, 3), dtype=complex)
+        self.model.dynamics_batch(times, x, controls, self.p, out=f[:n])
+        self.model.costate_rate_batch(times, x, controls, lam, self.p, out=f[n:])
+        slopes = np.asarray(self.model.extremal_jacobian_batch(times, x, controls, lam, self.p))
+        column = np.asarray(self.model.jacobian_u_batch(times, x, controls, self.p))[:, self.singular, 0]
+        by_control = (slopes[:, :, 1] - slopes[:, :, 2]) / 2.0
+        curvature = np.concatenate([-by_control[n:], by_control[:n]])
+        gradient = np.concatenate([(f[n:, 2] - f[n:, 1]) / 2.0, column])
+        found = (curvature @ f[:, 0] + gradient @ slopes[:, :, 0]).imag / NUDGE
+        end = self.instance.tf if self.instance.tf is not None else self.instance.t0 + max(1.0, abs(t))
+        step = SHIFT * (end - self.instance.t0)
+        explicit = self._by_time(t + step * PLACES, here[:, None] + step * PLACES * rates[:, None])
+        return np.asarray(found + explicit @ WEIGHTS / step)
+
+    def _by_time(self, t: Array, z: Array) -> Array:
+        """The gradient of the singular control's switching function by explicit time, shape (2n, N)."""
+        assert self.singular is not None
+        x, lam, times = z[: self.n].astype(complex), z[self.n :].astype(complex), t + 1j * NUDGE
+        unit = np.zeros((len(self.held), len(t)))
+        unit[self.singular] = 1.0
+        there, back = (np.asarray(self.model.costate_rate_batch(times, x, k * unit, lam, self.p)) for k in (1.0, -1.0))
+        column = np.broadcast_to(self.model.jacobian_u_batch(times, x, unit, self.p), (self.n, len(unit), len(t)))
+        return np.concatenate([(back - there).imag / 2.0, column[:, self.singular].imag]) / NUDGE

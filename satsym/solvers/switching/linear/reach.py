@@ -1,0 +1,255 @@
+"""The ends that controls within a box reach in a given time, and at what cost, where the motion is linear."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+from satsym.solvers.collocation.scaling import final_argument
+from satsym.solvers.switching.linear.linear_motion import LinearMotion
+from satsym.solvers.switching.linear.nearest_point import nearest_point
+
+Array = NDArray[np.floating[Any]]
+
+LEAST, MOST, PER_RADIAN = 160, 1600, 16.0
+"""Steps of a duration, and how many for each unit of the motion's quickest rate times the duration."""
+
+FLAT = 1e-9
+"""Width of the set of ends, relative to its size, in a direction in which no control acts."""
+
+THERE = 1e-6
+"""Distance of an end from the set, relative to the size of the set, that is none."""
+
+CHEAPER = 1e-7
+"""Relative gap between a cost and its bound from below at which the least one is found."""
+
+TIGHT = 0.1
+"""Share of its distance by which a hyperplane may be nearer than the set."""
+
+SEARCHES = 60
+"""Of hyperplanes, one after the other, until the cost is found."""
+
+
+@dataclass(frozen=True)
+class Priced:
+    """The least cost of an end, as far as steps of equal length tell.
+
+    Attributes
+    ----------
+    cost
+        A bound from below that is met up to the accuracy of the search.
+    costate
+        Of all states at the end, shape (n,); the optimum minimises H with it.
+    """
+
+    cost: float
+    costate: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Reach:
+    """All ends that are reached in a given time.
+
+    Attributes
+    ----------
+    instance, motion
+        Whose.
+    duration
+        From the start.
+    finer
+        So many times more steps are taken than usual: short arcs do not show in fewer.
+    """
+
+    instance: Instance
+    motion: LinearMotion
+    duration: float
+    finer: int = 1
+
+    @cached_property
+    def rows(self) -> NDArray[np.intp]:
+        """States that are given at the end."""
+        return given_rows(self.instance)
+
+    @cached_property
+    def count(self) -> int:
+        """Steps."""
+        return self.finer * steps(self.motion, self.duration)
+
+    @cached_property
+    def powers(self) -> Array:
+        """What 0, 1, ... steps do to states, shape (N + 1, n, n)."""
+        return self.motion.powers(self.duration / self.count, self.count)
+
+    def pushing(self, costate: Array) -> Array:
+        """Costates at the end, shape (n,), times what controls do to it from each of the nodes, shape (m, N + 1)."""
+        return np.asarray((costate @ self.powers[::-1] @ self.motion.controls).T)
+
+    def switching(self, costate: Array) -> tuple[Array, Array]:
+        """Switching functions and weights of |u| at the nodes, for costates at the end; shapes (m, N + 1)."""
+        sigma = self.pushing(costate) + self.motion.slope[:, None]
+        return sigma, np.broadcast_to(self.motion.weight[:, None], sigma.shape)
+
+    def rate(self, costate: Array) -> float:
+        """H at the end for costates there, in which the end moves as it is given."""
+        motion, length, t = self.motion, self.duration / self.count, self.instance.t0 + self.duration
+        sigma, weight = self.switching(costate)
+        low, rest, high = (row[:, None] for row in self.levels.reshape(3, len(sigma), -1)[:, :, 0])
+        u = np.where(sigma > weight, low, np.where(sigma < -weight, high, rest))
+        _, acting, drift = motion.step(length)
+        pushed = acting @ (u[:, 1:] + u[:, :-1]) / 2.0 + drift[:, None]
+        end = self.powers[-1] @ np.array(self.instance.initial)
+        end = end + np.einsum("kij,jk->i", self.powers[self.count - 1 :: -1], pushed)
+        f = motion.states @ end + motion.controls @ u[:, -1] + motion.drift
+        cost = motion.rate + float(motion.slope @ u[:, -1] + motion.weight @ np.abs(u[:, -1]))
+        before, after = (goal(self.instance, self.rows, at) for at in (t - length, t + length))
+        return cost + float(costate @ f) - float(costate[self.rows] @ (after - before)) / (2.0 * length)
+
+    @cached_property
+    def steps(self) -> tuple[Array, Array]:
+        """What the controls of each step do to the given states, shape (F, m, N), and where these end without any."""
+        motion, count, powers = self.motion, self.count, self.powers[:, self.rows]
+        _, acting, drift = motion.step(self.duration / count)
+        effects = (powers[count - 1 :: -1] @ acting).transpose(1, 2, 0)
+        base = powers[-1] @ np.array(self.instance.initial) + powers[:-1].sum(axis=0) @ drift
+        return effects, base
+
+    @cached_property
+    def round(self) -> tuple[Array, Array, Array]:
+        """Coordinates in which the set is about as long as it is wide, and the end is the origin.
+
+        From given states to these, (F, F); the effects there, (F, m N), and where the motion ends for controls zero.
+        """
+        effects, base = self.steps
+        flat = effects.reshape(len(self.rows), -1) * (self.levels[2] - self.levels[0]) / 2.0
+        size = np.sqrt((flat**2).sum(axis=1))
+        scale = np.maximum(np.abs(base), np.abs(self.goal))
+        size = np.where(size > 0.0, size, np.where(scale > 0.0, scale, 1.0))
+        values, axes = np.linalg.eigh((flat / size[:, None]) @ (flat / size[:, None]).T)
+        widths = np.sqrt(np.maximum(values, FLAT**2 * max(float(values.max(initial=0.0)), 1e-300)))
+        towards = (axes / widths).T / size / np.sqrt(flat.shape[1])
+        return towards, towards @ effects.reshape(len(self.rows), -1), towards @ (base - self.goal)
+
+    @cached_property
+    def goal(self) -> Array:
+        """The given end, shape (F,)."""
+        return goal(self.instance, self.rows, self.instance.t0 + self.duration)
+
+    def separation(self, tight: float = TIGHT) -> tuple[float, Array]:
+        """How far the end is from the set, at least, and the costate of all states that shows it.
+
+        Not positive where the end is in the set; relative to the size of the set.
+        """
+        towards, effects, base = self.round
+        low, high = self.levels[0], self.levels[2]
+
+        def support(direction: Array) -> Array:
+            return np.asarray(base + effects @ np.where(direction @ effects > 0.0, low, high))
+
+        near = nearest_point(support, support(base), THERE, tight)
+        return near.distance, self.in_full(towards.T @ near.point)
+
+    @cached_property
+    def levels(self) -> Array:
+        """Lower bounds, values at rest and upper bounds in each step, shape (3, m N)."""
+        low, high = np.array(self.instance.lower), np.array(self.instance.upper)
+        return np.repeat([low, np.clip(0.0, low, high), high], self.count, axis=1)
+
+    def least_cost(self) -> Priced | None:
+        """The least cost of the end, which must be in the set; ``None`` where no costate shows it."""
+        towards, effects, base = self.round
+        length = self.duration / self.count
+        slope, weight = (np.repeat(row, self.count) * length for row in (self.motion.slope, self.motion.weight))
+        found = cheapest(effects, base, self.levels, slope * self.levels + weight * np.abs(self.levels))
+        return None if found is None else Priced(found[0], self.in_full(towards.T @ found[1]))
+
+    def nearest_miss(self) -> Array:
+        """By how much the nearest of the ends misses the given one, each state in units of what controls move it by.
+
+        Shape (F,), in the model's units.
+        """
+        effects, base = self.steps
+        low, high = self.levels[0], self.levels[2]
+        moved = np.abs(effects.reshape(len(base), -1)) @ np.maximum(np.abs(low), np.abs(high))
+        sizes = np.maximum(moved, 1e-12 * max(float(np.abs(self.goal).max(initial=0.0)), 1e-300))
+        flat = effects.reshape(len(base), -1) / sizes[:, None]
+        from_goal = (base - self.goal) / sizes
+
+        def support(direction: Array) -> Array:
+            return np.asarray(from_goal + flat @ np.where(direction @ flat > 0.0, low, high))
+
+        near = nearest_point(support, support(from_goal), 0.0, 1e-9)
+        return np.asarray(near.shares @ near.corners * sizes)
+
+    def in_full(self, costate: Array) -> Array:
+        """Costates of all states from those of given ones."""
+        found = np.zeros(len(self.instance.initial))
+        found[self.rows] = costate
+        return found
+
+
+def cheapest(effects: Array, base: Array, levels: Array, prices: Array) -> tuple[float, Array] | None:
+    """The least price of levels that lead to the origin, and the multipliers that show it.
+
+    Parameters
+    ----------
+    effects
+        Of a unit of each control, shape (F, K).
+    base
+        Where none lead, shape (F,).
+    levels, prices
+        To choose from for each control, and at what price: shapes (c, K).
+
+    Returns
+    -------
+    tuple or None
+        A bound from below that is met up to the accuracy of the search; and multipliers, shape (F,): each control is at
+        the level of least price and multipliers times effects. ``None`` where no multipliers show anything.
+    """
+    lowest, highest = (float(f(prices, axis=0).sum()) for f in (np.min, np.max))
+    unit = max(highest - lowest, 1e-300)
+    bound = 0.0  # of the price, from its least, in this unit
+
+    def support(direction: Array) -> Array:
+        pushed = direction[:-1] @ effects
+        best = (pushed * levels + direction[-1] / unit * prices).argmin(axis=0)
+        end = base + effects @ np.choose(best, levels)
+        return np.append(end, (float(np.choose(best, prices).sum()) - lowest) / unit - bound)
+
+    first, found = support(np.append(base, 0.0)), None
+    for _ in range(SEARCHES):
+        near = nearest_point(support, first, THERE, TIGHT)
+        outwards = float(near.point[-1])
+        if near.distance <= THERE or outwards <= FLAT * float(np.linalg.norm(near.point)):
+            break
+        found = near.point[:-1] * (unit / outwards)
+        gain = near.distance * float(np.linalg.norm(near.point)) / outwards
+        bound += gain
+        first = near.shares @ near.corners - np.append(np.zeros(len(base)), gain)
+        if gain <= CHEAPER:
+            break
+    return None if found is None else (lowest + bound * unit, found)
+
+
+def steps(motion: LinearMotion, duration: float) -> int:
+    """How many steps show a duration well."""
+    quickest = float(np.abs(np.linalg.eigvals(motion.states)).max(initial=0.0))
+    return int(min(max(LEAST, np.ceil(PER_RADIAN * quickest * duration)), MOST))
+
+
+def given_rows(instance: Instance) -> NDArray[np.intp]:
+    """States that are given at the end."""
+    return np.flatnonzero(np.array(final_argument(instance)).reshape(3, -1)[:2].any(axis=0))
+
+
+def goal(instance: Instance, rows: NDArray[np.intp], t: float) -> Array:
+    """What is given of them, shape (F,)."""
+    given, on_reference, target = np.array(final_argument(instance)).reshape(3, -1)
+    wanted = given * target
+    if on_reference.any():
+        wanted = wanted + on_reference * np.array(instance.model.reference(t, instance.parameters))
+    return np.asarray(wanted[rows])

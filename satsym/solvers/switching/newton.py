@@ -1,0 +1,285 @@
+"""Newton's method for the initial costates, switching times, final time and multipliers of a structure."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+from satsym.solvers.collocation.scaling import final_argument
+from satsym.solvers.failures import FAILURES
+from satsym.solvers.switching.extremal_arcs import TOLERANCE, Arc, Unknowns, fly
+from satsym.solvers.switching.field import Field
+from satsym.solvers.switching.structure import SINGULAR, Structure
+
+Array = NDArray[np.floating[Any]]
+
+MOST = 20
+NEAR, ROUGH = 1e-2, 1e-7
+"""Arcs need no more than this accuracy until a correction is smaller than that."""
+
+SETTLED = 1e-7
+"""The first correction below this is the last."""
+
+LOST = 1e4
+"""Size of a correction that leads nowhere."""
+
+FREE, GROWN = 4, 2.0
+"""After so many corrections none may be so many times larger than the one before."""
+
+BOLD = 0.5
+"""Share of the duration by which times may move at once."""
+
+TURNED = 2.0
+"""Share of their size by which costates may change at once."""
+
+RANK = 1e-11
+"""Smallest singular value, relative to the largest, of a direction that the equations determine."""
+
+
+@dataclass(frozen=True, eq=False)
+class Refined:
+    """An extremal of a structure.
+
+    Attributes
+    ----------
+    structure, at
+        Levels, and what they lead to.
+    arcs
+        The extremal.
+    residual
+        Largest residual, each relative to the size of what it compares.
+    iterations
+        Corrections.
+    sizes
+        Of states and costates, which residuals are relative to, shape (2n,).
+    """
+
+    structure: Structure
+    at: Unknowns
+    arcs: list[Arc]
+    residual: float
+    iterations: int
+    sizes: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Equations:
+    """What must vanish at the end of an extremal and at its switches, scaled row by row.
+
+    Attributes
+    ----------
+    instance, structure
+        What is solved, and with which levels.
+    sizes
+        Of states and costates, shape (2n,).
+    duration
+        Typical.
+    """
+
+    instance: Instance
+    structure: Structure
+    sizes: Array
+    duration: float
+
+    @property
+    def free_time(self) -> bool:
+        """Whether the final time is unknown."""
+        return self.instance.tf is None
+
+    def start(self, costates: Array, times: Array, end: float) -> Unknowns:
+        """Unknowns with vanishing multipliers."""
+        return Unknowns(
+            np.asarray(costates), np.asarray(times), end, np.zeros(len(self.instance.model.spec.multipliers))
+        )
+
+    def arcs(self, at: Unknowns, slopes: bool = True, tolerance: float = TOLERANCE) -> list[Arc]:
+        """The extremal; raises as :func:`fly`."""
+        return fly(self.instance, self.structure, at, self.sizes, slopes, tolerance)
+
+    def residual(self, at: Unknowns, arcs: list[Arc]) -> tuple[Array, Array]:
+        """Residuals and their derivatives by all unknowns, in units of :attr:`scale`: shapes (r,) and (r, v)."""
+        n, last = len(self.instance.initial), arcs[-1]
+        values, slopes = self._end(at, last)
+        inner = [row for before, after in pairwise(arcs) for row in self._switch(before, after)]
+        inner += self._singular_start(arcs[0])
+        columns = n + self.structure.switches
+        table = np.zeros((len(inner), slopes.shape[1]))
+        for k, (_, row) in enumerate(inner):
+            table[k, : columns + self.free_time] = row[: columns + self.free_time]
+        both = np.concatenate([slopes, table]) * self.scale
+        return np.concatenate([values, [value for value, _ in inner]]), both
+
+    @property
+    def scale(self) -> Array:
+        """Sizes of the unknowns."""
+        n = len(self.instance.initial)
+        times = np.full(self.structure.switches + self.free_time, self.duration)
+        cost = float((self.sizes[:n] * self.sizes[n:]).max())
+        return np.concatenate([self.sizes[n:], times, np.full(len(self.instance.model.spec.multipliers), cost)])
+
+    def moved(self, at: Unknowns, step: Array) -> Unknowns:
+        """Unknowns after a step in units of :attr:`scale`."""
+        n, k = len(at.costates), len(at.times)
+        change = step * self.scale
+        end = at.end + float(change[n + k]) if self.free_time else at.end
+        rest = change[n + k + self.free_time :]
+        return Unknowns(at.costates + change[:n], at.times + change[n : n + k], end, at.multipliers + rest)
+
+    def _end(self, at: Unknowns, last: Arc) -> tuple[Array, Array]:
+        """Rows of the generated boundary function, with the control of the last arc held."""
+        instance, n = self.instance, len(self.instance.initial)
+        model, z = instance.model, last.after.tolist()
+        u = last.field.control(at.end, z)
+        held = (*u, *u, *instance.bounds[2 * len(u) :])
+        point = (at.end, tuple(z[:n]), tuple(z[n:]), tuple(at.multipliers))
+        arguments = (*point, instance.parameters, held, final_argument(instance))
+        residual = np.array(model.boundary(*arguments))
+        by = np.array(model.boundary_jacobian(*arguments)).reshape(len(residual), -1)
+        count = len(at.multipliers)
+        by_end, by_multipliers, by_time = by[:, : 2 * n], by[:, 2 * n : 2 * n + count], by[:, -1]
+        slopes = by_end @ last.slopes
+        slopes[:, -1] += by_time
+        if not self.free_time:
+            slopes, residual, by_multipliers = slopes[:-1, :-1], residual[:-1], by_multipliers[:-1]
+        sizes = np.abs(by_end) @ self.sizes
+        rows = np.maximum(sizes[: len(residual)], 1e-300)
+        if self.free_time:
+            rates = np.abs(last.field.rates(at.end, z))
+            rows[-1] = max(float(self.sizes[n:] @ rates[:n]), 1e-300)
+        together = np.concatenate([slopes, by_multipliers], axis=1)
+        return residual / rows, together / rows[:, None]
+
+    def _switch(self, before: Arc, after: Arc) -> list[tuple[float, Array]]:
+        """What must vanish at a switch: nothing where a singular arc ends."""
+        event = before.event
+        assert event is not None
+        levels = (before.field.levels[event.control], after.field.levels[event.control])
+        if levels[0] == SINGULAR:
+            return []
+        rows = [self._row(before, before.end, before.after, before.slopes, event.control, event.column, levels)]
+        if levels[1] == SINGULAR:
+            rows.append(self._rate_row(after, before.after, before.slopes, event.control, event.column))
+        return rows
+
+    def _singular_start(self, first: Arc) -> list[tuple[float, Array]]:
+        """What must vanish at the start of a singular arc that begins everything."""
+        if first.field.singular is None:
+            return []
+        n, i = len(self.instance.initial), first.field.singular
+        slopes = np.zeros((2 * n, first.slopes.shape[1]))
+        slopes[n:, :n] = np.eye(n)
+        levels = (SINGULAR, SINGULAR)
+        return [
+            self._row(first, first.start, first.before, slopes, i, None, levels),
+            self._rate_row(first, first.before, slopes, i, None),
+        ]
+
+    def _row(
+        self, arc: Arc, t: float, z: Array, slopes: Array, control: int, column: int | None, levels: tuple[int, int]
+    ) -> tuple[float, Array]:
+        """The switching function minus its value at such a switch, by the unknowns; in units of its own size."""
+        field, here = arc.field, z.tolist()
+        gradient = field.gradient(t, here, control)
+        target = switching_value(field, t, here, control, levels)
+        sigma, rate = switching(field, t, here, control)
+        size = max(float(np.abs(gradient) @ self.sizes), abs(target), 1e-300)
+        if target:
+            by_state, along = field.weight_gradient(t, here, control)
+            gradient, rate = gradient - np.sign(target) * by_state, rate - np.sign(target) * along
+        return (sigma - target) / size, self._moving(field, t, here, gradient, slopes, column, rate) / size
+
+    def _rate_row(self, arc: Arc, z: Array, slopes: Array, control: int, column: int | None) -> tuple[float, Array]:
+        """The same for the rate of the switching function."""
+        field, here, t = arc.field, z.tolist(), arc.start
+        gradient = field.rate_gradient(t, here, control)
+        _, rate = switching(field, t, here, control)
+        size = max(float(np.abs(gradient) @ self.sizes), 1e-300)
+        return rate / size, self._moving(field, t, here, gradient, slopes, column, 0.0) / size
+
+    @staticmethod
+    def _moving(
+        field: Field, t: float, z: list[float], gradient: Array, slopes: Array, column: int | None, rate: float
+    ) -> Array:
+        """The derivative of a function of time and z whose time moves with an unknown, by all unknowns."""
+        row = gradient @ slopes
+        if column is not None:
+            place = len(z) // 2 + column
+            row[place] += rate - gradient @ np.array(field.rates(t, z))
+        return np.asarray(row)
+
+
+def switching(field: Field, t: float, z: list[float], control: int) -> tuple[float, float]:
+    """A switching function and its rate."""
+    x, lam = z[: field.n], z[field.n :]
+    sigma = field.model.switching_function(t, x, lam, field.p)[control]
+    return sigma, field.model.switching_rate(t, x, field.control(t, z), lam, field.p)[control]
+
+
+def switching_value(field: Field, t: float, z: list[float], control: int, levels: tuple[int, int]) -> float:
+    """What the switching function must be at a switch between two levels."""
+    weight = field.weight(t, z, control)
+    if SINGULAR in levels or 0 not in levels:
+        return 0.0
+    return -weight if max(levels) > 0 else weight
+
+
+def solve(equations: Equations, start: Unknowns, watch: Callable[[float, float], None] | None = None) -> Refined | None:
+    """Newton's method, undamped but for large moves; ``None`` where it leads nowhere.
+
+    Parameters
+    ----------
+    equations
+        What is to vanish.
+    start
+        Where to begin.
+    watch
+        Told the size of each correction, and NaN for the cost, which is not known on the way.
+    """
+    at, before = start, float("inf")
+    for iteration in range(1, MOST + 1):
+        try:
+            close = before < NEAR
+            arcs = equations.arcs(at, tolerance=TOLERANCE if close else ROUGH)
+            residual, slopes = equations.residual(at, arcs)
+            step = _least_squares(slopes, -residual)
+        except FAILURES:
+            return None
+        size = float(np.abs(step).max(initial=0.0))
+        if watch:
+            watch(math.nan, size)
+        if not size < LOST or (iteration > FREE and size > GROWN * before):
+            return None
+        if close and size < SETTLED:  # what is left to correct is about its square
+            at = equations.moved(at, step)
+            arcs = equations.arcs(at, slopes=False)
+            values, _ = equations.residual(at, arcs)
+            worst = float(np.abs(values).max(initial=0.0))
+            return Refined(equations.structure, at, arcs, worst, iteration, equations.sizes)
+        n = len(at.costates)
+        span = float(np.abs(step[n : n + len(at.times) + equations.free_time]).max(initial=0.0))
+        turn = float(np.abs(step[:n]).max(initial=0.0))
+        at, before = equations.moved(at, step * min(1.0, BOLD / max(span, 1e-300), TURNED / max(turn, 1e-300))), size
+        if equations.free_time and not at.end > equations.instance.t0:
+            return None
+        equations = replace(equations, sizes=_resized(equations.sizes, arcs))
+    return None
+
+
+def _least_squares(matrix: Array, right: Array) -> Array:
+    found: Array = np.linalg.lstsq(matrix, right, rcond=RANK)[0]
+    return found
+
+
+def _resized(sizes: Array, arcs: list[Arc]) -> Array:
+    """Sizes of costates as the arcs show them; those of states stay."""
+    n = len(sizes) // 2
+    seen = np.max([np.abs(arc.after[n:]) for arc in arcs] + [np.abs(arcs[0].before[n:])], axis=0)
+    cost = float((sizes[:n] * seen).max())
+    return np.concatenate([sizes[:n], np.maximum(seen, 1e-3 * cost / sizes[:n]) if cost > 0.0 else sizes[n:]])

@@ -1,0 +1,299 @@
+"""Method "bang-bang": from a cold start to exact arcs and switching times."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from itertools import chain
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+from satsym.solution import Progress, Solution
+from satsym.solvers.failures import FAILURES, tried, unbroken
+from satsym.solvers.iteration import Limits, watched
+from satsym.solvers.nearest_end import nearest
+from satsym.solvers.switching.answers import answered, without
+from satsym.solvers.switching.attempt import Exact, attempt
+from satsym.solvers.switching.cold_start import by_scouts, homotopy, least_effort
+from satsym.solvers.switching.cold_start import saturated as held
+from satsym.solvers.switching.cold_start.recognition import Guess, Sample, guess, inside, sample
+from satsym.solvers.switching.least_time import least_time
+from satsym.solvers.switching.linear import by_reach
+from satsym.solvers.switching.newton import switching
+from satsym.solvers.switching.refusals import refuse
+from satsym.solvers.switching.structure import REST, Structure
+from satsym.solvers.switching.variants import neighbours
+from satsym.status import Status
+
+Array = NDArray[np.floating[Any]]
+
+ENOUGH = 1e-9
+"""By this share of it a given time may fall short of the least."""
+
+BETWEEN = 4
+"""Of so many smoothed extremals one is looked at for structures with an arc less or more."""
+
+COMPARED = 100_000
+"""Columns for which at most an extremal that may have more arcs is looked for, where free ends have one already."""
+
+BESIDE, COMPARED_BESIDE = (0.02, 0.05, 0.12, 0.3, 0.7), (0.035, 0.08, 0.2, 0.45, 0.85, 1.3)
+"""Shares of a duration that was found, at which others are looked for by the solver and by certificates."""
+
+ADOPTED = 3
+"""Times that something cheaper is looked for, as long as there is."""
+
+STEADY = 0.5
+"""Share of the time off the bounds that is left after smoothing less, where that time is a singular arc's."""
+
+
+def solve(instance: Instance, progress: Progress | None = None) -> Solution:
+    """Solve a switching problem.
+
+    Parameters
+    ----------
+    instance
+        Of a model whose controls enter the Hamiltonian affinely, with both bounds for each.
+    progress
+        Called after each step of the continuation, and each attempt at exact arcs.
+
+    Returns
+    -------
+    Solution
+        Times hold each switching time twice: the last instant of one arc and the first of the next.
+
+    Raises
+    ------
+    BadInput
+        If a bound is missing, or the motion starts where it is to end.
+    """
+    refuse(instance)
+    began = time.perf_counter()
+    limits, history = watched(instance, progress)
+    with np.errstate(all="ignore"):
+        found = _found(instance, limits)
+        if isinstance(found, homotopy.Stopped):
+            found = _by_least_time(instance, found, limits)
+        if isinstance(found, homotopy.Stopped):
+            return without(instance, _out_of_reach(found, limits), tuple(history), began)
+        return answered(instance, *found, tuple(history), began)
+
+
+def _by_least_time(
+    instance: Instance, stopped: homotopy.Stopped, limits: Limits
+) -> tuple[Exact, str] | homotopy.Stopped:
+    """What the least time says: a structure where the given one is hardly longer, or that it is too short.
+
+    The latter where the motion is linear: only there is it known that nothing arrives earlier.
+    """
+    hurried = least_time(instance) if instance.tf is not None and instance.final and not limits.expired else None
+    found = _found(hurried, limits) if hurried is not None else stopped
+    if isinstance(found, homotopy.Stopped) or instance.tf is None or hurried is None:
+        return stopped
+    exact, way = found
+    least, given = exact.refined.at.end - instance.t0, instance.tf - instance.t0
+    name = exact.refined.structure.name
+    if way == by_reach.WAY and least > given * (1.0 + ENOUGH):
+        message = f"the least time to the given end is {least:.10g} (structure {name}), and only {given:.10g} is given"
+        return replace(stopped, status=Status.INFEASIBLE, message=message)
+    near = attempt(instance, _relaxed(instance, exact), limits) if least < given else None
+    if near is not None:
+        return near, "the structure of the least time"
+    if stopped.status is Status.INFEASIBLE:
+        return stopped
+    alone = ", and at that only one control arrives, whatever it costs" if abs(given / least - 1.0) <= ENOUGH else ""
+    message = f"{stopped.message}; the least time to the given end is {least:.10g} (structure {name}){alone}"
+    return replace(stopped, message=message)
+
+
+def _out_of_reach(stopped: homotopy.Stopped, limits: Limits) -> homotopy.Stopped:
+    """Why there is no answer: where the final time is given, perhaps that no control arrives."""
+    if stopped.status is not Status.NOT_CONVERGED or stopped.problem is None or stopped.curve is None:
+        return stopped
+    problem, curve = stopped.problem, stopped.curve
+    near = tried(lambda: nearest(problem, curve, limits))
+    if near is None or near.arrives or limits.expired:
+        return stopped
+    return replace(stopped, status=Status.INFEASIBLE, message=f"{near.message}; {stopped.message}")
+
+
+def others(instance: Instance, duration: float, limits: Limits) -> list[tuple[Exact, str]]:
+    """Extremals from several starts and how each was found, many of them one and the same.
+
+    For free ends those of controls held at a bound, and what is found by smoothing with moderate effort: it may have
+    arcs that no such control leads to. For terminal constraints and a free time those of least effort in shares of the
+    duration that was found.
+    """
+    if held.applies(instance):
+        return _compared(instance, _at_corners(instance, limits), limits)
+    if instance.tf is not None or not instance.model.spec.multipliers:
+        return []
+    return [(exact, "the signs of least effort") for exact in _beside(instance, duration, COMPARED_BESIDE, limits)]
+
+
+def _at_corners(instance: Instance, limits: Limits) -> list[tuple[Exact, str]]:
+    """Extremals that controls held at a bound lead to, where the end is free."""
+    found = (attempt(instance, start, limits) for start in held.guesses(instance))
+    return [(exact, "controls held at a bound") for exact in found if exact]
+
+
+def _compared(instance: Instance, known: list[tuple[Exact, str]], limits: Limits) -> list[tuple[Exact, str]]:
+    """Extremals that are known, and what smoothing leads to with moderate effort."""
+    moderate = replace(limits, work=min(limits.work, limits.meter.spent + COMPARED))
+    smoothed = _smoothed(instance, moderate, thorough=False)
+    return known if isinstance(smoothed, homotopy.Stopped) else [*known, smoothed]
+
+
+def _signs(instance: Instance, near: least_effort.Smoothed) -> Guess:
+    """The structure of a motion of least effort, as its signs show it."""
+    seen = sample(near.problem, near.curve)
+    first = guess(instance, replace(seen, weight=0.0 * seen.weight))
+    return replace(first, costates=first.costates * near.scaled)
+
+
+def _found(instance: Instance, limits: Limits) -> tuple[Exact, str] | homotopy.Stopped:
+    """Exact arcs and how they were found, or why there are none."""
+    resting = _resting(instance)
+    rest = [(exact, "rest")] if resting and (exact := attempt(instance, resting, limits)) else []
+    if held.applies(instance):
+        if known := rest + _at_corners(instance, limits):
+            return min(_compared(instance, known, limits), key=lambda one: one[0].trajectory.cost(instance))
+        return _smoothed(instance, limits)
+    if rest:
+        return rest[0]
+    if exact := by_reach.optimum(instance, limits):
+        return exact, by_reach.WAY
+    if message := by_reach.unreachable(instance, limits):
+        return homotopy.Stopped(Status.INFEASIBLE, message)
+    found = _by_effort(instance, limits)
+    best = None if isinstance(found, homotopy.Stopped) else found[0]
+    for _ in range(ADOPTED):
+        better = None if limits.expired else tried(partial(by_scouts.cheaper, instance, best, limits))
+        if better is None:
+            break
+        best, found = better, (better, "switching times that were drawn")
+    return found
+
+
+def _by_effort(instance: Instance, limits: Limits) -> tuple[Exact, str] | homotopy.Stopped:
+    """What motions of least effort lead to, the final time being free, or else less and less smoothing."""
+    if instance.tf is None:
+        near = chain(least_effort.quick(instance, limits), least_effort.shortening(instance, limits))
+        for start in unbroken(_signs(instance, one) for one in near):
+            exact = _first_of(instance, start, limits, thorough=True)
+            if exact:
+                others = _beside(instance, exact.refined.at.end - instance.t0, BESIDE, limits)
+                best = min([exact, *others], key=lambda one: one.trajectory.cost(instance))
+                return best, "the signs of least effort"
+    return _smoothed(instance, limits)
+
+
+def _beside(instance: Instance, duration: float, shares: Sequence[float], limits: Limits) -> list[Exact]:
+    """Extremals to which the signs of least effort lead in shares of a duration."""
+    starts = unbroken(_signs(instance, near) for near in least_effort.beside(instance, duration, shares, limits))
+    found = (_first_of(instance, start, limits, thorough=False) for start in starts)
+    return [exact for exact in found if exact]
+
+
+def _smoothed(instance: Instance, limits: Limits, thorough: bool = True) -> tuple[Exact, str] | homotopy.Stopped:
+    """Exact arcs with a structure that is recognised where less and less is smoothed, or why there are none.
+
+    Structures with an arc less or more are many, so they are tried once all smoothed extremals show no better one.
+    """
+    before: Sample | None = None
+    last: least_effort.Smoothed | None = None
+    waiting: list[tuple[Guess, str]] = []
+    try:
+        for level, near in enumerate(homotopy.path(instance, limits)):
+            seen, last, way = sample(near.problem, near.curve), near, _way(near)
+            for candidate in _candidates(instance, seen, before):
+                if exact := attempt(instance, candidate, limits):
+                    return exact, way
+                if thorough and level % BETWEEN == BETWEEN - 1:
+                    waiting.append((candidate, way))
+            before = seen
+            if limits.expired:
+                break
+    except homotopy.Stopped as stopped:
+        last_seen = stopped
+    except FAILURES as error:
+        last_seen = homotopy.Stopped(Status.NOT_CONVERGED, f"no smoothed solution was found ({error})")
+    else:
+        message = "no structure that was recognised in smoothed solutions satisfies the minimum principle"
+        assert last is not None
+        last_seen = homotopy.Stopped(Status.NOT_CONVERGED, message, last.problem, last.curve)
+    for candidate, way in waiting:
+        for one in unbroken(neighbours(instance, candidate, limits)):
+            if exact := attempt(instance, one, limits):
+                return exact, way
+            if limits.expired:
+                break
+    if limits.expired:
+        return replace(last_seen, status=Status.TIME_LIMIT, message=f"time was up: {last_seen.message}")
+    return last_seen
+
+
+def _way(near: least_effort.Smoothed) -> str:
+    return f"the companion smoothed by {near.problem.bounds[-2]:.1e}"
+
+
+def _resting(instance: Instance) -> Guess | None:
+    """No control at all, nor costates, where every |u| costs: the answer if the motion arrives by itself."""
+    weights = instance.model.magnitude_weight(instance.t0, instance.initial, instance.parameters)
+    if instance.tf is None or not all(weight > 0.0 for weight in weights):
+        return None
+    rest = Structure(((REST,),) * len(weights))
+    return Guess(rest, np.zeros(0), np.zeros(len(instance.initial)), instance.tf)
+
+
+def _relaxed(instance: Instance, hurried: Exact) -> Guess:
+    """The structure of the least time with a short rest at each switch, where |u| costs and there is some time left."""
+    at, structure = hurried.refined.at, hurried.refined.structure
+    assert instance.tf is not None
+    spare = ((instance.tf - at.end) * (instance.tf - instance.t0)) ** 0.5 / max(structure.switches, 1)
+    levels, times, rates = [], [], []
+    weights = instance.model.magnitude_weight(instance.t0, instance.initial, instance.parameters)
+    for arc in hurried.refined.arcs:
+        if arc.event is not None:
+            _, rate = switching(arc.field, arc.end, arc.after.tolist(), arc.event.control)
+            rates.append(2.0 * weights[arc.event.control] / max(abs(rate) * spare, 1e-300))
+    for row, own, weight in zip(structure.levels, structure.by_control(at.times), weights, strict=True):
+        if weight > 0.0:
+            levels.append((row[0], *(level for after in row[1:] for level in (REST, after))))
+            times += [t + k * spare for t in own.tolist() for k in (-0.5, 0.5)]
+        else:
+            levels.append(row)
+            times += own.tolist()
+    factor = float(np.mean(rates)) if rates else 1.0
+    return Guess(Structure(tuple(levels)), np.array(times), factor * at.costates, instance.tf)
+
+
+def _first_of(instance: Instance, first: Guess, limits: Limits, thorough: bool) -> Exact | None:
+    """The guess made exact, or, with more effort, one with an arc less or more."""
+    for one in chain((first,), unbroken(neighbours(instance, first, limits)) if thorough else ()):
+        exact = attempt(instance, one, limits)
+        if exact or limits.expired:
+            return exact
+    return None
+
+
+def _candidates(instance: Instance, seen: Sample, before: Sample | None) -> list[Guess]:
+    """Structures of a smoothed extremal, the likeliest first."""
+    plain = guess(instance, seen)
+    free = inside(instance, seen)
+    if before is None or not free.any():
+        return [plain]
+    was = inside(instance, before)
+    steady = [_time(seen, now) >= STEADY * _time(before, then) for now, then in zip(free, was, strict=True)]
+    singular = free & np.array(steady)[:, None]
+    if not singular.any():
+        return [plain]
+    return [guess(instance, seen, singular), plain]
+
+
+def _time(seen: Sample, where: NDArray[np.bool_]) -> float:
+    return float(np.trapezoid(where.astype(float), seen.times))

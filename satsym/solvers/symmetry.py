@@ -1,0 +1,219 @@
+"""Rotations under which a motion without control looks the same, found from its rates; and spirals made of them.
+
+A linear map G generates such a rotation if G f(x) = f_x(x) G x for all states: then exp(phi G) maps motions into
+motions, and the angular momentum about its axis is conserved. These equations are linear in G, so a few states drawn
+at random show all of them, in whatever Cartesian coordinates the model is stated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance import Instance
+from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.collocation.scaling import straight
+
+Array = NDArray[np.floating[Any]]
+States = Callable[[Array], Array]
+"""Scaled states, shape (n, M), at M times tau in [0, 1]."""
+
+DRAWN = 12
+"""States at which the equations are looked at, for each state variable."""
+
+NONE = 1e-9
+"""Relative size of a singular value, or of a real part of an eigenvalue, that is none."""
+
+TURN = 2.0 * np.pi
+
+CORRECTIONS, CLOSE = 20, 1e-6
+"""Of a state until it rotates steadily, and how nearly it does then."""
+
+ANGLES = 720
+"""Angles by which the end is turned to see which fits best."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rotation:
+    """A rotation exp(phi G) that leaves the free motion as it is, by the angle phi in the sense of the motion.
+
+    Attributes
+    ----------
+    axes, angular
+        Eigenvectors of G in columns, and their eigenvalues: i times 0, 1 or more.
+    inverse
+        Of the former.
+    """
+
+    axes: NDArray[np.complexfloating[Any, Any]]
+    angular: NDArray[np.complexfloating[Any, Any]]
+    inverse: NDArray[np.complexfloating[Any, Any]]
+
+    def turned(self, states: Array, angle: Array | float) -> Array:
+        """States (n, M), each by its angle (M,)."""
+        phases = np.exp(np.multiply.outer(self.angular, np.atleast_1d(angle)))
+        return np.asarray((self.axes @ (phases * (self.inverse @ states))).real)
+
+    @property
+    def matrix(self) -> Array:
+        """G, shape (n, n)."""
+        return np.asarray(((self.axes * self.angular) @ self.inverse).real)
+
+    def generator(self, states: Array) -> Array:
+        """G applied to states (n, M)."""
+        return np.asarray((self.axes @ (self.angular[:, None] * (self.inverse @ states))).real)
+
+
+def rotation(instance: Instance) -> Rotation | None:
+    """The rotation that follows the motion at the initial state best; ``None`` where there is none."""
+    n, rng = len(instance.initial), np.random.default_rng(0)
+    start = np.array(instance.initial)
+    size = np.maximum(np.abs(start), np.abs(start).max() * 1e-3 + 1e-300)
+    x = start[:, None] + size.mean() * rng.uniform(-0.5, 0.5, (n, DRAWN * n))
+    rates, slopes = _motion(instance, x)
+    if not np.isfinite(rates).all() or not np.isfinite(slopes).all() or _linear(slopes):
+        return None
+    # One row a component of G f - f_x G x, one column an entry of G.
+    eye = np.eye(n)
+    rows = np.einsum("ia,bk->kiab", eye, rates) - np.einsum("iak,bk->kiab", slopes, x)
+    _, values, basis = np.linalg.svd(rows.reshape(-1, n * n))
+    found = basis[values <= NONE * values[0]].reshape(-1, n, n)
+    if not len(found):
+        return None
+    here, _ = _motion(instance, start[:, None])
+    weights = np.linalg.lstsq((found @ start).T, here[:, 0], rcond=1e-9)[0]
+    matrix = np.tensordot(weights, found, 1)
+    angular, axes = np.linalg.eig(matrix)
+    fastest = float(np.abs(angular).max())
+    if fastest == 0.0 or (np.abs(angular.real) > 1e-6 * fastest).any() or np.linalg.cond(axes) > 1e6:
+        return None
+    multiples = np.round(angular.imag / np.abs(angular.imag[np.abs(angular.imag) > 1e-6 * fastest]).min())
+    return Rotation(axes, 1j * multiples, np.linalg.inv(axes))
+
+
+def turns(around: Rotation, states: Array) -> float:
+    """How many times a motion (n, M) goes round, by the phase of its largest rotating component."""
+    parts = (around.inverse @ states)[np.abs(around.angular.imag - 1.0) < 0.5]
+    if not len(parts):
+        return 0.0
+    largest = parts[int(np.argmax(np.abs(parts).min(axis=1)))]
+    return float(np.unwrap(np.angle(largest))[-1] - np.angle(largest[0])) / (TURN)
+
+
+@dataclass(frozen=True, eq=False)
+class Spiral:
+    """A path that turns with the motion to the given end.
+
+    Attributes
+    ----------
+    turns
+        How often it goes round.
+    path
+        Of scaled states.
+    """
+
+    turns: float
+    path: States
+
+
+def spirals(problem: TwoPoint, most: int, around: Rotation | None = None) -> list[Spiral]:
+    """Paths that turn with the motion from the start to the given end, by their turns; the likeliest first.
+
+    Empty where the motion has no such rotation, the end is not given as a whole, or the duration is free.
+
+    Parameters
+    ----------
+    problem
+        What is solved.
+    most
+        How many at most.
+    around
+        The rotation, where it is known.
+    """
+    if problem.free_time or not problem.fixed.all():
+        return []
+    around = around or rotation(problem.instance)
+    if around is None:
+        return []
+    unit = problem.scale.state[:, None]
+    start, end = (column[:, None] * unit for column in straight(problem).T)
+    back = around.turned(np.repeat(end, ANGLES, axis=1), -np.linspace(0.0, TURN, ANGLES, endpoint=False))
+    best = TURN / ANGLES * int(np.argmin((((back - start) / unit) ** 2).sum(axis=0)))
+    first, last = _rate(problem.instance, around, start), _rate(problem.instance, around, end)
+    mean = (first + last) / 2.0
+    if not (mean > 0.0 and np.isfinite(mean)):
+        return []
+    natural = mean * problem.duration
+    nearest = round((natural - best) / (TURN))
+    angles = best + TURN * np.arange(nearest - most, nearest + most + 1)
+    likeliest = angles[np.argsort(np.abs(angles - natural), kind="stable")][:most].tolist()
+    between = _Between(problem, around, start, end, (first, last))
+
+    return [Spiral(angle / TURN, between.spiral(angle)) for angle in likeliest]
+
+
+@dataclass(frozen=True, eq=False)
+class _Between:
+    """Ends of spirals, shape (n, 1), and the rates of the free motion there."""
+
+    problem: TwoPoint
+    around: Rotation
+    start: Array
+    end: Array
+    rates: tuple[float, float]
+
+    def spiral(self, angle: float) -> States:
+        """The path through the steady rotation that turns as fast as it must; its own rate changes evenly."""
+        duration, unit = self.problem.duration, self.problem.scale.state[:, None]
+        unturned = self.around.turned(self.end, -angle)
+        steady = self._steady(angle / duration, (self.start + unturned) / 2.0)
+        middle = (self.start + unturned) / 2.0 if steady is None else steady
+        first, last = (rate * duration for rate in self.rates)
+        bulge = 6.0 * (angle - (first + last) / 2.0)
+
+        def path(tau: Array) -> Array:
+            swept = first * tau + (last - first) * tau**2 / 2.0 + bulge * (tau**2 / 2.0 - tau**3 / 3.0)
+            near = self.start * (1.0 - tau) * (1.0 - 2.0 * tau), middle * 4.0 * tau * (1.0 - tau)
+            return self.around.turned(sum(near) + unturned * tau * (2.0 * tau - 1.0), swept) / unit
+
+        return path
+
+    def _steady(self, rate: float, state: Array) -> Array | None:
+        """The state next to another one whose free motion is the rotation at that rate, if there is one."""
+        unit, turning = self.problem.scale.state[:, None], rate * self.around.matrix
+        for _ in range(CORRECTIONS):
+            rates, slopes = _motion(self.problem.instance, state)
+            missing = (rates - turning @ state) / unit
+            if not np.isfinite(missing).all():
+                return None
+            if np.abs(missing).max() <= CLOSE * abs(rate):
+                return state
+            by_state = (slopes[:, :, 0] - turning) * unit.T / unit
+            state = state - unit * np.linalg.lstsq(by_state, missing, rcond=1e-9)[0]
+        return None
+
+
+def _rate(instance: Instance, around: Rotation, state: Array) -> float:
+    """The angular rate of the free motion at a state."""
+    rates, _ = _motion(instance, state)
+    turning = around.generator(state)
+    return float((turning * rates).sum() / max(float((turning**2).sum()), 1e-300))
+
+
+def _motion(instance: Instance, x: Array) -> tuple[Array, Array]:
+    """Rates of the free motion and their derivatives at states (n, M)."""
+    none = np.zeros((len(instance.model.spec.controls), x.shape[1]))
+    t = np.full(x.shape[1], instance.t0)
+    with np.errstate(all="ignore"):
+        rates = np.asarray(instance.model.dynamics_batch(t, x, none, instance.parameters))
+        slopes = np.asarray(instance.model.jacobian_x_batch(t, x, none, instance.parameters))
+    return rates, slopes
+
+
+def _linear(slopes: Array) -> bool:
+    """Whether they are the same everywhere."""
+    return bool(np.ptp(slopes, axis=2).max() <= NONE * np.abs(slopes).max())

@@ -1,0 +1,242 @@
+"""Given ends: collocation from a cold start, refined until the error estimate is small enough, within bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from satsym.instance import Instance
+from satsym.solution import Progress, Solution
+from satsym.solvers.cold_start import paths
+from satsym.solvers.cold_start.durations import free_duration
+from satsym.solvers.cold_start.swept import from_control, loose, swept
+from satsym.solvers.cold_start.ways import Start, cold_start
+from satsym.solvers.collocation.continuation import Bounded, settled, tighten
+from satsym.solvers.collocation.curve import Curve, Path
+from satsym.solvers.collocation.gauss import STAGES
+from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.collocation.refinement import Refined, refine
+from satsym.solvers.collocation.scaling import two_point
+from satsym.solvers.collocation.soft_bounds import within_bounds, within_found
+from satsym.solvers.collocation.sqp import Found
+from satsym.solvers.collocation.system import System
+from satsym.solvers.extremal import Extremal, solved
+from satsym.solvers.iteration import Limits
+from satsym.solvers.nearest_end import nearest
+from satsym.solvers.switching.linear.by_reach import unreachable
+from satsym.status import Status
+
+ROUNDING = 1e-12
+"""An estimated error below this can hardly be made smaller."""
+
+LEAST = 10
+"""Intervals of a mesh on which a guess is followed."""
+
+GUESSED = 1e-2
+"""Softness of the bounds with which a guess or a path that is drawn is followed first."""
+
+DRAWN, AMPLITUDES = 4, (0.2, 0.5)
+"""Paths that are drawn where the bounds cannot be brought in, and how far they leave the straight line."""
+
+Accurate = Callable[[TwoPoint, Start, Limits], Extremal]
+"""From an extremal of low order without bounds to an accurate one within them."""
+
+
+def solve(instance: Instance, progress: Progress | None = None) -> Solution:
+    """Solve an instance by collocation.
+
+    Parameters
+    ----------
+    instance
+        With final states given, on the reference or free, and a final time that is given or free.
+    progress
+        Called after each step of the minimisation, and each phase.
+
+    Returns
+    -------
+    Solution
+        With status ``converged`` when the estimated error is within the instance's tolerance.
+    """
+
+    def method(one: Instance, limits: Limits, effort: bool) -> Extremal:
+        return from_cold_start(one, limits, effort, accurate)
+
+    return solved(instance, progress, "collocation", method)
+
+
+def from_cold_start(instance: Instance, limits: Limits, effort: bool, accurate: Accurate) -> Extremal:
+    """Find an extremal of low order without bounds from nothing, its duration where that is free, and make it accurate.
+
+    Parameters
+    ----------
+    instance
+        What is solved.
+    limits
+        When to stop, and who is told the cost of what was found.
+    effort
+        Whether free durations are looked for with great effort.
+    accurate
+        What is done from there.
+    """
+    if instance.tf is not None:
+        problem = two_point(instance, instance.tf - instance.t0)
+        start, way = guessed(problem, limits) or cold_start(problem, limits), ""
+        if start.way == "none" and np.isfinite(problem.bounds).any():
+            start = drawn_within(problem, limits) or start
+        if start.saddle is not None:
+            start = replace(start, found=start.saddle, way="straight line, but no minimum was found")
+        elif start.way == "none":
+            message = f"no extremal found: {start.found.reason}"
+            return unfinished(problem, start.found.curve, message, start.steps, limits)
+    else:
+        chosen = free_duration(instance, limits, effort)
+        problem, start, way = chosen.problem.widened(0.0), chosen.start, f", {chosen.message}"
+        if not chosen.status.answered:
+            return Extremal(problem, start.found.curve, float("inf"), chosen.status, chosen.message, start.steps)
+    found = accurate(problem, start, limits)
+    if not found.status.answered:
+        return found
+    return replace(found, message=f"{found.message}, from the {start.way}{way}")
+
+
+def unfinished(problem: TwoPoint, path: Path, message: str, steps: int, limits: Limits) -> Extremal:
+    """No extremal, and why: for want of time where that is up."""
+    if limits.expired:
+        return Extremal(problem, path, float("inf"), Status.TIME_LIMIT, f"time was up: {message}", steps)
+    return Extremal(problem, path, float("inf"), Status.NOT_CONVERGED, message, steps)
+
+
+def guessed(problem: TwoPoint, limits: Limits) -> Start | None:
+    """The extremal within the bounds to which a guess leads; ``None`` without one, or where bounds are none or free.
+
+    Without costates that are guessed the bounds are soft at first, but harder than where the guess would be led away.
+    """
+    guess = problem.instance.guess
+    if not guess or not np.isfinite(problem.bounds).any() or problem.free_time:
+        return None
+    begun, curve = paths.start(problem), None
+    if guess.control and loose(problem):
+        curve = from_control(problem, guess.control, limits)
+    elif guess.costate:
+        bounded = settled(problem, begun, STAGES, max(len(begun.mesh) - 1, LEAST), limits)
+        curve = bounded.curve if bounded.converged else None
+    if curve is None:
+        curve = within_bounds(problem, paths.first(problem), limits, GUESSED).curve
+    if curve is None or not curve.in_domain(problem.positive):
+        return None
+    cost = System(problem, curve.mesh, curve.order).cost(curve)
+    return Start(Found(curve, "minimum", cost, 1, True), "guess", 1, {}, within=curve)
+
+
+def inside(problem: TwoPoint, start: Start, free: Curve, limits: Limits) -> Bounded:
+    """The extremal within the bounds, from one without.
+
+    The bounds are brought in from where they do not bind. Where that ends too early they are made harder and harder,
+    from that extremal and then from paths that are drawn: a structure that exists only within bounds is found so.
+
+    Parameters
+    ----------
+    problem
+        With its bounds.
+    start
+        How the extremal was found.
+    free
+        The extremal, perhaps more accurate.
+    limits
+        When to stop.
+    """
+    if start.within is not None:
+        return Bounded(start.within, np.zeros(0), 1.0, True, 1)
+    bounded = tighten(problem, free, STAGES, limits)
+    if bounded.converged or problem.free_time or unreachable(problem.instance, limits) is not None:
+        return bounded
+    first = within_found(problem, start.found, limits)
+    found = None if first.curve is not None else drawn_within(problem, limits)
+    steps = bounded.iterations + first.iterations + (found.steps if found else 0)
+    curve = found.within if found else first.curve
+    return replace(bounded, iterations=steps) if curve is None else Bounded(curve, np.zeros(0), 1.0, True, steps)
+
+
+def drawn_within(problem: TwoPoint, limits: Limits) -> Start | None:
+    """The cheapest extremal within the bounds to which paths that are drawn lead, or corners of the box, if any."""
+    rng, steps = np.random.default_rng(DRAWN), 0
+    found: list[tuple[float, Curve]] = []
+    for k in range(DRAWN):
+        path = paths.bent(problem, rng, AMPLITUDES[k % len(AMPLITUDES)])
+        one = within_bounds(problem, path, limits, GUESSED)
+        steps += one.iterations
+        if one.curve is not None:
+            found.append((System(problem, one.curve.mesh, one.curve.order).cost(one.curve), one.curve))
+        if limits.expired:
+            break
+    corners = (curve for curve in swept(problem, limits) if curve is not None)
+    found += [(System(problem, curve.mesh, curve.order).cost(curve), curve) for curve in corners]
+    if not found:
+        return None
+    cost, curve = min(found, key=lambda one: one[0])
+    return Start(Found(curve, "minimum", cost, steps, True), "drawn path", steps, {}, within=curve)
+
+
+def outside(problem: TwoPoint, path: Path, bounded: Bounded, steps: int, limits: Limits) -> Extremal:
+    """No extremal within the bounds, and how far these could be brought in."""
+    message = "the times at which bounds are met do not settle"
+    if bounded.reached < 1.0:
+        message = f"bounds could be brought in only {bounded.reached:.0%} of the way from where they do not bind"
+    return unfinished(problem, path, message, steps, limits)
+
+
+def explained(found: Extremal, limits: Limits) -> Extremal:
+    """What was found; where bounds are in the way of an answer, whether the end can be reached at all."""
+    problem = found.problem
+    if found.status is not Status.NOT_CONVERGED or not np.isfinite(problem.bounds).any():
+        return found
+    separated = unreachable(problem.instance, limits)
+    if separated is not None:
+        return replace(found, status=Status.INFEASIBLE, message=separated)
+    near = nearest(problem, found.path, limits)
+    if near is None or limits.expired:
+        return found
+    if near.arrives:
+        return replace(found, message=f"{found.message}, though the end can be reached")
+    return replace(found, status=Status.INFEASIBLE, message=f"{near.message}; {found.message}")
+
+
+def accurate(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
+    """From an extremal of low order without bounds to an accurate one within them, by collocation."""
+    return explained(within(problem, start, limits), limits)
+
+
+def within(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
+    """The same, without asking why where there is none."""
+    tolerance = problem.instance.solver.tolerance
+    free, steps = problem.widened(float("inf")), start.steps
+    refined, cost = Refined(start.found.curve, float("inf"), False, 0), float("nan")
+    if start.within is None:
+        refined = refine(free, start.found.curve, tolerance, known=start.found.linearised)
+        cost = _cost(free, refined)
+        limits.tell(cost, refined.error)
+        steps += refined.iterations
+    bounded = inside(problem, start, refined.curve, limits)
+    if bounded.iterations:
+        steps += bounded.iterations
+        if not bounded.converged:
+            return outside(problem, refined.curve, bounded, steps, limits)
+        refined = refine(problem, bounded.curve, tolerance, keep_nodes=True)
+        steps += refined.iterations
+        cost = _cost(problem, refined)
+        limits.tell(cost, refined.error)
+    intervals = len(refined.curve.mesh) - 1
+    if not refined.converged:
+        message = f"the estimated error stays at {refined.error:.0e} on {intervals} intervals"
+        if refined.error < ROUNDING:
+            message += ", which rounding leaves: raise [solver] tolerance"
+        return unfinished(problem, refined.curve, message, steps, limits)
+    message = f"estimated error {refined.error:.0e} on {intervals} intervals"
+    return Extremal(problem, refined.curve, cost, Status.CONVERGED, message, steps)
+
+
+def _cost(problem: TwoPoint, refined: Refined) -> float:
+    system = System(problem, refined.curve.mesh, refined.curve.order)
+    return system.cost(refined.curve) * problem.scale.cost

@@ -1,0 +1,141 @@
+"""What the Jacobian at a single point of an orbit says, exactly: for models without a cost that a centre attracts.
+
+The eigenvalues there are often taken for a verdict on the orbit. They follow in closed form, with what they depend on;
+and no point of an orbit is an equilibrium, which such a verdict would need.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import mpmath as mp
+import sympy as sp
+
+from satsym.symbolic import notation as n
+from satsym.symbolic.analysis.field import sign_of
+from satsym.symbolic.analysis.spectrum import Spectrum, spectrum
+from satsym.symbolic.checks import Check, Point, compare, identity, numeric
+from satsym.symbolic.derivation import Conclusion, Derivation, Equation, Step
+from satsym.symbolic.kepler.attraction import inertial_accelerations, jacobian_blocks, strength_of
+from satsym.symbolic.linear import notation as ln
+from satsym.symbolic.linear.numeric_matrices import numeric_matrix, numeric_rank
+from satsym.symbolic.model import Newton, symbols_of, variables_of
+
+
+def no_equilibrium(so_far: Derivation) -> Step | None:
+    """That the uncontrolled acceleration vanishes at no distance, so that no point is an equilibrium."""
+    strength = strength_of(so_far)
+    if strength is None or so_far.problem is not None:
+        return None
+    distance, accelerations = so_far.equation("central_attraction.distance").rhs, inertial_accelerations(so_far)
+    law = so_far.equation("central_attraction.law").rhs
+    pull = -law.coeff(n.POSITION) * n.DISTANCE
+    if sign_of(pull) != 1:
+        return None
+    size, components = numeric([pull.xreplace({n.DISTANCE: distance})]), numeric(accelerations)
+    symbols = set(symbols_of(so_far.model.states)) | {n.TIME} | set().union(*(a.free_symbols for a in accelerations))
+    checks = (
+        compare(
+            "length of the acceleration",
+            symbols | strength.free_symbols,
+            lambda point: (size(point), [mp.norm(components(point))]),
+        ),
+        identity("vanishes at infinity only", [sp.limit(pull, n.DISTANCE, sp.oo)]),
+    )
+    return Step(
+        "no_equilibrium",
+        "pull of the centre",
+        (Equation("acceleration", n.PULL, pull),),
+        ("central_attraction",),
+        checks,
+        (Conclusion("no equilibrium", {"pull": n.PULL, "distance": n.DISTANCE}),),
+    )
+
+
+def point_spectrum(so_far: Derivation) -> Step | None:
+    """Eigenvalues of the Jacobian at any point, what they depend on, and what a rule about their signs can tell."""
+    model = so_far.model
+    if "gravity_gradient" not in so_far or so_far.problem is not None or not isinstance(model, Newton):
+        return None
+    if {v.symbol for v in variables_of(model)} & set(ln.results(model)):
+        return None
+    a = _whole(so_far)
+    of = spectrum(_on_a_sphere(a, model))
+    found = of.eigenvalues
+    if not of.closed_form or of.polynomial.free_symbols - _constants(so_far) - {ln.LAMBDA, n.DISTANCE}:
+        return None
+    rows = {
+        "distinct": (ln.DISTINCT, [e.value for e in found]),
+        "algebraic": (ln.ALGEBRAIC, [e.algebraic for e in found]),
+        "geometric": (ln.GEOMETRIC, [e.geometric for e in found]),
+    }
+    equations = [Equation("characteristic_polynomial", ln.CHARACTERISTIC, of.polynomial)]
+    equations += [Equation(name, lhs, sp.ImmutableMatrix([row])) for name, (lhs, row) in rows.items()]
+    velocities = list(model.coordinates.values())
+    checks = (
+        *_checks(so_far, a, of),
+        identity("free of the velocity", [sp.diff(entry, v) for entry in a for v in velocities]),
+    )
+    return Step(
+        "point_spectrum",
+        "roots of the determinant at a point",
+        tuple(equations),
+        ("linearisation", "gravity_gradient"),
+        checks,
+        tuple(_conclusions(of)),
+    )
+
+
+def _whole(so_far: Derivation) -> sp.Matrix:
+    """The Jacobian without control, coordinates first, then velocities."""
+    blocks = jacobian_blocks(so_far)
+    return sp.Matrix(sp.BlockMatrix([blocks[:2], blocks[2:]]))
+
+
+def _constants(so_far: Derivation) -> set[sp.Symbol]:
+    """Parameters and named constants."""
+    model = so_far.model
+    return set(symbols_of((*model.parameters, *(d.variable for d in model.definitions))))
+
+
+def _on_a_sphere(a: sp.Matrix, model: Newton) -> sp.Matrix:
+    """A matrix at all points of a distance, by stereographic coordinates: rational functions of these."""
+    place = list(model.position)
+    chart = [sp.Dummy(f"s{k}", real=True) for k in range(len(place) - 1)]
+    square = sum(s**2 for s in chart)
+    direction = [*(2 * s / (1 + square) for s in chart), (1 - square) / (1 + square)]
+    distant = a.xreplace({sum(c**2 for c in place): n.DISTANCE**2})
+    return distant.xreplace({c: n.DISTANCE * e for c, e in zip(place, direction, strict=True)})
+
+
+def _checks(so_far: Derivation, a: sp.Matrix, of: Spectrum) -> list[Check]:
+    """Polynomial and product over the eigenvalues against determinants; eigenvectors against singular values."""
+    distance = {n.DISTANCE: so_far.equation("central_attraction.distance").rhs}
+    product = sp.Mul(*((ln.LAMBDA - e.value) ** e.algebraic for e in of.eigenvalues))
+    forms = numeric([of.polynomial.xreplace(distance), product.xreplace(distance)])
+    roots = numeric([e.value.xreplace(distance) for e in of.eigenvalues])
+    matrix, size, symbols = numeric_matrix(a), a.rows, a.free_symbols | of.polynomial.free_symbols - {n.DISTANCE}
+
+    def determinants(point: Point) -> tuple[list[Any], list[Any]]:
+        value = mp.det(mp.eye(size) * point[ln.LAMBDA] - matrix(point))
+        return forms(point), [value, value]
+
+    def ranks(point: Point) -> tuple[list[Any], list[Any]]:
+        at = matrix(point)
+        independent = [size - numeric_rank(mp.eye(size) * root - at) for root in roots(point)]
+        return [e.geometric for e in of.eigenvalues], independent
+
+    return [
+        compare("determinant", symbols | {ln.LAMBDA}, determinants),
+        compare("numeric rank", symbols, ranks),
+    ]
+
+
+def _conclusions(of: Spectrum) -> list[Conclusion]:
+    """What the eigenvalues depend on, and that a rule about the signs of their real parts tells no orbits apart."""
+    depends = sorted(of.polynomial.free_symbols - {ln.LAMBDA}, key=lambda s: s.name)
+    found = [Conclusion("same at a distance", {"quantities": sp.Tuple(*depends)})]
+    growing = [root for f in of.factors if f.right for root in f.roots if sp.re(root).is_positive]
+    if growing:
+        found.append(Conclusion("rule of the signs", {"eigenvalues": sp.Tuple(*growing)}))
+    return found

@@ -1,0 +1,1 @@
+"""Kinds of models: what each may state, and its steps."""

@@ -1,0 +1,179 @@
+"""From bodies that turn about one axis to a first-order system: Euler's equations, and what motors must do."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import mpmath as mp
+import sympy as sp
+
+from satsym.symbolic import notation as n
+from satsym.symbolic.algebra import definitions_of, tidy, total_derivative
+from satsym.symbolic.checks import Point, compare, identity, numeric
+from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
+from satsym.symbolic.kinds import rotation_notation as rn
+from satsym.symbolic.kinds.rotation_models import Gyrostat
+from satsym.symbolic.model import symbols_of
+
+
+def momenta(so_far: Derivation) -> Step:
+    """Angular momentum of each body, and of all together."""
+    model = _gyrostat(so_far)
+    of_each = {name: inertia * spin for name, (inertia, spin) in model.bodies.items()}
+    equations = [Equation(name, rn.momentum_of(name), h) for name, h in of_each.items()]
+    total = tidy(sp.expand(sp.Add(*of_each.values())))
+    equations.append(Equation("angular_momentum", n.ANGULAR_MOMENTUM, total))
+    found = numeric([total])
+    inertias, spins = (numeric(list(each)) for each in zip(*_bodies(model), strict=True))
+
+    def sides(point: Point) -> tuple[list[Any], list[Any]]:
+        """The kinetic energy differentiated by a common turn of all bodies."""
+        turning = list(zip(inertias(point), spins(point), strict=True))
+
+        def energy(faster: Any) -> Any:
+            return sum(i * (w + faster) ** 2 / 2 for i, w in turning)
+
+        return found(point), [mp.diff(energy, 0)]
+
+    check = compare("energy by a common turn", _symbols(model), sides)
+    return Step("momenta", "inertia times rate", tuple(equations), ("bodies",), (check,))
+
+
+def euler(so_far: Derivation) -> Step:
+    """What turns each body, and what the controls are."""
+    model = _gyrostat(so_far)
+    equations = []
+    moving = [s for s in symbols_of(model.states) if s not in model.angles]
+    rates = {**model.angles, **{s: n.rate_of(s) for s in moving}}
+    changes = {name: total_derivative(inertia * spin, rates) for name, (inertia, spin) in model.bodies.items()}
+    for name, change in changes.items():
+        equations.append(Equation(name, tidy(change), _torque_on(model, name)))
+    for control, value in model.drives.items():
+        equations.append(Equation(control.name, value, control))
+    functions = numeric([e.lhs for e in equations[: len(changes)]])
+    values = numeric([i * w for i, w in _bodies(model)])
+
+    def sides(point: Point) -> tuple[list[Any], list[Any]]:
+        """The momenta differentiated as the states move at their rates."""
+
+        def later(time: Any) -> list[Any]:
+            return values({**point, **{s: point[s] + point.get(r, 0) * time for s, r in rates.items()}})
+
+        return functions(point), [mp.diff(lambda time, k=k: later(time)[k], 0) for k in range(len(changes))]
+
+    symbols = _symbols(model) | {n.rate_of(s) for s in moving}
+    check = compare("momenta along a path", symbols, sides)
+    return Step("euler", "Euler's equation", tuple(equations), ("momenta", "torques"), (check,))
+
+
+def first_order(so_far: Derivation) -> Step:
+    """Euler's equations solved for the rates of change."""
+    model = _gyrostat(so_far)
+    found, _ = _solved(so_far)
+    equations = tuple(Equation(s.name, n.rate_of(s), found[s]) for s in symbols_of(model.states))
+    rates = {e.lhs: e.rhs for e in equations}
+    total = sum(e.lhs.xreplace(rates) for e in so_far.step("euler").equations[: len(model.bodies)])
+    outside = sp.Add(*model.torques.values())
+    driven = [v.xreplace(rates) - u for u, v in model.drives.items()]
+    proof = identity("torques from outside alone", [total - outside, *driven])
+    return Step("first_order", "solve for rates", equations, ("euler",), (proof,))
+
+
+def balance(so_far: Derivation) -> Step:
+    """How the whole angular momentum changes: by torques from outside alone, whatever the controls do."""
+    model = _gyrostat(so_far)
+    outside = tidy(sp.Add(*model.torques.values()))
+    rates = dict(zip(symbols_of(model.states), so_far.rhs("first_order"), strict=True))
+    total = so_far.equation("momenta.angular_momentum").rhs
+    proof = identity("changes so along every motion", [total_derivative(total, rates) - outside])
+    equations = (Equation("angular_momentum", n.rate_of(n.ANGULAR_MOMENTUM), outside),)
+    return Step("balance", "motors cancel", equations, ("momenta", "first_order"), (proof,))
+
+
+def quantities(so_far: Derivation) -> Step | None:
+    """The torques that the motors must give, and what else is derived from them."""
+    model = _gyrostat(so_far)
+    if not model.motors:
+        return None
+    _, torques = _solved(so_far)
+    names = symbols_of(o.variable for o in model.quantities)
+    stated = {symbol: sp.sympify(o.value) for symbol, o in zip(names, model.quantities, strict=True)}
+    equations = [Equation(symbol.name, symbol, value) for symbol, value in (torques | stated).items()]
+    rates = dict(zip(symbols_of(model.states), so_far.rhs("first_order"), strict=True))
+    gained = total_derivative(_kinetic_energy(model), rates)
+    work = sum(torque * model.bodies[name][1] for name, torque in model.torques.items())
+    for motor, symbol in zip(model.motors, torques, strict=True):
+        faster = model.bodies[motor.drives][1] - model.bodies[motor.against][1]
+        work += torques[symbol] * faster
+    constants = definitions_of(model)
+    checks = [identity("work of all torques", [(gained - work).xreplace(constants)])]
+    if stated:
+        known = resolved(equations)
+        found, definition = numeric(list(known.values())), numeric([e.rhs for e in equations])
+
+        def sides(point: Point) -> tuple[list[Any], list[Any]]:
+            """Put in all at once, and one after the other with numbers for those before."""
+            values = dict(point)
+            for _ in equations:
+                values |= dict(zip(known, definition(values), strict=True))
+            return found(point), [values[symbol] for symbol in known]
+
+        symbols = set().union(*(e.rhs.free_symbols for e in equations))
+        checks.append(compare("put in one by one", symbols, sides))
+    return Step("quantities", "solve for torques", tuple(equations), ("euler", "first_order"), tuple(checks))
+
+
+def resolved(equations: Sequence[Equation]) -> dict[sp.Symbol, sp.Expr]:
+    """Quantities in terms of states, controls and parameters alone: each may use those before it."""
+    found: dict[sp.Symbol, sp.Expr] = {}
+    for equation in equations:
+        found[equation.lhs] = equation.rhs.xreplace(found)
+    return found
+
+
+def _solved(so_far: Derivation) -> tuple[dict[sp.Symbol, sp.Expr], dict[sp.Symbol, sp.Expr]]:
+    """Rates of change of all states, and the torques of the motors."""
+    model = _gyrostat(so_far)
+    states = symbols_of(model.states)
+    unknown = [n.rate_of(s) for s in states if s not in model.angles]
+    torques = symbols_of(m.torque for m in model.motors)
+    wanted = [*unknown, *torques]
+    solutions = sp.solve([e.lhs - e.rhs for e in so_far.step("euler").equations], wanted, dict=True)
+    if len(solutions) != 1 or set(solutions[0]) != set(wanted):
+        raise DerivationError(f"{model.name}: Euler's equations and the drives do not determine {_names(wanted)}")
+    by = symbols_of(model.controls)
+    solution = {s: tidy(value, by) for s, value in solutions[0].items()}
+    rates = {s: model.angles[s] if s in model.angles else solution[n.rate_of(s)] for s in states}
+    return rates, {s: solution[s] for s in torques}
+
+
+def _names(symbols: list[sp.Symbol]) -> str:
+    return ", ".join(s.name for s in symbols)
+
+
+def _torque_on(model: Gyrostat, body: str) -> sp.Expr:
+    total = sp.sympify(model.torques.get(body, 0))
+    for motor, symbol in zip(model.motors, symbols_of(m.torque for m in model.motors), strict=True):
+        total += symbol * ((body == motor.drives) - (body == motor.against))
+    return total
+
+
+def _kinetic_energy(model: Gyrostat) -> sp.Expr:
+    return sp.Add(*(inertia * spin**2 / 2 for inertia, spin in _bodies(model)))
+
+
+def _bodies(model: Gyrostat) -> list[tuple[sp.Expr, sp.Expr]]:
+    return [(sp.sympify(inertia), sp.sympify(spin)) for inertia, spin in model.bodies.values()]
+
+
+def _symbols(model: Gyrostat) -> set[sp.Symbol]:
+    pairs = [e for pair in _bodies(model) for e in pair]
+    return {*symbols_of(model.states)}.union(*(e.free_symbols for e in pairs))
+
+
+def _gyrostat(so_far: Derivation) -> Gyrostat:
+    model = so_far.model
+    if not isinstance(model, Gyrostat):
+        raise TypeError(f"{model.name} is not stated as bodies that turn about one axis")
+    return model

@@ -1,0 +1,293 @@
+"""A printer of LaTeX that orders and shapes sums, products and fractions as a person would.
+
+Factors and terms stand in the order of declaration, never in one of spelling or hashing, and a sum does not begin
+with a minus where it can help it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from enum import IntEnum
+from typing import Any
+
+import sympy as sp
+from sympy.printing.latex import LatexPrinter
+
+from satsym.symbolic.latex.levels import extreme, levels, size
+from satsym.symbolic.latex.products import Product, base, exponent, is_negative, spread, take_apart
+from satsym.symbolic.latex.terms import Piece, Term, joined
+
+ELEMENTARY = frozenset("sin cos tan cot sec csc sinh cosh tanh log".split())
+"""Functions that a symbol follows without parentheses."""
+
+
+class Kind(IntEnum):
+    """What a factor is; products are written in this order."""
+
+    NUMBER = 0
+    CONSTANT = 1
+    COSTATE = 2
+    MOTION = 3
+    ACCELERATION = 4
+    CONTROL = 5
+    OTHER = 6
+    SUM = 7
+    FUNCTION = 8
+    DIRECTION = 9
+
+
+class Printer(LatexPrinter):
+    """sympy's printer, with sums, products, powers and our own functions done anew.
+
+    Parameters
+    ----------
+    notation
+        Name of a symbol -> its LaTeX.
+    ranks
+        Name of a symbol -> its kind, and its place in the order of declaration.
+    """
+
+    def __init__(self, notation: Mapping[str, str], ranks: Mapping[str, tuple[Kind, int]]) -> None:
+        super().__init__({"fold_frac_powers": True, "ln_notation": True})
+        self._notation, self._ranks = notation, ranks
+        self._small = 0  # how many fractions, roots and exponents we are within
+
+    def symbol(self, name: str) -> str:
+        """The LaTeX of a name; upright where the notation has none."""
+        known = self._notation.get(name)
+        return rf"\mathrm{{{_escaped(name)}}}" if known is None else known
+
+    # sums
+
+    def terms(self, expression: sp.Expr, *, plus_first: bool = True) -> list[Term]:
+        """The terms of a sum in order."""
+        parts = (part for summand in sp.Add.make_args(expression) for part in sp.Add.make_args(spread(summand)))
+        summands = sorted(parts, key=self._summand_order)
+        if plus_first:
+            summands = _plus_first(summands)
+        return [self._term(s) if len(rest) == 0 else self._halves([s, *rest]) for s, *rest in self._alike(summands)]
+
+    def _print_Add(self, expr: sp.Add, order: Any = None) -> str:
+        return joined(self.terms(expr))
+
+    def _alike(self, summands: Sequence[sp.Expr]) -> list[list[sp.Expr]]:
+        """Summands over the same whole number together, unless costates tell them apart."""
+        groups: dict[Any, list[sp.Expr]] = {}
+        for place, summand in enumerate(summands):
+            parts = take_apart(summand)
+            costates = any(self._rank(s)[0] is Kind.COSTATE for s in summand.free_symbols)
+            alone = self._small or parts.number_below == 1 or parts.bottom or not parts.top or costates
+            groups.setdefault(("alone", place) if alone else ("over", parts.number_below), []).append(summand)
+        return list(groups.values())
+
+    def _halves(self, summands: Sequence[sp.Expr]) -> Term:
+        """Summands over the same whole number as one term."""
+        below = take_apart(summands[0]).number_below
+        negative = all(map(is_negative, summands))
+        inner = sp.Add(*((-below if negative else below) * s for s in summands))
+        return self._with_sum(negative, rf"\tfrac{{1}}{{{below}}}", inner, "", _names(inner))
+
+    def _summand_order(self, summand: sp.Expr) -> tuple[Any, ...]:
+        """Fewer costates first, then in the order of costates and directions; controls and fractions last."""
+        parts = take_apart(summand)
+        ranked = [(*self._rank(base(f)), exponent(f)) for f in parts.top]
+        inside = {self._rank(s)[0] for s in summand.free_symbols}
+        return (
+            sum((power for kind, _, power in ranked if kind is Kind.COSTATE), sp.Integer(0)),
+            [place for kind, place, _ in ranked if kind is Kind.COSTATE],
+            [place for kind, place, _ in ranked if kind is Kind.DIRECTION],
+            Kind.ACCELERATION not in inside,
+            Kind.CONTROL in inside,
+            bool(parts.bottom),
+            sum((power for kind, _, power in ranked if kind is not Kind.CONSTANT), sp.Integer(0)),
+            sorted((kind, place) for kind, place, _ in ranked),
+            sp.default_sort_key(summand),
+        )
+
+    # products
+
+    def _print_Mul(self, expr: sp.Mul) -> str:
+        return self._term(expr).signed(first=True)
+
+    def _term(self, expression: sp.Expr) -> Term:
+        parts, names = take_apart(expression), _names(expression)
+        if not parts.top and not parts.bottom:
+            return _whole(parts.negative, self._fraction_of_numbers(parts), names)
+        negative, top = parts.negative, sorted(parts.top, key=self._factor_order)
+        sums = [f for f in top if f.is_Add]
+        last = Kind.FUNCTION if sums and not parts.bottom else Kind.DIRECTION
+        trailing = [f for f in top if self._rank(base(f))[0] >= last]
+        others = [f for f in top if not f.is_Add and f not in trailing]
+        tail = self._product(trailing)
+        small_fraction = self._small and (parts.bottom or parts.number_below != 1)
+        if len(sums) != 1 or small_fraction or (others and any(base(f).is_Add for f in parts.bottom)):
+            return _whole(negative, f"{self._over(parts, [*others, *sums])} {tail}".strip(), names)
+        (inner,) = sums
+        broken = self._with_sum(negative, self._over(parts, others, alone=False), inner, tail, names)
+        if parts.bottom and parts.number == 1 and all(self._rank(base(f))[0] is Kind.COSTATE for f in others):
+            with self._inside():
+                above = self._print(inner)
+            tex = rf"{self._product(others)} \frac{{{above}}}{{{self._below(parts)}}} {tail}".strip()
+            return Term(negative, tex, broken.pieces, names)
+        return broken
+
+    def _with_sum(self, negative: bool, head: str, inner: sp.Expr, tail: str, names: frozenset[str]) -> Term:
+        """``head (sum) tail``, with the places inside the sum where it may be broken."""
+        terms = self.terms(inner)
+        whole = joined(terms)
+        opening, closing = self._parentheses(whole)
+        pieces = [Piece(p.tex, p.depth + 1) for k, t in enumerate(terms) for p in t.signed_pieces(first=k == 0)]
+        pieces[0] = Piece(f"{head} {opening}{pieces[0].tex}".strip())
+        pieces[-1] = Piece(f"{pieces[-1].tex}{closing} {tail}".strip(), pieces[-1].depth)
+        return Term(negative, f"{head} {opening}{whole}{closing} {tail}".strip(), tuple(pieces), names)
+
+    def _over(self, parts: Product, factors: Sequence[sp.Expr], alone: bool = True) -> str:
+        """Number and factors over what is below the line; ``alone`` if no sum in parentheses follows."""
+        number = "" if parts.number == 1 and (factors or not alone) else self._print(parts.number)
+        if parts.bottom:
+            with self._inside():
+                above = self._product(factors, number) or "1"
+            return self._slashed(above, parts) if self._small else rf"\frac{{{above}}}{{{self._below(parts)}}}"
+        if parts.number_below == 1 or self._small:
+            written = self._product(factors, number)
+            return written if parts.number_below == 1 else f"{written}/{parts.number_below}"
+        return self._product(factors, self._fraction_of_numbers(parts))
+
+    def _slashed(self, above: str, parts: Product) -> str:
+        below = self._below(parts)
+        single = parts.number_below == 1 and len(parts.bottom) == 1 and not parts.bottom[0].is_Add
+        return f"{above}/{below}" if single else f"{above}/({below})"
+
+    def _below(self, parts: Product) -> str:
+        number = "" if parts.number_below == 1 else str(parts.number_below)
+        factors = sorted(parts.bottom, key=self._factor_order)
+        with self._inside():
+            alone = len(factors) == 1 and not number
+            return self._print(factors[0]) if alone else self._product(factors, number)
+
+    def _product(self, factors: Sequence[sp.Expr], number: str = "") -> str:
+        """Number and factors side by side, sums in parentheses."""
+        written = [number] if number else []
+        for factor in factors:
+            tex = self._print(factor)
+            if factor.is_Add or isinstance(factor, sp.Piecewise):
+                tex = self._enclosed(tex)
+            written.append(rf"\cdot {tex}" if written and tex[0].isdigit() else tex)
+        return " ".join(written)
+
+    def _fraction_of_numbers(self, parts: Product) -> str:
+        above, below = self._print(parts.number), parts.number_below
+        if below == 1:
+            return above
+        return f"{above}/{below}" if self._small else rf"\tfrac{{{above}}}{{{below}}}"
+
+    def _factor_order(self, factor: sp.Expr) -> tuple[Any, ...]:
+        return (*self._rank(base(factor)), sp.default_sort_key(factor))
+
+    def _rank(self, factor: sp.Expr) -> tuple[Kind, int]:
+        if isinstance(factor, sp.Symbol):
+            return self._ranks.get(factor.name, (Kind.OTHER, 0))
+        if not factor.free_symbols:
+            return (Kind.NUMBER, 0)
+        return (Kind.SUM if factor.is_Add else Kind.FUNCTION, min(self._rank(s)[1] for s in factor.free_symbols))
+
+    # numbers, symbols, powers, functions
+
+    def _print_Rational(self, expr: sp.Rational) -> str:
+        if expr.is_Integer:
+            return str(expr)
+        parts = take_apart(expr)
+        return ("-" if parts.negative else "") + self._fraction_of_numbers(parts)
+
+    def _print_Symbol(self, expr: sp.Symbol, style: str = "plain") -> str:
+        return self.symbol(expr.name)
+
+    def _print_Pow(self, expr: sp.Pow) -> str:
+        root, power = expr.as_base_exp()
+        if power.is_Rational and power.is_negative:
+            return self._term(expr).signed(first=True)
+        with self._inside():
+            if power == sp.Rational(1, 2):
+                return rf"\sqrt{{{self._print(root)}}}"
+            exponent_tex = self._print(power)
+        if root.func.__name__ in ELEMENTARY:
+            return self._print_Function(root, exponent_tex)
+        tex = self._print(root)
+        bare = root.is_Symbol and "^" not in tex and r"\frac" not in tex
+        bare = bare or bool(root.is_Integer and root.is_nonnegative)
+        return f"{tex if bare else self._enclosed(tex)}^{{{exponent_tex}}}"
+
+    def _print_Function(self, expr: sp.Function, exp: str | None = None) -> str:
+        name = expr.func.__name__
+        if name not in ELEMENTARY:
+            return super()._print_Function(expr, exp)
+        (argument,) = expr.args
+        tex = self._print(argument)
+        power = f"^{{{exp}}}" if exp else ""
+        return rf"\{'ln' if name == 'log' else name}{power} {tex if argument.is_Symbol else self._enclosed(tex)}"
+
+    def _print_log(self, expr: sp.Expr, exp: str | None = None) -> str:
+        return self._print_Function(expr, exp)
+
+    def _print_Clip(self, expr: sp.Expr, exp: str | None = None) -> str:
+        value, lower, upper = map(self._print, expr.args)
+        return extreme(r"\max", lower, extreme(r"\min", upper, value))
+
+    def _print_Switch(self, expr: sp.Expr, exp: str | None = None) -> str:
+        reverse = expr.args[0].could_extract_minus_sign()
+        slope, weight, low, high = expr.args
+        value, *others = map(self._print, (-slope if reverse else slope, weight, low, high))
+        return levels(value, others[0], others[1], others[2], reverse)
+
+    def _print_sign(self, expr: sp.Expr, exp: str | None = None) -> str:
+        raised = rf"^{{{exp}}}" if exp else ""
+        return rf"\operatorname{{sgn}}{raised}{self._enclosed(self._print(expr.args[0]))}"
+
+    def _print_Shrink(self, expr: sp.Expr, exp: str | None = None) -> str:
+        value, width = map(self._print, expr.args)
+        return rf"\mathcal{{S}}_{{{width}}}({value})"
+
+    def _print_Shorten(self, expr: sp.Expr, exp: str | None = None) -> str:
+        norm_squared, limit = expr.args
+        with self._inside():
+            ratio = rf"\frac{{{self._print(limit)}}}{{\sqrt{{{self._print(norm_squared)}}}}}"
+        return extreme(r"\min", "1", ratio)
+
+    # sizes
+
+    def _parentheses(self, content: str) -> tuple[str, str]:
+        bigger = "" if self._small else size(content)
+        return (f"{bigger}l(", f"{bigger}r)") if bigger else ("(", ")")
+
+    def _enclosed(self, content: str) -> str:
+        opening, closing = self._parentheses(content)
+        return f"{opening}{content}{closing}"
+
+    @contextmanager
+    def _inside(self) -> Iterator[None]:
+        """Within a fraction, root or exponent: the type is small, so fractions are slashed."""
+        self._small += 1
+        yield
+        self._small -= 1
+
+
+def _plus_first(summands: Sequence[sp.Expr]) -> list[sp.Expr]:
+    """In another order if the first has a minus: a number goes to the end, else the first with a plus to the front."""
+    first, *rest = summands
+    plus = next((s for s in rest if not is_negative(s)), None)
+    if plus is None or not is_negative(first):
+        return list(summands)
+    return [*_plus_first(rest), first] if first.is_number else [plus, *(s for s in summands if s is not plus)]
+
+
+def _whole(negative: bool, tex: str, names: frozenset[str]) -> Term:
+    return Term(negative, tex, (Piece(tex),), names)
+
+
+def _names(expression: sp.Expr) -> frozenset[str]:
+    return frozenset(s.name for s in expression.free_symbols)
+
+
+def _escaped(name: str) -> str:
+    return "".join(c if c.isalnum() and c.isascii() else r"\_" if c == "_" else " " for c in name)

@@ -1,0 +1,136 @@
+"""LaTeX of what was derived, in the notation and the order of the derivation; matrices from named entries."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from satsym.symbolic import notation as n
+from satsym.symbolic.analysis.spectrum import LAMBDA
+from satsym.symbolic.derivation import Derivation, Equation, Step
+from satsym.symbolic.latex.printer import Kind, Printer
+from satsym.symbolic.latex.terms import Term
+from satsym.symbolic.linear import notation as linear_notation
+from satsym.symbolic.model import Linearised, Newton, symbols_of
+from satsym.symbolic.switching import notation as switching_notation
+
+
+@dataclass(frozen=True)
+class NamedMatrix:
+    """A matrix whose entries are equations of a step; ``None`` where a zero entry has no equation."""
+
+    prefix: str
+    entries: tuple[tuple[Equation | None, ...], ...]
+
+    @property
+    def equations(self) -> tuple[Equation, ...]:
+        """The equations it is made of, row by row."""
+        return tuple(e for row in self.entries for e in row if e is not None)
+
+
+class Typesetter:
+    """Prints expressions in the notation of one derivation."""
+
+    def __init__(self, derivation: Derivation, time: str = "") -> None:
+        self._derivation = derivation
+        self._printer = Printer(_notation(derivation, time), _ranks(derivation))
+
+    def at(self, time: str) -> Typesetter:
+        """A typesetter that writes states, costates and H as functions of the time given, which t is."""
+        return Typesetter(self._derivation, time)
+
+    def tex(self, expression: Any) -> str:
+        """The expression on one line."""
+        return self._printer.doprint(sp.sympify(expression))
+
+    def items(self, value: Any) -> list[str]:
+        """An expression, or each one of a tuple of them."""
+        return [self.tex(item) for item in (value.args if isinstance(value, sp.Tuple) else (value,))]
+
+    def terms(self, expression: Any, *, plus_first: bool = True) -> tuple[Term, ...]:
+        """The expression as a sum of signed terms.
+
+        Parameters
+        ----------
+        expression
+            Anything but a matrix.
+        plus_first
+            Whether a term with a plus is moved to the front, if the first one has a minus.
+        """
+        return tuple(self._printer.terms(sp.sympify(expression), plus_first=plus_first))
+
+    def by_powers(self, polynomial: Any) -> list[tuple[Term, ...]]:
+        """The terms of a characteristic polynomial, the highest power first."""
+        return [self.terms(c * LAMBDA**k) for (k,), c in sp.Poly(polynomial, LAMBDA).terms()]
+
+    def symbol(self, name: str) -> str:
+        """How a name is typeset."""
+        return self._printer.symbol(name)
+
+    def costate(self, state: str) -> str:
+        """Name of the costate of a state."""
+        return n.costate_of(sp.Symbol(state)).name
+
+    def is_zero(self, expression: Any) -> bool:
+        """Whether the expression is plainly zero."""
+        return bool(sp.sympify(expression).is_zero)
+
+
+def matrices(derivation: Derivation, step: Step) -> list[NamedMatrix]:
+    """Matrices whose entries the step names one by one, as ``A_row_column`` for derivatives by states or controls."""
+    states = [v.symbol for v in derivation.model.states]
+    controls = [v.symbol for v in derivation.model.controls]
+    outputs = [o.variable.symbol for o in derivation.model.outputs]
+    named = {e.lhs.name: e for e in step.equations if isinstance(e.lhs, sp.Symbol)}
+    found = []
+    for prefix in dict.fromkeys(name.partition("_")[0] for name in named):
+        shapes = ((states, states), (states, controls), (controls, controls), (outputs, states), (outputs, controls))
+        for rows, columns in shapes:
+            entries = tuple(tuple(named.get(f"{prefix}_{row}_{column}") for column in columns) for row in rows)
+            matrix = NamedMatrix(prefix, entries)
+            if matrix.equations and all(e in matrix.equations or not _has_prefix(e, prefix) for e in step.equations):
+                found.append(matrix)
+                break
+    return found
+
+
+def _has_prefix(equation: Equation, prefix: str) -> bool:
+    return isinstance(equation.lhs, sp.Symbol) and equation.lhs.name.startswith(f"{prefix}_")
+
+
+def _notation(derivation: Derivation, time: str) -> dict[str, str]:
+    notation = dict(derivation.notation)
+    if time:
+        states = symbols_of(derivation.model.states)
+        for symbol in (*states, *map(n.costate_of, states), n.HAMILTONIAN):
+            if symbol.name in notation:
+                notation[symbol.name] += f"({time})"
+        notation[n.TIME.name] = time
+    return notation
+
+
+def _ranks(derivation: Derivation) -> dict[str, tuple[Kind, int]]:
+    """Kind of each named thing, and its place in the order of declaration."""
+    model = derivation.model
+    states = symbols_of(model.states)
+    original = [v.symbol for v in model.of.states] if isinstance(model, Linearised) else []
+    accelerations = [n.acceleration_of(q).name for q in model.coordinates] if isinstance(model, Newton) else []
+    directions = list(model.directions) if isinstance(model, Newton) else []
+    groups = [
+        (Kind.CONSTANT, [n.HAMILTONIAN.name]),
+        (Kind.CONSTANT, [switch(s).name for switch in (n.given, n.on_reference) for s in states]),
+        (Kind.CONSTANT, [m.name for m in n.multipliers(derivation.problem)] if derivation.problem else []),
+        (Kind.CONSTANT, [v.symbol for v in (*model.parameters, *(d.variable for d in model.definitions))]),
+        (Kind.CONSTANT, [] if derivation.problem else list(linear_notation.weights(model))),
+        (Kind.CONSTANT, switching_notation.constants(model)),
+        (Kind.COSTATE, [n.costate_of(s).name for s in states]),
+        (Kind.MOTION, [*original, *(s.name for s in states)]),
+        (Kind.ACCELERATION, accelerations),
+        (Kind.MOTION, [n.TIME.name]),
+        (Kind.CONTROL, [v.symbol for v in model.controls]),
+        (Kind.DIRECTION, directions),
+    ]
+    names = [(kind, name) for kind, group in groups for name in group]
+    return {name: (kind, place) for place, (kind, name) in enumerate(names)}

@@ -1,0 +1,1 @@
+"""Linear models with constant coefficients: stability, structure, and the regulator."""

@@ -1,0 +1,305 @@
+"""Between our trees and sympy; and whether a difference is zero."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from fractions import Fraction
+from typing import Any
+
+import mpmath as mp
+import sympy as sp
+from sympy.functions.elementary.hyperbolic import HyperbolicFunction
+from sympy.functions.elementary.trigonometric import TrigonometricFunction
+
+from satsym.formula.budget import charge
+from satsym.formula.tree import Add, Call, Div, Mul, Neg, Node, Num, Pow, Sym, constant, number
+from satsym.symbolic.checks import points
+from satsym.symbolic.principle.control_sets import Clip, Shorten
+from satsym.symbolic.switching.minimisers import Shrink, Switch, by_signs
+
+_FUNCTIONS: dict[str, Callable[..., sp.Expr]] = {
+    "sin": sp.sin,
+    "cos": sp.cos,
+    "tan": sp.tan,
+    "sqrt": sp.sqrt,
+    "exp": sp.exp,
+    "log": sp.log,
+    "abs": sp.Abs,
+    "sign": sp.sign,
+    "asin": sp.asin,
+    "acos": sp.acos,
+    "atan": sp.atan,
+    "sinh": sp.sinh,
+    "cosh": sp.cosh,
+    "tanh": sp.tanh,
+    "atan2": sp.atan2,
+    "min": sp.Min,
+    "max": sp.Max,
+}
+_NAMES = {function: name for name, function in _FUNCTIONS.items() if name != "sqrt"}
+_DIGITS = 40
+_NOT_ZERO = 1e-12
+_MOST_COEFFICIENTS = 200_000
+"""Of a dense polynomial that is factored only to be shown shorter."""
+_PER_COEFFICIENT = 20
+"""Calls that a coefficient of a dense polynomial is charged as."""
+
+
+class NotAFormula(Exception):
+    """An expression has parts that printed formulas do not have."""
+
+
+def function(name: str, arguments: list[sp.Expr]) -> sp.Expr:
+    """An elementary function of expressions."""
+    if name not in _FUNCTIONS:
+        raise NotAFormula(f"{name}(...) is no elementary function")
+    return _FUNCTIONS[name](*arguments)
+
+
+def from_tree(tree: Node, symbols: Callable[[str], sp.Expr]) -> sp.Expr:
+    """A tree as an expression of sympy's."""
+    if isinstance(tree, Num):
+        return sp.Rational(tree.value.numerator, tree.value.denominator)
+    if isinstance(tree, Sym):
+        return symbols(tree.name)
+    if isinstance(tree, Neg):
+        return -from_tree(tree.operand, symbols)
+    if isinstance(tree, Add):
+        return sp.Add(*(from_tree(term, symbols) for term in tree.terms))
+    if isinstance(tree, Mul):
+        return sp.Mul(*(from_tree(factor, symbols) for factor in tree.factors))
+    if isinstance(tree, Div):
+        return from_tree(tree.numerator, symbols) / from_tree(tree.denominator, symbols)
+    if isinstance(tree, Pow):
+        return sp.Pow(from_tree(tree.base, symbols), rational(constant(tree.exponent) or Fraction(0)))
+    if isinstance(tree, Call):
+        return function(tree.function, [from_tree(argument, symbols) for argument in tree.arguments])
+    raise NotAFormula(f"{type(tree).__name__} is no formula")
+
+
+def to_tree(expression: Any) -> Node:
+    """An expression of sympy's as a tree, written as people write it: one quotient, minus signs in front.
+
+    Raises
+    ------
+    NotAFormula
+        If it has a part that printed formulas do not have.
+    """
+    e = sp.sympify(expression)
+    if e.is_Rational:
+        return number(Fraction(int(e.p), int(e.q)))
+    if e is sp.I or e is sp.pi:
+        return Sym("I" if e is sp.I else "pi")
+    if e is sp.E:
+        return Call("exp", (Num(Fraction(1)),))
+    if e.is_Symbol:
+        return Sym(e.name)
+    if e.is_Add:
+        terms = [to_tree(term) for term in e.as_ordered_terms()]
+        return Add(tuple(sorted(terms, key=lambda term: isinstance(term, Neg))))
+    if e.is_Mul or (e.is_Pow and e.exp.is_Rational and e.exp.is_negative):
+        return _quotient(e)
+    if e.is_Pow and e.exp.is_Rational:
+        if e.exp == sp.Rational(1, 2):
+            return Call("sqrt", (to_tree(e.base),))
+        return Pow(to_tree(e.base), number(Fraction(int(e.exp.p), int(e.exp.q))))
+    if isinstance(e, sp.exp):
+        return Call("exp", (to_tree(e.args[0]),))
+    if isinstance(e, Clip):
+        value, lower, upper = map(to_tree, e.args)
+        return Call("min", (upper, Call("max", (lower, value))))
+    if isinstance(e, Shorten):
+        norm_squared, limit = map(to_tree, e.args)
+        return Call("min", (Num(Fraction(1)), Div(limit, Call("sqrt", (norm_squared,)))))
+    if isinstance(e, Switch | Shrink):
+        return to_tree(by_signs(e))
+    if isinstance(e, sp.Min | sp.Max):
+        first, *rest = map(to_tree, sorted(e.args, key=lambda argument: not argument.is_number))
+        for other in rest:
+            first = Call("min" if isinstance(e, sp.Min) else "max", (first, other))
+        return first
+    name = _NAMES.get(e.func)
+    if name is None:
+        raise NotAFormula(f"{e.func} has no counterpart in printed formulas")
+    return Call(name, tuple(map(to_tree, e.args)))
+
+
+def _quotient(e: sp.Expr) -> Node:
+    if e.could_extract_minus_sign():
+        return Neg(to_tree(-e))
+    above, below = sp.fraction(e)
+    if below == 1:
+        factors = tuple(to_tree(factor) for factor in above.as_ordered_factors())
+        return factors[0] if len(factors) == 1 else Mul(factors)
+    return Div(to_tree(above), to_tree(below))
+
+
+def rational(value: Fraction) -> sp.Rational:
+    """The same number in sympy."""
+    return sp.Rational(value.numerator, value.denominator)
+
+
+def plain(expression: sp.Expr) -> sp.Expr:
+    """The expression with what control sets need written by minima, as people print it."""
+    return (
+        by_signs(expression)
+        .replace(Clip, lambda value, lower, upper: sp.Min(upper, sp.Max(lower, value)))
+        .replace(Shorten, lambda square, limit: sp.Min(1, limit / sp.sqrt(square)))
+    )
+
+
+def is_zero(expression: sp.Expr) -> bool:
+    """Whether an expression is identically zero, by rewriting.
+
+    A rational function is multiplied out; sines and cosines of sums are taken apart and reduced by
+    ``sin^2 + cos^2 = 1``; roots are taken as symbols with a known power. Only what is left is simplified.
+    """
+    e = sp.sympify(expression)
+    if e == 0:
+        return True
+    if e.is_number:
+        return bool(sp.simplify(e) == 0)
+    numerator = sp.expand(sp.fraction(sp.together(sp.expand(e, power_base=True)))[0])
+    if numerator == 0:
+        return True
+    if numerator.is_polynomial(*numerator.free_symbols):
+        return False
+    charge(calls=_multiple(numerator) ** 2)
+    taken_apart = sp.expand(
+        numerator.rewrite(sp.exp) if numerator.has(sp.sinh, sp.cosh, sp.tanh) else numerator, trig=True
+    )
+    taken_apart = sp.expand(taken_apart.replace(sp.sin, lambda x: sp.sin(x)).subs(_squares(taken_apart)))
+    if taken_apart == 0:
+        return True
+    charge(calls=_PER_COEFFICIENT * _box(numerator))
+    return bool(sp.simplify(numerator) == 0)
+
+
+def _box(expression: sp.Expr) -> int:
+    """Coefficients of an expression as a dense polynomial in all that has powers in it, zeros included.
+
+    That many lists sympy makes of it, and so many digits has the number at which it is evaluated to find a common
+    divisor.
+    """
+    return math.prod(1 + degree for degree in _degrees(expression).values())
+
+
+def _degrees(e: sp.Expr) -> dict[sp.Expr, int]:
+    """Degree in each thing that has powers, once multiplied out; exp(5*x) is the fifth power of exp(x)."""
+    found: dict[sp.Expr, int] = {}
+    if e.is_number:
+        return found
+    if isinstance(e, sp.Pow) and e.exp.is_Rational:
+        return {base: degree * abs(int(e.exp.p)) for base, degree in _degrees(e.base).items()}
+    if isinstance(e, sp.exp | TrigonometricFunction | HyperbolicFunction):
+        for factor, rest in (term.as_coeff_Mul() for term in sp.Add.make_args(e.args[0])):
+            size = max(abs(int(factor.p)), int(factor.q)) if factor.is_Rational else 1
+            found[e.func(rest)] = max(found.get(e.func(rest), 0), size)
+        return found
+    if not isinstance(e, sp.Add | sp.Mul):
+        return {e: 1}
+    for part in e.args:
+        for base, degree in _degrees(part).items():
+            before = found.get(base, 0)
+            found[base] = max(before, degree) if isinstance(e, sp.Add) else before + degree
+    return found
+
+
+def _multiple(expression: sp.Expr) -> int:
+    """The largest whole multiple of something that a sine or a cosine is taken of: a polynomial of that degree."""
+    arguments = [call.args[0] for call in expression.atoms(TrigonometricFunction, HyperbolicFunction)]
+    factors = [abs(term.as_coeff_Mul()[0]) for a in arguments for term in sp.Add.make_args(sp.expand(a))]
+    return max((int(factor) for factor in factors if factor.is_Integer), default=0)
+
+
+def _squares(expression: sp.Expr) -> dict[sp.Expr, sp.Expr]:
+    """Powers of sines -> cosines, so that sines are left to the first power."""
+    found = {}
+    for power in expression.atoms(sp.Pow):
+        if isinstance(power.base, sp.sin) and power.exp.is_Integer and power.exp >= 2:
+            half, odd = divmod(int(power.exp), 2)
+            found[power] = (1 - sp.cos(power.base.args[0]) ** 2) ** half * power.base**odd
+    return found
+
+
+def differs_somewhere(expression: sp.Expr) -> bool:
+    """Whether an expression has a value other than zero at a random point, with 40 digits."""
+    symbols = sorted(expression.free_symbols, key=lambda s: s.name)
+    function_ = sp.lambdify(symbols, plain(expression), modules="mpmath")
+    with mp.workdps(_DIGITS):
+        for point in points(symbols, str(expression)):
+            try:
+                if abs(function_(*(point[s] for s in symbols))) > _NOT_ZERO:
+                    return True
+            except (ArithmeticError, ValueError, TypeError, AttributeError):  # mpmath orders no complex numbers
+                continue
+    return False
+
+
+def in_symbols(expression: sp.Expr, symbols: Mapping[str, sp.Expr]) -> sp.Expr:
+    """The expression with its symbols replaced by those of the same name."""
+    return expression.xreplace({s: symbols[s.name] for s in expression.free_symbols if symbols.get(s.name, s) != s})
+
+
+ZERO = sp.Integer(0)
+
+
+def symbol(name: str) -> sp.Symbol:
+    """A real symbol."""
+    return sp.Symbol(name, real=True)
+
+
+def product(factors: Iterable[sp.Expr]) -> sp.Expr:
+    """A product."""
+    return sp.Mul(*factors)
+
+
+def roots(polynomial: sp.Expr, by: sp.Symbol) -> list[sp.Expr]:
+    """Roots, as often as they occur, in sympy's order; empty where they have no closed form."""
+    found = sp.roots(sp.Poly(sp.expand(polynomial), by))
+    ordered = sorted(found, key=sp.default_sort_key)
+    return [root for root in ordered for _ in range(found[root])] if sum(found.values()) else []
+
+
+def nonvanishing_quotient(one: sp.Expr, other: sp.Expr) -> sp.Expr | None:
+    """The quotient of two expressions, if it is made of positive symbols and has one sign.
+
+    A sum of squares of other symbols has one sign, too, but equations that differ by it differ for complex numbers.
+    """
+    if is_zero(other) or is_zero(one):
+        return None
+    quotient = sp.factor(sp.cancel(sp.together(one / other)))
+    if not all(symbol.is_positive for symbol in quotient.free_symbols):
+        return None
+    return quotient if quotient.is_positive or quotient.is_negative else None
+
+
+def as_number(expression: sp.Expr) -> Fraction | None:
+    """The value of an expression that is a rational number."""
+    value = sp.nsimplify(sp.simplify(expression)) if expression.is_number else expression
+    return Fraction(int(value.p), int(value.q)) if value.is_Rational else None
+
+
+def text(expression: sp.Expr) -> str:
+    """The expression as sympy writes it, for messages."""
+    return str(expression)
+
+
+def short(expression: sp.Expr) -> sp.Expr:
+    """The shortest of a few ways to write an expression."""
+    expanded = sp.expand(expression)
+    ways = [expanded, sp.together(expanded)]
+    if max(map(_box, sp.fraction(ways[-1]))) <= _MOST_COEFFICIENTS:
+        ways.insert(1, sp.factor(expanded))
+    return min(ways, key=sp.count_ops)
+
+
+def has_a_value(expression: sp.Expr) -> bool:
+    """Whether an expression is free of infinities, as those of a division by zero."""
+    return not expression.has(sp.zoo, sp.nan, sp.oo, -sp.oo)
+
+
+def nullspace(rows: Sequence[Sequence[sp.Expr]]) -> list[list[sp.Expr]]:
+    """Columns that span what a matrix maps to zero."""
+    return [list(column) for column in sp.Matrix(rows).nullspace(simplify=True)]

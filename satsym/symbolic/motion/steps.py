@@ -1,0 +1,122 @@
+"""What holds for any first-order form: given rates, the reference, conserved quantities, linearisation."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from satsym.symbolic import notation as n
+from satsym.symbolic.algebra import definitions_of, tidy, total_derivative
+from satsym.symbolic.checks import compare, identity, numeric, partial
+from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
+from satsym.symbolic.kepler.attraction import inertial_velocity, uncontrolled_force
+from satsym.symbolic.model import FirstOrder, Newton, symbols_of, t
+from satsym.symbolic.motion.potential import potential
+
+_PLANES = {
+    2: {n.ANGULAR_MOMENTUM.name: (0, 1)},
+    3: {n.component_of_angular_momentum(n.AXES[k]).name: ((k + 1) % 3, (k + 2) % 3) for k in range(3)},
+}
+"""Number of inertial components -> each angular momentum with the two components that a turn about its axis mixes."""
+
+
+def given_rates(so_far: Derivation) -> Step:
+    """The first-order form as the model states it."""
+    model = so_far.model
+    assert isinstance(model, FirstOrder)
+    states = symbols_of(model.states)
+    equations = tuple(Equation(s.name, n.rate_of(s), sp.sympify(model.rates[s])) for s in states)
+    declared = {t, *states, *symbols_of(model.controls), *symbols_of(model.parameters), *definitions_of(model)}
+    unknown = set().union(*(e.rhs.free_symbols for e in equations)) - declared
+    return Step("first_order", "given", equations, ("rates",), (Check("declared", float(len(unknown)), 0.0),))
+
+
+def reference(so_far: Derivation) -> Step | None:
+    """The reference curve, proved to satisfy the equations without control."""
+    model = so_far.model
+    if not model.reference:
+        return None
+    states = symbols_of(model.states)
+    curve = {s: sp.sympify(model.reference[s]) for s in states}
+    coast = dict.fromkeys(symbols_of(model.controls), sp.Integer(0))
+    rates = so_far.rhs("first_order").xreplace(coast).xreplace(curve).xreplace(definitions_of(model))
+    proof = identity("satisfies the equations", [sp.diff(curve[s], t) - f for s, f in zip(states, rates, strict=True)])
+    if not proof.passed:
+        raise DerivationError(f"{model.name}: the reference does not satisfy the equations of motion")
+    equations = tuple(Equation(s.name, s, curve[s]) for s in states)
+    return Step("reference", "given and proved", equations, ("first_order", "definitions"), (proof,))
+
+
+def conserved(so_far: Derivation) -> Step | None:
+    """Energy and momenta that the uncontrolled motion keeps (Noether), where the forces have a potential.
+
+    A coordinate that the Lagrangian does not contain has a constant momentum; a Lagrangian that no turn about an
+    inertial axis changes has a constant angular momentum about it; one without explicit time has a constant energy,
+    or Jacobi integral where the axes move.
+    """
+    model = so_far.model
+    if not isinstance(model, Newton):
+        return None
+    coordinates = model.coordinates
+    coast = dict.fromkeys(symbols_of(model.controls), sp.Integer(0))
+    height = potential(model, coast)
+    if height is None:
+        return None
+    speed = inertial_velocity(model)
+    kinetic = tidy(sp.simplify(speed.dot(speed) / 2))
+    lagrangian = kinetic - height
+    momenta = {q: sp.diff(lagrangian, q_dot) for q, q_dot in coordinates.items()}
+    found = []
+    if not lagrangian.has(t) and not model.position.has(t):
+        found.append(("energy", kinetic + height))
+    elif not lagrangian.has(t):
+        # in a moving frame, what the symmetry in time keeps is not the energy
+        kept = sum((p * coordinates[q] for q, p in momenta.items()), -lagrangian)
+        found.append(("jacobi_integral", tidy(sp.simplify(kept - height)) + height))
+    about_axes = _angular_momenta(model, uncontrolled_force(model), speed)
+    angles = {v.symbol for v in model.states if v.kind == "angle"}
+    cyclic = [q for q in coordinates if not lagrangian.has(q)]
+    for q in cyclic:
+        if any(sp.simplify(momenta[q] - component) == 0 for component in about_axes.values()):
+            continue  # the turn of that coordinate is one about an axis
+        rotation = q.name in angles and len([c for c in cyclic if c.name in angles]) == 1
+        found.append(("angular_momentum" if rotation else f"momentum_{q.name}", momenta[q]))
+    found += about_axes.items()
+    if not found:
+        return None
+    rates = dict(zip(symbols_of(model.states), so_far.rhs("first_order").xreplace(coast), strict=True))
+    proof = identity("constant along the motion", [total_derivative(expression, rates) for _, expression in found])
+    equations = tuple(Equation(name, sp.Symbol(name, real=True), expression) for name, expression in found)
+    return Step("conserved", "symmetry", equations, ("position", "forces", "first_order"), (proof,))
+
+
+def _angular_momenta(model: Newton, force: sp.Matrix, velocity: sp.Matrix) -> dict[str, sp.Expr]:
+    """r x v about each inertial axis about which the forces have no torque, in a plane about its normal."""
+    place = model.position
+    planes = _PLANES.get(len(place), {})
+    return {
+        name: tidy(sp.simplify(place[i] * velocity[j] - place[j] * velocity[i]))
+        for name, (i, j) in planes.items()
+        if sp.simplify(place[i] * force[j] - place[j] * force[i]) == 0
+    }
+
+
+def linearisation(so_far: Derivation) -> Step:
+    """Jacobians A = f_x and B = f_u along any motion."""
+    model = so_far.model
+    states, controls = symbols_of(model.states), symbols_of(model.controls)
+    f = so_far.rhs("first_order")
+    equations, pairs = [], []
+    for letter, columns in (("A", states), ("B", controls)):
+        for row, state in enumerate(states):
+            for column in columns:
+                entry = tidy(sp.diff(f[row], column))
+                name = f"{letter}_{state.name}_{column.name}"
+                equations.append(Equation(name, sp.Symbol(name, real=True), entry))
+                pairs.append((row, column, entry))
+    rates, entries = numeric(list(f)), numeric([entry for *_, entry in pairs])
+    check = compare(
+        "numeric derivative",
+        f.free_symbols | {*states, *controls},
+        lambda point: (entries(point), [partial(rates, point, column)[row] for row, column, _ in pairs]),
+    )
+    return Step("linearisation", "differentiate rates", tuple(equations), ("first_order",), (check,))

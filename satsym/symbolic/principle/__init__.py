@@ -1,0 +1,1 @@
+"""The minimum principle: from a motion and a cost to necessary conditions."""

@@ -1,0 +1,173 @@
+"""The three kinds of control set: what projection onto them is, and where it minimises the Hamiltonian.
+
+H is quadratic in the controls. On a box its minimiser is the clipped unconstrained one only if H_uu is
+diagonal; on a ball it is the shortened one only if H_uu is a multiple of the identity.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+from typing import Any
+
+import mpmath as mp
+import sympy as sp
+
+from satsym.spec import ControlSet, Variable
+from satsym.symbolic.derivation import DerivationError
+from satsym.symbolic.switching.minimisers import MPMATH_SWITCHES, SWITCHES
+
+
+class Clip(sp.Function):
+    """``Clip(value, lower, upper)``: the nearest point of an interval."""
+
+    nargs = 3
+    is_real = True
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """By the value: one inside, zero outside. The limits are constants."""
+        if argindex != 1:
+            raise sp.ArgumentIndexError(self, argindex)
+        return Inside(*self.args)
+
+
+class Inside(sp.Function):
+    """``Inside(value, lower, upper)``: one in the interval, zero outside; the derivative of :class:`Clip`."""
+
+    nargs = 3
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """Zero, except at the ends, where it has no derivative."""
+        return sp.Integer(0)
+
+
+class Shorten(sp.Function):
+    """``Shorten(norm_squared, limit)``: the factor that brings a vector into a ball, at most one."""
+
+    nargs = 2
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """By the square of the norm. The limit is a constant."""
+        if argindex != 1:
+            raise sp.ArgumentIndexError(self, argindex)
+        return ShortenSlope(*self.args)
+
+
+class ShortenSlope(sp.Function):
+    """``ShortenSlope(norm_squared, limit)``: the derivative of :class:`Shorten` by its first argument."""
+
+    nargs = 2
+
+
+PROJECTIONS = (Clip, Inside, Shorten, ShortenSlope, *SWITCHES)
+
+
+def _clip(value: Any, lower: Any, upper: Any) -> Any:
+    return max(lower, min(value, upper))
+
+
+def _shorten(norm_squared: Any, limit: Any) -> Any:
+    return mp.mpf(1) if norm_squared <= limit**2 else limit / mp.sqrt(norm_squared)
+
+
+def _inside(value: Any, lower: Any, upper: Any) -> Any:
+    return mp.mpf(lower <= value <= upper)
+
+
+def _shorten_slope(norm_squared: Any, limit: Any) -> Any:
+    return mp.mpf(0) if norm_squared <= limit**2 else -limit / (2 * norm_squared * mp.sqrt(norm_squared))
+
+
+MPMATH_FUNCTIONS = {"Clip": _clip, "Inside": _inside, "Shorten": _shorten, "ShortenSlope": _shorten_slope}
+MPMATH_FUNCTIONS |= MPMATH_SWITCHES
+
+
+def bounds(control_set: ControlSet, controls: Sequence[Variable]) -> tuple[Variable, ...]:
+    """The variables that hold an instance's numbers, in the order of the ``bounds`` argument of kernels."""
+    if control_set == "box":
+        lower = tuple(Variable(f"{c.symbol}_min", rf"{c.latex}^{{\min}}", c.unit) for c in controls)
+        upper = tuple(Variable(f"{c.symbol}_max", rf"{c.latex}^{{\max}}", c.unit) for c in controls)
+        return lower + upper
+    if control_set == "ball":
+        return (Variable("u_max", r"u^{\max}", controls[0].unit, positive=True),)
+    return ()
+
+
+def project(
+    control_set: ControlSet, unconstrained: Sequence[sp.Expr], limits: Sequence[sp.Symbol], hessian: sp.Matrix
+) -> list[sp.Expr]:
+    """The minimiser of H over the control set, from the one over all controls.
+
+    Parameters
+    ----------
+    unconstrained
+        The controls at which H_u = 0.
+    limits
+        Symbols of :func:`bounds`.
+    hessian
+        H_uu, which decides whether projection gives the minimiser at all.
+
+    Raises
+    ------
+    DerivationError
+        If projection does not give the minimiser.
+    """
+    m = len(unconstrained)
+    if control_set == "box":
+        if not hessian.is_diagonal():
+            raise DerivationError("a box needs a diagonal H_uu: clipping each control minimises H only then")
+        return [Clip(u, limits[i], limits[m + i]) for i, u in enumerate(unconstrained)]
+    if control_set == "ball":
+        if sp.simplify(hessian - hessian[0, 0] * sp.eye(m)) != sp.zeros(m, m):
+            raise DerivationError("a ball needs equal control weights: shortening the control minimises H only then")
+        factor = Shorten(sum((u**2 for u in unconstrained), sp.Integer(0)), limits[0])
+        return [factor * u for u in unconstrained]
+    return list(unconstrained)
+
+
+def ordered(control_set: ControlSet, point: dict[Any, Any], limits: Sequence[sp.Symbol]) -> dict[Any, Any]:
+    """The point with lower bounds below upper ones."""
+    if control_set != "box":
+        return point
+    m = len(limits) // 2
+    pairs = [sorted((point[limits[i]], point[limits[m + i]])) for i in range(m)]
+    return {**point, **{limits[i]: low for i, (low, _) in enumerate(pairs)}} | {
+        limits[m + i]: high for i, (_, high) in enumerate(pairs)
+    }
+
+
+def slacks(
+    control_set: ControlSet, point: dict[Any, Any], limits: Sequence[sp.Symbol], controls: Sequence[Any]
+) -> list[Any]:
+    """How far numeric controls stay within the control set; a negative entry is a violated bound."""
+    m = len(controls)
+    if control_set == "box":
+        below = [u - point[limits[i]] for i, u in enumerate(controls)]
+        return below + [point[limits[m + i]] - u for i, u in enumerate(controls)]
+    if control_set == "ball":
+        return [point[limits[0]] - mp.sqrt(sum(u**2 for u in controls))]
+    return []
+
+
+def admissible(
+    control_set: ControlSet,
+    point: dict[Any, Any],
+    limits: Sequence[sp.Symbol],
+    m: int,
+    rng: random.Random,
+    count: int,
+) -> list[list[Any]]:
+    """Random controls from the control set, corners and boundary included."""
+    found = []
+    for _ in range(count):
+        if control_set == "box":
+            share = [rng.choice((0.0, 1.0, rng.random())) for _ in range(m)]
+            found.append(
+                [point[limits[i]] + s * (point[limits[m + i]] - point[limits[i]]) for i, s in enumerate(share)]
+            )
+        else:
+            direction = [mp.mpf(rng.gauss(0, 1)) for _ in range(m)]
+            length = point[limits[0]] * rng.choice((1.0, rng.random())) if control_set == "ball" else rng.uniform(0, 3)
+            norm = mp.sqrt(sum(d**2 for d in direction))
+            found.append([d / norm * length for d in direction])
+    return found

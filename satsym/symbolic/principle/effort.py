@@ -1,0 +1,188 @@
+"""Costs that are a control's effort and, perhaps, a change of some function of the state; closed forms for chains.
+
+What a running cost has beside the effort may be the rate of change of a function V of the state. Its integral then
+depends on the ends alone: it changes the costates and not the control.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations_with_replacement
+from typing import Any
+
+import mpmath as mp
+import sympy as sp
+
+from satsym.symbolic import notation as n
+from satsym.symbolic.algebra import definitions_of
+from satsym.symbolic.checks import Point, compare, identity, numeric
+from satsym.symbolic.convention import sign, worded
+from satsym.symbolic.derivation import Conclusion, Derivation, Equation, Step
+from satsym.symbolic.kinds import rotation_notation as rn
+from satsym.symbolic.model import symbols_of, t
+
+
+def exact_differential(so_far: Derivation) -> Step | None:
+    """The part of the running cost that is the rate of change of a quadratic function of the state, if it has one."""
+    problem = so_far.problem
+    assert problem is not None
+    states, cost = symbols_of(so_far.model.states), sp.sympify(problem.running_cost)
+    potential = _potential(so_far)
+    if potential is None:
+        return None
+    rates = so_far.rhs("first_order").xreplace(definitions_of(so_far.model))
+    gradient = [sp.diff(potential, x) for x in states]
+    change = sum(g * f for g, f in zip(gradient, rates, strict=True))
+    reduced = sp.factor(sp.expand(cost.xreplace(definitions_of(so_far.model)) - change))
+    costates = [n.costate_of(x) for x in states]
+    shifted = {
+        lam: rn.reduced_costate_of(x) - sign(problem) * g for lam, x, g in zip(costates, states, gradient, strict=True)
+    }
+    hamiltonian = so_far.equation("hamiltonian.H").rhs.xreplace(definitions_of(so_far.model))
+    other = sign(problem) * reduced + sum(rn.reduced_costate_of(x) * f for x, f in zip(states, rates, strict=True))
+    moving = {
+        **dict(zip(states, rates, strict=True)),
+        **dict(zip(costates, so_far.rhs("costate_equations"), strict=True)),
+    }
+    sums = [lam + sign(problem) * g for lam, g in zip(costates, gradient, strict=True)]
+    drift = [
+        sum(sp.diff(total, v) * rate for v, rate in moving.items())
+        + sp.diff(other, x).xreplace({rn.reduced_costate_of(y): m for y, m in zip(states, sums, strict=True)})
+        for x, total in zip(states, sums, strict=True)
+    ]
+    checks = (
+        identity("same Hamiltonian", [hamiltonian.xreplace(shifted) - other]),
+        identity("costates of the rest", [d.xreplace(definitions_of(so_far.model)) for d in drift]),
+    )
+    equations = (
+        Equation("potential", rn.POTENTIAL, potential),
+        Equation("reduced_cost", rn.REDUCED_COST, reduced),
+        *(Equation(lam.name, lam, shifted[lam]) for lam in costates),
+    )
+    sources = ("first_order", "hamiltonian", "costate_equations")
+    said = (Conclusion("the control does not depend on it", {"potential": rn.POTENTIAL}),)
+    rule = worded("part of the cost is exact", problem)
+    return Step("exact_differential", rule, equations, sources, checks, said)
+
+
+def least_effort(so_far: Derivation) -> Step | None:
+    """The control without bounds, to rest at zero in a given time, of a chain of integrators; and what it costs."""
+    found = _chain(so_far)
+    if found is None:
+        return None
+    a, b, weight = found
+    model = so_far.model
+    states, (control,) = symbols_of(model.states), symbols_of(model.controls)
+    end = n.FINAL_TIME
+    power = _flow(a, end - t)
+    gramian = (power * b * b.T * power.T).applyfunc(lambda e: sp.integrate(sp.expand(e), (t, 0, end)))
+    start = sp.Matrix([n.initial(x) for x in states])
+    pull = gramian.LUsolve(_flow(a, end) * start)
+    law = sp.expand(sp.simplify((-b.T * power.T * pull)[0]))
+    later = sp.Dummy("z")
+    path = (_flow(a, t) * start + _integral(_flow(a, t - later) * b * law.xreplace({t: later}), later)).applyfunc(
+        lambda e: sp.collect(sp.expand(e), t, sp.factor)
+    )
+    spent = sp.factor(sp.simplify(weight * sp.integrate(sp.expand(law**2), (t, 0, end))))
+    rest = dict.fromkeys(start[1:], sp.Integer(0))
+    from_rest = sp.factor(law.xreplace(rest))
+    peak = sp.Abs(from_rest.subs(t, 0))
+    equations = [
+        Equation(control.name, control, sp.collect(law, t, sp.factor)),
+        *(Equation(x.name, x, value) for x, value in zip(states, path, strict=True)),
+        Equation("cost", rn.LEAST_COST, spent),
+        Equation("from_rest", rn.answer_of(control), from_rest),
+        Equation("peak", rn.peak_of(control), sp.simplify(peak)),
+        Equation("cost_from_rest", rn.COST_FROM_REST, sp.factor(spent.xreplace(rest))),
+    ]
+    value, slopes = numeric([*path, law]), a * path + b * law
+    proofs = identity(
+        "obeys the motion and ends at zero",
+        [
+            *(sp.diff(x, t) - f for x, f in zip(path, slopes, strict=True)),
+            *path.subs(t, end),
+            *(path.subs(t, 0) - start),
+        ],
+    )
+    multiplier = _flow(-a.T, t) * _flow(a.T, end) * pull
+    adjoint = [*(sp.diff(multiplier, t) + a.T * multiplier), (b.T * multiplier)[0] + law]
+    optimal = identity("costates of such a control", adjoint)
+
+    def sides(point: Point) -> tuple[list[Any], list[Any]]:
+        """The cost by quadrature."""
+        here = {**point, n.FINAL_TIME: abs(point[n.FINAL_TIME])}
+        found_cost = numeric([spent])(here)
+        scale = numeric([weight])(here)[0]
+        return found_cost, [scale * mp.quad(lambda time: value({**here, t: time})[-1] ** 2, [0, here[n.FINAL_TIME]])]
+
+    symbols = {n.FINAL_TIME, *start}.union(*(e.free_symbols for e in (*path, law, spent, weight))) - {t}
+    check = compare("cost by quadrature", symbols, sides)
+    said = []
+    if sp.limit(equations[-1].rhs, end, sp.oo) == 0:
+        said.append(Conclusion("longer is always cheaper", {"cost": equations[-1].rhs}))
+    return Step(
+        "least_effort",
+        "steer with least effort",
+        tuple(equations),
+        ("first_order", *(("exact_differential",) if "exact_differential" in so_far else ())),
+        (proofs, optimal, check),
+        tuple(said),
+    )
+
+
+def _potential(so_far: Derivation) -> sp.Expr | None:
+    """A quadratic function of the state whose rate of change takes the states out of the running cost."""
+    problem, model = so_far.problem, so_far.model
+    assert problem is not None
+    states, controls = symbols_of(model.states), symbols_of(model.controls)
+    constants = definitions_of(model)
+    cost = sp.sympify(problem.running_cost).xreplace(constants)
+    rates = so_far.rhs("first_order").xreplace(constants)
+    moving = (*states, *controls)
+    if not cost.free_symbols & set(states) or any(e.has(t) or not e.is_polynomial(*moving) for e in (cost, *rates)):
+        return None
+    terms = [*states, *(x * y for x, y in combinations_with_replacement(states, 2))]
+    unknown = sp.symbols(f"c0:{len(terms)}", cls=sp.Dummy)
+    ansatz = sum(c * term for c, term in zip(unknown, terms, strict=True))
+    left = sp.expand(cost - sum(sp.diff(ansatz, x) * f for x, f in zip(states, rates, strict=True)))
+    parts = sp.Poly(left, *moving).terms()
+    with_states = [c for m, c in parts if any(m[: len(states)])]
+    linear = [c for m, c in parts if not any(m[: len(states)]) and sum(m) == 1]
+    # what is linear in the controls goes as well where it can; of several functions, one of later states
+    tried = (sp.solve(conditions, unknown[::-1], dict=True) for conditions in ([*with_states, *linear], with_states))
+    solution = next((found[0] for found in tried if len(found) == 1), None)
+    if solution is None:
+        return None
+    found = ansatz.xreplace(solution).xreplace(dict.fromkeys(unknown, sp.Integer(0)))
+    return sp.factor(found) if found != 0 else None
+
+
+def _chain(so_far: Derivation) -> tuple[sp.Matrix, sp.Matrix, sp.Expr] | None:
+    """A, B and the weight of u^2, where the motion is a chain of integrators under one control and only that costs."""
+    problem, model = so_far.problem, so_far.model
+    assert problem is not None
+    if len(model.controls) != 1 or problem.terminal_cost != 0:
+        return None
+    constants = definitions_of(model)
+    states, (control,) = symbols_of(model.states), symbols_of(model.controls)
+    reduced = "exact_differential" in so_far
+    cost = so_far.equation("exact_differential.reduced_cost").rhs if reduced else sp.sympify(problem.running_cost)
+    cost, rates = cost.xreplace(constants), so_far.rhs("first_order").xreplace(constants)
+    weight = sp.expand(cost).coeff(control, 2)
+    if weight == 0 or sp.expand(cost - weight * control**2) != 0 or weight.has(*states, t):
+        return None
+    a, b = rates.jacobian(states), rates.jacobian([control])
+    moving = {*states, control, t}
+    linear = sp.expand(a * sp.Matrix(states) + b * control - rates)
+    if any(e != 0 for e in linear) or any(e.free_symbols & moving for e in (*a, *b)) or a ** len(states) != 0 * a:
+        return None
+    reached = sp.Matrix.hstack(*(a**k * b for k in range(len(states))))
+    return (a, b, weight) if reached.rank() == len(states) else None
+
+
+def _flow(a: sp.Matrix, time: sp.Expr) -> sp.Matrix:
+    """e^(A t) of a nilpotent matrix: a finite series."""
+    return sum((a**k * time**k / sp.factorial(k) for k in range(1, a.rows)), sp.eye(a.rows))
+
+
+def _integral(vector: sp.Matrix, by: sp.Symbol) -> sp.Matrix:
+    return vector.applyfunc(lambda e: sp.integrate(sp.expand(e), (by, 0, t)))

@@ -1,0 +1,1 @@
+"""Hamiltonians that are linear in the controls: switching functions, singular arcs, the switching curve."""

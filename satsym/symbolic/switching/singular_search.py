@@ -1,0 +1,166 @@
+"""The search for the order of singular arcs: derivatives of a switching function until its control appears.
+
+Along a singular arc a switching function stays at its threshold, so that all its total time derivatives vanish. The
+first one in which the control appears determines it; each one before is a condition on states and costates, and is
+solved for one of them, so that what follows is known *on the arc* (Kelley, Kopp and Moyer, Singular extremals, 1967).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import sympy as sp
+
+from satsym.symbolic.algebra import tidy, total_derivative
+from satsym.symbolic.convention import sign
+from satsym.symbolic.derivation import Derivation
+from satsym.symbolic.model import symbols_of
+from satsym.symbolic.switching.functions import flow, parts
+
+SIDES = {"_positive": 1, "_negative": -1}
+"""Sign of a control with a weight on its magnitude, on the two kinds of singular arcs."""
+
+LONGEST = 2000
+"""Operations in a derivative beyond which the search is given up."""
+
+
+@dataclass
+class Surface:
+    """Where successive conditions hold: symbols solved for, conditions left as they are."""
+
+    solved: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    left: list[sp.Expr] = field(default_factory=list)
+
+    def reduced(self, expression: sp.Expr) -> sp.Expr:
+        """An expression on the surface."""
+        return _simplest(sp.sympify(expression).xreplace(self.solved))
+
+    def add(self, condition: sp.Expr, unknowns: Sequence[sp.Symbol]) -> None:
+        """Solve a condition, reduced before, for the first unknown it is linear in, and certainly if there is one."""
+        candidates = []
+        for unknown in unknowns:
+            slope = _simplest(sp.diff(condition, unknown))
+            if slope != 0 and not slope.has(unknown):
+                candidates.append((not slope.is_nonzero, unknowns.index(unknown), unknown, slope))
+        if not candidates:
+            self.left.append(condition)
+            return
+        *_, unknown, slope = min(candidates, key=lambda c: c[:2])
+        value = _simplest(-condition.xreplace({unknown: sp.Integer(0)}) / slope)
+        self.solved = {k: _simplest(v.xreplace({unknown: value})) for k, v in self.solved.items()} | {unknown: value}
+
+    def equations(self) -> sp.Tuple:
+        """What holds there."""
+        stated = [sp.Eq(k, v, evaluate=False) for k, v in self.solved.items()]
+        return sp.Tuple(*stated, *(sp.Eq(c, 0, evaluate=False) for c in self.left))
+
+
+@dataclass(frozen=True)
+class Search:
+    """What the derivatives of one switching function at one threshold lead to.
+
+    Attributes
+    ----------
+    control, branch
+        Which control, and which of :data:`satsym.symbolic.switching.notation.BRANCHES`.
+    magnitude
+        Replacement of |u| there.
+    threshold
+        The switching function less its threshold.
+    derivatives
+        Its total time derivatives, from the first.
+    outcome
+        ``"order"`` (the last derivative has the control), ``"closed"`` (the last one follows from those before),
+        ``"impossible"`` (the last one cannot vanish) or ``"open"``.
+    surface
+        Where the derivatives before the last vanish, and the last one if it is without the control.
+    slope, singular
+        Of the order found: what multiplies the control, and the control, both on the surface.
+    """
+
+    control: sp.Symbol
+    branch: str
+    magnitude: Mapping[sp.Expr, sp.Expr]
+    threshold: sp.Expr
+    derivatives: tuple[sp.Expr, ...]
+    outcome: str
+    surface: Surface
+    slope: sp.Expr = sp.Integer(0)
+    singular: sp.Expr = sp.Integer(0)
+
+    @property
+    def order(self) -> int:
+        """Number of derivatives taken."""
+        return len(self.derivatives)
+
+
+def searches(so_far: Derivation) -> list[Search]:
+    """The search for each control at each of its thresholds."""
+    assert so_far.problem is not None
+    found, controls = parts(so_far), symbols_of(so_far.model.controls)
+    motion = tuple(flow(so_far).items())
+    results = []
+    for u, sigma, w in zip(controls, found.switching, found.weights, strict=True):
+        for branch, side in SIDES.items() if w != 0 else (("", 0),):
+            threshold = sigma + sign(so_far.problem) * side * w
+            results.append(_search(u, branch, threshold, motion, controls))
+    return results
+
+
+@lru_cache(maxsize=32)  # two steps need them
+def _search(
+    u: sp.Symbol,
+    branch: str,
+    threshold: sp.Expr,
+    motion: tuple[tuple[sp.Symbol, sp.Expr], ...],
+    controls: tuple[sp.Symbol, ...],
+) -> Search:
+    magnitude = {sp.Abs(u): SIDES[branch] * u} if branch else {}
+    rates = {z: rate.xreplace(magnitude) for z, rate in motion}
+    states, lam = list(rates)[: len(rates) // 2], list(rates)[len(rates) // 2 :]
+    unknowns = [*lam, *states]
+    derivatives: list[sp.Expr] = []
+    surface, last = Surface(), threshold
+    surface.add(_simplest(threshold), unknowns)
+
+    def ended(outcome: str, **more: sp.Expr) -> Search:
+        return Search(u, branch, magnitude, threshold, tuple(derivatives), outcome, surface, **more)
+
+    while len(derivatives) < 2 * len(states):
+        total = tidy(total_derivative(last, rates), (*controls, *lam))
+        derivatives.append(total)
+        if total.count_ops() > LONGEST:
+            break
+        slope, rest = surface.reduced(sp.diff(total, u)), total.xreplace({u: sp.Integer(0)})
+        condition = surface.reduced(rest)
+        if slope != 0:
+            return ended("order", slope=slope, singular=tidy(_simplest(-condition / slope)))
+        if condition == 0:
+            return ended("closed")
+        if condition.is_nonzero:
+            return ended("impossible")
+        surface.add(_with_costates(condition, surface, lam), unknowns)
+        last = rest  # what multiplied the control vanishes along the arc, and so do its derivatives
+    return ended("open")
+
+
+def _with_costates(condition: sp.Expr, surface: Surface, lam: Sequence[sp.Symbol]) -> sp.Expr:
+    """A condition without the factor whose vanishing would make all costates vanish, if another factor is left."""
+    factors = [factor for factor, _ in sp.factor_list(sp.numer(sp.together(condition)))[1]]
+    others = [factor for factor in factors if not factor.free_symbols & set(lam)]
+    for factor in factors:
+        values = [surface.solved.get(c, c).xreplace({factor: sp.Integer(0)}) for c in lam]
+        if factor in lam and others and all(_simplest(v) == 0 for v in values):
+            return sp.Mul(*others)
+    return condition
+
+
+def _simplest(expression: sp.Expr) -> sp.Expr:
+    """The expression factored where it is rational, apart from magnitudes, else simplified."""
+    names = {magnitude: sp.Dummy(real=True) for magnitude in expression.atoms(sp.Abs)}
+    plain = expression.xreplace(names)
+    if not plain.is_rational_function():
+        return sp.simplify(expression)
+    return sp.factor(plain).xreplace({dummy: magnitude for magnitude, dummy in names.items()})

@@ -1,0 +1,181 @@
+"""The ledgers of the ITS documents: every verdict other than confirmed is reached a second time, by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from satsym import auditing as audit
+from satsym.auditing.predicates import its_listing
+from tests.support import its_claim_routes as claims
+from tests.support import its_routes as by_hand
+from tests.support import its_sweep_routes as sweeps
+from tests.support.its_claim_routes import units
+from tests.support.its_routes import Route, rows
+
+UNREAD = {
+    "its_thesis": {"figure 2.1", "figure 2.3", "figure 2.4", "figure 3.1", "section 2.4 angle vector"},
+    "its_paper": {"II figure 1", "II figure 2"},
+}
+"""Pictures, and a line of which the text has lost all marks."""
+
+WITH_CONTROL = {"r": (2, 6, 10), "r_dot": (3, 7, 11), "theta": (4, 8, 12), "theta_dot": (5, 9, 13)}
+LETTERS = {
+    "x1": ("r - sigma", "r"),
+    "x3": ("sigma*(theta - omega*t)", "theta"),
+    "x4": ("sigma*(theta_dot - omega)", "theta_dot"),
+    "lambda1": ("lam", "lambda1"),
+    "theta": ("theta", "omega*t"),
+    "u1": ("r_dot", "u1"),
+}
+returned = claims.returned("r", "r_dot", "theta_dot")
+
+ROUTES: dict[str, dict[str, Route]] = {
+    "its_thesis": {
+        "abstract gravity": claims.gravity,
+        "abstract returns": returned,
+        "abstract control": claims.halved_guess,
+        "abstract cost": claims.halved_guess,
+        "section 2.3.2 sidereal day": claims.sidereal_hours,
+        "section 2.3.3 coverage": claims.polar_caps,
+        "section 1.1 gravity": claims.gravity,
+        "section 2.4 gravity": claims.gravity,
+        "section 2.7 type 5, start": by_hand.varied_start,
+        **{f"2.19 {part}": sweeps.inconsistent for part in ("k2", "k3", "k4", "order")},
+        "section 4.1 equilibrium": by_hand.steady_motion,
+        "4.19": by_hand.from_zero_differences,
+        "4.22 first x": by_hand.written_out_state,
+        "section 4.1.3 CA3, left factor": by_hand.left_factor,
+        "section 4.2 same system": by_hand.two_systems,
+        "4.27": by_hand.angular_rate,
+        "section 4.2 weights": units("newton*s*s/m", "joule/(m/s**2)**2/s"),
+        "section 4.2 bounds": claims.unreachable,
+        "4.28": by_hand.thesis_hamiltonian,
+        "4.35": by_hand.state_equation,
+        "section 4.4 truncation error": sweeps.fifth_power,
+        "section 4.4 step 2, length": claims.one_too_few,
+        "section 4.4 step 4, before the states": sweeps.zero_over_zero,
+        "section 4.4 step 6, lambda3": sweeps.index_slip,
+        **{f"section 4.4 step 6, k{k} of lambda{i}": sweeps.frozen_states for k in (2, 3, 4) for i in (1, 2, 4)},
+        "section 4.4 order backwards": sweeps.frozen_states,
+        "section 4.5 same system": by_hand.two_systems,
+        "table 4.1": claims.not_earth,
+        "section 4.5 x1(0)": by_hand.no_displacement,
+        "section 4.5 x4(t)": by_hand.no_displacement,
+        **{f"section 4.5 J for {a} and {b}": claims.halved_guess for a, b in ((50, 10), (10, 50), (10, 10), (50, 50))},
+        **{
+            f"figure 4.{n} with control": claims.returned(state)
+            for state, figures in WITH_CONTROL.items()
+            for n in figures
+        },
+        "table 4.2": claims.halved_guess,
+        "section 4.5 least J": claims.proportional,
+        "section 4.5 u1 = u2 = 0.005": claims.halved_guess,
+        **{f"notation {letter}": by_hand.two_meanings(*pair) for letter, pair in LETTERS.items()},
+        "section 5.1 1, unstable": by_hand.defective,
+        "section 5.1 3, returns": returned,
+        "section 5.1 3, cost": claims.halved_guess,
+        "appendix A g": units("km**5/s**2", "km**3/s**2"),
+        "appendix A G": units("newton*m/kg**2", "m**3/s**2/kg"),
+        "appendix A x3 as in section 4.1": units("degree", "km"),
+        "appendix A x4 as in section 4.1": units("degree/s", "km/s"),
+        "appendix A J": units("joule", "newton*s*s/m*(m/s**2)**2*s"),
+        "appendix A angles": claims.degrees,
+        "appendix A force": units("newton", "kg*km/s**2"),
+        "appendix B u2s": sweeps.least_squares,
+        "appendix B while": sweeps.backward_test,
+        **{f"appendix B initial, {v}{k}": sweeps.line_of_the_listing for v in "abed" for k in (2, 3, 4)},
+        **{f"appendix B state, k{k}_x{i}s": sweeps.line_of_the_listing for i in range(1, 5) for k in (2, 3, 4)},
+        **{f"appendix B costate, k{k}_l{i}": sweeps.line_of_the_listing for i in (1, 2, 4) for k in (2, 3, 4)},
+        **{f"appendix B {loop}, order": sweeps.first_order_loop for loop in ("initial", "state", "costate")},
+        "appendix B state, x4s(i+1) too early": sweeps.not_yet_defined,
+    },
+    "its_paper": {
+        "abstract gravity": claims.gravity,
+        "abstract returns": returned,
+        "abstract control": claims.halved_guess,
+        "abstract weights": units("newton*s*s/m", "joule/(m/s**2)**2/s"),
+        "abstract cost": claims.halved_guess,
+        "section I gravity": claims.gravity,
+        "II (9) state": by_hand.canonical_state,
+        "II (14) time": by_hand.end_on_a_curve,
+        "II (15) start": by_hand.varied_start,
+        **dict.fromkeys(("II (19)", "II (20)", "II (21)", "section II.D order"), sweeps.inconsistent),
+        "III (12)": by_hand.angular_rate,
+        "section III.D bounds": claims.unreachable,
+        "III (14)": by_hand.paper_hamiltonian,
+        "III (18)": by_hand.state_equation,
+        "section III.E step 2, length": claims.one_too_few,
+        "section III.E step 4, before the states": sweeps.zero_over_zero,
+        "section III.F x1(0)": by_hand.no_displacement,
+        "section III.F x4(0)": by_hand.no_displacement,
+        **{f"III figure {n} with control": claims.returned(s) for n, s in enumerate(by_hand.STATES, start=2)},
+        "table 1": claims.halved_guess,
+        "section III.F least J": claims.proportional,
+        "section III.F u1 = u2 = 0.005": claims.halved_guess,
+        **{f"notation {letter}": by_hand.two_meanings(*pair) for letter, pair in LETTERS.items() if letter != "u1"},
+        "section IV 1, unstable": by_hand.defective,
+        "section IV 3, returns": returned,
+        "section IV 3, cost": claims.halved_guess,
+    },
+}
+"""Document -> row -> the route that judges it a second time."""
+
+CASES = [(document, key) for document, routes in ROUTES.items() for key in routes]
+
+
+@pytest.fixture(scope="module")
+def verdicts() -> dict[tuple[str, str], str]:
+    """Verdicts of the audit."""
+    found = {}
+    for document in ROUTES:
+        for row in audit.audit(audit.read(audit.locate(document))):
+            found[document, row.key] = row.verdict
+    return found
+
+
+@pytest.mark.parametrize(("document", "key"), CASES, ids=[f"{d}: {k}" for d, k in CASES])
+def test_a_second_route_finds_fault_with_it_too(document, key):
+    assert ROUTES[document][key](rows(document), key) != "confirmed"
+
+
+@pytest.mark.slow
+def test_the_audit_and_the_second_routes_agree(verdicts):
+    """No false alarm: whatever is not confirmed has a route, and the route reaches the same verdict."""
+    for document, routes in ROUTES.items():
+        found = {key: v for (d, key), v in verdicts.items() if d == document and v != "confirmed"}
+        assert {key for key, verdict in found.items() if verdict == "illegible"} == UNREAD[document]
+        assert set(found) - UNREAD[document] == set(routes)
+        reached = {key: route(rows(document), key) for key, route in routes.items()}
+        assert {key: found[key] for key in routes} == reached
+
+
+@pytest.mark.parametrize("document", ROUTES)
+def test_every_number_of_the_document_has_a_row(document):
+    assert audit.read(audit.locate(document)).uncovered() == []
+
+
+def test_lines_of_the_listing_that_are_confirmed_are_the_textbook_s():
+    document = rows("its_thesis")
+    lines = {key for key, row in document.items() if "listing_line" in row.get("holds", "")}
+    assert len(lines) == 72
+    for key in lines - set(ROUTES["its_thesis"]):
+        assert sweeps.line_of_the_listing(document, key) == "confirmed"
+
+
+@pytest.mark.parametrize("loop", ["initial", "state", "costate"])
+def test_our_program_does_what_the_printed_lines_do(loop):
+    """The transcription that the predicates run, against the printed lines executed as they stand."""
+    document, n, tf = rows("its_thesis"), 30, 3.0
+    path = sweeps.run_loop(document, "state", n, sweeps.PATH_START, tf)
+    still = [(0.0, 0.0)] * (n + 1)
+    ours = {
+        "initial": lambda: its_listing.initial_system(n, tf, sweeps.PATH_START, 1.0),
+        "state": lambda: its_listing.state_sweep(still, tf, sweeps.PATH_START, 1.0, 1.0),
+        "costate": lambda: its_listing.costate_sweep(
+            [tuple(map(float, x)) for x in path.T], still, tf, sweeps.COSTATES, 1.0, 1.0
+        ),
+    }[loop]()
+    start = sweeps.COSTATES if loop == "costate" else sweeps.PATH_START
+    executed = sweeps.run_loop(document, loop, n, start, tf, path if loop == "costate" else None)
+    np.testing.assert_allclose(np.array(ours).T, executed, rtol=1e-12, atol=1e-12)

@@ -1,0 +1,45 @@
+"""A ledger that asks a predicate for what is not there is refused in one line that names the row, never a traceback."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from satsym import auditing as audit
+from satsym.cli import main
+
+
+def ledger(folder: Path, printed: str, holds: str, left_out: str) -> Path:
+    """The notation and the numbers of lapan_pitch, without one of them, and a single row."""
+    whole = Path(audit.locate("lapan_pitch")).read_text(encoding="utf-8")
+    head = "\n".join(line for line in whole[: whole.index("[[row]]")].splitlines() if line != left_out)
+    path = folder / "ledger.toml"
+    row = f'item = "13"\nkind = "claim"\nwhere = "here"\nsays = "so"\nprinted = "{printed}"\nholds = "{holds}"\n'
+    path.write_text(f"{head}\n[[row]]\n{row}", encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("printed", "holds", "left_out", "complaint"),
+    [
+        ("3*foo*E", "largest_torque()", "", 'no number for "foo"'),
+        ("3*P_c", "wheel_stays(law='classical', share='0.1')", 'E = "0.01 1/s"', 'no number in [inputs] called "E"'),
+        ("3*P_c", "wheel_stays(law='classical', share='abc')", "", '"abc" is no number'),
+        ("3*P_c", "wave_arrives(rate='abc')", "", '"abc" is no number'),
+        ("3*P_c", "costate_solves(rate='99', solution='13')", "", 'no row called "99"'),
+        ("3*P_c", "is_integral(rate='13', speed='13')", "", 'the letter "delta" does not stand there'),
+        ("3*P_c", "setting_to_zero_maximises(hamiltonian='13')", "", 'the letter "U" does not stand there'),
+        ("3*P_c", "starts_from(program='13', rates='f')", "", 'no row "13" prints a program'),
+        ("3*P_c", "leaves_its_orbit(name='double-integrator-time')", "", "is no motion about a centre"),
+        ("3*P_c", "derivative_is(model='two_body')", "", "print v_dot, then r, r_dot or v, then a formula"),
+        ("3*P_c", "has_equilibrium(model='nope')", "", 'no derivation "nope"'),
+    ],
+)
+def test_what_is_not_there_is_told_in_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], printed: str, holds: str, left_out: str, complaint: str
+) -> None:
+    assert main(["audit", str(ledger(tmp_path, printed, holds, left_out))]) == 3
+    (line,) = capsys.readouterr().err.strip().splitlines()
+    assert complaint in line
+    assert "row 13" in line

@@ -1,0 +1,305 @@
+"""Competitors: cheaper extremals are found where the first one found is not the best, and that becomes the answer."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+from sympy import Matrix, exp, eye
+
+from satsym import instance
+from satsym.instance import Guess, Instance
+from satsym.solution import Certificate, Kind, Progress, Solution
+from satsym.solvers import solve
+from satsym.solvers import two_point as two_point_method
+from satsym.solvers.certificate import certify
+from satsym.solvers.certificate.competitors import none_conceivable
+from satsym.solvers.cold_start import paths
+from satsym.solvers.cold_start.path_of_turns import along_turns, fading
+from satsym.solvers.collocation.curve import Curve
+from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.collocation.scaling import two_point
+from satsym.solvers.collocation.system import System
+from satsym.solvers.improving import improved
+from satsym.solvers.iteration import Limits
+from satsym.solvers.symmetry import rotation, spirals
+from satsym.status import BadInput, Status
+from satsym.symbolic import FirstOrder, Newton, Problem, Variable, symbols_of
+from tests.support.models import build
+
+PLACES = tuple(Variable(name, name) for name in ("x", "y", "v_x", "v_y"))
+PUSHES = tuple(Variable(f"a_{q}", f"a_{q}") for q in "xy")
+MU = Variable("mu", r"\mu", default=1.0, positive=True)
+x, y, v_x, v_y = symbols_of(PLACES)
+(mu,) = symbols_of((MU,))
+position, push = Matrix([x, y]), Matrix(symbols_of(PUSHES))
+
+cartesian = Problem(
+    name="cartesian",
+    title="Transfer between orbits, in Cartesian coordinates",
+    model=Newton(
+        name="plane",
+        title="A body in a plane",
+        states=PLACES,
+        controls=PUSHES,
+        parameters=(MU,),
+        coordinates={x: v_x, y: v_y},
+        directions={f"e_{q}": eye(2)[:, k] for k, q in enumerate("xy")},
+        position=position,
+        forces={"gravity": -mu * position / position.norm() ** 3, "thrust": push},
+    ),
+    running_cost=push.dot(push) / 2,
+)
+
+AXES = tuple(Variable(f"x{k}", f"x_{k}") for k in (1, 2))
+RATES = tuple(Variable(f"u{k}", f"u_{k}") for k in (1, 2))
+WEIGHT = Variable("k", "k", default=-1.0)
+x1, x2 = symbols_of(AXES)
+u1, u2 = symbols_of(RATES)
+(k,) = symbols_of((WEIGHT,))
+plane = FirstOrder(name="rates", title="Rates", states=AXES, controls=RATES, parameters=(), rates={x1: u1, x2: u2})
+line = FirstOrder(
+    name="rate", title="A rate", states=AXES[:1], controls=RATES[:1], parameters=(WEIGHT,), rates={x1: u1}
+)
+HILL = 3 * exp(-8 * x1**2)
+
+bump = Problem(
+    name="bump", title="A hill in the way", model=plane, running_cost=(u1**2 + u2**2) / 2 + HILL * exp(-8 * x2**2)
+)
+over = Problem(
+    name="over", title="Straight over the hill", model=replace(line, parameters=()), running_cost=u1**2 / 2 + HILL
+)
+saddle = Problem(name="saddle", title="Two axes", model=plane, running_cost=(u1**2 + u2**2 - x1**2 - x2**2) / 2)
+reward = Problem(
+    name="reward",
+    title="A distance that is rewarded",
+    model=line,
+    running_cost=u1**2 / 2,
+    terminal_cost=k * x1**2 / 2,
+    control_set="box",
+)
+tied = Problem(
+    name="tied",
+    title="An end on a line, at rest",
+    model=FirstOrder(
+        name="body", title="A body", states=AXES, controls=RATES[:1], parameters=(), rates={x1: x2, x2: u1}
+    ),
+    running_cost=u1**2 / 2,
+    terminal_constraints=(x1 + x2 - 1, x2),
+    control_set="box",
+)
+
+
+def certificate(solution: Solution) -> Certificate:
+    assert solution.certificate is not None
+    return solution.certificate
+
+
+def compared(solution: Solution) -> set[Kind]:
+    return {found.kind for found in certificate(solution).competitors}
+
+
+def test_a_transfer_in_cartesian_coordinates_makes_the_revolutions_that_cost_least(tmp_path: Path) -> None:
+    """Polar coordinates, where the final angle says how many they are, give the same cost."""
+    case = build(
+        tmp_path,
+        cartesian,
+        "[initial]\nx = 1.0\ny = 0.0\nv_x = 0.0\nv_y = 1.0\n[final]\nx = -1.2\ny = 0.0\nv_x = 0.0\nv_y = -0.9\n"
+        "[time]\ntf = 10.0\n[solver]\nmax_seconds = 600.0\n",
+    )
+    found = solve(case)
+    turns = []
+    for angle in (1, 3, 5):
+        end = {"r": 1.2, "r_dot": 0.0, "theta": angle * np.pi, "theta_dot": 0.75}
+        polar = replace(
+            instance.load("return-to-orbit"), initial=(1.0, 0.0, 0.0, 1.0), final=end, tf=10.0, lower=(-np.inf,) * 2
+        )
+        turns.append(solve(replace(polar, upper=(np.inf,) * 2)).objective)
+    assert found.objective == pytest.approx(min(turns), rel=1e-8)
+    assert int(np.argmin(turns)) == 1
+    assert certificate(found).verdict == "certified"
+    assert Kind.REVOLUTIONS in compared(found)
+
+
+def test_spirals_lead_from_the_start_to_the_end_with_their_turns(tmp_path: Path) -> None:
+    text = "[initial]\nx = 1.0\ny = 0.0\nv_x = 0.0\nv_y = 1.0\n[final]\nx = 0.0\ny = 1.3\nv_x = -0.8\nv_y = 0.1\n"
+    problem = two_point(build(tmp_path, cartesian, text + "[time]\nt0 = 1.0\ntf = 12.0\n"), 11.0)
+    for spiral in spirals(problem, 4):
+        path = spiral.path(np.linspace(0.0, 1.0, 2001)) * problem.scale.state[:, None]
+        assert path[:, 0] == pytest.approx([1.0, 0.0, 0.0, 1.0], abs=1e-9)
+        assert path[:, -1] == pytest.approx([0.0, 1.3, -0.8, 0.1], abs=1e-9)
+        angle = np.unwrap(np.arctan2(path[1], path[0]))
+        assert (angle[-1] - angle[0]) / (2.0 * np.pi) == pytest.approx(spiral.turns, abs=0.03)
+
+
+def test_a_force_that_fades_leads_from_each_spiral_to_the_minimum_with_its_turns(tmp_path: Path) -> None:
+    """Polar coordinates have the same minima, by final angle; with all of the force the spiral is a motion."""
+    text = "[initial]\nx = 1.0\ny = 0.0\nv_x = 0.0\nv_y = 1.0\n[final]\nx = -1.2\ny = 0.0\nv_x = 0.0\nv_y = -0.9\n"
+    problem = two_point(build(tmp_path, cartesian, text + "[time]\nt0 = 2.0\ntf = 12.0\n"), 10.0).widened(np.inf)
+    for spiral in spirals(problem, 3):
+        curve = paths.curve(problem, spiral.path)
+        forced, free = (fading(problem, spiral)(share) for share in (0.0, 1.0))
+        assert 1e3 * defect(forced, curve) < defect(free, curve) == defect(problem, curve)
+        found = along_turns(problem, spiral, Limits(1, np.inf))
+        end = {"r": 1.2, "r_dot": 0.0, "theta": spiral.turns * 2.0 * np.pi, "theta_dot": 0.75}
+        polar = replace(instance.load("return-to-orbit"), initial=(1.0, 0.0, 0.0, 1.0), final=end, tf=10.0)
+        wide = replace(polar, lower=(-np.inf,) * 2, upper=(np.inf,) * 2)
+        assert found.cost * problem.scale.cost == pytest.approx(solve(wide).objective, rel=1e-5)
+
+
+def defect(problem: TwoPoint, curve: Curve) -> float:
+    """How far a curve is from a motion."""
+    system = System(problem, curve.mesh, curve.order)
+    return float(system.infeasibility(system.residual(curve)).sum())
+
+
+def test_a_cheaper_competitor_becomes_the_answer(tmp_path: Path) -> None:
+    """A solver that starts at the wrong corner at first, and then from whatever it is given."""
+    numbers = 0.4, -8.0, (-1.6, 0.4), 2.0
+    case = rewarded(tmp_path, *numbers)
+
+    def solver(one: Instance, progress: Progress | None) -> Solution:
+        start = one.guess or Guess(control={"u1": (0.4,)})
+        return replace(two_point_method.solve(replace(one, guess=start), progress), instance=one)
+
+    costs = dearest(*numbers)
+    first = solver(case, None)
+    assert first.objective == pytest.approx(costs[0.4], rel=1e-9)
+    found = improved(solver, case, None)
+    assert found.objective == pytest.approx(costs[-1.6], rel=1e-9)
+    assert certificate(found).verdict == "certified"
+    assert found.instance is case
+    assert f"{costs[0.4]:.6g}" in found.message
+
+
+@pytest.mark.parametrize("name", ["return-to-orbit", "lapan-minimum-energy"])
+def test_models_without_a_rotation_in_their_coordinates_show_none(name: str) -> None:
+    assert rotation(instance.load(name)) is None
+
+
+def test_a_hill_exactly_in_the_way_is_passed_on_one_side(tmp_path: Path) -> None:
+    ends = "[initial]\nx1 = -1.0\n{}[final]\nx1 = 1.0\n{}[time]\ntf = 2.0\n"
+    beside = solve(build(tmp_path, bump, ends.format("x2 = 0.0\n", "x2 = 0.0\n")))
+    straight = solve(build(tmp_path, over, ends.format("", "")))
+    assert beside.objective < straight.objective
+    assert np.abs(beside.x[1]).max() > 0.1
+    assert certificate(beside).verdict == "certified"
+
+
+def test_a_saddle_is_left_for_what_lies_below_it(tmp_path: Path) -> None:
+    """From next to the long axis the far end of an ellipse is an extremal, too; the near one is the nearest point."""
+    ends = Problem(
+        name="ellipse",
+        title="To an ellipse",
+        model=plane,
+        running_cost=(u1**2 + u2**2) / 2,
+        terminal_constraints=(x1**2 / 4 + x2**2 - 1,),
+    )
+    start, tf = (0.3, 0.0), 1.5
+    found = solve(build(tmp_path, ends, f"[initial]\nx1 = {start[0]}\nx2 = {start[1]}\n[time]\ntf = {tf}\n"))
+    angles = np.linspace(0.0, 2.0 * np.pi, 200_001)
+    nearest = np.hypot(2.0 * np.cos(angles) - start[0], np.sin(angles) - start[1]).min()
+    assert found.objective == pytest.approx(nearest**2 / (2.0 * tf), rel=1e-8)
+    assert certificate(found).verdict == "certified"
+
+
+@pytest.mark.parametrize(("tf", "bounded"), [(3.0, True), (4.0, False), (7.0, False)])
+@pytest.mark.parametrize("method", ["auto", "linear", "shooting"])
+def test_two_equal_axes_beyond_their_conjugate_time_have_no_minimiser(
+    tf: float, bounded: bool, method: str, tmp_path: Path
+) -> None:
+    """Conjugate times are multiples of pi, each for both axes at once: its determinant touches zero only."""
+    ends = "[initial]\nx1 = 0.5\nx2 = 0.3\n[final]\nx1 = 0.0\nx2 = 0.0\n"
+    found = solve(build(tmp_path, saddle, f'{ends}[time]\ntf = {tf}\n[solver]\nmethod = "{method}"\n'))
+    if bounded:
+        assert certificate(found).verdict == "certified"
+        assert found.objective == pytest.approx(0.5 * (0.25 + 0.09) / np.tan(tf), rel=1e-9)
+    else:
+        assert found.status is Status.NO_MINIMISER
+        assert "unbounded below" in found.message
+
+
+def test_a_reward_of_the_distance_without_bounds_has_no_minimiser() -> None:
+    polar = instance.load("soft-return")
+    names = polar.model.spec.parameter_names
+    weights = tuple(
+        {"k1": -1.0, "k2": 0.0, "k3": 0.0, "k4": 0.0}.get(name, value)
+        for name, value in zip(names, polar.parameters, strict=True)
+    )
+    still = replace(polar, parameters=weights, initial=(1.0, 0.0, 0.0, 1.0), tf=3.0)
+    for method in ("auto", "sweep"):
+        found = solve(replace(still, solver=msgspec.structs.replace(polar.solver, method=method)))
+        assert found.status is Status.NO_MINIMISER, method
+        assert "fix the final time" not in found.status.explain(found.message)
+
+
+def rewarded(folder: Path, start: float, weight: float, bounds: tuple[float, float], tf: float) -> Instance:
+    return build(
+        folder,
+        reward,
+        f"[parameters]\nk = {weight}\n[initial]\nx1 = {start}\n[time]\ntf = {tf}\n[control]\nu1 = {list(bounds)}\n",
+    )
+
+
+def dearest(start: float, weight: float, bounds: tuple[float, float], tf: float) -> dict[float, float]:
+    """Costs of a control held at either bound: where the reward outweighs the effort one of them is the least."""
+    return {u: u * u * tf / 2 + weight * (start + u * tf) ** 2 / 2 for u in bounds}
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_what_exists_only_within_bounds_is_found(seed: int, tmp_path: Path) -> None:
+    rng = np.random.default_rng(seed)
+    start, weight, tf = rng.uniform(-1.0, 1.0), -rng.uniform(2.0, 9.0), rng.uniform(1.0, 3.0)
+    bounds = (-rng.uniform(0.2, 2.0), rng.uniform(0.2, 2.0))
+    found = solve(rewarded(tmp_path, start, weight, bounds, tf))
+    assert found.objective == pytest.approx(min(dearest(start, weight, bounds, tf).values()), rel=1e-9)
+    assert certificate(found).verdict == "certified"
+    assert Kind.SATURATION in compared(found)
+
+
+def test_a_guess_is_honoured_and_what_is_cheaper_is_said(tmp_path: Path) -> None:
+    numbers = 0.4, -8.0, (-1.6, 0.4), 2.0
+    costs = dearest(*numbers)
+    assert costs[-1.6] < costs[0.4]
+    case = rewarded(tmp_path, *numbers)
+    found = solve(replace(case, guess=Guess(control={"u1": (0.4,)})))
+    assert found.objective == pytest.approx(costs[0.4], rel=1e-9)
+    assert certificate(found).verdict == "extremal only"
+    assert f"{costs[-1.6]:.6g}" in found.message
+
+
+@pytest.mark.parametrize("method", ["auto", "sweep"])
+def test_constraints_on_the_end_are_never_ignored(method: str, tmp_path: Path) -> None:
+    """From rest x1 + x2 = 1 with x2 = 0 takes 0.9 s at the least with |u1| <= 5."""
+    text = f'[initial]\nx1 = 0.0\nx2 = 0.0\n[control]\nu1 = [-5.0, 5.0]\n[solver]\nmethod = "{method}"\n[time]\ntf = '
+    if method == "sweep":
+        with pytest.raises(BadInput, match="terminal constraints"):
+            solve(build(tmp_path, tied, text + "0.1\n"))
+        return
+    assert solve(build(tmp_path, tied, text + "0.1\n")).status is Status.INFEASIBLE
+    reached = solve(build(tmp_path, tied, text + "1.0\n"))
+    assert certificate(reached).verdict == "certified"
+    assert reached.x[:, -1] == pytest.approx([1.0, 0.0], abs=1e-9)
+
+
+def test_time_that_is_up_before_the_comparison_never_certifies() -> None:
+    found = solve(instance.load("return-to-orbit"))
+    late = replace(found.instance, solver=msgspec.structs.replace(found.instance.solver, max_seconds=1e-9))
+    hurried = certify(replace(found, instance=late))
+    assert hurried is not None
+    assert hurried.verdict == "extremal only"
+    assert Kind.STARTS in hurried.not_checked
+    assert all(check.passed for check in certificate(found).checks)
+
+
+def test_no_control_is_the_best_only_where_nothing_depends_on_the_state() -> None:
+    thesis = solve(instance.load("its-thesis"))
+    assert none_conceivable(thesis)
+    names = thesis.instance.model.spec.parameter_names
+    weighed = tuple(
+        -1e-6 if name == "k1" else value for name, value in zip(names, thesis.instance.parameters, strict=True)
+    )
+    assert not none_conceivable(replace(thesis, instance=replace(thesis.instance, parameters=weighed)))

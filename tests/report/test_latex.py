@@ -1,0 +1,303 @@
+"""A derivation as a document: it compiles, says everything in every language, and is the same every time."""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import get_args
+
+import pytest
+from sympy import Matrix, cos, sin, sqrt, tan
+
+import satsym.symbolic
+from satsym.report.latex import tex
+from satsym.report.latex.document import render
+from satsym.report.latex.width import width
+from satsym.report.texts import MissingText, languages, load
+from satsym.spec import ControlSet
+from satsym.status import BadInput
+from satsym.symbolic import Derivation, FirstOrder, Newton, Problem, Variable, derive, loader, symbols_of, t
+from satsym.symbolic.latex.typeset import Typesetter
+
+NASTY = r"100 % of a_b & {c} #1 $x$ ~ ^ \input{x} <“q”> -- 'é' α Ω 日 € 10⁻³"
+needs_tex = pytest.mark.skipif(shutil.which("pdflatex") is None, reason="no pdflatex to compile with")
+
+
+def variables(*names: str) -> tuple[Variable, ...]:
+    return tuple(Variable(name.replace("\\", ""), name, meaning=NASTY) for name in names)
+
+
+def double_integrator() -> Problem:
+    states, controls = variables("place", "speed"), variables("push")
+    (place, speed), (push,) = symbols_of(states), symbols_of(controls)
+    model = FirstOrder(
+        name="cart", title=NASTY, states=states, controls=controls, parameters=(), rates={place: speed, speed: push}
+    )
+    return Problem(name="double_integrator", title=NASTY, model=model, running_cost=1 + push**2 / 2)
+
+
+def cartesian() -> Problem:
+    """Newton's law with a ball of controls, a terminal constraint and no terminal cost."""
+    states, controls, parameters = variables("x1", "x2", "v1", "v2"), variables("w1", "w2"), variables(r"\mu")
+    x1, x2, v1, v2 = symbols_of(states)
+    thrust, (mu,) = Matrix(symbols_of(controls)), symbols_of(parameters)
+    place = Matrix([x1, x2])
+    model = Newton(
+        name="cartesian",
+        title="Two bodies",
+        states=states,
+        controls=controls,
+        parameters=parameters,
+        coordinates={x1: v1, x2: v2},
+        directions={"e_1": Matrix([1, 0]), "e_2": Matrix([0, 1])},
+        position=place,
+        forces={"gravity_&": -mu / sqrt(x1**2 + x2**2) ** 3 * place, "thrust": thrust},
+    )
+    return Problem(
+        name="cartesian",
+        title="Two bodies",
+        model=model,
+        running_cost=thrust.dot(thrust) / 2,
+        terminal_constraints=(x1 * v2 - x2 * v1 - 1, x1**2 + x2**2 - 1),
+        control_set="ball",
+    )
+
+
+def long_equations() -> Problem:
+    """Motion about an oblate planet: everything that can be too wide is, and time is explicit."""
+    states = variables("r", r"\theta", r"\varphi", "v", "a", "b")
+    controls, parameters = variables("w1", "w2", "w3"), variables(r"\mu", "J", "R")
+    r, _, phi, v, a, b = symbols_of(states)
+    w1, w2, w3 = symbols_of(controls)
+    mu, j2, radius = symbols_of(parameters)
+    oblate = 3 * mu * j2 * radius**2 / (2 * r**4)
+    rates = (
+        v,
+        a,
+        b,
+        r * b**2 + r * a**2 * cos(phi) ** 2 - mu / r**2 - oblate * (1 - 3 * sin(phi) ** 2) + w1 * cos(2 * t),
+        2 * a * b * tan(phi) - 2 * v * a / r + w2 / (r * cos(phi)),
+        -2 * v * b / r - a**2 * sin(phi) * cos(phi) - 2 * oblate / r * sin(phi) * cos(phi) + w3 / r,
+    )
+    model = FirstOrder(
+        name="oblate",
+        title="Motion about an oblate planet",
+        states=states,
+        controls=controls,
+        parameters=parameters,
+        rates=dict(zip(symbols_of(states), rates, strict=True)),
+    )
+    cost = (w1**2 + w2**2 + w3**2) / 2
+    return Problem(name="oblate", title="Long", model=model, running_cost=cost, control_set="box")
+
+
+def shipped() -> list[Problem]:
+    return [problem for path in loader.shipped() for problem in loader.load(path)]
+
+
+MADE = (double_integrator, cartesian, long_equations)
+NAMES = [*(f.__name__ for f in MADE), "cart", *(p.name for p in shipped())]
+SAMPLED = 3
+"""One in so many documents is compiled in other languages than English as well."""
+
+
+@cache
+def derived(name: str) -> Derivation:
+    if name == "cart":
+        return derive(double_integrator().model)
+    made = {f.__name__: f for f in MADE}
+    return derive(made[name]() if name in made else next(p for p in shipped() if p.name == name))
+
+
+def compiled(text: str, folder: Path) -> str:
+    """The log of the last of three runs."""
+    (folder / "it.tex").write_text(text, encoding="utf-8")
+    for draft in (["-draftmode"], ["-draftmode"], []):
+        command = ["pdflatex", *draft, "-interaction=nonstopmode", "-halt-on-error", "-no-shell-escape", "it.tex"]
+        done = subprocess.run(command, cwd=folder, capture_output=True, check=False, stdin=subprocess.DEVNULL)
+        assert done.returncode == 0, done.stdout.decode(errors="replace")[-2000:]
+    return (folder / "it.log").read_text(encoding="utf-8", errors="replace")
+
+
+def assert_clean(log: str) -> None:
+    too_wide = [float(points) for points in re.findall(r"Overfull \\hbox \(([\d.]+)pt", log)]
+    assert not [points for points in too_wide if points > 5]
+    assert "Overfull \\vbox" not in log
+    for complaint in ("undefined", "multiply defined", "Missing character", "Rerun to get"):
+        assert complaint not in log
+
+
+@needs_tex
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "language"),
+    [(name, language) for language in languages() for name in (NAMES if language == "en" else NAMES[::SAMPLED])],
+)
+def test_document_compiles_within_its_margins_and_every_reference_leads_somewhere(
+    name: str, language: str, tmp_path: Path
+) -> None:
+    assert_clean(compiled(render(derived(name), language), tmp_path))
+
+
+@needs_tex
+@pytest.mark.slow
+def test_two_fragments_share_a_document_without_hyperref(tmp_path: Path) -> None:
+    fragments = [render(derived(name), standalone=False) for name in ("cartesian", "double_integrator")]
+    packages = re.search(r"Needs the packages (.*)\.\n", fragments[0])[1]
+    preamble = f"\\documentclass[11pt]{{article}}\\usepackage{{{packages.replace(' ', '')}}}\n"
+    margins = "\\usepackage[T1]{fontenc}\\usepackage[width=160mm]{geometry}\n"
+    body = "\n".join(fragments)
+    text = (
+        f"{preamble}{margins}\\begin{{document}}\n{body}\n\\eqref{{cartesian:linearisation.A_x1_v2}}\\end{{document}}"
+    )
+    assert_clean(compiled(text, tmp_path))
+
+
+@needs_tex
+@pytest.mark.slow
+def test_widths_are_estimated_as_tex_measures_them(tmp_path: Path) -> None:
+    derivation = derived("long_equations")
+    typeset = Typesetter(derivation)
+    formulas = [typeset.tex(side) for s in derivation.steps for e in s.equations for side in (e.lhs, e.rhs)]
+    wide = [f for f in dict.fromkeys(formulas) if width(f) > 8]
+    measure = "".join(rf"\setbox0\hbox{{$\displaystyle {f}$}}\typeout{{width=\the\wd0}}" + "\n" for f in wide)
+    text = rf"\documentclass[11pt]{{article}}\usepackage{{amsmath}}\begin{{document}}{measure}x\end{{document}}"
+    points = [float(p) for p in re.findall(r"^width=([\d.]+)pt", compiled(text, tmp_path), re.MULTILINE)]
+    ratios = [width(f) / (p / 10.95) for f, p in zip(wide, points, strict=True)]
+    assert 0.97 < min(ratios) <= max(ratios) < 1.4
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("language", languages())
+@pytest.mark.parametrize("name", NAMES)
+def test_every_equation_has_one_label_and_every_reference_a_label(name: str, language: str) -> None:
+    derivation, text = derived(name), render(derived(name), language)
+    labels = re.findall(r"\\label\{([^}]*)\}", text) + re.findall(r"\\satsymstep\{([^}]*)\}", text)
+    labels += [label for group in re.findall(r"\\satsymalso\{\d+\}\{([^}]*)\}", text) for label in group.split(",")]
+    labels = [label for label in labels if not label.startswith(("#", "\\"))]
+    assert len(labels) == len(set(labels))
+    assert {f"{derivation.name}:{s.name}.{e.name}" for s in derivation.steps for e in s.equations} <= set(labels)
+    assert set(re.findall(r"\\(?:eq)?ref\{([^}#]*)\}", text)) <= set(labels)
+    assert not re.search(r"<\w+>", re.sub(r"%.*", "", text))  # a place that nothing was filled into
+
+
+@pytest.mark.slow
+def test_rendering_is_byte_identical_for_every_hash_seed() -> None:
+    code = (
+        "import sys; from satsym.symbolic import derive, loader; from satsym.report.latex.document import render\n"
+        "sys.stdout.reconfigure(encoding='utf-8'); (problem, *_) = loader.load(loader.find('polar_orbit'))\n"
+        "print(render(derive(problem)))"
+    )
+    texts = set()
+    for seed in ("0", "1"):
+        environment = {**os.environ, "PYTHONHASHSEED": seed}
+        done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, check=True)
+        texts.add(done.stdout)
+    assert len(texts) == 1
+
+
+def test_measured_noise_is_not_printed() -> None:
+    derivation = derived("double_integrator")
+    noisy = tuple(replace(s, checks=tuple(replace(c, error=c.error * 1.7) for c in s.checks)) for s in derivation.steps)
+    assert render(replace(derivation, steps=noisy)) == render(derivation)
+
+
+def test_what_people_write_is_escaped() -> None:
+    assert tex.escape(r"a_b & 50 % {x} #1 $ ~ ^ \input <>") == (
+        r"a\_b \& 50 \% \{x\} \#1 \$ \textasciitilde{} \textasciicircum{} \textbackslash{}input "
+        r"\textless{}\textgreater{}"
+    )
+    assert tex.escape("é ö ß ž") == "é ö ß ž"
+    assert tex.escape("α Ω Ο") == r"\ensuremath{\alpha} \ensuremath{\Omega} \texttt{U+039F}"
+    assert tex.escape("日\n\t\x07x\x00") == r"\texttt{U+65E5} x"
+    assert tex.escape("--- – “x”") == r"-{}-{}- \textendash{} ``x''"
+
+
+def test_units_and_numbers_are_set_as_people_write_them() -> None:
+    assert tex.unit("km**3/s**2") == r"$\mathrm{km^{3}/s^{2}}$"
+    assert tex.unit("kg*m^2") == r"$\mathrm{kg\,m^{2}}$"
+    assert tex.unit("1") == tex.number(None) == "--"
+    assert tex.unit("50 $ per _") == r"\texttt{50 \$ per \_}"
+    assert [tex.number(x) for x in (1.0, -0.25, 398600.4418, 1e-15, 2.5e20)] == [
+        "$1$",
+        "$-0.25$",
+        "$398600.4418$",
+        "$10^{-15}$",
+        r"$2.5 \times 10^{20}$",
+    ]
+
+
+def test_languages_have_the_same_keys_and_places_to_fill_in() -> None:
+    english = load("en")
+    assert {"en", "id"} <= set(languages())
+    for language in languages():
+        texts = load(language)
+        assert {t: set(keys) for t, keys in texts.tables.items()} == {
+            t: set(keys) for t, keys in english.tables.items()
+        }
+        for table, keys in texts.tables.items():
+            for key, text in keys.items():
+                assert text.strip() or key == "comma"
+                assert set(re.findall(r"<\w+>", text)) == set(re.findall(r"<\w+>", english.tables[table][key]))
+
+
+def calls(function: str) -> Iterator[ast.Call]:
+    """Calls of a function in the derivation engine."""
+    for path in sorted(Path(satsym.symbolic.__file__).parent.rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == function:
+                yield node
+
+
+def written(node: ast.expr) -> list[str]:
+    """Texts that an argument can be, as far as they are written there."""
+    if isinstance(node, ast.Constant):
+        return [node.value]
+    if isinstance(node, ast.JoinedStr):
+        (start, _) = node.values
+        assert isinstance(start, ast.Constant)
+        return [f"{start.value}{kind}" for kind in get_args(ControlSet)]
+    return []
+
+
+@pytest.mark.parametrize("language", languages())
+def test_every_rule_claim_and_title_that_the_engine_can_use_has_a_text(language: str) -> None:
+    texts = load(language)
+    claims = [
+        c for f in ("Check", "compare", "identity", "never_below") for call in calls(f) for c in written(call.args[0])
+    ]
+    rules = [rule for call in calls("Step") for rule in written(call.args[1])]
+    titles = [name for call in calls("Step") for name in written(call.args[0])]
+    assert len(claims) > 15
+    assert len(rules) > 15
+    for table, keys in (("claims", claims), ("rules", rules), ("titles", titles)):
+        for key in keys:
+            texts.get(table, key)
+
+
+def test_a_rule_claim_or_step_without_a_text_is_named() -> None:
+    derivation = derived("double_integrator")
+    first, *rest = derivation.steps
+    strange = {
+        'no text for "magic" in [rules]': replace(first, rule="magic"),
+        'no text for "so I am told" in [claims]': replace(
+            first, checks=(replace(first.checks[0], claim="so I am told"),)
+        ),
+        'no text for "leap" in [titles]': replace(first, name="leap"),
+    }
+    for message, step in strange.items():
+        with pytest.raises(MissingText, match=re.escape(f"en.toml: {message}")):
+            render(replace(derivation, steps=(step, *rest)))
+
+
+def test_a_language_without_texts_is_bad_input() -> None:
+    with pytest.raises(BadInput, match='no texts in the language "xx"; there are en, id'):
+        render(derived("double_integrator"), language="xx")

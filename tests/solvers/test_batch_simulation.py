@@ -1,0 +1,161 @@
+"""Many motions at once: each as it is alone, whatever runs it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from sympy import sin
+
+from satsym.analysis.orbits import kepler
+from satsym.codegen import module
+from satsym.kernels import Kernels, from_text, load
+from satsym.solvers.simulation import batch
+from satsym.status import BadInput
+from satsym.symbolic import FirstOrder, Variable, derive, symbols_of
+
+q, v = symbols_of((Variable("q", "q"), Variable("v", "v")))
+
+TIMES = np.array([0.0, 0.5, 2.0])
+STEPS = 25
+
+
+@pytest.fixture(scope="module")
+def orbit() -> Kernels:
+    return load("two_body")
+
+
+def starts(count: int) -> np.ndarray:
+    rng = np.random.default_rng(4)
+    return np.vstack(
+        [
+            rng.uniform(0.8, 1.2, count),
+            *rng.uniform(-0.2, 0.2, (3, count)),
+            rng.uniform(0.8, 1.2, count),
+            rng.uniform(-0.3, 0.3, count),
+        ]
+    )
+
+
+def backends(kernels: Kernels) -> list[Kernels]:
+    pytest.importorskip("numba")
+    return [kernels, kernels.compiled()]
+
+
+def test_each_is_what_the_generated_loop_makes_of_it_alone(orbit: Kernels):
+    x0, mu = starts(7), np.linspace(0.9, 1.1, 7)
+    u = np.linspace(-0.01, 0.01, 21).reshape(3, 7)
+    for kernels in backends(orbit):
+        x = batch.fly(kernels, TIMES, x0, (mu,), STEPS, u)
+        assert x.shape == (6, 3, 7)
+        for k in range(7):
+            here = tuple(x0[:, k])
+            for begin, end, column in zip(TIMES, TIMES[1:], (1, 2), strict=False):
+                nodes = np.linspace(begin, end, STEPS + 1)
+                control = np.repeat(u[:, k : k + 1], STEPS + 1, axis=1)
+                alone, _, _ = orbit.forward(nodes, here, control, control[:, 1:], (mu[k],))
+                here = tuple(alone[:, -1])
+                assert np.abs(x[:, column, k] - here).max() <= 1e-13
+
+
+def test_the_error_falls_with_the_fourth_power(orbit: Kernels):
+    x0 = starts(50)
+    exact = np.vstack(kepler.propagate(x0[:3], x0[3:], 1.0, 2.0))
+    for kernels in backends(orbit):
+        coarse, fine = (np.abs(batch.fly(kernels, [0.0, 2.0], x0, (1.0,), n)[:, 1] - exact).max() for n in (200, 400))
+        assert coarse <= 1e-4
+        assert 12.0 <= coarse / fine <= 20.0
+
+
+def test_the_symplectic_method_is_the_generated_loop_for_each_and_of_sixth_order(orbit: Kernels):
+    x0, mu = starts(7), np.linspace(0.9, 1.1, 7)
+    exact = np.vstack(kepler.propagate(x0[:3], x0[3:], mu, TIMES[-1]))
+    for kernels in backends(orbit):
+        x = batch.fly(kernels, TIMES[[0, 2]], x0, (mu,), STEPS, method="symplectic")[:, 1]
+        nodes = np.linspace(TIMES[0], TIMES[2], STEPS + 1)
+        alone = [orbit.symplectic(nodes, tuple(x0[:, k]), (mu[k],))[:, -1] for k in range(7)]
+        assert np.abs(x - np.transpose(alone)).max() <= 1e-13
+        finer = batch.fly(kernels, TIMES[[0, 2]], x0, (mu,), 2 * STEPS, method="symplectic")[:, 1]
+        assert 45.0 <= np.abs(x - exact).max() / np.abs(finer - exact).max() <= 90.0
+
+
+def test_models_with_explicit_time_see_it(orbit: Kernels):
+    model = load("time_varying")
+    n, p = len(model.spec.states), tuple(v.default or 1.0 for v in model.spec.parameters)
+    u = np.full(len(model.spec.controls), 0.3)
+    nodes = np.linspace(0.2, 1.4, STEPS + 1)
+    table = np.repeat(u[:, None], STEPS + 1, axis=1)
+    alone, _, _ = model.forward(nodes, (1.0,) * n, table, table[:, 1:], p)
+    for kernels in backends(model):
+        x = batch.fly(kernels, nodes[[0, -1]], np.ones((n, 3)), p, STEPS, u)
+        assert np.abs(x[:, 1] - alone[:, -1:]).max() <= 1e-12
+
+
+def test_models_without_controls_and_parameters_fly_too():
+    motion = FirstOrder(
+        name="motion",
+        title="A pendulum",
+        states=(Variable("q", "q"), Variable("v", "v")),
+        controls=(),
+        parameters=(),
+        rates={q: v, v: -sin(q)},
+    )
+    pendulum = from_text(module.render(derive(motion), "a test"), "motion")
+    x0, times = np.array([[0.5, 1.0], [0.0, 0.1]]), [0.0, 3.0, 1.0]
+    flights = [batch.fly(pendulum, times, x0, (), 60, method=m)[:, 2] for m in batch.METHODS]
+    tail = pendulum.forward(np.linspace(0.0, 1.0, 201), (1.0, 0.1), np.zeros((0, 201)), np.zeros((0, 200)), ())[0][
+        :, -1
+    ]
+    assert max(np.abs(flight[:, 1] - tail).max() for flight in flights) <= 1e-6
+    assert np.ptp(flights, axis=0).max() <= 1e-6
+
+
+def test_more_columns_than_a_block_holds_are_all_there_and_the_starts_untouched(orbit: Kernels):
+    x0 = starts(2 * batch.BLOCK + 5)
+    given = x0.copy()
+    for kernels in backends(orbit):
+        x = batch.fly(kernels, [0.0, 0.1], x0, (1.0,), 2)
+        assert np.array_equal(x0, given)
+        assert np.array_equal(x[:, 0], x0)
+        for k in (0, batch.BLOCK - 1, batch.BLOCK, 2 * batch.BLOCK + 4):
+            alone = batch.fly(kernels, [0.0, 0.1], x0[:, k : k + 1], (1.0,), 2)
+            assert np.abs(x[:, 1, k] - alone[:, 1, 0]).max() <= 1e-14
+
+
+def test_beyond_the_centre_is_nan_and_the_others_go_on(orbit: Kernels):
+    x0 = starts(3)
+    x0[:, 1] = 0.0
+    for kernels in backends(orbit):
+        x = batch.fly(kernels, [0.0, 0.1], x0, (1.0,), 2)
+        assert np.isnan(x[:, 1, 1]).any()
+        assert np.isfinite(x[:, 1, [0, 2]]).all()
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"times": 1.0}, r"times: has shape \(\)"),
+        ({"times": [0.0, float("nan")]}, "times: not finite"),
+        ({"x0": np.ones(6)}, r"x0: has shape \(6,\); give a row for each of the 6 states"),
+        ({"x0": np.full((6, 2), np.inf)}, "x0: not finite"),
+        ({"steps": 0}, "steps: 0; take at least one"),
+        ({"p": (1.0, 2.0)}, "p: 2 components; the model has 1"),
+        ({"p": ([1.0, 2.0, 3.0],)}, "p: not a number or an array of 2"),
+        ({"u": (1.0, 0.0, 0.0), "method": "symplectic"}, "u: the symplectic method is for motions without control"),
+        ({"method": "simplectic"}, 'method: "simplectic"; did you mean "symplectic"'),
+        ({"u": (1.0,)}, "u: 1 components; the model has 3"),
+    ],
+)
+def test_bad_input_is_refused(orbit: Kernels, given: dict, message: str):
+    sound = {"times": [0.0, 1.0], "x0": np.ones((6, 2)), "p": (1.0,), "steps": 3}
+    with pytest.raises(BadInput, match=f"^{message}"):
+        batch.fly(orbit, **sound | given)
+
+
+def test_a_model_that_is_not_separable_has_no_symplectic_method():
+    with pytest.raises(BadInput, match=r"^polar_orbit: no symplectic integrator"):
+        batch.fly(load("polar_orbit"), [0.0, 1.0], np.ones((4, 2)), (1.0,) * 8, 3, method="symplectic")
+
+
+def test_one_not_compiled_has_no_compiled_step(orbit: Kernels):
+    with pytest.raises(BadInput, match=r"^two_body: no block step without compiling: take compiled\(\)"):
+        orbit.block_step()

@@ -1,0 +1,146 @@
+"""Free final times over five decades of the weight of time, held against given final times.
+
+The weight c0 adds c0 (tf - t0) to a cost and nothing else, so the least effort E(tf) of given times, solved for without
+it, gives the cost of every weight: c0 tf + E(tf). Where that is least, E'(tf) = -c0.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from satsym import instance
+from satsym.instance import Instance
+from satsym.solution import Solution
+from satsym.solvers import two_point
+from satsym.status import Status
+from tests.support.cases import with_parameters
+
+TWO, FOUR, FIVE = "ends-2-given-state", "ends-4-rendezvous", "ends-5-free"
+AROUND = (0.7, 0.98, 1.02, 1.4)
+"""Shares of the best final time at which it is held against given ones; efforts of the first two kinds have one
+valley, that of free ends has two."""
+
+FROM_NOTHING = tuple(np.geomspace(0.01, 14.0, 24).tolist())
+"""Given times at which free ends are looked at as well."""
+
+WEIGHTS = np.geomspace(1e-3, 100.0, 20).tolist()
+SHARES = (0.5, 0.8, 1.25, 2.0)
+"""Of the best final time, as a guess of it."""
+
+UNMOVED = 0.5 * (0.1 / 1.1) ** 2
+"""For the fifth kind of end, at no time at all: by how much a unit of time can lower the cost. The cost is
+S + tf (c0 + min_u (u1^2 + u2^2) / 2 + S_x f), and S_x f = k4 (theta_dot - omega) u2 / r at the given initial state."""
+
+
+def weighed(name: str, c0: float, guess: float | None = None) -> Instance:
+    return replace(with_parameters(instance.load(name), c0=float(c0)), tf_guess=guess)
+
+
+@cache
+def effort(name: str, tf: float) -> float:
+    """The least cost with the final time given, without a weight on it."""
+    found = two_point.solve(replace(weighed(name, 0.0), tf=tf))
+    return found.objective if found.status is Status.CONVERGED else math.inf
+
+
+def golden(cost: Callable[[float], float], low: float, high: float, width: float) -> float:
+    """Where a function with one minimum is least."""
+    share = (math.sqrt(5.0) - 1.0) / 2.0
+    while high - low > width:
+        a, b = high - share * (high - low), low + share * (high - low)
+        low, high = (low, b) if cost(a) < cost(b) else (a, high)
+    return (low + high) / 2.0
+
+
+def assert_least(found: Solution, name: str, c0: float) -> None:
+    """The same time given costs the same, and other given times cost more."""
+    tf = float(found.times[-1])
+    assert found.status is Status.CONVERGED, found.message
+    assert found.objective == pytest.approx(c0 * tf + effort(name, tf), rel=1e-7)
+    others = [share * tf for share in AROUND]
+    for other in (*others, *FROM_NOTHING) if name == FIVE else others:
+        assert c0 * other + effort(name, other) > found.objective
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("c0", WEIGHTS[::6])
+@pytest.mark.parametrize("name", [TWO, FOUR])
+def test_every_weight_of_time_gives_the_minimum_from_every_guess(name, c0):
+    best = two_point.solve(weighed(name, c0))
+    assert_least(best, name, c0)
+    for share in SHARES[::3]:
+        found = two_point.solve(weighed(name, c0, share * float(best.times[-1])))
+        assert found.status is Status.CONVERGED, found.message
+        assert found.times[-1] == pytest.approx(best.times[-1], rel=1e-6)
+        assert found.objective == pytest.approx(best.objective, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "c0", "near"),
+    [
+        (FOUR, 0.07, (1.0, 1.7)),
+        (FOUR, 5.0, (0.35, 0.6)),
+    ],
+)
+def test_the_best_final_time_is_what_golden_section_finds(name, c0, near):
+    tf = golden(lambda tf: c0 * tf + effort(name, tf), *near, 4e-3)
+    found = two_point.solve(weighed(name, c0))
+    assert found.times[-1] == pytest.approx(tf, abs=4e-3)
+    assert_least(found, name, c0)
+
+
+@pytest.mark.parametrize("share", SHARES)
+@pytest.mark.parametrize("c0", WEIGHTS[:3])
+def test_free_ends_have_a_best_final_time_where_moving_pays(c0, share):
+    best = float(two_point.solve(weighed(FIVE, c0)).times[-1])
+    found = two_point.solve(weighed(FIVE, c0, share * best))
+    assert_least(found, FIVE, c0)
+
+
+@pytest.mark.parametrize("c0", [1.01 * UNMOVED, WEIGHTS[4], 1.0, 100.0])
+def test_free_ends_have_none_where_time_costs_more_than_moving_saves(c0):
+    for guess in (None, 0.3):
+        found = two_point.solve(weighed(FIVE, c0, guess))
+        assert found.status is Status.NO_MINIMISER
+        assert "shorter is always cheaper" in found.message
+
+
+def test_free_ends_have_a_short_best_time_where_moving_just_pays():
+    found = two_point.solve(weighed(FIVE, 0.99 * UNMOVED))
+    assert found.status is Status.CONVERGED
+    assert found.times[-1] < 0.05
+    # What staying costs: S of the initial state, k1 (r - 1)^2 / 2 + k4 (theta_dot - 1)^2 / 2.
+    assert found.objective < 0.01
+
+
+@pytest.mark.parametrize("guess", [None, 2.0, 0.3, 6.0])
+def test_a_minimum_just_beyond_the_longest_duration_of_the_scan_is_found(guess):
+    initial = (0.998493, -0.014321, -0.046177, 1.003848)
+    final = {"r": 1.0, "r_dot": 0.0, "theta": "reference", "theta_dot": 1.0}
+    case = replace(weighed(FOUR, 0.002, guess), initial=initial, final=final)
+    found = two_point.solve(case)
+    assert found.status is Status.CONVERGED
+
+    def cost(tf: float) -> float:
+        return two_point.solve(replace(case, tf=tf, tf_guess=None)).objective
+
+    tf = golden(cost, 1.6, 2.4, 2e-3)
+    assert found.times[-1] == pytest.approx(tf, abs=2e-3)
+    assert found.objective == pytest.approx(cost(float(found.times[-1])), rel=1e-7)
+
+
+@pytest.mark.parametrize("guess", [0.05, 60.0])
+def test_a_guess_that_leads_nowhere_does_no_harm(guess):
+    found = two_point.solve(weighed(TWO, 0.07, guess))
+    assert_least(found, TWO, 0.07)
+
+
+def test_without_a_weight_on_time_nothing_is_said_to_be_cheaper_when_shorter():
+    for name in (TWO, FOUR):
+        assert "shorter" not in two_point.solve(weighed(name, 0.0)).message

@@ -1,0 +1,107 @@
+"""Cold starts of random returns to an orbit: all are solved, integrate to the end, and are minima."""
+
+from __future__ import annotations
+
+import time
+from itertools import islice
+
+import numpy as np
+import pytest
+
+from satsym.solvers import two_point
+from satsym.solvers.certificate import certify, conditions
+from satsym.solvers.certificate.conjugate import conjugate
+from satsym.solvers.certificate.flow import flow
+from satsym.solvers.certificate.segments import segments
+from satsym.solvers.cold_start.path_of_ends import along_ends, ending
+from satsym.solvers.cold_start.ways import cold_start
+from satsym.solvers.collocation.arclength import extremals
+from satsym.solvers.collocation.newton import newton
+from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.collocation.refinement import refine
+from satsym.solvers.collocation.scaling import two_point as to_scaled
+from satsym.solvers.collocation.second_variation import negative_directions
+from satsym.solvers.iteration import Limits
+from satsym.status import Status
+from tests.support.samples import EASY, HARD, Population
+
+CHUNK, WHOLE = 50, 25
+"""Cases of a test, and how many of them share one whole certificate: competitors take longer than solving."""
+
+SECONDS = 60.0
+
+
+def scaled(number: int) -> TwoPoint:
+    case = HARD.case(number)
+    assert case.tf is not None
+    return to_scaled(case, case.tf).widened(float("inf"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("first", range(0, 200, CHUNK))
+def test_hard_returns_are_solved_from_nothing(first: int) -> None:
+    check(HARD, first)
+
+
+def test_easy_returns_are_solved_from_nothing() -> None:
+    check(EASY, 0)
+
+
+def check(population: Population, first: int) -> None:
+    for number in range(first, first + CHUNK):
+        found = two_point.solve(population.case(number))
+        assert found.status is Status.CONVERGED, (number, found.message)
+        again = flow(found)
+        assert again is not None
+        assert conditions.boundary_residual(found, again) < 1e-9, number
+        field = conjugate(found, segments(found))
+        assert field.resolved, number
+        assert field.time is None, number
+        assert again.x[0].min() > 0.0
+        if number % WHOLE == 0:
+            certificate = certify(found)
+            assert certificate is not None
+            assert certificate.verdict == "certified", (number, certificate)
+
+
+def test_final_angle_is_moved_to_where_other_ways_do_not_lead() -> None:
+    """Five turns around, inwards from far out: found in four seconds after the other ways took thirty in vain."""
+    problem = scaled(1704)
+    limits = Limits(500, time.perf_counter() + SECONDS)
+    found = along_ends(problem, limits, lambda easier: cold_start(easier, limits).found)
+    assert found is not None
+    assert found.minimum
+    refined = refine(problem, found.curve, 1e-10)
+    assert refined.converged
+    x = refined.curve.nodes[:4] * problem.scale.state[:, None]
+    assert x[:, 0] == pytest.approx(problem.instance.initial, abs=1e-9)
+    assert x[:, -1] == pytest.approx(list(problem.instance.final.values()), abs=1e-9)
+    assert x[0].min() > 0.0
+
+
+def test_extremals_are_followed_round_a_fold() -> None:
+    """Where the minima of this return end, they meet extremals with one negative direction, which lead back."""
+    wanted = scaled(1206)
+    angle = wanted.instance.final["theta"]
+    assert isinstance(angle, float)
+
+    def at(share: float) -> TwoPoint:
+        return ending(wanted, {"theta": angle + 0.5 * (1.0 - share)})
+
+    found = cold_start(at(0.0), Limits(500, time.perf_counter() + SECONDS)).found
+    assert found.minimum
+    points = list(islice(extremals(at, found.curve), 12))
+    shares = np.array([point.share for point in points])
+    fold = int(shares.argmax())
+    assert 0 < fold < len(points) - 1
+    assert shares[fold] < 1.0
+    assert (np.diff(shares[: fold + 1]) > 0.0).all()
+    assert (np.diff(shares[fold:]) < 0.0).all()
+    directions = [negative_directions(p.problem, p.curve, p.linearised.matching) for p in points]
+    assert set(directions[:fold]) == {0}
+    assert set(directions[fold + 1 :]) == {1}
+    for point in (points[0], points[fold], points[-1]):
+        outcome = newton(point.system, point.curve)
+        assert outcome is not None
+        assert outcome.converged
+        assert outcome.curve.nodes == pytest.approx(point.curve.nodes, rel=1e-4, abs=1e-4)

@@ -1,0 +1,31 @@
+"""Derivations of the shipped linear models, made once for all tests that look into them."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+from satsym.symbolic import Derivation, Model, Problem, derive, loader
+
+FOLDER = Path(__file__).resolve().parents[2] / "derivations"
+
+
+def stated(file: str, name: str) -> Problem | Model:
+    """What a shipped derivation file states under a name."""
+    return next(p for p in loader.load(FOLDER / f"{file}.py") if p.name == name)
+
+
+@cache
+def derived(file: str, name: str) -> Derivation:
+    """Everything derived from it."""
+    return derive(stated(file, name))
+
+
+def satellite() -> Derivation:
+    """Deviations of a satellite from a circular orbit."""
+    return derived("clohessy_wiltshire", "clohessy_wiltshire")
+
+
+def small(name: str) -> Derivation:
+    """A small system."""
+    return derived("small_systems", name)

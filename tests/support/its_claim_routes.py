@@ -1,0 +1,141 @@
+"""Claims of the ITS documents about motions, costs, units and the Earth, judged a second time by hand."""
+
+from __future__ import annotations
+
+import math
+import re
+from functools import cache
+
+import numpy as np
+import pint
+from scipy.integrate import solve_ivp
+
+from tests.support.its_routes import START, STATES, Route, Rows
+
+MU, EARTH, DAY = 398600.4418, 6378.137, 86164.0905
+REFERENCE = {"r": 1.0, "r_dot": 0.0, "theta": 60.0, "theta_dot": 1.0}
+UNITS = pint.UnitRegistry()
+
+
+@cache
+def end_of_motion(control: float) -> tuple[float, ...]:
+    """States after 60: for no control by Barker's equation, else by DOP853."""
+    if control == 0.0:
+        d = 7.0  # tan of half the true anomaly: (D + D^3/3)/2 is 2/3 at the start, D = 1, and 60 more here
+        assert math.isclose((d + d**3 / 3.0) / 2.0 - 2.0 / 3.0, 60.0)
+        return (1 + d * d) / 2, 2 * d / (1 + d * d), 1 + 2 * (math.atan(d) - math.atan(1)), 4 / (1 + d * d) ** 2
+    found = solve_ivp(
+        lambda _, x: [x[1], x[0] * x[3] ** 2 - 1 / x[0] ** 2 + control, x[3], (control - 2 * x[1] * x[3]) / x[0]],
+        (0.0, 60.0),
+        START,
+        method="DOP853",
+        rtol=1e-10,
+        atol=1e-12,
+    )
+    return tuple(found.y[:, -1])
+
+
+def returned(*names: str) -> Route:
+    """Whether the states are near the reference after 60, without control or with u1 = u2 = 0.005."""
+
+    def route(document: Rows, key: str) -> str:
+        away = [
+            any(abs(end_of_motion(u)[STATES.index(n)] - REFERENCE[n]) > 0.1 * max(1.0, REFERENCE[n]) for n in names)
+            for u in (0.0, 0.005)
+        ]
+        return "wrong" if all(away) else "confirmed"
+
+    return route
+
+
+def halved_guess(document: Rows, key: str) -> str:
+    """J is a sum of squares, so 0 at u = 0; the printed digits are the guess 0.01 after one mean, on 251 nodes."""
+    printed, n = document[key]["printed"], 250
+    control = 0.5 * (0.0 + 0.01)
+    if isinstance(printed, list):
+        lines = [(float(a), float(b), j) for a, b, j in printed]
+    elif "u1 = u2" in printed:
+        return "artefact" if float(printed.split("=")[-1]) == control != 0.0 else "confirmed"
+    else:
+        weights = re.search(r"J for (\d+) and (\d+)", key)
+        a, b = (float(v) for v in weights.groups()) if weights else (10.0, 10.0)
+        lines = [(a, b, re.search(r"0\.\d{4}", printed)[0])]  # type: ignore[index]
+    for a, b, j in lines:
+        assert float(j) > 0.0
+        if f"{0.5 * (a + b) * control**2 * (60.0 / n) * (n + 1):.4f}" != j:
+            return "wrong"
+    return "artefact"
+
+
+def proportional(document: Rows, key: str) -> str:
+    """J over c1 + c2 is the same in all lines of the table: it measures the weights."""
+    table = document["table 4.2" if "table 4.2" in document else "table 1"]["printed"]
+    ratios = [float(j) / (float(a) + float(b)) for a, b, j in table]
+    largest = max(table, key=lambda line: float(line[2]))
+    assert np.ptp(ratios) < 2e-6
+    assert largest[0] == largest[1], "equal weights make it largest, too"
+    return "wrong"
+
+
+def unreachable(document: Rows, key: str) -> str:
+    """Pushed outwards and forwards at random, the satellite only moves away; h and E never fall."""
+    rng = np.random.default_rng(4)
+    worst = math.inf
+    for _ in range(20):
+        levels = rng.uniform(0.0, 1.0, (2, 12)) * rng.choice([1e-3, 0.03, 1.0])
+
+        def field(time: float, x: np.ndarray, levels: np.ndarray = levels) -> list[float]:
+            a, b = levels[:, min(int(time / 5.0), 11)]
+            return [x[1], x[0] * x[3] ** 2 - 1 / x[0] ** 2 + a, x[3], (b - 2 * x[1] * x[3]) / x[0]]
+
+        x = solve_ivp(field, (0.0, 60.0), START, rtol=1e-8, atol=1e-10, max_step=0.5).y
+        energy, momentum = (x[1] ** 2 + (x[0] * x[3]) ** 2) / 2 - 1 / x[0], x[0] ** 2 * x[3]
+        assert (np.diff(x[0]) > 0).all()
+        assert (np.diff(momentum) > -1e-6).all()
+        assert (energy > -1e-6).all()
+        worst = min(worst, x[0, -1])
+    return "wrong" if worst > 2.0 else "confirmed"
+
+
+def gravity(document: Rows, key: str) -> str:
+    radius = (MU * (DAY / (2 * math.pi)) ** 2) ** (1 / 3)
+    return "confirmed" if MU / radius**2 * 1e3 < 1e-6 else "wrong"
+
+
+def polar_caps(document: Rows, key: str) -> str:
+    """At latitude 82 degrees, the satellite in the same meridian is below the horizon."""
+    radius, latitude = 42164.17, math.radians(82.0)
+    above = radius * math.cos(latitude) - EARTH
+    return "wrong" if above < 0.0 else "confirmed"
+
+
+def sidereal_hours(document: Rows, key: str) -> str:
+    return "confirmed" if document[key]["printed"] == f"{DAY / 3600:.4f} h" else "wrong"
+
+
+def units(printed: str, needed: str) -> Route:
+    """Two units: of one dimension, and of one size where numbers are to fit."""
+
+    def route(document: Rows, key: str) -> str:
+        one, other = UNITS.Quantity(1, printed), UNITS.Quantity(1, needed)
+        fits = one.dimensionality == other.dimensionality and math.isclose((one / other).to_base_units().magnitude, 1.0)
+        return "confirmed" if fits else "unit error"
+
+    return route
+
+
+def not_earth(document: Rows, key: str) -> str:
+    """1 km and 1 degree per second make another central body than the Earth; as plain numbers they are normalised."""
+    body = 1.0**3 * math.radians(1.0) ** 2
+    assert [value for _, value in document[key]["printed"]] == ["1", "1"]
+    return "unit error" if abs(body / MU - 1.0) > 0.5 else "confirmed"
+
+
+def degrees(document: Rows, key: str) -> str:
+    """r theta_dot^2 with 1 km and 1 degree per second is not 1 km/s^2."""
+    return "unit error" if not math.isclose(1.0 * math.radians(1.0) ** 2, 1.0) else "confirmed"
+
+
+def one_too_few(document: Rows, key: str) -> str:
+    assert document[key]["printed"] == "n"
+    return "misprint" if len(np.linspace(0.0, 60.0, 7 + 1)) == 7 + 1 else "confirmed"

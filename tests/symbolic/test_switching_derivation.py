@@ -1,0 +1,269 @@
+"""Problems that are linear in the controls: what is derived is right, and errors in it would be caught."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import pytest
+import sympy as sp
+
+from satsym.symbolic import Derivation, DerivationError, Problem, Step, derive, pipeline
+from satsym.symbolic.checks import deviation, numeric, points
+from satsym.symbolic.lookup.formulas import plain, to_tree
+from satsym.symbolic.switching import functions as steps
+from satsym.symbolic.switching import singular, singular_search
+from satsym.symbolic.switching.minimisers import Shrink, Side, Switch
+from tests.support.switching_models import (
+    CATALYST,
+    FULLER,
+    LEAST_FUEL,
+    LEAST_TIME,
+    OSCILLATOR,
+    REGULATOR,
+    ROCKET,
+    TWO_ENGINES,
+    WORST,
+    a,
+    derived,
+    switching,
+    u1,
+    u2,
+    x1,
+    x2,
+    x3,
+)
+
+LAMBDA = sp.symbols("lambda_x1:4", real=True)
+l1, l2, l3 = LAMBDA
+
+
+def said(step: Step) -> dict[str, Any]:
+    """Conclusions by their keys."""
+    return {c.key: c.values for c in step.conclusions}
+
+
+def test_what_multiplies_the_control_is_its_switching_function() -> None:
+    time, engines = derived(LEAST_TIME), derived(TWO_ENGINES)
+    assert time.equation("switching_function.u1").rhs == l2
+    assert time.equation("switching_function.H_0").rhs == 1 + l1 * x2
+    assert [e.name for e in time.step("switching_function").equations] == ["H_0", "u1"]
+    assert engines.equation("switching_function.u1").rhs == l1 * x2 + l2
+    assert engines.equation("switching_function.weight_u1").rhs == a
+    assert sp.expand(engines.equation("switching_function.weight_u2").rhs - 1 - x1**2) == 0
+
+
+def test_brackets_of_switching_functions_that_do_not_commute_are_in_the_rates() -> None:
+    engines = derived(TWO_ENGINES)
+    # {sigma_2, sigma_1} = d sigma_1/dx . d sigma_2/d lambda - ... = 0, since sigma_2 = lambda_1 and sigma_1 has no x1;
+    # {w_2, sigma_1} = -(dw_2/dx1) dsigma_1/dlambda_1 = -2 x1 x2
+    names = [e.name for e in engines.step("switching_rate").equations]
+    assert "bracket_u2_u1" not in names
+    assert engines.equation("switching_rate.bracket_weight_u2_u1").rhs == -2 * x1 * x2
+    crossed = derive(switching({x1: u1, x2: x1 * u2}, 1))
+    assert crossed.equation("switching_rate.bracket_u1_u2").rhs == l2
+    assert crossed.equation("switching_rate.bracket_u2_u1").rhs == -l2
+    assert sp.expand(crossed.equation("switching_rate.u1").rhs + l2 * u2) == 0
+
+
+def test_an_arc_without_costates_is_excluded_where_time_is_free_and_costs() -> None:
+    found = said(derived(LEAST_TIME).step("singular_arcs"))
+    surface = found["singular arc without the control"]["surface"]
+    assert {(e.lhs, e.rhs) for e in surface} == {(l1, 0), (l2, 0)}
+    assert found["singular arc excluded by H"]["value"] == 1
+    assert "generalised_legendre_clebsch" not in derived(LEAST_TIME)
+
+
+def test_fuel_alone_leaves_the_control_undetermined_at_either_threshold() -> None:
+    step = derived(LEAST_FUEL).step("singular_arcs")
+    arcs = [c.values["surface"] for c in step.conclusions if c.key == "singular arc without the control"]
+    assert [{e.lhs: e.rhs for e in surface} for surface in arcs] == [{l2: -1, l1: 0}, {l2: 1, l1: 0}]
+    assert sum(c.key == "singular arc undetermined" for c in step.conclusions) == 2
+
+
+@pytest.mark.parametrize(
+    ("problem", "order", "control", "kelley"),
+    [
+        (REGULATOR, 2, sp.Integer(0), 1),
+        (WORST, 2, sp.Integer(0), -1),
+        (FULLER, 4, sp.Integer(0), 1),
+        # the control that keeps x2' = x1, as lambda_2 = 0 and lambda_1 = -x2 demand
+        (OSCILLATOR, 2, 2 * x1 - x2 * (1 - x1**2), 1),
+        # the control that keeps the arc m = (thrust that holds D(v) + v D'(v) against weight): here m (1 + v^2)
+        (ROCKET, 2, x3 * (1 + x2**2), -2 * l2 / x3**2),
+    ],
+    ids=["regulator", "worst", "Fuller", "oscillator", "rocket"],
+)
+def test_singular_arcs_have_their_known_order_control_and_sign(
+    problem: Problem, order: int, control: sp.Expr, kelley: sp.Expr
+) -> None:
+    found = derived(problem)
+    assert said(found.step("singular_arcs"))["singular arc"]["order"] == order
+    assert sp.simplify(found.equation("singular_arcs.u1").rhs - control) == 0
+    assert sp.simplify(found.equation("generalised_legendre_clebsch.u1").rhs - kelley) == 0
+    verdict = {1: "satisfied", -1: "violated"}.get(kelley, "open")
+    assert list(said(found.step("generalised_legendre_clebsch"))) == [f"Legendre-Clebsch {verdict}"]
+
+
+def test_two_catalysts_are_mixed_as_jackson_found() -> None:
+    """All costates zero is no arc of a problem without running cost; what is left fixes the ratio of the states."""
+    found = derived(CATALYST)
+    (ratio,) = [e.lhs for e in said(found.step("singular_arcs"))["singular arc"]["surface"] if not e.lhs.is_Symbol]
+    alpha = 1 / math.sqrt(10)
+    share = alpha * (1 + alpha) / (0.1 + (1 + alpha) ** 2)
+    mixes = [
+        float(found.equation("singular_arcs.u1").rhs.subs({x1: root, x2: 1}))
+        for root in sp.solve(ratio.subs(x2, 1), x1)
+    ]
+    assert min(abs(mix - share) for mix in mixes) < 1e-14
+
+
+def test_a_derivative_that_cannot_vanish_excludes_the_arc() -> None:
+    ramp = derive(switching({x1: u1}, x1))
+    assert said(ramp.step("singular_arcs"))["singular arc impossible"]["value"] == -1
+
+
+def test_a_control_with_a_weight_is_singular_on_either_side() -> None:
+    found = derived(TWO_ENGINES)
+    names = [e.name for e in found.step("generalised_legendre_clebsch").equations]
+    assert names == ["u1_positive", "u1_negative", "u2_positive", "u2_negative"]
+
+
+# What the machinery cannot do.
+
+
+@pytest.mark.parametrize(
+    ("problem", "complaint"),
+    [
+        (switching({x1: u1}, 1, control_set="ball"), 'this needs control_set = "box", not "ball"'),
+        (switching({x1: u1}, 1, control_set="free"), 'this needs control_set = "box", not "free"'),
+        (switching({x1: u1}, -sp.Abs(u1)), "the weight of |u1| in the cost, -1, may be negative"),
+        (switching({x1: u1}, x1 * sp.Abs(u1)), "the weight of |u1| in the cost, x1, may be negative"),
+        (switching({x1: -sp.Abs(u1)}, x1**2 + u1), "Abs(u1) in the equations of motion is not supported"),
+        (switching({x1: u1, x2: x1}, u2**2 + x2), "H_uu is singular"),
+        (switching({x1: u1}, sp.Abs(u1) + u1**2), "H is not quadratic in the controls"),
+    ],
+    ids=["ball", "free", "minus |u|", "weight of either sign", "|u| in the motion", "mixed", "|u| and u^2"],
+)
+def test_what_has_no_law_here_is_refused_in_one_line(problem: Problem, complaint: str) -> None:
+    with pytest.raises(DerivationError) as caught:
+        derive(problem)
+    assert complaint in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_control_that_does_nothing_is_refused() -> None:
+    idle = switching({x1: u1 + u2}, 1)
+    idle = replace(idle, model=replace(idle.model, rates={x1: u1}))
+    with pytest.raises(DerivationError, match="u2 enters neither the motion nor the cost"):
+        derive(idle)
+
+
+# Checks that can fail.
+
+bracket = steps.poisson
+STEPS = {f.__name__: f for f in pipeline.SWITCHING_PRINCIPLE}
+
+
+def redo(derivation: Derivation, name: str) -> Step:
+    index = [s.name for s in derivation.steps].index(name)
+    before = replace(derivation, steps=derivation.steps[:index])
+    found = STEPS[name](before)
+    assert found is not None
+    return before.extended(found).steps[-1]
+
+
+@pytest.mark.parametrize(
+    ("step", "function", "wrong"),
+    [
+        ("switching_function", "tidy", lambda e, *by: -e),
+        ("control_law", "Switch", lambda s, w, low, high: Switch(-s, w, low, high)),
+        ("control_law", "Switch", lambda s, w, low, high: Switch(s, 2 * w, low, high)),
+        ("control_law", "Switch", lambda s, w, low, high: Switch(s, w, low, 2 * high)),
+        ("smoothed_law", "Shrink", lambda s, w: Shrink(-s, w)),
+        ("smoothed_law", "Shrink", lambda s, w: s),
+        ("switching_rate", "poisson", lambda d, by, of: -bracket(d, by, of)),
+        ("switching_rate", "poisson", lambda d, by, of: bracket(d, by, of) * (1 if by.has(x2) else 2)),
+    ],
+    ids=["sign", "turned", "wide", "far", "Shrink turned", "not shrunk", "bracket turned", "one bracket twice"],
+)
+def test_a_planted_error_is_caught(
+    monkeypatch: pytest.MonkeyPatch,
+    step: str,
+    function: str,
+    wrong: Callable[..., Any],
+) -> None:
+    found = derived(TWO_ENGINES)
+    assert redo(found, step).equations == found.step(step).equations
+    monkeypatch.setattr(steps, function, wrong)
+    with pytest.raises(DerivationError, match="failed its check"):
+        redo(found, step)
+
+
+@pytest.mark.parametrize(
+    ("problem", "step"),
+    [(TWO_ENGINES, "switching_function"), (TWO_ENGINES, "switching_rate"), (OSCILLATOR, "singular_arcs")],
+    ids=["switching_function", "switching_rate", "singular_arcs"],
+)
+def test_no_expression_of_a_step_can_be_falsified(monkeypatch: pytest.MonkeyPatch, problem: Problem, step: str) -> None:
+    """Every single expression e that a step tidies is made 1 - e in turn: caught, or without any effect."""
+    found = derived(problem)
+    place = singular_search if step == "singular_arcs" else steps
+    tidy, right, calls, caught, index = place.tidy, found.step(step).equations, 0, 0, 0
+
+    def falsified(*arguments: Any) -> sp.Expr:
+        nonlocal calls
+        calls += 1
+        return 1 - tidy(*arguments) if calls == index else tidy(*arguments)
+
+    monkeypatch.setattr(place, "tidy", falsified)
+    singular_search._search.cache_clear()
+    redo(found, step)
+    total = calls
+    for index in range(1, total + 1):  # noqa: B007 -- falsified() reads it
+        calls = 0
+        singular_search._search.cache_clear()
+        try:
+            assert redo(found, step).equations == right
+        except DerivationError:
+            caught += 1
+    singular_search._search.cache_clear()
+    assert caught > 2
+
+
+@pytest.mark.parametrize("field", ["singular", "slope", "derivatives"])
+def test_a_wrong_singular_arc_is_caught(monkeypatch: pytest.MonkeyPatch, field: str) -> None:
+    found = derived(ROCKET)
+    (search,) = singular.searches(found)
+    right = getattr(search, field)
+    wrong = (*right[:-1], 2 * right[-1]) if field == "derivatives" else 2 * right
+    monkeypatch.setattr(singular, "searches", lambda so_far: [replace(search, **{field: wrong})])
+    with pytest.raises(DerivationError, match="failed its check"):
+        redo(found, "generalised_legendre_clebsch" if field == "slope" else "singular_arcs")
+
+
+def test_derivatives_of_the_functions_of_switches() -> None:
+    value, width = sp.symbols("value width", real=True)
+    assert sp.diff(Shrink(value, width), value) == Side(value, width) ** 2
+    assert sp.diff(Shrink(value, width), width) == -Side(value, width)
+    assert Shrink(value, 0) == value
+    assert sp.diff(Switch(value, width, 0, 1), value) == 0
+
+
+def test_laws_can_be_written_as_people_print_them() -> None:
+    """With signs, minima and maxima, which ledgers of printed claims can be held against; the values are the same."""
+    law, smoothed = (derived(LEAST_FUEL).equation(f"{step}.u1").rhs for step in ("control_law", "smoothed_law"))
+    bang = derived(LEAST_TIME).equation("control_law.u1").rhs
+    low, high = bang.args[2:]
+    unit = {low: -1, high: 1}
+    assert sp.simplify(plain(bang).xreplace(unit) + sp.sign(sp.Symbol("switching_u1", real=True))) == 0
+    for expression in (law, smoothed, bang):
+        printed = plain(expression)
+        assert not printed.atoms(Switch, Shrink)
+        assert to_tree(expression)
+        for point in points(expression.free_symbols, "printed", 40):
+            point |= {low: -abs(point[low]), high: abs(point[high])}
+            point |= {s: abs(v) for s, v in point.items() if "weight" in s.name or "share" in s.name}
+            assert deviation(numeric([printed])(point), numeric([expression])(point)) < 1e-14
