@@ -13,9 +13,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from satsym.arrays import Array
 
 CLOSEST = 0.25
 """Smallest distance of an inserted point from its neighbours, as a fraction of the step it falls into."""

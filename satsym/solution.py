@@ -5,15 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
-import numpy as np
-from numpy.typing import NDArray
-
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.status import Status, Verdict
-
-Array: TypeAlias = NDArray[np.floating[Any]]
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,9 @@ import numpy as np
 
 from satsym.analysis.classical import law as classical
 from satsym.analysis.classical.signals import excesses, spans_of, totals
+from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.solution import Array, Solution
+from satsym.solution import Solution
 from satsym.solvers import solve
 from satsym.status import BadInput
 

@@ -14,7 +14,6 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 import sympy as sp
-from numpy.typing import NDArray
 
 from satsym.codegen.functions import ARGUMENTS, Function, Symbols
 from satsym.codegen.naming import code_of
@@ -46,7 +45,6 @@ DERIVATIVES: dict[str, tuple[str | tuple[str, ...], tuple[str, ...], float]] = {
 """Function -> (function it is a derivative of, or several below each other; by which arguments; factor)."""
 
 Arguments = dict[str, Any]
-Array = NDArray[np.floating[Any]]
 
 
 def verify(derivation: Derivation, kernels: Kernels) -> None:

@@ -9,7 +9,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from satsym.kernels.evaluation import FAINT, Array, Evaluation
+from satsym.arrays import Array
+from satsym.kernels.evaluation import FAINT, Evaluation
 from satsym.kernels.relations import Relation
 
 

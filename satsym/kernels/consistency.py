@@ -16,10 +16,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.kernels import plain
 from satsym.kernels.contract import CURVE, GROUPS, TUPLES, pointwise, sizes
 from satsym.kernels.core import Kernels
-from satsym.kernels.evaluation import COPIES, Array, Evaluation, size, with_copies
+from satsym.kernels.evaluation import COPIES, Evaluation, size, with_copies
 from satsym.kernels.relations import Relation, deviations, relations
 from satsym.spec import Variable
 

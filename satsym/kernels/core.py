@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from satsym.arrays import Array
 from satsym.kernels.contract import LOOPS
 from satsym.spec import ProblemSpec
 from satsym.status import BadInput
 
-Array = NDArray[np.float64]
 Backend = Literal["python", "numba"]
 Function = Callable[..., Any]
 

@@ -6,15 +6,13 @@ import random
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.kernels.contract import BATCH, TUPLES, Signature, pointwise
 from satsym.kernels.core import Kernels
-
-Array: TypeAlias = NDArray[np.floating[Any]]
 
 COMPLEX_STEP = 1e-30
 COPIES, ASIDE = 2, 1e-4

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from satsym.kernels.evaluation import FAINT, Array, Evaluation, size
+from satsym.arrays import Array
+from satsym.kernels.evaluation import FAINT, Evaluation, size
 from satsym.kernels.relations import Relation
 
 PROBES = (-1.7, -0.4, 0.9, 2.3)

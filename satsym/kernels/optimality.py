@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from satsym.kernels.evaluation import FAINT, Array, Evaluation, size
+from satsym.arrays import Array
+from satsym.kernels.evaluation import FAINT, Evaluation, size
 from satsym.kernels.relations import Relation, derivative
 
 

@@ -6,15 +6,12 @@ Slow, and therefore only what the generated loops are held against.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.kernels.composition import weights
 from satsym.kernels.core import Kernels
-
-Array = NDArray[np.floating[Any]]
 
 
 def forward(

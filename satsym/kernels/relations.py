@@ -13,7 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from satsym.kernels.evaluation import FAINT, Array, Evaluation
+from satsym.arrays import Array
+from satsym.kernels.evaluation import FAINT, Evaluation
 
 
 @dataclass(frozen=True, eq=False)

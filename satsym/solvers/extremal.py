@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.solution import Array, Iteration, Progress, Solution
+from satsym.solution import Iteration, Progress, Solution
 from satsym.solvers import revolutions
 from satsym.solvers.collocation.continuation import by_bound
 from satsym.solvers.collocation.curve import Curve, Path

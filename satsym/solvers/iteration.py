@@ -10,8 +10,9 @@ from typing import Any, Generic, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.solution import Array, Iteration, Progress
+from satsym.solution import Iteration, Progress
 from satsym.status import Status
 from satsym.wording import counted
 

@@ -9,11 +9,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Progress, Solution
 from satsym.solvers.collocation.problem import TwoPoint
@@ -26,8 +25,6 @@ from satsym.solvers.shooting.newton import doubled, linearised, residual
 from satsym.solvers.two_point import unfinished
 from satsym.status import BadInput, Status
 from satsym.wording import counted
-
-Array = NDArray[np.floating[Any]]
 
 PLACES = 8
 """Times at which derivatives are compared, at two random places each."""

@@ -8,17 +8,14 @@ itself is never called a solution.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.grid import Grid
 from satsym.solvers.collocation.curve import Path
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.iteration import Limits
-
-Array = NDArray[np.floating[Any]]
 
 STEPS = 200
 ROUNDS = 150

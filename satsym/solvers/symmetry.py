@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import straight
 
-Array = NDArray[np.floating[Any]]
 States = Callable[[Array], Array]
 """Scaled states, shape (n, M), at M times tau in [0, 1]."""
 

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from satsym.analysis.classical.signals import Span, excesses, totals
+from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.solution import Array, Flight
+from satsym.solution import Flight
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.simulation.balances import balances
 from satsym.status import BadInput, Status

@@ -15,9 +15,10 @@ import numpy as np
 
 from satsym.analysis.classical.performance import performance
 from satsym.analysis.classical.signals import Span, excesses, totals
+from satsym.arrays import Array
 from satsym.grid import Grid
 from satsym.instance import Instance
-from satsym.solution import Array, Flight
+from satsym.solution import Flight
 from satsym.solvers import out_of_time
 from satsym.solvers.iteration import Limits, TimeUp, watched
 from satsym.solvers.simulation.balances import balances

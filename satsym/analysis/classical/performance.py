@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from satsym.solution import Array
+from satsym.arrays import Array
 
 SETTLED = 0.02
 """Share of the step that the error keeps below once the motion counts as settled."""

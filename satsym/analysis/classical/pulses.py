@@ -10,8 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from satsym.analysis.classical.arcs import MOST_ARCS, Arc, Plant, flown, plant, within_already
+from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.solution import Array, Flight
+from satsym.solution import Flight
 from satsym.status import BadInput
 
 

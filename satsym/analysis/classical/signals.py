@@ -10,8 +10,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.solution import Array
 
 POINTS = 6
 """Of Gauss in each interval between nodes."""

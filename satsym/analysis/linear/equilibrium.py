@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from satsym.analysis.linear.scaling import Scaled, scaled
-from satsym.analysis.linear.system import Array, LinearSystem, system
+from satsym.analysis.linear.system import LinearSystem, system
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.kernels import Kernels
 from satsym.kernels.contract import BATCH

@@ -11,7 +11,8 @@ import numpy as np
 from satsym.analysis.linear.ranks import controllability
 from satsym.analysis.linear.scaling import scaled
 from satsym.analysis.linear.stability import shown
-from satsym.analysis.linear.system import Array, LinearSystem, system
+from satsym.analysis.linear.system import LinearSystem, system
+from satsym.arrays import Array
 from satsym.status import BadInput
 
 ROUNDING = 1e-13

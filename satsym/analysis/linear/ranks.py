@@ -19,7 +19,8 @@ import numpy as np
 
 from satsym.analysis.linear.scaling import scaled
 from satsym.analysis.linear.spectrum import Eigenvalue, spectrum
-from satsym.analysis.linear.system import Array, LinearSystem
+from satsym.analysis.linear.system import LinearSystem
+from satsym.arrays import Array
 
 TOLERANCE = 1e-10
 

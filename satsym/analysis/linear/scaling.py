@@ -12,7 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from satsym.analysis.linear.system import Array, LinearSystem
+from satsym.analysis.linear.system import LinearSystem
+from satsym.arrays import Array
 
 TOO_SMALL = 0.1
 """What it costs that an entry comes out too small, relative to one too large: nothing that is near zero, or is so but

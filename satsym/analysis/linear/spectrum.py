@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.analysis.linear.scaling import scaled
-from satsym.analysis.linear.system import Array, system
+from satsym.analysis.linear.system import system
+from satsym.arrays import Array
 
 NULL = 1e-9
 """A singular value below this, relative to the size of the matrix, is zero: so eigenvalues that are nearer to one

@@ -10,7 +10,7 @@ from satsym.analysis.linear.ranks import Reach, controllability, observability
 from satsym.analysis.linear.routh import Routh, routh
 from satsym.analysis.linear.spectrum import Eigenvalue, spectrum
 from satsym.analysis.linear.stability import Stability, stability
-from satsym.analysis.linear.system import Array
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.kernels import Kernels
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
@@ -15,7 +15,7 @@ from satsym.wording import shown, suggestion
 if TYPE_CHECKING:
     import control
 
-Array: TypeAlias = NDArray[np.floating[Any]]
+from satsym.arrays import Array
 
 
 @dataclass(frozen=True, eq=False)

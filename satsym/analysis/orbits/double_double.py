@@ -10,9 +10,9 @@ from __future__ import annotations
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array: TypeAlias = NDArray[np.float64]
+from satsym.arrays import Array
+
 Pair: TypeAlias = tuple[Any, Any]
 
 SPLITTER = 134217729.0

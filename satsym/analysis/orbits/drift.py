@@ -14,8 +14,8 @@ from math import ceil
 import numpy as np
 
 from satsym.analysis.orbits import kepler
+from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.solution import Array
 from satsym.solvers.simulation import closed_loop
 from satsym.solvers.simulation.closed_loop import Law
 from satsym.status import BadInput

@@ -15,7 +15,8 @@ from numpy.typing import ArrayLike
 
 from satsym.analysis.orbits import double_double as dd
 from satsym.analysis.orbits.conic import TOLERANCE, Conic, classify
-from satsym.analysis.orbits.states import Array, States, checked
+from satsym.analysis.orbits.states import States, checked
+from satsym.arrays import Array
 from satsym.status import BadInput
 
 REACH = 100.0

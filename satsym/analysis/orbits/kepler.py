@@ -20,7 +20,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from satsym.analysis.orbits import double_double as dd
-from satsym.analysis.orbits.states import Array, States, checked, refuse_first
+from satsym.analysis.orbits.states import States, checked, refuse_first
+from satsym.arrays import Array
 
 BLOCK = 4096
 """Columns at a time, so that what is computed from them stays in the cache."""

@@ -16,11 +16,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from satsym import kernels
-from satsym.analysis.linear.system import Array
 from satsym.analysis.orbits.conic import Conic
 from satsym.analysis.orbits.elements import Elements
 from satsym.analysis.orbits.point import CARTESIAN
 from satsym.analysis.orbits.variational import transition
+from satsym.arrays import Array
 
 SYMPLECTIC = np.block([[np.zeros((3, 3)), np.eye(3)], [-np.eye(3), np.zeros((3, 3))]])
 """J: positions and velocities per unit mass are canonical."""

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from satsym import kernels
 from satsym.analysis.linear.equilibrium import jacobians
-from satsym.analysis.linear.system import Array
 from satsym.analysis.orbits.elements import Elements
 from satsym.analysis.orbits.states import checked
+from satsym.arrays import Array
 from satsym.instance import Instance
 
 Complex = NDArray[np.complex128]

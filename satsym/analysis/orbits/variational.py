@@ -6,8 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from satsym.arrays import Array
 from satsym.kernels import Kernels
-from satsym.solvers.simulation.extrapolation import Array, integrate
+from satsym.solvers.simulation.extrapolation import integrate
 
 ACCURACY = 1e-14
 """Largest error of a step, relative to the size of the states: what is below is lost in rounding."""

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from satsym.analysis.linear.equilibrium import Linearisation
 from satsym.analysis.linear.scaling import scaled
-from satsym.analysis.linear.system import Array
 from satsym.analysis.regulator.lqr import Regulator
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.control import control_set
 from satsym.status import BadInput

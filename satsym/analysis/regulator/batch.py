@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from satsym.analysis.linear.system import Array
 from satsym.analysis.regulator import riccati
+from satsym.arrays import Array
 
 BLOCK = 2048
 """Problems at a time, so that a handful of matrices stay in the cache."""

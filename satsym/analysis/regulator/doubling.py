@@ -16,8 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from satsym.analysis.linear.system import Array
 from satsym.analysis.regulator.riccati import balancing, hamiltonian
+from satsym.arrays import Array
 
 SHORT = 0.5
 """The first step times the size of the Hamiltonian matrix."""

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from satsym.analysis.linear.equilibrium import Linearisation, linearise
-from satsym.analysis.linear.system import Array
 from satsym.analysis.regulator.lqr import Regulator, regulator, required
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.kernels import Kernels
 from satsym.solution import Flight

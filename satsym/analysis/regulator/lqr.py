@@ -14,9 +14,10 @@ from satsym.analysis.linear.ranks import controllability, observability
 from satsym.analysis.linear.routh import Routh, routh
 from satsym.analysis.linear.spectrum import Eigenvalue
 from satsym.analysis.linear.stability import shown
-from satsym.analysis.linear.system import Array, LinearSystem, system
+from satsym.analysis.linear.system import LinearSystem, system
 from satsym.analysis.regulator import riccati
 from satsym.analysis.regulator.doubling import flow
+from satsym.arrays import Array
 from satsym.instance import Instance, LqrOptions, weights
 from satsym.status import BadInput
 

@@ -17,8 +17,8 @@ from functools import reduce
 
 import numpy as np
 
-from satsym.analysis.linear.system import Array
 from satsym.analysis.orbits.double_double import Pair, add, multiply, negative
+from satsym.arrays import Array
 
 ACCURATE = 1e-13
 """A correction below this, found without more precision, shows that none is needed."""

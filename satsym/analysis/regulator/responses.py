@@ -6,9 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from satsym.analysis.linear.system import Array, LinearSystem
+from satsym.analysis.linear.system import LinearSystem
 from satsym.analysis.regulator.feedback import Design, gain, law, running_cost
 from satsym.analysis.regulator.lqr import Regulator
+from satsym.arrays import Array
 from satsym.grid import Grid
 from satsym.instance import Instance
 from satsym.solvers.simulation import closed_loop

@@ -14,8 +14,8 @@ import warnings
 import numpy as np
 from numpy.typing import NDArray
 
-from satsym.analysis.linear.system import Array
 from satsym.analysis.regulator.refinement import lyapunov, refined
+from satsym.arrays import Array
 
 ACCURATE = 1e-13
 """A residual below this needs no improvement."""

@@ -20,8 +20,6 @@ from satsym.auditing.program.run import Run, run
 from satsym.status import BadInput
 from satsym.wording import shown
 
-Array = NDArray[np.float64]
-
 _PIXELS = 1000
 """Across the picture that the program draws, ten inches wide."""
 _YEARS = {

@@ -8,7 +8,7 @@ from math import factorial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from satsym.analysis.linear.system import Array
+from satsym.arrays import Array
 from satsym.auditing.predicates import Finding, Question, exact, predicate
 from satsym.auditing.predicates.linear import analysis, numeric
 from satsym.status import BadInput

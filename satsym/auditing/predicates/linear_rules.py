@@ -7,14 +7,12 @@ from collections.abc import Mapping
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.auditing.predicates import Finding, predicate
 from satsym.auditing.predicates.linear import analysis, numeric
 from satsym.status import BadInput
 from satsym.wording import shown
-
-Array = NDArray[np.float64]
 
 _SEED = 20
 _TRIES = 40

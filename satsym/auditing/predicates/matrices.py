@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from satsym.analysis.linear.system import Array
+from satsym.arrays import Array
 from satsym.auditing.predicates import Finding, Question, exact, predicate
 
 _SEED = 5

@@ -8,13 +8,10 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from satsym.auditing.predicates import Finding, Question, exact, predicate
 from satsym.status import BadInput
 from satsym.wording import shown
-
-Array = NDArray[np.float64]
 
 _SEED = 59
 _TRIES = 60

@@ -7,18 +7,16 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from satsym import instance as instances
 from satsym import kernels
+from satsym.arrays import Array
 from satsym.auditing.predicates import Finding, its_listing, predicate, reproduction
 from satsym.auditing.predicates.linear import analysis, numeric
 from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
-
-Array = NDArray[np.float64]
 
 _BACK = 0.05
 """A state has returned if it is this close to its reference, relative to the larger of one unit and the reference."""

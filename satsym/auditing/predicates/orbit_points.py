@@ -10,13 +10,12 @@ from numpy.typing import NDArray
 from satsym import instance
 from satsym.analysis.orbits.elements import Elements, elements
 from satsym.analysis.orbits.kepler import propagate
+from satsym.arrays import Array
 from satsym.auditing.predicates import Finding, Question, predicate
 from satsym.auditing.predicates.programs import function, walked
 from satsym.instance import Instance
 from satsym.status import BadInput
 from satsym.wording import shown
-
-Array = NDArray[np.float64]
 
 _SEED = 47
 _TRIES = 20

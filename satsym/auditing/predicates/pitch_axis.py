@@ -8,13 +8,12 @@ from functools import cache
 from math import sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
 from satsym import kernels
+from satsym.arrays import Array
 from satsym.auditing import quantities
 from satsym.auditing.predicates import Question, Told, exact
 
-Array = NDArray[np.float64]
 Numbers = Mapping[str, float]
 
 _TIGHT = 1e-11

@@ -8,17 +8,15 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from satsym import kernels
+from satsym.arrays import Array
 from satsym.auditing.predicates import Finding, Question, predicate
 from satsym.auditing.program import text as programs
 from satsym.auditing.program.run import Run, run
 from satsym.auditing.program.text import Program, Stops
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
-
-Array = NDArray[np.float64]
 
 _SEED = 41
 _TRIES = 10

@@ -9,8 +9,8 @@ from functools import cache
 import numpy as np
 
 from satsym.analysis.linear import system as systems
-from satsym.analysis.linear.system import Array
 from satsym.analysis.regulator.lqr import Regulator, lqr
+from satsym.arrays import Array
 from satsym.auditing import quantities
 from satsym.auditing.predicates import Finding, Question, predicate
 from satsym.auditing.predicates.flows import expm

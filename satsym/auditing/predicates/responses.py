@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from satsym.analysis.linear.system import Array
+from satsym.arrays import Array
 from satsym.auditing.predicates import Finding, predicate
 from satsym.auditing.predicates.flows import expm
 from satsym.auditing.predicates.structure import with_numbers

@@ -6,14 +6,12 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.auditing.predicates import Finding, predicate
 from satsym.auditing.predicates.answers import spectrum
 from satsym.auditing.predicates.flows import expm, well_conditioned
 from satsym.auditing.predicates.linear_rules import BLOCKS
-
-Array = NDArray[np.float64]
 
 _SEED = 53
 _TRIES = 20

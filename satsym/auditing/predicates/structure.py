@@ -9,7 +9,8 @@ import numpy as np
 from satsym.analysis.linear import polynomials
 from satsym.analysis.linear import system as systems
 from satsym.analysis.linear.ranks import controllability
-from satsym.analysis.linear.system import Array, LinearSystem
+from satsym.analysis.linear.system import LinearSystem
+from satsym.arrays import Array
 from satsym.auditing.predicates import Finding, Question, exact, predicate
 from satsym.auditing.predicates.flows import expm
 from satsym.auditing.predicates.linear import analysis, numeric

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.kernels import Kernels
 
-Array = NDArray[np.floating[Any]]
 LARGEST = 1e100
 """Beyond it a number is the debris of a failed run, and too large for arithmetic on axes."""
 _COMPLEX_STEP = 1e-30

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.report.plots.display import exponent_for, labelled
 from satsym.report.plots.series import Series
 
-Array = NDArray[np.floating[Any]]
 SMALL = 0.02
 """A deviation smaller than this fraction of the value is shown itself: in the value it could not be seen."""
 BURIED = 1e-3

@@ -6,8 +6,8 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.report.plots import curves, display, legend, style
 from satsym.spec import Variable
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
     from satsym.analysis.regulator.feedback import Design
 
-Array = NDArray[np.floating[Any]]
 LINEAR: dict[str, Any] = {"linewidth": 2.0, "zorder": 3.0}
 NONLINEAR: dict[str, Any] = {"color": style.INK, "linewidth": 1.2, "linestyle": (0, (4, 2)), "zorder": 3.2}
 BEYOND = 1.5

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.report.plots import curves
 from satsym.report.plots.display import formula, plain
 from satsym.report.plots.scene import Scene
 from satsym.report.results.unit_names import cost_per, time_unit
 from satsym.solution import Flight
 
-Array = NDArray[np.floating[Any]]
 ON_BOUND = 1e-7
 """How near to a bound a control is on it, relative to the width of its range."""
 

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.floating[Any]]
+from satsym.arrays import Array
+
 FLAT = 1e-6
 """How far from a plane through the origin, relative to its size, a path is taken to lie in it."""
 ROUND = 1e-3

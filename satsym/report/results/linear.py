@@ -9,7 +9,7 @@ from satsym.report.results.objects import number
 
 if TYPE_CHECKING:
     from satsym.analysis.regulator.feedback import Design
-    from satsym.analysis.linear.system import Array
+    from satsym.arrays import Array
     from satsym.analysis.linear.ranks import Reach
     from satsym.analysis.linear.routh import Routh
     from satsym.analysis.linear.spectrum import Eigenvalue

@@ -13,7 +13,8 @@ from satsym.status import Status
 
 if TYPE_CHECKING:
     from satsym.instance import Instance
-    from satsym.solution import Array, Certificate, Flight, Solution
+    from satsym.arrays import Array
+    from satsym.solution import Certificate, Flight, Solution
 
 
 SCHEMA = 1

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from satsym.analysis.linear.ranks import Reach
     from satsym.analysis.linear.routh import Routh
     from satsym.analysis.linear.structure import Analysis
-    from satsym.analysis.linear.system import Array
     from satsym.analysis.regulator.feedback import Design
+    from satsym.arrays import Array
 
 
 def analysis_text(found: Analysis, colour: bool = False) -> str:

@@ -9,10 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.report.results.unit_names import cost_per, time_unit
 from satsym.report.terminal.table import figure, table
-from satsym.solution import Array, Certificate, Flight, Iteration, Solution
+from satsym.solution import Certificate, Flight, Iteration, Solution
 from satsym.status import Status, Verdict
 from satsym.wording import counted
 

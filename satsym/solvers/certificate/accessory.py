@@ -8,18 +8,16 @@ where that has a negative eigenvalue, so has the second variation itself. It kno
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.grid import Grid, interleave
 from satsym.solution import Solution
 from satsym.solvers.certificate.end_form import end_form
 from satsym.solvers.certificate.flow import unit_sizes
 from satsym.solvers.certificate.jacobi import kernel
-
-Array = NDArray[np.floating[Any]]
 
 PIECES = 50
 """On which the control's change is constant."""

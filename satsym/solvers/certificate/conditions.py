@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.solution import Solution
 from satsym.solvers.certificate.end_form import fixed_states, multipliers
 from satsym.solvers.certificate.flow import FAINT, NEGLIGIBLE, Flow, products, typical, undriven, unit_sizes
 from satsym.solvers.collocation.scaling import final_argument
-
-Array = NDArray[np.floating[Any]]
 
 CANCELLED = 1e-5
 """Share of the products of states and costates below which a cost is what is left of larger terms, or of rounding."""

@@ -9,16 +9,14 @@ are in it, and with them the curvature of these.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solvers.collocation.scaling import final_argument
-
-Array = NDArray[np.floating[Any]]
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.solution import Solution
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import integrate
-
-Array = NDArray[np.floating[Any]]
 
 TOLERANCE = 1e-13
 """Error of a step, relative to the size of each component."""

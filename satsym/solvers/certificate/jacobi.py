@@ -13,14 +13,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.solvers.certificate.end_form import EndForm
 
-Array = NDArray[np.floating[Any]]
 TURN = 2.0 * np.pi
 
 TOUCHED = 1e-7

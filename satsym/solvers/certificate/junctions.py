@@ -8,11 +8,9 @@ gaps that lean to one side are no extremal.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.solution import Solution
 from satsym.solvers.certificate.end_form import final_values, multipliers
 from satsym.solvers.certificate.flow import FAINT, Flow, typical
@@ -21,8 +19,6 @@ from satsym.solvers.collocation.matching import Matching
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import leap
-
-Array = NDArray[np.floating[Any]]
 
 
 def node_by_node(solution: Solution, along: Segments) -> Flow | None:

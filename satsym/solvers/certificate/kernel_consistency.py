@@ -11,14 +11,12 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.kernels import consistency
 from satsym.solution import Certificate, Check, Solution
 from satsym.status import Verdict
-
-Array = NDArray[np.floating[Any]]
 
 NODES = 4
 """Of a solution at which its kernels are looked at, once with its own and twice with narrow bounds."""

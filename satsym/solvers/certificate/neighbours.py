@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.grid import Grid, interleave
 from satsym.instance import Instance
 from satsym.solution import Check, Competitors, Kind, Solution
@@ -18,8 +18,6 @@ from satsym.solvers.certificate.end_form import fixed_states
 from satsym.solvers.certificate.flow import products, typical
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.control import control_set
-
-Array = NDArray[np.floating[Any]]
 
 STEPS = ((200, 1e-3), (800, 1e-3), (3200, 1e-2))
 """RK4 steps with which neighbours are compared, on as many as the solution itself, and the relative distance from the

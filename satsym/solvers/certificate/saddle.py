@@ -8,11 +8,10 @@ best one: of linear problems with quadratic costs this decides, of others it is 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.grid import Grid
 from satsym.instance import Guess
 from satsym.solution import Solution
@@ -20,8 +19,6 @@ from satsym.solvers.certificate.accessory import accessory
 from satsym.solvers.certificate.flow import unit_sizes
 from satsym.solvers.certificate.neighbours import Simulations, simulations_of, stated_control
 from satsym.solvers.control import control_set
-
-Array = NDArray[np.floating[Any]]
 
 DOUBLINGS = 12
 """Of the change, from the size of the control on that moves the state by its own size."""

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.solution import Solution
 from satsym.solvers.certificate.flow import unit_sizes
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import leap
-
-Array = NDArray[np.floating[Any]]
 
 FEWEST = 64
 """Segments."""

@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from satsym.arrays import Array
 from satsym.solvers.cold_start import paths
 from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.curve import Curve
@@ -17,8 +14,6 @@ from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.sqp import OUTGROWN, Found, minimise
 from satsym.solvers.collocation.system import System
 from satsym.solvers.iteration import Limits
-
-Array = NDArray[np.floating[Any]]
 
 STRAIGHT_THROUGH = 15
 """Steps within which the straight line leads to a minimum if it does so easily."""

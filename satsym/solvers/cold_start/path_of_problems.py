@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.solvers.cold_start import paths
 from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.arclength import Point
@@ -20,7 +19,6 @@ from satsym.solvers.collocation.sqp import OUTGROWN, Found, minimise
 from satsym.solvers.collocation.system import System
 from satsym.solvers.iteration import Limits
 
-Array = NDArray[np.floating[Any]]
 Between = Callable[[Array, Array, float], Array]
 """A state between two others, by its share of the way."""
 

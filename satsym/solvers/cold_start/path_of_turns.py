@@ -8,19 +8,16 @@ gets stuck where there are many turns, as a small defect early on asks for a lar
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.solvers.cold_start import paths
 from satsym.solvers.cold_start.path_of_problems import followed
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.sqp import Found
 from satsym.solvers.iteration import Limits
 from satsym.solvers.symmetry import Spiral
-
-Array = NDArray[np.floating[Any]]
 
 STEP = 1e-5
 """Share of the duration by which a path is differenced."""

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.grid import Grid
 from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.curve import Curve, stage_times
@@ -16,7 +15,6 @@ from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import straight
 from satsym.solvers.control import control_set
 
-Array = NDArray[np.floating[Any]]
 States = Callable[[Array], Array]
 """Scaled states, shape (n, M), at M times tau in [0, 1]."""
 

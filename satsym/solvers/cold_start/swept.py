@@ -9,12 +9,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice, product
-from typing import Any
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Guess, Instance
 from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.continuation import kinks, settled, through
@@ -23,8 +22,6 @@ from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.iteration import Limits
 from satsym.solvers.sweep import solving as forward_backward
-
-Array = NDArray[np.floating[Any]]
 
 STEPS, SWEEPS, SECONDS = 200, 60, 10.0
 """Of each sweep, their number, and a time that none of them takes."""

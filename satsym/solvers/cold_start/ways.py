@@ -14,10 +14,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from satsym.solvers.cold_start import paths
 from satsym.solvers.cold_start.from_path import STRAIGHT_THROUGH, from_path
@@ -34,8 +32,6 @@ from satsym.solvers.collocation.sqp import Found
 from satsym.solvers.collocation.system import System
 from satsym.solvers.iteration import Limits
 from satsym.solvers.symmetry import spirals
-
-Array = NDArray[np.floating[Any]]
 
 TURNS = 2
 """Spirals that are tried."""

@@ -10,10 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.curve import SMALL, Curve, Step
@@ -27,7 +25,6 @@ from satsym.solvers.collocation.sqp import Found
 from satsym.solvers.collocation.system import Residual, System
 from satsym.solvers.iteration import Limits
 
-Array = NDArray[np.floating[Any]]
 Problems = Callable[[float], TwoPoint]
 """The problem at a share of the way: given values at the ends change, all else stays; at one, the problem itself."""
 

@@ -8,11 +8,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.solvers.collocation.curve import Curve, Path, stage_times
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
@@ -20,8 +19,6 @@ from satsym.solvers.collocation.system import System
 from satsym.solvers.control import control_set
 from satsym.solvers.control.corners import zero
 from satsym.solvers.iteration import Limits
-
-Array = NDArray[np.floating[Any]]
 
 FIRST_SHARE = 0.35
 """Of the largest violation, by which the bounds move in first."""

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.solvers.collocation.gauss import interpolation, lagrange, scheme
-
-Array = NDArray[np.floating[Any]]
-
 
 SMALL = 1e-4
 """Smaller scaled costates count at this size: states are rounded, and so are costates by as much at least."""

@@ -9,17 +9,14 @@ X(tau) are inverted without a solve, being symplectic.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.solvers.collocation.curve import SMALL, Curve, Step
 from satsym.solvers.collocation.gauss import interpolation, scheme
 from satsym.solvers.collocation.linearised import Linearised
 from satsym.solvers.collocation.system import System
-
-Array = NDArray[np.floating[Any]]
 
 POINTS = 16
 """Of each interval."""

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.floating[Any]]
+from satsym.arrays import Array
 
 AT_ONCE = 2
 """Times that the stages are solved for without keeping factors."""

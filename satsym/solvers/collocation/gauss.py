@@ -7,13 +7,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 from numpy.polynomial import legendre
-from numpy.typing import NDArray
 
-Array = NDArray[np.floating[Any]]
+from satsym.arrays import Array
 
 STAGES = 5
 """Of the collocation equations that are solved: order 10 at the nodes of a mesh."""

@@ -5,19 +5,17 @@ With the stages eliminated, what remains couples neighbouring nodes only.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.solvers.collocation.curve import Step
 from satsym.solvers.collocation.elimination import Blocks
 from satsym.solvers.collocation.matching import Matching
 
 if TYPE_CHECKING:
     from satsym.solvers.collocation.system import Residual, System
-
-Array = NDArray[np.floating[Any]]
 
 
 class Linearised:

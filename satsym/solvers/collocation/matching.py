@@ -5,14 +5,10 @@ Extra unknowns, such as a free duration, are bordered: one more right-hand side 
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.solvers.collocation.elimination import Nodes
-
-Array = NDArray[np.floating[Any]]
 
 
 class Matching:

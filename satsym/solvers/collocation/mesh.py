@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.solvers.collocation.curve import Curve, stage_times
 from satsym.solvers.collocation.problem import TwoPoint
-
-Array = NDArray[np.floating[Any]]
 
 TURN = 1.0
 """Angle, in radians, that the fastest mode may pass in one interval. With less than about six intervals a turn the

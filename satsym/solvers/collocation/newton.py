@@ -8,17 +8,13 @@ semismooth). The test compares simplified corrections, so it does not depend on 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from satsym.solvers.collocation.curve import Curve, Step
 from satsym.solvers.collocation.linearised import Linearised
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.system import System
-
-Array = NDArray[np.floating[Any]]
 
 KEEP = 0.3
 """Share of a positive state that a step must leave."""

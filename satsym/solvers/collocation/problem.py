@@ -15,11 +15,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.control import control_set
 from satsym.solvers.control.regularised import sloping, smoothed_cost, smoothed_law
-
-Array = NDArray[np.floating[Any]]
 
 PLACES, SAME = 8, 1e-9
 """Times at which derivatives are compared, and the relative difference that may be rounding."""

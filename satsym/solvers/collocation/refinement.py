@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.solvers.collocation.continuation import kinks
 from satsym.solvers.collocation.curve import SMALL, Curve
 from satsym.solvers.collocation.defect_correction import Sharpened, sharpen
@@ -16,8 +15,6 @@ from satsym.solvers.collocation.linearised import Linearised
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.system import System
-
-Array = NDArray[np.floating[Any]]
 
 NEAR = 1e-3
 """Last correction of Newton's method from which defect corrections converge quickly."""

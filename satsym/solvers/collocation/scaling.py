@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.collocation.problem import Scale, TwoPoint
 from satsym.solvers.control import control_set
 from satsym.solvers.control.regularised import sloping
-
-Array = NDArray[np.floating[Any]]
 
 POINTS = 9
 """Points of the straight line at which sizes and responses are looked at."""

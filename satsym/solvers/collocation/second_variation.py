@@ -8,16 +8,12 @@ the gradient of the cost to go, as here, the field from a fixed start gives the 
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.solvers.collocation.curve import Path
 from satsym.solvers.collocation.matching import Matching
 from satsym.solvers.collocation.problem import TwoPoint
-
-Array = NDArray[np.floating[Any]]
 
 
 def negative_directions(problem: TwoPoint, path: Path, matching: Matching) -> int:

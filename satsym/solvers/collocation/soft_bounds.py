@@ -9,11 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from satsym.arrays import Array
 from satsym.solvers.cold_start.from_path import from_path
 from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.continuation import kept, settled
@@ -23,8 +20,6 @@ from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.sqp import OUTGROWN, Found, minimise
 from satsym.solvers.collocation.system import System
 from satsym.solvers.iteration import Limits
-
-Array = NDArray[np.floating[Any]]
 
 HARDER = 0.1
 """Softness of each problem, as a share of that of the one before."""

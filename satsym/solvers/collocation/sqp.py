@@ -11,19 +11,16 @@ evaluated without costates. A second-order correction keeps the penalty from ref
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.solvers.collocation.curve import Curve, Step
 from satsym.solvers.collocation.linearised import Linearised
 from satsym.solvers.collocation.newton import within_domain
 from satsym.solvers.collocation.second_variation import negative_directions
 from satsym.solvers.collocation.system import Residual, System
 from satsym.solvers.iteration import Limits
-
-Array = NDArray[np.floating[Any]]
 
 CLOSE = 1e-3
 """Below this size of a full Newton step, Newton's convergence needs no guarding."""

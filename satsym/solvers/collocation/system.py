@@ -6,19 +6,16 @@ Stages are eliminated interval by interval, all intervals in one call.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.solvers.collocation.curve import Curve, stage_times
 from satsym.solvers.collocation.elimination import Blocks
 from satsym.solvers.collocation.gauss import Scheme, scheme
 from satsym.solvers.collocation.linearised import Linearised
 from satsym.solvers.collocation.matching import Matching
 from satsym.solvers.collocation.problem import TwoPoint
-
-Array = NDArray[np.floating[Any]]
 
 
 @dataclass(frozen=True, eq=False)

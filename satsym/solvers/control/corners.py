@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.floating[Any]]
+from satsym.arrays import Array
 
 MOST_STEPS = 100
 LAST_DIGITS = 1e-15

@@ -9,14 +9,11 @@ control problems, Optimal Control Applications and Methods 23, 2002).
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
-
-Array = NDArray[np.floating[Any]]
 
 TINY = 1e-60
 """A costate that does nothing, and yet has a sign."""

@@ -8,9 +8,10 @@ from importlib.util import find_spec
 
 import numpy as np
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.instance.resolve import value_of
-from satsym.solution import Array, Solution
+from satsym.solution import Solution
 from satsym.solvers.extremal import Extremal, solved, without_numbers
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.iteration import Limits, watched

@@ -7,12 +7,10 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.shooting.runge_kutta import ORDER, advance
-
-Array = NDArray[np.floating[Any]]
 
 MOST_STEPS = 32
 """Of one arc; where more are needed, more arcs are better."""

@@ -11,12 +11,11 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.kernels import Kernels
 from satsym.solvers.shooting.runge_kutta import tableau
 
-Array = NDArray[np.floating[Any]]
 Numbers = tuple[float, ...]
 Compiled = Callable[..., Any]
 

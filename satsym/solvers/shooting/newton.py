@@ -7,17 +7,15 @@ Methods for Nonlinear Problems, 3.3 and 7.1).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.solvers.collocation.matching import Matching
 from satsym.solvers.iteration import Limits
 from satsym.solvers.shooting.arcs import Arcs
 from satsym.solvers.shooting.runge_kutta import ORDER
 
-Array = NDArray[np.floating[Any]]
 Correction = tuple[Array, Array]
 
 TOLERANCE = 1e-12

@@ -8,18 +8,15 @@ Optimal Control Problems, 1984).
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.kernels import Kernels
 from satsym.solvers.shooting.arcs import MOST_STEPS, Arcs
 from satsym.solvers.shooting.compiled import Compiled, Numbers, flight, njit, packed
 from satsym.solvers.shooting.newton import within_domain
 from satsym.solvers.shooting.runge_kutta import ORDER
-
-Array = NDArray[np.floating[Any]]
 
 MOST = 12
 LOST = 30.0

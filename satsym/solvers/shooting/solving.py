@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.solution import Array, Progress, Solution
+from satsym.solution import Progress, Solution
 from satsym.solvers.cold_start.ways import Start
 from satsym.solvers.collocation.continuation import kinks, through
 from satsym.solvers.collocation.curve import Path

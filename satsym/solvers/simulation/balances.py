@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.solution import Array, Invariant
+from satsym.solution import Invariant
 
 
 def balances(instance: Instance, times: Array, x: Array, u: Array) -> dict[str, Invariant]:

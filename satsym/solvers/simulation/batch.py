@@ -12,10 +12,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
+from satsym.arrays import Array
 from satsym.kernels import Kernels
 from satsym.kernels.blocks import pairs
 from satsym.kernels.composition import weights
-from satsym.solution import Array
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 

@@ -9,19 +9,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.kernels import Kernels
-from satsym.solution import Array
 from satsym.solvers.iteration import BLOCK, Limits
 
 Row = Sequence[float]
-Doubles = NDArray[np.float64]
 
 
 def forward(
     model: Kernels, nodes: Array, x0: Row, u: Array, u_mid: Array, p: Row, limits: Limits | None
-) -> tuple[Doubles, Doubles, float]:
+) -> tuple[Array, Array, float]:
     """As :meth:`satsym.kernels.core.Kernels.forward`.
 
     Raises
@@ -51,7 +49,7 @@ def backward(
     control: tuple[Array, Array],
     p: Row,
     limits: Limits | None,
-) -> tuple[Doubles, Doubles]:
+) -> tuple[Array, Array]:
     """As :meth:`satsym.kernels.core.Kernels.backward`; motion and control at nodes and midpoints.
 
     Raises

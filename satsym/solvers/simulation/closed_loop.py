@@ -10,9 +10,9 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.kernels.core import Function
-from satsym.solution import Array
 from satsym.solvers.control import control_set
 from satsym.solvers.iteration import Limits
 from satsym.solvers.simulation import blocks

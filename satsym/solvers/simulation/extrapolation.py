@@ -13,9 +13,9 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.floating[Any]]
+from satsym.arrays import Array
+
 Rates = Callable[[float, Array], Array]
 
 SUBSTEPS = (2, 4, 6, 8, 10, 12, 14, 16)

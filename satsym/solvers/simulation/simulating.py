@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from satsym.arrays import Array
 from satsym.grid import Grid
 from satsym.instance import Instance
-from satsym.solution import Array, Flight, Invariant
+from satsym.solution import Flight, Invariant
 from satsym.solvers import out_of_time
 from satsym.solvers.control import control_set
 from satsym.solvers.iteration import Limits, TimeUp, watched

@@ -13,9 +13,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from satsym.arrays import Array
 from satsym.solution import Iteration
 from satsym.solvers.control import control_set
-from satsym.solvers.sweep.sweeps import Array, Forward, Sweep, SweepProblem, backward, forward
+from satsym.solvers.sweep.sweeps import Forward, Sweep, SweepProblem, backward, forward
 from satsym.solvers.sweep.tangent import Tangent, tangent
 from satsym.status import Status
 

@@ -10,6 +10,7 @@ import time
 
 import numpy as np
 
+from satsym.arrays import Array
 from satsym.grid import Grid
 from satsym.instance import Instance
 from satsym.kernels import Kernels
@@ -19,7 +20,7 @@ from satsym.solvers.control import corners as kinks
 from satsym.solvers.iteration import Limits, Run, iterate
 from satsym.solvers.sweep.quasi_newton import Descent, QuasiNewton
 from satsym.solvers.sweep.relaxation import Relaxation, Relaxed
-from satsym.solvers.sweep.sweeps import Array, Forward, Sweep, SweepProblem, forward, unbounded_law
+from satsym.solvers.sweep.sweeps import Forward, Sweep, SweepProblem, forward, unbounded_law
 from satsym.status import Status
 
 ROUNDS = 6

@@ -9,19 +9,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.grid import Grid, interleave
 from satsym.instance import Instance
 from satsym.kernels import Kernels
 from satsym.solvers.control.control_set import without_bounds
 from satsym.solvers.iteration import Limits
 from satsym.solvers.simulation import blocks
-
-Array = NDArray[np.floating[Any]]
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.solvers.control import control_set
-from satsym.solvers.sweep.sweeps import Array, Sweep, SweepProblem, unbounded_law
+from satsym.solvers.sweep.sweeps import Sweep, SweepProblem, unbounded_law
 
 ON_SPHERE = 1e-9
 """Relative distance from the sphere within which a control is on it."""

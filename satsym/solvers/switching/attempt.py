@@ -7,19 +7,16 @@ better level is put in.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.failures import FAILURES, tried
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.cold_start.recognition import Guess
 from satsym.solvers.switching.newton import Equations, Refined, solve
 from satsym.solvers.switching.trajectory import Trajectory, Violation, violations
-
-Array = NDArray[np.floating[Any]]
 
 REPAIRS = 8
 """Changes of a guessed structure before it is given up."""

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import count
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.simulation.extrapolation import integrate
 from satsym.solvers.switching.field import Field
 from satsym.solvers.switching.structure import Event, Structure
-
-Array = NDArray[np.floating[Any]]
 
 TOLERANCE = 3e-14
 """Error of a step, relative to the size of each component."""

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.switching.structure import LOWER, SINGULAR, UPPER
-
-Array = NDArray[np.floating[Any]]
 
 NUDGE = 1e-30
 """Imaginary step of derivatives: exact, for nothing is subtracted."""

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.kernels import Kernels
 
-Array = NDArray[np.floating[Any]]
 Function = Callable[..., Any]
 
 STEP = 1e-6

@@ -6,19 +6,16 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.switching.extremal_arcs import TOLERANCE, Arc, Unknowns, fly
 from satsym.solvers.switching.field import Field
 from satsym.solvers.switching.structure import SINGULAR, Structure
-
-Array = NDArray[np.floating[Any]]
 
 MOST = 20
 NEAR, ROUGH = 1e-2, 1e-7

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import chain
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,8 +28,6 @@ from satsym.solvers.switching.refusals import refuse
 from satsym.solvers.switching.structure import REST, Structure
 from satsym.solvers.switching.variants import neighbours
 from satsym.status import Status
-
-Array = NDArray[np.floating[Any]]
 
 ENOUGH = 1e-9
 """By this share of it a given time may fall short of the least."""

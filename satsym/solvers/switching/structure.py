@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.floating[Any]]
+from satsym.arrays import Array
 
 LOWER, REST, UPPER, SINGULAR = -1, 0, 1, 2
 """Levels: on a bound, at the admissible value of least magnitude, or as the singular condition has it."""

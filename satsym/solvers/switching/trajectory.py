@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.collocation.gauss import scheme
 from satsym.solvers.simulation.extrapolation import integrate, leap
 from satsym.solvers.switching.extremal_arcs import TOLERANCE, WHOLE, Arc
 from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER
-
-Array = NDArray[np.floating[Any]]
 
 PANELS, POINTS = 20, 8
 """Of a whole trajectory, and Gauss points in each: where its cost and its switching functions are looked at."""

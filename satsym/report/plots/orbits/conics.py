@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from satsym.analysis.orbits.kepler import propagate
+from satsym.arrays import Array
 from satsym.report.plots import display, legend, style
 from satsym.report.plots.views import View, views
 from satsym.report.terminal.table import figure
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from satsym.analysis.orbits.elements import Elements
     from satsym.analysis.orbits.survey import Survey
 
-Array = NDArray[np.floating[Any]]
 POINTS = 2000
 APART = 0.02
 """Eccentricity from which the foci can be told apart in the picture."""

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.report.plots import curves, style
 from satsym.report.plots.display import exponent_for, formula, labelled, length_scale, length_unit
 from satsym.report.plots.reading import BURIED, within_reach
@@ -17,7 +17,6 @@ from satsym.report.plots.views import View, views
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.floating[Any]]
 ARROWS = 32
 LONGEST = 0.13
 """Length of the longest arrow, relative to the size of the picture."""

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.solution import Competitors, Kind, Solution
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
@@ -19,8 +20,6 @@ from satsym.solvers.switching.cold_start import scouts
 from satsym.solvers.switching.cold_start.plans import Plans, Scout, seeded, together
 from satsym.solvers.switching.linear.linear_motion import LinearMotion, linear_motion
 from satsym.solvers.switching.linear.reach import THERE, Reach, given_rows
-
-Array = NDArray[np.floating[Any]]
 
 SEED = 20011
 """Of what is drawn."""

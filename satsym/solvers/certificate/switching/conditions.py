@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import time
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Certificate, Check, Kind, Solution
 from satsym.solvers.certificate import conditions
@@ -24,8 +23,6 @@ from satsym.solvers.switching.linear.linear_motion import linear_motion
 from satsym.solvers.switching.newton import switching
 from satsym.solvers.switching.structure import SINGULAR
 from satsym.status import Verdict
-
-Array = NDArray[np.floating[Any]]
 
 RESIDUAL, DEFECT, STATIONARY, DRIFT, TIMES, COST = 1e-9, 1e-7, 1e-8, 1e-9, 1e-9, 1e-8
 """Largest boundary residual, defect, violation of the minimum of H, change of H, of switching times and of the cost,

@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from satsym.solution import Array, Solution
+from satsym.arrays import Array
+from satsym.solution import Solution
 
 DRAWN = 200
 """States at which convexity is looked at, around those of the solution."""

@@ -7,17 +7,14 @@ whose end may move like any other.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.solvers.certificate.switching.replay import Piece, Replay
 from satsym.solvers.switching.field import Field
 from satsym.solvers.switching.newton import switching
 from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER
-
-Array = NDArray[np.floating[Any]]
 
 AT_SWITCH = 1e-9
 """Distance of a switching function from where it switches, relative to its size, that is none."""

@@ -9,14 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Competitors, Kind, Solution
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.iteration import Limits
 from satsym.solvers.simulation.extrapolation import integrate
-
-Array = NDArray[np.floating[Any]]
 
 PLANS = 8
 EVALUATIONS = 200_000

@@ -7,15 +7,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.cold_start.recognition import levels
 from satsym.solvers.switching.field import Field
 from satsym.solvers.switching.newton import switching
 from satsym.solvers.switching.structure import SINGULAR
-
-Array = NDArray[np.floating[Any]]
 
 TOLERANCE = 5e-14
 

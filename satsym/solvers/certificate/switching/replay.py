@@ -8,11 +8,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solvers.certificate.flow import typical
@@ -24,8 +23,6 @@ from satsym.solvers.switching.cold_start.recognition import levels as best_level
 from satsym.solvers.switching.field import Field
 from satsym.solvers.switching.newton import switching
 from satsym.solvers.switching.structure import REST, SINGULAR
-
-Array = NDArray[np.floating[Any]]
 
 MOST_SWITCHES = 200
 

@@ -9,17 +9,14 @@ Optimization 41, 2002; Osmolovskii and Maurer, Applications to Regular and Bang-
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.certificate.switching.replay import Replay
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.switching.newton import switching
-
-Array = NDArray[np.floating[Any]]
 
 RANK = 1e-9
 """Smallest singular value, relative to the largest, of a derivative that counts."""

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
@@ -18,8 +17,6 @@ from satsym.solvers.switching.cold_start.recognition import Guess
 from satsym.solvers.switching.cold_start.scouts import ROUNDS, scouted
 from satsym.solvers.switching.newton import Equations
 from satsym.solvers.switching.structure import Structure
-
-Array = NDArray[np.floating[Any]]
 
 SEED = 7
 """Of what is drawn; certificates draw otherwise."""

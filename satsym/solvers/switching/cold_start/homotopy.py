@@ -9,10 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from satsym.instance import Instance
 from satsym.solvers.cold_start.durations import free_duration
@@ -34,8 +32,6 @@ from satsym.solvers.switching.cold_start.least_effort import (
     of_size,
 )
 from satsym.status import Status
-
-Array = NDArray[np.floating[Any]]
 
 LEVELS = 12
 SHARPER = 4.0

@@ -8,10 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from satsym.instance import Instance
 from satsym.solvers.cold_start.durations import time_scale
@@ -27,8 +25,6 @@ from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.system import System
 from satsym.solvers.control.regularised import companion
 from satsym.solvers.iteration import Limits
-
-Array = NDArray[np.floating[Any]]
 
 NEAR_FULL = (1.15, 2.2)
 """Largest controls without bounds, relative to these, of durations near the least one: 1.5 from rest to rest."""

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.collocation.curve import Path
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER, Structure
-
-Array = NDArray[np.floating[Any]]
 
 SAMPLES = 12
 """Points in each interval of a mesh at which switching functions are looked at."""

@@ -8,19 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.iteration import Limits
 from satsym.solvers.simulation.extrapolation import integrate
 from satsym.solvers.switching.cold_start.plans import Plans, Scout
 from satsym.solvers.switching.structure import LOWER, UPPER
-
-Array = NDArray[np.floating[Any]]
 
 LEAST, MOST, QUICK = 6, 24, 2.5
 """Runge-Kutta steps of an arc, and how many for each unit of the motion's quickest rate times its length."""

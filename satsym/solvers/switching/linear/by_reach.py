@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.attempt import Exact, attempt
@@ -18,8 +17,6 @@ from satsym.solvers.switching.linear.from_costates import guessed
 from satsym.solvers.switching.linear.linear_motion import LinearMotion, linear_motion
 from satsym.solvers.switching.linear.reach import THERE, Priced, Reach, given_rows
 from satsym.solvers.switching.linear.separation import separates
-
-Array = NDArray[np.floating[Any]]
 
 LATER = 1e-2
 """Share of a bound from below by which an exact arrival may be later and still be the first."""

@@ -10,17 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.linear.linear_motion import LinearMotion
 from satsym.solvers.switching.linear.reach import THERE, Reach, given_rows, goal, steps
-
-Array = NDArray[np.floating[Any]]
 
 PLANES = 200
 """That are looked for."""

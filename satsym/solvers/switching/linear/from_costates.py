@@ -6,16 +6,13 @@ given the arcs that bring the motion to its end with the least effort, weighed s
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.switching.cold_start.recognition import Guess, Sample, guess
 from satsym.solvers.switching.linear.reach import Reach, cheapest
-
-Array = NDArray[np.floating[Any]]
 
 UNDECIDED = 2e-3
 """Share of its size by which a switching function that decides on nothing is off its value."""

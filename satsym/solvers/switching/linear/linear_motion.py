@@ -6,14 +6,11 @@ The states that such controls within a box can reach form a convex set; whatever
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
-
-Array = NDArray[np.floating[Any]]
 
 DRAWN = 24
 """Points at which coefficients are compared."""

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.switching.linear.linear_motion import LinearMotion
 from satsym.solvers.switching.linear.nearest_point import nearest_point
-
-Array = NDArray[np.floating[Any]]
 
 LEAST, MOST, PER_RADIAN = 160, 1600, 16.0
 """Steps of a duration, and how many for each unit of the motion's quickest rate times the duration."""

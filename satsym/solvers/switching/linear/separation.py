@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.switching.linear.reach import given_rows, goal
-
-Array = NDArray[np.floating[Any]]
 
 TOLERANCE = 1e-11
 
