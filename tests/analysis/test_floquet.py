@@ -10,7 +10,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 from scipy.optimize import minimize_scalar
-from tests.test_orbit_analysis import started, turned
 
 from satsym import instance, kernels
 from satsym.analysis.orbits.elements import Elements, elements
@@ -20,6 +19,7 @@ from satsym.analysis.orbits.monodromy import SYMPLECTIC, Monodromy, monodromy
 from satsym.analysis.orbits.rotating import NEARLY_CIRCULAR, turning_axes
 from satsym.analysis.orbits.survey import survey
 from satsym.analysis.orbits.variational import transition
+from tests.analysis.test_orbit_analysis import started, turned
 
 
 def flow(states: np.ndarray, mu: float, duration: float) -> np.ndarray:

@@ -6,7 +6,6 @@ import sys
 from pathlib import Path
 
 import pytest
-from tests.test_audit_program import ROW
 
 from satsym.auditing.predicates import registry
 from satsym.auditing.program import run as program_run
@@ -15,6 +14,7 @@ from satsym.cli import main
 from satsym.formula import budget, reading, weight
 from satsym.formula.budget import Limit, OverBudget
 from satsym.formula.tree import Mul, Node, Sym
+from tests.auditing.test_audit_program import ROW
 from tests.bench.fuzz_ledgers import audited
 from tests.support.ledgers import HEAD, Row, row, text
 

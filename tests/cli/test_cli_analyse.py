@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 import sympy
-from tests.test_floors import run_satsym
 
 from satsym import instance, kernels
 from satsym.analysis.linear.structure import analyse
@@ -21,6 +20,7 @@ from satsym.report.plots import phase, responses, style
 from satsym.report.plots.orbits import plane
 from satsym.report.results.linear import analysis_object, regulator_object
 from satsym.report.terminal.linear import analysis_text, regulator_text
+from tests.house.test_floors import run_satsym
 
 Run = Callable[..., tuple[int, str, str]]
 

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.test_floors import run_satsym
 
 from satsym import instance
 from satsym.analysis.orbits.survey import survey
@@ -17,6 +16,7 @@ from satsym.report.plots import style
 from satsym.report.plots.orbits import conics, plane, unit_circle
 from satsym.report.results.linear import ANALYSIS
 from satsym.report.terminal.orbit import orbit_text
+from tests.house.test_floors import run_satsym
 from tests.support.cases import two_body_case
 
 HEAD = "satsym schema command model instance status units".split()

@@ -10,7 +10,9 @@ import time
 from pathlib import Path
 
 import pytest
-from tests.test_cli import INSTANCE, Run, case, one_line, program, run
+
+from satsym.cli.stopping import Terminated, terminable
+from tests.cli.test_cli import INSTANCE, Run, case, one_line, program, run
 
 __all__ = ["case", "run"]
 
@@ -78,6 +80,24 @@ def solve(*arguments, **options):
 satsym.solvers.solve = solve
 sys.exit(main())
 """
+
+
+@pytest.mark.parametrize(("sign", "error"), [(signal.SIGTERM, Terminated), (signal.SIGINT, KeyboardInterrupt)])
+def test_a_stop_that_comes_within_a_finaliser_is_not_lost(
+    sign: signal.Signals, error: type[BaseException], capfd: pytest.CaptureFixture[str]
+) -> None:
+    class Careless:
+        def __del__(self) -> None:
+            signal.raise_signal(sign)
+
+    def working() -> None:
+        with terminable():
+            del [Careless()][0]
+            time.sleep(30.0)
+
+    with pytest.raises(error):
+        working()
+    assert capfd.readouterr().err == ""
 
 
 @pytest.mark.parametrize("command", ["solve case.toml --out", "plot soft-return --from", "plot soft-return --out"])

@@ -8,7 +8,6 @@ from pathlib import Path
 import msgspec
 import numpy as np
 import pytest
-from tests.test_floors import imported_by
 
 from satsym import instance
 from satsym.solution import Solution
@@ -16,6 +15,7 @@ from satsym.solvers import shooting, two_point
 from satsym.solvers.certificate import certify
 from satsym.solvers.repeated import Answer, Repeated
 from satsym.status import BadInput, Status
+from tests.house.test_floors import imported_by
 from tests.support.cases import with_parameters
 
 MEANS = ("shooting", "collocation")

@@ -11,8 +11,6 @@ from typing import Any
 import msgspec
 import numpy as np
 import pytest
-from tests.test_floors import run_satsym
-from tests.test_two_point import missed
 
 from satsym import instance
 from satsym.instance import Instance
@@ -27,6 +25,8 @@ from satsym.solvers.shooting.arcs import Arcs
 from satsym.solvers.shooting.newton import doubled, newton
 from satsym.solvers.shooting.solving import from_nothing
 from satsym.status import Status
+from tests.house.test_floors import run_satsym
+from tests.solvers.test_two_point import missed
 from tests.support.samples import EASY, HARD, Population
 
 TURN = 2.0 * np.pi

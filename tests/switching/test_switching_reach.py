@@ -12,8 +12,6 @@ import pytest
 from scipy.linalg import expm
 from scipy.optimize import linprog
 from sympy import Abs, Integer
-from tests.test_switching_models import FREE, assert_certified, problem, v, w, x, y
-from tests.test_switching_models import case as built
 
 from satsym import solvers as solve
 from satsym.instance import Instance
@@ -35,6 +33,8 @@ from satsym.status import Status
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 from tests.support.models import build
 from tests.support.switching_closed_forms import FUEL, TIME, case, moving_arrivals
+from tests.switching.test_switching_models import FREE, assert_certified, problem, v, w, x, y
+from tests.switching.test_switching_models import case as built
 
 START, GOAL = (2.8709045607534005, -1.07111663506606), {"q": -0.29012174824094394, "q_dot": -0.8997125657518318}
 WEAK = {"lower": (-0.07966435744734197,), "upper": (0.19521843413322953,)}

@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from sympy import Integer
-from tests.test_switching_models import assert_certified, case, problem, v, x, y
 
 from satsym import solvers as solve
 from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solvers.certificate import certify
+from tests.switching.test_switching_models import assert_certified, case, problem, v, x, y
 
 END = 2.0
 FAR_AND_FAST = replace(problem("far_and_fast", {x: y, y: v}, Integer(0), ("v",)), terminal_cost=-x - y**2)

@@ -12,7 +12,6 @@ import sympy as sp
 from scipy.integrate import solve_ivp
 from scipy.optimize import minimize
 from sympy import cos, sin, sqrt
-from tests.test_switching_models import case, problem, v, w, x, y
 
 from satsym import solvers as solve
 from satsym.instance import Instance
@@ -26,6 +25,7 @@ from satsym.status import Status
 from satsym.symbolic import Problem, t
 from tests.support.switching_closed_forms import TIME
 from tests.support.switching_closed_forms import case as shipped_case
+from tests.switching.test_switching_models import case, problem, v, w, x, y
 
 VAN_DER_POL = problem("van_der_pol", {x: y, y: -x + y * (1 - x**2) + v}, (x**2 + y**2) / 2, ("v",))
 TWISTED = problem("twisted", {x: y + w * x, y: x**3 + v * (1 + x**2)}, x**4 + y**2, ("v", "w"))
