@@ -284,9 +284,9 @@ def test_iterations_without_a_finite_number_can_be_drawn(tmp_path: Path) -> None
 def test_pyplot_is_never_imported_and_matplotlib_only_to_draw(repository: Path) -> None:
     code = """
 import sys
-from satsym import instance, solve
+from satsym import instance, solvers
 from satsym.report import plots
-flight = solve.simulate(instance.load("soft-return"))
+flight = solvers.simulate(instance.load("soft-return"))
 assert "matplotlib" not in sys.modules
 assert plots.pictures(flight)
 assert "matplotlib" in sys.modules

@@ -112,11 +112,12 @@ def damaged(folder: Path, **changes: Any) -> None:
         {"times": np.zeros((2, 2))},
         {"times": np.full(1001, np.nan)},
         {"times": np.linspace(1.0, 0.0, 1001)},
+        {"times": np.full(1001, 5e-324)},
         {"switching": np.full((2, 1), np.nan)},
         {"more": np.zeros(1)},
     ],
     ids=(
-        "no times,no status,no history,unknown status,x,u,lam,switching,states,objects,times,nan,backwards,"
+        "no times,no status,no history,unknown status,x,u,lam,switching,states,objects,times,nan,backwards,standing,"
         "nan switching,more"
     ).split(","),
 )

@@ -245,7 +245,7 @@ def test_who_finds_a_folder_in_use_waits_and_then_says_so(tmp_path: Path, monkey
 WRITER = """
 import sys, time
 from pathlib import Path
-from satsym.report import files, sets
+from satsym.report.results import files, sets
 print(flush=True)
 while True:
     time.sleep(0.03)  # so that the other has its turn

@@ -200,12 +200,11 @@ def _fits(stored: Stored, spec: ProblemSpec, solved: bool) -> bool:
 
 
 def _passes(stored: Stored) -> bool:
-    """Whether times are numbers that do not decrease, where there is any motion; switching times are always numbers."""
+    """Whether time passes, and never goes back, where there is any motion; switching times are always numbers."""
     times, switching = stored["times"], stored.get("switching", np.empty(0))
-    nothing = not np.isfinite(stored["x"]).any()
-    return bool(
-        np.isfinite(switching).all() and (nothing or (np.isfinite(times).all() and (np.diff(times) >= 0).all()))
-    )
+    if not np.isfinite(switching).all() or not np.isfinite(stored["x"]).any():
+        return bool(np.isfinite(switching).all())
+    return bool(np.isfinite(times).all() and (np.diff(times) >= 0).all() and np.ptp(times) > 0)
 
 
 def _starts_at(x: NDArray[Any], initial: Sequence[float]) -> bool:
