@@ -8,6 +8,7 @@ from typing import TypeVar
 
 from satsym.auditing.judge.bench import Bench
 from satsym.auditing.ledger.contents import Row
+from satsym.formula import field
 from satsym.formula.budget import Limit
 from satsym.status import BadInput
 from satsym.wording import printable
@@ -38,7 +39,7 @@ def named(bench: Bench, row: Row, limit: Limit, work: Callable[[], T], where: st
         return bench.allowance.within(limit, work)
     except Refused:
         raise
-    except BadInput as error:
+    except (BadInput, field.Undecided) as error:
         why = str(error)
     except (RecursionError, MemoryError):
         why = "is nested too deep, or too large; split it into rows"

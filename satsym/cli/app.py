@@ -26,7 +26,7 @@ from satsym.cli.commands.plot import plot
 from satsym.cli.commands.simulate import simulate
 from satsym.cli.commands.solve import solve
 from satsym.cli.output import Unheard, complain, hearable, silence, unless_unwritable
-from satsym.cli.stopping import stopped
+from satsym.cli.stopping import INTERRUPTED, stopped
 from satsym.status import BadInput, ExitCode
 from satsym.wording import printable
 
@@ -59,16 +59,9 @@ class Program(click.Group):
             return super().invoke(ctx)
         except (click.ClickException, click.exceptions.Exit):
             raise
-        except BadInput as error:
-            complain(str(error))
-            return ExitCode.BAD_INPUT
-        except KeyboardInterrupt as error:
-            return stopped(error)
-        except Unheard as error:
-            return _unheard(error)
-        except Exception as error:
-            _unforeseen(error)
-            return ExitCode.UNFORESEEN
+        except (Exception, KeyboardInterrupt) as error:
+            code = stopped(error)
+            return _failed(error) if code is None else code
 
 
 @click.group(
@@ -92,10 +85,21 @@ def run(argv: Sequence[str] | None = None) -> int:
             error.show()
         return error.exit_code
     except click.Abort as error:  # what click makes of an interruption
-        return stopped(error.__cause__ or error)
+        return stopped(error.__cause__ or KeyboardInterrupt()) or INTERRUPTED
     except Unheard as error:
         return _unheard(error)
     return int(outcome or 0)
+
+
+def _failed(error: BaseException) -> int:
+    """Say in a line what ended a command; its exit code."""
+    if isinstance(error, Unheard):
+        return _unheard(error)
+    if isinstance(error, BadInput):
+        complain(str(error))
+        return ExitCode.BAD_INPUT
+    _unforeseen(error)
+    return ExitCode.UNFORESEEN
 
 
 def _unheard(error: Unheard) -> int:
@@ -107,7 +111,7 @@ def _unheard(error: Unheard) -> int:
     return ExitCode.BAD_INPUT
 
 
-def _unforeseen(error: Exception) -> None:
+def _unforeseen(error: BaseException) -> None:
     if os.environ.get("SATSYM_DEBUG"):
         import traceback
 

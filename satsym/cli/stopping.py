@@ -25,6 +25,10 @@ AGAIN = 0.02
 """Seconds after which a stop that Python ignored is repeated."""
 
 
+_asked: list[int] = []
+"""Signals that have come to stop the command."""
+
+
 class Terminated(KeyboardInterrupt):
     """SIGTERM has come; whatever lets an interruption pass lets it pass, too."""
 
@@ -35,18 +39,21 @@ def terminable() -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread() or signal.getsignal(signal.SIGTERM) is signal.SIG_IGN:
         yield
         return
-    before, hook = signal.signal(signal.SIGTERM, _raise), sys.unraisablehook
+    _asked.clear()
+    interrupt, hook = signal.getsignal(signal.SIGINT), sys.unraisablehook
+    terminate = signal.signal(signal.SIGTERM, _raise)
+    if interrupt is signal.default_int_handler:
+        signal.signal(signal.SIGINT, _raise)
     repeats: list[threading.Timer] = []
 
     def ignored(report: UnraisableHookArgs) -> None:
         """Python ignores what is raised in a finaliser or a weak reference's callback: stop once that is over."""
-        if not issubclass(report.exc_type, KeyboardInterrupt):
+        if not _asked:
             hook(report)
-            return
-        sign = signal.SIGTERM if issubclass(report.exc_type, Terminated) else signal.SIGINT
-        repeats.append(threading.Timer(AGAIN, os.kill, (os.getpid(), sign)))
-        repeats[-1].daemon = True
-        repeats[-1].start()
+        elif issubclass(report.exc_type, KeyboardInterrupt):
+            repeats.append(threading.Timer(AGAIN, os.kill, (os.getpid(), _asked[-1])))
+            repeats[-1].daemon = True
+            repeats[-1].start()
 
     sys.unraisablehook = ignored
     try:
@@ -55,15 +62,23 @@ def terminable() -> Iterator[None]:
         for repeat in repeats:
             repeat.cancel()
         sys.unraisablehook = hook
-        signal.signal(signal.SIGTERM, before)
+        signal.signal(signal.SIGTERM, terminate)
+        signal.signal(signal.SIGINT, interrupt)
 
 
-def stopped(error: BaseException) -> int:
-    """Say on stderr, as far as it can be written to, that the command was stopped; its exit code."""
-    terminated = isinstance(error, Terminated)
+def stopped(error: BaseException) -> int | None:
+    """Say on stderr, as far as it can be written to, that the command was stopped; its exit code.
+
+    ``None`` where it was not. Whatever comes after a stop comes of it: a library that is broken off in the middle of
+    tidying up may raise anything.
+    """
+    if not (_asked or isinstance(error, KeyboardInterrupt)):
+        return None
+    terminated = isinstance(error, Terminated) or signal.SIGTERM in _asked
     complain("terminated" if terminated else "interrupted")
     return TERMINATED if terminated else INTERRUPTED
 
 
-def _raise(_signal: int, _frame: FrameType | None) -> None:
-    raise Terminated
+def _raise(sign: int, _frame: FrameType | None) -> None:
+    _asked.append(sign)
+    raise Terminated if sign == signal.SIGTERM else KeyboardInterrupt

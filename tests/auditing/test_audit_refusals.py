@@ -8,6 +8,7 @@ import pytest
 
 from satsym import auditing as audit
 from satsym.cli import main
+from tests.support import ledger_fuzz
 
 
 def ledger(folder: Path, printed: str, holds: str, left_out: str) -> Path:
@@ -43,3 +44,11 @@ def test_what_is_not_there_is_told_in_one_line(
     (line,) = capsys.readouterr().err.strip().splitlines()
     assert complaint in line
     assert "row 13" in line
+
+
+def test_a_rank_without_a_value_is_told_in_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "ledger.toml"
+    path.write_text(ledger_fuzz.ledger(74), encoding="utf-8")
+    assert main(["audit", str(path)]) == 3
+    (line,) = capsys.readouterr().err.strip().splitlines()
+    assert "row 1: no point at which max(theta," in line

@@ -100,6 +100,19 @@ def test_a_stop_that_comes_within_a_finaliser_is_not_lost(
     assert capfd.readouterr().err == ""
 
 
+def test_what_a_library_raises_when_it_is_stopped_is_the_stop(
+    run: Run, case: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def careless(*_: object, **__: object) -> None:
+        try:
+            signal.raise_signal(signal.SIGTERM)
+        finally:
+            raise ValueError("seek of closed file")
+
+    monkeypatch.setattr("satsym.solvers.solve", careless)
+    assert run("solve", case) == (143, "", "satsym: terminated\n")
+
+
 @pytest.mark.parametrize("command", ["solve case.toml --out", "plot soft-return --from", "plot soft-return --out"])
 def test_an_empty_name_of_a_folder_is_refused(run: Run, case: Path, command: str) -> None:
     code, out, err = run(*command.split(), "")

@@ -10,16 +10,20 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
+from sympy import Rational, nsolve
 
 from satsym import instance
 from satsym.instance import Instance
 from satsym.solution import Solution
-from satsym.solvers import two_point
+from satsym.solvers import solve, two_point
 from satsym.status import Status
+from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 from tests.support.cases import with_parameters
+from tests.support.models import build
 
 TWO, FOUR, FIVE = "ends-2-given-state", "ends-4-rendezvous", "ends-5-free"
 AROUND = (0.7, 0.98, 1.02, 1.4)
@@ -117,6 +121,26 @@ def test_free_ends_have_a_short_best_time_where_moving_just_pays():
     assert found.times[-1] < 0.05
     # What staying costs: S of the initial state, k1 (r - 1)^2 / 2 + k4 (theta_dot - 1)^2 / 2.
     assert found.objective < 0.01
+
+
+@pytest.mark.parametrize("t0", [0.0, 3.0])
+def test_a_minimum_next_to_no_time_at_all_is_found_beyond_a_dearer_one(tmp_path: Path, t0: float) -> None:
+    """A body that drifts with speed one goes d for d at the best speed, 1.01; the end costs the rest of two valleys."""
+    place, rate = Variable("q", "q"), Variable("u", "u")
+    q, u = symbols_of((place, rate))
+    valleys = ((q - Rational("0.02")) * (q - Rational("0.9"))) ** 2 + q / 1000
+    drifting = FirstOrder(
+        name="drifting", title="A drift", states=(place,), controls=(rate,), parameters=(), rates={q: 1 + u}
+    )
+    cost = Rational("1.005") + 50 * u**2
+    problem = Problem(name="valleys", title="Two valleys", model=drifting, running_cost=cost, terminal_cost=valleys - q)
+    best = float(min((nsolve(valleys.diff(q), near) for near in (0.02, 0.9)), key=lambda d: valleys.subs(q, d)))
+    found = solve(build(tmp_path, problem, f'[initial]\nq = 0.0\n[time]\nt0 = {t0}\ntf = "free"\n'))
+    assert 0.0 < best < 0.02
+    assert found.objective == pytest.approx(float(valleys.subs(q, best)), rel=1e-9)
+    assert found.times[-1] - t0 == pytest.approx(best / 1.01, rel=1e-6)
+    assert found.certificate is not None
+    assert found.certificate.verdict == "certified"
 
 
 @pytest.mark.parametrize("guess", [None, 2.0, 0.3, 6.0])

@@ -6,6 +6,7 @@ every machine; only time that is up can end it before, and that is said.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
@@ -65,13 +66,13 @@ class Competitor:
     problem
         Of which it is an extremal.
     curve
-        Its states and costates, scaled.
+        Its states and costates, scaled; ``None`` where it ends at once, and has none.
     cost
         The cost J.
     """
 
     problem: TwoPoint
-    curve: Curve
+    curve: Curve | None
     cost: float
 
 
@@ -123,8 +124,8 @@ class Comparison:
 
     @property
     def better(self) -> Competitor | None:
-        """The cheapest of all that are cheaper than the solution."""
-        cheaper = [c for c in self.kinds if c.margin < -SAME and c.cheapest is not None]
+        """The cheapest of all that are cheaper than the solution, and have states and costates to start from."""
+        cheaper = [c for c in self.kinds if c.margin < -SAME and c.cheapest is not None and c.cheapest.curve]
         return min(cheaper, key=lambda c: c.margin).cheapest if cheaper else None
 
 
@@ -154,13 +155,14 @@ def compared(solution: Solution, deadline: float, seed: int = 0) -> Comparison:
 
 def guess(competitor: Competitor, solution: Solution) -> Instance:
     """The instance of a solution that starts from a competitor."""
-    problem, instance = competitor.problem, solution.instance
+    problem, curve, instance = competitor.problem, competitor.curve, solution.instance
+    assert curve is not None
     names = instance.model.spec.state_names
-    end = competitor.problem.instance.t0 + problem.elapsed(competitor.curve.theta)
+    end = problem.instance.t0 + problem.elapsed(curve.theta)
     last = end if instance.tf is None else max(instance.tf, end)
     n, times = len(names), np.linspace(instance.t0, last, SAMPLES)
     tau = np.minimum((times - instance.t0) / (end - instance.t0), 1.0)
-    z = competitor.curve(tau) * problem.scale.both
+    z = curve(tau) * problem.scale.both
     z[:n] += (np.array(instance.initial) - np.array(problem.instance.initial))[:, None]
     coasting = times > end
     if coasting.any():  # arrived on the reference before the end
@@ -222,7 +224,8 @@ def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Attemp
     if around:
         yield Kind.REVOLUTIONS, around
     if instance.tf is None:
-        yield Kind.DURATIONS, [_lasting(instance, share * lasting, cost) for share in SHORTER_AND_LONGER]
+        beside = [_lasting(instance, share * lasting, cost) for share in SHORTER_AND_LONGER]
+        yield Kind.DURATIONS, [*beside, *_at_once(two_point(instance, lasting))]
     if instance.tf is not None and _on_reference(solution):
         final: dict[str, float | Literal["reference"]] = dict.fromkeys(instance.model.spec.state_names, "reference")
         sooner = [share * lasting for share in EARLIER]
@@ -281,6 +284,12 @@ def _lasting(instance: Instance, duration: float, cost: float) -> Attempt:
         return _bounded(given, rough.start.found, cost, limits)
 
     return attempt
+
+
+def _at_once(problem: TwoPoint) -> list[Attempt]:
+    """The end without any motion, where it is one."""
+    cost = problem.at_once
+    return [lambda _: Competitor(problem, None, cost)] if math.isfinite(cost) else []
 
 
 def _cold(problem: TwoPoint, cost: float) -> Attempt:

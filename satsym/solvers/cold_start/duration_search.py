@@ -196,9 +196,12 @@ class Search:
         return edge.duration <= LEAST_SCALES * self.trials.first
 
     def _shorter_may_pay(self, edge: Try) -> bool:
-        """Whether the cost, if it went on to fall as steeply down to no time at all, would become the least so far."""
-        least = edge.cost - edge.slope * edge.duration
-        return edge.slope > 0.0 and least < self.cheapest.cost and not self._least(edge)
+        """Whether the cost would become the least so far, if it went on to fall as steeply, or is so at no time at all.
+
+        Next to the latter there may be a minimum: ending at once is dearer than that where the cost falls at first.
+        """
+        least = edge.cost - edge.slope * edge.duration if edge.slope > 0.0 else self.trials.at_once
+        return min(least, self.trials.at_once) < self.cheapest.cost and not self._least(edge)
 
     def _still_longer_may_pay(self, edge: Try) -> bool:
         """Whether the cost still falls at the longest duration, before time alone would cost more."""

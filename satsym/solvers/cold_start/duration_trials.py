@@ -77,6 +77,11 @@ class Trials:
         """The problem's own scale of costs."""
         return self.free(self.first).scale.cost
 
+    @cached_property
+    def at_once(self) -> float:
+        """What ending without any motion costs; infinite where that is no end."""
+        return self.free(self.first).at_once
+
     @property
     def last(self) -> tuple[TwoPoint, Found]:
         """The last attempt, for the record."""

@@ -21,7 +21,7 @@ from satsym.solvers.control import control_set
 from satsym.solvers.control.regularised import sloping, smoothed_cost, smoothed_law
 
 PLACES, SAME = 8, 1e-9
-"""Times at which derivatives are compared, and the relative difference that may be rounding."""
+"""Times at which derivatives are compared, and the relative difference of numbers that may be rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,6 +198,16 @@ class TwoPoint:
         x = tuple((end[: self.states] * self.scale.state).tolist())
         tf = self.instance.t0 + self.elapsed(theta)
         return float(self.instance.model.terminal_cost(tf, x, self.instance.parameters)) / self.scale.cost
+
+    @property
+    def at_once(self) -> float:
+        """The cost, in the model's units, of ending where and when the motion begins; infinite where that is no end."""
+        end, theta = np.concatenate([self.initial, np.zeros(self.states)]), np.zeros(self.unknowns)
+        constrained = np.ones(self.unknowns - self.free_time, dtype=bool)
+        missed = self.boundary(end, theta)[: self.unknowns - self.free_time + self.states]
+        if (np.abs(missed[np.concatenate([self.fixed, constrained])]) > SAME).any():
+            return float("inf")
+        return self.terminal_cost(end, theta) * self.scale.cost
 
     def control(self, tau: Array, z: Array, theta: Array, bounded: bool = True) -> Array:
         """The control law, in the model's units, shape (m, N)."""
