@@ -19,6 +19,7 @@ from pathlib import Path
 import msgspec
 
 from satsym.auditing.judged import Judged
+from satsym.auditing.ledger import documents
 from satsym.auditing.ledger.contents import Ledger
 from satsym.auditing.run import audit as judge
 
@@ -81,7 +82,8 @@ def _folder() -> Path:
 
 def _digest(ledger: Ledger) -> str:
     digest = hashlib.blake2b(_program().encode(), digest_size=16)
-    digest.update(ledger.path.read_bytes())
+    for path in documents.files_of(ledger.path):
+        digest.update(path.read_bytes())
     return digest.hexdigest()
 
 

@@ -43,8 +43,7 @@ def named(bench: Bench, row: Row, limit: Limit, work: Callable[[], T], where: st
         why = str(error)
     except (RecursionError, MemoryError):
         why = "is nested too deep, or too large; split it into rows"
-    path = printable(str(bench.ledger.path), 200)
-    raise Refused(f"{path}:{row.line}: row {printable(row.key)}: {f'{where}: ' if where else ''}{why}")
+    raise Refused(f"{row.place}: row {printable(row.key)}: {f'{where}: ' if where else ''}{why}")
 
 
 def asked(holds: str, ask: Callable[[], T]) -> T:

@@ -155,7 +155,7 @@ FORMULAS = [
 def subjects(tmp_path_factory: pytest.TempPathFactory) -> list[Subject]:
     """Formulas of this test, and of the shipped ledgers, that are confirmed."""
     read = [ledger(tmp_path_factory.mktemp("formulas"), FORMULAS)]
-    read += [auditing.read(path) for path in auditing.shipped() if path.stem.startswith("its_")]
+    read += [auditing.read(path) for path in auditing.shipped() if path.name.startswith("its_")]
     found = []
     for each in read:
         bench = Bench(each)

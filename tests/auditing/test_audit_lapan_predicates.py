@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import tomllib
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
-from satsym import auditing as audit
 from satsym.auditing.predicates import Finding, Question, registry
+from tests.support.ledgers import whole
 
-LEDGER = tomllib.loads(Path(audit.locate("lapan_pitch")).read_text(encoding="utf-8"))
+LEDGER = tomllib.loads(whole("lapan_pitch"))
 INPUTS = LEDGER["inputs"]
 PRINTED = {f"{row['item']} {row.get('part', '')}".strip(): row.get("printed", "") for row in LEDGER["row"]}
 ROW = Question("row", "claim", "", (), INPUTS, "main", {}, PRINTED)

@@ -6,15 +6,15 @@ from pathlib import Path
 
 import pytest
 
-from satsym import auditing as audit
 from satsym.cli import main
 from tests.support import ledger_fuzz
+from tests.support.ledgers import whole
 
 
 def ledger(folder: Path, printed: str, holds: str, left_out: str) -> Path:
     """The notation and the numbers of lapan_pitch, without one of them, and a single row."""
-    whole = Path(audit.locate("lapan_pitch")).read_text(encoding="utf-8")
-    head = "\n".join(line for line in whole[: whole.index("[[row]]")].splitlines() if line != left_out)
+    pitch = whole("lapan_pitch")
+    head = "\n".join(line for line in pitch[: pitch.index("[[row]]")].splitlines() if line != left_out)
     path = folder / "ledger.toml"
     row = f'item = "13"\nkind = "claim"\nwhere = "here"\nsays = "so"\nprinted = "{printed}"\nholds = "{holds}"\n'
     path.write_text(f"{head}\n[[row]]\n{row}", encoding="utf-8")
@@ -52,3 +52,34 @@ def test_a_rank_without_a_value_is_told_in_one_line(tmp_path: Path, capsys: pyte
     assert main(["audit", str(path)]) == 3
     (line,) = capsys.readouterr().err.strip().splitlines()
     assert "row 1: no point at which max(theta," in line
+
+
+ROW = 'item = "{}"\nkind = "claim"\nwhere = "here"\nsays = "so"\nprinted = "x"\nholds = "{}"\n'
+
+
+@pytest.mark.parametrize(
+    ("chapter", "complaint"),
+    [
+        ("[[row]]\n" + ROW.format("2", "nothing()"), "ledger_2.toml:7: row 2: holds: "),
+        ("[[row]]\n" + ROW.format("1", "illegible()"), "ledger_2.toml:2: row 1: item: there is another row"),
+        ("\n[symbols]\nx = 'm'\n", "ledger_2.toml:2: symbols: not in a chapter; put it in ledger.toml"),
+        ("", "ledger_2.toml:1: row: no rows"),
+        ("row = 1", "ledger_2.toml:1: row: no rows"),
+        ("[[row", "ledger_2.toml: "),
+    ],
+)
+def test_what_is_wrong_with_a_chapter_is_told_with_its_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], chapter: str, complaint: str
+) -> None:
+    pitch = whole("lapan_pitch")
+    rows = "".join(f"[[row]]\nlegible = false\n{ROW.format(item, '')}" for item in ("13", "1"))
+    (tmp_path / "ledger.toml").write_text(pitch[: pitch.index("[[row]]")] + rows, encoding="utf-8")
+    (tmp_path / "ledger_2.toml").write_text(chapter, encoding="utf-8")
+    assert main(["audit", str(tmp_path)]) == 3
+    (line,) = capsys.readouterr().err.strip().splitlines()
+    assert complaint in line
+
+
+def test_a_folder_without_a_head_is_no_ledger(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["audit", str(tmp_path)]) == 3
+    assert "no ledger.toml in this folder" in capsys.readouterr().err

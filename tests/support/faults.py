@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 from satsym import auditing as audit
 from satsym.auditing import cache
+from tests.support.ledgers import whole
 
 FAULTLESS = ("confirmed", "illegible")
 
@@ -37,7 +37,7 @@ def verdicts(request: pytest.FixtureRequest) -> dict[str, str]:
 @pytest.fixture(scope="module")
 def ledger(request: pytest.FixtureRequest) -> dict[str, Any]:
     """The ledger as it is written."""
-    return tomllib.loads(Path(audit.locate(request.module.DOCUMENT)).read_text(encoding="utf-8"))
+    return tomllib.loads(whole(request.module.DOCUMENT))
 
 
 @pytest.fixture

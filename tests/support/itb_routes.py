@@ -10,7 +10,6 @@ import re
 import tomllib
 from collections.abc import Callable, Mapping
 from functools import cache
-from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -20,7 +19,7 @@ import scipy.linalg
 import scipy.special
 import sympy as sp
 
-from satsym import auditing as audit
+from tests.support import ledgers
 
 Rows: TypeAlias = Mapping[str, dict[str, Any]]
 Route: TypeAlias = Callable[[Rows, str], str]
@@ -33,7 +32,7 @@ SPEEDS = (29.78e3, 34.78e3, 42.38e3)
 @cache
 def rows() -> Rows:
     """Rows by their keys, as the file has them."""
-    tree = tomllib.loads(Path(audit.locate("itb_eigen")).read_text(encoding="utf-8"))
+    tree = tomllib.loads(ledgers.whole("itb_eigen"))
     return {f"{row['item']} {row.get('part', '')}".strip(): row for row in tree["row"]}
 
 

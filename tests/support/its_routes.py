@@ -9,16 +9,16 @@ import re
 import tomllib
 from collections.abc import Callable, Mapping
 from functools import cache
-from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
 import sympy as sp
 
+from tests.support.ledgers import whole
+
 Rows: TypeAlias = Mapping[str, Mapping[str, Any]]
 Route: TypeAlias = Callable[[Rows, str], str]
 
-FOLDER = Path(__file__).parents[2] / "derivations" / "documents"
 START = (1.0, 1.0, 1.0, 1.0)
 STATES = ("r", "r_dot", "theta", "theta_dot")
 
@@ -32,7 +32,7 @@ C = sp.Matrix([[1, 0, 0, 0], [0, 0, 1, 0]])
 @cache
 def rows(document: str) -> Rows:
     """Printed rows by item and part."""
-    ledger = tomllib.loads((FOLDER / f"{document}.toml").read_text(encoding="utf-8"))
+    ledger = tomllib.loads(whole(document))
     return {f"{row['item']} {row.get('part', '')}".strip(): row for row in ledger["row"]}
 
 

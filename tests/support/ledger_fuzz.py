@@ -5,10 +5,9 @@ from __future__ import annotations
 import random
 import re
 from functools import cache
-from pathlib import Path
 
 from satsym.auditing.ledger import documents
-from tests.support.ledgers import HEAD, Row, row, text
+from tests.support.ledgers import HEAD, Row, row, text, whole
 
 _NAMES = ("x1", "x2", "x3", "x4", "u1", "u2", "sigma", "omega", "lambda1", "p")
 _OURS = ("r", "r_dot", "theta", "theta_dot", "u1", "u2", "sigma", "omega")
@@ -58,7 +57,7 @@ def ledger(seed: int) -> str:
 @cache
 def _shipped() -> tuple[tuple[str, tuple[str, ...]], ...]:
     """What stands before the rows of each shipped ledger, and its rows."""
-    texts = [Path(path).read_text(encoding="utf-8") for path in documents.shipped()]
+    texts = [whole(path.name) for path in documents.shipped()]
     return tuple((head, tuple(rows)) for head, *rows in (whole.split("[[row]]") for whole in texts))
 
 

@@ -7,7 +7,14 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from satsym.auditing import Judged, Ledger, audit, read
+from satsym.auditing import Judged, Ledger, audit, locate, read
+from satsym.auditing.ledger import documents
+
+
+def whole(document: str) -> str:
+    """The text of a shipped ledger, its chapters one after the other: a ledger in one file."""
+    return "\n".join(path.read_text(encoding="utf-8") for path in documents.files_of(locate(document)))
+
 
 HEAD = """
 format = 1

@@ -22,8 +22,8 @@ class Row:
         As the ledger has it.
     key
         The item and its part: how other rows name it.
-    line
-        Where it stands in the file.
+    place
+        File and line where it stands.
     printed
         The printed formula in the document's symbols: an expression, an equality, rows of expressions (matrix), or
         ``None`` where what is printed is not a formula.
@@ -37,7 +37,7 @@ class Row:
 
     table: RowTable
     key: str
-    line: int
+    place: str
     printed: Node | Equality | tuple[tuple[Node, ...], ...] | None = None
     holds: Node | Equality | None = None
     follows: Node | Equality | None = None

@@ -1,4 +1,4 @@
-"""Ledgers by name or by path: the shipped ones lie beside the derivations."""
+"""Ledgers by name or by path: a file, or a folder with ``ledger.toml`` and chapters. The shipped ones are folders."""
 
 from __future__ import annotations
 
@@ -13,13 +13,19 @@ from satsym.wording import printable, shown, suggestion
 if TYPE_CHECKING:
     from satsym.auditing.ledger.contents import Ledger
 
-SUFFIX = ".toml"
+HEAD, CHAPTERS = "ledger.toml", "ledger_*.toml"
+"""The files of a folder: a head, with rows or without, and chapters of rows alone, by name."""
 
 
 def shipped() -> list[Path]:
     """The ledgers that come with satsym, by name."""
     folder = Path(str(files("satsym.derivations"))) / "documents"
-    return sorted(folder.glob(f"*{SUFFIX}"))
+    return sorted(path.parent for path in folder.glob(f"*/{HEAD}"))
+
+
+def files_of(path: Path) -> list[Path]:
+    """The files of a ledger, the head first."""
+    return [path / HEAD, *sorted(path.glob(CHAPTERS))] if path.is_dir() else [path]
 
 
 def comes_with_satsym(path: Path) -> bool:
@@ -29,7 +35,7 @@ def comes_with_satsym(path: Path) -> bool:
 
 def named(path: Path) -> str:
     """How commands name a ledger: a shipped one by its document, any other by its path."""
-    return path.stem if comes_with_satsym(path) else str(path)
+    return path.name if comes_with_satsym(path) else str(path)
 
 
 def locate(name_or_path: str) -> Path:
@@ -41,15 +47,17 @@ def locate(name_or_path: str) -> Path:
         If there is none.
     """
     for path in shipped():
-        if path.stem == name_or_path:
+        if path.name == name_or_path:
             return path
     path = Path(name_or_path)
     try:
-        if path.is_file():
+        if path.is_file() or (path / HEAD).is_file():
             return path
+        if path.is_dir():
+            raise BadInput(f"{printable(name_or_path, 200)}: no {HEAD} in this folder; put the ledger's head there")
     except (OSError, ValueError):
         pass
-    known = suggestion(name_or_path, [path.stem for path in shipped()])
+    known = suggestion(name_or_path, [path.name for path in shipped()])
     raise BadInput(f"{printable(name_or_path, 200)}: no ledger of this name, and no such file; {known}")
 
 

@@ -16,7 +16,8 @@ from satsym.auditing import language, predicates, quantities
 from satsym.auditing.ledger import documents, rows, schema, vocabulary
 from satsym.auditing.ledger import scopes as notation
 from satsym.auditing.ledger.contents import Ledger, Row, calls_in, row_key
-from satsym.auditing.ledger.positions import positions
+from satsym.auditing.ledger.documents import HEAD
+from satsym.auditing.ledger.positions import Part
 from satsym.auditing.ledger.schema import DocumentTable, RowTable, SymbolTable, WrongKey
 from satsym.auditing.ledger.scopes import Scope, WrongScope
 from satsym.formula import budget, reading
@@ -37,21 +38,40 @@ def read(path: Path) -> Ledger:
     BadInput
         With one line, ``FILE:LINE: what is wrong; what to do``.
     """
-    try:
-        tree = files.read(path)
-    except BadInput as error:
-        raise BadInput(f"{printable(str(path), 200)}: {error}") from None
+    parts = _parts(path)
     allowance = budget.Allowance(counted=not documents.comes_with_satsym(path))
-    return allowance.within(budget.READING, lambda: _Reader(path, tree).ledger(documents.named(path)))
+    return allowance.within(budget.READING, lambda: _Reader(path, parts).ledger(documents.named(path)))
+
+
+def _parts(path: Path) -> list[Part]:
+    """The files of a ledger; chapters have rows only."""
+    found: list[Part] = []
+    for file in documents.files_of(path):
+        try:
+            tree = files.read(file)
+        except BadInput as error:
+            raise BadInput(f"{printable(str(file), 200)}: {error}") from None
+        part = Part(file, tree, sum(len(each.tree.get("row", [])) for each in found))
+        for key in tree if found else ():
+            if key != "row":
+                raise BadInput(f"{part.place(key, 0, key)}: {printable(key)}: not in a chapter; put it in {HEAD}")
+        if found and not isinstance(tree.get("row"), list):
+            raise BadInput(f"{part.place('')}: row: no rows; write one [[row]] for each thing that is printed")
+        found.append(part)
+        if not isinstance(tree.get("row", []), list):
+            break
+    return found
 
 
 class _Reader:
     """Reads table by table; what is wrong is told with the line it stands in."""
 
-    def __init__(self, path: Path, tree: dict[str, Any]) -> None:
-        self._path = path
-        self._tree = tree
-        self._where = positions(path.read_text(encoding="utf-8-sig"))
+    def __init__(self, path: Path, parts: Sequence[Part]) -> None:
+        self._path, self._parts = path, parts
+        head, *chapters = (part.tree for part in parts)
+        self._tree = dict(head)
+        for tree in chapters:
+            self._tree["row"] = [*self._tree.get("row", []), *tree["row"]]
 
     def ledger(self, name: str) -> Ledger:
         """The ledger, checked."""
@@ -133,7 +153,7 @@ class _Reader:
         with self._telling("row", "", index, title):
             table: RowTable = schema.table(entry, RowTable)
         key = f"{table.item} {table.part}".strip()
-        row = Row(table, key, self._where.line("row", index))
+        row = Row(table, key, self._place("row", index))
         with self._telling("row", "scope", index, key):
             if table.scope not in self._scopes:
                 raise BadInput(f"no scope {shown(table.scope)}; {suggestion(table.scope, self._scopes)}")
@@ -212,8 +232,11 @@ class _Reader:
             raise self._bad(f"{where}{error}", table, key, index) from None
 
     def _bad(self, message: str, table: str = "", key: str = "", index: int = 0) -> BadInput:
-        line = self._where.line(table, index, key)
-        return BadInput(f"{printable(str(self._path), 200)}:{line}: {message}")
+        return BadInput(f"{self._place(table, index, key)}: {message}")
+
+    def _place(self, table: str, index: int = 0, key: str = "") -> str:
+        own = [part for part in self._parts if part.first <= index] if table == "row" else self._parts[:1]
+        return own[-1].place(table, index, key)
 
 
 def _check_rows_named(row: Row, formula: Any, by_key: Mapping[str, Row]) -> None:

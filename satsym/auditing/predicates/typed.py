@@ -74,7 +74,7 @@ def listed_field(model: str) -> Finding:
 @predicate
 def names_an_item(document: str, item: str) -> Finding:
     """Whether a document numbers anything so, by the list of its numbers in the ledger."""
-    numbers = files.read(documents.locate(document))["document"]["numbers"]
+    numbers = files.read(documents.files_of(documents.locate(document))[0])["document"]["numbers"]
     word = item.partition(" ")[0]
     there = [number for number in numbers if number.partition(" ")[0] == word]
     return Finding(
