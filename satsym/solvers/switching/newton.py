@@ -134,7 +134,7 @@ class Equations:
         instance, n = self.instance, len(self.instance.initial)
         model, z = instance.model, last.after.tolist()
         u = last.field.control(at.end, z)
-        held = (*u, *u, *instance.bounds[2 * len(u) :])
+        held = instance.control_set.saturated(u).arguments
         point = (at.end, tuple(z[:n]), tuple(z[n:]), tuple(at.multipliers))
         arguments = (*point, instance.parameters, held, final_argument(instance))
         residual = np.array(model.boundary(*arguments))

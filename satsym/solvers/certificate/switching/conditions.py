@@ -136,7 +136,7 @@ def _excess(solution: Solution) -> float:
     p, u = instance.parameters, solution.u
     sigma = np.asarray(model.switching_function_batch(solution.times, solution.x, solution.lam, p))
     weight = np.asarray(model.magnitude_weight_batch(solution.times, solution.x, p))
-    low, high = (np.array(bounds)[:, None] for bounds in (instance.lower, instance.upper))
+    low, high = instance.control_set.box
     rest = np.minimum(np.maximum(0.0, low), high)
     least = np.min([sigma * v + weight * np.abs(v) for v in np.broadcast_arrays(low, high, rest, u)[:3]], axis=0)
     outside = (np.maximum(np.maximum(low - u, u - high), 0.0) / np.maximum(high - low, 1e-300)).max(initial=0.0)

@@ -177,7 +177,7 @@ def _fixed(instance: Instance) -> NDArray[np.intp]:
 def _singular(solution: Solution) -> bool:
     """Whether the control is anything but constant between switches."""
     instance = solution.instance
-    low, high = (np.array(bounds)[:, None] for bounds in (instance.lower, instance.upper))
+    low, high = instance.control_set.box
     levels = np.stack(np.broadcast_arrays(low, high, np.clip(0.0, low, high)))[:, :, :1]
     off = np.abs(solution.u[None] - levels).min(axis=0)
     return bool((off > 1e-12 * (high - low)).any())

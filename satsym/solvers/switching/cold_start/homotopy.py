@@ -20,7 +20,6 @@ from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.system import System
-from satsym.solvers.control.control_set import violation
 from satsym.solvers.control.regularised import companion
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.cold_start.least_effort import (
@@ -65,7 +64,7 @@ def path(instance: Instance, limits: Limits) -> Iterator[Smoothed]:
         Where there is none, or the way to the bounds is blocked.
     """
     problem, curve = (instance.tf is None and _long(instance, limits)) or _bounded(instance, limits)
-    smoothing = problem.bounds[-2]
+    smoothing = problem.control_set.smoothing
 
     def weighed(share: float) -> TwoPoint:
         return replace(problem, instance=companion(instance, smoothing, share))
@@ -105,7 +104,7 @@ def _long(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve] | None:
     u = tuple(problem.control(np.ones(1), curve.nodes[:, -1:], curve.theta)[:, 0].tolist())
     effort = sum(v * v for v in u) / 2.0
     growth = effort + sum(a * b for a, b in zip(z[n:], instance.model.dynamics(t, z[:n], u, p), strict=True))
-    idle = tuple(min(max(0.0, low), high) for low, high in zip(instance.lower, instance.upper, strict=True))
+    idle = instance.control_set.rest
     smoothing = -instance.model.running_cost(t, z[:n], idle, p) / growth if growth else 0.0
     if not 0.0 < smoothing < float("inf"):
         return None
@@ -126,14 +125,14 @@ def _bounded(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve]:
     worst = max(_violation(problem, curve), 0.0)
 
     def bounded(share: float) -> TwoPoint:
-        return problem.widened((1.0 - share) * worst)
+        return problem.relaxed((1.0 - share) * worst)
 
     if worst > 0.0:
         curve, reached = follow(bounded, curve, limits)
         if reached < 1.0:
             message = f"bounds could be brought in only {min(reached, 0.99):.0%} of the way from where they do not bind"
             raise Stopped(Status.NOT_CONVERGED, message, problem, curve)
-    return problem.widened(0.0), curve
+    return problem.relaxed(0.0), curve
 
 
 def first_smoothing(instance: Instance) -> float:
@@ -166,4 +165,4 @@ def _unbounded(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve]:
 
 def _violation(problem: TwoPoint, curve: Curve) -> float:
     tau = np.linspace(0.0, 1.0, 201)
-    return violation(problem.instance, problem.control(tau, curve(tau), curve.theta, bounded=False))
+    return problem.instance.control_set.violation(problem.control(tau, curve(tau), curve.theta, bounded=False))

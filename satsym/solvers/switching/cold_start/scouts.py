@@ -171,7 +171,7 @@ class _Steps:
     @classmethod
     def of(cls, instance: Instance, limits: Limits) -> _Steps:
         """Of fixed length, as the motion at its start asks for."""
-        n, u = len(instance.initial), tuple(np.clip(0.0, instance.lower, instance.upper).tolist())
+        n, u = len(instance.initial), instance.control_set.rest
         slopes = np.array(instance.model.jacobian_x(instance.t0, instance.initial, u, instance.parameters))
         return cls(float(np.abs(np.linalg.eigvals(slopes.reshape(n, n))).max(initial=0.0)), limits)
 
@@ -224,7 +224,7 @@ def _flown(instance: Instance, levels: NDArray[np.int64], lengths: Array, steps:
     """Where plans lead, shape (n, N), and at what cost, (N,): infinite beyond the domain."""
     model, p, n = instance.model, instance.parameters, len(instance.initial)
     many = int(np.prod(lengths.shape[1:]))
-    low, high = (np.array(row)[:, None] for row in (instance.lower, instance.upper))
+    low, high = instance.control_set.box
     rest = np.clip(0.0, low, high)
     positive = [k for k, state in enumerate(model.spec.states) if state.positive]
     y, t = np.repeat(np.append(instance.initial, 0.0)[:, None], many, axis=1), np.full(many, instance.t0)
