@@ -8,11 +8,13 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from satsym.control_set import ControlSet, Row
 from satsym.instance.schema import SolverOptions
 
 if TYPE_CHECKING:
+    from satsym.control_set import ControlSet
     from satsym.kernels import Kernels
+
+Row = tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -145,4 +147,6 @@ class Instance:
     @cached_property
     def control_set(self) -> ControlSet:
         """The admissible controls."""
+        from satsym.control_set import ControlSet  # here, for it loads numpy, which listing instances does not need
+
         return ControlSet.of(self.model.spec, self.lower, self.upper, self.max_norm)

@@ -130,9 +130,8 @@ def about_the_law(kernels: Kernels, at: Mapping[str, Any]) -> tuple[Array, ...]:
     """Bounds of a box of which most lie near the control without any: around it, above it or below."""
     m = len(kernels.spec.controls)
     with np.errstate(all="ignore"):
-        law = kernels.control_law_batch(
-            *(at[a] for a in ("t", "x", "lam", "p")), ControlSet("box", (-FAR,) * m, (FAR,) * m).arguments
-        )
+        unlimited = ControlSet("box", (-FAR,) * m, (FAR,) * m).arguments
+        law = kernels.control_law_batch(at["t"], at["x"], at["lam"], at["p"], unlimited)
     kinds = np.arange(law.shape[-1])[None, :] + np.arange(m)[:, None]  # no two controls alike
     found = []
     drawn = ControlSet.from_arguments(kernels.spec, at["bounds"])

@@ -206,6 +206,7 @@ def _metrics(instance: Instance, x: Array) -> dict[str, float]:
     for name, row in zip(spec.state_names, x, strict=True):
         found |= {f"{name}_min": float(row.min()), f"{name}_max": float(row.max())}
     if spec.has_reference:
+        assert instance.tf is not None
         curve = instance.model.reference(instance.tf, instance.parameters)
         found |= {f"{name}_error": float(row[-1] - c) for name, row, c in zip(spec.state_names, x, curve, strict=True)}
     return found
