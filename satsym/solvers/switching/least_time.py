@@ -88,7 +88,7 @@ class _LeastTime:
         return alone
 
     def extremal_jacobian_batch(self, t: Array, x: Array, u: Array, lam: Array, p: Sequence[float]) -> Array:
-        """The rates of states and costates by both, controls held, shape (2n, 2n, N)."""
+        """The rates of states and costates by both, controls saturated, shape (2n, 2n, N)."""
         batch, n = self.whole["extremal_jacobian_batch"], self.n
         found, without = batch(t, x, u, lam, p), batch(t, x, u, 0.0 * lam, p)
         found[n:, :n] -= without[n:, :n]
