@@ -1,4 +1,4 @@
-"""The smoothed companion of a switching problem: the same problem with a small quadratic cost of the control.
+"""The regularised problem of a switching problem: the same with a small quadratic cost of the control.
 
 Its control law is continuous, so collocation solves it; as the smoothing goes to zero its solutions tend to those of
 the problem itself. The weight of |u| is brought in from zero, for with it the law is flat where the costates vanish,
@@ -22,7 +22,7 @@ TINY = 1e-60
 
 
 @dataclass(frozen=True)
-class Companion(Instance):
+class Regularised(Instance):
     """An instance with ``smoothing``/2 times the squared control added to its running cost.
 
     Attributes
@@ -49,10 +49,10 @@ def sloping(instance: Instance, lam: Array) -> Array:
     return np.where(lam == 0.0, tiny, lam)
 
 
-def companion(instance: Instance, smoothing: float, share: float) -> Companion:
-    """The companion of an instance."""
+def regularised(instance: Instance, smoothing: float, share: float) -> Regularised:
+    """The regularised problem of an instance."""
     stated = {f.name: getattr(instance, f.name) for f in fields(Instance)}
-    return Companion(**stated, smoothing=smoothing, share=share)
+    return Regularised(**stated, smoothing=smoothing, share=share)
 
 
 def smoothed_law(instance: Instance, control_set: ControlSet, t: Array, x: Array, lam: Array) -> Array:

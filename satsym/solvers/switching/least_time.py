@@ -102,7 +102,7 @@ class _LeastTime:
         return tuple(found.ravel().tolist())
 
     def law(self, t: Array, x: Array, lam: Array, p: Any, bounds: Any) -> tuple[Array, NDArray[np.bool_]]:
-        """Controls of the smoothed companion, shape (m, N), and where they are within their bounds."""
+        """Controls of the regularised problem, shape (m, N), and where they are within their bounds."""
         control_set = ControlSet.from_arguments(self.model.spec, bounds)
         wanted = -self.linear["switching_function_batch"](t, x, lam, p) / control_set.smoothing
         low, high = control_set.box

@@ -1,8 +1,7 @@
 """From nothing to smoothed extremals, less and less smoothed.
 
-Without bounds the companion of a switching problem is a problem of least effort, which collocation solves from a cold
-start. Its bounds are then brought in, the weight of |u| is, and the smoothing is taken away, each step starting from
-the last solution.
+Without bounds the regularised problem is one of least effort, which collocation solves from a cold start. Its bounds
+are then brought in, the weight of |u| is, and the smoothing is taken away, each step starting from the last solution.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.system import System
-from satsym.solvers.control.regularised import companion
+from satsym.solvers.control.regularised import regularised
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.cold_start.least_effort import (
     NEAR_FULL,
@@ -46,7 +45,7 @@ class Stopped(Exception):
     status, message
         What came of it.
     problem, curve
-        The last companion that was solved, if any.
+        The last regularised problem that was solved, if any.
     """
 
     status: Status
@@ -67,7 +66,7 @@ def path(instance: Instance, limits: Limits) -> Iterator[Smoothed]:
     smoothing = problem.control_set.smoothing
 
     def weighed(share: float) -> TwoPoint:
-        return replace(problem, instance=companion(instance, smoothing, share))
+        return replace(problem, instance=regularised(instance, smoothing, share))
 
     curve, reached = follow(weighed, curve, limits)
     if reached < 1.0:
@@ -78,13 +77,13 @@ def path(instance: Instance, limits: Limits) -> Iterator[Smoothed]:
         before = smoothing
 
         def sharper(share: float, before: float = before, problem: TwoPoint = problem) -> TwoPoint:
-            return replace(problem, instance=companion(instance, before * SHARPER**-share, 1.0))
+            return replace(problem, instance=regularised(instance, before * SHARPER**-share, 1.0))
 
         curve, reached = follow(sharper, curve, limits)
         if reached == 0.0:
             raise Stopped(Status.NOT_CONVERGED, f"less smoothing than {smoothing:.1e} was not reached", problem, curve)
         smoothing *= SHARPER**-reached
-        problem = replace(problem, instance=companion(instance, smoothing, 1.0))
+        problem = replace(problem, instance=regularised(instance, smoothing, 1.0))
         yield Smoothed(problem, curve)
 
 
@@ -108,7 +107,7 @@ def _long(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve] | None:
     smoothing = -instance.model.running_cost(t, z[:n], idle, p) / growth if growth else 0.0
     if not 0.0 < smoothing < float("inf"):
         return None
-    eased = two_point(companion(instance, smoothing, 0.0), problem.duration)
+    eased = two_point(regularised(instance, smoothing, 0.0), problem.duration)
     ratio = np.ones((2 * n, 1))
     ratio[n:] = smoothing * problem.scale.both[n:] / eased.scale.both[n:]
     ratio[:n] = problem.scale.both[:n] / eased.scale.both[:n]
@@ -121,7 +120,7 @@ def _long(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve] | None:
 
 def _bounded(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve]:
     """From no bounds to the bounds, well smoothed."""
-    problem, curve = _unbounded(companion(instance, first_smoothing(instance), 0.0), limits)
+    problem, curve = _unbounded(regularised(instance, first_smoothing(instance), 0.0), limits)
     worst = max(_violation(problem, curve), 0.0)
 
     def bounded(share: float) -> TwoPoint:
@@ -148,7 +147,7 @@ def first_smoothing(instance: Instance) -> float:
 
 
 def _unbounded(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve]:
-    """The companion without bounds, solved."""
+    """The regularised problem without bounds, solved."""
     if instance.tf is None:
         near = of_size(instance, NEAR_FULL, limits) if instance.tf_guess is None else None
         duration = first_duration(instance) if near is None else near.problem.duration

@@ -23,7 +23,7 @@ from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.system import System
-from satsym.solvers.control.regularised import companion
+from satsym.solvers.control.regularised import regularised
 from satsym.solvers.iteration import Limits
 
 NEAR_FULL = (1.15, 2.2)
@@ -61,9 +61,9 @@ class Smoothed:
     Attributes
     ----------
     problem, curve
-        The companion, and its solution.
+        The regularised problem, and its solution.
     scaled
-        Factor of the costates by which the companion's are those of the problem.
+        Factor of the costates by which those of the regularised problem are those of the problem.
     """
 
     problem: TwoPoint
@@ -112,7 +112,7 @@ def first_duration(instance: Instance) -> float:
     """The guess; or the time scale of the motion, unless that is long only because its modes drift slowly apart."""
     if instance.tf_guess is not None:
         return instance.tf_guess - instance.t0
-    scale, n = time_scale(companion(instance, 1.0, 0.0)), len(instance.initial)
+    scale, n = time_scale(regularised(instance, 1.0, 0.0)), len(instance.initial)
     idle = instance.control_set.rest
     slopes = np.array(instance.model.jacobian_x(instance.t0, instance.initial, idle, instance.parameters))
     quickest = float(np.linalg.norm(slopes.reshape(n, n), 2))
@@ -123,7 +123,7 @@ def _least_effort(instance: Instance, duration: float, limits: Limits) -> Smooth
     """The least effort in a given time without bounds, if the straight line leads there at once."""
     if limits.expired:
         return None
-    fixed = replace(companion(instance, 1.0, 0.0), tf=instance.t0 + duration, tf_guess=None)
+    fixed = replace(regularised(instance, 1.0, 0.0), tf=instance.t0 + duration, tf_guess=None)
     problem = two_point(fixed, duration).relaxed(float("inf"))
     line = as_curve(problem, first(problem))
     found = straight_through(line, System(problem, line.mesh, STAGES), limits)
