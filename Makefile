@@ -41,8 +41,9 @@ format: $(VENV)/installed-dev  ## let ruff put the style right
 	$(BIN)/ruff check --quiet --fix-only
 	$(BIN)/ruff format --quiet
 
-derive: $(VENV)/installed  ## write generated/ from derivations/
+derive: $(VENV)/installed  ## write generated/ from derivations/, and the types of what it holds from the contract
 	$(BIN)/satsym derive
+	$(BIN)/python -m satsym.codegen.protocol
 
 check-derive: $(VENV)/installed  ## fail if generated/ is not what derivations/ says
 	$(BIN)/satsym derive --check

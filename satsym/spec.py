@@ -14,7 +14,7 @@ from typing import Any, Literal
 FORMAT = 1
 """Version of the literal that generated modules carry as ``MODEL``."""
 
-ControlSet = Literal["free", "box", "ball"]
+ControlSetKind = Literal["free", "box", "ball"]
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
 _OF_LINEAR_MODELS = ("outputs", "linear")
 _OF_VARIABLES = (
@@ -104,7 +104,7 @@ class ProblemSpec:
     states: tuple[Variable, ...]
     controls: tuple[Variable, ...]
     parameters: tuple[Variable, ...]
-    control_set: ControlSet | None
+    control_set: ControlSetKind | None
     has_cost: bool
     has_terminal_cost: bool
     has_reference: bool

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from satsym.instance.schema import SolverOptions
 
 if TYPE_CHECKING:
+    from satsym.control_set import ControlSet
     from satsym.kernels import Kernels
 
 Row = tuple[float, ...]
-
-UNSMOOTHED = (1e-100, 1.0)
-"""What ends the bounds of a switching problem: a smoothing that is none, and all of the weight of |u|."""
 
 
 @dataclass(frozen=True)
@@ -145,10 +144,9 @@ class Instance:
             return 5
         return 4 if "reference" in self.final.values() else 2
 
-    @property
-    def bounds(self) -> Row:
-        """The control set as generated functions take it: lower and upper bounds, the radius, or nothing."""
-        kind = self.model.spec.control_set
-        if kind == "box":
-            return self.lower + self.upper + (UNSMOOTHED if self.model.spec.switching else ())
-        return (self.max_norm,) if kind == "ball" else ()
+    @cached_property
+    def control_set(self) -> ControlSet:
+        """The admissible controls."""
+        from satsym.control_set import ControlSet  # here, for it loads numpy, which listing instances does not need
+
+        return ControlSet.of(self.model.spec, self.lower, self.upper, self.max_norm)

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.control_set import ControlSet
 from satsym.kernels.evaluation import FAINT, Evaluation
 from satsym.kernels.relations import Relation
 
@@ -54,8 +55,9 @@ def _slope(of: Evaluation, name: str, by: str) -> Array:
 def _limits(of: Evaluation) -> tuple[Array, Array, Array, Array]:
     """Lower and upper bounds as tables, smoothing and share."""
     u = of.at["u"]
-    *box, smoothing, share = (np.broadcast_to(value, u.shape[-1:]) for value in of.at["bounds"])
-    return np.array(box[: len(u)]), np.array(box[len(u) :]), smoothing, share
+    bounds = [np.broadcast_to(value, u.shape[-1:]) for value in of.at["bounds"]]
+    limits = ControlSet.from_arguments(of.kernels.spec, bounds)
+    return np.array(limits.lower), np.array(limits.upper), np.asarray(limits.smoothing), np.asarray(limits.share)
 
 
 def _law(of: Evaluation, sigma: Array, weight: Array) -> Array:

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.arrays import Array
+from satsym.control_set import ControlSet
 from satsym.kernels import plain
 from satsym.kernels.contract import CURVE, GROUPS, TUPLES, pointwise, sizes
 from satsym.kernels.core import Kernels
@@ -129,10 +130,12 @@ def about_the_law(kernels: Kernels, at: Mapping[str, Any]) -> tuple[Array, ...]:
     """Bounds of a box of which most lie near the control without any: around it, above it or below."""
     m = len(kernels.spec.controls)
     with np.errstate(all="ignore"):
-        law = kernels.control_law_batch(*(at[a] for a in ("t", "x", "lam", "p")), (*[-FAR] * m, *[FAR] * m))
+        unlimited = ControlSet("box", (-FAR,) * m, (FAR,) * m).arguments
+        law = kernels.control_law_batch(at["t"], at["x"], at["lam"], at["p"], unlimited)
     kinds = np.arange(law.shape[-1])[None, :] + np.arange(m)[:, None]  # no two controls alike
     found = []
-    for shifts, bounds in zip(NEAR, (at["bounds"][:m], at["bounds"][m:]), strict=True):
+    drawn = ControlSet.from_arguments(kernels.spec, at["bounds"])
+    for shifts, bounds in zip(NEAR, (drawn.lower, drawn.upper), strict=True):
         near = law + np.array(shifts)[kinds % len(shifts)] * np.abs(law)
         found += list(np.where(np.isfinite(near), near, np.array(bounds)))
     return tuple(found)

@@ -114,6 +114,12 @@ given as sequences of their entries, row by row; in the batch form as arrays who
 Eigenvalues are rows of a real and an imaginary part.
 """
 
+POINTWISE = {
+    **(_MOTION | _REFERENCE | _INVARIANTS | _POSITION | _QUANTITIES | _BALANCES | _KEPLERIAN | _COST),
+    **(_SWITCHING | CURVE | LINEAR),
+}
+"""All functions of one point in time that any model has."""
+
 _FORWARD = {"forward": _signature("times x0 u u_mid p x x_mid")}
 _BACKWARD = {"backward": _signature("times lam_f x x_mid u u_mid p lam lam_mid")}
 _SYMPLECTIC = {"symplectic": _signature("times x0 p x")}

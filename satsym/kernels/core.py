@@ -7,7 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,6 +16,11 @@ from satsym.arrays import Array
 from satsym.kernels.contract import LOOPS
 from satsym.spec import ProblemSpec
 from satsym.status import BadInput
+
+if TYPE_CHECKING:
+    from satsym.kernels.functions import Functions
+else:
+    Functions = object
 
 Backend = Literal["python", "numba"]
 Function = Callable[..., Any]
@@ -28,7 +33,7 @@ The last comes from complex numbers, which Python makes of fractional powers of 
 
 
 @dataclass(frozen=True, eq=False)
-class Kernels:
+class Kernels(Functions):
     """A model that solvers can call.
 
     Every generated function is an attribute (``kernels.dynamics(t, x, u, p)``), with the loops ``forward``,
@@ -55,8 +60,10 @@ class Kernels:
         # Instance attributes, not __getattr__: solvers call these in inner loops.
         vars(self).update({name: f for name, f in self.functions.items() if name not in LOOPS})
 
-    def __getattr__(self, name: str) -> Function:
-        raise AttributeError(f"model {self.spec.name} has no function {name}" if "spec" in vars(self) else name)
+    if not TYPE_CHECKING:  # types come from the contract
+
+        def __getattr__(self, name: str) -> Function:
+            raise AttributeError(f"model {self.spec.name} has no function {name}" if "spec" in vars(self) else name)
 
     def __reduce__(self) -> tuple[Any, ...]:
         if self.origin is None:

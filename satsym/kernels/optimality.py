@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.control_set import ControlSet
 from satsym.kernels.evaluation import FAINT, Evaluation, size
 from satsym.kernels.relations import Relation, derivative
 
@@ -45,18 +46,16 @@ def _of_regular_law(of: Evaluation) -> Iterator[Relation]:
     law = of("control_law")
     slope = of.slope("hamiltonian", "u", u=law)
     terms = np.abs(of.slope("hamiltonian", "u", u=np.zeros_like(law))) + np.abs(slope)
-    kind, bounds = of.kernels.spec.control_set, [np.asarray(b) for b in of.at["bounds"]]
-    if kind == "box":
-        low, high = (
-            np.array(np.broadcast_arrays(*half, law[0])[:-1]) for half in (bounds[: len(law)], bounds[len(law) :])
-        )
+    limits = ControlSet.from_arguments(of.kernels.spec, [np.asarray(b) for b in of.at["bounds"]])
+    if limits.kind == "box":
+        low, high = (np.array(np.broadcast_arrays(*half, law[0])[:-1]) for half in (limits.lower, limits.upper))
         left = _outside_box(of, law, slope, low, high)
         size_of_law = size(law)
         yield Relation("control_law", "within its box", law, np.minimum(np.maximum(law, low), high), size_of_law)
-    elif kind == "ball":
+    elif limits.kind == "ball":
         norm = np.sqrt((law * law).sum(axis=0))
-        left = _outside_ball(slope, law, norm, bounds[0])
-        yield Relation("control_law", "within its ball", norm, np.minimum(norm, bounds[0]))
+        left = _outside_ball(slope, law, norm, np.asarray(limits.radius))
+        yield Relation("control_law", "within its ball", norm, np.minimum(norm, np.asarray(limits.radius)))
     else:
         left = slope
     yield Relation("control_law", "H is least there", left, np.zeros_like(left), terms)

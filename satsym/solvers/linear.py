@@ -17,7 +17,6 @@ from satsym.instance import Instance
 from satsym.solution import Progress, Solution
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
-from satsym.solvers.control import control_set
 from satsym.solvers.extremal import Extremal, solved
 from satsym.solvers.iteration import Limits
 from satsym.solvers.shooting.arcs import MOST_STEPS, Arcs, sufficient
@@ -116,7 +115,7 @@ def _extremal(instance: Instance, limits: Limits, effort: bool) -> Extremal:
     if instance.tf is None:
         raise _refusal(instance, "its final time is free")
     problem = two_point(instance, instance.tf - instance.t0)
-    free = problem.widened(float("inf"))
+    free = problem.relaxed(float("inf"))
     arcs = _arcs(free)
     if not _linear(free):
         return Extremal(problem, arcs, float("inf"), Status.NON_FINITE, "the canonical equations are not finite", 0)
@@ -133,7 +132,7 @@ def _extremal(instance: Instance, limits: Limits, effort: bool) -> Extremal:
         return unfinished(problem, arcs, message, 1, limits)
     tau = np.linspace(0.0, 1.0, instance.solver.steps + 1)
     control = limits.in_blocks(lambda part: problem.control(part, arcs(part), arcs.theta, bounded=False), tau)
-    if control_set.violation(instance, control) > 0.0:
+    if instance.control_set.violation(control) > 0.0:
         raise _refusal(instance, "bounds on its control are met")
     cost = arcs.cost() * problem.scale.cost
     limits.tell(cost, error)

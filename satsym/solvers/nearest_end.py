@@ -124,7 +124,7 @@ def nearest(problem: TwoPoint, path: Path, limits: Limits) -> Nearest | None:
 def _drawn(problem: TwoPoint, reach: _Reach) -> list[Array]:
     """Controls that are drawn within the bounds, constant for a few pieces each."""
     rng, instance, nodes = np.random.default_rng(0), problem.instance, len(reach.tau)
-    low, high = (np.array(row)[:, None] for row in (instance.lower, instance.upper))
+    low, high = instance.control_set.box
     if reach._round:
         low, high = -instance.max_norm * np.ones((reach.controls, 1)), instance.max_norm * np.ones((reach.controls, 1))
     if not (np.isfinite(low).all() and np.isfinite(high).all()):
@@ -166,8 +166,7 @@ class _Reach:
                 / np.sqrt(1.0 - inside**2)
             )
         if instance.model.spec.control_set == "box":
-            lower, upper = (np.array(row)[:, None] for row in (instance.lower, instance.upper))
-            return np.minimum(np.maximum(u, lower), upper)
+            return instance.control_set.project(u)
         return u
 
     @property

@@ -83,7 +83,7 @@ def from_cold_start(instance: Instance, limits: Limits, effort: bool, accurate: 
     if instance.tf is not None:
         problem = two_point(instance, instance.tf - instance.t0)
         start, way = guessed(problem, limits) or cold_start(problem, limits), ""
-        if start.way == "none" and np.isfinite(problem.bounds).any():
+        if start.way == "none" and problem.control_set.bounded:
             start = drawn_within(problem, limits) or start
         if start.saddle is not None:
             start = replace(start, found=start.saddle, way="straight line, but no minimum was found")
@@ -92,7 +92,7 @@ def from_cold_start(instance: Instance, limits: Limits, effort: bool, accurate: 
             return unfinished(problem, start.found.curve, message, start.steps, limits)
     else:
         chosen = free_duration(instance, limits, effort)
-        problem, start, way = chosen.problem.widened(0.0), chosen.start, f", {chosen.message}"
+        problem, start, way = chosen.problem.relaxed(0.0), chosen.start, f", {chosen.message}"
         if not chosen.status.answered:
             return Extremal(problem, start.found.curve, float("inf"), chosen.status, chosen.message, start.steps)
     found = accurate(problem, start, limits)
@@ -114,7 +114,7 @@ def guessed(problem: TwoPoint, limits: Limits) -> Start | None:
     Without costates that are guessed the bounds are soft at first, but harder than where the guess would be led away.
     """
     guess = problem.instance.guess
-    if not guess or not np.isfinite(problem.bounds).any() or problem.free_time:
+    if not guess or not problem.control_set.bounded or problem.free_time:
         return None
     begun, curve = paths.start(problem), None
     if guess.control and loose(problem):
@@ -190,7 +190,7 @@ def outside(problem: TwoPoint, path: Path, bounded: Bounded, steps: int, limits:
 def explained(found: Extremal, limits: Limits) -> Extremal:
     """What was found; where bounds are in the way of an answer, whether the end can be reached at all."""
     problem = found.problem
-    if found.status is not Status.NOT_CONVERGED or not np.isfinite(problem.bounds).any():
+    if found.status is not Status.NOT_CONVERGED or not problem.control_set.bounded:
         return found
     separated = unreachable(problem.instance, limits)
     if separated is not None:
@@ -211,7 +211,7 @@ def accurate(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
 def within(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
     """The same, without asking why where there is none."""
     tolerance = problem.instance.solver.tolerance
-    free, steps = problem.widened(float("inf")), start.steps
+    free, steps = problem.relaxed(float("inf")), start.steps
     refined, cost = Refined(start.found.curve, float("inf"), False, 0), float("nan")
     if start.within is None:
         refined = refine(free, start.found.curve, tolerance, known=start.found.linearised)

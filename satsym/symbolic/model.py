@@ -8,7 +8,7 @@ from typing import Literal
 
 import sympy as sp
 
-from satsym.spec import ControlSet, Variable
+from satsym.spec import ControlSetKind, Variable
 
 Convention = Literal["minimum", "maximum"]
 """Of Pontryagin's principle: H = lambda' f + L is minimised, or H = lambda' f - L is maximised."""
@@ -168,7 +168,7 @@ class Problem:
     running_cost: sp.Expr
     terminal_cost: sp.Expr = sp.Integer(0)
     terminal_constraints: tuple[sp.Expr, ...] = ()
-    control_set: ControlSet = "free"
+    control_set: ControlSetKind = "free"
     convention: Convention = "minimum"
 
 

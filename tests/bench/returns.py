@@ -86,7 +86,7 @@ def solved(what: str, number: int) -> Outcome:
 def best_of_eight(case: Instance) -> float:
     """The least cost to which eight starts lead, each minimised for itself; infinite if none leads anywhere."""
     assert case.tf is not None
-    problem = scaled(case, case.tf - case.t0).widened(float("inf"))
+    problem = scaled(case, case.tf - case.t0).relaxed(float("inf"))
     best = float("inf")
     for start in eight(problem):
         found = from_path(problem, start, Limits(STEPS, time.perf_counter() + SECONDS), STEPS)

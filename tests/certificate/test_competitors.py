@@ -138,7 +138,7 @@ def test_spirals_lead_from_the_start_to_the_end_with_their_turns(tmp_path: Path)
 def test_a_force_that_fades_leads_from_each_spiral_to_the_minimum_with_its_turns(tmp_path: Path) -> None:
     """Polar coordinates have the same minima, by final angle; with all of the force the spiral is a motion."""
     text = "[initial]\nx = 1.0\ny = 0.0\nv_x = 0.0\nv_y = 1.0\n[final]\nx = -1.2\ny = 0.0\nv_x = 0.0\nv_y = -0.9\n"
-    problem = two_point(build(tmp_path, cartesian, text + "[time]\nt0 = 2.0\ntf = 12.0\n"), 10.0).widened(np.inf)
+    problem = two_point(build(tmp_path, cartesian, text + "[time]\nt0 = 2.0\ntf = 12.0\n"), 10.0).relaxed(np.inf)
     for spiral in spirals(problem, 3):
         curve = paths.curve(problem, spiral.path)
         forced, free = (fading(problem, spiral)(share) for share in (0.0, 1.0))

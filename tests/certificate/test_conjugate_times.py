@@ -17,7 +17,7 @@ from satsym.solvers.certificate import certify
 from satsym.solvers.certificate.conjugate import NOT_STRICT, Conjugate, conjugate
 from satsym.solvers.certificate.neighbours import Neighbours, neighbours
 from satsym.solvers.certificate.segments import segments
-from satsym.spec import ControlSet, Variable
+from satsym.spec import ControlSetKind, Variable
 from satsym.status import Status
 from satsym.symbolic import FirstOrder, Problem, symbols_of
 from tests.support.models import build
@@ -33,7 +33,7 @@ def plane(
     running_cost: Expr,
     terminal_cost: Expr = NOTHING,
     constraints: tuple[Expr, ...] = (),
-    control_set: ControlSet = "free",
+    control_set: ControlSetKind = "free",
 ) -> Problem:
     """Two places, each with its own velocity as control."""
     return Problem(

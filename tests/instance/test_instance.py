@@ -77,7 +77,7 @@ def test_the_example_of_the_manual_arrives_as_written(load: Callable[[str], Inst
     assert case.final == {"r": 1.0, "r_dot": 0.0, "theta": "reference", "theta_dot": 1.0}
     assert (case.t0, case.tf, case.tf_guess) == (0.0, 2 * math.pi, None)
     assert (case.lower, case.upper, case.max_norm) == ((-0.2, -math.inf), (0.2, math.inf), math.inf)
-    assert case.bounds == (-0.2, -math.inf, 0.2, math.inf)
+    assert case.control_set.arguments == (-0.2, -math.inf, 0.2, math.inf)
     assert case.lqr is not None
     assert case.lqr.Q == ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0, 1.0))
     assert (case.lqr.R, case.lqr.inputs, case.lqr.horizon) == (((1.0,),), ("u2",), None)
@@ -89,7 +89,7 @@ def test_model_initial_state_and_final_time_are_enough(load: Callable[[str], Ins
     case = load(SMALLEST)
     assert case.parameters[:4] == (1.0, 1.0, 1.0, 1.0)
     assert case.final == {}
-    assert case.bounds == (-math.inf, -math.inf, math.inf, math.inf)
+    assert case.control_set.arguments == (-math.inf, -math.inf, math.inf, math.inf)
     assert (case.solver, case.lqr, case.title) == (instance.SolverOptions(), None, "")
     assert all(type(number) is float for number in case.parameters + case.initial + (case.t0, case.tf))
 
@@ -124,7 +124,7 @@ def test_options_arrive_in_the_units_of_the_model(load: Callable[[str], Instance
 
 
 def test_equal_bounds_fix_a_control(load: Callable[[str], Instance]) -> None:
-    assert load(SMALLEST + "control.u1 = [0, 0]").bounds == (0.0, -math.inf, 0.0, math.inf)
+    assert load(SMALLEST + "control.u1 = [0, 0]").control_set.arguments == (0.0, -math.inf, 0.0, math.inf)
 
 
 def test_a_file_may_start_with_a_byte_order_mark_and_end_lines_like_windows(tmp_path: Path) -> None:
@@ -134,8 +134,8 @@ def test_a_file_may_start_with_a_byte_order_mark_and_end_lines_like_windows(tmp_
 
 def test_a_ball_takes_a_radius(load: Callable[[str], Instance], change_model: Callable[..., None]) -> None:
     change_model(control_set="ball")
-    assert load(SMALLEST).bounds == (math.inf,)
-    assert load(SMALLEST + 'control.max_norm = "1 m/s^2"').bounds == (0.001,)
+    assert load(SMALLEST).control_set.arguments == (math.inf,)
+    assert load(SMALLEST + 'control.max_norm = "1 m/s^2"').control_set.arguments == (0.001,)
 
 
 def test_a_model_path_starts_at_the_instance_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -214,7 +214,7 @@ def test_the_thesis_is_as_printed(name: str, weights: tuple[float, float]) -> No
     case = instance.load(name)
     assert case.parameters == (1.0, 1.0, *weights, 0.0, 0.0, 0.0, 0.0)
     assert (case.initial, case.final) == ((1.0, 1.0, 1.0, 1.0), {})
-    assert (case.t0, case.tf, case.bounds) == (0.0, 60.0, (0.0, 0.0, 1.0, 1.0))
+    assert (case.t0, case.tf, case.control_set.arguments) == (0.0, 60.0, (0.0, 0.0, 1.0, 1.0))
 
 
 def test_the_geostationary_return_is_given_in_kilometres_and_seconds() -> None:
@@ -222,7 +222,7 @@ def test_the_geostationary_return_is_given_in_kilometres_and_seconds() -> None:
     sigma, omega = case.parameters[:2]
     assert (sigma, omega, case.tf) == (42164.17, 7.2921159e-5, 86400.0)
     assert case.initial == pytest.approx((sigma + 5, 0.0, math.radians(0.02), omega), rel=1e-15, abs=0)
-    assert case.bounds == (-math.inf, -math.inf, math.inf, math.inf)
+    assert case.control_set.arguments == (-math.inf, -math.inf, math.inf, math.inf)
 
 
 def test_plain_numbers_load_neither_pint_nor_sympy() -> None:

@@ -22,7 +22,7 @@ from satsym.report.latex import tex
 from satsym.report.latex.document import render
 from satsym.report.latex.width import width
 from satsym.report.texts import MissingText, languages, load
-from satsym.spec import ControlSet
+from satsym.spec import ControlSetKind
 from satsym.status import BadInput
 from satsym.symbolic import Derivation, FirstOrder, Newton, Problem, Variable, derive, loader, symbols_of, t
 from satsym.symbolic.latex.typeset import Typesetter
@@ -264,7 +264,7 @@ def written(node: ast.expr) -> list[str]:
     if isinstance(node, ast.JoinedStr):
         (start, _) = node.values
         assert isinstance(start, ast.Constant)
-        return [f"{start.value}{kind}" for kind in get_args(ControlSet)]
+        return [f"{start.value}{kind}" for kind in get_args(ControlSetKind)]
     return []
 
 

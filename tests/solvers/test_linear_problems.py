@@ -21,7 +21,7 @@ from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solvers import linear as closed_form
 from satsym.solvers import solve, two_point
-from satsym.spec import ControlSet, Variable
+from satsym.spec import ControlSetKind, Variable
 from satsym.status import BadInput, Status
 from satsym.symbolic import FirstOrder, Problem, symbols_of, t
 from tests.support.models import build, k, q, scalar, w
@@ -30,7 +30,7 @@ place, speed, push = symbols_of(Variable(name, name) for name in ("place", "spee
 UNITS = st.integers(-2000, 2000).map(lambda value: value / 1000.0)
 
 
-def moving(name: str, force: Expr, constraints: tuple[Expr, ...] = (), control_set: ControlSet = "free") -> Problem:
+def moving(name: str, force: Expr, constraints: tuple[Expr, ...] = (), control_set: ControlSetKind = "free") -> Problem:
     """A place, a speed whose rate is the force, and a push that costs half its square."""
     return Problem(
         name=name,

@@ -34,7 +34,7 @@ SECONDS = 60.0
 def scaled(number: int) -> TwoPoint:
     case = HARD.case(number)
     assert case.tf is not None
-    return to_scaled(case, case.tf).widened(float("inf"))
+    return to_scaled(case, case.tf).relaxed(float("inf"))
 
 
 @pytest.mark.slow

@@ -13,7 +13,6 @@ from satsym.solvers.cold_start import paths
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.soft_bounds import within_bounds
-from satsym.solvers.control import control_set
 from satsym.solvers.iteration import Limits
 
 BOX, BALL = "return-to-orbit-005", "return-to-orbit-ball"
@@ -41,8 +40,8 @@ def test_motion_and_costates_follow_the_control_that_exceeds_its_bounds_by_a_sha
     (tau, z), model, p = places(hard), case.model, case.parameters
     t, both = case.t0 + hard.duration * tau, z * hard.scale.both
     x, lam = both[: hard.states], both[hard.states :]
-    free = np.asarray(model.control_law_batch(t, x, lam, p, control_set.without_bounds(case)))
-    within = control_set.project(case, free)
+    free = np.asarray(model.control_law_batch(t, x, lam, p, case.control_set.without_bounds.arguments))
+    within = case.control_set.project(free)
     assert np.abs(free - within).max() > 0.0
     u = within + softness * (free - within)
     rates = np.concatenate([model.dynamics_batch(t, x, u, p), model.costate_rate_batch(t, x, u, lam, p)])
@@ -69,12 +68,12 @@ def test_the_law_minimises_the_soft_hamiltonian(name: str) -> None:
     softness, (tau, z), model, p = 0.1, places(hard), case.model, case.parameters
     t, both = case.t0 + hard.duration * tau, z * hard.scale.both
     x, lam = both[: hard.states], both[hard.states :]
-    free = np.asarray(model.control_law_batch(t, x, lam, p, control_set.without_bounds(case)))
-    within = control_set.project(case, free)
+    free = np.asarray(model.control_law_batch(t, x, lam, p, case.control_set.without_bounds.arguments))
+    within = case.control_set.project(free)
     weight = np.einsum("iik->ik", np.asarray(model.control_hessian_batch(t, x, free, lam, p)))
 
     def soft(u: np.ndarray) -> np.ndarray:
-        over = u - control_set.project(case, u)
+        over = u - case.control_set.project(u)
         return np.asarray(model.hamiltonian_batch(t, x, u, lam, p)) + (1.0 / softness - 1.0) / 2.0 * (
             weight * over**2
         ).sum(axis=0)

@@ -37,7 +37,7 @@ def test_the_simplest_problem_has_a_constant_control(tmp_path: Path):
     solution = swept(case, steps=10, tolerance=1e-14)
     lam = 4.0 * 2.0 / (1.0 + 4.0 * 1.5)
     assert case.model.spec.control_set == "free"
-    assert case.bounds == ()
+    assert case.control_set.arguments == ()
     assert solution.switching_times == ((),)
     assert np.abs(solution.lam - lam).max() <= 1e-13
     assert np.abs(solution.u + lam).max() <= 1e-13

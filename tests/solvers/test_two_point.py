@@ -338,7 +338,7 @@ def test_what_cannot_be_done_is_infeasible_and_the_message_says_how_near_one_com
 def test_what_can_be_done_is_reached_by_the_search_for_the_nearest_end(name, bounds):
     case = replace(instance.load(name), **bounds)
     problem = scaled(case, case.tf - case.t0)
-    idle = paths.curve(problem.widened(math.inf), paths.first(problem))
+    idle = paths.curve(problem.relaxed(math.inf), paths.first(problem))
     found = nearest(problem, idle, Limits(500, time.perf_counter() + 60.0))
     assert found is not None
     assert found.arrives

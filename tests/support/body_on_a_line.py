@@ -46,4 +46,4 @@ def least(start: tuple[float, float], end: tuple[float, float], bounds: tuple[fl
 
 def generated(function: str, start: tuple[float, float], of: Instance) -> Any:
     final = (1.0, 1.0, 0.0, 0.0, *map(float, of.final.values()))  # type: ignore[arg-type]
-    return getattr(of.model, function)(0.0, start, of.parameters, of.bounds, final)
+    return getattr(of.model, function)(0.0, start, of.parameters, of.control_set.arguments, final)

@@ -9,7 +9,7 @@ from sympy import Expr
 from satsym import instance
 from satsym.codegen import module
 from satsym.instance import Instance
-from satsym.spec import ControlSet
+from satsym.spec import ControlSetKind
 from satsym.symbolic import FirstOrder, Problem, Variable, derive, symbols_of
 
 q, w, k = symbols_of(Variable(name, name) for name in "qwk")
@@ -33,7 +33,7 @@ def _rendered(problem: Problem) -> str:
     return _RENDERED[id(problem)][1]
 
 
-def scalar(name: str, rate: Expr, running_cost: Expr, terminal_cost: Expr, control_set: ControlSet) -> Problem:
+def scalar(name: str, rate: Expr, running_cost: Expr, terminal_cost: Expr, control_set: ControlSetKind) -> Problem:
     """One state q, one control w, one parameter k."""
     return Problem(
         name=name,

@@ -23,7 +23,7 @@ from satsym.solvers.switching.answers import answered
 from satsym.solvers.switching.attempt import attempt
 from satsym.solvers.switching.cold_start.plans import seeded
 from satsym.solvers.switching.cold_start.recognition import Guess
-from satsym.solvers.switching.cold_start.scouts import exactly, scouted
+from satsym.solvers.switching.cold_start.scouts import Target, exactly, scouted
 from satsym.solvers.switching.linear.linear_motion import exponential, linear_motion
 from satsym.solvers.switching.linear.nearest_point import nearest_point
 from satsym.solvers.switching.linear.reach import Reach
@@ -300,9 +300,9 @@ def test_the_nearest_point_of_a_box_is_found(centre: tuple[float, float, float])
 def test_times_that_are_drawn_lead_to_all_extremals(weak: Instance) -> None:
     rng, limits = np.random.default_rng(4), Limits(1, float("inf"))
     plans = seeded(weak, [3], rng.uniform(1.0, 40.0, 24), rng)
-    ends = np.full(24, np.nan)
-    found = scouted(weak, plans, np.array([1.0, 1.0]), limits, ends)
-    exact = exactly(weak, found, np.array([1.0, 1.0]), limits, ends[: len(found)])
+    target = Target(weak, np.array([1.0, 1.0]), np.full(24, np.nan))
+    found = scouted(target, plans, limits)
+    exact = exactly(target.of([one.number for one in found]), found, limits)
     arrived = [one.cost for one in exact]
     assert arrived[0] == pytest.approx(known(weak)[0], rel=1e-9)
     assert all(min(abs(cost / duration - 1.0) for cost in arrived) < 1e-9 for duration in known(weak))

@@ -116,7 +116,7 @@ def test_the_batch_form_agrees_on_both_sides() -> None:
     rng, of = np.random.default_rng(7), case(bounds=(-0.5, 2.0))
     x = rng.uniform(-2.0, 2.0, (2, 200))
     final = (1.0, 1.0, 0.0, 0.0, 0.0, 0.0)
-    batch = of.model.feedback_law_batch(0.0, x, (), of.bounds, final)[0]
+    batch = of.model.feedback_law_batch(0.0, x, (), of.control_set.arguments, final)[0]
     single = [generated("feedback_law", tuple(column), of)[0] for column in x.T]
     assert batch.tolist() == single
     assert {*single} == {-0.5, 2.0}

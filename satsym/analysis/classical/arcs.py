@@ -113,7 +113,7 @@ class Plant:
 
     def _of(self, function: Callable[..., Any], x: Array) -> Any:
         case = self.instance
-        return function(case.t0, x.tolist(), case.parameters, case.bounds, self.final)
+        return function(case.t0, x.tolist(), case.parameters, case.control_set.arguments, self.final)
 
     def follow(self, start: float, x: Array, control: float, end: float, events: Sequence[Event] = ()) -> Arc:
         """Hold a control until a time, or the first event."""
@@ -232,5 +232,5 @@ def _scale(instance: Instance, position: int, rate: int, final: tuple[float, ...
     drift = abs(model.dynamics(case.t0, faster.tolist(), [0.0], case.parameters)[position]) * stop
     away = x.copy()
     away[position] = final[2 * n + position] + abs(x[position] - final[2 * n + position]) + drift + case.deadband
-    whole = model.transition_time(case.t0, away.tolist(), case.parameters, case.bounds, final)
+    whole = model.transition_time(case.t0, away.tolist(), case.parameters, case.control_set.arguments, final)
     return float(2.0 * (whole + stop))

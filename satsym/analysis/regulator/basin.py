@@ -13,7 +13,6 @@ from satsym.analysis.linear.scaling import scaled
 from satsym.analysis.regulator.lqr import Regulator
 from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.solvers.control import control_set
 from satsym.status import BadInput
 
 DIRECTIONS = 64
@@ -101,7 +100,7 @@ def _directions(P: Array, n: int) -> Array:
 
 
 def _bounded(case: Instance) -> bool:
-    return bool(np.isfinite([*case.lower, *case.upper]).any() or np.isfinite(case.max_norm))
+    return case.control_set.bounded
 
 
 def _returns(
@@ -117,7 +116,7 @@ def _returns(
 
     def rates(t: float, x: Array) -> Array:
         u = -K @ (x - about.at(t)[:, None])
-        return np.asarray(about.rates_batch(t, x, u if case is None else control_set.project(case, u), p))
+        return np.asarray(about.rates_batch(t, x, u if case is None else case.control_set.project(u), p))
 
     x = about.point[:, None] + (directions[:, None] * sizes).reshape(len(directions), -1)
     inside = np.ones(x.shape[1], bool)

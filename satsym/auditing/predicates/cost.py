@@ -124,7 +124,8 @@ def has_extremal(instance: str) -> Finding:
 def final_costates_known(instance: str) -> Finding:
     """Whether all costates are given at the final time: where the final state is free and the time is not."""
     case = loaded(instance)
-    final = np.array(case.model.terminal_gradient(case.tf, solved(instance).x[:, -1], case.parameters), dtype=float)
+    found = solved(instance)
+    final = np.array(case.model.terminal_gradient(float(found.times[-1]), found.x[:, -1], case.parameters))
     return Finding(
         case.tf is not None and not case.final,
         "the final state is free, so they are "

@@ -54,6 +54,7 @@ def _steered(instance: str, control: float) -> Array:
 
 def reference(case: Instance, time: float | None) -> Array:
     """The reference at a time, shape (n,)."""
+    assert time is not None
     return np.array(case.model.reference(time, case.parameters), dtype=float)
 
 

@@ -66,7 +66,7 @@ def sweep_of_steps(instance: str) -> Finding:
             # lambda3 one node before is printed as lambda1 of this node, less its increment
             before[2] += lam[0, i] - lam[2, i]
             lam[:, i - 1] = before
-        law = np.array([model.control_law(0.0, tuple(a), tuple(b), case.parameters, case.bounds)
+        law = np.array([model.control_law(0.0, tuple(a), tuple(b), case.parameters, case.control_set.arguments)
                         for a, b in zip(x.T, lam.T, strict=True)]).T  # fmt: skip
         changes.append(float(np.abs(law - u).max()))
         u = law

@@ -140,7 +140,7 @@ def instance_object(instance: Instance) -> dict[str, Any]:
 
 def bounded(instance: Instance) -> bool:
     """Whether anything limits the control."""
-    return any(math.isfinite(bound) for bound in (*instance.lower, *instance.upper, instance.max_norm))
+    return instance.control_set.bounded
 
 
 def number(value: float | None) -> float | None:

@@ -123,7 +123,7 @@ class _Linear:
     @classmethod
     def of(cls, solution: Solution, t: Array, z: Array) -> _Linear | None:
         instance, n = solution.instance, len(z) // 2
-        model, p, bounds = instance.model, instance.parameters, instance.bounds
+        model, p, bounds = instance.model, instance.parameters, instance.control_set.arguments
         scale = unit_sizes(solution)
         slopes = np.asarray(model.canonical_jacobian_batch(t, z[:n], z[n:], p, bounds)).transpose(2, 0, 1)
         slopes = slopes * (scale / scale[:, None])
@@ -154,7 +154,9 @@ def _law_slopes(solution: Solution, t: Array, z: Array, scale: Array) -> Array:
         nudge = np.zeros((2 * n, 1))
         nudge[i] = NUDGE * size[i]
         ahead, behind = (
-            np.asarray(instance.model.control_law_batch(t, y[:n], y[n:], instance.parameters, instance.bounds))
+            np.asarray(
+                instance.model.control_law_batch(t, y[:n], y[n:], instance.parameters, instance.control_set.arguments)
+            )
             for y in (z + nudge, z - nudge)
         )
         columns.append((ahead - behind) * (scale[i] / (2.0 * NUDGE * size[i])))

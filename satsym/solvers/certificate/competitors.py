@@ -16,7 +16,6 @@ import numpy as np
 from satsym.instance import Guess, Instance
 from satsym.solution import Competitors, Kind, Solution
 from satsym.solvers.certificate.flow import products, unit_sizes
-from satsym.solvers.control import control_set
 from satsym.solvers.iteration import Limits
 from satsym.solvers.revolutions import shifted
 
@@ -210,7 +209,7 @@ def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Attemp
         return [_from_path(problem, path, softness, cost) for path in paths]
 
     yield Kind.STARTS, leading(_bent(problem, rng))
-    if np.isfinite(instance.bounds).any():
+    if instance.control_set.bounded:
         starts = zip(_bent(problem, rng), SOFT * SEEDS, strict=False)
         soft = [_from_path(problem, path, softness, cost) for path, softness in starts]
         yield Kind.SATURATION, [*soft, *_from_corners(problem, cost)]
@@ -248,7 +247,7 @@ def _from_spiral(problem: TwoPoint, spiral: Spiral, cost: float) -> Attempt:
     """The minimum within the bounds with a number of turns."""
     from satsym.solvers.cold_start.path_of_turns import along_turns
 
-    return lambda limits: _bounded(problem, along_turns(problem.widened(float("inf")), spiral, limits), cost, limits)
+    return lambda limits: _bounded(problem, along_turns(problem.relaxed(float("inf")), spiral, limits), cost, limits)
 
 
 def _from_corners(problem: TwoPoint, cost: float) -> list[Attempt]:
@@ -278,9 +277,9 @@ def _lasting(instance: Instance, duration: float, cost: float) -> Attempt:
         if rough is None:
             return None
         least = trials.freed(rough)
-        if least is not None and kept(least.problem.widened(0.0), least.start.found.curve):
-            return _accurate(least.problem.widened(0.0), least.start.found.curve, cost)
-        given = replace(rough.problem, widening=0.0)
+        if least is not None and kept(least.problem.relaxed(0.0), least.start.found.curve):
+            return _accurate(least.problem.relaxed(0.0), least.start.found.curve, cost)
+        given = replace(rough.problem, relaxation=0.0)
         return _bounded(given, rough.start.found, cost, limits)
 
     return attempt
@@ -362,9 +361,8 @@ def none_conceivable(solution: Solution) -> bool:
     positive = [i for i, state in enumerate(model.spec.states) if state.positive]
     x[positive] = solution.x[positive] * rng.uniform(0.2, 5.0, solution.x[positive].shape)
     size = np.abs(solution.u).max(initial=0.0) or 1.0
-    u = control_set.project(
-        instance, solution.u + size * 10.0 ** rng.uniform(-3.0, 3.0) * rng.normal(size=solution.u.shape)
-    )
+    drawn = solution.u + size * 10.0 ** rng.uniform(-3.0, 3.0) * rng.normal(size=solution.u.shape)
+    u = instance.control_set.project(drawn)
     slopes = model.costate_rate_batch(t, x, u, solution.lam, p)
     ends = [model.terminal_gradient(float(t[-1]), tuple(row), p) for row in x.T[:20]]
     least = np.asarray(model.running_cost_batch(t, x, solution.u, p)) <= model.running_cost_batch(t, x, u, p)
@@ -384,7 +382,7 @@ def _on_reference(solution: Solution) -> bool:
     curve = np.array(instance.model.reference(float(solution.times[-1]), instance.parameters))
     none = np.zeros((len(spec.controls), 1))
     there = np.allclose(solution.x[:, -1], curve, rtol=1e-9, atol=1e-12)
-    return bool(there and (control_set.project(instance, none) == none).all())
+    return bool(there and (instance.control_set.project(none) == none).all())
 
 
 def margin(competitor: float, cost: float, coarse: float = 0.0, hidden: float = 0.0) -> float:

@@ -28,7 +28,9 @@ def boundary_residual(solution: Solution, flow: Flow) -> float:
     final = final_argument(instance)
     nu, residual = multipliers(instance, tf, x, lam)
     fixed, (state, costate) = fixed_states(instance), typical(solution)
-    slopes = np.array(model.boundary_jacobian(tf, x, lam, nu, instance.parameters, instance.bounds, final))
+    slopes = np.array(
+        model.boundary_jacobian(tf, x, lam, nu, instance.parameters, instance.control_set.arguments, final)
+    )
     gradient = np.abs(slopes.reshape(len(residual), -1)[:-1, :n]) @ state
     least = np.minimum(state, NEGLIGIBLE * unit_sizes(solution)[:n])
     rows = np.where(fixed, np.maximum(state * _moved(solution, flow, state), least), np.maximum(costate, gradient[:n]))
@@ -36,7 +38,7 @@ def boundary_residual(solution: Solution, flow: Flow) -> float:
     constraints = np.abs(residual[n:-1]) / np.maximum(gradient[n:], 1e-300)
     parts = [*found, *constraints]
     if instance.tf is None:
-        rates = np.array(model.canonical(tf, x, lam, instance.parameters, instance.bounds))
+        rates = np.array(model.canonical(tf, x, lam, instance.parameters, instance.control_set.arguments))
         parts.append(abs(residual[-1]) / max(float(np.abs(flow.lam[:, -1] * rates[:n]).sum()), 1e-300))
     return float(max(parts))
 
@@ -75,7 +77,7 @@ def stationarity(solution: Solution) -> float:
     """Largest difference of the control from the one that minimises H, relative to the largest control."""
     instance = solution.instance
     law = instance.model.control_law_batch(
-        solution.times, solution.x, solution.lam, instance.parameters, instance.bounds
+        solution.times, solution.x, solution.lam, instance.parameters, instance.control_set.arguments
     )
     size = max(float(np.abs(solution.u).max()), float(np.abs(law).max()))
     return float(np.abs(law - solution.u).max() / size) if size > 0.0 else 0.0
@@ -86,7 +88,7 @@ def hamiltonian_drift(solution: Solution, flow: Flow) -> float | None:
     instance, model = solution.instance, solution.instance.model
     if not model.spec.autonomous:
         return None
-    u = model.control_law_batch(flow.times, flow.x, flow.lam, instance.parameters, instance.bounds)
+    u = model.control_law_batch(flow.times, flow.x, flow.lam, instance.parameters, instance.control_set.arguments)
     h = np.asarray(model.hamiltonian_batch(flow.times, flow.x, u, flow.lam, instance.parameters))
     terms = np.abs(flow.lam * model.dynamics_batch(flow.times, flow.x, u, instance.parameters)).sum(axis=0).max()
     return float(np.abs(h - h[0]).max() / max(terms, np.abs(h).max(), 1e-300))

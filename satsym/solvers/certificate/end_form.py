@@ -55,7 +55,9 @@ def multipliers(
     count, final = len(instance.model.spec.multipliers), final_argument(instance)
 
     def at(nu: tuple[float, ...]) -> Array:
-        return np.array(instance.model.boundary(tf, x, lam, nu, instance.parameters, instance.bounds, final))
+        return np.array(
+            instance.model.boundary(tf, x, lam, nu, instance.parameters, instance.control_set.arguments, final)
+        )
 
     residual = at((0.0,) * count)
     if not count:
@@ -80,7 +82,7 @@ def end_form(solution: Solution, scale: Array) -> EndForm:
     """
     instance, n = solution.instance, len(solution.x)
     tf, x, lam = final_values(solution)
-    arguments = instance.parameters, instance.bounds
+    arguments = instance.parameters, instance.control_set.arguments
     nu, _ = multipliers(instance, tf, x, lam)
     table = instance.model.boundary_jacobian(tf, x, lam, nu, *arguments, final_argument(instance))
     slopes = np.array(table).reshape(n + len(nu) + 1, -1)

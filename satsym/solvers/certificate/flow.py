@@ -58,7 +58,7 @@ class Flow:
 def flow(solution: Solution) -> Flow | None:
     """Integrate from the initial state and costates; ``None`` where the flow is not finite."""
     instance, model = solution.instance, solution.instance.model
-    n, p, bounds = len(instance.initial), instance.parameters, instance.bounds
+    n, p, bounds = len(instance.initial), instance.parameters, instance.control_set.arguments
     start, end = float(solution.times[0]), float(solution.times[-1])
     kinks = [t for times in solution.switching_times for t in times if start < t < end]
     stations = np.unique(np.concatenate([np.linspace(start, end, STATIONS + 1), kinks]))
@@ -106,7 +106,7 @@ def _resolved(solution: Solution) -> Array:
     instance, model = solution.instance, solution.instance.model
     z = np.abs(np.concatenate([solution.x, solution.lam]))
     slopes = model.canonical_jacobian_batch(
-        solution.times, solution.x, solution.lam, instance.parameters, instance.bounds
+        solution.times, solution.x, solution.lam, instance.parameters, instance.control_set.arguments
     )
     terms = np.einsum("ijk,jk->ik", np.abs(slopes), z).max(axis=1)
     found: Array = FINEST / TOLERANCE * abs(float(solution.times[-1] - solution.times[0])) * terms

@@ -27,7 +27,7 @@ def node_by_node(solution: Solution, along: Segments) -> Flow | None:
     To be compared with the solution; ``None`` where it is not finite.
     """
     instance, model, n = solution.instance, solution.instance.model, len(solution.x)
-    p, bounds, times = instance.parameters, instance.bounds, solution.times
+    p, bounds, times = instance.parameters, instance.control_set.arguments, solution.times
     begins = along.nodes[np.searchsorted(along.nodes, np.arange(1, len(times))) - 1]
     start, h = values(solution), (times[1:] - times[begins]) / along.steps
 
@@ -79,7 +79,7 @@ def _finish(solution: Solution, scale: Array) -> tuple[Array, Array, Array]:
     """Residuals at the last node, and their derivatives by what is there, scaled, and by multipliers and final time."""
     instance, (tf, x, lam) = solution.instance, final_values(solution)
     nu, residual = multipliers(instance, tf, x, lam)
-    arguments = instance.parameters, instance.bounds, final_argument(instance)
+    arguments = instance.parameters, instance.control_set.arguments, final_argument(instance)
     table = np.array(instance.model.boundary_jacobian(tf, x, lam, nu, *arguments)).reshape(len(residual), -1)
     rates = np.array(instance.model.canonical(tf, x, lam, *arguments[:-1]))
     by_end, by_rest = table[:, : len(scale)], table[:, len(scale) :]

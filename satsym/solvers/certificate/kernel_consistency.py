@@ -69,7 +69,7 @@ def _bounds(instance: Instance, at: dict[str, Any]) -> tuple[Array, ...]:
     if kind == "ball":
         radius = float(np.linalg.norm(size))
         return (np.where(owned, min(instance.max_norm, WIDE * radius), NARROW * radius),)
-    low, high = (np.array(bounds)[:, None] for bounds in (instance.lower, instance.upper))
+    low, high = instance.control_set.box
     low, high = np.maximum(low, -WIDE * size), np.minimum(high, WIDE * size)
     box = (*np.where(owned, low, -NARROW * size), *np.where(owned, high, NARROW * size))
     if not model.spec.switching:

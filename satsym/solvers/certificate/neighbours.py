@@ -17,7 +17,6 @@ from satsym.solvers.certificate.competitors import HIDDEN, hidden, margin
 from satsym.solvers.certificate.end_form import fixed_states
 from satsym.solvers.certificate.flow import products, typical
 from satsym.solvers.collocation.scaling import final_argument
-from satsym.solvers.control import control_set
 
 STEPS = ((200, 1e-3), (800, 1e-3), (3200, 1e-2))
 """RK4 steps with which neighbours are compared, on as many as the solution itself, and the relative distance from the
@@ -106,7 +105,7 @@ class Simulations:
         instance, end = self.instance, tuple(x[:, -1].tolist())
         terminal = instance.model.terminal_cost(grid.tf, end, instance.parameters)
         none, nu = (0.0,) * len(end), (0.0,) * len(instance.model.spec.multipliers)
-        arguments = none, nu, instance.parameters, instance.bounds, final_argument(instance)
+        arguments = none, nu, instance.parameters, instance.control_set.arguments, final_argument(instance)
         residual = np.array(instance.model.boundary(grid.tf, end, *arguments))
         return running + terminal, residual[self.rows] / self.scale
 
@@ -195,7 +194,7 @@ class _Search:
         grid, before = self.simulations.grid(longer), self.simulations.grid()
         at, times = interleave(grid.nodes, grid.midpoints), interleave(before.nodes, before.midpoints)
         by = np.array([np.interp(at, times, row) for row in self.second.controls @ change])
-        control = control_set.project(self.simulations.instance, stated_control(self.solution, grid) + by)
+        control = self.simulations.instance.control_set.project(stated_control(self.solution, grid) + by)
         return self.simulations(control, grid)
 
 

@@ -18,7 +18,6 @@ from satsym.solution import Solution
 from satsym.solvers.certificate.accessory import accessory
 from satsym.solvers.certificate.flow import unit_sizes
 from satsym.solvers.certificate.neighbours import Simulations, simulations_of, stated_control
-from satsym.solvers.control import control_set
 
 DOUBLINGS = 12
 """Of the change, from the size of the control on that moves the state by its own size."""
@@ -67,7 +66,7 @@ def fall(solution: Solution) -> Fall | None:
     solution
         With a given final time; controls that have bounds are not asked.
     """
-    found = None if np.isfinite(solution.instance.bounds).any() else _downhill(solution)
+    found = None if solution.instance.control_set.bounded else _downhill(solution)
     if found is None:
         return None
     simulations, grid, u, change = found
@@ -83,7 +82,7 @@ def departures(solution: Solution) -> list[Guess]:
     simulations, grid, u, change = found
     names, guesses = solution.instance.model.spec.state_names, []
     for share in DEPARTED:
-        x, _ = simulations.motion(control_set.project(solution.instance, u + share * change), grid)
+        x, _ = simulations.motion(solution.instance.control_set.project(u + share * change), grid)
         if np.isfinite(x).all() and solution.instance.model.in_domain(x):
             guesses.append(Guess(state=dict(zip(names, map(tuple, x.tolist()), strict=True))))
     return guesses

@@ -112,7 +112,9 @@ def values(solution: Solution) -> Array:
 def _slopes(solution: Solution, t: Array, z: Array) -> Array:
     """The canonical rates by states and costates, shape (M, 2n, 2n)."""
     instance, n = solution.instance, len(z) // 2
-    batch = instance.model.canonical_jacobian_batch(t, z[:n], z[n:], instance.parameters, instance.bounds)
+    batch = instance.model.canonical_jacobian_batch(
+        t, z[:n], z[n:], instance.parameters, instance.control_set.arguments
+    )
     found: Array = np.asarray(batch).transpose(2, 0, 1)
     return found
 
@@ -183,7 +185,9 @@ def _leapt(solution: Solution, scale: Array, t: Array, z: Array, h: Array) -> tu
 
     def rates(t: Array, y: Array) -> Array:
         found = np.empty_like(y)
-        found[:size] = instance.model.canonical_batch(t, y[:n], y[n:size], instance.parameters, instance.bounds)
+        found[:size] = instance.model.canonical_batch(
+            t, y[:n], y[n:size], instance.parameters, instance.control_set.arguments
+        )
         slopes = _slopes(solution, t, y[:size]) * (scale / scale[:, None])
         varied = slopes @ y[size:].reshape(size, size, -1).transpose(2, 0, 1)
         found[size:] = varied.transpose(1, 2, 0).reshape(size * size, -1)

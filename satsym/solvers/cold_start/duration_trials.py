@@ -93,12 +93,12 @@ class Trials:
 
     def free(self, duration: float) -> TwoPoint:
         """The problem with the duration free, and this one to start from; without bounds."""
-        return two_point(self.instance, duration).widened(float("inf"))
+        return two_point(self.instance, duration).relaxed(float("inf"))
 
     def given(self, duration: float) -> TwoPoint:
         """The problem with this duration; without bounds."""
         fixed = replace(self.instance, tf=self.instance.t0 + duration, tf_guess=None)
-        return two_point(fixed, duration).widened(float("inf"))
+        return two_point(fixed, duration).relaxed(float("inf"))
 
     def cold(self, duration: float, quick: bool) -> Try | None:
         """Solved from nothing, with the first way of the cold start only or with all."""

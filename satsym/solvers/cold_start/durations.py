@@ -17,7 +17,6 @@ from satsym.solvers.cold_start.duration_search import AROUND_GUESS, AROUND_SCALE
 from satsym.solvers.cold_start.duration_trials import Trials, Try
 from satsym.solvers.cold_start.ways import Start
 from satsym.solvers.collocation.problem import TwoPoint
-from satsym.solvers.control.control_set import without_bounds
 from satsym.solvers.iteration import Limits
 from satsym.status import Status
 
@@ -78,7 +77,7 @@ def time_scale(instance: Instance) -> float:
     n = len(instance.initial)
     nothing = tuple([0.0] * n)
     slopes = instance.model.canonical_jacobian(
-        instance.t0, instance.initial, nothing, instance.parameters, without_bounds(instance)
+        instance.t0, instance.initial, nothing, instance.parameters, instance.control_set.without_bounds.arguments
     )
     fastest = np.abs(np.linalg.eigvals(np.array(slopes).reshape(2 * n, 2 * n)[:n, :n])).max()
     return 1.0 / float(fastest) if np.isfinite(fastest) and fastest > 0.0 else 1.0

@@ -13,7 +13,6 @@ from satsym.solvers.collocation.curve import Curve, stage_times
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import straight
-from satsym.solvers.control import control_set
 
 States = Callable[[Array], Array]
 """Scaled states, shape (n, M), at M times tau in [0, 1]."""
@@ -114,7 +113,7 @@ def _under_guess(problem: TwoPoint) -> States | None:
     nodes = np.linspace(0.0, 1.0, 2 * STEPS + 1)
     names = instance.model.spec.control_names
     u = np.array([_series(values.get(name, (0.0,)), nodes) for name in names])
-    u = control_set.project(instance, u)
+    u = instance.control_set.project(u)
     times = instance.t0 + problem.duration * nodes[::2]
     x, _, _ = instance.model.forward(times, instance.initial, u[:, ::2], u[:, 1::2], instance.parameters)
     if not np.isfinite(x).all() or not instance.model.in_domain(x):

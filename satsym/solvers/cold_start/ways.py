@@ -85,7 +85,7 @@ def cold_start(problem: TwoPoint, limits: Limits, quick: bool = False) -> Start:
     quick
         Try the first way only.
     """
-    free = problem.widened(float("inf"))
+    free = problem.relaxed(float("inf"))
     line, guess = paths.start(free), problem.instance.guess
     begin = "guess" if guess else "straight line"
 

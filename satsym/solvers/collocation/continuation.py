@@ -16,7 +16,6 @@ from satsym.solvers.collocation.curve import Curve, Path, stage_times
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.system import System
-from satsym.solvers.control import control_set
 from satsym.solvers.control.corners import zero
 from satsym.solvers.iteration import Limits
 
@@ -88,7 +87,7 @@ def tighten(problem: TwoPoint, free: Curve, order: int, limits: Limits) -> Bound
     while width > 0.0:
         narrower = max(width - move, 0.0)
         narrower = 0.0 if narrower < 1e-3 * worst else narrower
-        step = problem.widened(narrower)
+        step = problem.relaxed(narrower)
         mesh = through(kinks(step, curve), count)
         outcome = newton(System(step, mesh, order), curve.on(mesh, order), tolerance=1e-6, most=15)
         limits.spend((outcome.iterations if outcome else 1) * (len(mesh) - 1) * order)
@@ -112,16 +111,15 @@ def kinks(problem: TwoPoint, curve: Path) -> Array:
 
 
 def by_bound(problem: TwoPoint, curve: Path) -> list[Array]:
-    """The same, bound by bound, in the order of :func:`satsym.solvers.control.control_set.excess`."""
-    limits = control_set.widened(problem.instance, problem.widening)
-    if not np.isfinite(limits).any():
-        return [np.zeros(0) for _ in limits]
+    """The same, bound by bound, in the order of :func:`satsym.control_set.ControlSet.excess`."""
+    if not problem.control_set.bounded:
+        return []
     inside = np.linspace(1e-9, 1.0 - 1e-9, SAMPLES)
     tau = np.unique((curve.mesh[:-1, None] + np.diff(curve.mesh)[:, None] * inside).ravel())
 
     def excess(at: Array) -> Array:
         law = problem.control(at, curve(at), curve.theta, bounded=False)
-        return control_set.excess(problem.instance, law, problem.widening)
+        return problem.control_set.excess(law)
 
     def distance_at(row: int, at: float) -> float:
         return float(excess(np.array([at]))[row, 0])
@@ -142,11 +140,11 @@ def kept(problem: TwoPoint, curve: Curve) -> bool:
 
 def _violation(problem: TwoPoint, curve: Curve) -> float:
     """By how much the control law without bounds leaves the control set; negative where there are none."""
-    if not np.isfinite(problem.instance.bounds).any():
+    if not problem.instance.control_set.bounded:
         return -np.inf
     tau = stage_times(curve.mesh, curve.order).ravel()
     law = problem.control(tau, curve.flat, curve.theta, bounded=False)
-    return control_set.violation(problem.instance, law)
+    return problem.instance.control_set.violation(law)
 
 
 def through(points: Array, count: int) -> Array:

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.arrays import Array
+from satsym.control_set import ControlSet
 from satsym.instance import Instance
-from satsym.solvers.control import control_set
 from satsym.solvers.control.regularised import sloping, smoothed_cost, smoothed_law
 
 PLACES, SAME = 8, 1e-9
@@ -67,7 +67,7 @@ class TwoPoint:
         tf - t0; where it is free, where to start.
     scale
         Units.
-    widening
+    relaxation
         By how much every bound of the control is moved outwards; infinite: no bounds.
     softness
         Share of what the control law without bounds exceeds them by that is granted: zero where bounds are kept. That
@@ -80,7 +80,7 @@ class TwoPoint:
     final: tuple[float, ...]
     duration: float
     scale: Scale
-    widening: float = 0.0
+    relaxation: float = 0.0
     softness: float = 0.0
     forcing: Callable[[Array], Array] | None = None
 
@@ -122,13 +122,13 @@ class TwoPoint:
         return tuple(i for i, v in enumerate(self.instance.model.spec.states) if v.positive)
 
     @cached_property
-    def bounds(self) -> tuple[float, ...]:
-        """The ``bounds`` argument of kernels, widened."""
-        return control_set.widened(self.instance, self.widening)
+    def control_set(self) -> ControlSet:
+        """The admissible controls, bounds relaxed."""
+        return self.instance.control_set.relaxed(self.relaxation)
 
-    def widened(self, widening: float) -> TwoPoint:
-        """The same problem with other bounds."""
-        return replace(self, widening=widening)
+    def relaxed(self, by: float) -> TwoPoint:
+        """The same problem with bounds relaxed by so much."""
+        return replace(self, relaxation=by)
 
     def softened(self, softness: float) -> TwoPoint:
         """The same problem with bounds of another softness."""
@@ -163,10 +163,10 @@ class TwoPoint:
         """A kernel of the canonical equations; with soft bounds a mean: they are affine in the control."""
         arguments = self._arguments(tau, z, theta)
         found = np.empty(shape, z.dtype)  # given, so that kernels need not find out shapes and types
-        kernel(*arguments, self.bounds, out=found)
+        kernel(*arguments, self.control_set.arguments, out=found)
         if self.softness:
             without = np.empty(shape, z.dtype)
-            kernel(*arguments, control_set.without_bounds(self.instance), out=without)
+            kernel(*arguments, self.instance.control_set.without_bounds.arguments, out=without)
             found += self.softness * (without - found)
         return found
 
@@ -174,7 +174,9 @@ class TwoPoint:
         """The rates by explicit time, shape (2n, N)."""
         if self.instance.model.spec.autonomous:
             return 0.0
-        slopes: Array = self.instance.model.canonical_drift_batch(*self._arguments(tau, z, theta), self.bounds)
+        slopes: Array = self.instance.model.canonical_drift_batch(
+            *self._arguments(tau, z, theta), self.control_set.arguments
+        )
         return slopes / self.scale.both
 
     def running_cost(self, tau: Array, z: Array, theta: Array) -> Array:
@@ -182,12 +184,15 @@ class TwoPoint:
         t, x, lam, p = self._arguments(tau, z, theta)
         model = self.instance.model
         if model.spec.switching:
-            u = smoothed_law(self.instance, self.bounds, t, x, lam)
-            return smoothed_cost(self.instance, self.bounds, t, x, u) / self.scale.cost
-        u = model.control_law_batch(t, x, lam, p, self.bounds)
+            u = smoothed_law(self.instance, self.control_set, t, x, lam)
+            return smoothed_cost(self.instance, self.control_set, t, x, u) / self.scale.cost
+        u = model.control_law_batch(t, x, lam, p, self.control_set.arguments)
         beyond = 0.0
         if self.softness:
-            over = np.asarray(model.control_law_batch(t, x, lam, p, control_set.without_bounds(self.instance))) - u
+            over = (
+                np.asarray(model.control_law_batch(t, x, lam, p, self.instance.control_set.without_bounds.arguments))
+                - u
+            )
             weight = np.asarray(model.control_hessian_batch(t, x, u, lam, p))
             beyond = self.softness * (1.0 - self.softness) / 2.0 * np.einsum("ik,ijk,jk->k", over, weight, over)
             u = u + self.softness * over
@@ -211,11 +216,11 @@ class TwoPoint:
 
     def control(self, tau: Array, z: Array, theta: Array, bounded: bool = True) -> Array:
         """The control law, in the model's units, shape (m, N)."""
-        bounds = self.bounds if bounded else control_set.without_bounds(self.instance)
+        control_set = self.control_set if bounded else self.instance.control_set.without_bounds
         if self.instance.model.spec.switching:
             t, x, lam, _ = self._arguments(tau, z, theta)
-            return smoothed_law(self.instance, bounds, t, x, lam)
-        law: Array = self.instance.model.control_law_batch(*self._arguments(tau, z, theta), bounds)
+            return smoothed_law(self.instance, control_set, t, x, lam)
+        law: Array = self.instance.model.control_law_batch(*self._arguments(tau, z, theta), control_set.arguments)
         return law
 
     @cached_property
@@ -259,7 +264,15 @@ class TwoPoint:
         physical = (end * self.scale.both[:, 0]).tolist()
         tf = self.instance.t0 + self.elapsed(theta)
         nu = tuple((theta[:multipliers] * self.scale.cost).tolist())
-        return tf, tuple(physical[:n]), tuple(physical[n:]), nu, self.instance.parameters, self.bounds, self.final
+        return (
+            tf,
+            tuple(physical[:n]),
+            tuple(physical[n:]),
+            nu,
+            self.instance.parameters,
+            self.control_set.arguments,
+            self.final,
+        )
 
     @cached_property
     def fixed(self) -> NDArray[np.bool_]:

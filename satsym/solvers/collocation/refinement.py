@@ -113,7 +113,7 @@ def _misplaced(problem: TwoPoint, curve: Curve, met: Array) -> float:
     if not len(met):
         return 0.0
     node = curve.mesh[np.abs(met[:, None] - curve.mesh).argmin(axis=1)]
-    followed, free = (one.rates(node, curve(node), curve.theta) for one in (problem, problem.widened(float("inf"))))
+    followed, free = (one.rates(node, curve(node), curve.theta) for one in (problem, problem.relaxed(float("inf"))))
     n, size = problem.states, np.abs(curve.nodes).reshape(2, -1).max(axis=1)
     jump = np.abs(followed - free).reshape(2, n, -1).max(axis=1) / np.maximum(size, (1.0, SMALL))[:, None]
     return float((jump.max(axis=0) * np.abs(met - node)).max()) * problem.elapsed(curve.theta) / 2.0

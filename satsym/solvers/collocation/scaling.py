@@ -7,7 +7,6 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.collocation.problem import Scale, TwoPoint
-from satsym.solvers.control import control_set
 from satsym.solvers.control.regularised import sloping
 
 POINTS = 9
@@ -66,7 +65,7 @@ def _scale(instance: Instance, start: Array, end: Array, duration: float) -> Sca
     n, model = len(start), instance.model
     path = start[:, None] + (end - start)[:, None] * np.linspace(0.0, 1.0, POINTS)
     times = instance.t0 + duration * np.linspace(0.0, 1.0, POINTS)
-    free = control_set.without_bounds(instance)
+    free = instance.control_set.without_bounds.arguments
     none = sloping(instance, np.zeros_like(path))
     slopes = np.abs(model.canonical_jacobian_batch(times, path, none, instance.parameters, free)).max(axis=2)
     slopes[slopes < NO_SLOPE] = 0.0

@@ -1,4 +1,4 @@
-"""The smoothed companion of a switching problem: the same problem with a small quadratic cost of the control.
+"""The regularised problem of a switching problem: the same with a small quadratic cost of the control.
 
 Its control law is continuous, so collocation solves it; as the smoothing goes to zero its solutions tend to those of
 the problem itself. The weight of |u| is brought in from zero, for with it the law is flat where the costates vanish,
@@ -9,10 +9,12 @@ control problems, Optimal Control Applications and Methods 23, 2002).
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from functools import cached_property
 
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.control_set import ControlSet
 from satsym.instance import Instance
 
 TINY = 1e-60
@@ -20,7 +22,7 @@ TINY = 1e-60
 
 
 @dataclass(frozen=True)
-class Companion(Instance):
+class Regularised(Instance):
     """An instance with ``smoothing``/2 times the squared control added to its running cost.
 
     Attributes
@@ -34,9 +36,9 @@ class Companion(Instance):
     smoothing: float = 1.0
     share: float = 1.0
 
-    @property
-    def bounds(self) -> tuple[float, ...]:
-        return (*self.lower, *self.upper, self.smoothing, self.share)
+    @cached_property
+    def control_set(self) -> ControlSet:
+        return super().control_set.regularised(self.smoothing, self.share)
 
 
 def sloping(instance: Instance, lam: Array) -> Array:
@@ -47,36 +49,34 @@ def sloping(instance: Instance, lam: Array) -> Array:
     return np.where(lam == 0.0, tiny, lam)
 
 
-def companion(instance: Instance, smoothing: float, share: float) -> Companion:
-    """The companion of an instance."""
+def regularised(instance: Instance, smoothing: float, share: float) -> Regularised:
+    """The regularised problem of an instance."""
     stated = {f.name: getattr(instance, f.name) for f in fields(Instance)}
-    return Companion(**stated, smoothing=smoothing, share=share)
+    return Regularised(**stated, smoothing=smoothing, share=share)
 
 
-def smoothed_law(instance: Instance, bounds: tuple[float, ...], t: Array, x: Array, lam: Array) -> Array:
-    """The control that minimises the companion's Hamiltonian, shape (m, N).
+def smoothed_law(instance: Instance, control_set: ControlSet, t: Array, x: Array, lam: Array) -> Array:
+    """The control that minimises the regularised problem's Hamiltonian, shape (m, N).
 
     Parameters
     ----------
-    bounds
-        Lower and upper bounds, the smoothing, and the share of the weight of |u| that counts.
+    instance
+        Of a switching problem.
+    control_set
+        Bounds, the smoothing, and the share of the weight of |u| that counts.
     t, x, lam
         Times (N,), states and costates, (n, N).
     """
     model, p = instance.model, instance.parameters
-    m = len(model.spec.controls)
-    smoothing, share = bounds[2 * m :]
     sigma = np.asarray(model.switching_function_batch(t, x, lam, p))
-    weight = share * np.asarray(model.magnitude_weight_batch(t, x, p))
+    weight = control_set.share * np.asarray(model.magnitude_weight_batch(t, x, p))
     beyond = sigma - np.minimum(np.maximum(sigma, -weight), weight)
-    low, high = np.array(bounds[:m])[:, None], np.array(bounds[m : 2 * m])[:, None]
-    return np.asarray(np.minimum(np.maximum(-beyond / smoothing, low), high))
+    return control_set.project(-beyond / control_set.smoothing)
 
 
-def smoothed_cost(instance: Instance, bounds: tuple[float, ...], t: Array, x: Array, u: Array) -> Array:
-    """The companion's running cost, shape (N,)."""
-    model, p = instance.model, instance.parameters
-    smoothing, share = bounds[2 * len(u) :]
+def smoothed_cost(instance: Instance, control_set: ControlSet, t: Array, x: Array, u: Array) -> Array:
+    """The regularised problem's running cost, shape (N,)."""
+    model, p, smoothing, share = instance.model, instance.parameters, control_set.smoothing, control_set.share
     weight = np.asarray(model.magnitude_weight_batch(t, x, p))
     exact = np.asarray(model.running_cost_batch(t, x, u, p))
     return np.asarray(exact + smoothing / 2.0 * (u * u).sum(axis=0) - (1.0 - share) * (weight * np.abs(u)).sum(axis=0))

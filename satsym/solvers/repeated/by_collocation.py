@@ -37,7 +37,7 @@ class ByCollocation:
         if self._good is None:
             return None
         problem, curve = replace(self._good[0], instance=case), self._good[1]
-        free = problem.widened(float("inf"))
+        free = problem.relaxed(float("inf"))
         system = System(free, curve.mesh, STAGES)
         outcome = newton(system, curve, tolerance=NEAR)
         if outcome is None or not outcome.converged or not outcome.curve.in_domain(free.positive):
@@ -58,7 +58,7 @@ class ByCollocation:
         if self._good is None or case.tf is None:
             return None
         problem, mesh = replace(self._good[0], instance=case), self._good[1].mesh
-        free = problem.widened(float("inf"))
+        free = problem.relaxed(float("inf"))
         found = straight_through(paths.on(free, paths.first(free), mesh), System(free, mesh, STAGES), limits)
         return self._sound(problem, found, limits) if found else None
 

@@ -41,14 +41,14 @@ class ByShooting:
         if self._good is None or case.tf is None:
             return None
         problem, like = replace(self._good.problem, instance=case), self._good
-        free = problem.widened(float("inf"))
+        free = problem.relaxed(float("inf"))
         states = paths.first(free)(like.mesh)
         found = self._shot(
             free, replace(like, nodes=np.append(states, np.zeros_like(states), axis=0), theta=free.theta)
         )
         if found is None or not _minimum(found[0]):
             return None
-        return self._kept(self._shot(problem, found[0]) if np.isfinite(problem.bounds).any() else found)
+        return self._kept(self._shot(problem, found[0]) if problem.control_set.bounded else found)
 
     def cold(self, case: Instance, limits: Limits) -> Extremal:
         """A cold start, which also decides on arcs and steps."""

@@ -152,7 +152,7 @@ class Arcs:
         problem, instance = self.problem, self.problem.instance
         times = instance.t0 + problem.elapsed(self.theta) * self.mesh
         nodes = np.ascontiguousarray((self.nodes * problem.scale.both).T)
-        return flight(instance.model)(times, nodes, self.steps, instance.parameters, problem.bounds)
+        return flight(instance.model)(times, nodes, self.steps, instance.parameters, problem.control_set.arguments)
 
     def _slope(self, tau: Array, values: Array) -> Array:
         """Rates by tau, shape (2n, M)."""

@@ -162,7 +162,7 @@ def _meeting(model: Kernels) -> Compiled:
 
 
 def _distance(model: Kernels, width: int) -> tuple[int, Compiled]:
-    """The number of bounds, and ``(bound, t, w, p, bounds)``: a row of ``control_set.excess``."""
+    """The number of bounds, and ``(bound, t, w, p, bounds)``: a row of ``ControlSet.excess``."""
     law, n, m = model.functions["control_law"], len(model.spec.states), len(model.spec.controls)
     vector, infinity = packed(n), float("inf")
     free = (-infinity,) * m + (infinity,) * m

@@ -70,7 +70,7 @@ def _correction(arcs: Arcs) -> tuple[Array, Array]:
         case.t0 + problem.elapsed(arcs.theta) * arcs.mesh,
         arcs.steps,
         case.parameters,
-        problem.bounds,
+        problem.control_set.arguments,
         problem.scale.both[:, 0],
     )
     end = arcs.nodes[:, -1], arcs.theta

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.kernels.core import Function
-from satsym.solvers.control import control_set
 from satsym.solvers.iteration import Limits
 from satsym.solvers.simulation import blocks
 
@@ -90,7 +89,7 @@ def fly(
     """
     from scipy.integrate import solve_ivp
 
-    f, p, within = dynamics or instance.model.dynamics, instance.parameters, control_set.nearest(instance)
+    f, p, within = dynamics or instance.model.dynamics, instance.parameters, instance.control_set.nearest()
     count = 0
 
     def rates(t: float, x: Array) -> Any:
@@ -134,7 +133,7 @@ def fly(
     u = np.full((len(instance.model.spec.controls), len(nodes)), np.nan)
     every = np.arange(len(found.t))
     met = wanted(every) if limits is None else limits.in_blocks(wanted, every)
-    u[:, : len(every)] = control_set.project(instance, met)
+    u[:, : len(every)] = instance.control_set.project(met)
     return Run(x, u, found.nfev // 12, found.status == 1)
 
 

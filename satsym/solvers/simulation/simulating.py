@@ -11,7 +11,6 @@ from satsym.grid import Grid
 from satsym.instance import Instance
 from satsym.solution import Flight, Invariant
 from satsym.solvers import out_of_time
-from satsym.solvers.control import control_set
 from satsym.solvers.iteration import Limits, TimeUp, watched
 from satsym.solvers.simulation import blocks, closed_loop
 from satsym.solvers.simulation.balances import balances
@@ -103,7 +102,7 @@ def _simulated(instance: Instance, law: Law | None, limits: Limits) -> Flight:
 
 def _control(instance: Instance) -> Array:
     """No control, or the admissible one next to it; shape (m, 1)."""
-    return control_set.project(instance, np.zeros((len(instance.model.spec.controls), 1)))
+    return instance.control_set.project(np.zeros((len(instance.model.spec.controls), 1)))
 
 
 def _uncontrolled(instance: Instance, limits: Limits) -> tuple[Array, int, float]:
@@ -207,6 +206,7 @@ def _metrics(instance: Instance, x: Array) -> dict[str, float]:
     for name, row in zip(spec.state_names, x, strict=True):
         found |= {f"{name}_min": float(row.min()), f"{name}_max": float(row.max())}
     if spec.has_reference:
+        assert instance.tf is not None
         curve = instance.model.reference(instance.tf, instance.parameters)
         found |= {f"{name}_error": float(row[-1] - c) for name, row, c in zip(spec.state_names, x, curve, strict=True)}
     return found

@@ -15,7 +15,6 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.solution import Iteration
-from satsym.solvers.control import control_set
 from satsym.solvers.sweep.sweeps import Forward, Sweep, SweepProblem, backward, forward
 from satsym.solvers.sweep.tangent import Tangent, tangent
 from satsym.status import Status
@@ -124,7 +123,7 @@ class QuasiNewton:
             return None
         length, shortest = 1.0, SHORTEST_CLOSE if sweep.residual < CLOSE else SHORTEST
         while length > shortest:
-            u = control_set.project(self.problem.instance, sweep.u + length * direction)
+            u = self.problem.instance.control_set.project(sweep.u + length * direction)
             predicted = float(np.sum(gradient * (u - sweep.u)))
             motion = forward(self.problem, u)
             if motion.usable:

@@ -15,7 +15,6 @@ from satsym.grid import Grid
 from satsym.instance import Instance
 from satsym.kernels import Kernels
 from satsym.solution import Iteration, Progress, Solution
-from satsym.solvers.control import control_set
 from satsym.solvers.control import corners as kinks
 from satsym.solvers.iteration import Limits, Run, iterate
 from satsym.solvers.sweep.quasi_newton import Descent, QuasiNewton
@@ -84,7 +83,7 @@ def switching_times(problem: SweepProblem, sweep: Sweep) -> tuple[tuple[float, .
     """For each control, when it meets or leaves a bound (on a ball: the same times for all); never, if it is fixed."""
     instance = problem.instance
     m = len(instance.model.spec.controls)
-    distances = control_set.excess(instance, unbounded_law(problem, sweep))
+    distances = instance.control_set.excess(unbounded_law(problem, sweep))
     if instance.model.spec.control_set == "box":
         fixed = np.tile(np.equal(instance.lower, instance.upper), 2)
         distances[fixed] = np.inf
@@ -114,7 +113,7 @@ def _starting_control(problem: SweepProblem) -> Array:
     for i, name in enumerate(instance.model.spec.control_names):
         if values := instance.guess.control.get(name):
             u[i] = np.interp(times, np.linspace(times[0], times[-1], len(values)), values)
-    return control_set.project(instance, u)
+    return instance.control_set.project(u)
 
 
 def _run(
@@ -141,7 +140,7 @@ def _carried_over(problem: SweepProblem, sweep: Sweep, onto: SweepProblem) -> Ar
     """The control on another grid, interpolated before it is projected so that its kinks stay sharp."""
     smooth = unbounded_law(problem, sweep)
     u = np.array([np.interp(onto.times, problem.times, row) for row in smooth])
-    return control_set.project(problem.instance, u)
+    return problem.instance.control_set.project(u)
 
 
 def _settled(before: tuple[tuple[float, ...], ...], after: tuple[tuple[float, ...], ...], horizon: float) -> bool:

@@ -16,7 +16,6 @@ from satsym.arrays import Array
 from satsym.grid import Grid, interleave
 from satsym.instance import Instance
 from satsym.kernels import Kernels
-from satsym.solvers.control.control_set import without_bounds
 from satsym.solvers.iteration import Limits
 from satsym.solvers.simulation import blocks
 
@@ -129,14 +128,14 @@ def backward(problem: SweepProblem, motion: Forward) -> Sweep:
     motion_at, control_at = (x[:, ::2], x[:, 1::2]), (u[:, ::2], u[:, 1::2])
     nodes, mids = blocks.backward(kernels, grid.nodes, lam_f, motion_at, control_at, p, problem.limits)
     lam = interleave(nodes, mids)
-    law = kernels.control_law_batch(problem.times, x, lam, p, instance.bounds)
+    law = kernels.control_law_batch(problem.times, x, lam, p, instance.control_set.arguments)
     gradient = kernels.stationarity_batch(problem.times, x, u, lam, p)
     return Sweep(motion, lam, law, gradient)
 
 
 def unbounded_law(problem: SweepProblem, sweep: Sweep) -> Array:
     """The control that would minimise H if there were no bounds, shape (m, 2N+1)."""
-    bounds = without_bounds(problem.instance)
+    bounds = problem.instance.control_set.without_bounds.arguments
     law: Array = problem.kernels.control_law_batch(
         problem.times, sweep.forward.x, sweep.lam, problem.instance.parameters, bounds
     )

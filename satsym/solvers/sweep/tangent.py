@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.arrays import Array
-from satsym.solvers.control import control_set
 from satsym.solvers.sweep.sweeps import Sweep, SweepProblem, unbounded_law
 
 ON_SPHERE = 1e-9
@@ -50,7 +49,7 @@ def tangent(problem: SweepProblem, sweep: Sweep) -> Tangent:
     """The free directions at the control of a sweep."""
     instance = problem.instance
     wanted = unbounded_law(problem, sweep)
-    free = control_set.active(instance, wanted) == 0
+    free = instance.control_set.active(wanted) == 0
     if instance.model.spec.control_set != "ball" or free.all():
         return Tangent(free)
     norm, excess = np.linalg.norm(sweep.u, axis=0), np.linalg.norm(wanted, axis=0) / instance.max_norm

@@ -81,14 +81,26 @@ class Arc:
     slopes: Array
 
 
-def fly(
-    instance: Instance,
-    structure: Structure,
-    at: Unknowns,
-    sizes: Array,
-    slopes: bool = True,
-    tolerance: float = TOLERANCE,
-) -> list[Arc]:
+@dataclass(frozen=True, eq=False)
+class Accuracy:
+    """How arcs are integrated.
+
+    Attributes
+    ----------
+    sizes
+        Typical sizes of states and costates, shape (2n,).
+    slopes
+        Whether derivatives are needed.
+    tolerance
+        Error of a step, relative to the size of each component.
+    """
+
+    sizes: Array
+    slopes: bool = True
+    tolerance: float = TOLERANCE
+
+
+def extremal(instance: Instance, structure: Structure, at: Unknowns, accuracy: Accuracy) -> list[Arc]:
     """Follow the extremal from arc to arc.
 
     Parameters
@@ -99,12 +111,8 @@ def fly(
         Levels of the controls.
     at
         Costates and times.
-    sizes
-        Typical sizes of states and costates, shape (2n,).
-    slopes
-        Whether derivatives are needed.
-    tolerance
-        Error of a step, relative to the size of each component.
+    accuracy
+        How arcs are integrated.
 
     Raises
     ------
@@ -121,8 +129,8 @@ def fly(
         levels = tuple(row[k] for row, k in zip(structure.levels, number, strict=True))
         field = Field(instance, levels)
         end = at.end if event is None else event.time
-        after, matrix = _piece(field, begin, end, z, sizes, slopes, tolerance)
-        if slopes:
+        after, matrix = _piece(field, begin, end, z, accuracy)
+        if accuracy.slopes:
             total = total.copy()
             if begun >= 0:
                 total[:, begun] -= field.rates(begin, z.tolist())
@@ -136,11 +144,9 @@ def fly(
     return arcs
 
 
-def _piece(
-    field: Field, start: float, end: float, z: Array, sizes: Array, slopes: bool, tolerance: float
-) -> tuple[Array, Array]:
+def _piece(field: Field, start: float, end: float, z: Array, accuracy: Accuracy) -> tuple[Array, Array]:
     """States and costates at the end of a piece, and their derivatives by those at its start."""
-    rows = len(z)
+    rows, sizes, tolerance = len(z), accuracy.sizes, accuracy.tolerance
     if abs(end - start) <= ROUNDING * max(abs(start), abs(end)):
         return z + (end - start) * np.array(field.rates(start, z.tolist())), np.eye(rows)
     evaluations = count()
@@ -149,7 +155,7 @@ def _piece(
         if next(evaluations) > MOST and field.singular is not None:
             raise ArithmeticError("a motion under singular control goes astray")
 
-    if not slopes:
+    if not accuracy.slopes:
 
         def rates(t: float, y: Array) -> Array:
             counted()

@@ -32,7 +32,7 @@ class Field:
     def __init__(self, instance: Instance, levels: tuple[int, ...]) -> None:
         self.instance, self.levels = instance, levels
         self.model, self.p, self.n = instance.model, instance.parameters, len(instance.initial)
-        self.held = tuple(
+        self.saturated = tuple(
             high if level == UPPER else low if level == LOWER else min(max(0.0, low), high)
             for level, low, high in zip(levels, instance.lower, instance.upper, strict=True)
         )
@@ -40,7 +40,7 @@ class Field:
 
     def control(self, t: float, z: list[float]) -> tuple[float, ...]:
         """The controls, shape (m,)."""
-        return self.held if self.singular is None else self._feedback(t, z)[0]
+        return self.saturated if self.singular is None else self._feedback(t, z)[0]
 
     def rates(self, t: float, z: list[float]) -> list[float]:
         """dz/dt, 2n numbers."""
@@ -49,22 +49,22 @@ class Field:
 
     def linearised(self, t: float, z: list[float]) -> tuple[Array, Array]:
         """dz/dt, shape (2n,), and its derivatives by z, shape (2n, 2n)."""
-        u, by_point, by_control = (self.held, None, None) if self.singular is None else self._feedback(t, z)
+        u, by_point, by_control = (self.saturated, None, None) if self.singular is None else self._feedback(t, z)
         x, lam = z[: self.n], z[self.n :]
         rates = np.array([*self.model.dynamics(t, x, u, self.p), *self.model.costate_rate(t, x, u, lam, self.p)])
-        held = np.array(self.model.extremal_jacobian(t, x, u, lam, self.p)).reshape(2 * self.n, 2 * self.n)
+        fixed = np.array(self.model.extremal_jacobian(t, x, u, lam, self.p)).reshape(2 * self.n, 2 * self.n)
         if by_point is None or by_control is None:
-            return rates, held
+            return rates, fixed
         # The control keeps the second derivative of the switching function at zero: the gradient of the first
         # derivative times the rates, and what time does besides.
-        slope = (self._turning(t, z, u, rates) + by_point @ held) / (by_point @ by_control)
-        return rates, held - np.outer(by_control, slope)
+        slope = (self._turning(t, z, u, rates) + by_point @ fixed) / (by_point @ by_control)
+        return rates, fixed - np.outer(by_control, slope)
 
     def along(self, t: Array, z: Array) -> tuple[Array, Array]:
         """Controls (m, N) and rates (2n, N) at many points at once."""
         x, lam = z[: self.n], z[self.n :]
-        u = np.empty((len(self.held), z.shape[1]))
-        u[:] = np.array(self.held)[:, None]
+        u = np.empty((len(self.saturated), z.shape[1]))
+        u[:] = np.array(self.saturated)[:, None]
         if self.singular is not None:
             base, slope = self._accelerations(t, z)
             u[self.singular] = -base / slope
@@ -80,11 +80,11 @@ class Field:
         falls out; by the costates what it does to the states.
         """
         x, lam = z[: self.n], z[self.n :]
-        unit = [float(i == control) for i in range(len(self.held))]
+        unit = [float(i == control) for i in range(len(self.saturated))]
         there = self.model.costate_rate(t, x, unit, lam, self.p)
         back = self.model.costate_rate(t, x, [-value for value in unit], lam, self.p)
         by_state = [(b - a) / 2.0 for a, b in zip(there, back, strict=True)]
-        return np.array([*by_state, *self._column(t, x, self.held, control)])
+        return np.array([*by_state, *self._column(t, x, self.saturated, control)])
 
     def weight(self, t: float, z: list[float], control: int) -> float:
         """The weight of the magnitude of a control."""
@@ -109,7 +109,7 @@ class Field:
 
     def _with(self, value: float) -> tuple[float, ...]:
         assert self.singular is not None
-        return (*self.held[: self.singular], value, *self.held[self.singular + 1 :])
+        return (*self.saturated[: self.singular], value, *self.saturated[self.singular + 1 :])
 
     def _column(self, t: float, x: list[float], u: tuple[float, ...], control: int | None = None) -> Array:
         """What a control does to the rates of the states, shape (n,)."""
@@ -137,8 +137,8 @@ class Field:
         count = 2 * self.n + 1
         columns = np.array([*z, t], dtype=complex)[:, None] + 1j * NUDGE * np.eye(count)
         x, lam, times = columns[: self.n], columns[self.n : -1], columns[-1]
-        held, found = np.repeat(np.array(u)[:, None], count, axis=1), np.empty((len(u), count), dtype=complex)
-        self.model.switching_rate_batch(times, x, held, lam, self.p, out=found)
+        same, found = np.repeat(np.array(u)[:, None], count, axis=1), np.empty((len(u), count), dtype=complex)
+        self.model.switching_rate_batch(times, x, same, lam, self.p, out=found)
         return np.asarray(found[control].imag / NUDGE)
 
     def _feedback(self, t: float, z: list[float]) -> tuple[tuple[float, ...], Array, Array]:
@@ -185,7 +185,7 @@ class Field:
         """The gradient of the singular control's switching function by explicit time, shape (2n, N)."""
         assert self.singular is not None
         x, lam, times = z[: self.n].astype(complex), z[self.n :].astype(complex), t + 1j * NUDGE
-        unit = np.zeros((len(self.held), len(t)))
+        unit = np.zeros((len(self.saturated), len(t)))
         unit[self.singular] = 1.0
         there, back = (np.asarray(self.model.costate_rate_batch(times, x, k * unit, lam, self.p)) for k in (1.0, -1.0))
         column = np.broadcast_to(self.model.jacobian_u_batch(times, x, unit, self.p), (self.n, len(unit), len(t)))

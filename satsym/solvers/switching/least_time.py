@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.arrays import Array
+from satsym.control_set import ControlSet
 from satsym.instance import Instance
 from satsym.kernels import Kernels
 
@@ -87,7 +88,7 @@ class _LeastTime:
         return alone
 
     def extremal_jacobian_batch(self, t: Array, x: Array, u: Array, lam: Array, p: Sequence[float]) -> Array:
-        """The rates of states and costates by both, controls held, shape (2n, 2n, N)."""
+        """The rates of states and costates by both, controls saturated, shape (2n, 2n, N)."""
         batch, n = self.whole["extremal_jacobian_batch"], self.n
         found, without = batch(t, x, u, lam, p), batch(t, x, u, 0.0 * lam, p)
         found[n:, :n] -= without[n:, :n]
@@ -101,11 +102,11 @@ class _LeastTime:
         return tuple(found.ravel().tolist())
 
     def law(self, t: Array, x: Array, lam: Array, p: Any, bounds: Any) -> tuple[Array, NDArray[np.bool_]]:
-        """Controls of the smoothed companion, shape (m, N), and where they are within their bounds."""
-        m = self.m
-        wanted = -self.linear["switching_function_batch"](t, x, lam, p) / bounds[2 * m]
-        low, high = np.array(bounds[:m])[:, None], np.array(bounds[m : 2 * m])[:, None]
-        return np.minimum(np.maximum(wanted, low), high), (wanted > low) & (wanted < high)
+        """Controls of the regularised problem, shape (m, N), and where they are within their bounds."""
+        control_set = ControlSet.from_arguments(self.model.spec, bounds)
+        wanted = -self.linear["switching_function_batch"](t, x, lam, p) / control_set.smoothing
+        low, high = control_set.box
+        return control_set.project(wanted), (wanted > low) & (wanted < high)
 
     def canonical_batch(self, t: Array, x: Array, lam: Array, p: Any, bounds: Any, out: Array | None = None) -> Array:
         """Rates of states and costates under that law."""
@@ -119,6 +120,7 @@ class _LeastTime:
         """These rates by states and costates."""
         n, m = self.n, self.m
         u, free = self.law(t, x, lam, p, bounds)
+        smoothing = ControlSet.from_arguments(self.model.spec, bounds).smoothing
         found = self.extremal_jacobian_batch(t, x, u, lam, p)
         acting = self.whole["jacobian_u_batch"](t, x, u, p)
         for i in range(m):
@@ -127,7 +129,7 @@ class _LeastTime:
             there, back = (self.linear["costate_rate_batch"](t, x, side * unit, lam, p) for side in (1.0, -1.0))
             gradient = np.concatenate([(back - there) / 2.0, np.broadcast_to(acting[:, i], x.shape)])
             by_control = np.concatenate([gradient[n:], -gradient[:n]])
-            found = found - np.where(free[i], 1.0, 0.0) / bounds[2 * m] * by_control[:, None] * gradient[None]
+            found = found - np.where(free[i], 1.0, 0.0) / smoothing * by_control[:, None] * gradient[None]
         return _into(out, found)
 
     def ends(
@@ -142,7 +144,8 @@ class _LeastTime:
         u = self.law(np.array([t]), np.array(x)[:, None], np.array(lam)[:, None], p, bounds)[0][:, 0].tolist()
         f = np.array(self.model.dynamics(t, x, u, p))
         rates = np.array(self.linear["costate_rate"](t, x, u, lam, p))
-        value = 1.0 + float(np.array(lam) @ f) + bounds[2 * self.m] / 2.0 * sum(v * v for v in u)
+        smoothing = ControlSet.from_arguments(self.model.spec, bounds).smoothing
+        value = 1.0 + float(np.array(lam) @ f) + smoothing / 2.0 * sum(v * v for v in u)
         value -= float(on_reference * np.array(lam) @ slope)
         rows = fixed * (np.array(x) - given * target - on_reference * curve) + (1.0 - fixed) * np.array(lam)
         table = np.zeros((n + 1, 2 * n + 1))

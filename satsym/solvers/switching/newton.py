@@ -13,7 +13,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.failures import FAILURES
-from satsym.solvers.switching.extremal_arcs import TOLERANCE, Arc, Unknowns, fly
+from satsym.solvers.switching.extremal_arcs import TOLERANCE, Accuracy, Arc, Unknowns, extremal
 from satsym.solvers.switching.field import Field
 from satsym.solvers.switching.structure import SINGULAR, Structure
 
@@ -97,8 +97,8 @@ class Equations:
         )
 
     def arcs(self, at: Unknowns, slopes: bool = True, tolerance: float = TOLERANCE) -> list[Arc]:
-        """The extremal; raises as :func:`fly`."""
-        return fly(self.instance, self.structure, at, self.sizes, slopes, tolerance)
+        """The extremal; raises as :func:`extremal`."""
+        return extremal(self.instance, self.structure, at, Accuracy(self.sizes, slopes, tolerance))
 
     def residual(self, at: Unknowns, arcs: list[Arc]) -> tuple[Array, Array]:
         """Residuals and their derivatives by all unknowns, in units of :attr:`scale`: shapes (r,) and (r, v)."""
@@ -130,13 +130,13 @@ class Equations:
         return Unknowns(at.costates + change[:n], at.times + change[n : n + k], end, at.multipliers + rest)
 
     def _end(self, at: Unknowns, last: Arc) -> tuple[Array, Array]:
-        """Rows of the generated boundary function, with the control of the last arc held."""
+        """Rows of the generated boundary function, with the control of the last arc kept."""
         instance, n = self.instance, len(self.instance.initial)
         model, z = instance.model, last.after.tolist()
         u = last.field.control(at.end, z)
-        held = (*u, *u, *instance.bounds[2 * len(u) :])
+        kept = instance.control_set.saturated(u).arguments
         point = (at.end, tuple(z[:n]), tuple(z[n:]), tuple(at.multipliers))
-        arguments = (*point, instance.parameters, held, final_argument(instance))
+        arguments = (*point, instance.parameters, kept, final_argument(instance))
         residual = np.array(model.boundary(*arguments))
         by = np.array(model.boundary_jacobian(*arguments)).reshape(len(residual), -1)
         count = len(at.multipliers)
@@ -160,55 +160,70 @@ class Equations:
         levels = (before.field.levels[event.control], after.field.levels[event.control])
         if levels[0] == SINGULAR:
             return []
-        rows = [self._row(before, before.end, before.after, before.slopes, event.control, event.column, levels)]
+        switch = _Switch(before.field, before.end, before.after.tolist(), before.slopes, event.control, event.column)
+        rows = [switch.row(levels, self.sizes)]
         if levels[1] == SINGULAR:
-            rows.append(self._rate_row(after, before.after, before.slopes, event.control, event.column))
+            rows.append(replace(switch, field=after.field, t=after.start).rate_row(self.sizes))
         return rows
 
     def _singular_start(self, first: Arc) -> list[tuple[float, Array]]:
         """What must vanish at the start of a singular arc that begins everything."""
         if first.field.singular is None:
             return []
-        n, i = len(self.instance.initial), first.field.singular
+        n = len(self.instance.initial)
         slopes = np.zeros((2 * n, first.slopes.shape[1]))
         slopes[n:, :n] = np.eye(n)
-        levels = (SINGULAR, SINGULAR)
-        return [
-            self._row(first, first.start, first.before, slopes, i, None, levels),
-            self._rate_row(first, first.before, slopes, i, None),
-        ]
+        start = _Switch(first.field, first.start, first.before.tolist(), slopes, first.field.singular, None)
+        return [start.row((SINGULAR, SINGULAR), self.sizes), start.rate_row(self.sizes)]
 
-    def _row(
-        self, arc: Arc, t: float, z: Array, slopes: Array, control: int, column: int | None, levels: tuple[int, int]
-    ) -> tuple[float, Array]:
+
+@dataclass(frozen=True, eq=False)
+class _Switch:
+    """Where a control switches, and how that moves with the unknowns.
+
+    Attributes
+    ----------
+    field, t, z
+        The equations of an arc beside it, its time, and states and costates there.
+    slopes
+        Derivatives of these by all unknowns, shape (2n, v).
+    control, column
+        Which control, and the place of the time among the switching times; ``None`` where it is no unknown.
+    """
+
+    field: Field
+    t: float
+    z: list[float]
+    slopes: Array
+    control: int
+    column: int | None
+
+    def row(self, levels: tuple[int, int], sizes: Array) -> tuple[float, Array]:
         """The switching function minus its value at such a switch, by the unknowns; in units of its own size."""
-        field, here = arc.field, z.tolist()
-        gradient = field.gradient(t, here, control)
-        target = switching_value(field, t, here, control, levels)
-        sigma, rate = switching(field, t, here, control)
-        size = max(float(np.abs(gradient) @ self.sizes), abs(target), 1e-300)
+        field, place = self.field, (self.t, self.z, self.control)
+        gradient = field.gradient(*place)
+        target = switching_value(field, *place, levels)
+        sigma, rate = switching(field, *place)
+        size = max(float(np.abs(gradient) @ sizes), abs(target), 1e-300)
         if target:
-            by_state, along = field.weight_gradient(t, here, control)
+            by_state, along = field.weight_gradient(*place)
             gradient, rate = gradient - np.sign(target) * by_state, rate - np.sign(target) * along
-        return (sigma - target) / size, self._moving(field, t, here, gradient, slopes, column, rate) / size
+        return (sigma - target) / size, self._moving(gradient, rate) / size
 
-    def _rate_row(self, arc: Arc, z: Array, slopes: Array, control: int, column: int | None) -> tuple[float, Array]:
+    def rate_row(self, sizes: Array) -> tuple[float, Array]:
         """The same for the rate of the switching function."""
-        field, here, t = arc.field, z.tolist(), arc.start
-        gradient = field.rate_gradient(t, here, control)
-        _, rate = switching(field, t, here, control)
-        size = max(float(np.abs(gradient) @ self.sizes), 1e-300)
-        return rate / size, self._moving(field, t, here, gradient, slopes, column, 0.0) / size
+        field, place = self.field, (self.t, self.z, self.control)
+        gradient = field.rate_gradient(*place)
+        _, rate = switching(field, *place)
+        size = max(float(np.abs(gradient) @ sizes), 1e-300)
+        return rate / size, self._moving(gradient, 0.0) / size
 
-    @staticmethod
-    def _moving(
-        field: Field, t: float, z: list[float], gradient: Array, slopes: Array, column: int | None, rate: float
-    ) -> Array:
+    def _moving(self, gradient: Array, rate: float) -> Array:
         """The derivative of a function of time and z whose time moves with an unknown, by all unknowns."""
-        row = gradient @ slopes
-        if column is not None:
-            place = len(z) // 2 + column
-            row[place] += rate - gradient @ np.array(field.rates(t, z))
+        row = gradient @ self.slopes
+        if self.column is not None:
+            place = len(self.z) // 2 + self.column
+            row[place] += rate - gradient @ np.array(self.field.rates(self.t, self.z))
         return np.asarray(row)
 
 

@@ -235,7 +235,7 @@ def _smoothed(instance: Instance, limits: Limits, thorough: bool = True) -> tupl
 
 
 def _way(near: least_effort.Smoothed) -> str:
-    return f"the companion smoothed by {near.problem.bounds[-2]:.1e}"
+    return f"the companion smoothed by {near.problem.control_set.smoothing:.1e}"
 
 
 def _resting(instance: Instance) -> Guess | None:

@@ -13,7 +13,7 @@ from typing import Any
 import mpmath as mp
 import sympy as sp
 
-from satsym.spec import ControlSet, Variable
+from satsym.spec import ControlSetKind, Variable
 from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.switching.minimisers import MPMATH_SWITCHES, SWITCHES
 
@@ -82,7 +82,7 @@ MPMATH_FUNCTIONS = {"Clip": _clip, "Inside": _inside, "Shorten": _shorten, "Shor
 MPMATH_FUNCTIONS |= MPMATH_SWITCHES
 
 
-def bounds(control_set: ControlSet, controls: Sequence[Variable]) -> tuple[Variable, ...]:
+def bounds(control_set: ControlSetKind, controls: Sequence[Variable]) -> tuple[Variable, ...]:
     """The variables that hold an instance's numbers, in the order of the ``bounds`` argument of kernels."""
     if control_set == "box":
         lower = tuple(Variable(f"{c.symbol}_min", rf"{c.latex}^{{\min}}", c.unit) for c in controls)
@@ -94,7 +94,7 @@ def bounds(control_set: ControlSet, controls: Sequence[Variable]) -> tuple[Varia
 
 
 def project(
-    control_set: ControlSet, unconstrained: Sequence[sp.Expr], limits: Sequence[sp.Symbol], hessian: sp.Matrix
+    control_set: ControlSetKind, unconstrained: Sequence[sp.Expr], limits: Sequence[sp.Symbol], hessian: sp.Matrix
 ) -> list[sp.Expr]:
     """The minimiser of H over the control set, from the one over all controls.
 
@@ -125,7 +125,7 @@ def project(
     return list(unconstrained)
 
 
-def ordered(control_set: ControlSet, point: dict[Any, Any], limits: Sequence[sp.Symbol]) -> dict[Any, Any]:
+def ordered(control_set: ControlSetKind, point: dict[Any, Any], limits: Sequence[sp.Symbol]) -> dict[Any, Any]:
     """The point with lower bounds below upper ones."""
     if control_set != "box":
         return point
@@ -137,7 +137,7 @@ def ordered(control_set: ControlSet, point: dict[Any, Any], limits: Sequence[sp.
 
 
 def slacks(
-    control_set: ControlSet, point: dict[Any, Any], limits: Sequence[sp.Symbol], controls: Sequence[Any]
+    control_set: ControlSetKind, point: dict[Any, Any], limits: Sequence[sp.Symbol], controls: Sequence[Any]
 ) -> list[Any]:
     """How far numeric controls stay within the control set; a negative entry is a violated bound."""
     m = len(controls)
@@ -150,7 +150,7 @@ def slacks(
 
 
 def admissible(
-    control_set: ControlSet,
+    control_set: ControlSetKind,
     point: dict[Any, Any],
     limits: Sequence[sp.Symbol],
     m: int,

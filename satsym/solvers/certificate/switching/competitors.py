@@ -6,11 +6,10 @@ are looked at that lie on the way to the solution's.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import partial
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.solution import Competitors, Kind, Solution
@@ -18,6 +17,7 @@ from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.cold_start import scouts
 from satsym.solvers.switching.cold_start.plans import Plans, Scout, seeded, together
+from satsym.solvers.switching.cold_start.scouts import Target
 from satsym.solvers.switching.linear.linear_motion import LinearMotion, linear_motion
 from satsym.solvers.switching.linear.reach import THERE, Reach, given_rows
 
@@ -83,14 +83,11 @@ def _drawn(solution: Solution, limits: Limits) -> list[Competitors]:
     kinds = np.concatenate([[kind.value] * len(ends) for kind, _, ends in parts])
     ends = np.concatenate([ends for *_, ends in parts])
     sizes = np.maximum(np.abs(solution.x).max(axis=1), 1e-300)
-    found = scouts.scouted(instance, together(*(plans for _, plans, _ in parts)), sizes, limits, ends, ROUNDS)
-    exact = _exact(solution, found, kinds, ends, sizes, limits)
-    return [
-        Competitors(
-            kind, len(own), *_cheapest(solution, [one for one in found if kinds[one.number] == kind.value], exact)
-        )
-        for kind, _, own in parts
-    ]
+    target = scouts.Target(instance, sizes, ends)
+    found = scouts.scouted(target, together(*(plans for _, plans, _ in parts)), limits, ROUNDS)
+    by_kind = {kind: [one for one in found if kinds[one.number] == kind.value] for kind, *_ in parts}
+    exact = _exact(solution.objective, by_kind.values(), target, limits)
+    return [Competitors(kind, len(own), *_cheapest(solution, by_kind[kind], exact)) for kind, _, own in parts]
 
 
 def _work(switches: list[int]) -> float:
@@ -99,19 +96,12 @@ def _work(switches: list[int]) -> float:
     return float((STRUCTURES + ARRIVALS + STARTS) * arcs * (arcs + 1) * scouts.LEAST * ROUNDS)
 
 
-def _exact(
-    solution: Solution, found: list[Scout], kinds: NDArray[Any], ends: Array, sizes: Array, limits: Limits
-) -> dict[int, float]:
+def _exact(cost: float, found: Iterable[list[Scout]], target: Target, limits: Limits) -> dict[int, float]:
     """Exact costs by the number of the plan: of the cheapest of each kind that seem to undercut the solution."""
-    chosen = [
-        one
-        for kind in dict.fromkeys(kinds.tolist())
-        for one in [s for s in found if kinds[s.number] == kind and s.cost < solution.objective][:POLISHED]
-    ]
+    chosen = [one for own in found for one in [scout for scout in own if scout.cost < cost][:POLISHED]]
     costs = {one.number: float("nan") for one in chosen}
     for one in chosen:
-        own = ends[[one.number]]
-        for exact in tried(partial(scouts.exactly, solution.instance, [one], sizes, limits, own)) or []:
+        for exact in tried(partial(scouts.exactly, target.of([one.number]), [one], limits)) or []:
             costs[exact.number] = exact.cost
     return costs
 

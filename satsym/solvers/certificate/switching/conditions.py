@@ -14,7 +14,7 @@ from satsym.solvers.certificate.flow import Flow
 from satsym.solvers.certificate.switching.comparison import Comparison, allowed, compared
 from satsym.solvers.certificate.switching.convexity import convex
 from satsym.solvers.certificate.switching.end_switches import with_end_switches
-from satsym.solvers.certificate.switching.next_switch import OutOfTime, TooMuchWork
+from satsym.solvers.certificate.switching.integration import OutOfTime, TooMuchWork
 from satsym.solvers.certificate.switching.replay import EVALUATIONS, Replay, replay
 from satsym.solvers.certificate.switching.stated_arcs import decided_by_none
 from satsym.solvers.certificate.switching.variation import variation
@@ -136,7 +136,7 @@ def _excess(solution: Solution) -> float:
     p, u = instance.parameters, solution.u
     sigma = np.asarray(model.switching_function_batch(solution.times, solution.x, solution.lam, p))
     weight = np.asarray(model.magnitude_weight_batch(solution.times, solution.x, p))
-    low, high = (np.array(bounds)[:, None] for bounds in (instance.lower, instance.upper))
+    low, high = instance.control_set.box
     rest = np.minimum(np.maximum(0.0, low), high)
     least = np.min([sigma * v + weight * np.abs(v) for v in np.broadcast_arrays(low, high, rest, u)[:3]], axis=0)
     outside = (np.maximum(np.maximum(low - u, u - high), 0.0) / np.maximum(high - low, 1e-300)).max(initial=0.0)

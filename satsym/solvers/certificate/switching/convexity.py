@@ -30,7 +30,7 @@ def convex(solution: Solution) -> bool:
     t, lam = solution.times[nodes], solution.lam[:, nodes]
     size = np.abs(solution.x).max(axis=1, keepdims=True) + 1e-300
     x = solution.x[:, nodes] + size * rng.uniform(-2.0, 2.0, (n, DRAWN))
-    u = rng.uniform(np.array(instance.lower)[:, None], np.array(instance.upper)[:, None], (len(solution.u), DRAWN))
+    u = rng.uniform(*instance.control_set.box, (len(solution.u), DRAWN))
     hessian = -np.asarray(model.extremal_jacobian_batch(t, x, u, lam, p))[n:, :n].transpose(2, 0, 1)
     scaled = hessian * (size * size.T)
     least = float(np.linalg.eigvalsh(scaled + scaled.transpose(0, 2, 1)).min())

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import random
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,118 +54,153 @@ class Plan:
 
 def needles(solution: Solution, within: Limits) -> Competitors | None:
     """Other switching times, with a short arc put in or not; ``None`` along singular arcs."""
-    instance = solution.instance
-    free = instance.tf is None
-    switches = np.unique([t for times in solution.switching_times for t in times])
     if _singular(solution):
         return None
-    base, lasting = _plan(solution), float(solution.times[-1] - solution.times[0])
-    sizes = np.maximum(np.abs(solution.x).max(axis=1), 1e-300)
-    wanted = _fixed(instance)
-    if instance.model.spec.multipliers:
-        wanted = np.arange(len(sizes))
-    goal = solution.x[:, -1]
-    rng, limits = random.Random("needles"), replace(within, work=within.meter.spent + EVALUATIONS)
-    count = len(switches) + free
-
-    def flown(plan: Plan, end: float) -> tuple[float, Array] | None:
-        try:
-            x, cost = _fly(instance, plan, end, sizes, limits)
-            cost += float(instance.model.terminal_cost(end, tuple(x.tolist()), instance.parameters))
-        except FAILURES:
-            return None
-        return cost, ((x - goal) / sizes)[wanted]
-
-    own = flown(base, float(solution.times[-1]))
-    if own is None or (count == 0 and len(wanted)):
+    near = _Near.of(solution, replace(within, work=within.meter.spent + EVALUATIONS))
+    own = near.simulated(near.base, near.end)
+    count = len(near.switches) + near.free
+    if own is None or (count == 0 and len(near.wanted)):
         return Competitors(Kind.NEIGHBOURS, 0, 0, float("nan"))
-    still, loose, costs = np.zeros(count), count > len(wanted), []
+    rng = random.Random("needles")
+    still, loose, costs = np.zeros(count), count > len(near.wanted), []
     for _ in range(PLANS):
-        plans = [(_needle(solution, base, switches, rng, lasting), still)]
+        plans = [(near.with_needle(rng), still)]
         if loose:  # the end does not fix all times
-            plans.append((base, np.array([rng.choice((-1.0, 1.0)) * rng.uniform(*SHORT) * lasting for _ in still])))
-        for plan, shift in plans:
-            if plan is not None:
-                costs.append(_corrected(plan, switches, shift, float(solution.times[-1]), lasting, free, flown))
+            shift = [rng.choice((-1.0, 1.0)) * rng.uniform(*SHORT) * near.lasting for _ in still]
+            plans.append((near.base, np.array(shift)))
+        costs += [near.corrected(plan, shift) for plan, shift in plans if plan is not None]
     found = [cost + (solution.objective - own[0]) for cost in costs if np.isfinite(cost)]
     return Competitors(Kind.NEIGHBOURS, len(costs), len(found), min(found, default=float("nan")))
 
 
-def _corrected(plan: Plan, switches: Array, shift: Array, end: float, lasting: float, free: bool, flown: Any) -> float:
-    """The cost once the end is as given, by moving the switching times further; infinite where that fails."""
+@dataclass(frozen=True, eq=False)
+class _Near:
+    """The neighbourhood of a bang-bang solution.
 
-    def at(shift: Array) -> Any:
-        moved = plan.moved(switches, shift[: len(switches)], end + (float(shift[-1]) if free else 0.0))
-        return flown(moved, end + (float(shift[-1]) if free else 0.0))
+    Attributes
+    ----------
+    solution, base
+        What is compared, and its control.
+    switches
+        Its switching times, shape (K,).
+    sizes
+        Of states, shape (n,).
+    wanted
+        The states whose end is to be that of the solution.
+    limits
+        Spent by evaluations.
+    """
 
-    found = at(shift)
-    for _ in range(CORRECTIONS):
-        if found is None:
-            return float("inf")
-        cost, gap = found
-        if float(np.abs(gap).max(initial=0.0)) <= MISSED:
-            return float(cost)
-        nudge = 1e-6 * lasting
-        columns = []
-        for k in range(len(shift)):
-            there = at(shift + nudge * np.eye(len(shift))[k])
-            if there is None:
-                return float("inf")
-            columns.append((there[1] - gap) / nudge)
-        step = -np.linalg.lstsq(np.stack(columns, axis=1), gap, rcond=1e-9)[0]
-        largest = float(np.abs(step).max(initial=0.0))
-        shift = shift + step * min(1.0, 0.1 * lasting / max(largest, 1e-300))
+    solution: Solution
+    base: Plan
+    switches: Array
+    sizes: Array
+    wanted: NDArray[np.intp]
+    limits: Limits
+
+    @classmethod
+    def of(cls, solution: Solution, limits: Limits) -> _Near:
+        switches = np.unique([t for times in solution.switching_times for t in times])
+        sizes = np.maximum(np.abs(solution.x).max(axis=1), 1e-300)
+        wanted = np.arange(len(sizes)) if solution.instance.model.spec.multipliers else _fixed(solution.instance)
+        return cls(solution, _plan(solution, switches), switches, sizes, wanted, limits)
+
+    @property
+    def free(self) -> bool:
+        """Whether the final time is free."""
+        return self.solution.instance.tf is None
+
+    @property
+    def end(self) -> float:
+        return float(self.solution.times[-1])
+
+    @property
+    def lasting(self) -> float:
+        return float(self.solution.times[-1] - self.solution.times[0])
+
+    def simulated(self, plan: Plan, end: float) -> tuple[float, Array] | None:
+        """The cost of a plan, and by how much it misses the end; ``None`` where it cannot be simulated."""
+        instance = self.solution.instance
+        try:
+            x, cost = self._integrated(plan, end)
+            cost += float(instance.model.terminal_cost(end, tuple(x.tolist()), instance.parameters))
+        except FAILURES:
+            return None
+        return cost, ((x - self.solution.x[:, -1]) / self.sizes)[self.wanted]
+
+    def corrected(self, plan: Plan, shift: Array) -> float:
+        """The cost once the end is as given, by moving the switching times further; infinite where that fails."""
+
+        def at(shift: Array) -> tuple[float, Array] | None:
+            end = self.end + (float(shift[-1]) if self.free else 0.0)
+            return self.simulated(plan.moved(self.switches, shift[: len(self.switches)], end), end)
+
         found = at(shift)
-    return float("inf")
+        for _ in range(CORRECTIONS):
+            if found is None:
+                return float("inf")
+            cost, gap = found
+            if float(np.abs(gap).max(initial=0.0)) <= MISSED:
+                return float(cost)
+            nudge = 1e-6 * self.lasting
+            columns = []
+            for k in range(len(shift)):
+                there = at(shift + nudge * np.eye(len(shift))[k])
+                if there is None:
+                    return float("inf")
+                columns.append((there[1] - gap) / nudge)
+            step = -np.linalg.lstsq(np.stack(columns, axis=1), gap, rcond=1e-9)[0]
+            largest = float(np.abs(step).max(initial=0.0))
+            shift = shift + step * min(1.0, 0.1 * self.lasting / max(largest, 1e-300))
+            found = at(shift)
+        return float("inf")
+
+    def with_needle(self, rng: random.Random) -> Plan | None:
+        """A short arc of one control at another of its levels, away from the switches."""
+        allowed, switches, lasting = self.solution.instance.control_set, self.switches, self.lasting
+        start, base = float(self.solution.times[0]), self.base
+        for _ in range(20):
+            control = rng.randrange(len(allowed.lower))
+            length = rng.uniform(*SHORT) * lasting
+            begin = rng.uniform(start, self.end - length)
+            if len(switches) and np.abs(switches - begin - length / 2.0).min() < 0.75 * length + 0.01 * lasting:
+                continue
+            present = base.values[np.searchsorted(base.starts, begin, side="right") - 1, control]
+            levels = allowed.lower[control], allowed.upper[control], allowed.rest[control]
+            choices = [v for v in levels if v != present]
+            if choices:
+                return base.with_needle(control, rng.choice(choices), begin, begin + length)
+        return None
+
+    def _integrated(self, plan: Plan, end: float) -> tuple[Array, float]:
+        """Where a plan leads, and its running cost; an error where that takes too long."""
+        instance, limits = self.solution.instance, self.limits
+        model, p, n = instance.model, instance.parameters, len(instance.initial)
+        y = np.append(np.array(instance.initial), 0.0)
+        scale = np.append(self.sizes, 1.0)
+        ends = np.append(plan.starts[1:], end)
+        for begin, until, u in zip(plan.starts.tolist(), ends.tolist(), map(tuple, plan.values.tolist()), strict=True):
+            if until <= begin:
+                continue
+
+            def rates(t: float, y: Array, u: tuple[float, ...] = u) -> Array:
+                limits.spend(1)
+                if limits.expired:
+                    raise ArithmeticError("no more evaluations")
+                x = y[:n].tolist()
+                return np.array([*model.dynamics(t, x, u, p), model.running_cost(t, x, u, p)])
+
+            y = integrate(rates, np.array([begin, until]), y, TOLERANCE, scale)[0].end
+        return y[:n], float(y[n])
 
 
-def _needle(solution: Solution, base: Plan, switches: Array, rng: random.Random, lasting: float) -> Plan | None:
-    """A short arc of one control at another of its levels, away from the switches."""
-    instance = solution.instance
-    start, end = float(solution.times[0]), float(solution.times[-1])
-    for _ in range(20):
-        control = rng.randrange(len(instance.lower))
-        length = rng.uniform(*SHORT) * lasting
-        begin = rng.uniform(start, end - length)
-        if len(switches) and np.abs(switches - begin - length / 2.0).min() < 0.75 * length + 0.01 * lasting:
-            continue
-        low, high = instance.lower[control], instance.upper[control]
-        present = base.values[np.searchsorted(base.starts, begin, side="right") - 1, control]
-        choices = [v for v in (low, high, min(max(0.0, low), high)) if v != present]
-        if choices:
-            return base.with_needle(control, rng.choice(choices), begin, begin + length)
-    return None
-
-
-def _plan(solution: Solution) -> Plan:
+def _plan(solution: Solution, switches: Array) -> Plan:
     """The control of a bang-bang solution."""
-    switches = np.unique([t for times in solution.switching_times for t in times])
     starts = np.concatenate([[float(solution.times[0])], switches])
     ends = np.append(switches, float(solution.times[-1]))
     middle = (starts + ends) / 2.0
     where = np.searchsorted(solution.times, middle, side="right") - 1
     return Plan(starts, solution.u[:, where].T.copy())
-
-
-def _fly(instance: Instance, plan: Plan, end: float, sizes: Array, limits: Limits) -> tuple[Array, float]:
-    """Where a plan leads, and its running cost; an error where that takes too long."""
-    model, p, n = instance.model, instance.parameters, len(instance.initial)
-    y = np.append(np.array(instance.initial), 0.0)
-    scale = np.append(sizes, 1.0)
-    ends = np.append(plan.starts[1:], end)
-    for begin, until, u in zip(plan.starts.tolist(), ends.tolist(), map(tuple, plan.values.tolist()), strict=True):
-        if until <= begin:
-            continue
-
-        def rates(t: float, y: Array, u: tuple[float, ...] = u) -> Array:
-            limits.spend(1)
-            if limits.expired:
-                raise ArithmeticError("no more evaluations")
-            x = y[:n].tolist()
-            return np.array([*model.dynamics(t, x, u, p), model.running_cost(t, x, u, p)])
-
-        y = integrate(rates, np.array([begin, until]), y, TOLERANCE, scale)[0].end
-    return y[:n], float(y[n])
 
 
 def _fixed(instance: Instance) -> NDArray[np.intp]:
@@ -177,7 +211,7 @@ def _fixed(instance: Instance) -> NDArray[np.intp]:
 def _singular(solution: Solution) -> bool:
     """Whether the control is anything but constant between switches."""
     instance = solution.instance
-    low, high = (np.array(bounds)[:, None] for bounds in (instance.lower, instance.upper))
+    low, high = instance.control_set.box
     levels = np.stack(np.broadcast_arrays(low, high, np.clip(0.0, low, high)))[:, :, :1]
     off = np.abs(solution.u[None] - levels).min(axis=0)
     return bool((off > 1e-12 * (high - low)).any())

@@ -15,7 +15,8 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solvers.certificate.flow import typical
-from satsym.solvers.certificate.switching.next_switch import at_once, integrated, next_switch, solved
+from satsym.solvers.certificate.switching.integration import Integration, Span
+from satsym.solvers.certificate.switching.next_switch import at_once, next_switch
 from satsym.solvers.certificate.switching.stated_arcs import Stated, arcs, decided_by_none
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.iteration import Limits
@@ -95,110 +96,131 @@ def replay(solution: Solution, within: Limits | None = None) -> Replay | None:
     """
     within = within or Limits(MOST_SWITCHES, float("inf"))
     limits = replace(within, work=within.meter.spent + EVALUATIONS)
-    instance = solution.instance
-    sizes = np.concatenate(typical(solution))
-    z, t, end = np.concatenate([instance.initial, solution.lam[:, 0]]), instance.t0, float(solution.times[-1])
-    stated = [arcs(solution, control) for control in range(len(instance.lower))]
-    settled = [
-        decided_by_none(solution, i) for i in range(len(stated))
-    ]  # no sign shows their switches: the solver's stand
-    stations = np.unique(solution.times)
-    pieces: list[Piece] = []
-    rows: list[tuple[Array, Array, Array]] = []
-    cost = 0.0
+    controls = range(len(solution.instance.lower))
+    again = _Again(
+        solution,
+        [arcs(solution, control) for control in controls],
+        [decided_by_none(solution, control) for control in controls],
+        Integration(np.concatenate(typical(solution)), limits),
+    )
     try:
-        levels = _first_levels(instance, stated, settled, z, t, end)
+        return again.replayed()
+    except FAILURES:
+        return None
+
+
+@dataclass(frozen=True, eq=False)
+class _Again:
+    """What is needed to integrate a solution again.
+
+    Attributes
+    ----------
+    solution
+        Of which the initial costates are taken, and the nodes.
+    stated
+        Arcs of each control as it states them.
+    settled
+        Of each control whether these stand, for no sign shows its switches.
+    by
+        The integration.
+    """
+
+    solution: Solution
+    stated: Stated
+    settled: list[bool]
+    by: Integration
+
+    @property
+    def instance(self) -> Instance:
+        return self.solution.instance
+
+    def replayed(self) -> Replay | None:
+        """Arc by arc; ``None`` where there is no end of switches."""
+        instance, stations = self.instance, np.unique(self.solution.times)
+        z, t, end = (
+            np.concatenate([instance.initial, self.solution.lam[:, 0]]),
+            instance.t0,
+            float(self.solution.times[-1]),
+        )
+        levels = self._first_levels(z, t, end)
+        pieces: list[Piece] = []
+        rows: list[tuple[Array, Array, Array]] = []
+        cost = 0.0
         while len(pieces) <= MOST_SWITCHES:
-            field = Field(instance, levels)
-            piece, levels = _piece(stated, settled, field, t, end, z, sizes, limits)
+            piece, levels = self._piece(Span(Field(instance, levels), t, end, z))
             pieces.append(piece)
-            row, added = _stations(piece, stations, sizes, limits)
+            row, added = self._stations(piece, stations)
             rows.append(row)
             t, z, cost = piece.end, piece.after, cost + added
             if piece.switched is None:
                 times, values, controls = (np.concatenate(part, axis=-1) for part in zip(*rows, strict=True))
                 cost += float(instance.model.terminal_cost(t, z[: len(instance.initial)].tolist(), instance.parameters))
                 return Replay(pieces, times, values, controls, cost)
-    except FAILURES:
         return None
-    return None
 
+    def _first_levels(self, z: Array, t: float, end: float) -> tuple[int, ...]:
+        """Levels at the start: where a switching function vanishes, its rate decides."""
+        instance, found = self.instance, []
+        resting = Field(instance, (REST,) * len(self.stated))
+        for i, own in enumerate(self.stated):
+            if self.settled[i] or own[0][2] == SINGULAR:
+                found.append(own[0][2])
+                continue
+            sigma, rate = switching(resting, t, z.tolist(), i)
+            weight = resting.weight(t, z.tolist(), i)
+            size = max(abs(sigma), weight, abs(rate) * (end - t))
+            if min(abs(abs(sigma) - weight), abs(sigma)) <= 1e-10 * size:
+                sigma += rate * 1e-6 * (end - t)
+            found.append(int(best_levels(instance, i, np.array([sigma]), np.array([weight]))[0]))
+        return tuple(found)
 
-def _first_levels(
-    instance: Instance, stated: Stated, settled: list[bool], z: Array, t: float, end: float
-) -> tuple[int, ...]:
-    """Levels at the start: where a switching function vanishes, its rate decides."""
-    n, m = len(instance.initial), len(instance.lower)
-    resting = Field(instance, (REST,) * m)
-    found = []
-    for i in range(m):
-        if settled[i] or stated[i][0][2] == SINGULAR:
-            found.append(stated[i][0][2])
-            continue
-        sigma, rate = switching(resting, t, z.tolist(), i)
-        weight = float(instance.model.magnitude_weight(t, tuple(z[:n]), instance.parameters)[i])
-        size = max(abs(sigma), weight, abs(rate) * (end - t))
-        if min(abs(abs(sigma) - weight), abs(sigma)) <= 1e-10 * size:
-            sigma += rate * 1e-6 * (end - t)
-        found.append(int(best_levels(instance, i, np.array([sigma]), np.array([weight]))[0]))
-    return tuple(found)
+    def _piece(self, span: Span) -> tuple[Piece, tuple[int, ...]]:
+        """The arc from a time to the next switch, and the levels after it."""
+        field, start = span.field, span.start
+        together = at_once(span, self.settled, self.by.sizes)
+        if together is not None:
+            piece = Piece(field, start, start, span.z, span.z, together[0], np.eye(len(span.z)))
+            return piece, _with(field.levels, *together)
+        known = [
+            (now[1], i, after[2])
+            for i, row in enumerate(self.stated)
+            for now, after in pairwise(row)
+            if (self.settled[i] or SINGULAR in (now[2], after[2])) and now[1] > start + 1e-12 * span.lasting
+        ]
+        until, switched, level = min(known, default=(span.end, None, None))
+        met = next_switch(span.until(until), self.settled, self.by)
+        touching = met is not None and met[1] == switched and until - met[0] < TOUCHING * (until - start)
+        if met is not None and not touching:
+            until, switched = met
+            level = None
+        after, transition = self.by.transition(span.until(until))
+        piece = Piece(field, start, until, span.z, after, switched, transition)
+        if switched is None:
+            return piece, field.levels
+        if level is None:
+            sigma, rate = switching(field, until, after.tolist(), switched)
+            ahead = sigma + rate * 1e-6 * span.lasting
+            weight = field.weight(until, after.tolist(), switched)
+            level = int(best_levels(field.instance, switched, np.array([ahead]), np.array([weight]))[0])
+        return piece, _with(field.levels, switched, level)
 
+    def _stations(self, piece: Piece, nodes: Array) -> tuple[tuple[Array, Array, Array], float]:
+        """The arc at its ends and at the nodes between, as SciPy interpolates its steps; and its running cost."""
+        field, rows, sizes = piece.field, len(piece.before), self.by.sizes
+        times = np.concatenate([[piece.start], nodes[(nodes > piece.start) & (nodes < piece.end)], [piece.end]])
 
-def _piece(
-    stated: Stated,
-    settled: list[bool],
-    field: Field,
-    start: float,
-    end: float,
-    z: Array,
-    sizes: Array,
-    limits: Limits,
-) -> tuple[Piece, tuple[int, ...]]:
-    """The arc from a time to the next switch, and the levels after it."""
-    together = at_once(field, settled, start, end, z, sizes)
-    if together is not None:
-        piece = Piece(field, start, start, z, z, together[0], np.eye(len(z)))
-        return piece, _with(field.levels, *together)
-    known = [
-        (now[1], i, after[2])
-        for i, row in enumerate(stated)
-        for now, after in pairwise(row)
-        if (settled[i] or SINGULAR in (now[2], after[2])) and now[1] > start + 1e-12 * (end - start)
-    ]
-    until, switched, level = min(known, default=(end, None, None))
-    met = next_switch(field, settled, start, until, z, sizes, limits)
-    touching = met is not None and met[1] == switched and until - met[0] < TOUCHING * (until - start)
-    if met is not None and not touching:
-        until, switched = met
-        level = None
-    after, transition = integrated(field, start, until, z, sizes, limits)
-    piece = Piece(field, start, until, z, after, switched, transition)
-    if switched is None:
-        return piece, field.levels
-    if level is None:
-        sigma, rate = switching(field, until, after.tolist(), switched)
-        ahead = sigma + rate * 1e-6 * (end - start)
-        weight = field.weight(until, after.tolist(), switched)
-        level = int(best_levels(field.instance, switched, np.array([ahead]), np.array([weight]))[0])
-    return piece, _with(field.levels, switched, level)
+        def rates(t: float, y: Array) -> list[float]:
+            z = y[:rows].tolist()
+            return [*field.rates(t, z), field.model.running_cost(t, z[: field.n], field.control(t, z), field.p)]
+
+        z, cost = np.stack([piece.before, piece.after], axis=1)[:, [0] * (len(times) - 1) + [1]], 0.0
+        if piece.end > piece.start:
+            start, scale = np.append(piece.before, 0.0), np.append(sizes, sizes[: field.n] @ sizes[field.n :])
+            span = Span(field, piece.start, piece.end, piece.before)
+            found = self.by.solved(rates, span, start, scale, t_eval=times)
+            z[:, 1:-1], cost = found.y[:rows, 1:-1], float(found.y[rows, -1])
+        return (times, z, field.along(times, z)[0]), cost
 
 
 def _with(levels: tuple[int, ...], control: int, level: int) -> tuple[int, ...]:
     return (*levels[:control], level, *levels[control + 1 :])
-
-
-def _stations(piece: Piece, nodes: Array, sizes: Array, limits: Limits) -> tuple[tuple[Array, Array, Array], float]:
-    """The arc at its ends and at the nodes between, as SciPy interpolates its steps; and its running cost."""
-    field, rows = piece.field, len(piece.before)
-    times = np.concatenate([[piece.start], nodes[(nodes > piece.start) & (nodes < piece.end)], [piece.end]])
-
-    def rates(t: float, y: Array) -> list[float]:
-        z = y[:rows].tolist()
-        return [*field.rates(t, z), field.model.running_cost(t, z[: field.n], field.control(t, z), field.p)]
-
-    z, cost = np.stack([piece.before, piece.after], axis=1)[:, [0] * (len(times) - 1) + [1]], 0.0
-    if piece.end > piece.start:
-        start, scale = np.append(piece.before, 0.0), np.append(sizes, sizes[: field.n] @ sizes[field.n :])
-        found = solved(rates, (piece.start, piece.end), start, scale, limits, t_eval=times)
-        z[:, 1:-1], cost = found.y[:rows, 1:-1], float(found.y[rows, -1])
-    return (times, z, field.along(times, z)[0]), cost

@@ -119,8 +119,8 @@ def _end(instance: Instance, again: Replay, total: Array, free_time: bool) -> tu
     model, z, t = instance.model, last.after.tolist(), last.end
     u = last.field.control(t, z)
     c = len(model.spec.multipliers)
-    held = (*u, *u, *instance.bounds[2 * len(u) :])
-    arguments = (t, tuple(z[:n]), tuple(z[n:]), (0.0,) * c, instance.parameters, held, final_argument(instance))
+    kept = instance.control_set.saturated(u).arguments
+    arguments = (t, tuple(z[:n]), tuple(z[n:]), (0.0,) * c, instance.parameters, kept, final_argument(instance))
     by = np.array(model.boundary_jacobian(*arguments)).reshape(n + c + 1, -1)
     slopes = by[:, : 2 * n] @ total
     if free_time:

@@ -14,7 +14,7 @@ from satsym.solvers.switching.attempt import Exact, attempt, given
 from satsym.solvers.switching.cold_start.least_effort import first_duration
 from satsym.solvers.switching.cold_start.plans import Scout, seeded
 from satsym.solvers.switching.cold_start.recognition import Guess
-from satsym.solvers.switching.cold_start.scouts import ROUNDS, scouted
+from satsym.solvers.switching.cold_start.scouts import ROUNDS, Target, scouted
 from satsym.solvers.switching.newton import Equations
 from satsym.solvers.switching.structure import Structure
 
@@ -77,9 +77,9 @@ def _drawn(
     plans = seeded(instance, switches, ends - instance.t0, rng)
     sizes = given(instance)
     sizes = np.where(sizes > 0.0, sizes, max(float(sizes.max()), 1e-300))
-    wanted = ends if instance.tf is not None else np.full(PLANS, np.nan)
+    target = Target(instance, sizes, ends if instance.tf is not None else np.full(PLANS, np.nan))
     seen: list[float] = []
-    for scout in scouted(instance, plans, sizes, limits, wanted, ROUNDS if known else PATIENT):
+    for scout in scouted(target, plans, limits, ROUNDS if known else PATIENT):
         if scout.cost >= cost - APART * abs(cost) or len(seen) == TRIED:
             break
         if seen and abs(scout.cost - seen[-1]) <= APART * abs(seen[-1]):

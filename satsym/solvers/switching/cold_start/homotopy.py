@@ -1,8 +1,7 @@
 """From nothing to smoothed extremals, less and less smoothed.
 
-Without bounds the companion of a switching problem is a problem of least effort, which collocation solves from a cold
-start. Its bounds are then brought in, the weight of |u| is, and the smoothing is taken away, each step starting from
-the last solution.
+Without bounds the regularised problem is one of least effort, which collocation solves from a cold start. Its bounds
+are then brought in, the weight of |u| is, and the smoothing is taken away, each step starting from the last solution.
 """
 
 from __future__ import annotations
@@ -20,8 +19,7 @@ from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.system import System
-from satsym.solvers.control.control_set import violation
-from satsym.solvers.control.regularised import companion
+from satsym.solvers.control.regularised import regularised
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.cold_start.least_effort import (
     NEAR_FULL,
@@ -47,7 +45,7 @@ class Stopped(Exception):
     status, message
         What came of it.
     problem, curve
-        The last companion that was solved, if any.
+        The last regularised problem that was solved, if any.
     """
 
     status: Status
@@ -65,10 +63,10 @@ def path(instance: Instance, limits: Limits) -> Iterator[Smoothed]:
         Where there is none, or the way to the bounds is blocked.
     """
     problem, curve = (instance.tf is None and _long(instance, limits)) or _bounded(instance, limits)
-    smoothing = problem.bounds[-2]
+    smoothing = problem.control_set.smoothing
 
     def weighed(share: float) -> TwoPoint:
-        return replace(problem, instance=companion(instance, smoothing, share))
+        return replace(problem, instance=regularised(instance, smoothing, share))
 
     curve, reached = follow(weighed, curve, limits)
     if reached < 1.0:
@@ -79,13 +77,13 @@ def path(instance: Instance, limits: Limits) -> Iterator[Smoothed]:
         before = smoothing
 
         def sharper(share: float, before: float = before, problem: TwoPoint = problem) -> TwoPoint:
-            return replace(problem, instance=companion(instance, before * SHARPER**-share, 1.0))
+            return replace(problem, instance=regularised(instance, before * SHARPER**-share, 1.0))
 
         curve, reached = follow(sharper, curve, limits)
         if reached == 0.0:
             raise Stopped(Status.NOT_CONVERGED, f"less smoothing than {smoothing:.1e} was not reached", problem, curve)
         smoothing *= SHARPER**-reached
-        problem = replace(problem, instance=companion(instance, smoothing, 1.0))
+        problem = replace(problem, instance=regularised(instance, smoothing, 1.0))
         yield Smoothed(problem, curve)
 
 
@@ -105,11 +103,11 @@ def _long(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve] | None:
     u = tuple(problem.control(np.ones(1), curve.nodes[:, -1:], curve.theta)[:, 0].tolist())
     effort = sum(v * v for v in u) / 2.0
     growth = effort + sum(a * b for a, b in zip(z[n:], instance.model.dynamics(t, z[:n], u, p), strict=True))
-    idle = tuple(min(max(0.0, low), high) for low, high in zip(instance.lower, instance.upper, strict=True))
+    idle = instance.control_set.rest
     smoothing = -instance.model.running_cost(t, z[:n], idle, p) / growth if growth else 0.0
     if not 0.0 < smoothing < float("inf"):
         return None
-    eased = two_point(companion(instance, smoothing, 0.0), problem.duration)
+    eased = two_point(regularised(instance, smoothing, 0.0), problem.duration)
     ratio = np.ones((2 * n, 1))
     ratio[n:] = smoothing * problem.scale.both[n:] / eased.scale.both[n:]
     ratio[:n] = problem.scale.both[:n] / eased.scale.both[:n]
@@ -122,18 +120,18 @@ def _long(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve] | None:
 
 def _bounded(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve]:
     """From no bounds to the bounds, well smoothed."""
-    problem, curve = _unbounded(companion(instance, first_smoothing(instance), 0.0), limits)
+    problem, curve = _unbounded(regularised(instance, first_smoothing(instance), 0.0), limits)
     worst = max(_violation(problem, curve), 0.0)
 
     def bounded(share: float) -> TwoPoint:
-        return problem.widened((1.0 - share) * worst)
+        return problem.relaxed((1.0 - share) * worst)
 
     if worst > 0.0:
         curve, reached = follow(bounded, curve, limits)
         if reached < 1.0:
             message = f"bounds could be brought in only {min(reached, 0.99):.0%} of the way from where they do not bind"
             raise Stopped(Status.NOT_CONVERGED, message, problem, curve)
-    return problem.widened(0.0), curve
+    return problem.relaxed(0.0), curve
 
 
 def first_smoothing(instance: Instance) -> float:
@@ -149,7 +147,7 @@ def first_smoothing(instance: Instance) -> float:
 
 
 def _unbounded(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve]:
-    """The companion without bounds, solved."""
+    """The regularised problem without bounds, solved."""
     if instance.tf is None:
         near = of_size(instance, NEAR_FULL, limits) if instance.tf_guess is None else None
         duration = first_duration(instance) if near is None else near.problem.duration
@@ -166,4 +164,4 @@ def _unbounded(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve]:
 
 def _violation(problem: TwoPoint, curve: Curve) -> float:
     tau = np.linspace(0.0, 1.0, 201)
-    return violation(problem.instance, problem.control(tau, curve(tau), curve.theta, bounded=False))
+    return problem.instance.control_set.violation(problem.control(tau, curve(tau), curve.theta, bounded=False))

@@ -23,7 +23,7 @@ from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.system import System
-from satsym.solvers.control.regularised import companion
+from satsym.solvers.control.regularised import regularised
 from satsym.solvers.iteration import Limits
 
 NEAR_FULL = (1.15, 2.2)
@@ -61,9 +61,9 @@ class Smoothed:
     Attributes
     ----------
     problem, curve
-        The companion, and its solution.
+        The regularised problem, and its solution.
     scaled
-        Factor of the costates by which the companion's are those of the problem.
+        Factor of the costates by which those of the regularised problem are those of the problem.
     """
 
     problem: TwoPoint
@@ -112,8 +112,8 @@ def first_duration(instance: Instance) -> float:
     """The guess; or the time scale of the motion, unless that is long only because its modes drift slowly apart."""
     if instance.tf_guess is not None:
         return instance.tf_guess - instance.t0
-    scale, n = time_scale(companion(instance, 1.0, 0.0)), len(instance.initial)
-    idle = tuple(min(max(0.0, low), high) for low, high in zip(instance.lower, instance.upper, strict=True))
+    scale, n = time_scale(regularised(instance, 1.0, 0.0)), len(instance.initial)
+    idle = instance.control_set.rest
     slopes = np.array(instance.model.jacobian_x(instance.t0, instance.initial, idle, instance.parameters))
     quickest = float(np.linalg.norm(slopes.reshape(n, n), 2))
     return DRIFTING / quickest if quickest * scale > DRIFTING**2 else scale
@@ -123,8 +123,8 @@ def _least_effort(instance: Instance, duration: float, limits: Limits) -> Smooth
     """The least effort in a given time without bounds, if the straight line leads there at once."""
     if limits.expired:
         return None
-    fixed = replace(companion(instance, 1.0, 0.0), tf=instance.t0 + duration, tf_guess=None)
-    problem = two_point(fixed, duration).widened(float("inf"))
+    fixed = replace(regularised(instance, 1.0, 0.0), tf=instance.t0 + duration, tf_guess=None)
+    problem = two_point(fixed, duration).relaxed(float("inf"))
     line = as_curve(problem, first(problem))
     found = straight_through(line, System(problem, line.mesh, STAGES), limits)
     return None if found is None else Smoothed(problem, found.curve, _normalised(problem, found.curve))
@@ -134,7 +134,7 @@ def _largest_share(instance: Instance, found: Smoothed) -> float:
     """The largest control, relative to its bound on that side."""
     tau = np.linspace(0.0, 1.0, 33)
     u = found.problem.control(tau, found.curve(tau), found.curve.theta)
-    low, high = (np.array(bounds)[:, None] for bounds in (instance.lower, instance.upper))
+    low, high = instance.control_set.box
     return float(np.max(np.where(u > 0.0, u / high, np.where(u < 0.0, u / low, 0.0))))
 
 
@@ -146,7 +146,7 @@ def shortening(instance: Instance, limits: Limits) -> Iterator[Smoothed]:
     found = of_size(instance, WITHIN, limits)
     if found is None:
         return
-    longest = found.problem.widened(0.0)
+    longest = found.problem.relaxed(0.0)
     curve, duration, ratio = found.curve, longest.duration, SHORTER
 
     def lasting(duration: float) -> TwoPoint:
@@ -175,7 +175,7 @@ def _normalised(problem: TwoPoint, curve: Curve) -> float:
     tau = np.linspace(0.0, 1.0, 17)
     z, t, p = curve(tau) * problem.scale.both, instance.t0 + problem.duration * tau, instance.parameters
     sigma = np.asarray(instance.model.switching_function_batch(t, z[:n], z[n:], p))
-    u = np.where(sigma > 0.0, np.array(instance.lower)[:, None], np.array(instance.upper)[:, None])
+    u = np.where(sigma > 0.0, *instance.control_set.box)
     growth = (z[n:] * instance.model.dynamics_batch(t, z[:n], u, p)).sum(axis=0)
     cost = np.broadcast_to(instance.model.running_cost_batch(t, z[:n], u, p), growth.shape)
     factor = -float(cost.mean() / growth.mean()) if growth.any() else 1.0

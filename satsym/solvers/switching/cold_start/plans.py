@@ -66,12 +66,16 @@ def seeded(
         Whether first levels are taken in the other order.
     """
     weighs = np.array(instance.model.magnitude_weight(instance.t0, instance.initial, instance.parameters)) > 0.0
+    choices = [
+        (LOWER,) if low == high else (LOWER, REST, UPPER) if weight else (LOWER, UPPER)
+        for low, high, weight in zip(instance.lower, instance.upper, weighs, strict=True)
+    ]
     rows = []
     for number, duration in enumerate(durations.tolist()):
         times, tables = [], []
         for control, most in enumerate(switches):
             count = int(rng.integers(0, most + 1))
-            own = _walk(instance, control, bool(weighs[control]), count, number + opposite, rng)
+            own = _walk(choices[control], count, number + opposite, rng)
             tables.append((np.sort(rng.uniform(0.0, duration, len(own) - 1)), own))
             times.append(tables[-1][0])
         edges = np.concatenate([[0.0], np.sort(np.concatenate(times)), [duration]])
@@ -83,17 +87,12 @@ def seeded(
     return Plans(levels.transpose(1, 2, 0), lengths)
 
 
-def _walk(
-    instance: Instance, control: int, weighs: bool, switches: int, number: int, rng: np.random.Generator
-) -> list[int]:
+def _walk(choices: tuple[int, ...], switches: int, number: int, rng: np.random.Generator) -> list[int]:
     """Levels of a control one after the other, through rest where its magnitude costs."""
-    if instance.lower[control] == instance.upper[control]:
-        return [LOWER]
-    choices = [LOWER, REST, UPPER] if weighs else [LOWER, UPPER]
     found = [choices[number % len(choices)]]
-    for _ in range(switches):
+    for _ in range(switches if len(choices) > 1 else 0):
         now = found[-1]
-        found.append(-now if not weighs else (int(rng.choice([LOWER, UPPER])) if now == REST else REST))
+        found.append(-now if REST not in choices else (int(rng.choice([LOWER, UPPER])) if now == REST else REST))
     return found
 
 

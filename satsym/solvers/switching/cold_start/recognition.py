@@ -111,7 +111,7 @@ def levels(instance: Instance, control: int, sigma: Array, weight: Array) -> NDA
 
 def inside(instance: Instance, seen: Sample) -> NDArray[np.bool_]:
     """Where controls without a weight of their magnitude are off both bounds for long, shape (m, N)."""
-    low, high = (np.array(bounds)[:, None] for bounds in (instance.lower, instance.upper))
+    low, high = instance.control_set.box
     off = INSIDE * (high - low)
     free = (seen.u > low + off) & (seen.u < high - off) & (seen.weight == 0.0)
     least = LONG * (seen.times[-1] - seen.times[0])

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.instance import Instance
@@ -54,104 +54,114 @@ NOISE = 1e-4
 """Share of a slope below which what is left of it is the error of a difference."""
 
 
-def scouted(
-    instance: Instance, plans: Plans, sizes: Array, limits: Limits, ends: Array, rounds: int = ROUNDS
-) -> list[Scout]:
+@dataclass(frozen=True, eq=False)
+class Target:
+    """Where motions are to arrive.
+
+    Attributes
+    ----------
+    instance
+        Of a switching problem.
+    sizes
+        Of states, shape (n,).
+    ends
+        The final time of each plan, where it is given or to be kept, NaN where it is free; shape (M,).
+    """
+
+    instance: Instance
+    sizes: Array
+    ends: Array
+
+    @cached_property
+    def _final(self) -> Array:
+        """What is given at the end: whether by numbers, whether on the reference, and the numbers; shape (3, n)."""
+        return np.array(final_argument(self.instance)).reshape(3, -1)
+
+    def of(self, plans: list[int]) -> Target:
+        """That of some plans."""
+        return replace(self, ends=self.ends[plans])
+
+    def gap(self, times: Array, x: Array) -> Array:
+        """By how much it is missed, shape (c, N), for one motion or several of each plan in turn.
+
+        States that are given are relative to their sizes; a final time that is follows them.
+        """
+        given, on_reference, target = self._final[:, :, None]
+        goal = given * target
+        if on_reference.any():
+            curve = np.array([self.instance.model.reference(t, self.instance.parameters) for t in times.tolist()]).T
+            goal = goal + on_reference * curve
+        rows = np.flatnonzero(self._final[:2].any(axis=0))
+        missed = ((x - goal) / self.sizes[:, None])[rows]
+        ends = np.repeat(self.ends, len(times) // len(self.ends))
+        late = np.where(np.isfinite(ends), (times - ends) / (ends - self.instance.t0), 0.0)
+        return np.concatenate([missed, late[None]])
+
+
+def scouted(target: Target, plans: Plans, limits: Limits, rounds: int = ROUNDS) -> list[Scout]:
     """What of these plans arrives, the cheapest first.
 
     Parameters
     ----------
-    sizes
-        Of states, shape (n,).
+    target
+        With as many ends as there are plans.
     limits
         Spent by the points at which a motion is looked at.
-    ends
-        The final time of each plan, where it is given or to be kept, NaN where it is free; shape (M,).
     rounds
         Corrections of the lengths of arcs.
     """
-    wanted = _Wanted(instance, sizes, np.flatnonzero(_final(instance)[:2].any(axis=0)), ends)
-    steps = _Steps.of(instance, limits)
+    steps = _Steps.of(target.instance, limits)
     lengths = plans.lengths.copy()
     span = lengths.sum(axis=0)
     before, missed, trust = lengths, np.full(lengths.shape[1], np.inf), np.full(lengths.shape[1], LARGEST)
     for round_ in range(rounds):
         if limits.expired:
             return []
-        value, _, slopes, gradient = _derivatives(instance, plans.levels, lengths, NUDGE * span, wanted, steps)
-        miss = np.abs(value).max(axis=0, initial=0.0)
+        found = _linearised(target, replace(plans, lengths=lengths), NUDGE * span, steps)
+        miss = found.worst
         worse = ~(miss <= np.maximum(GROWN * missed, ARRIVED)) & (round_ > 0)
         trust = np.where(worse, trust * BACK, np.minimum(trust * FORTH, LARGEST))
         lengths = np.where(worse, before + BACK * (lengths - before), lengths)  # and look there again
         before, missed = np.where(worse, before, lengths), np.where(worse, missed, miss)
         bold = BOLD * CALMER**round_ if round_ < rounds - LAST else 0.0
-        moved = np.maximum(lengths + _step(value, slopes, gradient, lengths, trust * span, bold / LARGEST), 0.0)
+        moved = np.maximum(lengths + found.step(lengths, trust * span, bold / LARGEST), 0.0)
         lengths = np.where(worse, lengths, moved)
         span = np.maximum(lengths.sum(axis=0), 1e-9 * span)
-    return _arrived(wanted, Plans(plans.levels, lengths), steps, ARRIVED)
+    return _arrived(target, replace(plans, lengths=lengths), steps, ARRIVED)
 
 
-def exactly(instance: Instance, scouts: list[Scout], sizes: Array, limits: Limits, ends: Array) -> list[Scout]:
+def exactly(target: Target, scouts: list[Scout], limits: Limits) -> list[Scout]:
     """Those of some scouts that arrive to the last digits, the cheapest first; their numbers are as they were.
 
     Parameters
     ----------
-    ends
-        The final time of each scout, where it is given or to be kept, NaN where it is free; shape (M,).
+    target
+        With as many ends as there are scouts.
     """
     if not scouts:
         return []
     plans = Plans(np.stack([one.levels for one in scouts], axis=2), np.stack([one.lengths for one in scouts], axis=1))
-    wanted = _Wanted(instance, sizes, np.flatnonzero(_final(instance)[:2].any(axis=0)), ends)
     steps = _Steps(float("nan"), limits)
-    lengths = plans.lengths
     for _ in range(POLISHED):
         if limits.expired:
             return []
-        span = lengths.sum(axis=0)
-        value, _, slopes, gradient = _derivatives(instance, plans.levels, lengths, NUDGE * span, wanted, steps)
-        if float(np.abs(value).max(initial=0.0)) <= THERE / 10.0:
+        span = plans.lengths.sum(axis=0)
+        found = _linearised(target, plans, NUDGE * span, steps)
+        if float(found.worst.max(initial=0.0)) <= THERE / 10.0:
             break
-        lengths = np.maximum(lengths + _step(value, slopes, gradient, lengths, LARGEST * span, 0.0), 0.0)
-    found = _arrived(wanted, Plans(plans.levels, lengths), steps, THERE)
-    return [replace(one, number=scouts[one.number].number) for one in found]
+        plans = replace(plans, lengths=np.maximum(plans.lengths + found.step(plans.lengths, LARGEST * span, 0.0), 0.0))
+    arrived = _arrived(target, plans, steps, THERE)
+    return [replace(one, number=scouts[one.number].number) for one in arrived]
 
 
-def _arrived(wanted: _Wanted, plans: Plans, steps: _Steps, closely: float) -> list[Scout]:
+def _arrived(target: Target, plans: Plans, steps: _Steps, closely: float) -> list[Scout]:
     """The plans that arrive, the cheapest first."""
-    instance, lengths = wanted.instance, plans.lengths
-    x, costs = _flown(instance, plans.levels, lengths, steps)
-    missed = np.abs(wanted.gap(instance.t0 + lengths.sum(axis=0), x)).max(axis=0, initial=0.0)
+    instance, lengths = target.instance, plans.lengths
+    x, costs = _simulated(instance, plans, steps)
+    missed = np.abs(target.gap(instance.t0 + lengths.sum(axis=0), x)).max(axis=0, initial=0.0)
     arrived = (missed <= closely) & np.isfinite(costs) & np.isfinite(x).all(axis=0)
     order = [k for k in np.argsort(costs).tolist() if arrived[k]]
     return [Scout(k, plans.levels[:, :, k], lengths[:, k], float(costs[k])) for k in order]
-
-
-def _final(instance: Instance) -> Array:
-    """What is given at the end: whether by numbers, whether on the reference, and the numbers; shape (3, n)."""
-    return np.array(final_argument(instance)).reshape(3, -1)
-
-
-@dataclass(frozen=True, eq=False)
-class _Wanted:
-    """What is asked of the end: states that are given, relative to their sizes, and perhaps the final time."""
-
-    instance: Instance
-    sizes: Array
-    rows: NDArray[np.intp]
-    ends: Array
-
-    def gap(self, times: Array, x: Array) -> Array:
-        """By how much it is missed, shape (c, N), for one motion or several of each plan in turn."""
-        given, on_reference, target = _final(self.instance)[:, :, None]
-        goal = given * target
-        if on_reference.any():
-            curve = np.array([self.instance.model.reference(t, self.instance.parameters) for t in times.tolist()]).T
-            goal = goal + on_reference * curve
-        missed = ((x - goal) / self.sizes[:, None])[self.rows]
-        ends = np.repeat(self.ends, len(times) // len(self.ends))
-        late = np.where(np.isfinite(ends), (times - ends) / (ends - self.instance.t0), 0.0)
-        return np.concatenate([missed, late[None]])
 
 
 @dataclass(frozen=True)
@@ -171,7 +181,7 @@ class _Steps:
     @classmethod
     def of(cls, instance: Instance, limits: Limits) -> _Steps:
         """Of fixed length, as the motion at its start asks for."""
-        n, u = len(instance.initial), tuple(np.clip(0.0, instance.lower, instance.upper).tolist())
+        n, u = len(instance.initial), instance.control_set.rest
         slopes = np.array(instance.model.jacobian_x(instance.t0, instance.initial, u, instance.parameters))
         return cls(float(np.abs(np.linalg.eigvals(slopes.reshape(n, n))).max(initial=0.0)), limits)
 
@@ -202,29 +212,74 @@ class _Steps:
         return y
 
 
-def _derivatives(
-    instance: Instance, levels: NDArray[np.int64], lengths: Array, nudge: Array, wanted: _Wanted, steps: _Steps
-) -> tuple[Array, Array, Array, Array]:
-    """Misses (c, M) and costs (M,) of all plans, and both by the lengths of arcs: (M, c, K) and (M, K)."""
-    count, many = lengths.shape
-    moved = np.repeat(lengths[:, :, None], count + 1, axis=2)
+@dataclass(frozen=True, eq=False)
+class _Linearised:
+    """How plans miss the end, and how that and their costs change with the lengths of arcs.
+
+    Attributes
+    ----------
+    miss
+        Shape (c, M).
+    slopes, gradient
+        Of misses and costs, shapes (M, c, K) and (M, K).
+    """
+
+    miss: Array
+    slopes: Array
+    gradient: Array
+
+    @property
+    def worst(self) -> Array:
+        """The largest miss of each plan, shape (M,)."""
+        return np.asarray(np.abs(self.miss).max(axis=0, initial=0.0))
+
+    def step(self, lengths: Array, largest: Array, bold: float) -> Array:
+        """How lengths of arcs change, shape (K, M): towards the end, and downhill along what leaves it where it is."""
+        parts = (self.slopes, (1, 2)), (self.gradient, 1), (self.miss, 0)
+        usable = np.logical_and.reduce([np.isfinite(part).all(axis=axes) for part, axes in parts])
+        slopes, gradient = (
+            np.where(usable.reshape(-1, *[1] * (part.ndim - 1)), part, 0.0) for part in (self.slopes, self.gradient)
+        )
+        miss = np.where(usable, self.miss, 0.0)
+        free = np.ones(gradient.shape, bool)
+        step = np.zeros_like(gradient)
+        for _ in range(2):  # arcs of no length that would shrink stay as they are
+            table = slopes * free[:, None]
+            inverse = np.linalg.pinv(table, rcond=RANK)
+            towards = -np.einsum("mkc,cm->mk", inverse, miss)
+            towards *= np.minimum(1.0, largest / np.maximum(np.abs(towards).max(axis=1), 1e-300))[:, None]
+            downhill = np.where(free, -gradient, 0.0)
+            steepest = np.abs(downhill).max(axis=1)
+            downhill = downhill - np.einsum("mkc,mcl,ml->mk", inverse, table, downhill)
+            size = np.abs(downhill).max(axis=1)
+            downhill *= np.where(size > NOISE * steepest, bold * largest / np.maximum(size, 1e-300), 0.0)[:, None]
+            step = towards + downhill
+            free &= ~((lengths.T <= 0.0) & (step < 0.0))
+        return np.asarray(np.where(free, step, 0.0).T)
+
+
+def _linearised(target: Target, plans: Plans, nudge: Array, steps: _Steps) -> _Linearised:
+    """Misses, and by differences how these and costs change, of all plans at once."""
+    count, many = plans.lengths.shape
+    moved = np.repeat(plans.lengths[:, :, None], count + 1, axis=2)
     for k in range(count):
         moved[k, :, k + 1] += nudge
-    shape = (many, count + 1)
-    x, cost = _flown(instance, np.repeat(levels[..., None], count + 1, axis=3), moved, steps)
-    times = instance.t0 + moved.sum(axis=0).ravel()
-    gaps = wanted.gap(times, x).reshape(-1, *shape)
-    costs = cost.reshape(shape)
+    levels = np.repeat(plans.levels[..., None], count + 1, axis=3)
+    x, cost = _simulated(target.instance, Plans(levels, moved), steps)
+    times = target.instance.t0 + moved.sum(axis=0).ravel()
+    gaps = target.gap(times, x).reshape(-1, many, count + 1)
+    costs = cost.reshape(many, count + 1)
     slopes = (gaps[:, :, 1:] - gaps[:, :, :1]) / nudge[:, None]
     gradient = (costs[:, 1:] - costs[:, :1]) / nudge[:, None]
-    return gaps[:, :, 0], costs[:, 0], slopes.transpose(1, 0, 2), gradient
+    return _Linearised(gaps[:, :, 0], slopes.transpose(1, 0, 2), gradient)
 
 
-def _flown(instance: Instance, levels: NDArray[np.int64], lengths: Array, steps: _Steps) -> tuple[Array, Array]:
+def _simulated(instance: Instance, plans: Plans, steps: _Steps) -> tuple[Array, Array]:
     """Where plans lead, shape (n, N), and at what cost, (N,): infinite beyond the domain."""
+    levels, lengths = plans.levels, plans.lengths
     model, p, n = instance.model, instance.parameters, len(instance.initial)
     many = int(np.prod(lengths.shape[1:]))
-    low, high = (np.array(row)[:, None] for row in (instance.lower, instance.upper))
+    low, high = instance.control_set.box
     rest = np.clip(0.0, low, high)
     positive = [k for k, state in enumerate(model.spec.states) if state.positive]
     y, t = np.repeat(np.append(instance.initial, 0.0)[:, None], many, axis=1), np.full(many, instance.t0)
@@ -242,25 +297,3 @@ def _flown(instance: Instance, levels: NDArray[np.int64], lengths: Array, steps:
     if model.spec.has_terminal_cost:
         cost = cost + np.asarray(model.terminal_cost_batch(t, x, p))
     return x, cost
-
-
-def _step(value: Array, slopes: Array, gradient: Array, lengths: Array, largest: Array, bold: float) -> Array:
-    """How lengths of arcs change, shape (K, M): towards the end, and downhill along what leaves it where it is."""
-    usable = np.isfinite(slopes).all(axis=(1, 2)) & np.isfinite(gradient).all(axis=1) & np.isfinite(value).all(axis=0)
-    slopes, gradient = (np.where(usable.reshape(-1, *[1] * (part.ndim - 1)), part, 0.0) for part in (slopes, gradient))
-    value = np.where(usable, value, 0.0)
-    free = np.ones(gradient.shape, bool)
-    step = np.zeros_like(gradient)
-    for _ in range(2):  # arcs of no length that would shrink stay as they are
-        table = slopes * free[:, None]
-        inverse = np.linalg.pinv(table, rcond=RANK)
-        towards = -np.einsum("mkc,cm->mk", inverse, value)
-        towards *= np.minimum(1.0, largest / np.maximum(np.abs(towards).max(axis=1), 1e-300))[:, None]
-        downhill = np.where(free, -gradient, 0.0)
-        steepest = np.abs(downhill).max(axis=1)
-        downhill = downhill - np.einsum("mkc,mcl,ml->mk", inverse, table, downhill)
-        size = np.abs(downhill).max(axis=1)
-        downhill *= np.where(size > NOISE * steepest, bold * largest / np.maximum(size, 1e-300), 0.0)[:, None]
-        step = towards + downhill
-        free &= ~((lengths.T <= 0.0) & (step < 0.0))
-    return np.asarray(np.where(free, step, 0.0).T)

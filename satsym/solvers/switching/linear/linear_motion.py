@@ -94,7 +94,7 @@ def linear_motion(instance: Instance) -> LinearMotion | None:
     sizes = np.maximum(np.abs(instance.initial), np.array(given))
     sizes = np.where(sizes > 0.0, sizes, max(float(sizes.max(initial=0.0)), 1.0))[:, None]
     x = sizes * rng.normal(size=(n, DRAWN)) * 10.0 ** rng.uniform(-1.0, 2.0, DRAWN)
-    low, high = (np.array(row)[:, None] for row in (instance.lower, instance.upper))
+    low, high = instance.control_set.box
     u, t = rng.uniform(low, high, (m, DRAWN)), np.full(DRAWN, instance.t0)
     by_x = np.broadcast_to(np.asarray(model.jacobian_x_batch(t, x, u, p)), (n, n, DRAWN))
     by_u = np.broadcast_to(np.asarray(model.jacobian_u_batch(t, x, u, p)), (n, m, DRAWN))
