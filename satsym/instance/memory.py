@@ -7,6 +7,7 @@ certifying, simulating and writing were measured to take at most, by all methods
 from __future__ import annotations
 
 from satsym.instance.schema import SolverOptions
+from satsym.methods import possible
 from satsym.spec import ProblemSpec
 from satsym.status import BadInput
 
@@ -39,12 +40,12 @@ def check(options: SolverOptions, spec: ProblemSpec) -> None:
 
 
 def _each(options: SolverOptions, spec: ProblemSpec) -> int:
-    """Bytes for each step: flows of the canonical equations and what belongs to nodes, or what a sweep remembers."""
+    """Bytes for each step: flows of the canonical equations and what belongs to nodes, or what a method remembers."""
     n, m = len(spec.states), len(spec.controls)
     numbers = 10 * n * n + 10 * (n + m)
-    if spec.has_cost and options.method in ("auto", "sweep"):
-        # nodes and midpoints; twenty pairs of controls and gradients, and what a step makes of them
-        numbers = max(numbers, 70 * n + 90 * m)
+    if spec.has_cost:
+        remembered = [method.remembers for method in possible(options.method)]
+        numbers = max([numbers, *(by_state * n + by_control * m for by_state, by_control in remembered)])
     return _BYTES * numbers
 
 

@@ -8,6 +8,7 @@ from satsym.instance import memory, weights
 from satsym.instance.resolve import known, quantity, time, value_of
 from satsym.instance.schema import GuessTable, LqrTable, SolverOptions
 from satsym.instance.types import Guess, LqrOptions
+from satsym.methods import possible
 from satsym.spec import ProblemSpec, Variable
 from satsym.status import BadInput
 from satsym.wording import shown
@@ -18,7 +19,7 @@ Weights = Sequence[float | Sequence[float]]
 
 def solver(options: SolverOptions, spec: ProblemSpec) -> SolverOptions:
     """The options, if they fit together and the angles are angles of the model."""
-    if options.relaxation is not None and options.method not in ("auto", "sweep"):
+    if options.relaxation is not None and not any(method.relaxed for method in possible(options.method)):
         raise BadInput('[solver] relaxation: only sweeps have one; remove it, or write method = "sweep"')
     angles = [v for v in spec.states if v.kind == "angle"]
     for name in options.free_angles:

@@ -6,11 +6,13 @@ it, so that what is checked and what is said cannot drift apart.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Annotated, Any, Literal, get_args, get_origin
 
 import msgspec
 from msgspec import Meta
 
+from satsym import methods
 from satsym.status import BadInput
 from satsym.wording import printable, shown, suggestion
 
@@ -32,7 +34,21 @@ Gains = Annotated[
     tuple[float, float],
     Meta(description="two numbers, the gain of the rate and that of the angle, such as [13.56, 0.0678]"),
 ]
-Method = Literal["auto", "sweep", "collocation", "shooting", "linear", "bang-bang"]
+
+
+class OneOf:
+    """Names of which a text is one, asked for when a file is read: more may be known by then."""
+
+    def __init__(self, names: Callable[[], tuple[str, ...]]) -> None:
+        self.names = names
+
+    @property
+    def description(self) -> str:
+        """As of ``Meta``."""
+        return "one of " + ", ".join(f'"{name}"' for name in self.names())
+
+
+Method = Annotated[str, OneOf(methods.names)]
 Backend = Literal["auto", "python", "numba"]
 Count = Annotated[int, Meta(ge=1, le=10**7, description="a whole number from 1 to 10000000")]
 Positive = Annotated[float, Meta(gt=0, description="a positive number")]
@@ -95,7 +111,7 @@ class SolverOptions(_Table, frozen=True):
         Whether kernels are compiled.
     """
 
-    method: Annotated[Method, Meta(description="one of " + ", ".join(f'"{m}"' for m in get_args(Method)))] = "auto"
+    method: Method = methods.AUTO
     tolerance: Positive = 1e-9
     steps: Annotated[int, Meta(ge=2, le=10**7, description="a whole number from 2 to 10000000")] = 1000
     max_seconds: Positive = 60.0
@@ -150,7 +166,7 @@ def _value(value: Any, kind: Any, section: str, name: str) -> Any:
     inner, entries = _inner(kind), _entries(kind)
     if inner is None and entries is None:
         try:
-            return msgspec.convert(value, kind)
+            return _chosen(msgspec.convert(value, kind), kind)
         except msgspec.ValidationError:
             raise BadInput(f"{_key(section, name)}: got {shown(value)}; write {_wanted(kind, section, name)}") from None
     if not isinstance(value, dict):
@@ -159,6 +175,14 @@ def _value(value: Any, kind: Any, section: str, name: str) -> Any:
     if inner is not None:
         return _table(value, inner, below)
     return {name: _value(entry, entries, below, name) for name, entry in value.items()}
+
+
+def _chosen(value: Any, kind: Any) -> Any:
+    """A value of a type, which may have to be one of some names."""
+    for meta in getattr(kind, "__metadata__", ()):
+        if isinstance(meta, OneOf) and value not in meta.names():
+            raise msgspec.ValidationError
+    return value
 
 
 def _inner(kind: Any) -> type[_Table] | None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from satsym import methods
 from satsym.cli.options import json_option, plot_option, subject_argument, trajectory_option
 from satsym.cli.output import emit, emit_json, in_colour, live
 from satsym.cli.saving import folder_for, save, trajectory_files
@@ -17,10 +18,13 @@ from satsym.status import ExitCode, Verdict
 if TYPE_CHECKING:
     from satsym.instance import Instance
 
-METHODS = ("auto", "sweep", "collocation", "shooting", "linear", "bang-bang")
-"""What ``[solver] method`` may say; here once more, because ``--help`` loads no schema."""
+METHODS = "\n".join(f"  {method.name:<13}{method.title}" for method in methods.METHODS.values())
 
-EXAMPLES = """\b
+EXAMPLES = f"""\b
+Methods, instead of the instance's (auto is the one that fits):
+{METHODS}
+
+\b
 Examples:
   satsym solve soft-return --plot       results and pictures into results/soft-return/solve
   satsym solve my_case.toml --json      the numbers alone, for another program
@@ -41,7 +45,10 @@ def _positive(_context: click.Context, _option: click.Parameter, value: float | 
 @trajectory_option
 @plot_option("solve")
 @click.option(
-    "--method", type=click.Choice(METHODS), metavar="METHOD", help=f"Instead of the instance's: {', '.join(METHODS)}."
+    "--method",
+    type=click.Choice(methods.names()),
+    metavar="METHOD",
+    help=f"Instead of the instance's: {', '.join(methods.names())}.",
 )
 @click.option("--steps", type=click.IntRange(2, 10**7), metavar="N", help="Steps of the grid.")
 @click.option("--tolerance", type=float, callback=_positive, metavar="EPS", help="Largest residual of an answer.")

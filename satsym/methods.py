@@ -1,0 +1,159 @@
+"""The methods that solve, a record each: instance files, the command line, and what is called are made from these.
+
+A record names its function in words, so that reading an instance and showing help load no solver.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from satsym.spec import ProblemSpec
+
+AUTO = "auto"
+"""Instead of a method's name: the one that fits."""
+
+
+class Model(Protocol):
+    """Of an instance."""
+
+    @property
+    def spec(self) -> ProblemSpec:
+        """Its names and traits."""
+
+
+class Asked(Protocol):
+    """What decides whether a method can solve an instance."""
+
+    @property
+    def model(self) -> Model:
+        """The model, which has a cost."""
+
+    @property
+    def tf(self) -> float | None:
+        """The final time; ``None``: free."""
+
+    @property
+    def final(self) -> Mapping[str, Any]:
+        """Given final states by name."""
+
+
+@dataclass(frozen=True)
+class Method:
+    """A method.
+
+    Attributes
+    ----------
+    name
+        As ``[solver] method`` has it.
+    title
+        One line for the command line's help.
+    solver
+        ``"module:function"`` of the function ``(instance, progress) -> Solution``, imported when it is first called.
+    switching
+        Whether it is for controls that enter the Hamiltonian without a square, or else for those that do not.
+    automatic
+        Whether it is what ``"auto"`` begins with for such controls.
+    certified
+        Whether its answers are accurate enough for a certificate.
+    relaxed
+        Whether it knows ``[solver] relaxation``.
+    refusal
+        Why it cannot solve an instance, and what to do; empty if it can.
+    remembers
+        Numbers for each step that are kept at once: so many for each state, and for each control.
+    """
+
+    name: str
+    title: str
+    solver: str
+    switching: bool = False
+    automatic: bool = False
+    certified: bool = True
+    relaxed: bool = False
+    refusal: Callable[[Asked], str] = lambda _: ""
+    remembers: tuple[int, int] = (0, 0)
+
+
+def _no_sweep(asked: Asked) -> str:
+    """Why sweeps cannot solve an instance: they begin with the costates at a final time, and meet no final state."""
+    spec = asked.model.spec
+    if asked.tf is None:
+        return 'time.tf: a free final time cannot be swept for; use method "collocation"'
+    if asked.final:
+        return (
+            f"a given final {', '.join(asked.final)} cannot be swept for; leave it free and weigh its error in the "
+            'terminal cost, or use method "collocation"'
+        )
+    if spec.multipliers:
+        return f'terminal constraints of {spec.name} cannot be swept for; use method "collocation"'
+    return ""
+
+
+SWEEP = Method(
+    "sweep",
+    "forward-backward sweeps with quasi-Newton steps, for a free end",
+    "satsym.solvers.by_sweeps:solve",
+    certified=False,
+    relaxed=True,
+    refusal=_no_sweep,
+    remembers=(70, 90),  # at nodes and midpoints: twenty pairs of controls and gradients, and what a step makes of them
+)
+
+METHODS = {
+    method.name: method
+    for method in (
+        SWEEP,
+        Method(
+            "collocation",
+            "Gauss collocation from a cold start, refined",
+            "satsym.solvers.two_point:solve",
+            automatic=True,
+        ),
+        Method("shooting", "multiple shooting from a cold start", "satsym.solvers.shooting.solving:solve"),
+        Method("linear", "closed form, for linear canonical equations", "satsym.solvers.linear:solve"),
+        Method(
+            "bang-bang",
+            "exact arcs, for controls that enter without a square",
+            "satsym.solvers.switching.solving:solve",
+            switching=True,
+            automatic=True,
+        ),
+    )
+}
+"""By their names, in the order in which they are listed."""
+
+
+def names() -> tuple[str, ...]:
+    """All that ``[solver] method`` may say."""
+    return (AUTO, *METHODS)
+
+
+def possible(name: str) -> list[Method]:
+    """The methods by which an instance may come to be solved that names one, or leaves it open."""
+    return [method for method in METHODS.values() if name in (AUTO, method.name)]
+
+
+def automatic(spec: ProblemSpec) -> Method:
+    """The method that ``"auto"`` begins with."""
+    return next(method for method in METHODS.values() if method.automatic and method.switching == spec.switching)
+
+
+def refusal(name: str, asked: Asked) -> str:
+    """Why an instance cannot be solved by the method of a name, and what to do; empty if it can."""
+    spec = asked.model.spec
+    if name == AUTO:
+        return ""
+    if name not in METHODS:
+        available = " or ".join(f'"{one}"' for one in names())
+        return f'solver.method: "{name}" is not available; use {available}'
+    method, instead = METHODS[name], automatic(spec).name
+    if spec.switching and not method.switching:
+        return (
+            f'solver.method: the controls enter without a square and switch, which "{name}" cannot find; '
+            f'use "{instead}"'
+        )
+    if method.switching and not spec.switching:
+        return f'solver.method: "{name}" is for controls that enter without a square; use "{instead}"'
+    return method.refusal(asked)

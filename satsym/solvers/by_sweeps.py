@@ -1,0 +1,38 @@
+"""Method "sweep". Where sweeps end without any control, that is the answer only if no control can be cheaper."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from satsym.instance import Instance
+from satsym.solution import Progress, Solution
+from satsym.solvers.certificate.competitors import none_conceivable
+from satsym.solvers.improving import bottomless
+from satsym.solvers.sweep import solving as forward_backward
+from satsym.status import Status
+
+
+def solve(instance: Instance, progress: Progress | None = None) -> Solution:
+    """Solve an instance by forward-backward sweeps.
+
+    Parameters
+    ----------
+    instance
+        With a given final time and a free final state.
+    progress
+        Called after each sweep.
+    """
+    found = forward_backward.solve(instance, progress)
+    if not found.status.answered or found.lam.any():
+        return found
+    if none_conceivable(found):
+        message = (
+            "the best control is none: the final state is free and costs nothing, so the costates vanish and any "
+            "control only adds to the cost; the motion is the one without control"
+        )
+        return replace(found, message=message)
+    return bottomless(found) or replace(
+        found,
+        status=Status.NOT_CONVERGED,
+        message="without control the costates vanish, so it is stationary, but another control may be cheaper",
+    )
