@@ -18,7 +18,8 @@ import pytest
 from satsym import instance as instances
 from satsym.instance import Guess, Instance, SolverOptions
 from satsym.kernels import Kernels
-from satsym.report.plots import curves, display, pictures, series
+from satsym.report import display
+from satsym.report.plots import curves, pictures, series
 from satsym.report.plots.panels import _of_pi
 from satsym.report.plots.reading import read
 from satsym.report.plots.scene import Scene

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from satsym import instance
-from satsym.report.plots import display
+from satsym.report import display
 from satsym.report.plots.orbits.scenes import Orbit
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.views import views

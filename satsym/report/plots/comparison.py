@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from satsym.report.plots import display, legend, style
+from satsym.report import display
+from satsym.report.plots import legend, style
 from satsym.report.results import files
 from satsym.report.terminal.comparison import unit_of
 

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from satsym.report.display import number
 from satsym.report.plots import style
 from satsym.report.plots.curves import clean
-from satsym.report.plots.display import number
 from satsym.report.plots.scene import Scene
 
 if TYPE_CHECKING:

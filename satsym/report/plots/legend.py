@@ -7,7 +7,6 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from satsym.report.plots import style
-from satsym.report.plots.orbits.scenes import Orbit
 from satsym.report.plots.reading import read
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.series import Series
@@ -27,16 +26,6 @@ def motion(scene: Scene, colour: str) -> list[Entry]:
         found.append((line(**style.REFERENCE), "reference"))
     if scene.free is not None:
         found.append((line(**style.FREE), "without control"))
-    return found
-
-
-def in_space(orbit: Orbit) -> list[Entry]:
-    """What only pictures in space have."""
-    arrow = line(color=style.VERMILION, marker=r"$\rightarrow$", markersize=15.0, markeredgewidth=0.2, linestyle="none")
-    found = [(arrow, "thrust")] if orbit.thrust is not None else []
-    found.append((line(color=style.STATE, **style.START), "start"))
-    found.append((line(color=style.STATE, **style.END), "end"))
-    found.append((line(**style.ORIGIN), "origin"))
     return found
 
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from satsym.report.display import number, shortened, unit_text
 from satsym.report.plots import legend, series, style
-from satsym.report.plots.display import number, shortened, unit_text
 from satsym.report.plots.orbits import scenes as orbit
 from satsym.report.plots.panels import small_multiples
 from satsym.report.plots.scene import Scene
@@ -38,7 +38,7 @@ def overview(scene: Scene) -> Figure | None:
         left, right = _split(right, (1, 2), width_ratios=[1.0, 1.12])
         _space(left, shown)
     small_multiples(right, scene, [(q, style.STATE) for q in states] + [(q, style.CONTROL) for q in controls], columns)
-    entries = legend.motion(scene, style.STATE) + ([] if shown is None else legend.in_space(shown))
+    entries = legend.motion(scene, style.STATE) + ([] if shown is None else orbit.entries(shown))
     legend.below(page, entries + legend.on_axes([*states, *controls], style.CONTROL))
     return page
 

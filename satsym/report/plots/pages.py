@@ -33,7 +33,7 @@ def orbit(scene: Scene) -> Figure | None:
         beside = page.add_subplot(grid[panels - 1])
         beside.set_box_aspect(1.0)
         space.from_reference(beside, shown)
-    legend.below(page, legend.motion(scene, style.STATE) + legend.in_space(shown))
+    legend.below(page, legend.motion(scene, style.STATE) + space.entries(shown))
     return page
 
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.report.display import labelled, number, on_axis, shortened, unit_text
 from satsym.report.plots import style
-from satsym.report.plots.display import labelled, number, on_axis, shortened, unit_text
 from satsym.report.plots.reading import ROUNDING, Reading, read
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.series import Series

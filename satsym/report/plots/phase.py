@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from satsym.report.plots import display, style
+from satsym.report import display
+from satsym.report.plots import style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

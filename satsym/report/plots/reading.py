@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.report.plots.display import exponent_for, labelled
+from satsym.report.display import exponent_for, labelled
 from satsym.report.plots.series import Series
 
 SMALL = 0.02

@@ -9,7 +9,8 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.report.plots import curves, display, legend, style
+from satsym.report import display
+from satsym.report.plots import curves, legend, style
 from satsym.spec import Variable
 
 if TYPE_CHECKING:

@@ -8,7 +8,8 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.report.plots import curves, display
+from satsym.report import display
+from satsym.report.plots import curves
 from satsym.solution import Flight, Iteration, Solution
 from satsym.spec import ProblemSpec
 

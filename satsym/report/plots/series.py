@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.arrays import Array
+from satsym.report.display import formula, plain
 from satsym.report.plots import curves
-from satsym.report.plots.display import formula, plain
 from satsym.report.plots.scene import Scene
 from satsym.report.results.unit_names import cost_per, time_unit
 from satsym.solution import Flight

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from satsym.report.plots.display import shortened
+from satsym.report.display import shortened
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

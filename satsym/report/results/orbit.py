@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from satsym.analysis.orbits.conic import TOLERANCE
 from satsym.report.results.linear import complex_object, eigenvalue_object, numbers, rows
-from satsym.report.plots.display import length_unit, time_unit
+from satsym.report.display import length_unit, time_unit
 from satsym.report.results.objects import number
 
 if TYPE_CHECKING:

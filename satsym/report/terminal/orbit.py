@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from satsym.analysis.orbits.conic import TOLERANCE, Conic
 from satsym.analysis.orbits.floquet import FASTER
-from satsym.report.plots.display import time_scale
+from satsym.report.display import time_scale
 from satsym.report.results.orbit import units
 from satsym.report.terminal.linear import complex_number, wrapped
 from satsym.report.terminal.solution import joined

@@ -9,7 +9,8 @@ import numpy as np
 
 from satsym.analysis.orbits.kepler import propagate
 from satsym.arrays import Array
-from satsym.report.plots import display, legend, style
+from satsym.report import display
+from satsym.report.plots import legend, style
 from satsym.report.plots.views import View, views
 from satsym.report.terminal.table import figure
 from satsym.status import BadInput

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.report.plots import curves, style
-from satsym.report.plots.display import exponent_for, formula, labelled, length_scale, length_unit
+from satsym.report.display import exponent_for, formula, labelled, length_scale, length_unit
+from satsym.report.plots import curves, legend, style
 from satsym.report.plots.reading import BURIED, within_reach
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.views import View, views
@@ -68,6 +68,18 @@ class Orbit:
     def views(self) -> list[View]:
         """From where to look at it, the most telling view first."""
         return views([c for c in (self.path, self.reference, self.free) if c is not None], self.labels)
+
+
+def entries(orbit: Orbit) -> list[legend.Entry]:
+    """Of a legend: what only pictures in space have."""
+    arrow = legend.line(
+        color=style.VERMILION, marker=r"$\rightarrow$", markersize=15.0, markeredgewidth=0.2, linestyle="none"
+    )
+    found = [(arrow, "thrust")] if orbit.thrust is not None else []
+    found.append((legend.line(color=style.STATE, **style.START), "start"))
+    found.append((legend.line(color=style.STATE, **style.END), "end"))
+    found.append((legend.line(**style.ORIGIN), "origin"))
+    return found
 
 
 def in_space(axes: Axes, orbit: Orbit, view: View) -> None:

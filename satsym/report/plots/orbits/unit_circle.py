@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from satsym.report.plots import display, legend, style
+from satsym.report import display
+from satsym.report.plots import legend, style
 from satsym.report.terminal.table import figure
 
 if TYPE_CHECKING:
