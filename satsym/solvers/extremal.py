@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,39 +12,13 @@ from satsym.instance import Instance
 from satsym.solution import Iteration, Progress, Solution
 from satsym.solvers import revolutions
 from satsym.solvers.collocation.continuation import by_bound
-from satsym.solvers.collocation.curve import Curve, Path
+from satsym.solvers.collocation.curve import Curve
+from satsym.solvers.collocation.extremal import Extremal
 from satsym.solvers.collocation.problem import Scale, TwoPoint
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.iteration import Limits, watched
 from satsym.solvers.revolutions import TURN, Best
 from satsym.status import Status
-
-
-@dataclass(frozen=True, eq=False)
-class Extremal:
-    """What solving came to.
-
-    Attributes
-    ----------
-    problem
-        The two-point problem, with its bounds.
-    path
-        States, costates and extra unknowns, scaled.
-    cost
-        The cost J; infinite where there is no answer.
-    status, message
-        Outcome.
-    iterations
-        Linear systems that were solved.
-    """
-
-    problem: TwoPoint
-    path: Path
-    cost: float
-    status: Status
-    message: str
-    iterations: int
-
 
 Method = Callable[[Instance, Limits, bool], Extremal]
 """From an instance to an extremal; the last argument says whether with great effort."""

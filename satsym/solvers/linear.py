@@ -15,9 +15,10 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Progress, Solution
+from satsym.solvers.collocation.extremal import Extremal
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
-from satsym.solvers.extremal import Extremal, solved
+from satsym.solvers.extremal import solved
 from satsym.solvers.iteration import Limits
 from satsym.solvers.shooting.arcs import MOST_STEPS, Arcs, sufficient
 from satsym.solvers.shooting.newton import doubled, linearised, residual

@@ -11,18 +11,20 @@ from satsym.instance import Instance
 from satsym.solution import Progress, Solution
 from satsym.solvers.cold_start import paths
 from satsym.solvers.cold_start.durations import free_duration
+from satsym.solvers.cold_start.origin import Origin, Start
+from satsym.solvers.cold_start.soft_bounds import within_bounds, within_found
 from satsym.solvers.cold_start.swept import from_control, loose, swept
-from satsym.solvers.cold_start.ways import Start, cold_start
-from satsym.solvers.collocation.continuation import Bounded, settled, tighten
+from satsym.solvers.cold_start.ways import cold_start
+from satsym.solvers.collocation.attempt import Attempt, Reason
+from satsym.solvers.collocation.continuation import settled, tighten
 from satsym.solvers.collocation.curve import Curve, Path
+from satsym.solvers.collocation.extremal import Extremal
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.problem import TwoPoint
-from satsym.solvers.collocation.refinement import Refined, refine
+from satsym.solvers.collocation.refinement import refine
 from satsym.solvers.collocation.scaling import two_point
-from satsym.solvers.collocation.soft_bounds import within_bounds, within_found
-from satsym.solvers.collocation.sqp import Found
 from satsym.solvers.collocation.system import System
-from satsym.solvers.extremal import Extremal, solved
+from satsym.solvers.extremal import solved
 from satsym.solvers.iteration import Limits
 from satsym.solvers.nearest_end import nearest
 from satsym.solvers.switching.linear.by_reach import unreachable
@@ -82,23 +84,23 @@ def from_cold_start(instance: Instance, limits: Limits, effort: bool, accurate: 
     """
     if instance.tf is not None:
         problem = two_point(instance, instance.tf - instance.t0)
-        start, way = guessed(problem, limits) or cold_start(problem, limits), ""
-        if start.way == "none" and problem.control_set.bounded:
+        start, duration = guessed(problem, limits) or cold_start(problem, limits), ""
+        if not start.found.minimum and problem.control_set.bounded:
             start = drawn_within(problem, limits) or start
         if start.saddle is not None:
-            start = replace(start, found=start.saddle, way="straight line, but no minimum was found")
-        elif start.way == "none":
-            message = f"no extremal found: {start.found.reason}"
+            start = replace(start, found=start.saddle)
+        elif not start.found.minimum:
+            message = f"no extremal found: {start.found.message}"
             return unfinished(problem, start.found.curve, message, start.steps, limits)
     else:
         chosen = free_duration(instance, limits, effort)
-        problem, start, way = chosen.problem.relaxed(0.0), chosen.start, f", {chosen.message}"
-        if not chosen.status.answered:
-            return Extremal(problem, start.found.curve, float("inf"), chosen.status, chosen.message, start.steps)
+        if isinstance(chosen, Extremal):
+            return replace(chosen, problem=chosen.problem.relaxed(0.0))
+        problem, start, duration = chosen.problem.relaxed(0.0), chosen.start, f", {chosen.message}"
     found = accurate(problem, start, limits)
     if not found.status.answered:
         return found
-    return replace(found, message=f"{found.message}, from the {start.way}{way}")
+    return replace(found, message=f"{found.message}, from the {start.named}{duration}")
 
 
 def unfinished(problem: TwoPoint, path: Path, message: str, steps: int, limits: Limits) -> Extremal:
@@ -121,16 +123,17 @@ def guessed(problem: TwoPoint, limits: Limits) -> Start | None:
         curve = from_control(problem, guess.control, limits)
     elif guess.costate:
         bounded = settled(problem, begun, STAGES, max(len(begun.mesh) - 1, LEAST), limits)
-        curve = bounded.curve if bounded.converged else None
+        curve = bounded.curve if bounded.solved else None
     if curve is None:
-        curve = within_bounds(problem, paths.first(problem), limits, GUESSED).curve
+        softened = within_bounds(problem, paths.first(problem), limits, GUESSED)
+        curve = softened.curve if softened.solved else None
     if curve is None or not curve.in_domain(problem.positive):
         return None
     cost = System(problem, curve.mesh, curve.order).cost(curve)
-    return Start(Found(curve, "minimum", cost, 1, True), "guess", 1, {}, within=curve)
+    return Start(Attempt(curve, Reason.MINIMUM, 1, cost), Origin.GUESS, 1, bounded=True)
 
 
-def inside(problem: TwoPoint, start: Start, free: Curve, limits: Limits) -> Bounded:
+def inside(problem: TwoPoint, start: Start, free: Curve, limits: Limits) -> Attempt:
     """The extremal within the bounds, from one without.
 
     The bounds are brought in from where they do not bind. Where that ends too early they are made harder and harder,
@@ -147,16 +150,16 @@ def inside(problem: TwoPoint, start: Start, free: Curve, limits: Limits) -> Boun
     limits
         When to stop.
     """
-    if start.within is not None:
-        return Bounded(start.within, np.zeros(0), 1.0, True, 1)
+    if start.bounded:
+        return replace(start.found, iterations=1)
     bounded = tighten(problem, free, STAGES, limits)
-    if bounded.converged or problem.free_time or unreachable(problem.instance, limits) is not None:
+    if bounded.solved or problem.free_time or unreachable(problem.instance, limits) is not None:
         return bounded
     first = within_found(problem, start.found, limits)
-    found = None if first.curve is not None else drawn_within(problem, limits)
-    steps = bounded.iterations + first.iterations + (found.steps if found else 0)
-    curve = found.within if found else first.curve
-    return replace(bounded, iterations=steps) if curve is None else Bounded(curve, np.zeros(0), 1.0, True, steps)
+    drawn = None if first.solved else drawn_within(problem, limits)
+    steps = bounded.iterations + first.iterations + (drawn.steps if drawn else 0)
+    found = drawn.found if drawn else first
+    return replace(found if found.solved else bounded, iterations=steps)
 
 
 def drawn_within(problem: TwoPoint, limits: Limits) -> Start | None:
@@ -167,7 +170,7 @@ def drawn_within(problem: TwoPoint, limits: Limits) -> Start | None:
         path = paths.bent(problem, rng, AMPLITUDES[k % len(AMPLITUDES)])
         one = within_bounds(problem, path, limits, GUESSED)
         steps += one.iterations
-        if one.curve is not None:
+        if one.solved:
             found.append((System(problem, one.curve.mesh, one.curve.order).cost(one.curve), one.curve))
         if limits.expired:
             break
@@ -176,15 +179,7 @@ def drawn_within(problem: TwoPoint, limits: Limits) -> Start | None:
     if not found:
         return None
     cost, curve = min(found, key=lambda one: one[0])
-    return Start(Found(curve, "minimum", cost, steps, True), "drawn path", steps, {}, within=curve)
-
-
-def outside(problem: TwoPoint, path: Path, bounded: Bounded, steps: int, limits: Limits) -> Extremal:
-    """No extremal within the bounds, and how far these could be brought in."""
-    message = "the times at which bounds are met do not settle"
-    if bounded.reached < 1.0:
-        message = f"bounds could be brought in only {bounded.reached:.0%} of the way from where they do not bind"
-    return unfinished(problem, path, message, steps, limits)
+    return Start(Attempt(curve, Reason.MINIMUM, steps, cost), Origin.DRAWN, steps, bounded=True)
 
 
 def explained(found: Extremal, limits: Limits) -> Extremal:
@@ -212,31 +207,23 @@ def within(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
     """The same, without asking why where there is none."""
     tolerance = problem.instance.solver.tolerance
     free, steps = problem.relaxed(float("inf")), start.steps
-    refined, cost = Refined(start.found.curve, float("inf"), False, 0), float("nan")
-    if start.within is None:
+    refined = start.found
+    if not start.bounded:
         refined = refine(free, start.found.curve, tolerance, known=start.found.linearised)
-        cost = _cost(free, refined)
-        limits.tell(cost, refined.error)
+        limits.tell(refined.cost * problem.scale.cost, refined.error)
         steps += refined.iterations
     bounded = inside(problem, start, refined.curve, limits)
     if bounded.iterations:
         steps += bounded.iterations
-        if not bounded.converged:
-            return outside(problem, refined.curve, bounded, steps, limits)
+        if not bounded.solved:
+            return unfinished(problem, refined.curve, bounded.message, steps, limits)
         refined = refine(problem, bounded.curve, tolerance, keep_nodes=True)
         steps += refined.iterations
-        cost = _cost(problem, refined)
-        limits.tell(cost, refined.error)
-    intervals = len(refined.curve.mesh) - 1
-    if not refined.converged:
-        message = f"the estimated error stays at {refined.error:.0e} on {intervals} intervals"
+        limits.tell(refined.cost * problem.scale.cost, refined.error)
+    if not refined.solved:
+        message = refined.message
         if refined.error < ROUNDING:
             message += ", which rounding leaves: raise [solver] tolerance"
         return unfinished(problem, refined.curve, message, steps, limits)
-    message = f"estimated error {refined.error:.0e} on {intervals} intervals"
-    return Extremal(problem, refined.curve, cost, Status.CONVERGED, message, steps)
-
-
-def _cost(problem: TwoPoint, refined: Refined) -> float:
-    system = System(problem, refined.curve.mesh, refined.curve.order)
-    return system.cost(refined.curve) * problem.scale.cost
+    message = f"estimated error {refined.error:.0e} on {len(refined.curve.mesh) - 1} intervals"
+    return Extremal(problem, refined.curve, refined.cost * problem.scale.cost, Status.CONVERGED, message, steps)

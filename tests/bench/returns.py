@@ -32,7 +32,7 @@ from satsym.solvers.certificate.conjugate import conjugate
 from satsym.solvers.certificate.flow import flow
 from satsym.solvers.certificate.segments import segments
 from satsym.solvers.cold_start import paths
-from satsym.solvers.cold_start.ways import from_path
+from satsym.solvers.cold_start.from_path import from_path
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point as scaled
 from satsym.solvers.iteration import Limits

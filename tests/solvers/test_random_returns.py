@@ -72,7 +72,7 @@ def test_final_angle_is_moved_to_where_other_ways_do_not_lead() -> None:
     assert found is not None
     assert found.minimum
     refined = refine(problem, found.curve, 1e-10)
-    assert refined.converged
+    assert refined.solved
     x = refined.curve.nodes[:4] * problem.scale.state[:, None]
     assert x[:, 0] == pytest.approx(problem.instance.initial, abs=1e-9)
     assert x[:, -1] == pytest.approx(list(problem.instance.final.values()), abs=1e-9)

@@ -56,7 +56,7 @@ def test_the_same_again_with_other_initial_states(pair: Pair, cold: bool):
         for _ in range(3):
             initial = tuple((np.array(case.initial) + size * rng.uniform(-1.0, 1.0, 4)).tolist())
             answer = machine.solve(initial=initial, cold=cold)
-            assert answer.way == ("straight line" if cold else "last answer")
+            assert answer.origin == ("straight line" if cold else "last answer")
             matches(answer, pair.solve(replace(case, initial=initial)))
 
 
@@ -79,7 +79,7 @@ def test_a_start_too_far_away_is_no_reason_to_fail(pair: Pair):
     far = (2.2, 0.2, -1.0, 0.25)
     answer = pair.plain.solve(initial=far)
     matches(answer, pair.solve(replace(instance.load("return-to-orbit"), initial=far)))
-    assert answer.way in ("straight line", "cold start")
+    assert answer.origin in ("straight line", "cold start")
     assert pair.plain.solve().status is Status.CONVERGED
 
 
@@ -155,5 +155,5 @@ def test_other_models_as_well(name: str, nudge: float, means: str):
     for sign in (1.0, -1.0):
         initial = (case.initial[0] + sign * nudge, *case.initial[1:])
         answer = machine.solve(initial=initial)
-        assert answer.way == "last answer"
+        assert answer.origin == "last answer"
         matches(answer, two_point.solve(replace(case, initial=initial)))

@@ -10,9 +10,10 @@ import pytest
 from satsym import instance
 from satsym.instance import Instance
 from satsym.solvers.cold_start import paths
+from satsym.solvers.cold_start.soft_bounds import within_bounds
+from satsym.solvers.collocation.attempt import Reason
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
-from satsym.solvers.collocation.soft_bounds import within_bounds
 from satsym.solvers.iteration import Limits
 
 BOX, BALL = "return-to-orbit-005", "return-to-orbit-ball"
@@ -95,9 +96,9 @@ def test_bounds_that_cannot_be_kept_are_blocked_and_others_are_kept() -> None:
         of = two_point(case, case.tf - case.t0)
         with np.errstate(all="ignore"):
             found = within_bounds(of, paths.first(of), Limits(200, FOREVER))
-        assert found.blocked is blocked
-        assert (found.curve is None) is blocked
-        if found.curve is not None:
+        assert (found.reason is Reason.COSTLY) is blocked
+        assert found.solved is not blocked
+        if found.solved:
             tau = np.linspace(0.0, 1.0, 400)
             u = of.control(tau, found.curve(tau), of.theta)
             assert np.abs(u).max() == pytest.approx(size, rel=1e-12)

@@ -22,13 +22,12 @@ from satsym.solvers.switching import solving
 from satsym.solvers.switching.answers import answered
 from satsym.solvers.switching.attempt import attempt
 from satsym.solvers.switching.cold_start.plans import seeded
-from satsym.solvers.switching.cold_start.recognition import Guess
 from satsym.solvers.switching.cold_start.scouts import Target, exactly, scouted
 from satsym.solvers.switching.linear.linear_motion import exponential, linear_motion
 from satsym.solvers.switching.linear.nearest_point import nearest_point
 from satsym.solvers.switching.linear.reach import Reach
 from satsym.solvers.switching.linear.separation import separates
-from satsym.solvers.switching.structure import LOWER, UPPER, Structure
+from satsym.solvers.switching.structure import LOWER, UPPER, Guess, Structure
 from satsym.status import Status
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 from tests.support.models import build
@@ -111,7 +110,7 @@ def slowest(weak: Instance) -> Solution:
     start = Guess(Structure(((UPPER, LOWER),)), np.array([first]), np.array([slope, slope * first]), first + rest)
     exact = attempt(weak, start, Limits(100, float("inf")))
     assert exact is not None
-    return answered(weak, exact, "closed form", (), 0.0)
+    return answered(weak, exact, (), 0.0)
 
 
 def test_an_extremal_that_arrives_later_than_another_is_not_certified(weak: Instance) -> None:

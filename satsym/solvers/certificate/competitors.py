@@ -20,9 +20,9 @@ from satsym.solvers.iteration import Limits
 from satsym.solvers.revolutions import shifted
 
 if TYPE_CHECKING:
+    from satsym.solvers.collocation.attempt import Attempt
     from satsym.solvers.collocation.curve import Curve
     from satsym.solvers.collocation.problem import TwoPoint
-    from satsym.solvers.collocation.sqp import Found
     from satsym.solvers.symmetry import Rotation, Spiral
 
 WORK = 15_000
@@ -75,7 +75,7 @@ class Competitor:
     cost: float
 
 
-Attempt = Callable[[Limits], Competitor | None]
+Search = Callable[[Limits], Competitor | None]
 """Looks for a competitor that is cheaper than a cost, or says what it costs roughly."""
 
 
@@ -172,7 +172,7 @@ def guess(competitor: Competitor, solution: Solution) -> Instance:
     return replace(instance, guess=start, tf_guess=end if instance.tf is None else None)
 
 
-def _tried(solution: Solution, kind: Kind, attempts: list[Attempt], deadline: float) -> Compared | None:
+def _tried(solution: Solution, kind: Kind, attempts: list[Search], deadline: float) -> Compared | None:
     """Every attempt at a kind; ``None`` where there is none."""
     if not attempts:
         return None
@@ -194,7 +194,7 @@ def _tried(solution: Solution, kind: Kind, attempts: list[Attempt], deadline: fl
     return Compared(Competitors(kind, tried, len(found), cost), dearer, cheapest, interrupted)
 
 
-def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Attempt]]]:
+def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Search]]]:
     """Kinds that the problem of a solution allows, with what is tried of each; nothing where nobody knows how."""
     from satsym.solvers.collocation.scaling import two_point
     from satsym.solvers.symmetry import rotation
@@ -205,7 +205,7 @@ def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Attemp
     problem = two_point(fixed, lasting)
     rng = np.random.default_rng(seed)
 
-    def leading(paths: Any, softness: float = 1.0) -> list[Attempt]:
+    def leading(paths: Any, softness: float = 1.0) -> list[Search]:
         return [_from_path(problem, path, softness, cost) for path in paths]
 
     yield Kind.STARTS, leading(_bent(problem, rng))
@@ -215,7 +215,7 @@ def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Attemp
         yield Kind.SATURATION, [*soft, *_from_corners(problem, cost)]
     angles = [name for name in instance.solver.free_angles if name in instance.final]
     turned = [two_point(shifted(fixed, {name: turns}), lasting) for name in angles for turns in (-1, 1)]
-    around: list[Attempt] = [_cold(one, cost) for one in turned]
+    around: list[Search] = [_cold(one, cost) for one in turned]
     if problem.fixed.all() and not angles and (rotating := rotation(fixed)):
         around = [_from_spiral(problem, spiral, cost) for spiral in _spirals(solution, problem, rotating)]
     elif not angles and not problem.fixed.all() and rotation(fixed):
@@ -232,25 +232,25 @@ def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Attemp
         yield Kind.EARLIER, [_cold(one, cost) for one in early]
 
 
-def _from_path(problem: TwoPoint, path: Callable[[Any], Any], softness: float, cost: float) -> Attempt:
+def _from_path(problem: TwoPoint, path: Callable[[Any], Any], softness: float, cost: float) -> Search:
     """The minimum within the bounds to which a path of states leads."""
-    from satsym.solvers.collocation.soft_bounds import within_bounds
+    from satsym.solvers.cold_start.soft_bounds import within_bounds
 
     def attempt(limits: Limits) -> Competitor | None:
         found = within_bounds(problem, path, limits, softness)
-        return None if found.curve is None else _accurate(problem, found.curve, cost)
+        return _accurate(problem, found.curve, cost) if found.solved else None
 
     return attempt
 
 
-def _from_spiral(problem: TwoPoint, spiral: Spiral, cost: float) -> Attempt:
+def _from_spiral(problem: TwoPoint, spiral: Spiral, cost: float) -> Search:
     """The minimum within the bounds with a number of turns."""
     from satsym.solvers.cold_start.path_of_turns import along_turns
 
     return lambda limits: _bounded(problem, along_turns(problem.relaxed(float("inf")), spiral, limits), cost, limits)
 
 
-def _from_corners(problem: TwoPoint, cost: float) -> list[Attempt]:
+def _from_corners(problem: TwoPoint, cost: float) -> list[Search]:
     """The cheapest extremal to which controls at the corners of their box lead, where nothing is asked of the end."""
     from satsym.solvers.cold_start.swept import swept
 
@@ -264,7 +264,7 @@ def _from_corners(problem: TwoPoint, cost: float) -> list[Attempt]:
     return [attempt]
 
 
-def _lasting(instance: Instance, duration: float, cost: float) -> Attempt:
+def _lasting(instance: Instance, duration: float, cost: float) -> Search:
     """The minimum over the duration next to a given one; that of the given one where bounds are in its way."""
     from satsym.solvers.cold_start.duration_trials import Trials
     from satsym.solvers.collocation.continuation import kept
@@ -285,26 +285,26 @@ def _lasting(instance: Instance, duration: float, cost: float) -> Attempt:
     return attempt
 
 
-def _at_once(problem: TwoPoint) -> list[Attempt]:
+def _at_once(problem: TwoPoint) -> list[Search]:
     """The end without any motion, where it is one."""
     cost = problem.at_once
     return [lambda _: Competitor(problem, None, cost)] if math.isfinite(cost) else []
 
 
-def _cold(problem: TwoPoint, cost: float) -> Attempt:
+def _cold(problem: TwoPoint, cost: float) -> Search:
     """The minimum within the bounds to which the first ways of the cold start lead."""
     from satsym.solvers.cold_start.ways import cold_start
 
     def attempt(limits: Limits) -> Competitor | None:
         start = cold_start(problem, limits, quick=True)
-        return None if start.way == "none" else _bounded(problem, start.found, cost, limits)
+        return _bounded(problem, start.found, cost, limits)
 
     return attempt
 
 
-def _bounded(problem: TwoPoint, found: Found, cost: float, limits: Limits) -> Competitor | None:
+def _bounded(problem: TwoPoint, found: Attempt, cost: float, limits: Limits) -> Competitor | None:
     """The minimum within the bounds to which one without them leads."""
-    from satsym.solvers.collocation.soft_bounds import within_found
+    from satsym.solvers.cold_start.soft_bounds import within_found
 
     if not found.minimum or not found.curve.in_domain(problem.positive):
         return None
@@ -312,7 +312,7 @@ def _bounded(problem: TwoPoint, found: Found, cost: float, limits: Limits) -> Co
     if rough.cost > cost + ROUGH * abs(cost):  # what is dearer without the bounds is so within them
         return rough
     inside = within_found(problem, found, limits)
-    return None if inside.curve is None else _accurate(problem, inside.curve, cost)
+    return _accurate(problem, inside.curve, cost) if inside.solved else None
 
 
 def _accurate(problem: TwoPoint, curve: Curve, cost: float) -> Competitor | None:
@@ -325,10 +325,9 @@ def _accurate(problem: TwoPoint, curve: Curve, cost: float) -> Competitor | None
     if rough > cost + ROUGH * abs(cost):
         return Competitor(problem, curve, rough)
     refined = refine(problem, curve, SAME, keep_nodes=not kept(problem, curve))
-    if not refined.converged or not refined.curve.in_domain(problem.positive):
+    if not refined.solved or not refined.curve.in_domain(problem.positive):
         return None
-    exact = System(problem, refined.curve.mesh, refined.curve.order).cost(refined.curve) * problem.scale.cost
-    return Competitor(problem, refined.curve, exact)
+    return Competitor(problem, refined.curve, refined.cost * problem.scale.cost)
 
 
 def _bent(problem: TwoPoint, rng: np.random.Generator) -> Iterator[Callable[[Any], Any]]:

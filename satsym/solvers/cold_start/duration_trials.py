@@ -9,15 +9,17 @@ import numpy as np
 
 from satsym.instance import Instance
 from satsym.solvers.cold_start import paths
-from satsym.solvers.cold_start.ways import Start, cold_start
+from satsym.solvers.cold_start.origin import Start
+from satsym.solvers.cold_start.ways import cold_start
 from satsym.solvers.collocation import mesh as meshes
+from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import Curve, stage_times
 from satsym.solvers.collocation.gauss import STAGES
+from satsym.solvers.collocation.linearised import linearise
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.second_variation import negative_directions
-from satsym.solvers.collocation.sqp import Found
 from satsym.solvers.collocation.system import System
 from satsym.solvers.iteration import Limits
 
@@ -52,11 +54,12 @@ class Try:
 
 @dataclass(frozen=True, eq=False)
 class Minimum:
-    """An extremal whose duration is the cheapest among its neighbours: its cost, its problem and the extremal."""
+    """An extremal whose duration is the cheapest among its neighbours: its cost, its problem, and how it was found."""
 
     cost: float
     problem: TwoPoint
     start: Start
+    message: str = ""
 
     @property
     def duration(self) -> float:
@@ -83,13 +86,13 @@ class Trials:
         return self.free(self.first).at_once
 
     @property
-    def last(self) -> tuple[TwoPoint, Found]:
+    def last(self) -> tuple[TwoPoint, Curve]:
         """The last attempt, for the record."""
         problem = self.free(self.first)
         duration, curve = self._last or (self.first, paths.curve(problem, paths.first(problem)))
         if len(curve.theta) < problem.unknowns:
             curve = replace(curve, theta=np.append(curve.theta, duration))
-        return problem, Found(curve, "", float("nan"), 0, True)
+        return problem, curve
 
     def free(self, duration: float) -> TwoPoint:
         """The problem with the duration free, and this one to start from; without bounds."""
@@ -106,7 +109,7 @@ class Trials:
         start = cold_start(problem, self.limits, quick)
         self.steps += start.steps
         self._last = duration, start.found.curve
-        return None if start.way == "none" else self._tried(problem, start)
+        return self._tried(problem, start) if start.found.minimum else None
 
     def beside(self, near: Try, duration: float) -> Try | None:
         """Solved from the extremal of another duration; ``None`` where that is too far away."""
@@ -127,28 +130,28 @@ class Trials:
         found = self._settled(problem, curve, near.start.found.hard)
         if found is None:
             return None
-        start = replace(near.start, found=found, steps=self.steps, minima={})
+        start = replace(near.start, found=found, steps=self.steps)
         return Minimum(found.cost * problem.scale.cost, problem, start)
 
-    def _settled(self, problem: TwoPoint, curve: Curve, hard: bool) -> Found | None:
+    def _settled(self, problem: TwoPoint, curve: Curve, hard: bool) -> Attempt | None:
         """The minimum of a problem near an extremal of another one, on the mesh of a curve."""
         system = System(problem, curve.mesh, curve.order)
         outcome = newton(system, curve, tolerance=1e-9)
         if outcome is None:
             return None
         self.steps += outcome.iterations
-        if not outcome.converged:
+        if not outcome.solved:
             return None
         jacobian = system.jacobian(outcome.curve)
         try:
-            final = system.linearised(outcome.curve, system.residual(outcome.curve), jacobian)
+            final = linearise(system, outcome.curve, system.residual(outcome.curve), jacobian)
             if negative_directions(problem, outcome.curve, final.matching):
                 return None
         except np.linalg.LinAlgError:
             return None
         if system.largest_turn(outcome.curve, jacobian) > meshes.COARSEST:
             return None
-        return Found(outcome.curve, "minimum", system.cost(outcome.curve), outcome.iterations, hard)
+        return Attempt(outcome.curve, Reason.MINIMUM, outcome.iterations, system.cost(outcome.curve), hard)
 
     def _tried(self, problem: TwoPoint, start: Start) -> Try:
         duration, curve = problem.duration, start.found.curve

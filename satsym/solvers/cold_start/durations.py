@@ -8,15 +8,14 @@ for it may fall down to no time at all: that is said, with costs.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from satsym.instance import Instance
 from satsym.solvers.cold_start.duration_search import AROUND_GUESS, AROUND_SCALE, FEWER, Search
-from satsym.solvers.cold_start.duration_trials import Trials, Try
-from satsym.solvers.cold_start.ways import Start
-from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.cold_start.duration_trials import Minimum, Trials, Try
+from satsym.solvers.collocation.extremal import Extremal
 from satsym.solvers.iteration import Limits
 from satsym.status import Status
 
@@ -27,28 +26,8 @@ FLAT = 1e-12
 """Costs at all durations that differ by less, relative to the problem's own scale, leave the duration open."""
 
 
-@dataclass(frozen=True, eq=False)
-class Chosen:
-    """What came of the choice of a duration.
-
-    Attributes
-    ----------
-    problem
-        With the free duration, which starts at the one that was found.
-    start
-        The extremal found for it, or the last attempt.
-    status, message
-        ``CONVERGED``, or why there is no minimum, and a sentence.
-    """
-
-    problem: TwoPoint
-    start: Start
-    status: Status
-    message: str
-
-
-def free_duration(instance: Instance, limits: Limits, effort: bool = True) -> Chosen:
-    """Find the duration that costs least, without bounds; with effort, also where the straight line leads nowhere."""
+def free_duration(instance: Instance, limits: Limits, effort: bool = True) -> Minimum | Extremal:
+    """Find the duration that costs least, without bounds, or why there is none; with effort, also by slower ways."""
     scale = time_scale(instance)
     guess = scale if instance.tf_guess is None else instance.tf_guess - instance.t0
     trials = Trials(instance, limits, guess)
@@ -66,7 +45,7 @@ def free_duration(instance: Instance, limits: Limits, effort: bool = True) -> Ch
     best = search.confirmed(min(found, key=lambda minimum: minimum.cost)) if found else None
     if best and search.is_cheapest(best, FLAT * trials.unit):
         others = f"cheapest of {len(brackets)} minima over the duration" if len(brackets) > 1 else "minimum over time"
-        return Chosen(best.problem, best.start, Status.CONVERGED, others)
+        return replace(best, message=others)
     if limits.expired:
         return _none(trials, Status.TIME_LIMIT, "time was up before a duration was found")
     return _none(trials, *_why(search))
@@ -90,7 +69,7 @@ def _plans(instance: Instance, scale: float, guess: float) -> list[tuple[float, 
     return [(guess, AROUND_GUESS, True), (scale, AROUND_SCALE, True), (guess, (0, 0), False)]
 
 
-def _unsolved(trials: Trials, limits: Limits) -> Chosen:
+def _unsolved(trials: Trials, limits: Limits) -> Extremal:
     if limits.expired:
         return _none(trials, Status.TIME_LIMIT, "time was up before any duration was solved for")
     return _none(trials, Status.NOT_CONVERGED, "no extremal found at any duration that was tried")
@@ -113,10 +92,10 @@ def _why(search: Search) -> tuple[Status, str]:
     return Status.NOT_CONVERGED, f"no minimum over the duration settles near {search.cheapest.duration:g}"
 
 
-def _none(trials: Trials, status: Status, message: str) -> Chosen:
+def _none(trials: Trials, status: Status, message: str) -> Extremal:
     """No minimum; the last attempt is kept for the record."""
-    problem, found = trials.last
-    return Chosen(problem, Start(replace(found, reason=message), "none", trials.steps, {}), status, message)
+    problem, curve = trials.last
+    return Extremal(problem, curve, float("inf"), status, message, trials.steps)
 
 
 def _records(tries: list[Try]) -> list[Try]:

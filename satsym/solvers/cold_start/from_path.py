@@ -8,10 +8,11 @@ from dataclasses import replace
 from satsym.arrays import Array
 from satsym.solvers.cold_start import paths
 from satsym.solvers.collocation import mesh as meshes
+from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import Curve
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.problem import TwoPoint
-from satsym.solvers.collocation.sqp import OUTGROWN, Found, minimise
+from satsym.solvers.collocation.sqp import minimise
 from satsym.solvers.collocation.system import System
 from satsym.solvers.iteration import Limits
 
@@ -22,7 +23,9 @@ TOLERANCES = (3e-2, 1e-3, 1e-7)
 """Sizes of the last step after which the mesh is laid anew; the last one ends the minimisation."""
 
 
-def from_path(problem: TwoPoint, path: Callable[[Array], Array], limits: Limits, most: int = STRAIGHT_THROUGH) -> Found:
+def from_path(
+    problem: TwoPoint, path: Callable[[Array], Array], limits: Limits, most: int = STRAIGHT_THROUGH
+) -> Attempt:
     """Minimise from a path of states, shape (n, M) for M times; the mesh is laid anew as the curve takes shape."""
     curve = paths.curve(problem, path)
     steps, hard, stage = 0, False, 0
@@ -31,13 +34,13 @@ def from_path(problem: TwoPoint, path: Callable[[Array], Array], limits: Limits,
         found = minimise(system, curve, limits, TOLERANCES[stage], max(most - steps, 1), meshes.COARSEST)
         steps, hard = steps + found.iterations, hard or found.hard
         found = replace(found, iterations=steps, hard=hard)
-        extremal = found.reason in ("minimum", "saddle")
-        if not (extremal or found.reason == OUTGROWN) or not found.curve.in_domain(problem.positive):
+        extremal = found.reason in (Reason.MINIMUM, Reason.SADDLE)
+        if not (extremal or found.reason is Reason.OUTGROWN) or not found.curve.in_domain(problem.positive):
             return found
         if extremal and stage == len(TOLERANCES) - 1:
             return found
         if steps >= most or limits.expired:
-            return replace(found, reason=f"no convergence in {steps} steps")
+            return replace(found, reason=Reason.NO_CONVERGENCE, facts=(steps,))
         if extremal:
             stage = stage + 1 if hard else len(TOLERANCES) - 1
         curve = found.curve if extremal and not hard else _remeshed(problem, found.curve)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.descent import descended
 from satsym.solvers.collocation.problem import TwoPoint
-from satsym.solvers.collocation.sqp import Found
 from satsym.solvers.iteration import Limits
 
 SHORTER, HALVINGS = 0.5, 6
@@ -17,7 +17,9 @@ FIRST, SMALLEST = 1.3, 1.002
 """Ratios of neighbouring durations: at first, and where it is given up."""
 
 
-def along_durations(problem: TwoPoint, stages: int, limits: Limits, solve: Callable[[TwoPoint], Found]) -> Found | None:
+def along_durations(
+    problem: TwoPoint, stages: int, limits: Limits, solve: Callable[[TwoPoint], Attempt]
+) -> Attempt | None:
     """Minimise with a shorter duration, and lengthen it step by step.
 
     Parameters
@@ -57,8 +59,8 @@ def along_durations(problem: TwoPoint, stages: int, limits: Limits, solve: Calla
         else:
             ratio **= 0.4
     if duration < problem.duration:
-        reason = f"lengthening the duration ends at {duration:.4g} of {problem.duration:.4g}"
-        return Found(curve, reason, float("inf"), steps, True)
+        facts = (duration, problem.duration)
+        return Attempt(curve, Reason.DURATION_ENDS, steps, float("inf"), facts=facts)
     return replace(found, iterations=steps, hard=True)
 
 

@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from satsym.solvers.cold_start.origin import Origin
 from satsym.solvers.collocation.arclength import followed
+from satsym.solvers.collocation.attempt import Attempt
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import final_argument, straight
-from satsym.solvers.collocation.sqp import Found
 from satsym.solvers.iteration import Limits
 
 
-def along_ends(problem: TwoPoint, limits: Limits, solve: Callable[[TwoPoint], Found]) -> Found | None:
+def along_ends(problem: TwoPoint, limits: Limits, solve: Callable[[TwoPoint], Attempt]) -> Attempt | None:
     """Minimise with the final angles free, and move these to where they should be; ``None`` where all are free.
 
     Parameters
@@ -41,7 +42,7 @@ def along_ends(problem: TwoPoint, limits: Limits, solve: Callable[[TwoPoint], Fo
         between = ends + (wanted - ends) * share
         return ending(problem, dict(zip(names, between.tolist(), strict=True)))
 
-    found = followed(at, free.curve, limits, "path of ends")
+    found = followed(at, free.curve, limits, Origin.ENDS.value)
     return replace(found, iterations=free.iterations + found.iterations)
 
 

@@ -9,13 +9,15 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.solvers.cold_start import paths
+from satsym.solvers.cold_start.origin import Origin
 from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.arclength import Point
+from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import Curve, Step
 from satsym.solvers.collocation.descent import descended
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.problem import TwoPoint
-from satsym.solvers.collocation.sqp import OUTGROWN, Found, minimise
+from satsym.solvers.collocation.sqp import minimise
 from satsym.solvers.collocation.system import System
 from satsym.solvers.iteration import Limits
 
@@ -25,7 +27,7 @@ Between = Callable[[Array, Array, float], Array]
 FIRST_MOVE, SMALLEST_MOVE, MOST_STEPS = 0.25, 2e-3, 500
 
 
-def along_problems(problem: TwoPoint, between: Between, limits: Limits) -> Found | None:
+def along_problems(problem: TwoPoint, between: Between, limits: Limits) -> Attempt | None:
     """Move the initial state from a motion without control to the given one; ``None`` where there is no such motion.
 
     It coasts backwards from an end that is given, or costs nothing. Where the minima that one follows come to an
@@ -51,7 +53,7 @@ def along_problems(problem: TwoPoint, between: Between, limits: Limits) -> Found
     return followed(problem, path, paths.curve(problem, coasting), limits)
 
 
-def followed(problem: TwoPoint, path: Callable[[float], TwoPoint], curve: Curve, limits: Limits) -> Found:
+def followed(problem: TwoPoint, path: Callable[[float], TwoPoint], curve: Curve, limits: Limits) -> Attempt:
     """Follow the minima of problems from the first one to a problem, which is the last.
 
     Parameters
@@ -76,7 +78,7 @@ def followed(problem: TwoPoint, path: Callable[[float], TwoPoint], curve: Curve,
             system, guess, limits, 1e-7 if last else 1e-3, (6 if move > 0.03 else 14) + 4 * last, meshes.COARSEST
         )
         steps += max(found.iterations, 1)
-        if found.reason == OUTGROWN:
+        if found.reason is Reason.OUTGROWN:
             if found.curve.in_domain(problem.positive):
                 curve, tangent = curve.on(meshes.laid(problem, found.curve), STAGES), None
             move *= 0.7
@@ -94,8 +96,8 @@ def followed(problem: TwoPoint, path: Callable[[float], TwoPoint], curve: Curve,
     below = descended(problem, curve, STAGES, 1e-7, limits)
     if below.minimum:
         return replace(below, iterations=steps + below.iterations, hard=True)
-    reason = f"the path of problems ends after {at:.0%} of its way"
-    return Found(curve, reason, float("inf"), steps + below.iterations, True)
+    facts = (Origin.PROBLEMS.value, at)
+    return Attempt(curve, Reason.PATH_ENDS, steps + below.iterations, float("inf"), facts=facts)
 
 
 def geometric(a: Array, b: Array, share: float) -> Array:

@@ -14,8 +14,8 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.solvers.cold_start import paths
 from satsym.solvers.cold_start.path_of_problems import followed
+from satsym.solvers.collocation.attempt import Attempt
 from satsym.solvers.collocation.problem import TwoPoint
-from satsym.solvers.collocation.sqp import Found
 from satsym.solvers.iteration import Limits
 from satsym.solvers.symmetry import Spiral
 
@@ -23,7 +23,7 @@ STEP = 1e-5
 """Share of the duration by which a path is differenced."""
 
 
-def along_turns(problem: TwoPoint, spiral: Spiral, limits: Limits) -> Found:
+def along_turns(problem: TwoPoint, spiral: Spiral, limits: Limits) -> Attempt:
     """The minimum with a number of turns.
 
     Parameters

@@ -9,10 +9,11 @@ from __future__ import annotations
 import numpy as np
 
 from satsym.solvers.collocation import mesh as meshes
+from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import Curve
+from satsym.solvers.collocation.linearised import linearise
 from satsym.solvers.collocation.newton import within_domain
 from satsym.solvers.collocation.second_variation import negative_directions
-from satsym.solvers.collocation.sqp import Found
 from satsym.solvers.collocation.system import System
 from satsym.solvers.iteration import Limits
 
@@ -23,7 +24,7 @@ FEW = 6
 """Corrections from the straight line that still count as straight through."""
 
 
-def straight_through(start: Curve, system: System, limits: Limits) -> Found | None:
+def straight_through(start: Curve, system: System, limits: Limits) -> Attempt | None:
     """The minimum to which Newton's method leads at once.
 
     Parameters
@@ -41,7 +42,7 @@ def straight_through(start: Curve, system: System, limits: Limits) -> Found | No
         steps += 1
         residual, jacobian = system.residual(curve), system.jacobian(curve)
         try:
-            linearised = system.linearised(curve, residual, jacobian)
+            linearised = linearise(system, curve, residual, jacobian)
             step = linearised.step(residual)
             moved = curve.moved(step, 1.0)
             size = step.size(moved)
@@ -64,4 +65,4 @@ def straight_through(start: Curve, system: System, limits: Limits) -> Found | No
         return None
     if not minimum or system.largest_turn(curve, jacobian) > meshes.COARSEST:
         return None
-    return Found(curve, "minimum", cost, steps, False, linearised)
+    return Attempt(curve, Reason.MINIMUM, steps, cost, hard=False, linearised=linearised)

@@ -70,7 +70,7 @@ def from_control(problem: TwoPoint, control: Mapping[str, Sequence[float]], limi
     curve = _curve(problem, tau, z, meshes.along(problem, tau, z[: problem.states], problem.theta))
     curve = _curve(problem, tau, z, through(kinks(problem, curve), len(curve.mesh) - 1))
     bounded = settled(problem, curve, STAGES, len(curve.mesh) - 1, limits)
-    return bounded.curve if bounded.converged and bounded.curve.in_domain(problem.positive) else None
+    return bounded.curve if bounded.solved and bounded.curve.in_domain(problem.positive) else None
 
 
 def _curve(problem: TwoPoint, tau: Array, z: Array, mesh: Array) -> Curve:

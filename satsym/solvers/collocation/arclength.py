@@ -14,14 +14,14 @@ from functools import cached_property
 import numpy as np
 
 from satsym.solvers.collocation import mesh as meshes
+from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import SMALL, Curve, Step
 from satsym.solvers.collocation.descent import descended
 from satsym.solvers.collocation.gauss import STAGES
-from satsym.solvers.collocation.linearised import Linearised
+from satsym.solvers.collocation.linearised import Linearised, linearise
 from satsym.solvers.collocation.newton import within_domain
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.second_variation import negative_directions
-from satsym.solvers.collocation.sqp import Found
 from satsym.solvers.collocation.system import Residual, System
 from satsym.solvers.iteration import Limits
 
@@ -59,7 +59,7 @@ class Direction:
         return Direction(_combined(self.step, factor, self.step, 0.0), factor * self.share)
 
 
-def followed(at: Problems, start: Curve, limits: Limits, path: str) -> Found:
+def followed(at: Problems, start: Curve, limits: Limits, path: str) -> Attempt:
     """Follow extremals to a minimum at the end of a path of problems.
 
     Where none is found there, the minimisation goes on from the last minimum to whatever lies below.
@@ -92,7 +92,7 @@ def followed(at: Problems, start: Curve, limits: Limits, path: str) -> Found:
     steps += below.iterations
     if below.minimum:
         return replace(below, iterations=steps, hard=True)
-    return Found(last.curve, f"the {path} ends after {last.share:.0%} of its way", float("inf"), steps, True)
+    return Attempt(last.curve, Reason.PATH_ENDS, steps, float("inf"), facts=(path, last.share))
 
 
 def extremals(at: Problems, start: Curve) -> Iterator[Point]:
@@ -155,7 +155,7 @@ class Point:
     @cached_property
     def linearised(self) -> Linearised:
         """The equations here, linearised; LinAlgError where they are singular."""
-        return self.system.linearised(self.curve, self.residual, self.system.jacobian(self.curve))
+        return linearise(self.system, self.curve, self.residual, self.system.jacobian(self.curve))
 
     @property
     def minimum(self) -> bool:

@@ -6,12 +6,13 @@ is met or left. Newton converges if it starts near, so the bounds move in as far
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import Curve, Path, stage_times
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
@@ -40,32 +41,7 @@ CLOSEST = 1e-7
 """Smallest distance of two kinks that get nodes of their own, as a share of the horizon."""
 
 
-@dataclass(frozen=True, eq=False)
-class Bounded:
-    """An extremal with bounds.
-
-    Attributes
-    ----------
-    curve
-        The last one found.
-    kinks
-        For each bound that is met, increasing times in [0, 1].
-    reached
-        How much of the way from no bounds to the bounds was made; one where they are kept.
-    converged
-        Whether it satisfies the bounds and its kinks stand still.
-    iterations
-        Newton corrections.
-    """
-
-    curve: Curve
-    kinks: Array
-    reached: float
-    converged: bool
-    iterations: int
-
-
-def tighten(problem: TwoPoint, free: Curve, order: int, limits: Limits) -> Bounded:
+def tighten(problem: TwoPoint, free: Curve, order: int, limits: Limits) -> Attempt:
     """From the extremal without bounds to the one with them.
 
     Parameters
@@ -81,7 +57,7 @@ def tighten(problem: TwoPoint, free: Curve, order: int, limits: Limits) -> Bound
     """
     worst = _violation(problem, free)
     if worst <= 0.0:
-        return Bounded(free, np.zeros(0), 1.0, True, 0)
+        return Attempt(free, Reason.EXTREMAL, 0)
     count = max(10, len(free.mesh) - 1)
     curve, width, move, total = free, worst, FIRST_SHARE * worst, 0
     while width > 0.0:
@@ -91,10 +67,10 @@ def tighten(problem: TwoPoint, free: Curve, order: int, limits: Limits) -> Bound
         mesh = through(kinks(step, curve), count)
         outcome = newton(System(step, mesh, order), curve.on(mesh, order), tolerance=1e-6, most=15)
         limits.spend((outcome.iterations if outcome else 1) * (len(mesh) - 1) * order)
-        if outcome is None or not outcome.converged:
+        if outcome is None or not outcome.solved:
             move /= 2.0
             if move < SHORTEST * worst or limits.expired:
-                return Bounded(curve, kinks(problem, curve), 1.0 - width / worst, False, total)
+                return Attempt(curve, Reason.BLOCKED, total, facts=(1.0 - width / worst,))
             continue
         total += outcome.iterations
         curve, width = outcome.curve, narrower
@@ -158,7 +134,7 @@ def through(points: Array, count: int) -> Array:
     return np.concatenate([*pieces, [1.0]])
 
 
-def settled(problem: TwoPoint, curve: Curve, order: int, count: int, limits: Limits) -> Bounded:
+def settled(problem: TwoPoint, curve: Curve, order: int, count: int, limits: Limits) -> Attempt:
     """Solve within the bounds, from a curve nearby, with nodes on the kinks until these stand still.
 
     Parameters
@@ -178,13 +154,13 @@ def settled(problem: TwoPoint, curve: Curve, order: int, count: int, limits: Lim
     now, total = kinks(problem, curve), 0
     for _ in range(SETTLING):
         if before is not None and len(before) == len(now) and np.abs(now - before).max(initial=0.0) < STILL:
-            return Bounded(curve, now, 1.0, True, total)
+            return Attempt(curve, Reason.EXTREMAL, total)
         mesh = through(now, count)
         outcome = newton(System(problem, mesh, order + 2), curve.on(mesh, order + 2), most=15)
-        if outcome is None or not outcome.converged:
+        if outcome is None or not outcome.solved:
             break
         limits.spend(outcome.iterations * (len(mesh) - 1) * (order + 2))
         total += outcome.iterations
         curve, before = outcome.curve, now
         now = kinks(problem, curve)
-    return Bounded(curve, now, 1.0, False, total)
+    return Attempt(curve, Reason.UNSETTLED, total)

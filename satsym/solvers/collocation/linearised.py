@@ -5,17 +5,13 @@ With the stages eliminated, what remains couples neighbouring nodes only.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.solvers.collocation.curve import Step
+from satsym.solvers.collocation.curve import Curve, Step
 from satsym.solvers.collocation.elimination import Blocks
 from satsym.solvers.collocation.matching import Matching
-
-if TYPE_CHECKING:
-    from satsym.solvers.collocation.system import Residual, System
+from satsym.solvers.collocation.system import Residual, System
 
 
 class Linearised:
@@ -84,3 +80,42 @@ class Linearised:
         if residual is self._residual:
             return self._local_step.reshape(shape)
         return self._blocks.solve(residual.by_interval[:, None]).reshape(shape)
+
+
+def linearise(system: System, curve: Curve, residual: Residual, jacobian: Array) -> Linearised:
+    """Eliminate the stages, interval by interval and all intervals in one call, and factor what remains.
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        If the equations are singular here.
+    """
+    n, s, count, e = system.rows, system.order, system.intervals, system.problem.unknowns
+    by_stage = np.ascontiguousarray(jacobian.reshape(n, n, count, s).transpose(2, 0, 3, 1))
+    grown = (-system.problem.elapsed(curve.theta)) * system.matrix
+    matrix = (grown[:, :, None, :, None] * by_stage[:, None]).reshape(count, s * n, s * n)
+    matrix.reshape(count, -1)[:, :: s * n + 1] += 1.0
+    blocks = Blocks(matrix)
+    by_stages = np.zeros((count, n + 1 + e, s, n))
+    by_stages[:, np.arange(n), :, np.arange(n)] = 1.0
+    right: Array = by_stages.reshape(count, n + 1 + e, s * n)
+    right[:, n] = residual.by_interval
+    if system.problem.free_time:
+        right[:, -1] = _by_duration(system, curve, residual).transpose(1, 2, 0).reshape(count, -1)
+    solved = blocks.solve(right)
+    response = solved[:, :n]
+    transition = np.einsum("j,ibja->iab", system.scheme.end, response.reshape(count, n, s, n))
+    transition[:, np.arange(n), np.arange(n)] += 1.0 - system.scheme.end.sum()
+    extra = solved[:, n + 1 :].reshape(count, e, s, n)
+    by_theta = (system.scheme.end @ extra).swapaxes(1, 2)
+    matching = Matching(transition, by_theta, *system.problem.boundary_slopes(curve.nodes[:, -1], curve.theta))
+    return Linearised(system, blocks, matching, response, extra, residual, solved[:, n])
+
+
+def _by_duration(system: System, curve: Curve, residual: Residual) -> Array:
+    """Minus the derivative of the stage residuals by the duration, shape (2n, N, s)."""
+    drift = system.problem.drift(system.tau, curve.flat, curve.theta)
+    if np.ndim(drift) == 0:
+        return residual.rates
+    explicit = (np.asarray(drift) * system.tau).reshape(residual.rates.shape) @ system.scheme.matrix.T
+    return residual.rates + system.problem.elapsed(curve.theta) * system.widths[:, None] * explicit

@@ -7,12 +7,11 @@ semismooth). The test compares simplified corrections, so it does not depend on 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import Curve, Step
-from satsym.solvers.collocation.linearised import Linearised
+from satsym.solvers.collocation.linearised import linearise
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.system import System
 
@@ -27,39 +26,14 @@ FLOOR = 1e-9
 """Corrections below this that no longer shrink are rounding."""
 
 
-@dataclass(frozen=True, eq=False)
-class Outcome:
-    """Where Newton ended.
-
-    Attributes
-    ----------
-    curve
-        The last one.
-    converged
-        Whether the last correction was small enough.
-    iterations
-        Number of corrections.
-    linearised
-        The last linearisation.
-    whole
-        Whether no correction had to be cut.
-    """
-
-    curve: Curve
-    converged: bool
-    iterations: int
-    linearised: Linearised
-    whole: bool
-
-
-def newton(system: System, start: Curve, tolerance: float = 1e-12, most: int = 12) -> Outcome | None:
+def newton(system: System, start: Curve, tolerance: float = 1e-12, most: int = 12) -> Attempt | None:
     """Newton from a curve on the system's mesh; ``None`` where the equations are singular or not finite."""
     problem, curve = system.problem, start
     residual = system.residual(curve)
-    before, whole = float("inf"), True
+    before = float("inf")
     for iteration in range(1, most + 1):
         try:
-            linearised = system.linearised(curve, residual, system.jacobian(curve))
+            linearised = linearise(system, curve, residual, system.jacobian(curve))
             step = linearised.step(residual)
         except np.linalg.LinAlgError:
             return None
@@ -67,20 +41,19 @@ def newton(system: System, start: Curve, tolerance: float = 1e-12, most: int = 1
         if not np.isfinite(size):
             return None
         length = within_domain(problem, curve, step)
-        whole = whole and length == 1.0
         while True:
             trial = curve.moved(step, length)
             residual = system.residual(trial)
             if size < SURE or linearised.step(residual).size(trial) <= (1.0 - length / 4.0) * size:
                 break
-            length, whole = length / 2.0, False
+            length /= 2.0
             if length < SHORTEST:
-                return Outcome(curve, False, iteration, linearised, whole)
+                return Attempt(curve, Reason.NO_CONVERGENCE, iteration, linearised=linearised, facts=(iteration,))
         curve = trial
         if size < tolerance or (size < FLOOR and size > 0.2 * before):
-            return Outcome(curve, True, iteration, linearised, whole)
+            return Attempt(curve, Reason.EXTREMAL, iteration, linearised=linearised)
         before = size
-    return Outcome(curve, False, most, linearised, whole)
+    return Attempt(curve, Reason.NO_CONVERGENCE, most, linearised=linearised, facts=(most,))
 
 
 def within_domain(problem: TwoPoint, curve: Curve, step: Step) -> float:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.continuation import kinks
 from satsym.solvers.collocation.curve import SMALL, Curve
 from satsym.solvers.collocation.defect_correction import Sharpened, sharpen
@@ -37,31 +38,9 @@ SPARE = 0.1
 """Share of the error aimed at that the next mesh is laid for."""
 
 
-@dataclass(frozen=True, eq=False)
-class Refined:
-    """A curve with an estimate of its error.
-
-    Attributes
-    ----------
-    curve
-        The answer.
-    error
-        Estimated error, at the nodes and between them, relative as in :meth:`Step.size`.
-    converged
-        Whether that is below the tolerance.
-    iterations
-        Newton corrections that were needed.
-    """
-
-    curve: Curve
-    error: float
-    converged: bool
-    iterations: int
-
-
 def refine(
     problem: TwoPoint, curve: Curve, tolerance: float, keep_nodes: bool = False, known: Linearised | None = None
-) -> Refined:
+) -> Attempt:
     """Refine a solution until the error is far below a tolerance; below it is enough if that is all one can get.
 
     Parameters
@@ -77,20 +56,21 @@ def refine(
     known
         The linearised equations at the curve or nearby, if it is a solution with :data:`STAGES` stages already.
     """
-    total, best, aim = 0, Refined(curve, float("inf"), False, 0), max(AIM * tolerance, LEAST)
+    total, best, aim = 0, Attempt(curve, Reason.INACCURATE, 0), max(AIM * tolerance, LEAST)
     for _ in range(ROUNDS):
         if known is None:
             outcome = newton(System(problem, curve.mesh, STAGES), curve.on(curve.mesh, STAGES), tolerance=NEAR)
             total += outcome.iterations if outcome else 0
-            if outcome and outcome.converged:
+            if outcome and outcome.solved:
                 curve, known = outcome.curve, outcome.linearised
         sharpened = sharpen(curve, known, aim) if known else None
         met = kinks(problem, sharpened.curve) if sharpened and keep_nodes else np.zeros(0)
         error = max(sharpened.error, _misplaced(problem, sharpened.curve, met)) if sharpened else float("inf")
         better = error < 0.5 * best.error
         if sharpened and error < best.error:
-            best = Refined(sharpened.curve, error, error < tolerance, total)
-        if best.error < aim or (best.converged and not better):
+            reason = Reason.EXTREMAL if error < tolerance else Reason.INACCURATE
+            best = Attempt(sharpened.curve, reason, total, error=error)
+        if best.error < aim or (best.solved and not better):
             break
         density = _density(sharpened, aim) if sharpened else np.full(len(curve.mesh) - 1, 2.0)
         if density.sum() > MOST_INTERVALS:
@@ -98,7 +78,8 @@ def refine(
         curve = sharpened.curve if sharpened else curve
         mesh = _followed(_split(curve.mesh, density), met) if keep_nodes else _spread(curve.mesh, density)
         curve, known = curve.on(mesh, STAGES), None
-    return best
+    cost = System(problem, best.curve.mesh, best.curve.order).cost(best.curve)
+    return replace(best, cost=cost, facts=(best.error, len(best.curve.mesh) - 1))
 
 
 def _density(sharpened: Sharpened, aim: float) -> Array:

@@ -15,8 +15,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import Curve, Step
-from satsym.solvers.collocation.linearised import Linearised
+from satsym.solvers.collocation.linearised import Linearised, linearise
 from satsym.solvers.collocation.newton import within_domain
 from satsym.solvers.collocation.second_variation import negative_directions
 from satsym.solvers.collocation.system import Residual, System
@@ -37,43 +38,8 @@ SUFFICIENT = 1e-4
 CORRECTED = 4
 """Shares of a step that are tried with a second-order correction as well."""
 
-OUTGROWN = "the curve outgrew its mesh"
 PROBE = 1e-6
 """Step with which the slope of the cost along a direction is measured."""
-
-
-@dataclass(frozen=True, eq=False)
-class Found:
-    """Where the minimisation ended.
-
-    Attributes
-    ----------
-    curve
-        The last one.
-    reason
-        ``"minimum"``, ``"saddle"`` (an extremal that is no minimum), or why there is none.
-    cost
-        Scaled cost there.
-    iterations
-        Number of steps.
-    hard
-        Whether the way was not straight: a Gauss-Newton step after the first, or a step cut short. Other minima
-        may then be cheaper.
-    linearised
-        The equations there, where they are at hand.
-    """
-
-    curve: Curve
-    reason: str
-    cost: float
-    iterations: int
-    hard: bool
-    linearised: Linearised | None = None
-
-    @property
-    def minimum(self) -> bool:
-        """Whether it is a strict local minimum of the discretised problem."""
-        return self.reason == "minimum"
 
 
 def minimise(
@@ -83,7 +49,7 @@ def minimise(
     tolerance: float = 1e-7,
     most: int = 80,
     coarsest: float = float("inf"),
-) -> Found:
+) -> Attempt:
     """Minimise the cost from a curve without costates, over all curves that solve the problem.
 
     Parameters
@@ -113,33 +79,33 @@ def minimise(
         jacobian = system.jacobian(curve)
         limits.spend(curve.flat.shape[1])
         if iteration and coarsest < float("inf") and system.largest_turn(curve, jacobian) > coarsest:
-            return Found(curve, OUTGROWN, cost, iteration, True)
+            return Attempt(curve, Reason.OUTGROWN, iteration, cost)
         avoid = newton and share < CUT
         linearised, newton = _direction(system, curve, residual, jacobian, avoid, trusted=close)
         if linearised is None:
-            return Found(curve, "the equations are singular", cost, iteration, True)
+            return Attempt(curve, Reason.SINGULAR, iteration, cost)
         hard = hard or not (newton or first)
         step = linearised.step(residual)
         size = step.size(curve.moved(step, 1.0))
         if not np.isfinite(size):
-            return Found(curve, "not finite", cost, iteration, True)
+            return Attempt(curve, Reason.NOT_FINITE, iteration, cost)
         if limits.expired:
-            return Found(curve, "time was up", cost, iteration, True)
+            return Attempt(curve, Reason.TIME_UP, iteration, cost)
         limits.tell(cost * problem.scale.cost, size)
         if size < tolerance:
             curve = curve.moved(step, 1.0)
-            return Found(curve, _kind(system, curve), system.cost(curve), iteration + 1, hard)
+            return Attempt(curve, _kind(system, curve), iteration + 1, system.cost(curve), hard)
         close = newton and size < CLOSE and share == 1.0
         penalty = _raised(penalty, _multipliers(curve, step, n, len(violated)))
         at = _Merit(system, curve, cost, violated, penalty, linearised, step)
         found = _searched(at, within_domain(problem, curve, step), whole=close)
         if found is None:
-            return Found(curve, "no descent", cost, iteration, True)
+            return Attempt(curve, Reason.NO_DESCENT, iteration, cost)
         curve, residual, share, halved = found
         limits.spend(int(curve.flat.shape[1] * -np.log2(share)) if halved else 0)
         hard = hard or halved
         cost, violated = system.cost(curve), system.infeasibility(residual)
-    return Found(curve, f"no convergence in {most} steps", cost, most, True)
+    return Attempt(curve, Reason.NO_CONVERGENCE, most, cost, facts=(most,))
 
 
 @dataclass(frozen=True, eq=False)
@@ -213,7 +179,7 @@ def _direction(
     shares = (0.0,) if without_costates else (1.0, 0.0) if trusted else SHARES[int(avoid) :]
     for share in shares:
         try:
-            linearised = system.linearised(curve, residual, share * jacobian + (1.0 - share) * bare)
+            linearised = linearise(system, curve, residual, share * jacobian + (1.0 - share) * bare)
             if trusted or share == 0.0 or negative_directions(system.problem, curve, linearised.matching) == 0:
                 return linearised, share == 1.0
         except np.linalg.LinAlgError:
@@ -221,14 +187,14 @@ def _direction(
     return None, False
 
 
-def _kind(system: System, curve: Curve) -> str:
-    """``"minimum"`` or ``"saddle"``."""
+def _kind(system: System, curve: Curve) -> Reason:
+    """Whether an extremal is a minimum."""
     try:
-        linearised = system.linearised(curve, system.residual(curve), system.jacobian(curve))
+        linearised = linearise(system, curve, system.residual(curve), system.jacobian(curve))
         negative = negative_directions(system.problem, curve, linearised.matching)
     except np.linalg.LinAlgError:
-        return "the equations are singular"
-    return "minimum" if negative == 0 else "saddle"
+        return Reason.SINGULAR
+    return Reason.MINIMUM if negative == 0 else Reason.SADDLE
 
 
 def _multipliers(curve: Curve, step: Step, n: int, count: int) -> Array:

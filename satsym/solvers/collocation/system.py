@@ -1,7 +1,4 @@
-"""The collocation equations: residuals for all stages at once, and their exact linearisation.
-
-Stages are eliminated interval by interval, all intervals in one call.
-"""
+"""The collocation equations: residuals for all stages at once."""
 
 from __future__ import annotations
 
@@ -11,10 +8,7 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.solvers.collocation.curve import Curve, stage_times
-from satsym.solvers.collocation.elimination import Blocks
 from satsym.solvers.collocation.gauss import Scheme, scheme
-from satsym.solvers.collocation.linearised import Linearised
-from satsym.solvers.collocation.matching import Matching
 from satsym.solvers.collocation.problem import TwoPoint
 
 
@@ -56,7 +50,7 @@ class System:
         self.widths: Array = np.diff(mesh)
         self.tau: Array = stage_times(mesh, order).ravel()
         self.intervals, self.rows = len(mesh) - 1, 2 * problem.states
-        self._matrix = self.widths[:, None, None] * self.scheme.matrix
+        self.matrix: Array = self.widths[:, None, None] * self.scheme.matrix
 
     def cost(self, curve: Curve) -> float:
         """The scaled cost J along a curve, under the control law of its stages."""
@@ -102,40 +96,3 @@ class System:
         at_middles = jacobian[:n, :n, self.order // 2 :: self.order]
         speed = np.abs(np.linalg.eigvals(at_middles.transpose(2, 0, 1))).max(axis=1)
         return float((speed * self.widths).max()) * self.problem.elapsed(curve.theta)
-
-    def linearised(self, curve: Curve, residual: Residual, jacobian: Array) -> Linearised:
-        """Eliminate the stages and factor what remains.
-
-        Raises
-        ------
-        numpy.linalg.LinAlgError
-            If the equations are singular here.
-        """
-        n, s, count, e = self.rows, self.order, self.intervals, self.problem.unknowns
-        by_stage = np.ascontiguousarray(jacobian.reshape(n, n, count, s).transpose(2, 0, 3, 1))
-        grown = (-self.problem.elapsed(curve.theta)) * self._matrix
-        matrix = (grown[:, :, None, :, None] * by_stage[:, None]).reshape(count, s * n, s * n)
-        matrix.reshape(count, -1)[:, :: s * n + 1] += 1.0
-        blocks = Blocks(matrix)
-        by_stages = np.zeros((count, n + 1 + e, s, n))
-        by_stages[:, np.arange(n), :, np.arange(n)] = 1.0
-        right: Array = by_stages.reshape(count, n + 1 + e, s * n)
-        right[:, n] = residual.by_interval
-        if self.problem.free_time:
-            right[:, -1] = self._by_duration(curve, residual).transpose(1, 2, 0).reshape(count, -1)
-        solved = blocks.solve(right)
-        response = solved[:, :n]
-        transition = np.einsum("j,ibja->iab", self.scheme.end, response.reshape(count, n, s, n))
-        transition[:, np.arange(n), np.arange(n)] += 1.0 - self.scheme.end.sum()
-        extra = solved[:, n + 1 :].reshape(count, e, s, n)
-        by_theta = (self.scheme.end @ extra).swapaxes(1, 2)
-        matching = Matching(transition, by_theta, *self.problem.boundary_slopes(curve.nodes[:, -1], curve.theta))
-        return Linearised(self, blocks, matching, response, extra, residual, solved[:, n])
-
-    def _by_duration(self, curve: Curve, residual: Residual) -> Array:
-        """Minus the derivative of the stage residuals by the duration, shape (2n, N, s)."""
-        drift = self.problem.drift(self.tau, curve.flat, curve.theta)
-        if np.ndim(drift) == 0:
-            return residual.rates
-        explicit = (np.asarray(drift) * self.tau).reshape(residual.rates.shape) @ self.scheme.matrix.T
-        return residual.rates + self.problem.elapsed(curve.theta) * self.widths[:, None] * explicit

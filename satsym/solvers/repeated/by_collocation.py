@@ -9,18 +9,18 @@ import numpy as np
 from satsym.instance import Instance
 from satsym.solvers import two_point
 from satsym.solvers.cold_start import paths
+from satsym.solvers.cold_start.origin import Origin, Start
 from satsym.solvers.cold_start.straight_through import straight_through
-from satsym.solvers.cold_start.ways import Start
 from satsym.solvers.collocation import mesh as meshes
+from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import Curve
+from satsym.solvers.collocation.extremal import Extremal
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.refinement import NEAR
 from satsym.solvers.collocation.second_variation import negative_directions
-from satsym.solvers.collocation.sqp import Found
 from satsym.solvers.collocation.system import System
-from satsym.solvers.extremal import Extremal
 from satsym.solvers.iteration import Limits
 
 
@@ -40,8 +40,9 @@ class ByCollocation:
         free = problem.relaxed(float("inf"))
         system = System(free, curve.mesh, STAGES)
         outcome = newton(system, curve, tolerance=NEAR)
-        if outcome is None or not outcome.converged or not outcome.curve.in_domain(free.positive):
+        if outcome is None or not outcome.solved or not outcome.curve.in_domain(free.positive):
             return None
+        assert outcome.linearised is not None
         try:
             least = negative_directions(free, outcome.curve, outcome.linearised.matching) == 0
         except np.linalg.LinAlgError:
@@ -50,7 +51,7 @@ class ByCollocation:
         if not least or turn > meshes.COARSEST:
             return None
         cost = system.cost(outcome.curve)
-        found = Found(outcome.curve, "minimum", cost, outcome.iterations, False, outcome.linearised)
+        found = replace(outcome, reason=Reason.MINIMUM, cost=cost, hard=False)
         return self._sound(problem, found, limits)
 
     def straight(self, case: Instance, limits: Limits) -> Extremal | None:
@@ -74,8 +75,8 @@ class ByCollocation:
         """Nothing is missing."""
         return found
 
-    def _sound(self, problem: TwoPoint, found: Found, limits: Limits) -> Extremal | None:
-        start = Start(found, "last answer", found.iterations, {})
+    def _sound(self, problem: TwoPoint, found: Attempt, limits: Limits) -> Extremal | None:
+        start = Start(found, Origin.LAST_ANSWER, found.iterations)
         extremal = self._within(problem, start, limits)
         return extremal if extremal.status.answered else None
 

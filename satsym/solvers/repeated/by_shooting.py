@@ -8,9 +8,9 @@ import numpy as np
 
 from satsym.instance import Instance
 from satsym.solvers.cold_start import paths
+from satsym.solvers.collocation.extremal import Extremal
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.second_variation import negative_directions
-from satsym.solvers.extremal import Extremal
 from satsym.solvers.iteration import Limits
 from satsym.solvers.shooting.arcs import Arcs
 from satsym.solvers.shooting.newton import linearised

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from satsym.instance import Instance
-from satsym.solvers.extremal import Extremal
+from satsym.solvers.collocation.extremal import Extremal
 from satsym.solvers.iteration import Limits
 
 

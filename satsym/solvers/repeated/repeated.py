@@ -12,7 +12,9 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.instance.resolve import value_of
 from satsym.solution import Solution
-from satsym.solvers.extremal import Extremal, solved, without_numbers
+from satsym.solvers.cold_start.origin import Origin
+from satsym.solvers.collocation.extremal import Extremal
+from satsym.solvers.extremal import solved, without_numbers
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.iteration import Limits, watched
 from satsym.solvers.repeated.by_collocation import ByCollocation
@@ -33,8 +35,8 @@ class Answer:
         The cost J; NaN where there is none.
     times, x, lam
         Nodes, shape (N+1,), with states and costates there, shapes (n, N+1), in the model's units.
-    way
-        From where it was found: ``"last answer"``, ``"straight line"`` or ``"cold start"``.
+    origin
+        From where it was found: the last answer, a straight line, or a cold start.
     extremal
         The same in scaled variables.
     """
@@ -45,7 +47,7 @@ class Answer:
     times: Array
     x: Array
     lam: Array
-    way: str
+    origin: Origin
     extremal: Extremal
 
 
@@ -139,22 +141,22 @@ class Repeated:
             self.answer = _answer(*self._found(case, limits, cold))
         return self.answer
 
-    def _found(self, case: Instance, limits: Limits, cold: bool) -> tuple[Extremal, str]:
+    def _found(self, case: Instance, limits: Limits, cold: bool) -> tuple[Extremal, Origin]:
         """An extremal, or why there is none, and from where it was found."""
-        quick = {"last answer": self._means.near, "straight line": self._means.straight}
-        for way, attempt in quick.items():
-            if cold and way == "last answer":
+        quick = {Origin.LAST_ANSWER: self._means.near, Origin.STRAIGHT_LINE: self._means.straight}
+        for origin, attempt in quick.items():
+            if cold and origin is Origin.LAST_ANSWER:
                 continue
             try:
                 found = attempt(case, limits)
             except FAILURES:
                 continue
             if found:
-                return found, way
+                return found, origin
         try:
-            return self._means.cold(case, limits), "cold start"
+            return self._means.cold(case, limits), Origin.COLD_START
         except FAILURES as error:
-            return without_numbers(case, error), "cold start"
+            return without_numbers(case, error), Origin.COLD_START
 
     def solution(self, answer: Answer) -> Solution:
         """All of an answer, with times of switching, as other solvers give it; takes as long as they do.
@@ -180,7 +182,7 @@ def _shooting() -> Means:
     return ByShooting()
 
 
-def _answer(found: Extremal, way: str) -> Answer:
+def _answer(found: Extremal, origin: Origin) -> Answer:
     problem, path, answered = found.problem, found.path, found.status.answered
     z = path.nodes * problem.scale.both
     return Answer(
@@ -190,7 +192,7 @@ def _answer(found: Extremal, way: str) -> Answer:
         times=problem.instance.t0 + problem.elapsed(path.theta) * path.mesh,
         x=z[: problem.states],
         lam=z[problem.states :],
-        way=way,
+        origin=origin,
         extremal=found,
     )
 

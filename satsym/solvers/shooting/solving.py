@@ -9,16 +9,18 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Progress, Solution
-from satsym.solvers.cold_start.ways import Start
+from satsym.solvers.cold_start.origin import Start
+from satsym.solvers.collocation.attempt import Reason
 from satsym.solvers.collocation.continuation import kinks, through
 from satsym.solvers.collocation.curve import Path
+from satsym.solvers.collocation.extremal import Extremal
 from satsym.solvers.collocation.problem import TwoPoint
-from satsym.solvers.extremal import Extremal, solved
+from satsym.solvers.extremal import solved
 from satsym.solvers.iteration import Limits
 from satsym.solvers.shooting.arcs import Arcs, sufficient
 from satsym.solvers.shooting.newton import Outcome, doubled, newton
 from satsym.solvers.shooting.runge_kutta import ORDER
-from satsym.solvers.two_point import explained, from_cold_start, inside, outside, unfinished
+from satsym.solvers.two_point import explained, from_cold_start, inside, unfinished
 from satsym.status import Status
 from satsym.wording import counted
 
@@ -84,7 +86,7 @@ def extremal(problem: TwoPoint, start: Path, limits: Limits) -> Extremal:
     tolerance, accuracy = problem.instance.solver.tolerance, ACCURACY
     met, mesh, total = kinks(problem, start), start.mesh, 0
     count = max(LEAST, len(mesh) - 2 - len(met))  # with a remainder of an arc between neighbouring kinks, no more arcs
-    path, why = start, "the times at which bounds are met do not settle"
+    path, why = start, Reason.UNSETTLED.value
     for _ in range(SETTLING):
         mesh = through(met, count) if len(met) else mesh
         outcome = _shot(problem, path, mesh, accuracy, limits)
@@ -117,8 +119,8 @@ def _accurate(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
     """From an extremal of low order without bounds to an accurate one within them."""
     bounded = inside(problem, start, start.found.curve, limits)
     steps = start.steps + bounded.iterations
-    if bounded.reached < 1.0:
-        return explained(outside(problem, bounded.curve, bounded, steps, limits), limits)
+    if bounded.reason is Reason.BLOCKED:
+        return explained(unfinished(problem, bounded.curve, bounded.message, steps, limits), limits)
     found = explained(extremal(problem, bounded.curve, limits), limits)
     return replace(found, iterations=steps + found.iterations)
 

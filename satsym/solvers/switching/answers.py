@@ -13,7 +13,7 @@ from satsym.solvers.switching.cold_start.homotopy import Stopped
 from satsym.status import Status
 
 
-def answered(instance: Instance, exact: Exact, way: str, history: tuple[Iteration, ...], began: float) -> Solution:
+def answered(instance: Instance, exact: Exact, history: tuple[Iteration, ...], began: float) -> Solution:
     """Exact arcs as a solution."""
     at, structure, trajectory = exact.refined.at, exact.refined.structure, exact.trajectory
     nodes = np.linspace(instance.t0, at.end, instance.solver.steps + 1)
@@ -23,7 +23,7 @@ def answered(instance: Instance, exact: Exact, way: str, history: tuple[Iteratio
     plural = "" if structure.switches == 1 else "es"
     message = (
         f"structure {structure.name}, {structure.switches} switch{plural}, residual {exact.refined.residual:.0e}, "
-        f"from {way}"
+        f"from {exact.origin.value.format(exact.smoothing)}"
     )
     return Solution(
         instance=instance,

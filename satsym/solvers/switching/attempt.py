@@ -7,6 +7,7 @@ better level is put in.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from enum import Enum
 
 import numpy as np
 
@@ -14,8 +15,8 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.failures import FAILURES, tried
 from satsym.solvers.iteration import Limits
-from satsym.solvers.switching.cold_start.recognition import Guess
 from satsym.solvers.switching.newton import Equations, Refined, solve
+from satsym.solvers.switching.structure import Guess
 from satsym.solvers.switching.trajectory import Trajectory, Violation, violations
 
 REPAIRS = 8
@@ -34,6 +35,19 @@ NO_TIME = 1e-11
 """An arc shorter than this share of the duration is none."""
 
 
+class Origin(Enum):
+    """From where exact arcs were found, in the words of messages."""
+
+    STRUCTURE = "a given structure"
+    REST = "rest"
+    REACH = "the set of all ends that are reached"
+    SATURATED = "controls saturated at a bound"
+    EFFORT = "the signs of least effort"
+    DRAWN = "switching times that were drawn"
+    SMOOTHED = "the regularised problem, smoothed by {:.1e}"
+    LEAST_TIME = "the structure of the least time"
+
+
 @dataclass(frozen=True, eq=False)
 class Exact:
     """An extremal of exact arcs that minimises H all along.
@@ -44,11 +58,15 @@ class Exact:
         Its structure with its times, and the arcs.
     iterations
         Corrections of all attempts.
+    origin, smoothing
+        From where it was found, and by how much that was smoothed.
     """
 
     refined: Refined
     trajectory: Trajectory
     iterations: int
+    origin: Origin = Origin.STRUCTURE
+    smoothing: float = 0.0
 
 
 def attempt(instance: Instance, first: Guess, limits: Limits) -> Exact | None:

@@ -17,15 +17,15 @@ from satsym.solvers.failures import FAILURES, tried, unbroken
 from satsym.solvers.iteration import Limits, watched
 from satsym.solvers.nearest_end import nearest
 from satsym.solvers.switching.answers import answered, without
-from satsym.solvers.switching.attempt import Exact, attempt
+from satsym.solvers.switching.attempt import Exact, Origin, attempt
 from satsym.solvers.switching.cold_start import by_scouts, homotopy, least_effort
 from satsym.solvers.switching.cold_start import saturated as held
-from satsym.solvers.switching.cold_start.recognition import Guess, Sample, guess, inside, sample
+from satsym.solvers.switching.cold_start.recognition import Sample, guess, inside, sample
 from satsym.solvers.switching.least_time import least_time
 from satsym.solvers.switching.linear import by_reach
 from satsym.solvers.switching.newton import switching
 from satsym.solvers.switching.refusals import refuse
-from satsym.solvers.switching.structure import REST, Structure
+from satsym.solvers.switching.structure import REST, Guess, Structure
 from satsym.solvers.switching.variants import neighbours
 from satsym.status import Status
 
@@ -77,12 +77,10 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
             found = _by_least_time(instance, found, limits)
         if isinstance(found, homotopy.Stopped):
             return without(instance, _out_of_reach(found, limits), tuple(history), began)
-        return answered(instance, *found, tuple(history), began)
+        return answered(instance, found, tuple(history), began)
 
 
-def _by_least_time(
-    instance: Instance, stopped: homotopy.Stopped, limits: Limits
-) -> tuple[Exact, str] | homotopy.Stopped:
+def _by_least_time(instance: Instance, stopped: homotopy.Stopped, limits: Limits) -> Exact | homotopy.Stopped:
     """What the least time says: a structure where the given one is hardly longer, or that it is too short.
 
     The latter where the motion is linear: only there is it known that nothing arrives earlier.
@@ -91,15 +89,13 @@ def _by_least_time(
     found = _found(hurried, limits) if hurried is not None else stopped
     if isinstance(found, homotopy.Stopped) or instance.tf is None or hurried is None:
         return stopped
-    exact, way = found
-    least, given = exact.refined.at.end - instance.t0, instance.tf - instance.t0
-    name = exact.refined.structure.name
-    if way == by_reach.WAY and least > given * (1.0 + ENOUGH):
+    least, given, name = found.refined.at.end - instance.t0, instance.tf - instance.t0, found.refined.structure.name
+    if found.origin is Origin.REACH and least > given * (1.0 + ENOUGH):
         message = f"the least time to the given end is {least:.10g} (structure {name}), and only {given:.10g} is given"
         return replace(stopped, status=Status.INFEASIBLE, message=message)
-    near = attempt(instance, _relaxed(instance, exact), limits) if least < given else None
+    near = attempt(instance, _relaxed(instance, found), limits) if least < given else None
     if near is not None:
-        return near, "the structure of the least time"
+        return replace(near, origin=Origin.LEAST_TIME)
     if stopped.status is Status.INFEASIBLE:
         return stopped
     alone = ", and at that only one control arrives, whatever it costs" if abs(given / least - 1.0) <= ENOUGH else ""
@@ -118,27 +114,27 @@ def _out_of_reach(stopped: homotopy.Stopped, limits: Limits) -> homotopy.Stopped
     return replace(stopped, status=Status.INFEASIBLE, message=f"{near.message}; {stopped.message}")
 
 
-def others(instance: Instance, duration: float, limits: Limits) -> list[tuple[Exact, str]]:
-    """Extremals from several starts and how each was found, many of them one and the same.
+def others(instance: Instance, duration: float, limits: Limits) -> list[Exact]:
+    """Extremals from several starts, many of them one and the same.
 
-    For free ends those of controls held at a bound, and what is found by smoothing with moderate effort: it may have
-    arcs that no such control leads to. For terminal constraints and a free time those of least effort in shares of the
-    duration that was found.
+    For free ends those of controls saturated at a bound, and what is found by smoothing with moderate effort: it may
+    have arcs that no such control leads to. For terminal constraints and a free time those of least effort in shares of
+    the duration that was found.
     """
     if held.applies(instance):
         return _compared(instance, _at_corners(instance, limits), limits)
     if instance.tf is not None or not instance.model.spec.multipliers:
         return []
-    return [(exact, "the signs of least effort") for exact in _beside(instance, duration, COMPARED_BESIDE, limits)]
+    return _beside(instance, duration, COMPARED_BESIDE, limits)
 
 
-def _at_corners(instance: Instance, limits: Limits) -> list[tuple[Exact, str]]:
-    """Extremals that controls held at a bound lead to, where the end is free."""
+def _at_corners(instance: Instance, limits: Limits) -> list[Exact]:
+    """Extremals that controls saturated at a bound lead to, where the end is free."""
     found = (attempt(instance, start, limits) for start in held.guesses(instance))
-    return [(exact, "controls held at a bound") for exact in found if exact]
+    return [replace(exact, origin=Origin.SATURATED) for exact in found if exact]
 
 
-def _compared(instance: Instance, known: list[tuple[Exact, str]], limits: Limits) -> list[tuple[Exact, str]]:
+def _compared(instance: Instance, known: list[Exact], limits: Limits) -> list[Exact]:
     """Extremals that are known, and what smoothing leads to with moderate effort."""
     moderate = replace(limits, work=min(limits.work, limits.meter.spent + COMPARED))
     smoothed = _smoothed(instance, moderate, thorough=False)
@@ -152,31 +148,32 @@ def _signs(instance: Instance, near: least_effort.Smoothed) -> Guess:
     return replace(first, costates=first.costates * near.scaled)
 
 
-def _found(instance: Instance, limits: Limits) -> tuple[Exact, str] | homotopy.Stopped:
-    """Exact arcs and how they were found, or why there are none."""
+def _found(instance: Instance, limits: Limits) -> Exact | homotopy.Stopped:
+    """Exact arcs, or why there are none."""
     resting = _resting(instance)
-    rest = [(exact, "rest")] if resting and (exact := attempt(instance, resting, limits)) else []
+    found = attempt(instance, resting, limits) if resting else None
+    rest = [replace(found, origin=Origin.REST)] if found else []
     if held.applies(instance):
         if known := rest + _at_corners(instance, limits):
-            return min(_compared(instance, known, limits), key=lambda one: one[0].trajectory.cost(instance))
+            return min(_compared(instance, known, limits), key=lambda one: one.trajectory.cost(instance))
         return _smoothed(instance, limits)
     if rest:
         return rest[0]
     if exact := by_reach.optimum(instance, limits):
-        return exact, by_reach.WAY
+        return replace(exact, origin=Origin.REACH)
     if message := by_reach.unreachable(instance, limits):
         return homotopy.Stopped(Status.INFEASIBLE, message)
-    found = _by_effort(instance, limits)
-    best = None if isinstance(found, homotopy.Stopped) else found[0]
+    best = _by_effort(instance, limits)
     for _ in range(ADOPTED):
-        better = None if limits.expired else tried(partial(by_scouts.cheaper, instance, best, limits))
+        cheapest = None if isinstance(best, homotopy.Stopped) else best
+        better = None if limits.expired else tried(partial(by_scouts.cheaper, instance, cheapest, limits))
         if better is None:
             break
-        best, found = better, (better, "switching times that were drawn")
-    return found
+        best = replace(better, origin=Origin.DRAWN)
+    return best
 
 
-def _by_effort(instance: Instance, limits: Limits) -> tuple[Exact, str] | homotopy.Stopped:
+def _by_effort(instance: Instance, limits: Limits) -> Exact | homotopy.Stopped:
     """What motions of least effort lead to, the final time being free, or else less and less smoothing."""
     if instance.tf is None:
         near = chain(least_effort.quick(instance, limits), least_effort.shortening(instance, limits))
@@ -185,7 +182,7 @@ def _by_effort(instance: Instance, limits: Limits) -> tuple[Exact, str] | homoto
             if exact:
                 others = _beside(instance, exact.refined.at.end - instance.t0, BESIDE, limits)
                 best = min([exact, *others], key=lambda one: one.trajectory.cost(instance))
-                return best, "the signs of least effort"
+                return replace(best, origin=Origin.EFFORT)
     return _smoothed(instance, limits)
 
 
@@ -196,22 +193,23 @@ def _beside(instance: Instance, duration: float, shares: Sequence[float], limits
     return [exact for exact in found if exact]
 
 
-def _smoothed(instance: Instance, limits: Limits, thorough: bool = True) -> tuple[Exact, str] | homotopy.Stopped:
+def _smoothed(instance: Instance, limits: Limits, thorough: bool = True) -> Exact | homotopy.Stopped:
     """Exact arcs with a structure that is recognised where less and less is smoothed, or why there are none.
 
     Structures with an arc less or more are many, so they are tried once all smoothed extremals show no better one.
     """
     before: Sample | None = None
     last: least_effort.Smoothed | None = None
-    waiting: list[tuple[Guess, str]] = []
+    waiting: list[tuple[Guess, float]] = []
     try:
         for level, near in enumerate(homotopy.path(instance, limits)):
-            seen, last, way = sample(near.problem, near.curve), near, _way(near)
+            seen, last = sample(near.problem, near.curve), near
+            smoothing = near.problem.control_set.smoothing
             for candidate in _candidates(instance, seen, before):
                 if exact := attempt(instance, candidate, limits):
-                    return exact, way
+                    return replace(exact, origin=Origin.SMOOTHED, smoothing=smoothing)
                 if thorough and level % BETWEEN == BETWEEN - 1:
-                    waiting.append((candidate, way))
+                    waiting.append((candidate, smoothing))
             before = seen
             if limits.expired:
                 break
@@ -223,19 +221,15 @@ def _smoothed(instance: Instance, limits: Limits, thorough: bool = True) -> tupl
         message = "no structure that was recognised in smoothed solutions satisfies the minimum principle"
         assert last is not None
         last_seen = homotopy.Stopped(Status.NOT_CONVERGED, message, last.problem, last.curve)
-    for candidate, way in waiting:
+    for candidate, smoothing in waiting:
         for one in unbroken(neighbours(instance, candidate, limits)):
             if exact := attempt(instance, one, limits):
-                return exact, way
+                return replace(exact, origin=Origin.SMOOTHED, smoothing=smoothing)
             if limits.expired:
                 break
     if limits.expired:
         return replace(last_seen, status=Status.TIME_LIMIT, message=f"time was up: {last_seen.message}")
     return last_seen
-
-
-def _way(near: least_effort.Smoothed) -> str:
-    return f"the companion smoothed by {near.problem.control_set.smoothing:.1e}"
 
 
 def _resting(instance: Instance) -> Guess | None:

@@ -92,3 +92,23 @@ class Structure:
     def durations(self, times: Array, start: float, end: float) -> list[Array]:
         """Lengths of the arcs of each control."""
         return [np.diff([start, *own, end]) for own in self.by_control(times)]
+
+
+@dataclass(frozen=True, eq=False)
+class Guess:
+    """Where to look for an extremal of exact arcs.
+
+    Attributes
+    ----------
+    structure, times
+        Levels and switching times.
+    costates
+        At the start.
+    end
+        The final time.
+    """
+
+    structure: Structure
+    times: Array
+    costates: Array
+    end: float

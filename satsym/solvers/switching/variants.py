@@ -10,8 +10,7 @@ import numpy as np
 from satsym.instance import Instance
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.attempt import nearest
-from satsym.solvers.switching.cold_start.recognition import Guess
-from satsym.solvers.switching.structure import LOWER, REST, UPPER
+from satsym.solvers.switching.structure import LOWER, REST, UPPER, Guess
 
 SHORT = 0.2
 """Share of the first or last arc that an arc before or after it is given."""

@@ -82,7 +82,7 @@ def _both(one: Competitors, other: Competitors) -> Competitors:
 
 
 def _smoothed(solution: Solution, limits: Limits) -> Competitors | None:
-    """Extremals that smoothing leads to, and controls held at a corner, where nothing is given at the end."""
+    """Extremals that smoothing leads to, and controls saturated at a corner, where nothing is given at the end."""
     from satsym.solvers.switching.solving import others
 
     instance = solution.instance
@@ -90,5 +90,5 @@ def _smoothed(solution: Solution, limits: Limits) -> Competitors | None:
     found = others(instance, float(solution.times[-1]) - instance.t0, moderate)
     if not found:
         return None
-    costs = [float(exact.trajectory.cost(instance)) for exact, _ in found]
+    costs = [float(exact.trajectory.cost(instance)) for exact in found]
     return Competitors(Kind.STARTS, len(costs), len(costs), min(costs))

@@ -13,10 +13,9 @@ from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.attempt import Exact, attempt, given
 from satsym.solvers.switching.cold_start.least_effort import first_duration
 from satsym.solvers.switching.cold_start.plans import Scout, seeded
-from satsym.solvers.switching.cold_start.recognition import Guess
 from satsym.solvers.switching.cold_start.scouts import ROUNDS, Target, scouted
 from satsym.solvers.switching.newton import Equations
-from satsym.solvers.switching.structure import Structure
+from satsym.solvers.switching.structure import Guess, Structure
 
 SEED = 7
 """Of what is drawn; certificates draw otherwise."""

@@ -14,7 +14,9 @@ import numpy as np
 from satsym.instance import Instance
 from satsym.solvers.cold_start.durations import free_duration
 from satsym.solvers.cold_start.ways import cold_start
-from satsym.solvers.collocation.curve import Curve
+from satsym.solvers.collocation.attempt import Reason
+from satsym.solvers.collocation.curve import Curve, Path
+from satsym.solvers.collocation.extremal import Extremal
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
@@ -51,7 +53,7 @@ class Stopped(Exception):
     status: Status
     message: str
     problem: TwoPoint | None = None
-    curve: Curve | None = None
+    curve: Path | None = None
 
 
 def path(instance: Instance, limits: Limits) -> Iterator[Smoothed]:
@@ -115,7 +117,7 @@ def _long(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve] | None:
         curve.mesh, curve.nodes * ratio, curve.stages * ratio[:, :, None], np.append(curve.theta, problem.duration)
     )
     outcome = newton(System(eased, curve.mesh, curve.order), curve, tolerance=1e-5)
-    return (eased, outcome.curve) if outcome is not None and outcome.converged else None
+    return (eased, outcome.curve) if outcome is not None and outcome.solved else None
 
 
 def _bounded(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve]:
@@ -129,7 +131,7 @@ def _bounded(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve]:
     if worst > 0.0:
         curve, reached = follow(bounded, curve, limits)
         if reached < 1.0:
-            message = f"bounds could be brought in only {min(reached, 0.99):.0%} of the way from where they do not bind"
+            message = Reason.BLOCKED.value.format(min(reached, 0.99))
             raise Stopped(Status.NOT_CONVERGED, message, problem, curve)
     return problem.relaxed(0.0), curve
 
@@ -152,13 +154,13 @@ def _unbounded(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve]:
         near = of_size(instance, NEAR_FULL, limits) if instance.tf_guess is None else None
         duration = first_duration(instance) if near is None else near.problem.duration
         chosen = free_duration(replace(instance, tf_guess=instance.t0 + duration), limits)
-        if not chosen.status.answered:
-            raise Stopped(chosen.status, chosen.message, chosen.problem, chosen.start.found.curve)
+        if isinstance(chosen, Extremal):
+            raise Stopped(chosen.status, chosen.message, chosen.problem, chosen.path)
         return chosen.problem, chosen.start.found.curve
     problem = two_point(instance, instance.tf - instance.t0)
     start = cold_start(problem, limits)
-    if start.way == "none":
-        raise Stopped(Status.NOT_CONVERGED, f"no extremal found: {start.found.reason}", problem, start.found.curve)
+    if not start.found.minimum:
+        raise Stopped(Status.NOT_CONVERGED, f"no extremal found: {start.found.message}", problem, start.found.curve)
     return problem, start.found.curve
 
 

@@ -207,7 +207,7 @@ def follow(
         mesh = through(kinks(there, curve), count)
         limits.spend(FOLLOWED * STAGES * len(mesh))
         outcome = newton(System(there, mesh, STAGES), curve.on(mesh, STAGES), tolerance=ROUGHLY, most=10)
-        if outcome is None or not outcome.converged or not outcome.curve.in_domain(there.positive):
+        if outcome is None or not outcome.solved or not outcome.curve.in_domain(there.positive):
             move /= 2.0
             continue
         at, curve = min(at + move, 1.0), outcome.curve

@@ -11,7 +11,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.collocation.curve import Path
 from satsym.solvers.collocation.problem import TwoPoint
-from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER, Structure
+from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER, Guess, Structure
 
 SAMPLES = 12
 """Points in each interval of a mesh at which switching functions are looked at."""
@@ -21,26 +21,6 @@ INSIDE = 0.03
 
 LONG = 0.02
 """Share of the duration that a singular arc has at least; shorter ones are switches that are smoothed."""
-
-
-@dataclass(frozen=True, eq=False)
-class Guess:
-    """Where to look for an extremal of exact arcs.
-
-    Attributes
-    ----------
-    structure, times
-        Levels and switching times.
-    costates
-        At the start.
-    end
-        The final time.
-    """
-
-    structure: Structure
-    times: Array
-    costates: Array
-    end: float
 
 
 @dataclass(frozen=True, eq=False)

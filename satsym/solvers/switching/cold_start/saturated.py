@@ -14,7 +14,8 @@ import numpy as np
 from satsym.grid import Grid
 from satsym.instance import Instance
 from satsym.solvers.failures import tried
-from satsym.solvers.switching.cold_start.recognition import Guess, Sample, guess
+from satsym.solvers.switching.cold_start.recognition import Sample, guess
+from satsym.solvers.switching.structure import Guess
 
 STEPS = 400
 """RK4 steps of such a motion."""

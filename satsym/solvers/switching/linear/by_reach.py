@@ -11,12 +11,12 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.attempt import Exact, attempt
-from satsym.solvers.switching.cold_start.recognition import Guess
 from satsym.solvers.switching.linear.first_arrival import arrivals
 from satsym.solvers.switching.linear.from_costates import guessed
 from satsym.solvers.switching.linear.linear_motion import LinearMotion, linear_motion
 from satsym.solvers.switching.linear.reach import THERE, Priced, Reach, given_rows
 from satsym.solvers.switching.linear.separation import separates
+from satsym.solvers.switching.structure import Guess
 
 LATER = 1e-2
 """Share of a bound from below by which an exact arrival may be later and still be the first."""
@@ -32,8 +32,6 @@ HALVINGS = 12
 
 FINER = (1, 5)
 """How many times more steps than usual show a structure, one after the other."""
-
-WAY = "the set of all ends that are reached"
 
 
 def optimum(instance: Instance, limits: Limits) -> Exact | None:

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.solvers.switching.cold_start.recognition import Guess, Sample, guess
+from satsym.solvers.switching.cold_start.recognition import Sample, guess
 from satsym.solvers.switching.linear.reach import Reach, cheapest
+from satsym.solvers.switching.structure import Guess
 
 UNDECIDED = 2e-3
 """Share of its size by which a switching function that decides on nothing is off its value."""

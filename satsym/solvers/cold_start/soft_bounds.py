@@ -8,16 +8,17 @@ their cost grows without end (a quadratic penalty: Nocedal and Wright, Numerical
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
 
 from satsym.arrays import Array
 from satsym.solvers.cold_start.from_path import from_path
 from satsym.solvers.collocation import mesh as meshes
+from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.continuation import kept, settled
 from satsym.solvers.collocation.curve import Curve
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.problem import TwoPoint
-from satsym.solvers.collocation.sqp import OUTGROWN, Found, minimise
+from satsym.solvers.collocation.sqp import minimise
 from satsym.solvers.collocation.system import System
 from satsym.solvers.iteration import Limits
 
@@ -34,27 +35,8 @@ BLOCKED = 5.0
 """Growth of the cost from one softness to the next, tenfold where bounds cannot be kept, that shows it."""
 
 
-@dataclass(frozen=True, eq=False)
-class Hardened:
-    """Where hard bounds led.
-
-    Attributes
-    ----------
-    curve
-        An extremal within the bounds, its mesh with nodes where they are met; ``None`` where none was found.
-    blocked
-        Whether the cost of keeping them grew without end.
-    iterations
-        Steps.
-    """
-
-    curve: Curve | None
-    blocked: bool
-    iterations: int
-
-
-def within_bounds(problem: TwoPoint, path: Callable[[Array], Array], limits: Limits, softness: float = 1.0) -> Hardened:
-    """The minimum within the bounds to which a path of states leads.
+def within_bounds(problem: TwoPoint, path: Callable[[Array], Array], limits: Limits, softness: float = 1.0) -> Attempt:
+    """The extremal within the bounds to which a path of states leads, its mesh with nodes where these are met.
 
     Parameters
     ----------
@@ -68,15 +50,17 @@ def within_bounds(problem: TwoPoint, path: Callable[[Array], Array], limits: Lim
         Of the first problem: one for that without bounds.
     """
     first = from_path(problem.softened(softness), path, limits, TRIED)
-    if not first.minimum or not first.curve.in_domain(problem.positive):
-        return Hardened(None, False, first.iterations)
+    if not first.minimum:
+        return first
+    if not first.curve.in_domain(problem.positive):
+        return replace(first, reason=Reason.OUT_OF_DOMAIN)
     return within_found(problem, first, limits, softness)
 
 
-def within_found(problem: TwoPoint, first: Found, limits: Limits, softness: float = 1.0) -> Hardened:
+def within_found(problem: TwoPoint, first: Attempt, limits: Limits, softness: float = 1.0) -> Attempt:
     """The extremal within the bounds to which a minimum leads that was found with soft ones, or without any."""
     if kept(problem, first.curve):
-        return Hardened(first.curve, False, first.iterations)
+        return first
     curve, cost, steps, grown = first.curve, first.cost, first.iterations, 0
     while softness > HARDEST and not limits.expired:
         softness *= HARDER
@@ -89,15 +73,15 @@ def within_found(problem: TwoPoint, first: Found, limits: Limits, softness: floa
         if softness <= HARD and grown < 2:
             bounded = settled(problem, curve, STAGES, max(10, len(curve.mesh) - 1), limits)
             steps += bounded.iterations
-            if bounded.converged and bounded.curve.in_domain(problem.positive):
-                return Hardened(bounded.curve, False, steps)
-    return Hardened(None, grown >= 2, steps)
+            if bounded.solved and bounded.curve.in_domain(problem.positive):
+                return replace(bounded, iterations=steps)
+    return Attempt(curve, Reason.COSTLY if grown >= 2 else Reason.UNSETTLED, steps, cost)
 
 
-def _softer(problem: TwoPoint, curve: Curve, limits: Limits) -> Found:
+def _softer(problem: TwoPoint, curve: Curve, limits: Limits) -> Attempt:
     """The minimum of the next problem, on a mesh that is laid anew where the curve outgrows it."""
     found = minimise(System(problem, curve.mesh, curve.order), curve, limits, TOLERANCE, MOST, meshes.COARSEST)
-    if found.reason != OUTGROWN:
+    if found.reason is not Reason.OUTGROWN:
         return found
     curve = found.curve.on(meshes.laid(problem, found.curve), STAGES)
     return minimise(System(problem, curve.mesh, curve.order), curve, limits, TOLERANCE, MOST, meshes.COARSEST)

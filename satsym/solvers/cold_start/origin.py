@@ -1,0 +1,57 @@
+"""From where extremals are found, and one that was, with that."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from satsym.solvers.collocation.attempt import Attempt
+
+
+class Origin(str, Enum):
+    """From where an extremal was found, in the words of messages."""
+
+    GUESS = "guess"
+    STRAIGHT_LINE = "straight line"
+    SPIRAL = "spiral of {:.2g} turns"
+    PROBLEMS = "path of problems"
+    DRAWN = "drawn path"
+    STRAIGHT_PROBLEMS = "straight path of problems"
+    DURATIONS = "path of durations"
+    ENDS = "path of ends"
+    NO_MINIMUM = "straight line, but no minimum was found"
+    LAST_ANSWER = "last answer"
+    COLD_START = "cold start"
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """An extremal of low order from which a method starts.
+
+    Attributes
+    ----------
+    found
+        The cheapest minimum, or the last attempt, and why that is none.
+    origin
+        From where it was found.
+    steps
+        Steps of all attempts.
+    turns
+        Of the spiral.
+    bounded
+        Whether it was looked for within the bounds at once.
+    saddle
+        An extremal that is no minimum, where no minimum was found.
+    """
+
+    found: Attempt
+    origin: Origin
+    steps: int
+    turns: float = 0.0
+    bounded: bool = False
+    saddle: Attempt | None = None
+
+    @property
+    def named(self) -> str:
+        """The origin in words."""
+        return self.origin.value.format(self.turns)

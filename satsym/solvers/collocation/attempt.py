@@ -1,0 +1,81 @@
+"""What comes of an attempt at an extremal, by whatever means: a curve, why it ended there, and what that took."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from satsym.solvers.collocation.curve import Curve
+from satsym.solvers.collocation.linearised import Linearised
+
+
+class Reason(Enum):
+    """Why an attempt ended, with the words for it."""
+
+    MINIMUM = "minimum"
+    SADDLE = "saddle"
+    EXTREMAL = "extremal"
+    """Nobody asked whether it is a minimum."""
+    OUTGROWN = "the curve outgrew its mesh"
+    SINGULAR = "the equations are singular"
+    NOT_FINITE = "not finite"
+    TIME_UP = "time was up"
+    NO_DESCENT = "no descent"
+    NO_CONVERGENCE = "no convergence in {} steps"
+    OUT_OF_DOMAIN = "the minimum lies outside the domain"
+    PATH_ENDS = "the {} ends after {:.0%} of its way"
+    DURATION_ENDS = "lengthening the duration ends at {:.4g} of {:.4g}"
+    BLOCKED = "bounds could be brought in only {:.0%} of the way from where they do not bind"
+    UNSETTLED = "the times at which bounds are met do not settle"
+    INACCURATE = "the estimated error stays at {:.0e} on {} intervals"
+    COSTLY = "keeping the bounds costs more and more without end"
+
+
+@dataclass(frozen=True, eq=False)
+class Attempt:
+    """Where an attempt ended.
+
+    Attributes
+    ----------
+    curve
+        The last one.
+    reason
+        Whether that is an extremal, or why not.
+    iterations
+        Linear systems that were solved.
+    cost
+        Scaled cost there; NaN where it was not asked for.
+    hard
+        Whether the way was not straight: a Gauss-Newton step after the first, or a step cut short. Other minima
+        may then be cheaper.
+    linearised
+        The equations there, where they are at hand.
+    error
+        Estimated error, at the nodes and between them, relative as in :meth:`Step.size`; infinite where nobody asked.
+    facts
+        What the words of the reason leave open.
+    """
+
+    curve: Curve
+    reason: Reason
+    iterations: int
+    cost: float = float("nan")
+    hard: bool = True
+    linearised: Linearised | None = None
+    error: float = float("inf")
+    facts: tuple[float | str, ...] = ()
+
+    @property
+    def minimum(self) -> bool:
+        """Whether it is a strict local minimum of the discretised problem."""
+        return self.reason is Reason.MINIMUM
+
+    @property
+    def solved(self) -> bool:
+        """Whether it is a minimum, or an extremal of which nobody asked more."""
+        return self.reason in (Reason.MINIMUM, Reason.EXTREMAL)
+
+    @property
+    def message(self) -> str:
+        """The reason in words."""
+        return self.reason.value.format(*self.facts)
