@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 
 import numpy as np
 
 from satsym.instance import Instance
 from satsym.solution import Iteration, Solution
+from satsym.solvers import out_of_time
 from satsym.solvers.switching.attempt import Exact
 from satsym.solvers.switching.cold_start.homotopy import Stopped
 from satsym.status import Status
@@ -44,20 +46,6 @@ def answered(instance: Instance, exact: Exact, history: tuple[Iteration, ...], b
 
 def without(instance: Instance, stopped: Stopped, history: tuple[Iteration, ...], began: float) -> Solution:
     """Why there is no answer."""
-    n, m = len(instance.initial), len(instance.lower)
-    end = instance.tf if instance.tf is not None else instance.t0 + 1.0
-    return Solution(
-        instance=instance,
-        method="bang-bang",
-        status=stopped.status,
-        message=stopped.message,
-        objective=float("nan"),
-        times=np.array([instance.t0, end]),
-        x=np.full((n, 2), np.nan),
-        u=np.full((m, 2), np.nan),
-        lam=np.full((n, 2), np.nan),
-        switching_times=((),) * m,
-        iterations=len(history),
-        history=history,
-        wall_s=time.perf_counter() - began,
-    )
+    nothing = out_of_time.solution(instance, "bang-bang", time.perf_counter() - began)
+    message, done = stopped.message, len(history)
+    return replace(nothing, status=stopped.status, message=message, iterations=done, history=history)
