@@ -2,16 +2,36 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import Any
+
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.solution import Solution
+from satsym.solution import Check, Solution
 from satsym.solvers.certificate.end_form import fixed_states, multipliers
 from satsym.solvers.certificate.flow import FAINT, NEGLIGIBLE, Flow, products, typical, undriven, unit_sizes
 from satsym.solvers.collocation.scaling import final_argument
 
 CANCELLED = 1e-5
 """Share of the products of states and costates below which a cost is what is left of larger terms, or of rounding."""
+
+
+BOUNDARY, STATIONARITY, HAMILTONIAN = "boundary residual", "stationarity", "hamiltonian drift"
+OF_FLOW, OF_SEGMENTS = "dynamics defect", "junction defect"
+"""What checks are called. The last two are distances of the solution from the flow from the initial costates, or of
+segments between nodes from the next node."""
+
+
+def headlines(checks: Iterable[Check]) -> dict[str, Any]:
+    """What a certificate states beside its checks, by its names."""
+    measured = {check.name: check.value for check in checks}
+    return {
+        "boundary_residual": measured[BOUNDARY],
+        "dynamics_defect": measured[OF_FLOW] if OF_FLOW in measured else measured[OF_SEGMENTS],
+        "stationarity": measured[STATIONARITY],
+        "hamiltonian_drift": measured.get(HAMILTONIAN),
+    }
 
 
 def boundary_residual(solution: Solution, flow: Flow) -> float:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import time
-from typing import Any
 
 import numpy as np
 
@@ -25,11 +24,6 @@ RESIDUAL, DEFECT, STATIONARY, DRIFT, COST = 1e-9, 1e-7, 1e-8, 1e-9, 1e-8
 
 DEARER = 1e-9
 """Relative margin by which a competitor may seem cheaper: its own error."""
-
-
-OF_FLOW, OF_SEGMENTS = "dynamics defect", "junction defect"
-"""Distances of the solution from the flow from the initial costates, or of segments between nodes from the next node.
-"""
 
 
 def certify(solution: Solution) -> Certificate | None:
@@ -89,13 +83,9 @@ def _judged(solution: Solution, deadline: float, seed: int) -> tuple[Certificate
                 second += [_cheaper(kind) for kind in others.kinds if math.isfinite(kind.margin)]
                 second += [Check(f"time was up before: {kind.value}", 1.0, 0.0) for kind in others.interrupted]
     verdict = Verdict.of(all(c.passed for c in first), all(c.passed for c in second))
-    measured: dict[str, Any] = {c.name: c.value for c in (*first, *second)}
     certificate = Certificate(
         verdict=verdict,
-        boundary_residual=measured["boundary residual"],
-        dynamics_defect=measured[OF_FLOW] if OF_FLOW in measured else measured[OF_SEGMENTS],
-        stationarity=measured["stationarity"],
-        hamiltonian_drift=measured.get("hamiltonian drift"),
+        **conditions.headlines(first),
         legendre_clebsch=conditions.legendre_clebsch(solution),
         conjugate_time=field.time,
         checks=(*first, *second),
@@ -116,27 +106,27 @@ def _first_order(solution: Solution, along: Segments | None) -> list[Check]:
     So it is where it misses, and its own rounding grows beyond what may be missed. Empty where neither is finite.
     """
     recomputed = flow(solution)
-    checks = _along(solution, recomputed, OF_FLOW) if recomputed else []
+    checks = _along(solution, recomputed, conditions.OF_FLOW) if recomputed else []
     if (checks and all(c.passed for c in checks)) or along is None or not along.growth * TOLERANCE > RESIDUAL:
         return checks
     reached = node_by_node(solution, along)
     if reached is None:
         return checks
     moved = Check("correction of the nodes", correction(solution, along, reached), DEFECT)
-    return [*_along(solution, reached, OF_SEGMENTS), moved]
+    return [*_along(solution, reached, conditions.OF_SEGMENTS), moved]
 
 
 def _along(solution: Solution, recomputed: Flow, defect: str) -> list[Check]:
     model = solution.instance.model
     checks = [
-        Check("boundary residual", conditions.boundary_residual(solution, recomputed), RESIDUAL),
+        Check(conditions.BOUNDARY, conditions.boundary_residual(solution, recomputed), RESIDUAL),
         Check(defect, conditions.dynamics_defect(solution, recomputed), DEFECT),
-        Check("stationarity", conditions.stationarity(solution), STATIONARY),
+        Check(conditions.STATIONARITY, conditions.stationarity(solution), STATIONARY),
         Check("cost", conditions.off_cost(solution, recomputed), COST),
         Check("outside the domain", float(not model.in_domain(recomputed.x)), 0.0),
     ]
     drift = conditions.hamiltonian_drift(solution, recomputed)
-    return checks if drift is None else [*checks, Check("hamiltonian drift", drift, DRIFT)]
+    return checks if drift is None else [*checks, Check(conditions.HAMILTONIAN, drift, DRIFT)]
 
 
 def _sufficient(solution: Solution, field: Conjugate, close: Neighbours) -> list[Check]:

@@ -59,13 +59,9 @@ def certify(solution: Solution) -> Certificate:
         comparison = compared(solution, limits)
         second = [*_sufficient(solution, again), *comparison.checks]
     verdict = Verdict.of(all(c.passed for c in first), all(c.passed for c in second))
-    measured = {c.name: c.value for c in (*first, *second)}
     return Certificate(
         verdict=verdict,
-        boundary_residual=measured["boundary residual"],
-        dynamics_defect=measured["dynamics defect"],
-        stationarity=measured["stationarity"],
-        hamiltonian_drift=measured.get("hamiltonian drift"),
+        **conditions.headlines(first),
         legendre_clebsch=_legendre(again),
         conjugate_time=None,
         checks=(*first, *second),
@@ -83,17 +79,17 @@ def _first_order(solution: Solution, again: Replay) -> list[Check]:
     instance, n = solution.instance, len(solution.instance.initial)
     flow = Flow(again.times, again.z[:n], again.z[n:], again.cost)
     checks = [
-        Check("boundary residual", conditions.boundary_residual(solution, flow), RESIDUAL),
-        Check("dynamics defect", conditions.dynamics_defect(solution, flow), DEFECT),
+        Check(conditions.BOUNDARY, conditions.boundary_residual(solution, flow), RESIDUAL),
+        Check(conditions.OF_FLOW, conditions.dynamics_defect(solution, flow), DEFECT),
         Check("switching times", _moved(solution, again), TIMES),
-        Check("stationarity", _excess(solution), STATIONARY),
+        Check(conditions.STATIONARITY, _excess(solution), STATIONARY),
         Check("cost", conditions.off_cost(solution, flow), COST),
         Check("outside the domain", float(not instance.model.in_domain(again.z[:n])), 0.0),
     ]
     if any(piece.field.singular is not None for piece in again.pieces):
         checks.append(Check("switching function on singular arcs", _off_singular(again), STATIONARY))
     if instance.model.spec.autonomous:
-        checks.append(Check("hamiltonian drift", _drift(solution, again), DRIFT))
+        checks.append(Check(conditions.HAMILTONIAN, _drift(solution, again), DRIFT))
     return checks
 
 
