@@ -103,5 +103,5 @@ def test_extremals_are_followed_round_a_fold() -> None:
     for point in (points[0], points[fold], points[-1]):
         outcome = newton(point.system, point.curve)
         assert outcome is not None
-        assert outcome.converged
+        assert outcome.solved
         assert outcome.curve.nodes == pytest.approx(point.curve.nodes, rel=1e-4, abs=1e-4)
