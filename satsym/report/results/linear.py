@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 from satsym.report.results.objects import number
 
 if TYPE_CHECKING:
-    from satsym.analysis.regulator.feedback import Design
-    from satsym.arrays import Array
     from satsym.analysis.linear.ranks import Reach
     from satsym.analysis.linear.routh import Routh
     from satsym.analysis.linear.spectrum import Eigenvalue
     from satsym.analysis.linear.structure import Analysis
+    from satsym.analysis.regulator.feedback import Design
+    from satsym.arrays import Array
 
 
 ANALYSIS = (

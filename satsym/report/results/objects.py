@@ -12,8 +12,8 @@ from satsym.spec import ProblemSpec, Variable
 from satsym.status import Status
 
 if TYPE_CHECKING:
-    from satsym.instance import Instance
     from satsym.arrays import Array
+    from satsym.instance import Instance
     from satsym.solution import Certificate, Flight, Solution
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from satsym.analysis.orbits.conic import TOLERANCE
-from satsym.report.results.linear import complex_object, eigenvalue_object, numbers, rows
 from satsym.report.display import length_unit, time_unit
+from satsym.report.results.linear import complex_object, eigenvalue_object, numbers, rows
 from satsym.report.results.objects import number
 
 if TYPE_CHECKING:
