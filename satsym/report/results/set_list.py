@@ -1,4 +1,4 @@
-"""The list in the ``result.json`` of a set, and whether files are what it says; see :mod:`satsym.report.results.sets`."""
+"""The list in the ``result.json`` of a set, and whether files are what it says; see :mod:`.sets`."""
 
 from __future__ import annotations
 
