@@ -209,8 +209,8 @@ def _motion(instance: Instance, x: Array) -> tuple[Array, Array]:
     none = np.zeros((len(instance.model.spec.controls), x.shape[1]))
     t = np.full(x.shape[1], instance.t0)
     with np.errstate(all="ignore"):
-        rates = np.asarray(instance.model.dynamics_batch(t, x, none, instance.parameters))
-        slopes = np.asarray(instance.model.jacobian_x_batch(t, x, none, instance.parameters))
+        rates = instance.model.dynamics_batch(t, x, none, instance.parameters)
+        slopes = instance.model.jacobian_x_batch(t, x, none, instance.parameters)
     return rates, slopes
 
 

@@ -82,6 +82,7 @@ def test_what_saturates_a_control_is_the_bound_that_it_exceeds(name: str) -> Non
         assert (active == (np.abs(moved).max(axis=0) > 0)).all()
     else:
         assert (active == moved).all()
+        assert not of.active(of.project(u)).any(), "a control on its bound exceeds nothing"
 
 
 def test_a_saturated_set_has_one_control_and_rest_is_that_of_least_magnitude() -> None:

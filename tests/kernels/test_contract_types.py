@@ -44,8 +44,7 @@ def test_mypy_sees_wrong_calls_of_kernels(tmp_path: Path) -> None:
     lines = ["import numpy as np", "from satsym import kernels", 'model = kernels.load("hill")', *WRONG.values()]
     right = "rates: tuple[float, ...] = model.dynamics(0.0, [1.0], (0.0,), ())"
     (tmp_path / "calls.py").write_text("\n".join([*lines, right, ""]))
-    found = subprocess.run(
-        [sys.executable, "-m", "mypy", "--no-error-summary", str(tmp_path / "calls.py")], capture_output=True, text=True
-    )
+    command = [sys.executable, "-m", "mypy", "--num-workers=0", "--no-error-summary", str(tmp_path / "calls.py")]
+    found = subprocess.run(command, capture_output=True, text=True)
     wrong = {int(line.split(":")[1]) for line in found.stdout.splitlines() if "error" in line}
     assert wrong == set(range(4, 4 + len(WRONG))), found.stdout

@@ -69,7 +69,7 @@ class Linearisation:
         """The motion at several times, shape (n, M)."""
         if not self.on_reference:
             return np.repeat(self.point[:, None], len(times), axis=1)
-        return np.asarray(self.model.reference_batch(times, self.parameters))
+        return self.model.reference_batch(times, self.parameters)
 
     @property
     def rates(self) -> Function:

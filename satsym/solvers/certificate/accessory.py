@@ -125,11 +125,11 @@ class _Linear:
         instance, n = solution.instance, len(z) // 2
         model, p, bounds = instance.model, instance.parameters, instance.control_set.arguments
         scale = unit_sizes(solution)
-        slopes = np.asarray(model.canonical_jacobian_batch(t, z[:n], z[n:], p, bounds)).transpose(2, 0, 1)
+        slopes = model.canonical_jacobian_batch(t, z[:n], z[n:], p, bounds).transpose(2, 0, 1)
         slopes = slopes * (scale / scale[:, None])
         law = _law_slopes(solution, t, z, scale)
-        u = np.asarray(model.control_law_batch(t, z[:n], z[n:], p, bounds))
-        by_control = np.asarray(model.jacobian_u_batch(t, z[:n], u, p)).transpose(2, 0, 1) / scale[:n, None]
+        u = model.control_law_batch(t, z[:n], z[n:], p, bounds)
+        by_control = model.jacobian_u_batch(t, z[:n], u, p).transpose(2, 0, 1) / scale[:n, None]
         if not (np.isfinite(slopes).all() and np.isfinite(law).all() and np.isfinite(by_control).all()):
             return None
         # The law follows the costates as -K B', with the inverse K of H_uu where no bound holds, and zero elsewhere.

@@ -364,7 +364,7 @@ def none_conceivable(solution: Solution) -> bool:
     u = instance.control_set.project(drawn)
     slopes = model.costate_rate_batch(t, x, u, solution.lam, p)
     ends = [model.terminal_gradient(float(t[-1]), tuple(row), p) for row in x.T[:20]]
-    least = np.asarray(model.running_cost_batch(t, x, solution.u, p)) <= model.running_cost_batch(t, x, u, p)
+    least = model.running_cost_batch(t, x, solution.u, p) <= model.running_cost_batch(t, x, u, p)
     return not np.any(slopes) and not np.any(ends) and bool(np.all(least))
 
 

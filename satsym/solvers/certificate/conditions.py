@@ -109,7 +109,7 @@ def hamiltonian_drift(solution: Solution, flow: Flow) -> float | None:
     if not model.spec.autonomous:
         return None
     u = model.control_law_batch(flow.times, flow.x, flow.lam, instance.parameters, instance.control_set.arguments)
-    h = np.asarray(model.hamiltonian_batch(flow.times, flow.x, u, flow.lam, instance.parameters))
+    h = model.hamiltonian_batch(flow.times, flow.x, u, flow.lam, instance.parameters)
     terms = np.abs(flow.lam * model.dynamics_batch(flow.times, flow.x, u, instance.parameters)).sum(axis=0).max()
     return float(np.abs(h - h[0]).max() / max(terms, np.abs(h).max(), 1e-300))
 

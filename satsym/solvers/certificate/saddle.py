@@ -110,7 +110,7 @@ def _natural(solution: Solution, shape: Array) -> float:
     """The size of a control that moves the state by its own size over the duration."""
     instance, lasting = solution.instance, float(solution.times[-1] - solution.times[0])
     u, x, t = (np.asarray(row)[..., :1] for row in (solution.u, solution.x, solution.times))
-    by_control = np.abs(np.asarray(instance.model.jacobian_u_batch(t, x, u, instance.parameters))).max(axis=(1, 2))
+    by_control = np.abs(instance.model.jacobian_u_batch(t, x, u, instance.parameters)).max(axis=(1, 2))
     size = unit_sizes(solution)[: len(solution.x)]
     response = float((by_control / size).max()) * lasting
     return 1.0 / response if response > 0.0 else float(np.abs(shape).max())

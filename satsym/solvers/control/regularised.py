@@ -68,8 +68,8 @@ def smoothed_law(instance: Instance, control_set: ControlSet, t: Array, x: Array
         Times (N,), states and costates, (n, N).
     """
     model, p = instance.model, instance.parameters
-    sigma = np.asarray(model.switching_function_batch(t, x, lam, p))
-    weight = control_set.share * np.asarray(model.magnitude_weight_batch(t, x, p))
+    sigma = model.switching_function_batch(t, x, lam, p)
+    weight = control_set.share * model.magnitude_weight_batch(t, x, p)
     beyond = sigma - np.minimum(np.maximum(sigma, -weight), weight)
     return control_set.project(-beyond / control_set.smoothing)
 
@@ -77,6 +77,6 @@ def smoothed_law(instance: Instance, control_set: ControlSet, t: Array, x: Array
 def smoothed_cost(instance: Instance, control_set: ControlSet, t: Array, x: Array, u: Array) -> Array:
     """The regularised problem's running cost, shape (N,)."""
     model, p, smoothing, share = instance.model, instance.parameters, control_set.smoothing, control_set.share
-    weight = np.asarray(model.magnitude_weight_batch(t, x, p))
-    exact = np.asarray(model.running_cost_batch(t, x, u, p))
+    weight = model.magnitude_weight_batch(t, x, p)
+    exact = model.running_cost_batch(t, x, u, p)
     return np.asarray(exact + smoothing / 2.0 * (u * u).sum(axis=0) - (1.0 - share) * (weight * np.abs(u)).sum(axis=0))

@@ -126,10 +126,10 @@ class Field:
         u = np.repeat(np.array([self._with(0.0), self._with(1.0)]).T, count, axis=1)
         times, both = np.concatenate([t, t]), np.concatenate([z, z], axis=1)
         x, lam = both[: self.n], both[self.n :]
-        f = np.asarray(self.model.dynamics_batch(times, x, u, self.p))
-        g = np.asarray(self.model.costate_rate_batch(times, x, u, lam, self.p))
+        f = self.model.dynamics_batch(times, x, u, self.p)
+        g = self.model.costate_rate_batch(times, x, u, lam, self.p)
         ahead = (times + 1j * NUDGE, x + 1j * NUDGE * f, u, lam + 1j * NUDGE * g)
-        found = np.asarray(self.model.switching_rate_batch(*ahead, self.p))[self.singular].imag / NUDGE
+        found = self.model.switching_rate_batch(*ahead, self.p)[self.singular].imag / NUDGE
         return found[:count], found[count:] - found[:count]
 
     def _rate_slopes(self, t: float, z: list[float], u: tuple[float, ...], control: int) -> Array:
@@ -170,8 +170,8 @@ class Field:
         f = np.empty((2 * n, 3), dtype=complex)
         self.model.dynamics_batch(times, x, controls, self.p, out=f[:n])
         self.model.costate_rate_batch(times, x, controls, lam, self.p, out=f[n:])
-        slopes = np.asarray(self.model.extremal_jacobian_batch(times, x, controls, lam, self.p))
-        column = np.asarray(self.model.jacobian_u_batch(times, x, controls, self.p))[:, self.singular, 0]
+        slopes = self.model.extremal_jacobian_batch(times, x, controls, lam, self.p)
+        column = self.model.jacobian_u_batch(times, x, controls, self.p)[:, self.singular, 0]
         by_control = (slopes[:, :, 1] - slopes[:, :, 2]) / 2.0
         curvature = np.concatenate([-by_control[n:], by_control[:n]])
         gradient = np.concatenate([(f[n:, 2] - f[n:, 1]) / 2.0, column])
@@ -187,6 +187,6 @@ class Field:
         x, lam, times = z[: self.n].astype(complex), z[self.n :].astype(complex), t + 1j * NUDGE
         unit = np.zeros((len(self.saturated), len(t)))
         unit[self.singular] = 1.0
-        there, back = (np.asarray(self.model.costate_rate_batch(times, x, k * unit, lam, self.p)) for k in (1.0, -1.0))
+        there, back = (self.model.costate_rate_batch(times, x, k * unit, lam, self.p) for k in (1.0, -1.0))
         column = np.broadcast_to(self.model.jacobian_u_batch(times, x, unit, self.p), (self.n, len(unit), len(t)))
         return np.concatenate([(back - there).imag / 2.0, column[:, self.singular].imag]) / NUDGE

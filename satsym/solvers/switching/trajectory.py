@@ -183,8 +183,8 @@ def switching_functions(arc: Arc, times: Array, z: Array) -> tuple[Array, Array]
     """Switching functions and weights of |u| along an arc, shapes (m, N)."""
     field = arc.field
     x, lam = z[: field.n], z[field.n :]
-    sigma = np.asarray(field.model.switching_function_batch(times, x, lam, field.p))
-    weight = np.asarray(field.model.magnitude_weight_batch(times, x, field.p))
+    sigma = field.model.switching_function_batch(times, x, lam, field.p)
+    weight = field.model.magnitude_weight_batch(times, x, field.p)
     return sigma, np.broadcast_to(weight, sigma.shape)
 
 

@@ -130,8 +130,8 @@ def _excess(solution: Solution) -> float:
     """By how much H exceeds its minimum over the box at most, relative to its terms, or a control its box."""
     instance, model = solution.instance, solution.instance.model
     p, u = instance.parameters, solution.u
-    sigma = np.asarray(model.switching_function_batch(solution.times, solution.x, solution.lam, p))
-    weight = np.asarray(model.magnitude_weight_batch(solution.times, solution.x, p))
+    sigma = model.switching_function_batch(solution.times, solution.x, solution.lam, p)
+    weight = model.magnitude_weight_batch(solution.times, solution.x, p)
     low, high = instance.control_set.box
     rest = np.minimum(np.maximum(0.0, low), high)
     least = np.min([sigma * v + weight * np.abs(v) for v in np.broadcast_arrays(low, high, rest, u)[:3]], axis=0)
@@ -164,7 +164,7 @@ def _drift(solution: Solution, again: Replay) -> float:
     """Largest change of H along the replay, relative to the terms it consists of."""
     instance, n = solution.instance, len(solution.instance.initial)
     x, lam = again.z[:n], again.z[n:]
-    h = np.asarray(instance.model.hamiltonian_batch(again.times, x, again.u, lam, instance.parameters))
+    h = instance.model.hamiltonian_batch(again.times, x, again.u, lam, instance.parameters)
     terms = _terms(instance, again.times, x, lam, again.u)
     return float(np.abs(h - h[0]).max() / max(terms, float(np.abs(h).max()), 1e-300))
 
@@ -218,7 +218,7 @@ def _along(again: Replay) -> tuple[list[float], list[tuple[Array, Array]]]:
     """Sizes of the switching functions, and their distances from the values at which they would switch."""
     pieces = again.pieces
     n, model, p = pieces[0].field.n, pieces[0].field.model, pieces[0].field.p
-    sigma = np.asarray(model.switching_function_batch(again.times, again.z[:n], again.z[n:], p))
+    sigma = model.switching_function_batch(again.times, again.z[:n], again.z[n:], p)
     weight = np.broadcast_to(model.magnitude_weight_batch(again.times, again.z[:n], p), sigma.shape)
     sizes = [max(float((np.abs(s) + w).max()), 1e-300) for s, w in zip(sigma, weight, strict=True)]
     singular = np.zeros(sigma.shape, bool)

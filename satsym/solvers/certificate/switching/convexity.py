@@ -31,12 +31,12 @@ def convex(solution: Solution) -> bool:
     size = np.abs(solution.x).max(axis=1, keepdims=True) + 1e-300
     x = solution.x[:, nodes] + size * rng.uniform(-2.0, 2.0, (n, DRAWN))
     u = rng.uniform(*instance.control_set.box, (len(solution.u), DRAWN))
-    hessian = -np.asarray(model.extremal_jacobian_batch(t, x, u, lam, p))[n:, :n].transpose(2, 0, 1)
+    hessian = -model.extremal_jacobian_batch(t, x, u, lam, p)[n:, :n].transpose(2, 0, 1)
     scaled = hessian * (size * size.T)
     least = float(np.linalg.eigvalsh(scaled + scaled.transpose(0, 2, 1)).min())
     # What a control does to the rates of the costates is the mixed derivative; a weight of |u| must not vary either.
-    still = np.asarray(model.costate_rate_batch(t, x, np.zeros_like(u), lam, p))
-    moved = np.asarray(model.costate_rate_batch(t, x, u, lam, p))
+    still = model.costate_rate_batch(t, x, np.zeros_like(u), lam, p)
+    moved = model.costate_rate_batch(t, x, u, lam, p)
     largest = max(float(np.abs(scaled).max()), float(np.abs(still * size).max()), 1e-300)
     mixed = float(np.abs((moved - still) * size).max())
     return least >= -ROUNDING * largest and mixed <= ROUNDING * largest and _convex_end(solution, x, size)

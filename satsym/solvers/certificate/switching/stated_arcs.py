@@ -66,7 +66,7 @@ def undecided(solution: Solution, control: int) -> float:
     """The share of nodes at which a switching function is at the very value at which the control switches."""
     instance = solution.instance
     model, p = instance.model, instance.parameters
-    sigma = np.asarray(model.switching_function_batch(solution.times, solution.x, solution.lam, p))
+    sigma = model.switching_function_batch(solution.times, solution.x, solution.lam, p)
     weight = np.broadcast_to(model.magnitude_weight_batch(solution.times, solution.x, p), sigma.shape)
     margin, sizes = np.abs(np.abs(sigma) - weight), (np.abs(sigma) + weight).max(axis=1)
     return float((margin[control] <= UNDECIDED * deciding(instance, sizes)[control]).mean())

@@ -174,7 +174,7 @@ def _normalised(problem: TwoPoint, curve: Curve) -> float:
     instance, n = problem.instance, problem.states
     tau = np.linspace(0.0, 1.0, 17)
     z, t, p = curve(tau) * problem.scale.both, instance.t0 + problem.duration * tau, instance.parameters
-    sigma = np.asarray(instance.model.switching_function_batch(t, z[:n], z[n:], p))
+    sigma = instance.model.switching_function_batch(t, z[:n], z[n:], p)
     u = np.where(sigma > 0.0, *instance.control_set.box)
     growth = (z[n:] * instance.model.dynamics_batch(t, z[:n], u, p)).sum(axis=0)
     cost = np.broadcast_to(instance.model.running_cost_batch(t, z[:n], u, p), growth.shape)

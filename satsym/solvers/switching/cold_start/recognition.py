@@ -49,8 +49,8 @@ def sample(problem: TwoPoint, path: Path) -> Sample:
     scaled = path(tau)
     z, n, instance = scaled * problem.scale.both, problem.states, problem.instance
     times = instance.t0 + problem.elapsed(path.theta) * tau
-    sigma = np.asarray(instance.model.switching_function_batch(times, z[:n], z[n:], instance.parameters))
-    weight = np.asarray(instance.model.magnitude_weight_batch(times, z[:n], instance.parameters))
+    sigma = instance.model.switching_function_batch(times, z[:n], z[n:], instance.parameters)
+    weight = instance.model.magnitude_weight_batch(times, z[:n], instance.parameters)
     u = problem.control(tau, scaled, path.theta)
     return Sample(times, z, u, sigma, np.broadcast_to(weight, sigma.shape))
 

@@ -51,6 +51,6 @@ def _motion(instance: Instance, tf: float, held: tuple[float, ...]) -> Sample | 
     lam, _ = model.backward(times, last, x, x_mid, u, u[:, 1:], p)
     if not np.isfinite(lam).all():
         return None
-    sigma = np.asarray(model.switching_function_batch(times, x, lam, p))
-    weight = np.broadcast_to(np.asarray(model.magnitude_weight_batch(times, x, p)), sigma.shape)
+    sigma = model.switching_function_batch(times, x, lam, p)
+    weight = np.broadcast_to(model.magnitude_weight_batch(times, x, p), sigma.shape)
     return Sample(times, np.concatenate([x, lam]), u, sigma, weight)

@@ -287,7 +287,7 @@ def _simulated(instance: Instance, plans: Plans, steps: _Steps) -> tuple[Array, 
         u = np.where(arc == LOWER, low, np.where(arc == UPPER, high, rest))
 
         def rates(t: Array, y: Array, u: Array = u) -> Array:
-            cost = np.broadcast_to(np.asarray(model.running_cost_batch(t, y[:n], u, p)), t.shape)
+            cost = np.broadcast_to(model.running_cost_batch(t, y[:n], u, p), t.shape)
             return np.concatenate([model.dynamics_batch(t, y[:n], u, p), cost[None]])
 
         y = steps.along(rates, t, y, length)
@@ -295,5 +295,5 @@ def _simulated(instance: Instance, plans: Plans, steps: _Steps) -> tuple[Array, 
         t = t + length
     x, cost = y[:n], y[n]
     if model.spec.has_terminal_cost:
-        cost = cost + np.asarray(model.terminal_cost_batch(t, x, p))
+        cost = cost + model.terminal_cost_batch(t, x, p)
     return x, cost

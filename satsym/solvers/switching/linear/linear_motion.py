@@ -96,8 +96,8 @@ def linear_motion(instance: Instance) -> LinearMotion | None:
     x = sizes * rng.normal(size=(n, DRAWN)) * 10.0 ** rng.uniform(-1.0, 2.0, DRAWN)
     low, high = instance.control_set.box
     u, t = rng.uniform(low, high, (m, DRAWN)), np.full(DRAWN, instance.t0)
-    by_x = np.broadcast_to(np.asarray(model.jacobian_x_batch(t, x, u, p)), (n, n, DRAWN))
-    by_u = np.broadcast_to(np.asarray(model.jacobian_u_batch(t, x, u, p)), (n, m, DRAWN))
+    by_x = np.broadcast_to(model.jacobian_x_batch(t, x, u, p), (n, n, DRAWN))
+    by_u = np.broadcast_to(model.jacobian_u_batch(t, x, u, p), (n, m, DRAWN))
     if not (_constant(by_x) and _constant(by_u)):
         return None
     drift = np.array(model.dynamics(instance.t0, (0.0,) * n, (0.0,) * m, p))
@@ -111,9 +111,9 @@ def _cost(instance: Instance, t: Array, x: Array, u: Array) -> tuple[float, Arra
     if not model.spec.switching:
         return float("nan"), np.zeros(len(u)), np.zeros(len(u))
     none = np.zeros_like(x)
-    slope = np.broadcast_to(np.asarray(model.switching_function_batch(t, x, none, p)), u.shape)
-    weight = np.broadcast_to(np.asarray(model.magnitude_weight_batch(t, x, p)), u.shape)
-    idle = np.broadcast_to(np.asarray(model.running_cost_batch(t, x, np.zeros_like(u), p)), t.shape)
+    slope = np.broadcast_to(model.switching_function_batch(t, x, none, p), u.shape)
+    weight = np.broadcast_to(model.magnitude_weight_batch(t, x, p), u.shape)
+    idle = np.broadcast_to(model.running_cost_batch(t, x, np.zeros_like(u), p), t.shape)
     plain = _constant(slope) and _constant(weight) and _constant(idle) and not model.spec.has_terminal_cost
     return (float(idle[0]) if plain else float("nan")), slope[:, 0].copy(), weight[:, 0].copy()
 
