@@ -8,11 +8,10 @@ import sympy as sp
 
 from satsym.codegen import switching
 from satsym.spec import Variable, names
-from satsym.symbolic.derivation import Derivation
+from satsym.symbolic.derivation import Derivation, resolved
 from satsym.symbolic.kepler.attraction import inertial_state, strength_of
-from satsym.symbolic.kinds.gyrostat import resolved
 from satsym.symbolic.linear.notation import matrix_symbols
-from satsym.symbolic.model import Linearised, symbols_of, t
+from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.notation import costate_of, given, multipliers, on_reference, target
 from satsym.symbolic.principle.control_sets import bounds
 from satsym.symbolic.switching.notation import COMPANION
@@ -93,7 +92,7 @@ def symbols(derivation: Derivation) -> Symbols:
         p=symbols_of(model.parameters),
         bounds=symbols_of(_bounds(derivation)),
         final=tuple(kind(s) for kind in (given, on_reference, target) for s in states) if problem else (),
-        original=symbols_of(model.of.states) if isinstance(model, Linearised) else (),
+        original=symbols_of(model.replaced_states()),
         gain=tuple(matrix_symbols("K", m, n)),
         riccati=tuple(matrix_symbols("P", n, n)),
         state_weight=tuple(matrix_symbols("Q", n, n)),
@@ -116,13 +115,12 @@ def functions(derivation: Derivation) -> list[Function]:
     if "conserved" in derivation:
         summary = "What the motion without control keeps constant."
         found.append(_vector("invariants", summary, "t x p", derivation.rhs("conserved")))
-    position = getattr(derivation.model, "position", None)
-    if position is not None:
-        found.append(_vector("position", "Inertial components of the position vector.", "t x p", position))
-    strength = strength_of(derivation)
-    if strength is not None:
+    particle, strength = derivation.model.particle(), strength_of(derivation)
+    if particle:
+        found.append(_vector("position", "Inertial components of the position vector.", "t x p", particle.position))
+    if particle and strength is not None:
         summary = "Position and velocity along inertial axes, three numbers each, and the gravitational parameter."
-        found.append(_vector("inertial_state", summary, "t x p", inertial_state(derivation.model, strength)))
+        found.append(_vector("inertial_state", summary, "t x p", inertial_state(particle, strength)))
     if "quantities" in derivation:
         known = resolved(derivation.step("quantities").equations)
         summary = "What is derived along the motion besides."

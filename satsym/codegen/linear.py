@@ -14,7 +14,6 @@ from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.linear.matrices import analysable, coefficients_of, system_of
 from satsym.symbolic.linear.notation import matrix_symbols
 from satsym.symbolic.linear.regulator import MOST_INPUTS, MOST_STATES, inverse, riccati_operator
-from satsym.symbolic.model import Linearised
 
 
 def linear_functions(derivation: Derivation) -> list[Function]:
@@ -23,7 +22,7 @@ def linear_functions(derivation: Derivation) -> list[Function]:
     if kind is None:
         return []
     found = _matrices(derivation)
-    if isinstance(derivation.model, Linearised):
+    if "deviations" in derivation:
         found += _deviations(derivation)
     return found + (list(_constant(derivation)) if kind == "constant" and analysable(derivation) else [])
 

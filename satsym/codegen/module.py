@@ -57,7 +57,7 @@ def spec(derivation: Derivation, source: str) -> ProblemSpec:
     """What the module says of itself."""
     model, problem = derivation.model, derivation.problem
     conserved = derivation.step("conserved").equations if "conserved" in derivation else ()
-    position = getattr(model, "position", ())
+    particle = model.particle()
     return ProblemSpec(
         name=derivation.name,
         title=derivation.title,
@@ -72,7 +72,7 @@ def spec(derivation: Derivation, source: str) -> ProblemSpec:
         autonomous=not any(e.has(t) for e in derivation.rhs("first_order")),
         invariants=tuple(Variable(e.name, derivation.notation[e.name]) for e in conserved),
         multipliers=tuple(Variable(v.name, derivation.notation[v.name]) for v in symbols(derivation).nu),
-        position=tuple(Variable(axis, axis) for axis in ("x", "y", "z")[: len(position)]),
+        position=tuple(Variable(axis, axis) for axis in ("x", "y", "z")[: len(particle.position) if particle else 0]),
         outputs=tuple(o.variable for o in model.outputs) if (linear := linear_functions(derivation)) else (),
         linear=tuple(f.name for f in linear),
         keplerian=strength_of(derivation) is not None,

@@ -2,8 +2,15 @@
 
 from satsym.spec import Variable
 from satsym.symbolic.derivation import Check, Conclusion, Derivation, DerivationError, Equation, Step
-from satsym.symbolic.kinds.rotation_models import COMMAND, ClosedLoop, Gyrostat, Motor, Reduced, Scaled, s
-from satsym.symbolic.model import Definition, FirstOrder, Linearised, Model, Newton, Output, Problem, symbols_of, t
+from satsym.symbolic.kinds.closed_loop.model import ClosedLoop
+from satsym.symbolic.kinds.closed_loop.names import COMMAND, s
+from satsym.symbolic.kinds.first_order import FirstOrder
+from satsym.symbolic.kinds.gyrostat import Gyrostat, Motor
+from satsym.symbolic.kinds.linearised import Linearised
+from satsym.symbolic.kinds.newton import Newton
+from satsym.symbolic.kinds.reduced import Reduced
+from satsym.symbolic.kinds.scaled import Scaled
+from satsym.symbolic.model import Definition, Model, Output, Problem, symbols_of, t
 from satsym.symbolic.notation import rate_of
 from satsym.symbolic.pipeline import derive
 

@@ -20,6 +20,11 @@ def definitions_of(model: Model) -> dict[sp.Symbol, sp.Expr]:
     return {symbols_of((d.variable,))[0]: d.value for d in model.definitions}
 
 
+def constants_of(model: Model) -> set[sp.Symbol]:
+    """Time, parameters and named constants: what does not move."""
+    return {t, *symbols_of(model.parameters), *definitions_of(model)}
+
+
 def gradient(expression: sp.Expr, symbols: Iterable[sp.Symbol]) -> list[sp.Expr]:
     """Partial derivatives, in order."""
     return [sp.diff(expression, s) for s in symbols]

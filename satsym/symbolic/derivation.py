@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TypeAlias
 
 import sympy as sp
 
@@ -173,5 +172,9 @@ class Derivation:
         return replace(self, steps=(*self.steps, step))
 
 
-StepFunction: TypeAlias = Callable[[Derivation], Step]
-"""A pure function from what has been derived so far to the next step."""
+def resolved(equations: Sequence[Equation]) -> dict[sp.Symbol, sp.Expr]:
+    """Quantities in terms of states, controls and parameters alone: each may use those before it."""
+    found: dict[sp.Symbol, sp.Expr] = {}
+    for equation in equations:
+        found[equation.lhs] = equation.rhs.xreplace(found)
+    return found

@@ -6,8 +6,7 @@ so that its time is a plain number, too.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, TypeAlias
+from typing import Any
 
 import sympy as sp
 
@@ -25,18 +24,14 @@ from satsym.symbolic.dimension_algebra import (
     product,
     written,
 )
-from satsym.symbolic.kinds import rotation_dimensions
-from satsym.symbolic.kinds.rotation_models import Scaled
 from satsym.symbolic.linear import dimensions as linear_dimensions
-from satsym.symbolic.model import FirstOrder, Newton, Problem, symbols_of, variables_of
+from satsym.symbolic.model import Problem, Requirement, symbols_of, variables_of
 from satsym.symbolic.principle import control_sets
+from satsym.symbolic.principle import notation as pn
 from satsym.symbolic.switching import dimensions as switching_dimensions
 
 AGREEMENT = "dimensions agree"
 """The claim of the check that every step gets."""
-
-Requirement: TypeAlias = Callable[..., Dimension | None]
-"""What is meant, an expression, and the dimension it needs (if that is known) -> the dimension it has."""
 
 
 def declared(derivation: Derivation) -> Known:
@@ -72,16 +67,10 @@ def declared(derivation: Derivation) -> Known:
                 known[f"{letter}_{row.name}_{column.name}"] = over(known[n.rate_of(row).name], known[column.name])
     for control in symbols_of(model.controls):
         known[n.optimal(control).name] = known[n.unconstrained(control).name] = known[control.name]
-    if isinstance(model, FirstOrder):
-        for state, rate in model.rates.items():
-            require(f"the rate of {state.name}", rate, known[n.rate_of(state).name])
-    if isinstance(model, Newton):
-        _enter_mechanics(known, model, require)
+    model.enter_dimensions(known, require)
     linear_dimensions.declare(known, model, require)
-    rotation_dimensions.declare(known, model, require)
     if derivation.problem:
         _enter_cost(known, derivation.problem, require)
-        rotation_dimensions.of_effort(known, model)
     else:
         linear_dimensions.declare_results(known, model)
     return known
@@ -119,31 +108,6 @@ def agreement(known: Known, step: Step) -> Check:
     return Check(AGREEMENT, float(violations), 0.0)
 
 
-def _enter_mechanics(known: dict[str, Dimension | None], model: Newton, require: Requirement) -> None:
-    second = known[n.TIME.name]
-    for q, q_dot in model.coordinates.items():
-        require(f"{q_dot.name}, the rate of {q.name},", q_dot, known[n.rate_of(q).name])
-        known[n.acceleration_of(q).name] = over(known[q_dot.name], second)
-    for name, direction in model.directions.items():
-        for component in direction:
-            require(f"the direction {name}", component, PLAIN)
-        known[name], known[f"d_{name}"] = PLAIN, over(PLAIN, second)
-    place = None
-    for component in model.position:
-        place = require("the position", component, place)
-    velocity = over(place, second)
-    acceleration = over(velocity, second)
-    known[n.DISTANCE.name], known[n.OUTER.name] = place, product((place, place))
-    known[n.SPEED.name], known[n.ECCENTRICITY_ALONG.name] = velocity, place
-    known[n.ALONG.name] = known[n.MOMENTUM.name] = product((place, velocity))
-    known.update(dict.fromkeys((s.name for s in (n.IDENTITY, n.ECCENTRICITY, n.ECCENTRICITY_VECTOR)), PLAIN))
-    vectors = (n.POSITION, n.VELOCITY, n.ACCELERATION, n.FORCE)
-    known.update(zip((v.name for v in vectors), (place, velocity, acceleration, acceleration), strict=True))
-    for name, force in model.forces.items():
-        for component in force:
-            require(f"the force {name!r}, per unit mass,", component, acceleration)
-
-
 def _enter_cost(known: dict[str, Dimension | None], problem: Problem, require: Requirement) -> None:
     second = known[n.TIME.name]
     running, final = (
@@ -162,6 +126,12 @@ def _enter_cost(known: dict[str, Dimension | None], problem: Problem, require: R
         known[n.given(state).name] = known[n.on_reference(state).name] = PLAIN
     for multiplier, constraint in zip(n.multipliers(problem), problem.terminal_constraints, strict=True):
         known[multiplier.name] = over(total, require("a terminal constraint", constraint))
+    known[pn.REDUCED_COST.name] = running
+    known.update({s.name: total for s in (pn.POTENTIAL, pn.LEAST_COST, pn.COST_FROM_REST)})
+    for state in symbols_of(problem.model.states):
+        known[pn.reduced_costate_of(state).name] = known[n.costate_of(state).name]
+    for control in symbols_of(problem.model.controls):
+        known[n.answer_of(control).name] = known[pn.peak_of(control).name] = known[control.name]
     switching_dimensions.declare(known, problem, running)
     for a in problem.model.controls:
         for b in problem.model.controls:
@@ -178,7 +148,7 @@ def _of_variables(derivation: Derivation) -> dict[str, Dimension | None]:
         known: dict[str, Dimension | None] = {v.symbol: of_unit(v.unit) for v in variables}
     except BadInput as error:
         raise DerivationError(f"{derivation.name}: {error}") from None
-    second = {"[time]": sp.Integer(1)} if any(known.values()) and not isinstance(model, Scaled) else PLAIN
+    second = {"[time]": sp.Integer(1)} if any(known.values()) and not model.plain_time else PLAIN
     return known | {n.TIME.name: second, n.FINAL_TIME.name: second}
 
 

@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias
 
 import sympy as sp
 
 from satsym.spec import ControlSetKind, Variable
+
+if TYPE_CHECKING:
+    from satsym.symbolic.derivation import Derivation, Step
+    from satsym.symbolic.dimension_algebra import Dimension
+
+MaybeStep: TypeAlias = "Callable[[Derivation], Step | None]"
+"""A pure function from what has been derived to the next step; ``None`` where it does not apply to the model."""
+
+Requirement: TypeAlias = "Callable[..., Dimension | None]"
+"""What is meant, an expression, and the dimension it needs (if that is known) -> the dimension it has."""
 
 Convention = Literal["minimum", "maximum"]
 """Of Pontryagin's principle: H = lambda' f + L is minimised, or H = lambda' f - L is maximised."""
@@ -36,6 +46,45 @@ class Output:
 
     variable: Variable
     value: sp.Expr
+
+
+@dataclass(frozen=True)
+class Line:
+    """One equation of a statement.
+
+    Attributes
+    ----------
+    thing
+        What steps that follow from it call it.
+    left
+        A symbol, or LaTeX.
+    right
+        An expression, or a vector as a column.
+    address
+        Its name among the declared things; empty for the number within `thing`.
+    index
+        A word at the foot of `left`.
+    """
+
+    thing: str
+    left: sp.Symbol | str
+    right: sp.Expr | sp.Matrix
+    address: str = ""
+    index: str = ""
+
+    @property
+    def components(self) -> tuple[sp.Expr, ...]:
+        """Those of a vector."""
+        return tuple(self.right) if isinstance(self.right, sp.MatrixBase) else ()
+
+
+@dataclass(frozen=True)
+class Paragraph:
+    """A sentence of a statement, by its key, the model it names, and the equations that it leads to."""
+
+    sentence: str
+    of: Model | None = None
+    lines: tuple[Line, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,22 +116,104 @@ class Model:
     reference: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     outputs: tuple[Output, ...] = ()
 
-    def brings(self) -> tuple[Variable, ...]:
-        """Variables that a kind of model has besides."""
+    plain_time: ClassVar[bool] = False
+    """Whether time is a plain number even though other variables have units."""
+
+    # What a kind of model says of itself; each has a default, so that a kind states only what it has.
+
+    def steps(self) -> tuple[MaybeStep, ...]:
+        """What is derived, in order, up to a linearisation; ``first_order`` and ``linearisation`` must be among it."""
         return ()
+
+    def motion_steps(self) -> tuple[MaybeStep, ...]:
+        """As far as the first-order form: what models need that are derived from this motion. None: no other can be."""
+        return ()
+
+    def origin(self) -> Model | None:
+        """The model from whose motion this one is derived."""
+        return None
+
+    def particle(self) -> Particle | None:
+        """The same model, where it states how a particle moves."""
+        return None
+
+    def brings(self) -> tuple[Variable, ...]:
+        """Variables besides the declared ones; such as share a name with one of these are meant to be the same."""
+        return ()
+
+    def replaced_states(self) -> tuple[Variable, ...]:
+        """States of another motion that this model's stand in place of, under names of their own."""
+        return ()
+
+    def replaced_controls(self) -> tuple[Variable, ...]:
+        """Likewise for controls."""
+        return ()
+
+    def measured(self) -> tuple[Variable, ...]:
+        """The moving variables that outputs are functions of."""
+        return (*self.states, *self.controls)
+
+    def carried(self) -> tuple[Output, ...]:
+        """Quantities derived along the motion, which a running cost may name."""
+        origin = self.origin()
+        return origin.carried() if origin else ()
+
+    def misfits(self) -> Iterable[str]:
+        """Complaints about declarations that do not fit together; the first one is raised."""
+        return ()
+
+    def stated(self) -> Iterable[tuple[str, Iterable[Any], set[sp.Symbol]]]:
+        """What was stated: a name for it, its expressions, and the symbols that these may have."""
+        return ()
+
+    def motion_stated(self) -> Iterable[Any]:
+        """The expressions that state the motion, by its own states and controls."""
+        return ()
+
+    def names(self, problem: Problem | None) -> dict[str, str]:
+        """Name -> LaTeX of all that the steps of this kind name."""
+        return {}
+
+    def accelerations(self) -> tuple[str, ...]:
+        """Names of second derivatives, which are written before the controls."""
+        return ()
+
+    def unit_vectors(self) -> tuple[str, ...]:
+        """Names of unit vectors, which are written last in a product."""
+        return ()
+
+    def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
+        """Enter the dimensions of what the steps name, and refuse what is stated with others than it needs.
+
+        Parameters
+        ----------
+        known
+            Name of a symbol -> its dimension; variables, time, rates and initial values are in it.
+        require
+            What is meant, an expression, and the dimension it needs (if that is known) -> the dimension it has.
+        """
+
+    def statement(self) -> tuple[Paragraph, ...]:
+        """What a report states of the motion before anything is derived, besides variables, constants and outputs."""
+        return ()
+
+    def declared(self) -> dict[str, sp.Expr | sp.Matrix]:
+        """What the address ``model:declared.name`` names, besides constants and costs; vectors as columns."""
+        return {}
+
+    def sentences(self) -> Mapping[str, Mapping[str, Mapping[str, str]]]:
+        """Language -> table -> key -> text, for what this kind says and the texts of reports do not have."""
+        return {}
 
 
 @dataclass(frozen=True, kw_only=True)
-class Newton(Model):
-    """Motion of a point by Newton's law, all forces per unit mass.
+class Particle(Model):
+    """How a particle moves, all forces per unit mass.
 
     Parameters
     ----------
     coordinates
         Each generalised coordinate with the state that is its rate of change.
-    directions
-        Name -> unit vector (inertial components) along which vectors are resolved; the name is that of a
-        symbol such as ``e_r``. They must be orthonormal, which is checked.
     position
         Position vector, inertial components, in terms of the coordinates.
     forces
@@ -90,49 +221,12 @@ class Newton(Model):
     """
 
     coordinates: Mapping[sp.Symbol, sp.Symbol]
-    directions: Mapping[str, sp.Matrix]
     position: sp.Matrix
     forces: Mapping[str, sp.Matrix]
 
-
-@dataclass(frozen=True, kw_only=True)
-class FirstOrder(Model):
-    """Equations of motion given in first-order form.
-
-    Parameters
-    ----------
-    rates
-        State -> its rate of change f(t, x, u, p).
-    """
-
-    rates: Mapping[sp.Symbol, sp.Expr]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Linearised(Model):
-    """Small deviations from a motion, to first order: x' = A x + B u, y = C x + D u.
-
-    The states are the deviations, stated as a change of variables, and so are the controls that the motion needs.
-    Everything else is declared as for any model; parameters and definitions are those of the motion, as far as it
-    needs them. The outputs are functions of the states and controls of the motion, and stand for their deviations
-    from what they are along it.
-
-    Parameters
-    ----------
-    of
-        The model whose motion this is.
-    about
-        Each of its states, and each control that is not zero, along the motion: functions of time and parameters.
-        They must solve its equations, which is proved.
-    deviations
-        Each state of this model, as a function of time and of the states of ``of``; and each control that is not one
-        of ``of``, as a function of these and the controls. They vanish along the motion, and there must be as many as
-        they replace.
-    """
-
-    of: Model
-    about: Mapping[sp.Symbol, sp.Expr]
-    deviations: Mapping[sp.Symbol, sp.Expr]
+    def particle(self) -> Particle:
+        """Itself."""
+        return self
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -173,12 +267,10 @@ class Problem:
 
 
 def variables_of(model: Model) -> tuple[Variable, ...]:
-    """Everything that a model declares, and what the motion has that it linearises, each once."""
+    """Everything that a model declares, replaces and brings, each once."""
     found = [*model.states, *model.controls, *model.parameters, *(d.variable for d in model.definitions)]
     found += [o.variable for o in model.outputs]
-    if isinstance(model, Linearised):
-        kept = {v.symbol for v in model.controls}
-        found += [*model.of.states, *(v for v in model.of.controls if v.symbol not in kept)]
+    found += [*model.replaced_states(), *model.replaced_controls()]
     kept = {v.symbol for v in found}
     found += [v for v in model.brings() if v.symbol not in kept]
     return tuple(found)

@@ -8,10 +8,10 @@ import sympy as sp
 
 from satsym.spec import Variable
 from satsym.symbolic.derivation import Derivation, DerivationError
-from satsym.symbolic.kinds import rotation_notation
 from satsym.symbolic.linear import notation as linear_notation
-from satsym.symbolic.model import Linearised, Model, Newton, Problem, symbols_of, variables_of
+from satsym.symbolic.model import Model, Problem, symbols_of, variables_of
 from satsym.symbolic.principle import control_sets
+from satsym.symbolic.principle import notation as principle_notation
 from satsym.symbolic.switching import notation as switching_notation
 
 TIME, FINAL_TIME = sp.Symbol("t", real=True), sp.Symbol("t_f", real=True)
@@ -129,6 +129,11 @@ def initial(state: sp.Symbol) -> sp.Symbol:
     return sp.Symbol(f"{state.name}_0", real=True)
 
 
+def answer_of(variable: sp.Symbol) -> sp.Symbol:
+    """The symbol for a state or a control as a function of time."""
+    return sp.Symbol(f"{variable.name}_answer", real=True)
+
+
 def begin(model: Model, problem: Problem | None) -> Derivation:
     """An empty derivation with its notation.
 
@@ -142,11 +147,7 @@ def begin(model: Model, problem: Problem | None) -> Derivation:
         variables += control_sets.bounds(problem.control_set, model.controls)
     notation = {s.name: latex for s, latex in FIXED.items()}
     results = {} if problem else linear_notation.results(model)
-    if isinstance(model, Linearised):
-        notation |= {rate_of(s).name: rf"\frac{{d {v.latex}}}{{dt}}" for s, v in _motion_of(model)} | results
-    latex = {v.symbol: v.latex for v in model.states}
-    for state in symbols_of(model.states):
-        own = latex[state.name]
+    for state, own in zip(symbols_of(model.states), (v.latex for v in model.states), strict=True):
         notation[rate_of(state).name] = rf"\frac{{d {own}}}{{dt}}"
         notation[initial(state).name] = rf"{{{own}}}_0"
         if problem:
@@ -164,27 +165,9 @@ def begin(model: Model, problem: Problem | None) -> Derivation:
     for control in model.controls:
         notation[f"{control.symbol}_star"] = rf"{control.latex}^*"
         notation[f"{control.symbol}_hat"] = rf"\hat {control.latex}"
-    if isinstance(model, Newton):
-        for coordinate in model.coordinates:
-            notation[f"momentum_{coordinate.name}"] = rf"p_{{{latex[coordinate.name]}}}"
-            notation[acceleration_of(coordinate).name] = rf"\ddot{{{latex[coordinate.name]}}}"
-        for name in model.directions:
-            notation[name] = rf"\mathbf{{e}}_{{{_subscript(name, latex)}}}"
-            notation[f"d_{name}"] = rf"\dot{{\mathbf{{e}}}}_{{{_subscript(name, latex)}}}"
-    notation |= rotation_notation.names(model) | (rotation_notation.of_effort(model) if problem else {})
+    notation |= model.names(problem) | (principle_notation.names(model) if problem else {})
     _refuse_clashes(variables, {*notation, *_entries(model)})
     return Derivation(model, problem, results | notation | {v.symbol: v.latex for v in variables})
-
-
-def _motion_of(model: Linearised) -> Iterable[tuple[sp.Symbol, Variable]]:
-    """The states of the motion that is linearised."""
-    return zip(symbols_of(model.of.states), model.of.states, strict=True)
-
-
-def _subscript(direction: str, latex: dict[str, str]) -> str:
-    """LaTeX of what a direction is named after: ``e_theta`` is along theta."""
-    name = direction.partition("_")[2] or direction
-    return latex.get(name, name)
 
 
 def _entries(model: Model) -> Iterable[str]:

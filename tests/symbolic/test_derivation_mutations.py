@@ -30,7 +30,7 @@ from satsym.symbolic.motion import steps as motion
 from satsym.symbolic.principle import control_sets, pontryagin
 
 POLAR, *_ = loader.load(Path(__file__).resolve().parents[2] / "derivations" / "polar_orbit.py")
-STEPS = {f.__name__: f for f in (*pipeline.NEWTON, *pipeline.MINIMUM_PRINCIPLE)}
+STEPS = {f.__name__: f for f in (*POLAR.model.steps(), *pipeline.MINIMUM_PRINCIPLE)}
 
 
 @pytest.fixture(scope="module")

@@ -461,10 +461,8 @@ def test_the_free_motion_is_that_of_clohessy_and_wiltshire():
     assert (found - sp.Matrix(known)).applyfunc(sp.expand).is_zero_matrix
 
 
-def test_models_derivations_and_matrices_can_be_analysed():
-    node = small("stable_node")
-    found = analyse(node)
-    assert analyse(node.model) == found
+def test_systems_of_models_and_matrices_can_be_analysed():
+    found = analyse(system_of(small("stable_node")))
     assert analyse(linear_system(found.system.a)).stability == found.stability
 
 

@@ -45,7 +45,7 @@ def test_reference_is_a_motion_exactly_for_keplers_third_law(hill: Derivation) -
 
 def test_spectrum_is_exact(hill: Derivation) -> None:
     """Zero is double with one eigenvector, the along-track drift; the frequencies are double with two each."""
-    found = analyse(hill)
+    found = analyse(system_of(hill))
     blocks = {e.value: (e.algebraic, e.blocks) for e in found.eigenvalues}
     assert blocks == {
         sp.Integer(0): (2, (2,)),
@@ -88,7 +88,7 @@ def test_plane_and_normal_go_their_own_ways(hill: Derivation) -> None:
     assert whole.a.extract(IN_PLANE, OUT_OF_PLANE).is_zero_matrix
     assert whole.a.extract(OUT_OF_PLANE, IN_PLANE).is_zero_matrix
     assert whole.b.extract(OUT_OF_PLANE, [0, 1]).is_zero_matrix
-    found = analyse(hill)
+    found = analyse(system_of(hill))
     assert {name: reach.rank for name, reach in found.by_input.items()} == {"u1": 3, "u2": 4, "u3": 2}
 
 

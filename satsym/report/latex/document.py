@@ -86,7 +86,7 @@ def render(derivation: Derivation, language: str = "en", standalone: bool = True
     MissingText
         If the language has no text for a step, its rule or one of its checks.
     """
-    texts = load(language)
+    texts = load(language).with_own(derivation.model.sentences().get(language, {}))
     body = "\n\n".join(_Composer(derivation, texts).paragraphs()) + "\n"
     macros = MACROS.replace("<name>", tex.label(derivation.name)).replace("<step>", texts.get("words", "step"))
     source = f"% Written by satsym from the derivation of {tex.label(derivation.name)}. Do not edit.\n"

@@ -10,10 +10,11 @@ from satsym.report.latex.equations import LINE, Row, array, display
 from satsym.report.latex.width import width
 from satsym.report.texts import Texts
 from satsym.spec import Variable
-from satsym.symbolic import ClosedLoop, Derivation, Gyrostat, Linearised, Newton, Reduced, Scaled
+from satsym.symbolic import Derivation
 from satsym.symbolic import notation as n
 from satsym.symbolic.latex.terms import Term, joined, plain
 from satsym.symbolic.latex.typeset import Typesetter
+from satsym.symbolic.model import Line
 from satsym.symbolic.principle.control_sets import bounds
 
 
@@ -30,7 +31,7 @@ def statement(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part
     kinds = (
         *(_cost, _control_set, _constraints),
         *(_quantities, _definitions),
-        *(_physics, _turning, _motion_of, _linearised, _outputs),
+        *(_motion, _outputs),
     )
     parts = [part(derivation, texts, typeset) for part in kinds]
     return Part(
@@ -110,7 +111,7 @@ def _quantities(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Pa
         "parameters": model.parameters,
         "constants": tuple(d.variable for d in model.definitions),
         "outputs": tuple(o.variable for o in model.outputs),
-        "original": model.of.states if isinstance(model, Linearised) else (),
+        "original": model.replaced_states(),
     }
     return Part((texts.get("statement", "quantities"), _table(groups, texts)))
 
@@ -142,77 +143,44 @@ def _definitions(derivation: Derivation, texts: Texts, typeset: Typesetter) -> P
     return Part((f"{texts.get('statement', 'definitions')}\n{display(rows)}",), ends)
 
 
-def _physics(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
-    model = derivation.model
-    if not isinstance(model, Newton):
-        return Part()
-    force = typeset.symbol(n.FORCE.name)
-    vectors = {
-        "directions": {typeset.symbol(name): vector for name, vector in model.directions.items()},
-        "position": {typeset.symbol(n.POSITION.name): model.position},
-        "forces": {rf"{force}_{{\text{{{tex.escape(name)}}}}}": vector for name, vector in model.forces.items()},
-    }
-    rows: list[Row] = []
-    ends = {}
-    for thing, named in vectors.items():
-        new = [row for name, vector in named.items() for row in _vector(name, [typeset.terms(c) for c in vector])]
-        new = [Row(_address(derivation, f"{thing}.{k}"), row.left, row.right) for k, row in enumerate(new, 1)]
-        ends[thing] = (new[0].address, new[-1].address)
-        rows += new
-    return Part((f"{texts.get('statement', 'newton')}\n{display(rows)}",), ends)
+def _motion(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
+    """What the kind of model states."""
+    paragraphs: list[str] = []
+    ends: dict[str, tuple[str, str]] = {}
+    for said in derivation.model.statement():
+        fill = {"name": tex.name(said.of.name), "title": tex.escape(said.of.title)} if said.of else {}
+        shown: dict[str, list[Row]] = {}
+        for line in said.lines:
+            new, rows = _rows(line, typeset), shown.setdefault(line.thing, [])
+            for k, row in enumerate(new, len(rows) + 1):
+                address = _address(derivation, line.address or f"{line.thing}.{k}")
+                rows.append(Row(address, row.left, row.right))
+        equations = "\n" + display([row for rows in shown.values() for row in rows]) if shown else ""
+        paragraphs.append(texts.get("statement", said.sentence, **fill) + equations)
+        ends |= {thing: (rows[0].address, rows[-1].address) for thing, rows in shown.items()}
+    return Part(tuple(paragraphs), ends)
 
 
-def _linearised(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
-    model = derivation.model
-    if not isinstance(model, Linearised):
-        return Part()
-    rows = [
-        Row(_address(derivation, f"reference.{symbol.name}"), typeset.terms(symbol), typeset.terms(curve))
-        for symbol, curve in model.about.items()
-    ]
-    text = texts.get("statement", "linearised", name=tex.name(model.of.name), title=tex.escape(model.of.title))
-    return Part((f"{text}\n{display(rows)}",), {"reference": (rows[0].address, rows[-1].address)})
+def _rows(line: Line, typeset: Typesetter) -> list[Row]:
+    """An equation; several where a vector is too wide."""
+    left = line.left if isinstance(line.left, str) else typeset.symbol(line.left.name)
+    left += rf"_{{\text{{{tex.escape(line.index)}}}}}" if line.index else ""
 
-
-def _turning(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
-    """Bodies that turn about one axis, and the torques on them."""
-    model = derivation.model
-    if not isinstance(model, Gyrostat):
-        return Part()
-    rows: dict[str, list[Row]] = {"bodies": [], "torques": []}
-    for name, (inertia, spin) in model.bodies.items():
-        label = rf"\mathrm{{{name}}}"
-        rows["bodies"] += [
-            Row(_address(derivation, f"inertia.{name}"), plain(f"I_{{{label}}}"), typeset.terms(inertia)),
-            Row(_address(derivation, f"rate.{name}"), plain(rf"\omega_{{{label}}}"), typeset.terms(spin)),
-        ]
-        if name in model.torques:
-            row = Row(
-                _address(derivation, f"torque.{name}"), plain(f"T_{{{label}}}"), typeset.terms(model.torques[name])
-            )
-            rows["torques"].append(row)
-    text = texts.get("statement", "bodies")
-    ends = {thing: (found[0].address, found[-1].address) for thing, found in rows.items() if found}
-    return Part((f"{text}\n{display([*rows['bodies'], *rows['torques']])}",), ends)
-
-
-def _motion_of(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
-    """Which model's motion it is."""
-    model = derivation.model
-    if not isinstance(model, Scaled | Reduced | ClosedLoop):
-        return Part()
-    return Part((texts.get("statement", "motion_of", name=tex.name(model.of.name), title=tex.escape(model.of.title)),))
+    if line.components:
+        return _vector(left, [typeset.terms(component) for component in line.components])
+    return [Row("", plain(left), typeset.terms(line.right))]
 
 
 def _outputs(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
     model = derivation.model
     if not model.outputs:
         return Part()
-    key = "outputs_of_linearised" if isinstance(model, Linearised) else "outputs"
+    linear = "deviations" in derivation
+    key = "outputs_of_linearised" if linear else "outputs"
     rows = [
         Row(
             _address(derivation, o.variable.symbol),
-            plain(rf"g_{{{k}}}" if isinstance(model, Linearised) else o.variable.latex),
+            plain(rf"g_{{{k}}}" if linear else o.variable.latex),
             typeset.terms(o.value),
         )
         for k, o in enumerate(model.outputs, 1)

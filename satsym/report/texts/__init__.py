@@ -46,6 +46,10 @@ class Texts:
         """The text at a key of a table, as it stands there; ``None`` if there is none."""
         return self.tables.get(table, {}).get(key)
 
+    def with_own(self, own: Mapping[str, Mapping[str, str]]) -> Texts:
+        """These texts and some more, table by table; where both have a key, the others count."""
+        return Texts(self.language, {**self.tables, **{name: {**self.tables.get(name, {}), **own[name]} for name in own}})
+
     def listed(self, items: list[str]) -> str:
         """Items as an enumeration: a, b and c."""
         if len(items) < 2:

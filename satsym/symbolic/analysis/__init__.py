@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import sympy as sp
 
@@ -20,10 +19,6 @@ from satsym.symbolic.analysis.spectrum import Eigenvalue, Spectrum, spectrum
 from satsym.symbolic.analysis.stability import Stability, stability
 from satsym.symbolic.analysis.structure import KalmanForm, Mode, Reach, controllability, observability
 from satsym.symbolic.analysis.system import LinearSystem, linear_system
-
-if TYPE_CHECKING:
-    from satsym.symbolic.derivation import Derivation
-    from satsym.symbolic.model import Model
 
 __all__ = [
     "Analysis",
@@ -96,22 +91,19 @@ class Analysis:
     assumed: tuple[sp.Expr, ...]
 
 
-def analyse(subject: LinearSystem | Derivation | Model) -> Analysis:
+def analyse(system: LinearSystem) -> Analysis:
     """Everything exact about a linear system with constant coefficients.
 
     Parameters
     ----------
-    subject
-        Matrices, from :func:`linear_system`; or a model, or what was derived from it.
+    system
+        From :func:`linear_system`; that of a model from :func:`satsym.symbolic.linear.matrices.system_of`.
 
     Raises
     ------
     NotExact
         If an entry is not a rational function of parameters and of roots of positive ones.
-    DerivationError
-        If a model cannot be derived from, or is not linear with constant coefficients.
     """
-    system = subject if isinstance(subject, LinearSystem) else _system(subject)
     of = spectrum(system.a)
     columns = {name: system.b[:, k] for k, name in enumerate(system.inputs)}
     rows = {name: system.c[k, :] for k, name in enumerate(system.outputs)}
@@ -138,12 +130,3 @@ def analyse(subject: LinearSystem | Derivation | Model) -> Analysis:
         {name: form for name, form in forms.items() if form},
         tuple(dict.fromkeys(assumed)),
     )
-
-
-def _system(subject: Derivation | Model) -> LinearSystem:
-    """The matrices of a model; the steps of derivations import this package, hence not above."""
-    from satsym.symbolic.linear.matrices import system_of
-    from satsym.symbolic.model import Model
-    from satsym.symbolic.pipeline import derive
-
-    return system_of(derive(subject) if isinstance(subject, Model) else subject)

@@ -15,7 +15,7 @@ from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import definitions_of, total_derivative
 from satsym.symbolic.checks import Point, compare, identity, numeric, partial
 from satsym.symbolic.derivation import Derivation, Equation, Step
-from satsym.symbolic.model import Model, Newton, symbols_of
+from satsym.symbolic.model import Particle, symbols_of
 
 
 @dataclass(frozen=True)
@@ -34,21 +34,21 @@ class Attraction:
     distance: sp.Expr
 
 
-def uncontrolled_force(model: Newton) -> sp.Matrix:
+def uncontrolled_force(model: Particle) -> sp.Matrix:
     """The sum of the forces per unit mass where every control is zero, by inertial components."""
     coast = dict.fromkeys(symbols_of(model.controls), sp.Integer(0))
     return sum(model.forces.values(), sp.zeros(len(model.position), 1)).xreplace(coast)
 
 
-def inertial_velocity(model: Newton) -> sp.Matrix:
+def inertial_velocity(model: Particle) -> sp.Matrix:
     """The rate of change of the position vector, by inertial components."""
     return model.position.applyfunc(lambda c: total_derivative(c, model.coordinates))
 
 
 def central_attraction(so_far: Derivation) -> Step | None:
     """That the motion without control is Kepler's: acceleration -k r / |r|^3 with a constant k."""
-    model = so_far.model
-    if not isinstance(model, Newton) or (found := recognised(model)) is None:
+    model = so_far.model.particle()
+    if model is None or (found := recognised(model)) is None:
         return None
     law = -found.strength * n.POSITION / n.DISTANCE**3
     force, place, size = uncontrolled_force(model), model.position, numeric([found.distance])
@@ -77,8 +77,8 @@ def gravity_gradient(so_far: Derivation) -> Step | None:
 
     G is read off the derived entries: one number each that multiplies r r' and I, as functions of the distance alone.
     """
-    model, strength = so_far.model, strength_of(so_far)
-    if not isinstance(model, Newton) or strength is None:
+    model, strength = so_far.model.particle(), strength_of(so_far)
+    if model is None or strength is None:
         return None
     place = model.position
     if not place.jacobian(list(model.coordinates)).is_Identity:
@@ -115,8 +115,8 @@ def gravity_gradient(so_far: Derivation) -> Step | None:
 
 def jacobian_blocks(so_far: Derivation) -> list[sp.Matrix]:
     """Without control: the rates of coordinates and of velocities, each by coordinates and by velocities."""
-    model = so_far.model
-    assert isinstance(model, Newton)
+    model = so_far.model.particle()
+    assert model is not None
     coast = dict.fromkeys(symbols_of(model.controls), sp.Integer(0))
     entries = {e.name: e.rhs.xreplace(coast) for e in so_far.step("linearisation").equations}
     groups = (list(model.coordinates), list(model.coordinates.values()))
@@ -135,14 +135,13 @@ def strength_of(so_far: Derivation) -> sp.Expr | None:
     return -law.coeff(n.POSITION) * n.DISTANCE**3
 
 
-def inertial_state(model: Model, strength: sp.Expr) -> sp.Matrix:
+def inertial_state(model: Particle, strength: sp.Expr) -> sp.Matrix:
     """Position, velocity and k as one column of seven; components that a plane or a line has not are zero."""
-    assert isinstance(model, Newton)
     missing = sp.zeros(len(n.AXES) - len(model.position), 1)
     return sp.Matrix.vstack(model.position, missing, inertial_velocity(model), missing, sp.Matrix([strength]))
 
 
-def recognised(model: Newton) -> Attraction | None:
+def recognised(model: Particle) -> Attraction | None:
     """The attraction, if the force is one; that it is so identically is for the step to prove."""
     place, force = model.position, uncontrolled_force(model)
     distance = sp.sqrt(sp.simplify(place.dot(place)))
@@ -156,8 +155,8 @@ def recognised(model: Newton) -> Attraction | None:
 
 def inertial_accelerations(so_far: Derivation) -> list[sp.Expr]:
     """The second derivative of the position along the first-order equations without control."""
-    model = so_far.model
-    assert isinstance(model, Newton)
+    model = so_far.model.particle()
+    assert model is not None
     coast = dict.fromkeys(symbols_of(model.controls), sp.Integer(0))
     rates = dict(zip(symbols_of(model.states), so_far.rhs("first_order").xreplace(coast), strict=True))
     return [total_derivative(total_derivative(c, rates), rates) for c in model.position]

@@ -12,13 +12,13 @@ from satsym.symbolic.algebra import total_derivative
 from satsym.symbolic.checks import Point, compare, numeric
 from satsym.symbolic.derivation import Conclusion, Derivation, Equation, Step
 from satsym.symbolic.kepler.attraction import inertial_velocity, strength_of
-from satsym.symbolic.model import Newton, symbols_of
+from satsym.symbolic.model import symbols_of
 
 
 def conic(so_far: Derivation) -> Step | None:
     """The eccentricity vector, its length by energy and angular momentum, and the conic that follows."""
-    model, k = so_far.model, strength_of(so_far)
-    if k is None or so_far.problem is not None or not isinstance(model, Newton) or "conserved" not in so_far:
+    model, k = so_far.model.particle(), strength_of(so_far)
+    if k is None or so_far.problem is not None or model is None or "conserved" not in so_far:
         return None
     kept = {e.name: e.rhs for e in so_far.step("conserved").equations}
     if "energy" not in kept:

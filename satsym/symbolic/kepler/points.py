@@ -19,7 +19,7 @@ from satsym.symbolic.derivation import Conclusion, Derivation, Equation, Step
 from satsym.symbolic.kepler.attraction import inertial_accelerations, jacobian_blocks, strength_of
 from satsym.symbolic.linear import notation as ln
 from satsym.symbolic.linear.numeric_matrices import numeric_matrix, numeric_rank
-from satsym.symbolic.model import Newton, symbols_of, variables_of
+from satsym.symbolic.model import Particle, symbols_of, variables_of
 
 
 def no_equilibrium(so_far: Derivation) -> Step | None:
@@ -54,8 +54,8 @@ def no_equilibrium(so_far: Derivation) -> Step | None:
 
 def point_spectrum(so_far: Derivation) -> Step | None:
     """Eigenvalues of the Jacobian at any point, what they depend on, and what a rule about their signs can tell."""
-    model = so_far.model
-    if "gravity_gradient" not in so_far or so_far.problem is not None or not isinstance(model, Newton):
+    model = so_far.model.particle()
+    if "gravity_gradient" not in so_far or so_far.problem is not None or model is None:
         return None
     if {v.symbol for v in variables_of(model)} & set(ln.results(model)):
         return None
@@ -98,7 +98,7 @@ def _constants(so_far: Derivation) -> set[sp.Symbol]:
     return set(symbols_of((*model.parameters, *(d.variable for d in model.definitions))))
 
 
-def _on_a_sphere(a: sp.Matrix, model: Newton) -> sp.Matrix:
+def _on_a_sphere(a: sp.Matrix, model: Particle) -> sp.Matrix:
     """A matrix at all points of a distance, by stereographic coordinates: rational functions of these."""
     place = list(model.position)
     chart = [sp.Dummy(f"s{k}", real=True) for k in range(len(place) - 1)]

@@ -2,26 +2,143 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 import mpmath as mp
 import sympy as sp
 
+from satsym.spec import Variable
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import definitions_of, tidy, total_derivative
 from satsym.symbolic.checks import Point, compare, identity, numeric
-from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
-from satsym.symbolic.kinds import rotation_notation as rn
-from satsym.symbolic.kinds.rotation_models import Gyrostat
-from satsym.symbolic.model import symbols_of
+from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step, resolved
+from satsym.symbolic.dimension_algebra import Dimension, over
+from satsym.symbolic.kinds import stated_as
+from satsym.symbolic.model import Line, MaybeStep, Model, Output, Paragraph, Problem, Requirement, symbols_of
+from satsym.symbolic.motion import steps as motion
+
+
+@dataclass(frozen=True)
+class Motor:
+    """A torque between two bodies: ``torque`` turns the body ``drives``, and its opposite the body ``against``."""
+
+    torque: Variable
+    drives: str
+    against: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gyrostat(Model):
+    """Bodies that turn about one common axis, such as a satellite and its reaction wheel.
+
+    Parameters
+    ----------
+    angles
+        Each state that is an angle with the state that is its rate of change.
+    bodies
+        Name -> moment of inertia about the axis, and rate of turn about it as seen from inertial space. The names
+        are those of symbols.
+    torques
+        Name of a body -> torque about the axis from outside; bodies left out feel none.
+    motors
+        Torques that the bodies exert on each other; they are found, not given.
+    drives
+        What each control is, in terms of states and of their rates of change (:func:`~satsym.symbolic.rate_of`);
+        one equation for each motor.
+    quantities
+        What is derived along the motion besides, from states, controls, motor torques and the quantities before.
+    """
+
+    angles: Mapping[sp.Symbol, sp.Symbol]
+    bodies: Mapping[str, tuple[sp.Expr, sp.Expr]]
+    torques: Mapping[str, sp.Expr] = field(default_factory=dict)
+    motors: tuple[Motor, ...] = ()
+    drives: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    quantities: tuple[Output, ...] = ()
+
+    def brings(self) -> tuple[Variable, ...]:
+        """The torques of the motors, and the derived quantities."""
+        return (*(m.torque for m in self.motors), *(o.variable for o in self.quantities))
+
+    def steps(self) -> tuple[MaybeStep, ...]:
+        """The motion, its reference and its Jacobians."""
+        return (*self.motion_steps(), motion.reference, motion.linearisation)
+
+    def motion_steps(self) -> tuple[MaybeStep, ...]:
+        """Euler's equations, what changes from outside alone, and what the motors must do."""
+        return (momenta, euler, first_order, balance, quantities)
+
+    def carried(self) -> tuple[Output, ...]:
+        """The derived quantities."""
+        return self.quantities
+
+    def misfits(self) -> Iterator[str]:
+        """Angles that are no states, torques on no bodies, drives of other things than the controls."""
+        if not {*self.angles, *self.angles.values()} <= set(symbols_of(self.states)):
+            yield "the angles and their rates must be states"
+        named = {*self.torques, *(body for motor in self.motors for body in (motor.drives, motor.against))}
+        if not named <= set(self.bodies):
+            yield "torques and motors must act on the bodies that are stated"
+        if set(self.drives) != set(symbols_of(self.controls)):
+            yield "the drives must say what each control is, no more, no less"
+
+    def stated(self) -> Iterator[tuple[str, Iterable[Any], set[sp.Symbol]]]:
+        """Bodies and torques by states, drives by their rates as well, quantities by those before them."""
+        known = set(symbols_of((*self.states, *self.parameters))) | {n.TIME}
+        for name, pair in self.bodies.items():
+            yield f"the body {name!r}", pair, known
+        for name, torque in self.torques.items():
+            yield f"the torque on {name!r}", [torque], known
+        yield "a drive", self.drives.values(), known | {n.rate_of(x) for x in symbols_of(self.states)}
+        known = known | set(symbols_of((*self.controls, *(m.torque for m in self.motors))))
+        for output in self.quantities:
+            yield f"the quantity {output.variable.symbol!r}", [output.value], known
+            known = known | set(symbols_of((output.variable,)))
+
+    def names(self, problem: Problem | None) -> dict[str, str]:
+        """The angular momenta."""
+        found = {_momentum_of(body).name: rf"h_{{\mathrm{{{body}}}}}" for body in self.bodies}
+        return found | {n.rate_of(n.ANGULAR_MOMENTUM).name: r"\frac{d\ell}{dt}"}
+
+    def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
+        """Of the angular momenta, which fix those of all torques."""
+        second, momentum = known[n.TIME.name], None
+        for name, (inertia, spin) in self.bodies.items():
+            momentum = require(f"the angular momentum of {name}", inertia * spin, momentum)
+            known[_momentum_of(name).name] = momentum
+        known[n.ANGULAR_MOMENTUM.name] = momentum
+        torque = over(momentum, second)
+        known[n.rate_of(n.ANGULAR_MOMENTUM).name] = torque
+        for name, value in self.torques.items():
+            require(f"the torque on {name}", value, torque)
+        for motor in self.motors:
+            require(f"the torque {motor.torque.symbol}", symbols_of((motor.torque,))[0], torque)
+        for angle, rate in self.angles.items():
+            require(f"{rate.name}, the rate of {angle.name},", rate, over(known[angle.name], second))
+        for control, value in self.drives.items():
+            require(f"the control {control.name}", value, known[control.name])
+        for output in self.quantities:
+            require(f"the quantity {output.variable.symbol}", output.value, known[output.variable.symbol])
+
+    def statement(self) -> tuple[Paragraph, ...]:
+        """Bodies that turn about one axis, and the torques on them."""
+        bodies, torques = [], []
+        for name, (inertia, spin) in self.bodies.items():
+            label = rf"\mathrm{{{name}}}"
+            bodies.append(Line("bodies", f"I_{{{label}}}", inertia, f"inertia.{name}"))
+            bodies.append(Line("bodies", rf"\omega_{{{label}}}", spin, f"rate.{name}"))
+            if name in self.torques:
+                torques.append(Line("torques", f"T_{{{label}}}", self.torques[name], f"torque.{name}"))
+        return (Paragraph("bodies", lines=(*bodies, *torques)),)
 
 
 def momenta(so_far: Derivation) -> Step:
     """Angular momentum of each body, and of all together."""
-    model = _gyrostat(so_far)
+    model = stated_as(Gyrostat, so_far)
     of_each = {name: inertia * spin for name, (inertia, spin) in model.bodies.items()}
-    equations = [Equation(name, rn.momentum_of(name), h) for name, h in of_each.items()]
+    equations = [Equation(name, _momentum_of(name), h) for name, h in of_each.items()]
     total = tidy(sp.expand(sp.Add(*of_each.values())))
     equations.append(Equation("angular_momentum", n.ANGULAR_MOMENTUM, total))
     found = numeric([total])
@@ -42,7 +159,7 @@ def momenta(so_far: Derivation) -> Step:
 
 def euler(so_far: Derivation) -> Step:
     """What turns each body, and what the controls are."""
-    model = _gyrostat(so_far)
+    model = stated_as(Gyrostat, so_far)
     equations = []
     moving = [s for s in symbols_of(model.states) if s not in model.angles]
     rates = {**model.angles, **{s: n.rate_of(s) for s in moving}}
@@ -69,7 +186,7 @@ def euler(so_far: Derivation) -> Step:
 
 def first_order(so_far: Derivation) -> Step:
     """Euler's equations solved for the rates of change."""
-    model = _gyrostat(so_far)
+    model = stated_as(Gyrostat, so_far)
     found, _ = _solved(so_far)
     equations = tuple(Equation(s.name, n.rate_of(s), found[s]) for s in symbols_of(model.states))
     rates = {e.lhs: e.rhs for e in equations}
@@ -82,7 +199,7 @@ def first_order(so_far: Derivation) -> Step:
 
 def balance(so_far: Derivation) -> Step:
     """How the whole angular momentum changes: by torques from outside alone, whatever the controls do."""
-    model = _gyrostat(so_far)
+    model = stated_as(Gyrostat, so_far)
     outside = tidy(sp.Add(*model.torques.values()))
     rates = dict(zip(symbols_of(model.states), so_far.rhs("first_order"), strict=True))
     total = so_far.equation("momenta.angular_momentum").rhs
@@ -93,7 +210,7 @@ def balance(so_far: Derivation) -> Step:
 
 def quantities(so_far: Derivation) -> Step | None:
     """The torques that the motors must give, and what else is derived from them."""
-    model = _gyrostat(so_far)
+    model = stated_as(Gyrostat, so_far)
     if not model.motors:
         return None
     _, torques = _solved(so_far)
@@ -124,17 +241,9 @@ def quantities(so_far: Derivation) -> Step | None:
     return Step("quantities", "solve for torques", tuple(equations), ("euler", "first_order"), tuple(checks))
 
 
-def resolved(equations: Sequence[Equation]) -> dict[sp.Symbol, sp.Expr]:
-    """Quantities in terms of states, controls and parameters alone: each may use those before it."""
-    found: dict[sp.Symbol, sp.Expr] = {}
-    for equation in equations:
-        found[equation.lhs] = equation.rhs.xreplace(found)
-    return found
-
-
 def _solved(so_far: Derivation) -> tuple[dict[sp.Symbol, sp.Expr], dict[sp.Symbol, sp.Expr]]:
     """Rates of change of all states, and the torques of the motors."""
-    model = _gyrostat(so_far)
+    model = stated_as(Gyrostat, so_far)
     states = symbols_of(model.states)
     unknown = [n.rate_of(s) for s in states if s not in model.angles]
     torques = symbols_of(m.torque for m in model.motors)
@@ -172,8 +281,6 @@ def _symbols(model: Gyrostat) -> set[sp.Symbol]:
     return {*symbols_of(model.states)}.union(*(e.free_symbols for e in pairs))
 
 
-def _gyrostat(so_far: Derivation) -> Gyrostat:
-    model = so_far.model
-    if not isinstance(model, Gyrostat):
-        raise TypeError(f"{model.name} is not stated as bodies that turn about one axis")
-    return model
+def _momentum_of(body: str) -> sp.Symbol:
+    """The symbol for the angular momentum of a body."""
+    return sp.Symbol(f"h_{body}", real=True)

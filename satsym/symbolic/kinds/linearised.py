@@ -6,30 +6,125 @@ and under which condition; then come the exact equations in the deviations, and 
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import mpmath as mp
 import sympy as sp
 
+from satsym.spec import Variable
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import definitions_of, tidy, total_derivative
+from satsym.symbolic.algebra import constants_of, definitions_of, tidy, total_derivative
 from satsym.symbolic.checks import Point, compare, identity, numeric, partial
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
-from satsym.symbolic.dimensions import AGREEMENT
-from satsym.symbolic.model import Linearised, symbols_of, t
+from satsym.symbolic.dimension_algebra import Dimension
+from satsym.symbolic.kinds import stated_as
+from satsym.symbolic.kinds.derived import Derived, original_equations
+from satsym.symbolic.linear.notation import results
+from satsym.symbolic.model import Line, MaybeStep, Paragraph, Problem, Requirement, symbols_of, t
 
 
-def original_equations(so_far: Derivation) -> Step:
-    """The first-order form of the motion, from its own derivation, with the checks that it passed there."""
-    assert so_far.original is not None
-    step = so_far.original.step("first_order")
-    checks = tuple(c for c in step.checks if c.claim != AGREEMENT)  # every step gets that one anyway
-    return Step("original_equations", "taken over", step.equations, ("motion",), checks)
+@dataclass(frozen=True, kw_only=True)
+class Linearised(Derived):
+    """Small deviations from a motion, to first order: x' = A x + B u, y = C x + D u.
+
+    The states are the deviations, stated as a change of variables, and so are the controls that the motion needs.
+    Everything else is declared as for any model; parameters and definitions are those of the motion, as far as it
+    needs them. The outputs are functions of the states and controls of the motion, and stand for their deviations
+    from what they are along it.
+
+    Parameters
+    ----------
+    of
+        The model whose motion this is.
+    about
+        Each of its states, and each control that is not zero, along the motion: functions of time and parameters.
+        They must solve its equations, which is proved.
+    deviations
+        Each state of this model, as a function of time and of the states of ``of``; and each control that is not one
+        of ``of``, as a function of these and the controls. They vanish along the motion, and there must be as many as
+        they replace.
+    """
+
+    about: Mapping[sp.Symbol, sp.Expr]
+    deviations: Mapping[sp.Symbol, sp.Expr]
+
+    def steps(self) -> tuple[MaybeStep, ...]:
+        """The first-order form is the end of it."""
+        return self.motion_steps()
+
+    def motion_steps(self) -> tuple[MaybeStep, ...]:
+        """The reference, the change of variables, the exact equations and their first order."""
+        return (
+            original_equations,
+            reference_condition,
+            reference,
+            deviations,
+            original_states,
+            deviation_equations,
+            linearisation,
+            first_order,
+        )
+
+    def replaced_states(self) -> tuple[Variable, ...]:
+        """All states of the motion."""
+        return self.of.states
+
+    def replaced_controls(self) -> tuple[Variable, ...]:
+        """The controls that have deviations."""
+        kept = {v.symbol for v in self.controls}
+        return tuple(v for v in self.of.controls if v.symbol not in kept)
+
+    def measured(self) -> tuple[Variable, ...]:
+        """The variables of the motion."""
+        return (*self.of.states, *self.of.controls)
+
+    def misfits(self) -> Iterator[str]:
+        """Variables that do not replace those of the motion one by one."""
+        of, old_controls = self.of, symbols_of(self.of.controls)
+        states, controls = symbols_of(self.states), symbols_of(self.controls)
+        new = [u for u in controls if u not in old_controls]
+        if len(states) != len(of.states) or len(new) != len(self.replaced_controls()):
+            yield f"give as many states and controls as {of.name} has, in place of them"
+        if missing := [s.name for s in symbols_of(of.states) if s not in self.about]:
+            yield f"about which motion? no value for {', '.join(missing)}"
+        if kept := [u.name for u in old_controls if u in controls and self.about.get(u, 0) != 0]:
+            yield f"{', '.join(kept)} is not zero along the motion; name its deviation otherwise"
+        if set(self.deviations) != {*states, *new}:
+            yield "state one deviation for each state and each new control, no more, no less"
+        if self.definitions != of.definitions:
+            yield f"the definitions must be those of {of.name}, no more, no less"
+
+    def stated(self) -> Iterator[tuple[str, Iterable[Any], set[sp.Symbol]]]:
+        """What it is linearised about, by constants alone; deviations and the motion itself."""
+        constants = constants_of(self)
+        everything = constants | set(symbols_of(self.measured()))
+        yield "the motion it is linearised about", self.about.values(), constants
+        yield "a deviation", self.deviations.values(), everything
+        yield f"the motion {self.of.name}", self.of.motion_stated(), everything
+
+    def names(self, problem: Problem | None) -> dict[str, str]:
+        """What linear theory finds, which no variable may be called, and the rates of the old states."""
+        return super().names(problem) | ({} if problem else results(self))
+
+    def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
+        """Of the rates of the old states; reference and deviations must have those of their variables."""
+        super().enter_dimensions(known, require)
+        for symbol, curve in self.about.items():
+            require(f"the reference of {symbol.name}", curve, known[symbol.name])
+        for symbol, deviation in self.deviations.items():
+            require(f"the deviation {symbol.name}", deviation, known[symbol.name])
+
+    def statement(self) -> tuple[Paragraph, ...]:
+        """The reference."""
+        about = (Line("reference", s, curve, f"reference.{s.name}") for s, curve in self.about.items())
+        return (Paragraph("linearised", self.of, tuple(about)),)
 
 
 def reference_condition(so_far: Derivation) -> Step | None:
     """The values of named constants with which the reference solves the equations, and no other ones do."""
-    model = _linearised(so_far)
+    model = stated_as(Linearised, so_far)
     constants = definitions_of(model)
     defects = [sp.simplify(d) for d in _defects(so_far)]
     unknown = sorted(set(constants) & set().union(*(d.free_symbols for d in defects)), key=lambda s: s.name)
@@ -69,7 +164,7 @@ def reference_condition(so_far: Derivation) -> Step | None:
 
 def reference(so_far: Derivation) -> Step:
     """The motion that is linearised about, proved to satisfy the equations with its controls."""
-    model = _linearised(so_far)
+    model = stated_as(Linearised, so_far)
     defects = [d.xreplace(definitions_of(model)) for d in _defects(so_far)]
     proof = identity("satisfies the equations with its controls", defects)
     if not proof.passed:
@@ -84,7 +179,7 @@ def reference(so_far: Derivation) -> Step:
 
 def deviations(so_far: Derivation) -> Step:
     """The new variables, which vanish on the reference."""
-    model = _linearised(so_far)
+    model = stated_as(Linearised, so_far)
     stated = _stated(model)
     proof = identity("vanish on the reference", [d.xreplace(_about(model)) for d in stated.values()])
     if not proof.passed:
@@ -95,8 +190,8 @@ def deviations(so_far: Derivation) -> Step:
 
 def original_states(so_far: Derivation) -> Step:
     """The old variables in terms of the new ones."""
-    model = _linearised(so_far)
-    stated, old = _stated(model), _replaced(model)
+    model = stated_as(Linearised, so_far)
+    stated, old = _stated(model), symbols_of((*model.replaced_states(), *model.replaced_controls()))
     try:
         solutions = sp.solve([d - s for s, d in stated.items()], old, dict=True)
     except NotImplementedError:
@@ -122,7 +217,7 @@ def original_states(so_far: Derivation) -> Step:
 
 def deviation_equations(so_far: Derivation) -> Step:
     """The exact equations that the deviations obey, by the chain rule."""
-    model = _linearised(so_far)
+    model = stated_as(Linearised, so_far)
     old_states, stated = symbols_of(model.of.states), _stated(model)
     motion = dict(zip(old_states, so_far.rhs("original_equations"), strict=True))
     inverse = {e.lhs: e.rhs for e in so_far.step("original_states").equations}
@@ -149,7 +244,7 @@ def deviation_equations(so_far: Derivation) -> Step:
 
 def linearisation(so_far: Derivation) -> Step:
     """A and B: the exact equations differentiated by the deviations, at zero."""
-    model = _linearised(so_far)
+    model = stated_as(Linearised, so_far)
     states, controls = symbols_of(model.states), symbols_of(model.controls)
     exact, constants = so_far.rhs("deviation_equations"), definitions_of(model)
     rest = dict.fromkeys((*states, *controls), sp.Integer(0))
@@ -176,7 +271,7 @@ def linearisation(so_far: Derivation) -> Step:
 
 def first_order(so_far: Derivation) -> Step:
     """The linear equations x' = A x + B u."""
-    model = _linearised(so_far)
+    model = stated_as(Linearised, so_far)
     states, controls = symbols_of(model.states), symbols_of(model.controls)
     entries = [e.rhs for e in so_far.step("linearisation").equations]
     a = sp.Matrix(len(states), len(states), entries[: len(states) ** 2])
@@ -199,13 +294,6 @@ def first_order(so_far: Derivation) -> Step:
     return Step("first_order", "drop higher orders", equations, ("linearisation",), (check,))
 
 
-def _linearised(so_far: Derivation) -> Linearised:
-    model = so_far.model
-    if not isinstance(model, Linearised):
-        raise TypeError(f"{model.name} is not stated as a linearisation")
-    return model
-
-
 def _about(model: Linearised) -> dict[sp.Symbol, sp.Expr]:
     """States and controls of the motion along the reference."""
     symbols = (*symbols_of(model.of.states), *symbols_of(model.of.controls))
@@ -218,15 +306,9 @@ def _stated(model: Linearised) -> dict[sp.Symbol, sp.Expr]:
     return {s: sp.sympify(model.deviations[s]) for s in symbols if s in model.deviations}
 
 
-def _replaced(model: Linearised) -> tuple[sp.Symbol, ...]:
-    """The variables of the motion that deviations take the place of."""
-    kept = set(symbols_of(model.controls))
-    return (*symbols_of(model.of.states), *(u for u in symbols_of(model.of.controls) if u not in kept))
-
-
 def _defects(so_far: Derivation) -> list[sp.Expr]:
     """What is left of the equations of motion when the reference is put into them, named constants kept."""
-    model = _linearised(so_far)
+    model = stated_as(Linearised, so_far)
     about, states = _about(model), symbols_of(model.of.states)
     rates = so_far.rhs("original_equations").xreplace(about)
     return [sp.diff(about[s], t) - f for s, f in zip(states, rates, strict=True)]
@@ -234,7 +316,7 @@ def _defects(so_far: Derivation) -> list[sp.Expr]:
 
 def _transformed(so_far: Derivation, entries: list[sp.Expr]) -> Check:
     """The same matrices by transforming the Jacobians of the original equations along the reference."""
-    model = _linearised(so_far)
+    model = stated_as(Linearised, so_far)
     constants, about, stated = definitions_of(model), _about(model), _stated(model)
     states, old = symbols_of(model.states), sp.Matrix(symbols_of(model.of.states))
     rates, controls = so_far.rhs("original_equations"), sp.Matrix(symbols_of(model.of.controls))

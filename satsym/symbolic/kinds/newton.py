@@ -2,22 +2,157 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import mpmath as mp
 import sympy as sp
 
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import tidy, total_derivative
+from satsym.symbolic.algebra import constants_of, tidy, total_derivative
 from satsym.symbolic.checks import Point, compare, identity, numeric
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
-from satsym.symbolic.model import Newton, symbols_of
+from satsym.symbolic.dimension_algebra import PLAIN, Dimension, over, product
+from satsym.symbolic.kepler import attraction, conic
+from satsym.symbolic.kepler import points as point_steps
+from satsym.symbolic.kinds import stated_as
+from satsym.symbolic.model import Line, MaybeStep, Paragraph, Particle, Problem, Requirement, symbols_of
+from satsym.symbolic.motion import steps as motion
+
+
+@dataclass(frozen=True, kw_only=True)
+class Newton(Particle):
+    """Motion of a particle by Newton's law, all forces per unit mass.
+
+    Parameters
+    ----------
+    coordinates
+        Each generalised coordinate with the state that is its rate of change.
+    directions
+        Name -> unit vector (inertial components) along which vectors are resolved; the name is that of a
+        symbol such as ``e_r``. They must be orthonormal, which is checked.
+    position
+        Position vector, inertial components, in terms of the coordinates.
+    forces
+        Name -> force vector per unit mass, inertial components.
+    """
+
+    directions: Mapping[str, sp.Matrix]
+
+    def steps(self) -> tuple[MaybeStep, ...]:
+        """The motion, what it keeps, and what is special where a centre attracts."""
+        return (
+            *self.motion_steps(),
+            attraction.central_attraction,
+            motion.reference,
+            motion.conserved,
+            conic.conic,
+            motion.linearisation,
+            attraction.gravity_gradient,
+            point_steps.no_equilibrium,
+            point_steps.point_spectrum,
+        )
+
+    def motion_steps(self) -> tuple[MaybeStep, ...]:
+        """By differentiation and projection."""
+        return (
+            unit_vectors,
+            position,
+            velocity,
+            acceleration,
+            forces,
+            newton,
+            equations_of_motion,
+            first_order,
+        )
+
+    def misfits(self) -> Iterator[str]:
+        """States that are no coordinates, vectors of different sizes."""
+        states, moving = symbols_of(self.states), [*self.coordinates, *self.coordinates.values()]
+        if len(moving) != len(states) or set(moving) != set(states):
+            yield "the states must be the coordinates and their rates, no more, no less"
+        vectors = (self.position, *self.directions.values(), *self.forces.values())
+        if {len(vector) for vector in vectors} != {len(self.directions)}:
+            yield "vectors need as many components as there are directions"
+
+    def stated(self) -> Iterator[tuple[str, sp.Matrix, set[sp.Symbol]]]:
+        """Vectors: those that place things by coordinates alone, forces by states and controls."""
+        placed = constants_of(self) | set(self.coordinates)
+        yield "the position", self.position, placed
+        for name, direction in self.directions.items():
+            yield f"the direction {name}", direction, placed
+        for name, force in self.forces.items():
+            yield f"the force {name!r}", force, constants_of(self) | set(symbols_of((*self.states, *self.controls)))
+
+    def motion_stated(self) -> list[sp.Expr]:
+        """Position and forces, by components."""
+        return [*self.position, *(c for force in self.forces.values() for c in force)]
+
+    def names(self, problem: Problem | None) -> dict[str, str]:
+        """Accelerations, momenta and unit vectors."""
+        latex, found = {v.symbol: v.latex for v in self.states}, {}
+        for q in self.coordinates:
+            found[f"momentum_{q.name}"] = rf"p_{{{latex[q.name]}}}"
+            found[n.acceleration_of(q).name] = rf"\ddot{{{latex[q.name]}}}"
+        for name in self.directions:
+            along = name.partition("_")[2] or name  # e_theta is along theta
+            found[name] = rf"\mathbf{{e}}_{{{latex.get(along, along)}}}"
+            found[f"d_{name}"] = rf"\dot{{\mathbf{{e}}}}_{{{latex.get(along, along)}}}"
+        return found
+
+    def accelerations(self) -> tuple[str, ...]:
+        """Those of the coordinates."""
+        return tuple(n.acceleration_of(q).name for q in self.coordinates)
+
+    def unit_vectors(self) -> tuple[str, ...]:
+        """The directions."""
+        return tuple(self.directions)
+
+    def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
+        """Of position, velocity, acceleration and what is made of them; the components must agree."""
+        second = known[n.TIME.name]
+        for q, q_dot in self.coordinates.items():
+            require(f"{q_dot.name}, the rate of {q.name},", q_dot, known[n.rate_of(q).name])
+            known[n.acceleration_of(q).name] = over(known[q_dot.name], second)
+        for name, direction in self.directions.items():
+            for component in direction:
+                require(f"the direction {name}", component, PLAIN)
+            known[name], known[f"d_{name}"] = PLAIN, over(PLAIN, second)
+        place = None
+        for component in self.position:
+            place = require("the position", component, place)
+        velocity = over(place, second)
+        acceleration = over(velocity, second)
+        known[n.DISTANCE.name], known[n.OUTER.name] = place, product((place, place))
+        known[n.SPEED.name], known[n.ECCENTRICITY_ALONG.name] = velocity, place
+        known[n.ALONG.name] = known[n.MOMENTUM.name] = product((place, velocity))
+        known.update(dict.fromkeys((s.name for s in (n.IDENTITY, n.ECCENTRICITY, n.ECCENTRICITY_VECTOR)), PLAIN))
+        vectors = (n.POSITION, n.VELOCITY, n.ACCELERATION, n.FORCE)
+        known.update(zip((v.name for v in vectors), (place, velocity, acceleration, acceleration), strict=True))
+        for name, force in self.forces.items():
+            for component in force:
+                require(f"the force {name!r}, per unit mass,", component, acceleration)
+
+    def statement(self) -> tuple[Paragraph, ...]:
+        """The vectors along inertial axes."""
+        lines = [Line("directions", sp.Symbol(name), vector) for name, vector in self.directions.items()]
+        lines.append(Line("position", n.POSITION, self.position))
+        lines += [Line("forces", n.FORCE, vector, index=name) for name, vector in self.forces.items()]
+        return (Paragraph("newton", lines=tuple(lines)),)
+
+    def declared(self) -> dict[str, sp.Expr | sp.Matrix]:
+        """The vectors."""
+        return {
+            "position": self.position,
+            **{f"directions.{name}": vector for name, vector in self.directions.items()},
+            **{f"forces.{name.replace(' ', '_')}": vector for name, vector in self.forces.items()},
+        }
 
 
 def unit_vectors(so_far: Derivation) -> Step:
     """How the directions turn: their rates of change, resolved along themselves."""
-    model = _newton(so_far)
+    model = stated_as(Newton, so_far)
     basis = sp.Matrix.hstack(*model.directions.values())
     orthonormal = identity("orthonormal", basis.T * basis - sp.eye(basis.cols))
     if not orthonormal.passed:
@@ -39,7 +174,7 @@ def unit_vectors(so_far: Derivation) -> Step:
 
 def position(so_far: Derivation) -> Step:
     """The position vector, resolved along the directions."""
-    model = _newton(so_far)
+    model = stated_as(Newton, so_far)
     resolved = Equation("vector", n.POSITION, _resolved(model, model.position))
     check = compare(
         "same vector",
@@ -51,20 +186,25 @@ def position(so_far: Derivation) -> Step:
 
 def velocity(so_far: Derivation) -> Step:
     """The first time derivative of the position."""
-    model = _newton(so_far)
+    model = stated_as(Newton, so_far)
     return _kinematics(model, "velocity", n.VELOCITY, model.coordinates, ("position", "unit_vectors"), order=1)
 
 
 def acceleration(so_far: Derivation) -> Step:
     """The second time derivative of the position."""
     return _kinematics(
-        _newton(so_far), "acceleration", n.ACCELERATION, _accelerated(so_far), ("velocity", "unit_vectors"), order=2
+        stated_as(Newton, so_far),
+        "acceleration",
+        n.ACCELERATION,
+        _accelerated(so_far),
+        ("velocity", "unit_vectors"),
+        order=2,
     )
 
 
 def forces(so_far: Derivation) -> Step:
     """The sum of the forces per unit mass, resolved along the directions."""
-    model = _newton(so_far)
+    model = stated_as(Newton, so_far)
     total = sum(model.forces.values(), sp.zeros(len(model.position), 1))
     resolved = Equation("vector", n.FORCE, _resolved(model, *model.forces.values()))
     check = compare(
@@ -77,7 +217,7 @@ def forces(so_far: Derivation) -> Step:
 
 def newton(so_far: Derivation) -> Step:
     """Acceleration equals force per unit mass, direction by direction."""
-    model = _newton(so_far)
+    model = stated_as(Newton, so_far)
     a, f = (so_far.equation(f"{step}.vector").rhs for step in ("acceleration", "forces"))
     equations = tuple(Equation(name, a.coeff(sp.Symbol(name)), f.coeff(sp.Symbol(name))) for name in model.directions)
     rebuilt = [
@@ -91,7 +231,7 @@ def newton(so_far: Derivation) -> Step:
 
 def equations_of_motion(so_far: Derivation) -> Step:
     """Newton's law solved for the second derivatives of the coordinates."""
-    model = _newton(so_far)
+    model = stated_as(Newton, so_far)
     unknown = [n.acceleration_of(q) for q in model.coordinates]
     law = [e.lhs - e.rhs for e in so_far.step("newton").equations]
     mass, load = sp.linear_eq_to_matrix(law, unknown)
@@ -117,7 +257,7 @@ def equations_of_motion(so_far: Derivation) -> Step:
 
 def first_order(so_far: Derivation) -> Step:
     """The equations of motion as dx/dt = f(t, x, u, p)."""
-    model = _newton(so_far)
+    model = stated_as(Newton, so_far)
     rate = dict(model.coordinates)
     for q, q_dot in model.coordinates.items():
         rate[q_dot] = so_far.equation(f"equations_of_motion.{q.name}").rhs
@@ -149,16 +289,9 @@ def _kinematics(
     return Step(name, "differentiate", (resolved,), source, (check,))
 
 
-def _newton(so_far: Derivation) -> Newton:
-    model = so_far.model
-    if not isinstance(model, Newton):
-        raise TypeError(f"{model.name} is not stated by Newton's law")
-    return model
-
-
 def _accelerated(so_far: Derivation) -> dict[sp.Symbol, sp.Symbol]:
     """Rates of the coordinates and of their rates."""
-    coordinates = _newton(so_far).coordinates
+    coordinates = stated_as(Newton, so_far).coordinates
     return {**coordinates, **{q_dot: n.acceleration_of(q) for q, q_dot in coordinates.items()}}
 
 

@@ -2,22 +2,74 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 import sympy as sp
 
+from satsym.spec import Variable
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import tidy, total_derivative
 from satsym.symbolic.checks import Point, compare, identity, numeric
-from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
-from satsym.symbolic.kinds.gyrostat import resolved
-from satsym.symbolic.kinds.rotation_models import Reduced
-from satsym.symbolic.model import symbols_of
+from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step, resolved
+from satsym.symbolic.dimension_algebra import Dimension
+from satsym.symbolic.kinds import stated_as
+from satsym.symbolic.kinds.derived import Derived, original_equations
+from satsym.symbolic.model import MaybeStep, Requirement, symbols_of, variables_of
+from satsym.symbolic.motion import steps as motion
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reduced(Derived):
+    """A motion in some of its states, where the others follow from them, such as a momentum's from its balance.
+
+    States, controls and parameters are those of the motion that are kept.
+
+    Parameters
+    ----------
+    of
+        The model whose motion this is.
+    along
+        Each state that is left out -> what it is, in terms of the others; proved to stay so.
+    where
+        Parameters that have special values in this case.
+    """
+
+    along: Mapping[sp.Symbol, sp.Expr]
+    where: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+
+    def brings(self) -> tuple[Variable, ...]:
+        """All that the motion has."""
+        return variables_of(self.of)
+
+    def steps(self) -> tuple[MaybeStep, ...]:
+        """The states that are left out, the motion of the others, and what holds for any motion."""
+        return (original_equations, special_case, first_order, quantities, motion.reference, motion.linearisation)
+
+    def misfits(self) -> Iterator[str]:
+        """States that are neither kept nor left out, or both, and other controls."""
+        states, old = set(symbols_of(self.states)), set(symbols_of(self.of.states))
+        if states | set(self.along) != old or states & set(self.along):
+            yield "keep or leave out each state once"
+        if self.controls != self.of.controls:
+            yield f"the controls must be those of {self.of.name}"
+
+    def stated(self) -> Iterator[tuple[str, Iterable[Any], set[sp.Symbol]]]:
+        """Special values, by the variables of the motion."""
+        old = set(symbols_of((*self.of.states, *self.of.controls, *self.of.parameters)))
+        yield "a special value", (*self.where.values(), *self.along.values()), old
+
+    def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
+        """Of the rates of all states; special values must have those of their variables."""
+        for symbol, value in {**self.where, **self.along}.items():
+            require(f"the special {symbol.name}", value, known[symbol.name])
+        super().enter_dimensions(known, require)
 
 
 def special_case(so_far: Derivation) -> Step:
     """The special values, and the states that follow from the others: once they do, they always do."""
-    model = _reduced(so_far)
+    model = stated_as(Reduced, so_far)
     rates = dict(
         zip(symbols_of(model.of.states), so_far.rhs("original_equations").xreplace(_where(model)), strict=True)
     )
@@ -33,7 +85,7 @@ def special_case(so_far: Derivation) -> Step:
 
 def first_order(so_far: Derivation) -> Step:
     """The equations of the states that are kept."""
-    model = _reduced(so_far)
+    model = stated_as(Reduced, so_far)
     states = symbols_of(model.states)
     rates = dict(zip(symbols_of(model.of.states), so_far.rhs("original_equations"), strict=True))
     found = {x: tidy(rates[x].xreplace(_special(model))) for x in states}
@@ -56,7 +108,7 @@ def first_order(so_far: Derivation) -> Step:
 
 def quantities(so_far: Derivation) -> Step:
     """The states that were left out, and all that was derived from them."""
-    model, original = _reduced(so_far), so_far.original
+    model, original = stated_as(Reduced, so_far), so_far.original
     assert original is not None
     along = _along(model)
     stated = original.step("quantities").equations if "quantities" in original else ()
@@ -87,10 +139,3 @@ def _along(model: Reduced) -> dict[sp.Symbol, sp.Expr]:
 
 def _special(model: Reduced) -> dict[sp.Symbol, sp.Expr]:
     return {**_where(model), **_along(model)}
-
-
-def _reduced(so_far: Derivation) -> Reduced:
-    model = so_far.model
-    if not isinstance(model, Reduced):
-        raise TypeError(f"{model.name} is not stated as a motion in fewer states")
-    return model

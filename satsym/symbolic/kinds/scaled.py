@@ -2,29 +2,131 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
 
 import mpmath as mp
 import sympy as sp
 
+from satsym.spec import Variable
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import definitions_of, tidy
 from satsym.symbolic.checks import Point, compare, identity, numeric
-from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
-from satsym.symbolic.kinds import rotation_notation as rn
-from satsym.symbolic.kinds.gyrostat import resolved
-from satsym.symbolic.kinds.rotation_models import Scaled
-from satsym.symbolic.model import symbols_of, t
+from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step, resolved
+from satsym.symbolic.dimension_algebra import Dimension, over
+from satsym.symbolic.kinds import stated_as
+from satsym.symbolic.kinds.derived import Derived, original_equations
+from satsym.symbolic.model import MaybeStep, Output, Problem, Requirement, symbols_of, t, variables_of
+from satsym.symbolic.motion import steps as motion
+
+ORIGINAL_TIME = sp.Symbol("original_t", real=True)
+SECOND: Dimension = {"[time]": sp.Integer(1)}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scaled(Derived):
+    """A motion in plain numbers: new states, controls and time, each a multiple of an old one.
+
+    States of the old motion that nothing else depends on may be left out.
+
+    Parameters
+    ----------
+    of
+        The model whose motion this is; without explicit time.
+    units
+        What the scaling brings along, such as the largest torque.
+    unit_of_time
+        The time that counts as one, of parameters and `units`.
+    scaled
+        Each new state and control, in terms of the old ones.
+    where
+        Parameters that have special values in this case, such as a moment of inertia equal to another one.
+    groups
+        Each parameter of this model, in terms of the old parameters and `units`.
+    along
+        Old states that are left out -> what they are along the motions meant, in terms of the others.
+    quantities
+        What is carried over besides, in terms of the old states, controls and quantities.
+    """
+
+    plain_time: ClassVar[bool] = True
+
+    units: tuple[Variable, ...] = ()
+    unit_of_time: sp.Expr
+    scaled: Mapping[sp.Symbol, sp.Expr]
+    where: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    groups: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    along: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    quantities: tuple[Output, ...] = ()
+
+    def brings(self) -> tuple[Variable, ...]:
+        """The units, all that the old motion has, and the derived quantities."""
+        return (*self.units, *variables_of(self.of), *(o.variable for o in self.quantities))
+
+    def steps(self) -> tuple[MaybeStep, ...]:
+        """New units, the same motion in them, and what holds for any motion."""
+        return (
+            original_equations,
+            scales,
+            original_states,
+            first_order,
+            quantities,
+            motion.reference,
+            motion.linearisation,
+        )
+
+    def carried(self) -> tuple[Output, ...]:
+        """Its own quantities and those of the old motion."""
+        return (*self.quantities, *self.of.carried())
+
+    def misfits(self) -> Iterator[str]:
+        """Variables without a scale, parameters that are no groups, states that the old motion has not."""
+        if set(self.scaled) != set(symbols_of((*self.states, *self.controls))):
+            yield "give a scale for each state and each control, no more, no less"
+        if set(self.groups) != set(symbols_of(self.parameters)):
+            yield "each parameter must be a group, no more, no less"
+        if not set(self.along) <= set(symbols_of(self.of.states)):
+            yield f"what is left out must be states of {self.of.name}"
+
+    def stated(self) -> Iterator[tuple[str, Iterable[Any], set[sp.Symbol]]]:
+        """Everything by the old variables."""
+        old = set(symbols_of((*self.of.states, *self.of.controls, *self.of.parameters)))
+        constants = set(symbols_of((*self.of.parameters, *self.units)))
+        yield "a special value", (*self.where.values(), *self.along.values()), old
+        yield "a scale", self.scaled.values(), old | constants
+        yield "the unit of time", [self.unit_of_time], constants
+        yield "a group", self.groups.values(), constants
+        known = old | constants | set(symbols_of(self.of.brings()))
+        yield "a quantity", [o.value for o in self.quantities], known
+
+    def names(self, problem: Problem | None) -> dict[str, str]:
+        """The new time, whose symbol the old one had, and rates by both."""
+        new = {f"d_{v.symbol}": rf"\frac{{d {v.latex}}}{{d\tau}}" for v in self.states}
+        return super().names(problem) | new | {"t": r"\tau", "t_f": r"\tau_f", ORIGINAL_TIME.name: "t"}
+
+    def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
+        """Of the old time and the old rates; what is stated must have those of its variables."""
+        known[ORIGINAL_TIME.name] = SECOND
+        require("the unit of time", self.unit_of_time, SECOND)
+        for state in symbols_of(self.of.states):
+            known[n.rate_of(state).name] = over(known[state.name], SECOND)
+        special = {**self.where, **self.along}
+        for what, stated in (("scaled", self.scaled), ("group", self.groups), ("special", special)):
+            for symbol, value in stated.items():
+                require(f"the {what} {symbol.name}", value, known[symbol.name])
+        for output in self.quantities:
+            require(f"the quantity {output.variable.symbol}", output.value, known[output.variable.symbol])
 
 
 def scales(so_far: Derivation) -> Step:
     """The new time, states and controls, and the special case that is meant."""
-    model = _scaled(so_far)
+    model = stated_as(Scaled, so_far)
     if any(e.rhs.has(t) for e in so_far.step("original_equations").equations):
         raise DerivationError(f"{model.name}: the motion of {model.of.name} depends on time; only others are scaled")
     special = {**model.where, **model.along}
     equations = [
-        Equation("time", t, rn.ORIGINAL_TIME / model.unit_of_time),
+        Equation("time", t, ORIGINAL_TIME / model.unit_of_time),
         *(Equation(new.name, new, sp.sympify(old)) for new, old in model.scaled.items()),
         *(Equation(symbol.name, symbol, sp.sympify(value)) for symbol, value in special.items()),
         *(Equation(symbol.name, symbol, sp.sympify(value)) for symbol, value in model.groups.items()),
@@ -39,7 +141,7 @@ def scales(so_far: Derivation) -> Step:
 
 def original_states(so_far: Derivation) -> Step:
     """The old variables in terms of the new ones."""
-    model = _scaled(so_far)
+    model = stated_as(Scaled, so_far)
     olds = [
         s
         for s in (*symbols_of(model.of.states), *symbols_of(model.of.controls))
@@ -61,7 +163,7 @@ def original_states(so_far: Derivation) -> Step:
 
 def first_order(so_far: Derivation) -> Step:
     """The same motion in the new variables and the new time."""
-    model = _scaled(so_far)
+    model = stated_as(Scaled, so_far)
     states = symbols_of(model.states)
     old_states = symbols_of(model.of.states)
     rates = dict(zip(old_states, so_far.rhs("original_equations"), strict=True))
@@ -109,7 +211,7 @@ def first_order(so_far: Derivation) -> Step:
 
 def quantities(so_far: Derivation) -> Step | None:
     """What is carried over besides."""
-    model = _scaled(so_far)
+    model = stated_as(Scaled, so_far)
     if not model.quantities:
         return None
     known = _carried(so_far)
@@ -151,7 +253,7 @@ def _special(model: Scaled) -> dict[sp.Symbol, sp.Expr]:
 
 def _in_new_variables(so_far: Derivation, expression: sp.Expr) -> sp.Expr:
     """An expression of old variables in the new ones, with the groups in place of the parameters they are made of."""
-    model = _scaled(so_far)
+    model = stated_as(Scaled, so_far)
     inverse = {e.lhs: e.rhs for e in so_far.step("original_states").equations}
     value = _reduced(expression.xreplace(_special(model)).xreplace(inverse))
     for group, meaning in model.groups.items():
@@ -170,10 +272,3 @@ def _in_new_variables(so_far: Derivation, expression: sp.Expr) -> sp.Expr:
 def _reduced(expression: sp.Expr) -> sp.Expr:
     """A rational function of the symbols and of their roots, without common factors."""
     return sp.powdenest(sp.factor(sp.cancel(sp.together(sp.expand(expression)))), force=True)
-
-
-def _scaled(so_far: Derivation) -> Scaled:
-    model = so_far.model
-    if not isinstance(model, Scaled):
-        raise TypeError(f"{model.name} is not stated as a scaled motion")
-    return model

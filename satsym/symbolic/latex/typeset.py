@@ -13,7 +13,7 @@ from satsym.symbolic.derivation import Derivation, Equation, Step
 from satsym.symbolic.latex.printer import Kind, Printer
 from satsym.symbolic.latex.terms import Term
 from satsym.symbolic.linear import notation as linear_notation
-from satsym.symbolic.model import Linearised, Newton, symbols_of
+from satsym.symbolic.model import symbols_of
 from satsym.symbolic.switching import notation as switching_notation
 
 
@@ -115,9 +115,6 @@ def _ranks(derivation: Derivation) -> dict[str, tuple[Kind, int]]:
     """Kind of each named thing, and its place in the order of declaration."""
     model = derivation.model
     states = symbols_of(model.states)
-    original = [v.symbol for v in model.of.states] if isinstance(model, Linearised) else []
-    accelerations = [n.acceleration_of(q).name for q in model.coordinates] if isinstance(model, Newton) else []
-    directions = list(model.directions) if isinstance(model, Newton) else []
     groups = [
         (Kind.CONSTANT, [n.HAMILTONIAN.name]),
         (Kind.CONSTANT, [switch(s).name for switch in (n.given, n.on_reference) for s in states]),
@@ -126,11 +123,11 @@ def _ranks(derivation: Derivation) -> dict[str, tuple[Kind, int]]:
         (Kind.CONSTANT, [] if derivation.problem else list(linear_notation.weights(model))),
         (Kind.CONSTANT, switching_notation.constants(model)),
         (Kind.COSTATE, [n.costate_of(s).name for s in states]),
-        (Kind.MOTION, [*original, *(s.name for s in states)]),
-        (Kind.ACCELERATION, accelerations),
+        (Kind.MOTION, [*(v.symbol for v in model.replaced_states()), *(s.name for s in states)]),
+        (Kind.ACCELERATION, model.accelerations()),
         (Kind.MOTION, [n.TIME.name]),
         (Kind.CONTROL, [v.symbol for v in model.controls]),
-        (Kind.DIRECTION, directions),
+        (Kind.DIRECTION, model.unit_vectors()),
     ]
     names = [(kind, name) for kind, group in groups for name in group]
     return {name: (kind, place) for place, (kind, name) in enumerate(names)}

@@ -1,8 +1,7 @@
-"""Dimensions of what linear models bring: outputs, deviations, eigenvalues, weights, and matrices of them all."""
+"""Dimensions of what linear models bring: outputs, eigenvalues, weights, and matrices of them all."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import sympy as sp
@@ -19,23 +18,15 @@ from satsym.symbolic.dimension_algebra import (
     written,
 )
 from satsym.symbolic.linear import notation as ln
-from satsym.symbolic.model import Linearised, Model, symbols_of
+from satsym.symbolic.model import Model, Requirement, symbols_of
 
 COST: Dimension = {"[cost]": sp.Integer(1)}
 """Of a running cost with weights of any unit: what is added to it must have the same."""
 
 
-def declare(known: dict[str, Dimension | None], model: Model, require: Callable[..., Dimension | None]) -> None:
-    """Enter the dimensions, and refuse outputs and deviations that have others than their variables."""
+def declare(known: dict[str, Dimension | None], model: Model, require: Requirement) -> None:
+    """Enter the dimensions of C and D, and refuse outputs that have others than their variables."""
     states, controls = symbols_of(model.states), symbols_of(model.controls)
-    second = known[n.TIME.name]
-    if isinstance(model, Linearised):
-        for state in symbols_of(model.of.states):
-            known[n.rate_of(state).name] = over(known[state.name], second)
-        for symbol, curve in model.about.items():
-            require(f"the reference of {symbol.name}", curve, known[symbol.name])
-        for symbol, deviation in model.deviations.items():
-            require(f"the deviation {symbol.name}", deviation, known[symbol.name])
     for output in model.outputs:
         name = output.variable.symbol
         require(f"the output {name}", output.value, known[name])

@@ -12,7 +12,6 @@ from satsym.spec import names
 from satsym.status import BadInput
 from satsym.symbolic.algebra import definitions_of
 from satsym.symbolic.derivation import Derivation, Equation, Step
-from satsym.symbolic.model import Newton
 from satsym.wording import shown, suggestion
 
 DECLARED = "declared"
@@ -105,10 +104,7 @@ def _declared(derivation: Derivation, name: str, address: str) -> Found:
     if problem:
         found |= {"L": problem.running_cost, "S": sp.sympify(problem.terminal_cost)}
         found |= {f"psi_{k}": value for k, value in enumerate(problem.terminal_constraints, start=1)}
-    if isinstance(model, Newton):
-        found["position"] = _column(model.position)
-        found |= {f"directions.{key}": _column(value) for key, value in model.directions.items()}
-        found |= {f"forces.{key.replace(' ', '_')}": _column(value) for key, value in model.forces.items()}
+    found |= {key: _column(value) if value.is_Matrix else value for key, value in model.declared().items()}
     if name not in found:
         raise BadInput(f"{shown(address)}: nothing declared is called so; {suggestion(name, found)}")
     return found[name]

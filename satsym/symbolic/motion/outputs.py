@@ -10,7 +10,7 @@ import sympy as sp
 from satsym.symbolic.algebra import definitions_of, tidy
 from satsym.symbolic.checks import Point, compare, numeric, partial
 from satsym.symbolic.derivation import Derivation, Equation, Step
-from satsym.symbolic.model import Linearised, symbols_of
+from satsym.symbolic.model import symbols_of
 
 
 def output_matrix(so_far: Derivation) -> Step | None:
@@ -19,7 +19,7 @@ def output_matrix(so_far: Derivation) -> Step | None:
     if not model.outputs:
         return None
     states, controls = symbols_of(model.states), symbols_of(model.controls)
-    linear, constants = isinstance(model, Linearised), definitions_of(model)
+    linear, constants = "deviations" in so_far, definitions_of(model)
     rest = dict.fromkeys((*states, *controls), sp.Integer(0)) if linear else {}
     values = [g.xreplace(constants) if linear else g for g in _outputs(so_far)]
     equations, pairs = [], []
@@ -46,7 +46,7 @@ def output_matrix(so_far: Derivation) -> Step | None:
 def output_equations(so_far: Derivation) -> Step | None:
     """The linear outputs y = C x + D u of a linear model."""
     model = so_far.model
-    if not isinstance(model, Linearised) or not model.outputs:
+    if "deviations" not in so_far or not model.outputs:
         return None
     states, controls = symbols_of(model.states), symbols_of(model.controls)
     names = symbols_of(o.variable for o in model.outputs)

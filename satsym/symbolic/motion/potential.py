@@ -12,10 +12,10 @@ import sympy as sp
 
 from satsym.symbolic.algebra import gradient, tidy
 from satsym.symbolic.checks import compare, numeric
-from satsym.symbolic.model import Newton
+from satsym.symbolic.model import Particle
 
 
-def potential(model: Newton, coast: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr | None:
+def potential(model: Particle, coast: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr | None:
     """The function of the coordinates whose negative gradient the generalised forces are.
 
     Parameters

@@ -1,4 +1,4 @@
-"""What holds for any first-order form: given rates, the reference, conserved quantities, linearisation."""
+"""What holds for any first-order form: the reference, conserved quantities, linearisation."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ import sympy as sp
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import definitions_of, tidy, total_derivative
 from satsym.symbolic.checks import compare, identity, numeric, partial
-from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
+from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
 from satsym.symbolic.kepler.attraction import inertial_velocity, uncontrolled_force
-from satsym.symbolic.model import FirstOrder, Newton, symbols_of, t
+from satsym.symbolic.model import Particle, symbols_of, t
 from satsym.symbolic.motion.potential import potential
 
 _PLANES = {
@@ -17,17 +17,6 @@ _PLANES = {
     3: {n.component_of_angular_momentum(n.AXES[k]).name: ((k + 1) % 3, (k + 2) % 3) for k in range(3)},
 }
 """Number of inertial components -> each angular momentum with the two components that a turn about its axis mixes."""
-
-
-def given_rates(so_far: Derivation) -> Step:
-    """The first-order form as the model states it."""
-    model = so_far.model
-    assert isinstance(model, FirstOrder)
-    states = symbols_of(model.states)
-    equations = tuple(Equation(s.name, n.rate_of(s), sp.sympify(model.rates[s])) for s in states)
-    declared = {t, *states, *symbols_of(model.controls), *symbols_of(model.parameters), *definitions_of(model)}
-    unknown = set().union(*(e.rhs.free_symbols for e in equations)) - declared
-    return Step("first_order", "given", equations, ("rates",), (Check("declared", float(len(unknown)), 0.0),))
 
 
 def reference(so_far: Derivation) -> Step | None:
@@ -53,8 +42,8 @@ def conserved(so_far: Derivation) -> Step | None:
     inertial axis changes has a constant angular momentum about it; one without explicit time has a constant energy,
     or Jacobi integral where the axes move.
     """
-    model = so_far.model
-    if not isinstance(model, Newton):
+    model = so_far.model.particle()
+    if model is None:
         return None
     coordinates = model.coordinates
     coast = dict.fromkeys(symbols_of(model.controls), sp.Integer(0))
@@ -89,7 +78,7 @@ def conserved(so_far: Derivation) -> Step | None:
     return Step("conserved", "symmetry", equations, ("position", "forces", "first_order"), (proof,))
 
 
-def _angular_momenta(model: Newton, force: sp.Matrix, velocity: sp.Matrix) -> dict[str, sp.Expr]:
+def _angular_momenta(model: Particle, force: sp.Matrix, velocity: sp.Matrix) -> dict[str, sp.Expr]:
     """r x v about each inertial axis about which the forces have no torque, in a plane about its normal."""
     place = model.position
     planes = _PLANES.get(len(place), {})

@@ -17,8 +17,8 @@ from satsym.symbolic.algebra import definitions_of
 from satsym.symbolic.checks import Point, compare, identity, numeric
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Conclusion, Derivation, Equation, Step
-from satsym.symbolic.kinds import rotation_notation as rn
 from satsym.symbolic.model import symbols_of, t
+from satsym.symbolic.principle import notation as pn
 
 
 def exact_differential(so_far: Derivation) -> Step | None:
@@ -35,10 +35,10 @@ def exact_differential(so_far: Derivation) -> Step | None:
     reduced = sp.factor(sp.expand(cost.xreplace(definitions_of(so_far.model)) - change))
     costates = [n.costate_of(x) for x in states]
     shifted = {
-        lam: rn.reduced_costate_of(x) - sign(problem) * g for lam, x, g in zip(costates, states, gradient, strict=True)
+        lam: pn.reduced_costate_of(x) - sign(problem) * g for lam, x, g in zip(costates, states, gradient, strict=True)
     }
     hamiltonian = so_far.equation("hamiltonian.H").rhs.xreplace(definitions_of(so_far.model))
-    other = sign(problem) * reduced + sum(rn.reduced_costate_of(x) * f for x, f in zip(states, rates, strict=True))
+    other = sign(problem) * reduced + sum(pn.reduced_costate_of(x) * f for x, f in zip(states, rates, strict=True))
     moving = {
         **dict(zip(states, rates, strict=True)),
         **dict(zip(costates, so_far.rhs("costate_equations"), strict=True)),
@@ -46,7 +46,7 @@ def exact_differential(so_far: Derivation) -> Step | None:
     sums = [lam + sign(problem) * g for lam, g in zip(costates, gradient, strict=True)]
     drift = [
         sum(sp.diff(total, v) * rate for v, rate in moving.items())
-        + sp.diff(other, x).xreplace({rn.reduced_costate_of(y): m for y, m in zip(states, sums, strict=True)})
+        + sp.diff(other, x).xreplace({pn.reduced_costate_of(y): m for y, m in zip(states, sums, strict=True)})
         for x, total in zip(states, sums, strict=True)
     ]
     checks = (
@@ -54,12 +54,12 @@ def exact_differential(so_far: Derivation) -> Step | None:
         identity("costates of the rest", [d.xreplace(definitions_of(so_far.model)) for d in drift]),
     )
     equations = (
-        Equation("potential", rn.POTENTIAL, potential),
-        Equation("reduced_cost", rn.REDUCED_COST, reduced),
+        Equation("potential", pn.POTENTIAL, potential),
+        Equation("reduced_cost", pn.REDUCED_COST, reduced),
         *(Equation(lam.name, lam, shifted[lam]) for lam in costates),
     )
     sources = ("first_order", "hamiltonian", "costate_equations")
-    said = (Conclusion("the control does not depend on it", {"potential": rn.POTENTIAL}),)
+    said = (Conclusion("the control does not depend on it", {"potential": pn.POTENTIAL}),)
     rule = worded("part of the cost is exact", problem)
     return Step("exact_differential", rule, equations, sources, checks, said)
 
@@ -89,10 +89,10 @@ def least_effort(so_far: Derivation) -> Step | None:
     equations = [
         Equation(control.name, control, sp.collect(law, t, sp.factor)),
         *(Equation(x.name, x, value) for x, value in zip(states, path, strict=True)),
-        Equation("cost", rn.LEAST_COST, spent),
-        Equation("from_rest", rn.answer_of(control), from_rest),
-        Equation("peak", rn.peak_of(control), sp.simplify(peak)),
-        Equation("cost_from_rest", rn.COST_FROM_REST, sp.factor(spent.xreplace(rest))),
+        Equation("cost", pn.LEAST_COST, spent),
+        Equation("from_rest", n.answer_of(control), from_rest),
+        Equation("peak", pn.peak_of(control), sp.simplify(peak)),
+        Equation("cost_from_rest", pn.COST_FROM_REST, sp.factor(spent.xreplace(rest))),
     ]
     value, slopes = numeric([*path, law]), a * path + b * law
     proofs = identity(

@@ -15,9 +15,8 @@ import sympy as sp
 from satsym.symbolic import notation as n
 from satsym.symbolic.checks import Point, compare, numeric
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
-from satsym.symbolic.kinds import rotation_notation as rn
-from satsym.symbolic.kinds.closed_loop import SECONDS, control_of, loop_of
-from satsym.symbolic.kinds.rotation_models import s
+from satsym.symbolic.kinds.closed_loop import names as cn
+from satsym.symbolic.kinds.closed_loop.names import SECONDS, control_of, loop_of, s
 from satsym.symbolic.model import symbols_of
 
 
@@ -29,7 +28,7 @@ def step_response(so_far: Derivation) -> Step:
     if any(impulse != 0 for impulse, _ in answers.values()):
         raise DerivationError(f"{model.name}: a state answers to a step with an impulse")
     special = [Equation(f"where_{symbol.name}", symbol, sp.sympify(value)) for symbol, value in model.where.items()]
-    equations = (*special, *(Equation(x.name, rn.answer_of(x), value) for x, (_, value) in answers.items()))
+    equations = (*special, *(Equation(x.name, n.answer_of(x), value) for x, (_, value) in answers.items()))
     check = _transformed(so_far, {x: (sp.Integer(0), value) for x, (_, value) in answers.items()})
     return Step("step_response", "back from transforms", equations, ("transfer_function", "critical_damping"), (check,))
 
@@ -40,8 +39,8 @@ def control_response(so_far: Derivation) -> Step:
     control = control_of(model)
     impulse, value = _answer(so_far, control)
     equations = (
-        Equation("impulse", rn.impulse_of(control), impulse),
-        Equation("smooth", rn.answer_of(control), value),
+        Equation("impulse", cn.impulse_of(control), impulse),
+        Equation("smooth", n.answer_of(control), value),
         Equation("initial", n.initial(control), value.xreplace({SECONDS: sp.Integer(0)})),
     )
     check = _transformed(so_far, {control: (impulse, value)})
@@ -70,13 +69,13 @@ def extremes(so_far: Derivation) -> Step:
     ends = {x: _in_the_end(value, damping) for x, value in answers.items()}
     starts = {x: value.subs(SECONDS, 0) for x, value in answers.items()}
     equations = [
-        Equation("first_reached", rn.FIRST_REACHED, first[0]),
-        Equation("highest_at", rn.HIGHEST_AT, highest[0]),
-        Equation("overshoot", rn.OVERSHOOT, overshoot),
+        Equation("first_reached", cn.FIRST_REACHED, first[0]),
+        Equation("highest_at", cn.HIGHEST_AT, highest[0]),
+        Equation("overshoot", cn.OVERSHOOT, overshoot),
         *(Equation(f"initial_{x.name}", n.initial(x), sp.simplify(value)) for x, value in starts.items()),
-        *(Equation(f"final_{x.name}", rn.final_of(x), sp.simplify(value)) for x, value in ends.items()),
-        Equation("total_impulse", rn.TOTAL_IMPULSE, total),
-        Equation("smooth_square", rn.SMOOTH_SQUARE, squared),
+        *(Equation(f"final_{x.name}", cn.final_of(x), sp.simplify(value)) for x, value in ends.items()),
+        Equation("total_impulse", cn.TOTAL_IMPULSE, total),
+        Equation("smooth_square", cn.SMOOTH_SQUARE, squared),
     ]
     functions = numeric([followed, control])
     found = numeric([first[0], highest[0], overshoot, total, squared, impulse, *turns])

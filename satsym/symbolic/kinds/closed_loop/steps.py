@@ -11,12 +11,9 @@ from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import tidy
 from satsym.symbolic.checks import Point, compare, identity, numeric, partial
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
-from satsym.symbolic.kinds import rotation_notation as rn
-from satsym.symbolic.kinds.rotation_models import COMMAND, ClosedLoop, s
+from satsym.symbolic.kinds.closed_loop import names as cn
+from satsym.symbolic.kinds.closed_loop.names import COMMAND, SECONDS, control_of, loop_of, s
 from satsym.symbolic.model import symbols_of
-
-SECONDS = sp.Symbol("t", positive=True)
-"""Time after the step."""
 
 
 def small_motions(so_far: Derivation) -> Step:
@@ -67,7 +64,7 @@ def transfer_functions(so_far: Derivation) -> Step:
     if len(solved) != 1:
         raise DerivationError(f"{model.name}: the loop has no transfer functions")
     ratios = {x: _as_ratio(solved[0][x] / COMMAND) for x in unknown}
-    equations = tuple(Equation(x.name, rn.transfer_to(x), ratio) for x, ratio in ratios.items())
+    equations = tuple(Equation(x.name, cn.transfer_to(x), ratio) for x, ratio in ratios.items())
     system = sp.Matrix(conditions)
     matrix, right = numeric(list(system.jacobian(unknown))), numeric(list(-system.jacobian([COMMAND])))
     found = numeric(list(ratios.values()))
@@ -90,9 +87,9 @@ def poles_and_zeros(so_far: Derivation) -> Step:
     poles, zeros = (sorted(sp.roots(sp.Poly(e, s)), key=str) for e in (denominator, numerator))
     if not 0 < len(poles) <= 2:
         raise DerivationError(f"{model.name}: the loop must be of second order to be critically damped")
-    equations = [Equation("characteristic_polynomial", rn.POLYNOMIAL, polynomial)]
-    equations += [Equation(f"pole_{k}", rn.pole(k), tidy(sp.simplify(p))) for k, p in enumerate(poles, 1)]
-    equations += [Equation(f"zero_{k}", rn.zero(k), sp.simplify(z)) for k, z in enumerate(zeros, 1)]
+    equations = [Equation("characteristic_polynomial", cn.POLYNOMIAL, polynomial)]
+    equations += [Equation(f"pole_{k}", cn.pole(k), tidy(sp.simplify(p))) for k, p in enumerate(poles, 1)]
+    equations += [Equation(f"zero_{k}", cn.zero(k), sp.simplify(z)) for k, z in enumerate(zeros, 1)]
     vanish = [denominator.xreplace({s: p}) for p in poles] + [numerator.xreplace({s: z}) for z in zeros]
     proof = identity("roots of both polynomials", vanish)
     return Step("poles_and_zeros", "roots", tuple(equations), ("transfer_function",), (proof,))
@@ -161,17 +158,3 @@ def _as_ratio(expression: sp.Expr) -> sp.Expr:
 
 def _square(entries: list[Any], size: int) -> Any:
     return mp.matrix([entries[k * size : (k + 1) * size] for k in range(size)])
-
-
-def control_of(model: ClosedLoop) -> sp.Symbol:
-    """The control that the law takes the place of."""
-    (control,) = symbols_of(model.of.controls)
-    return control
-
-
-def loop_of(so_far: Derivation) -> ClosedLoop:
-    """The model, which is stated as a closed loop."""
-    model = so_far.model
-    if not isinstance(model, ClosedLoop):
-        raise TypeError(f"{model.name} is not stated as a closed loop")
-    return model

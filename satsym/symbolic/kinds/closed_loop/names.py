@@ -1,0 +1,85 @@
+"""Symbols of closed loops and of their answers to a step, and how they are typeset."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+import sympy as sp
+
+from satsym.symbolic.derivation import Derivation
+from satsym.symbolic.model import symbols_of
+from satsym.symbolic.notation import answer_of, initial
+
+if TYPE_CHECKING:
+    from satsym.symbolic.kinds.closed_loop.model import ClosedLoop
+
+s = sp.Symbol("s")
+"""Differentiation with respect to time, or the variable of Laplace transforms."""
+COMMAND = sp.Symbol("command", real=True)
+"""What a closed loop is told to follow."""
+SECONDS = sp.Symbol("t", positive=True)
+"""Time after the step."""
+POLYNOMIAL = sp.Symbol("closed_loop_polynomial", real=True)
+FIRST_REACHED, HIGHEST_AT = sp.Symbol("first_reached", real=True), sp.Symbol("highest_at", real=True)
+OVERSHOOT, TOTAL_IMPULSE = sp.Symbol("overshoot", real=True), sp.Symbol("total_impulse", real=True)
+SMOOTH_SQUARE = sp.Symbol("smooth_square", real=True)
+_FIXED = {
+    COMMAND: "c",
+    s: "s",
+    POLYNOMIAL: r"\Delta(s)",
+    FIRST_REACHED: "t_1",
+    HIGHEST_AT: "t_2",
+    OVERSHOOT: "o",
+    TOTAL_IMPULSE: r"\mathcal{I}",
+    SMOOTH_SQUARE: r"\mathcal{Q}",
+}
+
+
+def transfer_to(variable: sp.Symbol) -> sp.Symbol:
+    """The symbol for the transfer function from the command to a state or the control."""
+    return sp.Symbol(f"transfer_{variable.name}", real=True)
+
+
+def impulse_of(control: sp.Symbol) -> sp.Symbol:
+    """The symbol for the time integral of a control at the very moment of the step."""
+    return sp.Symbol(f"{control.name}_impulse", real=True)
+
+
+def final_of(state: sp.Symbol) -> sp.Symbol:
+    """The symbol for what a state tends to."""
+    return sp.Symbol(f"{state.name}_final", real=True)
+
+
+def pole(k: int) -> sp.Symbol:
+    """The symbol for a pole."""
+    return sp.Symbol(f"pole_{k}", real=True)
+
+
+def zero(k: int) -> sp.Symbol:
+    """The symbol for a zero."""
+    return sp.Symbol(f"zero_{k}", real=True)
+
+
+def names(model: ClosedLoop) -> dict[str, str]:
+    """Name -> LaTeX of all of them."""
+    found = {symbol.name: latex for symbol, latex in _FIXED.items()}
+    found |= {pole(k).name: f"s_{k}" for k in (1, 2)} | {zero(k).name: f"z_{k}" for k in (1, 2)}
+    variables = (*model.states, *model.of.controls)
+    for v, symbol in zip(variables, symbols_of(variables), strict=True):
+        found[transfer_to(symbol).name] = rf"G_{{{v.latex}}}(s)"
+        found[answer_of(symbol).name] = rf"{v.latex}(t)"
+        found[final_of(symbol).name] = rf"{v.latex}(\infty)"
+        found[initial(symbol).name] = rf"{v.latex}(0^+)"
+        found[impulse_of(symbol).name] = rf"\int_{{0^-}}^{{0^+}} {v.latex} \,dt"
+    return found
+
+
+def control_of(model: ClosedLoop) -> sp.Symbol:
+    """The control that the law takes the place of."""
+    (control,) = symbols_of(model.of.controls)
+    return control
+
+
+def loop_of(so_far: Derivation) -> ClosedLoop:
+    """The model; its class, which lists the steps, is beyond what they import."""
+    return cast("ClosedLoop", so_far.model)
