@@ -72,6 +72,21 @@ def compare(
     return Check(claim, _largest(errors), limit)
 
 
+def first_order_at_zero(
+    claim: str, exact: Sequence[sp.Expr], linear: Sequence[sp.Expr], moving: Sequence[sp.Symbol]
+) -> Check:
+    """Check linear expressions by the exact ones along a ray through zero, differentiated there."""
+    function, found = numeric(exact), numeric(linear)
+
+    def sides(point: Point) -> tuple[list[Any], list[Any]]:
+        def along(scale: Any) -> list[Any]:
+            return function({**point, **{s: point[s] * scale for s in moving}})
+
+        return found(point), [mp.diff(lambda scale, k=k: along(scale)[k], 0) for k in range(len(exact))]
+
+    return compare(claim, {*moving}.union(*(f.free_symbols for f in exact)), sides)
+
+
 def never_below(
     claim: str, symbols: Iterable[sp.Symbol], margins: Callable[[Point, random.Random], Iterable[Any]]
 ) -> Check:

@@ -50,20 +50,10 @@ class Output:
 
 @dataclass(frozen=True)
 class Line:
-    """One equation of a statement.
+    """One equation of a statement, whose right-hand side may be a vector: a column.
 
-    Attributes
-    ----------
-    thing
-        What steps that follow from it call it.
-    left
-        A symbol, or LaTeX.
-    right
-        An expression, or a vector as a column.
-    address
-        Its name among the declared things; empty for the number within `thing`.
-    index
-        A word at the foot of `left`.
+    Steps that follow from it call it `thing`; `address` is its name among the declared things where they are not just
+    counted; `left` is a symbol or LaTeX, with a word `index` at its foot.
     """
 
     thing: str
@@ -185,12 +175,7 @@ class Model:
     def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
         """Enter the dimensions of what the steps name, and refuse what is stated with others than it needs.
 
-        Parameters
-        ----------
-        known
-            Name of a symbol -> its dimension; variables, time, rates and initial values are in it.
-        require
-            What is meant, an expression, and the dimension it needs (if that is known) -> the dimension it has.
+        Those of variables, time, rates and initial values are known.
         """
 
     def statement(self) -> tuple[Paragraph, ...]:

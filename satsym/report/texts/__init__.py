@@ -48,7 +48,8 @@ class Texts:
 
     def with_own(self, own: Mapping[str, Mapping[str, str]]) -> Texts:
         """These texts and some more, table by table; where both have a key, the others count."""
-        return Texts(self.language, {**self.tables, **{name: {**self.tables.get(name, {}), **own[name]} for name in own}})
+        merged = {name: {**self.tables.get(name, {}), **table} for name, table in own.items()}
+        return Texts(self.language, {**self.tables, **merged})
 
     def listed(self, items: list[str]) -> str:
         """Items as an enumeration: a, b and c."""

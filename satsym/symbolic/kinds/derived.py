@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
 
+import sympy as sp
+
+from satsym.spec import Variable
 from satsym.symbolic import notation as n
-from satsym.symbolic.derivation import Derivation, Step
+from satsym.symbolic.checks import Point, compare, numeric
+from satsym.symbolic.derivation import Check, Derivation, Equation, Step
 from satsym.symbolic.dimension_algebra import Dimension, over
 from satsym.symbolic.dimensions import AGREEMENT
-from satsym.symbolic.model import Model, Paragraph, Problem, Requirement, symbols_of
+from satsym.symbolic.model import Model, Paragraph, Problem, Requirement, symbols_of, variables_of
+
+SECOND: Dimension = {"[time]": sp.Integer(1)}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,12 +41,49 @@ class Derived(Model):
 
     def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
         """Of the rates of change of the old states."""
+        second = SECOND if self.plain_time else known[n.TIME.name]
         for state in symbols_of(self.of.states):
-            known[n.rate_of(state).name] = over(known[state.name], known[n.TIME.name])
+            known[n.rate_of(state).name] = over(known[state.name], second)
 
     def statement(self) -> tuple[Paragraph, ...]:
         """Which model's motion it is."""
         return (Paragraph("motion_of", of=self.of),)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpecialCase(Derived):
+    """Such a motion in a special case.
+
+    Parameters
+    ----------
+    where
+        Parameters that have special values, such as a moment of inertia equal to another one.
+    along
+        Old states that are left out -> what they are along the motions meant, in terms of the others.
+    """
+
+    where: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    along: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+
+    def brings(self) -> tuple[Variable, ...]:
+        """All that the old motion has."""
+        return variables_of(self.of)
+
+    def stated(self) -> Iterator[tuple[str, Iterable[Any], set[sp.Symbol]]]:
+        """Special values, by the variables of the motion."""
+        old = set(symbols_of((*self.of.states, *self.of.controls, *self.of.parameters)))
+        yield "a special value", (*self.where.values(), *self.along.values()), old
+
+    def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
+        """Of the rates of the old states; special values must have those of their variables."""
+        super().enter_dimensions(known, require)
+        for symbol, value in {**self.where, **self.along}.items():
+            require(f"the special {symbol.name}", value, known[symbol.name])
+
+    def special(self) -> dict[sp.Symbol, sp.Expr]:
+        """Special parameters and states, the former put into the latter."""
+        where = {s: sp.sympify(e) for s, e in self.where.items()}
+        return {**where, **{s: sp.sympify(e).xreplace(where) for s, e in self.along.items()}}
 
 
 def original_equations(so_far: Derivation) -> Step:
@@ -47,3 +92,15 @@ def original_equations(so_far: Derivation) -> Step:
     step = so_far.original.step("first_order")
     checks = tuple(c for c in step.checks if c.claim != AGREEMENT)  # every step gets that one anyway
     return Step("original_equations", "taken over", step.equations, ("motion",), checks)
+
+
+def there_and_back(stated: Mapping[sp.Symbol, sp.Expr], solved: Sequence[Equation]) -> Check:
+    """Check new variables, stated by old ones, that are solved for these."""
+    values = [sp.sympify(e) for e in stated.values()]
+    there, back = numeric(values), numeric([e.rhs for e in solved])
+
+    def sides(point: Point) -> tuple[list[Any], list[Any]]:
+        old = dict(zip((e.lhs for e in solved), back(point), strict=True))
+        return there({**point, **old}), [point[s] for s in stated]
+
+    return compare("there and back", {*stated}.union(*(e.free_symbols for e in values)), sides)

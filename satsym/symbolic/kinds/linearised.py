@@ -16,13 +16,14 @@ import sympy as sp
 from satsym.spec import Variable
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import constants_of, definitions_of, tidy, total_derivative
-from satsym.symbolic.checks import Point, compare, identity, numeric, partial
+from satsym.symbolic.checks import Point, compare, first_order_at_zero, identity, numeric
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
 from satsym.symbolic.dimension_algebra import Dimension
 from satsym.symbolic.kinds import stated_as
-from satsym.symbolic.kinds.derived import Derived, original_equations
+from satsym.symbolic.kinds.derived import Derived, original_equations, there_and_back
 from satsym.symbolic.linear.notation import results
 from satsym.symbolic.model import Line, MaybeStep, Paragraph, Problem, Requirement, symbols_of, t
+from satsym.symbolic.motion.jacobians import jacobians
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,16 +57,8 @@ class Linearised(Derived):
 
     def motion_steps(self) -> tuple[MaybeStep, ...]:
         """The reference, the change of variables, the exact equations and their first order."""
-        return (
-            original_equations,
-            reference_condition,
-            reference,
-            deviations,
-            original_states,
-            deviation_equations,
-            linearisation,
-            first_order,
-        )
+        exact = (original_equations, reference_condition, reference, deviations, original_states, deviation_equations)
+        return (*exact, linearisation, first_order)
 
     def replaced_states(self) -> tuple[Variable, ...]:
         """All states of the motion."""
@@ -205,13 +198,7 @@ def original_states(so_far: Derivation) -> Step:
     if len(fitting) != 1:
         raise DerivationError(f"{model.name}: the deviations cannot be solved for the variables of {model.of.name}")
     equations = tuple(Equation(o.name, o, tidy(fitting[0][o])) for o in old)
-    there, back = numeric(list(stated.values())), numeric([e.rhs for e in equations])
-
-    def sides(point: Point) -> tuple[list[Any], list[Any]]:
-        return there({**point, **dict(zip(old, back(point), strict=True))}), [point[s] for s in stated]
-
-    symbols = set().union(*(d.free_symbols for d in stated.values())) | set(stated)
-    check = compare("there and back", symbols, sides)
+    check = there_and_back(stated, equations)
     return Step("original_states", "solve for original states", equations, ("deviations",), (check,))
 
 
@@ -246,27 +233,13 @@ def linearisation(so_far: Derivation) -> Step:
     """A and B: the exact equations differentiated by the deviations, at zero."""
     model = stated_as(Linearised, so_far)
     states, controls = symbols_of(model.states), symbols_of(model.controls)
-    exact, constants = so_far.rhs("deviation_equations"), definitions_of(model)
+    constants = definitions_of(model)
+    exact = [f.xreplace(constants) for f in so_far.rhs("deviation_equations")]
     rest = dict.fromkeys((*states, *controls), sp.Integer(0))
-    equations, pairs = [], []
-    for letter, columns in (("A", states), ("B", controls)):
-        for row, state in enumerate(states):
-            for column in columns:
-                entry = tidy(sp.simplify(sp.diff(exact[row], column).xreplace(rest).xreplace(constants)))
-                name = f"{letter}_{state.name}_{column.name}"
-                equations.append(Equation(name, sp.Symbol(name, real=True), entry))
-                pairs.append((row, column, entry))
-    rates = numeric([f.xreplace(constants) for f in exact])
-    entries = numeric([entry for *_, entry in pairs])
-
-    def sides(point: Point) -> tuple[list[Any], list[Any]]:
-        there = {**point, **rest}
-        return entries(there), [partial(rates, there, column)[row] for row, column, _ in pairs]
-
-    symbols = {*rest}.union(*(f.xreplace(constants).free_symbols for f in exact))
-    checks = (compare("numeric derivative", symbols, sides), _transformed(so_far, [entry for *_, entry in pairs]))
+    equations, check = jacobians(exact, states, {"A": states, "B": controls}, lambda e: tidy(sp.simplify(e)), rest)
+    checks = (check, _transformed(so_far, [e.rhs for e in equations]))
     sources = ("deviation_equations", "definitions")
-    return Step("linearisation", "differentiate at zero", tuple(equations), sources, checks)
+    return Step("linearisation", "differentiate at zero", equations, sources, checks)
 
 
 def first_order(so_far: Derivation) -> Step:
@@ -280,17 +253,7 @@ def first_order(so_far: Derivation) -> Step:
     equations = tuple(Equation(s.name, n.rate_of(s), f) for s, f in zip(states, rates, strict=True))
     constants = definitions_of(model)
     exact = [f.xreplace(constants) for f in so_far.rhs("deviation_equations")]
-    function, found, moving = numeric(exact), numeric(list(rates)), (*states, *controls)
-
-    def sides(point: Point) -> tuple[list[Any], list[Any]]:
-        """The exact rates along a ray through zero, differentiated there."""
-
-        def along(scale: Any) -> list[Any]:
-            return function({**point, **{s: point[s] * scale for s in moving}})
-
-        return found(point), [mp.diff(lambda scale, k=k: along(scale)[k], 0) for k in range(len(exact))]
-
-    check = compare("first order of the exact equations", {*moving}.union(*(f.free_symbols for f in exact)), sides)
+    check = first_order_at_zero("first order of the exact equations", exact, list(rates), (*states, *controls))
     return Step("first_order", "drop higher orders", equations, ("linearisation",), (check,))
 
 

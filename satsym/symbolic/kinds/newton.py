@@ -27,15 +27,11 @@ class Newton(Particle):
 
     Parameters
     ----------
-    coordinates
-        Each generalised coordinate with the state that is its rate of change.
     directions
         Name -> unit vector (inertial components) along which vectors are resolved; the name is that of a
         symbol such as ``e_r``. They must be orthonormal, which is checked.
-    position
-        Position vector, inertial components, in terms of the coordinates.
-    forces
-        Name -> force vector per unit mass, inertial components.
+    coordinates, position, forces
+        See :class:`~satsym.symbolic.model.Particle`.
     """
 
     directions: Mapping[str, sp.Matrix]
@@ -56,16 +52,7 @@ class Newton(Particle):
 
     def motion_steps(self) -> tuple[MaybeStep, ...]:
         """By differentiation and projection."""
-        return (
-            unit_vectors,
-            position,
-            velocity,
-            acceleration,
-            forces,
-            newton,
-            equations_of_motion,
-            first_order,
-        )
+        return (unit_vectors, position, velocity, acceleration, forces, newton, equations_of_motion, first_order)
 
     def misfits(self) -> Iterator[str]:
         """States that are no coordinates, vectors of different sizes."""

@@ -14,18 +14,17 @@ from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import definitions_of, tidy
 from satsym.symbolic.checks import Point, compare, identity, numeric
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step, resolved
-from satsym.symbolic.dimension_algebra import Dimension, over
+from satsym.symbolic.dimension_algebra import Dimension
 from satsym.symbolic.kinds import stated_as
-from satsym.symbolic.kinds.derived import Derived, original_equations
-from satsym.symbolic.model import MaybeStep, Output, Problem, Requirement, symbols_of, t, variables_of
+from satsym.symbolic.kinds.derived import SECOND, SpecialCase, original_equations, there_and_back
+from satsym.symbolic.model import MaybeStep, Output, Problem, Requirement, symbols_of, t
 from satsym.symbolic.motion import steps as motion
 
 ORIGINAL_TIME = sp.Symbol("original_t", real=True)
-SECOND: Dimension = {"[time]": sp.Integer(1)}
 
 
 @dataclass(frozen=True, kw_only=True)
-class Scaled(Derived):
+class Scaled(SpecialCase):
     """A motion in plain numbers: new states, controls and time, each a multiple of an old one.
 
     States of the old motion that nothing else depends on may be left out.
@@ -40,14 +39,12 @@ class Scaled(Derived):
         The time that counts as one, of parameters and `units`.
     scaled
         Each new state and control, in terms of the old ones.
-    where
-        Parameters that have special values in this case, such as a moment of inertia equal to another one.
     groups
         Each parameter of this model, in terms of the old parameters and `units`.
-    along
-        Old states that are left out -> what they are along the motions meant, in terms of the others.
     quantities
         What is carried over besides, in terms of the old states, controls and quantities.
+    where, along
+        See :class:`~satsym.symbolic.kinds.derived.SpecialCase`.
     """
 
     plain_time: ClassVar[bool] = True
@@ -55,26 +52,17 @@ class Scaled(Derived):
     units: tuple[Variable, ...] = ()
     unit_of_time: sp.Expr
     scaled: Mapping[sp.Symbol, sp.Expr]
-    where: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     groups: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
-    along: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     quantities: tuple[Output, ...] = ()
 
     def brings(self) -> tuple[Variable, ...]:
         """The units, all that the old motion has, and the derived quantities."""
-        return (*self.units, *variables_of(self.of), *(o.variable for o in self.quantities))
+        return (*self.units, *super().brings(), *(o.variable for o in self.quantities))
 
     def steps(self) -> tuple[MaybeStep, ...]:
         """New units, the same motion in them, and what holds for any motion."""
-        return (
-            original_equations,
-            scales,
-            original_states,
-            first_order,
-            quantities,
-            motion.reference,
-            motion.linearisation,
-        )
+        own = (original_equations, scales, original_states, first_order, quantities)
+        return (*own, motion.reference, motion.linearisation)
 
     def carried(self) -> tuple[Output, ...]:
         """Its own quantities and those of the old motion."""
@@ -93,7 +81,7 @@ class Scaled(Derived):
         """Everything by the old variables."""
         old = set(symbols_of((*self.of.states, *self.of.controls, *self.of.parameters)))
         constants = set(symbols_of((*self.of.parameters, *self.units)))
-        yield "a special value", (*self.where.values(), *self.along.values()), old
+        yield from super().stated()
         yield "a scale", self.scaled.values(), old | constants
         yield "the unit of time", [self.unit_of_time], constants
         yield "a group", self.groups.values(), constants
@@ -109,10 +97,8 @@ class Scaled(Derived):
         """Of the old time and the old rates; what is stated must have those of its variables."""
         known[ORIGINAL_TIME.name] = SECOND
         require("the unit of time", self.unit_of_time, SECOND)
-        for state in symbols_of(self.of.states):
-            known[n.rate_of(state).name] = over(known[state.name], SECOND)
-        special = {**self.where, **self.along}
-        for what, stated in (("scaled", self.scaled), ("group", self.groups), ("special", special)):
+        super().enter_dimensions(known, require)
+        for what, stated in (("scaled", self.scaled), ("group", self.groups)):
             for symbol, value in stated.items():
                 require(f"the {what} {symbol.name}", value, known[symbol.name])
         for output in self.quantities:
@@ -151,13 +137,7 @@ def original_states(so_far: Derivation) -> Step:
     if len(found) != 1 or set(found[0]) != set(olds):
         raise DerivationError(f"{model.name}: the scaled variables cannot be solved for those of {model.of.name}")
     equations = tuple(Equation(o.name, o, found[0][o]) for o in olds)
-    there, back = numeric([sp.sympify(e) for e in model.scaled.values()]), numeric([e.rhs for e in equations])
-
-    def sides(point: Point) -> tuple[list[Any], list[Any]]:
-        return there({**point, **dict(zip(olds, back(point), strict=True))}), [point[s] for s in model.scaled]
-
-    symbols = {*model.scaled}.union(*(sp.sympify(e).free_symbols for e in model.scaled.values()))
-    check = compare("there and back", symbols, sides)
+    check = there_and_back(model.scaled, equations)
     return Step("original_states", "solve for original states", equations, ("scales",), (check,))
 
 
@@ -173,7 +153,7 @@ def first_order(so_far: Derivation) -> Step:
         change = model.unit_of_time * sum(sp.diff(value, x) * rates[x] for x in old_states if value.has(x))
         equations.append(Equation(state.name, n.rate_of(state), _in_new_variables(so_far, change)))
     inverse = {e.lhs: e.rhs for e in so_far.step("original_states").equations}
-    special = _special(model)
+    special = model.special()
     values = [sp.sympify(model.scaled[s]) for s in states]
     slopes = [rates[x].xreplace(special) for x in old_states]
     groups = {g: sp.sympify(e).xreplace(special) for g, e in model.groups.items()}
@@ -219,10 +199,10 @@ def quantities(so_far: Derivation) -> Step | None:
     for output in model.quantities:
         (symbol,) = symbols_of((output.variable,))
         value = sp.sympify(output.value).xreplace(known)
-        exact.append(value.xreplace(_special(model)))
+        exact.append(value.xreplace(model.special()))
         equations.append(Equation(symbol.name, symbol, _in_new_variables(so_far, value)))
     inverse = {e.lhs: e.rhs for e in so_far.step("original_states").equations}
-    groups = {g: sp.sympify(e).xreplace(_special(model)) for g, e in model.groups.items()}
+    groups = {g: sp.sympify(e).xreplace(model.special()) for g, e in model.groups.items()}
     back, group = numeric(list(inverse.values())), numeric(list(groups.values()))
     old, new = numeric(exact), numeric([e.rhs for e in equations])
 
@@ -245,19 +225,13 @@ def _carried(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
     return resolved(original.step("quantities").equations)
 
 
-def _special(model: Scaled) -> dict[sp.Symbol, sp.Expr]:
-    """The special case: parameters with special values, and states that are left out."""
-    where = {s: sp.sympify(e) for s, e in model.where.items()}
-    return {**where, **{s: sp.sympify(e).xreplace(where) for s, e in model.along.items()}}
-
-
 def _in_new_variables(so_far: Derivation, expression: sp.Expr) -> sp.Expr:
     """An expression of old variables in the new ones, with the groups in place of the parameters they are made of."""
     model = stated_as(Scaled, so_far)
     inverse = {e.lhs: e.rhs for e in so_far.step("original_states").equations}
-    value = _reduced(expression.xreplace(_special(model)).xreplace(inverse))
+    value = _reduced(expression.xreplace(model.special()).xreplace(inverse))
     for group, meaning in model.groups.items():
-        meant = sp.sympify(meaning).xreplace(_special(model))
+        meant = sp.sympify(meaning).xreplace(model.special())
         for parameter in sorted(value.free_symbols & meant.free_symbols, key=lambda s: s.name):
             # one that the group is proportional to, or to whose inverse
             if sp.diff(meant * parameter, parameter) == 0:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-import mpmath as mp
 import sympy as sp
 
 from satsym.symbolic.algebra import definitions_of, tidy
-from satsym.symbolic.checks import Point, compare, numeric, partial
+from satsym.symbolic.checks import first_order_at_zero
 from satsym.symbolic.derivation import Derivation, Equation, Step
 from satsym.symbolic.model import symbols_of
+from satsym.symbolic.motion.jacobians import jacobians
 
 
 def output_matrix(so_far: Derivation) -> Step | None:
@@ -22,25 +20,11 @@ def output_matrix(so_far: Derivation) -> Step | None:
     linear, constants = "deviations" in so_far, definitions_of(model)
     rest = dict.fromkeys((*states, *controls), sp.Integer(0)) if linear else {}
     values = [g.xreplace(constants) if linear else g for g in _outputs(so_far)]
-    equations, pairs = [], []
-    for letter, columns in (("C", states), ("D", controls)):
-        for row, output in enumerate(symbols_of(o.variable for o in model.outputs)):
-            for column in columns:
-                entry = tidy(sp.simplify(sp.diff(values[row], column).xreplace(rest)))
-                name = f"{letter}_{output.name}_{column.name}"
-                equations.append(Equation(name, sp.Symbol(name, real=True), entry))
-                pairs.append((row, column, entry))
-    functions, entries = numeric(values), numeric([entry for *_, entry in pairs])
-
-    def sides(point: Point) -> tuple[list[Any], list[Any]]:
-        there = {**point, **rest}
-        return entries(there), [partial(functions, there, column)[row] for row, column, _ in pairs]
-
-    symbols = {*states, *controls}.union(*(g.free_symbols for g in values))
-    check = compare("numeric derivative", symbols, sides)
+    names = symbols_of(o.variable for o in model.outputs)
+    equations, check = jacobians(values, names, {"C": states, "D": controls}, lambda e: tidy(sp.simplify(e)), rest)
     rule = "differentiate outputs at zero" if linear else "differentiate outputs"
     sources = ("outputs", "original_states") if linear else ("outputs",)
-    return Step("output_matrix", rule, tuple(equations), sources, (check,))
+    return Step("output_matrix", rule, equations, sources, (check,))
 
 
 def output_equations(so_far: Derivation) -> Step | None:
@@ -56,18 +40,7 @@ def output_equations(so_far: Derivation) -> Step | None:
     found = c * sp.Matrix(states) + (d * sp.Matrix(controls) if controls else sp.zeros(len(names), 1))
     equations = tuple(Equation(y.name, y, value) for y, value in zip(names, found, strict=True))
     exact = [g.xreplace(definitions_of(model)) for g in _outputs(so_far)]
-    function, linear, moving = numeric(exact), numeric(list(found)), (*states, *controls)
-
-    def sides(point: Point) -> tuple[list[Any], list[Any]]:
-        """The exact outputs along a ray through zero, differentiated there."""
-
-        def along(scale: Any) -> list[Any]:
-            return function({**point, **{s: point[s] * scale for s in moving}})
-
-        return linear(point), [mp.diff(lambda scale, k=k: along(scale)[k], 0) for k in range(len(exact))]
-
-    symbols = {*moving}.union(*(g.free_symbols for g in exact))
-    check = compare("first order of the exact outputs", symbols, sides)
+    check = first_order_at_zero("first order of the exact outputs", exact, list(found), (*states, *controls))
     return Step("output_equations", "drop higher orders of outputs", equations, ("output_matrix",), (check,))
 
 

@@ -6,10 +6,11 @@ import sympy as sp
 
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import definitions_of, tidy, total_derivative
-from satsym.symbolic.checks import compare, identity, numeric, partial
+from satsym.symbolic.checks import identity
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
 from satsym.symbolic.kepler.attraction import inertial_velocity, uncontrolled_force
 from satsym.symbolic.model import Particle, symbols_of, t
+from satsym.symbolic.motion.jacobians import jacobians
 from satsym.symbolic.motion.potential import potential
 
 _PLANES = {
@@ -92,20 +93,6 @@ def _angular_momenta(model: Particle, force: sp.Matrix, velocity: sp.Matrix) -> 
 def linearisation(so_far: Derivation) -> Step:
     """Jacobians A = f_x and B = f_u along any motion."""
     model = so_far.model
-    states, controls = symbols_of(model.states), symbols_of(model.controls)
-    f = so_far.rhs("first_order")
-    equations, pairs = [], []
-    for letter, columns in (("A", states), ("B", controls)):
-        for row, state in enumerate(states):
-            for column in columns:
-                entry = tidy(sp.diff(f[row], column))
-                name = f"{letter}_{state.name}_{column.name}"
-                equations.append(Equation(name, sp.Symbol(name, real=True), entry))
-                pairs.append((row, column, entry))
-    rates, entries = numeric(list(f)), numeric([entry for *_, entry in pairs])
-    check = compare(
-        "numeric derivative",
-        f.free_symbols | {*states, *controls},
-        lambda point: (entries(point), [partial(rates, point, column)[row] for row, column, _ in pairs]),
-    )
-    return Step("linearisation", "differentiate rates", tuple(equations), ("first_order",), (check,))
+    states, rates = symbols_of(model.states), list(so_far.rhs("first_order"))
+    equations, check = jacobians(rates, states, {"A": states, "B": symbols_of(model.controls)}, tidy, {})
+    return Step("linearisation", "differentiate rates", equations, ("first_order",), (check,))
