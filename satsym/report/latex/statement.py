@@ -165,7 +165,6 @@ def _rows(line: Line, typeset: Typesetter) -> list[Row]:
     """An equation; several where a vector is too wide."""
     left = line.left if isinstance(line.left, str) else typeset.symbol(line.left.name)
     left += rf"_{{\text{{{tex.escape(line.index)}}}}}" if line.index else ""
-
     if line.components:
         return _vector(left, [typeset.terms(component) for component in line.components])
     return [Row("", plain(left), typeset.terms(line.right))]

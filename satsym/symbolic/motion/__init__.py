@@ -1,1 +1,1 @@
-"""What follows from a motion whatever its kind: rates, the reference, conserved quantities, outputs."""
+"""What follows from a motion whatever its kind: the reference, conserved quantities, outputs."""

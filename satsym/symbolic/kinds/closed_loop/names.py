@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 s = sp.Symbol("s")
 """Differentiation with respect to time, or the variable of Laplace transforms."""
 COMMAND = sp.Symbol("command", real=True)
-"""What a closed loop is told to follow."""
+"""What a closed loop is to follow."""
 SECONDS = sp.Symbol("t", positive=True)
 """Time after the step."""
 POLYNOMIAL = sp.Symbol("closed_loop_polynomial", real=True)
