@@ -101,7 +101,7 @@ class InPotential(Model):
             "en": {
                 "statement": {"in potential": "Unit masses move in the potential"},
                 "declared": {"potential": "the potential"},
-                "titles": {"force": "Forces"},
+                "titles": {"force": "Forces", "first_order": "Masses under force and control"},
                 "rules": {"fall": "A potential pulls against its gradient, by <sources>.", "push": "By <sources>."},
                 "claims": {"work of the controls": "The masses gain the work of the controls"},
             }
@@ -218,6 +218,7 @@ def test_its_document_states_it_and_shows_its_step(spring: Derivation) -> None:
     assert r"\label{hardening_spring:declared.V}" in document
     assert "A potential pulls against its gradient, by the potential" in document
     assert "F_{x}" in document
+    assert "Masses under force and control" in document, "its own texts come before those of all reports"
 
 
 def test_a_language_in_which_it_says_nothing_is_refused(spring: Derivation) -> None:
