@@ -189,3 +189,10 @@ def test_drives_that_do_not_determine_the_motion_are_refused() -> None:
         derive(replace(model, torques={"body": sp.Symbol("brake", real=True)}))
     with pytest.raises(DerivationError, match="act on the bodies"):
         derive(replace(model, torques={"panel": sp.Integer(0)}))
+
+
+def test_special_values_are_put_into_the_states_that_are_left_out() -> None:
+    model = of("pitch_minimum_time")
+    assert isinstance(model, Reduced)
+    ((state, value),), ((special, meant),) = model.along.items(), model.where.items()
+    assert replace(model, along={state: value * special / meant}).special()[state] == value
