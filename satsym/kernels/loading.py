@@ -68,7 +68,8 @@ def load(model: str, folder: Path | None = None) -> Kernels:
     return _load_file(model, root, path, _read(model, path))
 
 
-def from_text(text: str, name: str) -> Kernels:
+@lru_cache(maxsize=32)
+def from_text(text: str, name: str, folder: Path | None = None) -> Kernels:
     """The kernels of a module that has not been written to a file, its code checked as that of one that has.
 
     Parameters
@@ -77,13 +78,15 @@ def from_text(text: str, name: str) -> Kernels:
         What a generated file would hold.
     name
         How messages call it.
+    folder
+        Where it would be, or was.
 
     Raises
     ------
     BadInput
         If the text is not what ``satsym derive`` writes.
     """
-    return _load_text(name, Path(), Path(name), text)
+    return _load_text(name, folder or Path(), Path(name), text)
 
 
 def _unknown(model: str) -> str:
@@ -171,7 +174,7 @@ def _load_text(model: str, root: Path, path: Path, text: str) -> Kernels:
         "np": np,
     }
     exec(code, namespace)  # noqa: S102 - definitions only, each of them checked
-    return Kernels(spec, _defined(namespace), origin=(model, root))
+    return Kernels(spec, _defined(namespace), origin=(model, root), text=text)
 
 
 def _defined(namespace: Mapping[str, Any]) -> dict[str, Function]:

@@ -14,6 +14,7 @@ from satsym.status import Status
 if TYPE_CHECKING:
     from satsym.arrays import Array
     from satsym.instance import Instance
+    from satsym.kernels import Kernels
     from satsym.solution import Certificate, Flight, Solution
 
 
@@ -38,6 +39,14 @@ def head(command: str, spec: ProblemSpec, instance: str | None, status: Status) 
         "status": status.value,
         "units": units(spec),
     }
+
+
+def head_about(command: str, given: Instance | Kernels, status: Status) -> dict[str, Any]:
+    """The same for what is about an instance, or about a model as such."""
+    from satsym.kernels import Kernels
+
+    name, model = (None, given) if isinstance(given, Kernels) else (given.name, given.model)
+    return head(command, model.spec, name, status)
 
 
 def solution_object(solution: Solution) -> dict[str, Any]:
