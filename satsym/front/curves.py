@@ -74,7 +74,7 @@ class Curve(np.lib.mixins.NDArrayOperatorsMixin):
         if outside.size:
             raise BadInput(f"{self._what}: {float(outside[0]):.10g} is not in the time from {begin:.10g} to {end:.10g}")
         found = self._between(np.clip(asked.ravel(), begin, end))
-        shaped = found.reshape(*found.shape[:-1], *asked.shape)
+        shaped = found.reshape((*found.shape[:-1], *asked.shape))
         return float(shaped) if shaped.ndim == 0 else shaped
 
     def __getitem__(self, key: Any) -> Any:

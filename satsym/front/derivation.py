@@ -15,7 +15,7 @@ from satsym.report import artefacts
 from satsym.status import BadInput
 from satsym.symbolic import Model, Problem, loader
 from satsym.symbolic.convention import in_convention, is_minimum
-from satsym.symbolic.latex.typeset import Typesetter
+from satsym.symbolic.latex.typeset import Typesetter, matrices
 from satsym.symbolic.lookup import addresses
 from satsym.symbolic.model import Convention
 from satsym.wording import counted, shown
@@ -74,6 +74,9 @@ class Derivation:
     subject: Problem | Model
     derived: symbolic.Derivation
     source: str
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.subject, self.derived, self.source)
 
     @property
     def name(self) -> str:
@@ -172,7 +175,7 @@ class Derivation:
         return "\n".join([f"{self.name}: {self.title}", *lines])
 
     def _repr_latex_(self) -> str:
-        return self._display([e for name in SHOWN if name in self.derived for e in self._of(name)])
+        return _display([line for name in SHOWN if name in self.derived for line in self._lines(name)])
 
     def _repr_html_(self) -> str:
         from satsym.report.texts import load
@@ -183,24 +186,28 @@ class Derivation:
             title = texts.find("titles", step.name) or step.name
             claims = ", ".join(f"{check.claim} ({check.error:.0e})" for check in step.checks)
             parts.append(
-                f"<details><summary>{escape(title)}</summary>{escape(self._display(self._of(step.name)))}"
+                f"<details><summary>{escape(title)}</summary>{escape(_display(self._lines(step.name)))}"
                 f"<small>{escape(claims)}</small></details>"
             )
         return "\n".join(parts)
 
-    def _of(self, step: str) -> list[Equation]:
-        return [self._equation(step, e) for e in self.derived.step(step).equations]
-
-    def _display(self, equations: list[Equation]) -> str:
-        lines = r" \\ ".join(self._formula(e.lhs, e.rhs, " &= ") for e in equations)
-        return f"$$\\begin{{aligned}} {lines} \\end{{aligned}}$$"
+    def _lines(self, name: str) -> list[str]:
+        """The equations of a step; matrices whose entries they are come first, in place of these."""
+        step, tex = self.derived.step(name), self._typeset.tex
+        named = matrices(self.derived, step)
+        entries = [e for one in named for e in one.equations]
+        return [f"{one.prefix} &= {tex(one.matrix)}" for one in named] + [
+            f"{tex(e.lhs)} &= {tex(e.rhs)}" for e in step.equations if e not in entries
+        ]
 
     def _equation(self, step: str, found: symbolic.Equation) -> Equation:
-        formula = self._formula(found.lhs, found.rhs)
+        formula = f"{self._typeset.tex(found.lhs)} = {self._typeset.tex(found.rhs)}"
         return Equation(f"{self.name}:{step}.{found.name}", found.lhs, found.rhs, formula)
 
-    def _formula(self, lhs: Any, rhs: Any, equals: str = " = ") -> str:
-        return f"{self._typeset.tex(lhs)}{equals}{self._typeset.tex(rhs)}"
+
+def _display(lines: list[str]) -> str:
+    body = r" \\ ".join(lines)
+    return rf"$$\begin{{aligned}} {body} \end{{aligned}}$$"
 
 
 Subject: TypeAlias = "Problem | Model | Derivation | str | Path"

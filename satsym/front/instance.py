@@ -16,6 +16,7 @@ from satsym.wording import shown
 
 if TYPE_CHECKING:
     from satsym.front.derivation import Derivation
+    from satsym.kernels import Kernels
     from satsym.solvers.repeated import Repeated
     from satsym.symbolic import Model, Problem
 
@@ -185,7 +186,9 @@ def as_case(given: Instance | str | Path) -> Instance:
         return given
     if isinstance(given, str | Path):
         return load(given)
-    raise BadInput(f"{shown(given)} is no instance; make one with Instance.of(...), or load(...) one")
+    raise BadInput(
+        f"{shown(given)} is no instance; make one with Instance.of(model, initial=..., tf=...), or load(...) one"
+    )
 
 
 def _called(model: Any) -> str:
@@ -193,13 +196,16 @@ def _called(model: Any) -> str:
     return str(model) if isinstance(model, str | Path) else model.name
 
 
-def _kernels(model: Any) -> Any:
-    """Kernels of what is not a name."""
+def _kernels(model: Any) -> Kernels | None:
+    """Kernels of what is not a name; ``None`` where they are to be looked for."""
     if isinstance(model, str | Path):
         return None
     from satsym.front.derivation import derive
+    from satsym.kernels.loading import check_name
 
-    return derive(model).kernels
+    derivation = derive(model)
+    check_name(derivation.name)
+    return derivation.kernels
 
 
 def _checked(name: str) -> str:

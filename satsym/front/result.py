@@ -44,6 +44,9 @@ class Result(Generic[Found]):
 
     _command: ClassVar[str]
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.instance, self.found)  # what is computed on demand is left out
+
     @property
     def status(self) -> Status:
         """How it ended."""
@@ -150,7 +153,7 @@ class Result(Generic[Found]):
 
     def _curve(self, what: str, values: Array, names: Sequence[str], at: Any) -> Curve:
         whole = len(self.times) > 1 and np.isfinite(self.found.x).all()
-        absent = "" if whole else f"there is no trajectory ({self.status.value})"
+        absent = "" if whole else f"there is no trajectory ({self.status.value}); the message of the result says why"
         return Curve(what, self.times, values, names, at, absent)
 
     def _html(self, facts: dict[str, Any], *tables: str) -> str:

@@ -13,7 +13,7 @@ from satsym.front.instance import Instance, as_case, load
 from satsym.instance import shipped
 from satsym.report.results import sets, trajectory
 from satsym.report.results.files import Content, check_writable, text
-from satsym.report.results.set_list import LIST, unusable
+from satsym.report.results.set_list import LIST, may_hold, unusable
 from satsym.solution import Flight, Solution
 from satsym.wording import printable
 
@@ -41,11 +41,13 @@ def save(
 
 def _origin(instance: Instance) -> dict[str, Content]:
     """The files from which the instance can be read again."""
-    model, tree, files = instance.case.model, dict(instance.written.tree), {}
-    if model.text is not None:
-        tree["model"] = f"./{model.spec.name}"
-        files[f"{model.spec.name}.py"] = text(model.text)
-    return {f"{instance.name}.toml": text(tables.toml(tree)), **files}
+    model, tree, place = instance.case.model, dict(instance.written.tree), f"{instance.name}.toml"
+    if not may_hold(place):
+        return {}
+    if model.text is None:
+        return {place: text(tables.toml(tree))}
+    tree["model"] = f"./{model.spec.name}"
+    return {place: text(tables.toml(tree)), f"{model.spec.name}.py": text(model.text)}
 
 
 def read(folder: Path, instance: Instance | str | Path | None) -> tuple[Instance, Solution | Flight]:
@@ -72,5 +74,6 @@ def _named(folder: Path) -> Instance:
     if name in shipped():
         return load(name)
     raise unusable(
-        folder / LIST, f"is of {printable(name)}, which is neither there nor a shipped instance: name it, as the second"
+        folder / LIST,
+        f"is of {printable(name)}, which is neither there nor a shipped instance; give that as `instance`",
     )

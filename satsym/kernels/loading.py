@@ -31,6 +31,7 @@ LARGEST = 1_000_000
 """Bytes of a module file; the shipped ones have a twentieth of that."""
 
 _NAME = re.compile(r"[a-z][a-z0-9_]{0,99}\Z")
+_NAMES = "a small letter, then small letters, digits and underscores"
 _ANEW = "write it anew with `satsym derive`"
 _EDITED = "edited by hand or damaged since it was written; run `satsym derive` again"
 
@@ -89,6 +90,18 @@ def from_text(text: str, name: str, folder: Path | None = None) -> Kernels:
     return _load_text(name, folder or Path(), Path(name), text)
 
 
+def check_name(name: str) -> None:
+    """Refuse a name that no generated module can have.
+
+    Raises
+    ------
+    BadInput
+        With what a name is.
+    """
+    if not _NAME.match(name):
+        raise BadInput(f"{shown(name)}: a model's name is {_NAMES}")
+
+
 def _unknown(model: str) -> str:
     return f"{shown(model)} is no shipped model; {suggestion(model, shipped())} (`satsym models` tells more)"
 
@@ -113,7 +126,7 @@ def _resolve(model: str, folder: Path) -> tuple[Path, Path]:
     if Path(model).is_absolute():
         raise BadInput(f"{shown(model)}: an absolute path; write one that starts in the instance file's folder")
     if not _NAME.match(model.rpartition("/")[2]):
-        raise BadInput(f"{shown(model)}: a file's name is a small letter, then small letters, digits and underscores")
+        raise BadInput(f"{shown(model)}: a file's name is {_NAMES}")
     try:
         root = folder.resolve(strict=True)
         path = (root / f"{model}.py").resolve(strict=True)
