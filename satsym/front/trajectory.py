@@ -16,8 +16,8 @@ from satsym.solution import Flight, Invariant
 class Trajectory(Result[Flight]):
     """A simulated motion.
 
-    Controls between nodes are exact where they are constant from node to node. A law is not kept with what it did:
-    elsewhere its controls are cubics through the nodes, which follow a jump within one step only.
+    A law is not kept with what it did. Between nodes its controls are interpolated, unless they are constant: splines
+    where they are smooth, and where they jump as well as the steps tell when.
     """
 
     _command: ClassVar[str] = "simulate"
