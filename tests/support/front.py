@@ -16,9 +16,7 @@ SLED = satsym.FirstOrder(
     parameters=(satsym.Variable("k", "k", "1/m", default=0.1),),
     rates={q: v, v: a - k * v**2},
 )
-PUSH = satsym.Problem(
-    name="sled", title="Pushing a sled", model=SLED, running_cost=a**2 / 2, control_set="box"
-)
+PUSH = satsym.Problem(name="sled", title="Pushing a sled", model=SLED, running_cost=a**2 / 2, control_set="box")
 TOML = """model = "./sled"
 [initial]
 q = 0
