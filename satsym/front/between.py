@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.arrays import Array
+from satsym.control_set import ControlSet
 from satsym.instance import Instance
 
 Rates: TypeAlias = Callable[[Array, Array, NDArray[np.intp]], Array]
@@ -111,8 +112,7 @@ class Pieces:
 
     times: Array
     values: Array
-    lower: Array
-    upper: Array
+    admissible: ControlSet
     _arcs: list[Callable[[Array], Array]] = field(default_factory=list)
 
     @cached_property
@@ -142,7 +142,7 @@ class Pieces:
         kept = np.unique([*range(0, len(times), 2), len(times) - 1])
         misses = [np.abs(fit(times[kept], values[:, kept])(times) - values).max() for fit in (_spline, _monotone)]
         fitted = (_spline if misses[0] <= misses[1] else _monotone)(times, values)
-        return lambda t: np.clip(fitted(t), self.lower, self.upper)
+        return lambda t: self.admissible.project(fitted(t))
 
 
 def _spline(times: Array, values: Array) -> Callable[[Array], Array]:
@@ -161,7 +161,7 @@ def _monotone(times: Array, values: Array) -> Callable[[Array], Array]:
 
 def extremal(case: Instance, times: Array, x: Array, lam: Array, corners: Array) -> tuple[Motion, Pieces | None]:
     """Motion of states and costates, (2n, N+1), under the control that minimises H."""
-    model, p, bounds, n = case.model, case.parameters, case.bounds, len(x)
+    model, p, bounds, n = case.model, case.parameters, case.control_set.arguments, len(x)
 
     def rates(t: Array, z: Array, _: NDArray[np.intp]) -> Array:
         return np.asarray(model.canonical_batch(t, z[:n], z[n:], p, bounds))
@@ -172,7 +172,7 @@ def extremal(case: Instance, times: Array, x: Array, lam: Array, corners: Array)
 def controlled(case: Instance, times: Array, x: Array, u: Array, lam: Array | None) -> tuple[Motion, Pieces]:
     """Motion of states, and of costates where there are any, under controls as they are at the nodes."""
     model, p, n = case.model, case.parameters, len(x)
-    pieces = Pieces(times, u, np.array(case.lower)[:, None], np.array(case.upper)[:, None])
+    pieces = Pieces(times, u, case.control_set)
 
     def rates(t: Array, z: Array, left: NDArray[np.intp]) -> Array:
         now = pieces(t, left)

@@ -80,7 +80,8 @@ class Solution(Result[solution.Solution]):
     @np.errstate(all="ignore")
     def _law(self, t: Array, z: Array) -> Array:
         case, n = self.found.instance, len(self.found.x)
-        return np.asarray(case.model.control_law_batch(t, z[:n], z[n:], case.parameters, case.bounds))
+        bounds = case.control_set.arguments
+        return np.asarray(case.model.control_law_batch(t, z[:n], z[n:], case.parameters, bounds))
 
     def __repr__(self) -> str:
         return solution_text(self.found)
