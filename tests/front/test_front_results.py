@@ -12,9 +12,10 @@ import pytest
 
 import satsym
 from satsym.cli import main
+from satsym.front.between import Motion
 from satsym.front.trajectory import Trajectory
 from satsym.status import BadInput
-from tests.support.front import pushed
+from tests.support.front import PUSH, pushed
 from tests.support.switching_models import OSCILLATOR
 
 
@@ -48,6 +49,18 @@ def test_between_few_nodes_it_is_what_it_is_at_many(name: str, steps: int, limit
     for kind in ("x", "u", "lam"):
         seen, known = getattr(few, kind)(t), np.asarray(getattr(many, kind))[:, at]
         assert np.abs(seen - known).max() <= limit * np.abs(known).max(), kind
+
+
+def test_a_corner_between_nodes_is_integrated_from_both_sides() -> None:
+    corner = 0.3
+
+    def rates(t: Any, z: Any, _: Any) -> Any:
+        return np.maximum(t - corner, 0.0)[None] + 0.0 * z
+
+    end = 0.5 * (1.0 - corner) ** 2
+    motion = Motion(np.array([0.0, 1.0]), np.array([[0.0, end]]), rates, np.array([corner]), 1e-9)
+    t = np.linspace(0.0, 1.0, 101)
+    assert motion(t)[0] == pytest.approx(0.5 * np.maximum(t - corner, 0.0) ** 2, abs=1e-13)  # rounding of 64 steps
 
 
 def test_controls_jump_where_they_switch_and_keep_their_bounds() -> None:
@@ -135,6 +148,12 @@ def test_what_is_saved_comes_back_with_its_certificate_and_instance(tmp_path: Pa
         assert {path.name for path in paths} >= {"trajectory.npz", "trajectory.csv", "result.json"}
         assert set(paths) == set(folder.iterdir())
     assert main(["solve", str(tmp_path / "sled" / "sled.toml"), "--json"]) == 0
+
+
+def test_a_model_of_ones_own_comes_back_though_a_shipped_one_has_its_name(tmp_path: Path) -> None:
+    ours = pushed().with_(model=replace(PUSH, name="polar_orbit"), solver={"steps": 20})
+    satsym.simulate(ours).save(tmp_path)
+    assert Trajectory.load(tmp_path).instance.case.model.spec.state_names == ("q", "v")
 
 
 def test_what_the_command_line_saved_comes_back_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
