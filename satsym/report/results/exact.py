@@ -20,8 +20,8 @@ def exact(model: Kernels, derivation: Derivation | None = None) -> dict[str, Any
     Returns
     -------
     dict or None
-        ``None`` for a model whose derivation is not at hand, because it was loaded by path, that is not linear with constant coefficients, or whose entries
-        are beyond exact linear algebra.
+        ``None`` for a model whose derivation is not at hand, because it was loaded by path, that is not linear with
+        constant coefficients, or whose entries are beyond exact linear algebra.
     """
     shipped = model.origin is not None and model.origin[1] is None
     if not model.spec.linear or not (shipped or derivation):

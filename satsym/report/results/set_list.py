@@ -65,7 +65,9 @@ def decoded(path: Path) -> tuple[bytes, str, dict[str, Listed]]:
         raise unusable(path, f"cannot be read ({printable(str(error))})") from None
     if found.files is None:
         raise unusable(path, "does not list its files, as results of this version do")
-    wrong = next((name for name, each in found.files.items() if not (may_hold(name) and 0 <= each.bytes <= LARGEST)), None)
+    wrong = next(
+        (name for name, each in found.files.items() if not (may_hold(name) and 0 <= each.bytes <= LARGEST)), None
+    )
     if wrong is not None or len(found.files) > MOST_FILES:
         which = shown(wrong) if wrong is not None else f"more than {MOST_FILES}"
         raise unusable(path, f"lists files that no set has: {which}")
