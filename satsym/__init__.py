@@ -1,6 +1,64 @@
 """satsym derives, solves, certifies and typesets satellite optimal control problems.
 
-Importing it imports nothing else: the parts are modules of their own, see CONTRIBUTING.md for the map.
+Importing it imports nothing else: the names below are loaded when they are first used. ::
+
+    import satsym
+
+    solution = satsym.solve(satsym.load("soft-return"))
+    solution.objective, solution.x["r"](1.5), solution.u([0.0, 1.0, 2.0])
 """
 
 __version__ = "0.1.0"
+
+__all__ = [
+    "FirstOrder",
+    "Instance",
+    "Newton",
+    "Problem",
+    "Solution",
+    "Variable",
+    "analyse",
+    "audit",
+    "derive",
+    "load",
+    "lqr",
+    "simulate",
+    "solve",
+]
+
+TYPE_CHECKING = False  # as of typing, which would be loaded for it
+if TYPE_CHECKING:
+    from satsym.front.analysing import analyse, lqr
+    from satsym.front.auditing import audit
+    from satsym.front.derivation import derive
+    from satsym.front.instance import Instance, load
+    from satsym.front.solution import Solution, solve
+    from satsym.front.trajectory import simulate
+    from satsym.spec import Variable
+    from satsym.symbolic import FirstOrder, Newton, Problem
+
+_HOMES = {
+    "front.analysing": ("analyse", "lqr"),
+    "front.auditing": ("audit",),
+    "front.derivation": ("derive",),
+    "front.instance": ("Instance", "load"),
+    "front.solution": ("Solution", "solve"),
+    "front.trajectory": ("simulate",),
+    "spec": ("Variable",),
+    "symbolic": ("FirstOrder", "Newton", "Problem"),
+}
+
+
+def __getattr__(name: str) -> object:
+    home = next((home for home, names in _HOMES.items() if name in names), None)
+    if home is None:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module
+
+    value: object = getattr(import_module(f"{__name__}.{home}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*__all__, *(name for name in globals() if name.startswith("__"))})

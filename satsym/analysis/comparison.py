@@ -130,12 +130,13 @@ def _of_solution(instance: Instance, solution: Solution, switches: Sequence[floa
     return {"transition_time": duration} | totals(instance, spans)
 
 
-def limits_passed(solution: Solution) -> str:
-    """A sentence on each limit of its instance that a solution goes beyond; empty where it keeps all."""
+def limits_noted(solution: Solution) -> Solution:
+    """The solution with a sentence on each limit of its instance that it goes beyond, if there is any."""
     if not solution.instance.limits or not solution.status.answered:
-        return ""
+        return solution
     switches = [s for each in solution.switching_times for s in each]
-    return excesses(solution.instance, _of_solution(solution.instance, solution, switches))
+    passed = excesses(solution.instance, _of_solution(solution.instance, solution, switches))
+    return replace(solution, message=passed) if passed else solution
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,8 +7,8 @@ names the file, the key, what is wrong and what to write. Instances are data: no
 from __future__ import annotations
 
 from satsym.instance.files import shipped, titles
-from satsym.instance.loading import load
+from satsym.instance.loading import Written, load, read
 from satsym.instance.schema import SolverOptions
 from satsym.instance.types import Guess, Instance, LqrOptions
 
-__all__ = ["Guess", "Instance", "LqrOptions", "SolverOptions", "load", "shipped", "titles"]
+__all__ = ["Guess", "Instance", "LqrOptions", "SolverOptions", "Written", "load", "read", "shipped", "titles"]

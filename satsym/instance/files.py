@@ -62,7 +62,17 @@ def read(path: Path) -> dict[str, Any]:
     text = _text(path)
     if _LONG_KEY.search(text):
         raise BadInput(f"a key has more than {MAX_PARTS} parts joined by dots; see the shipped instances for the keys")
-    tree = _parse(text)
+    return finite(_parse(text))
+
+
+def finite(tree: dict[str, Any]) -> dict[str, Any]:
+    """The same tree, whose numbers are all finite.
+
+    Raises
+    ------
+    BadInput
+        At the first that is not.
+    """
     for key, value in _leaves(tree):
         if not _finite(value):
             raise BadInput(f"{key}: the number is {_excess(value)}; write a finite one")

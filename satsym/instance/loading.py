@@ -1,9 +1,11 @@
-"""From a name or a path to an instance that fits its model."""
+"""From a name, a path or tables to an instance that fits its model."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from satsym.instance import files, resolve
 from satsym.instance.options import guess, lqr, solver
@@ -17,6 +19,45 @@ if TYPE_CHECKING:
     from satsym.kernels import Kernels
 
 MAX_TITLE = 200
+
+
+@dataclass(frozen=True, eq=False)
+class Written:
+    """An instance as it was written, in a file or in Python.
+
+    Parameters
+    ----------
+    tree
+        Tables as TOML has them.
+    name
+        Of the instance.
+    path
+        Its file; models are looked for beside it.
+    given
+        What messages call it; by default its name.
+    model
+        Kernels, where they are at hand and need not be looked for.
+    """
+
+    tree: Mapping[str, Any]
+    name: str
+    path: Path
+    given: str = ""
+    model: Kernels | None = None
+
+    def instance(self) -> Instance:
+        """What it says, checked against its model.
+
+        Raises
+        ------
+        BadInput
+            With one line, ``NAME: KEY: what is wrong; what to do``.
+        """
+        try:
+            file = check(files.finite(dict(self.tree)))
+            return _resolve(self, file, self.model or _model(file.model, self.path.parent))
+        except BadInput as error:
+            raise BadInput(f"{_called(self.given or self.name)}: {error}") from None
 
 
 def load(name_or_path: str | Path) -> Instance:
@@ -37,13 +78,32 @@ def load(name_or_path: str | Path) -> Instance:
     BadInput
         With one line, ``FILE: KEY: what is wrong; what to do``.
     """
+    return read(name_or_path).instance()
+
+
+def read(name_or_path: str | Path) -> Written:
+    """An instance as its file has it; only that the file can be read has been checked.
+
+    Parameters
+    ----------
+    name_or_path
+        As for :func:`load`.
+
+    Raises
+    ------
+    BadInput
+        If it cannot be read.
+    """
     given = str(name_or_path)
     try:
         path = files.locate(given)
-        file = check(files.read(path))
-        return _resolve(path, file, _model(file.model, path.parent))
+        return Written(files.read(path), path.stem, path, given)
     except BadInput as error:
-        raise BadInput(f"{printable(given, 200) or shown(given)}: {error}") from None
+        raise BadInput(f"{_called(given)}: {error}") from None
+
+
+def _called(given: str) -> str:
+    return printable(given, 200) or shown(given)
 
 
 def _model(model: str, folder: Path) -> Kernels:
@@ -58,15 +118,15 @@ def _model(model: str, folder: Path) -> Kernels:
         raise BadInput(f"model: {printable(str(error), 400)}") from None
 
 
-def _resolve(path: Path, file: InstanceFile, model: Kernels) -> Instance:
+def _resolve(written: Written, file: InstanceFile, model: Kernels) -> Instance:
     spec = model.spec
     if len(file.title) > MAX_TITLE or not file.title.isprintable():
         raise BadInput(f"title: {shown(file.title)} is not one short line; write at most {MAX_TITLE} plain characters")
     t0, tf, tf_guess = resolve.times(file.time, spec)
     lower, upper, max_norm = resolve.bounds(file.control, spec)
     return Instance(
-        name=path.stem,
-        path=path,
+        name=written.name,
+        path=written.path,
         title=file.title,
         model=model,
         parameters=resolve.parameters(file.parameters, spec),

@@ -49,12 +49,15 @@ class Kernels(Functions):
         ``"python"`` (floats; nothing to wait for) or ``"numba"`` (compiled at the first call of each).
     origin
         What :func:`satsym.kernels.load` was given, so that another process can load it again.
+    text
+        Of a module that is not a shipped one: from it another process makes the same, wherever it was read.
     """
 
     spec: ProblemSpec
     functions: Mapping[str, Function]
     backend: Backend = "python"
     origin: tuple[str, Path | None] | None = None
+    text: str | None = None
 
     def __post_init__(self) -> None:
         # Instance attributes, not __getattr__: solvers call these in inner loops.
@@ -68,7 +71,7 @@ class Kernels(Functions):
     def __reduce__(self) -> tuple[Any, ...]:
         if self.origin is None:
             return Kernels, (self.spec, self.functions, self.backend)
-        return _restore, (*self.origin, self.backend)
+        return _restore, (*self.origin, self.text, self.backend)
 
     def forward(
         self, times: ArrayLike, x0: Sequence[float], u: ArrayLike, u_mid: ArrayLike, p: Sequence[float]
@@ -254,10 +257,10 @@ class Kernels(Functions):
         return nan if isinstance(result, complex) else result, _real(node_lists), _real(midpoint_lists)
 
 
-def _restore(model: str, folder: Path | None, backend: Backend) -> Kernels:
-    from satsym.kernels.loading import load
+def _restore(model: str, folder: Path | None, text: str | None, backend: Backend) -> Kernels:
+    from satsym.kernels.loading import from_text, load
 
-    kernels = load(model, folder)
+    kernels = load(model, folder) if text is None else from_text(text, model, folder)
     return kernels.compiled() if backend == "numba" else kernels
 
 

@@ -31,6 +31,7 @@ LARGEST = 1_000_000
 """Bytes of a module file; the shipped ones have a twentieth of that."""
 
 _NAME = re.compile(r"[a-z][a-z0-9_]{0,99}\Z")
+_NAMES = "a small letter, then small letters, digits and underscores"
 _ANEW = "write it anew with `satsym derive`"
 _EDITED = "edited by hand or damaged since it was written; run `satsym derive` again"
 
@@ -68,7 +69,8 @@ def load(model: str, folder: Path | None = None) -> Kernels:
     return _load_file(model, root, path, _read(model, path))
 
 
-def from_text(text: str, name: str) -> Kernels:
+@lru_cache(maxsize=32)
+def from_text(text: str, name: str, folder: Path | None = None) -> Kernels:
     """The kernels of a module that has not been written to a file, its code checked as that of one that has.
 
     Parameters
@@ -77,13 +79,27 @@ def from_text(text: str, name: str) -> Kernels:
         What a generated file would hold.
     name
         How messages call it.
+    folder
+        Where it would be, or was.
 
     Raises
     ------
     BadInput
         If the text is not what ``satsym derive`` writes.
     """
-    return _load_text(name, Path(), Path(name), text)
+    return _load_text(name, folder or Path(), Path(name), text)
+
+
+def check_name(name: str) -> None:
+    """Refuse a name that no generated module can have.
+
+    Raises
+    ------
+    BadInput
+        With what a name is.
+    """
+    if not _NAME.match(name):
+        raise BadInput(f"{shown(name)}: a model's name is {_NAMES}")
 
 
 def _unknown(model: str) -> str:
@@ -110,7 +126,7 @@ def _resolve(model: str, folder: Path) -> tuple[Path, Path]:
     if Path(model).is_absolute():
         raise BadInput(f"{shown(model)}: an absolute path; write one that starts in the instance file's folder")
     if not _NAME.match(model.rpartition("/")[2]):
-        raise BadInput(f"{shown(model)}: a file's name is a small letter, then small letters, digits and underscores")
+        raise BadInput(f"{shown(model)}: a file's name is {_NAMES}")
     try:
         root = folder.resolve(strict=True)
         path = (root / f"{model}.py").resolve(strict=True)
@@ -171,7 +187,7 @@ def _load_text(model: str, root: Path, path: Path, text: str) -> Kernels:
         "np": np,
     }
     exec(code, namespace)  # noqa: S102 - definitions only, each of them checked
-    return Kernels(spec, _defined(namespace), origin=(model, root))
+    return Kernels(spec, _defined(namespace), origin=(model, root), text=text)
 
 
 def _defined(namespace: Mapping[str, Any]) -> dict[str, Function]:

@@ -9,9 +9,13 @@ from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from multiprocessing import get_context
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from satsym.report.results.files import write_text
+
+if TYPE_CHECKING:
+    from satsym.kernels import Kernels
+    from satsym.symbolic import Derivation
 
 SUFFIXES = (".py", ".tex")
 KEPT = "__init__.py"
@@ -66,8 +70,6 @@ def _workers(jobs: int) -> Iterator[Callable[..., Iterator[Any]]]:
 
 def _rendered(job: tuple[Path, str]) -> dict[str, str]:
     """The two files of one problem."""
-    from satsym import kernels
-    from satsym.codegen import module, verify
     from satsym.report.latex import document as latex
     from satsym.symbolic import derive, loader
     from satsym.symbolic.convention import in_convention, is_minimum
@@ -76,9 +78,30 @@ def _rendered(job: tuple[Path, str]) -> dict[str, str]:
     problem = next(problem for problem in loader.load(path) if problem.name == name)
     derivation = derive(problem)
     in_minimum_form = derivation if is_minimum(derivation) else derive(in_convention(problem, "minimum"))
-    text = module.render(in_minimum_form, _source(path))
-    verify.verify(in_minimum_form, kernels.from_text(text, f"{name}.py"))
+    text, _ = generated(in_minimum_form, source_of(path))
     return {f"{name}.py": text, f"{name}.tex": latex.render(derivation)}
+
+
+def generated(derivation: Derivation, source: str) -> tuple[str, Kernels]:
+    """The module of a derivation in the minimum convention, and its kernels, verified against the derivation.
+
+    Parameters
+    ----------
+    source
+        Name of the derivation file, for the header.
+
+    Raises
+    ------
+    DerivationError
+        If what was generated deviates from what was derived.
+    """
+    from satsym import kernels
+    from satsym.codegen import module, verify
+
+    text = module.render(derivation, source)
+    found = kernels.from_text(text, f"{derivation.name}.py")
+    verify.verify(derivation, found)
+    return text, found
 
 
 def differences(rendered: Mapping[str, str], folder: Path, whole: bool) -> list[str]:
@@ -120,6 +143,6 @@ def write(rendered: Mapping[str, str], folder: Path) -> list[Path]:
     return written
 
 
-def _source(path: Path) -> str:
+def source_of(path: Path) -> str:
     """How a generated file names its source: relative to the project where it is part of it, else by name."""
     return f"{path.parent.name}/{path.name}" if path.parent.name == "derivations" else path.name

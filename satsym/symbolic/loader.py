@@ -5,12 +5,16 @@ from __future__ import annotations
 import hashlib
 import importlib.util
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib.resources import files
 from pathlib import Path
 from types import ModuleType
 
 from satsym.status import BadInput
+from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.model import Model, Problem
+from satsym.wording import printable, suggestion
 
 SUFFIX = ".py"
 
@@ -67,6 +71,35 @@ def load(path: Path) -> tuple[Problem | Model, ...]:
     if len(set(names)) < len(names):
         raise BadInput(f"{path}: two entries of PROBLEMS have the same name; names are those of the generated files")
     return problems
+
+
+def problem(name: str) -> tuple[Problem | Model, Path]:
+    """The problem of a shipped name, ``FILE.py`` where it states a single one, or ``FILE.py:NAME``; and its file.
+
+    Raises
+    ------
+    BadInput
+        If there is none, or more than one.
+    """
+    file, _, wanted = name.rpartition(":") if ".py:" in name else (name if name.endswith(SUFFIX) else "", "", name)
+    paths = [find(file)] if file else shipped()
+    found = {one.name: (one, path) for path in paths for one in load(path)}
+    if file and wanted == name:
+        if len(found) > 1:
+            raise BadInput(f"{printable(file)}: states {', '.join(found)}; say which, as in {file}:{next(iter(found))}")
+        return next(iter(found.values()))
+    if wanted not in found:
+        raise BadInput(f"{printable(name)}: no derivation of this name; {suggestion(wanted, found)}")
+    return found[wanted]
+
+
+@contextmanager
+def explained() -> Iterator[None]:
+    """Turns what is wrong with a derivation into bad input: one line, no traceback."""
+    try:
+        yield
+    except DerivationError as error:
+        raise BadInput(" ".join(str(error).split())) from error
 
 
 def _module(path: Path) -> ModuleType:

@@ -15,9 +15,9 @@ from satsym import instance, kernels
 from satsym.analysis.linear.structure import analyse
 from satsym.analysis.regulator.feedback import designed
 from satsym.cli import main
-from satsym.cli.exact import exact
 from satsym.report.plots import phase, responses, style
 from satsym.report.plots.orbits import plane
+from satsym.report.results.exact import exact
 from satsym.report.results.linear import analysis_object, regulator_object
 from satsym.report.terminal.linear import analysis_text, regulator_text
 from tests.house.test_floors import run_satsym

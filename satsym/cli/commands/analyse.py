@@ -10,13 +10,11 @@ import click
 from satsym.cli.options import json_option, out_option, plot_option
 from satsym.cli.output import emit, emit_json, in_colour
 from satsym.cli.saving import folder_for, save
-from satsym.status import BadInput, ExitCode, Status
+from satsym.status import ExitCode
 
 if TYPE_CHECKING:
     from satsym.analysis.linear.structure import Analysis
     from satsym.analysis.orbits.survey import Survey
-    from satsym.instance import Instance
-    from satsym.kernels import Kernels
     from satsym.report.results.files import Content
 
 EXAMPLES = """\b
@@ -40,46 +38,22 @@ def analyse(subject: str, as_json: bool, out: Path | None, plot: bool) -> ExitCo
     where the model is linear. Of an instance that starts on an orbit: its elements and kind, the eigenvalues at the
     start and why they decide nothing, its monodromy matrix and Floquet multipliers.
     """
-    from satsym.cli.exact import exact
-    from satsym.cli.subject import begins, find
-    from satsym.report.results.linear import analysis_object
-    from satsym.report.results.orbit import orbit_object
+    from satsym.analysis.subject import examined, find
+    from satsym.report.results.orbit import examination_object
     from satsym.report.terminal.solution import with_files
 
     given = find(subject)
     folder = folder_for(Path(subject).stem, "analyse", out, plot)
-    found, orbit = _analysed(given)
+    found, orbit = examined(given)
     saved: list[Path] = []
     if as_json or folder is not None:
-        result = begins("analyse", given, Status.CONVERGED)
-        result |= analysis_object(found, exact(found.about.model) if found else None) | orbit_object(orbit)
+        result = examination_object(given, found, orbit)
         saved = save(folder, result, _pictures(found, orbit) if folder and plot else {})
     if as_json:
         emit_json(result)
     else:
         emit(with_files(_text(found, orbit), saved))
     return ExitCode.DONE
-
-
-def _analysed(given: Kernels | Instance) -> tuple[Analysis | None, Survey | None]:
-    """The linear analysis, and that of the orbit; one of them may be missing.
-
-    A body that is only attracted rests nowhere, so that without a reference there is nothing to linearise about.
-    """
-    from satsym.analysis.linear.structure import analyse as analysed
-    from satsym.analysis.orbits.survey import survey
-    from satsym.kernels import Kernels
-
-    spec = given.spec if isinstance(given, Kernels) else given.model.spec
-    if isinstance(given, Kernels):
-        if spec.keplerian and not spec.has_reference:
-            raise BadInput(
-                f"{spec.name}: has no equilibrium and no reference, and a model as such starts on no orbit; write an "
-                "instance with its initial state"
-            )
-        return analysed(given), None
-    orbit = survey(given) if spec.keplerian else None
-    return analysed(given) if orbit is None or spec.has_reference else None, orbit
 
 
 def _pictures(found: Analysis | None, orbit: Survey | None) -> dict[str, Content]:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from satsym.cli.derivations import checkout, explained
+from satsym.cli.derivations import checkout
 from satsym.cli.options import place_option
 from satsym.cli.output import complain, emit, live
 from satsym.status import ExitCode
@@ -44,7 +44,7 @@ def derive(files: tuple[str, ...], out: Path | None, check: bool) -> ExitCode:
     whole = not files and out is None
     if not check:
         check_writable(folder)
-    with live() as line, explained():
+    with live() as line, loader.explained():
         rendered = artefacts.render(paths, lambda name: line.show(f"derived {name} ..."))
     if check:
         return _compare(artefacts.differences(rendered, folder, whole), folder, _command(files, out))

@@ -39,15 +39,14 @@ def latex(name: str, output: Path | None, language: str, fragment: bool, convent
     NAME is a shipped model (`satsym models` lists them) or a derivation file. It is derived anew, and each step is
     checked by machine, before anything is written.
     """
-    from satsym.cli.derivations import explained, find
     from satsym.report.latex import document as typesetting
     from satsym.report.results.files import write_text
-    from satsym.symbolic import derive
+    from satsym.symbolic import derive, loader
     from satsym.symbolic.convention import in_convention
 
-    with live() as line, explained():
+    with live() as line, loader.explained():
         line.show(f"deriving {name} ...")
-        derivation = derive(in_convention(find(name), convention))
+        derivation = derive(in_convention(loader.problem(name)[0], convention))
     text = typesetting.render(derivation, language=language, standalone=not fragment)
     if output is None:
         emit(text)

@@ -34,15 +34,16 @@ def lqr(subject: str, as_json: bool, out: Path | None, plot: bool) -> ExitCode:
     cost is the integral of x'Qx + u'Ru, without a factor 1/2.
     """
     from satsym.analysis.regulator.feedback import designed
-    from satsym.cli.subject import begins, find
+    from satsym.analysis.subject import find
     from satsym.report.results.linear import regulator_object
+    from satsym.report.results.objects import head_about
     from satsym.report.terminal.linear import regulator_text
     from satsym.report.terminal.solution import with_files
 
     given = find(subject)
     folder = folder_for(Path(subject).stem, "lqr", out, plot)
     design = designed(given)
-    result = begins("lqr", given, Status.CONVERGED) | regulator_object(design)
+    result = head_about("lqr", given, Status.CONVERGED) | regulator_object(design)
     pictures: dict[str, Content] = {}
     if folder and plot:
         from satsym.report.plots.systems import of_design

@@ -76,11 +76,9 @@ def solve(
     with live() as line:
         solution = solvers.solve(case, progress=lambda iteration: line.show(progress_line(iteration)))
     if case.limits:
-        from dataclasses import replace
+        from satsym.analysis.comparison import limits_noted
 
-        from satsym.analysis.comparison import limits_passed
-
-        solution = replace(solution, message=limits_passed(solution) or solution.message)
+        solution = limits_noted(solution)
     result = solution_object(solution)
     saved = save(folder, result, trajectory_files(folder, solution, plot))
     if as_json:

@@ -5,10 +5,14 @@ matplotlib is imported when the first picture is drawn, without pyplot.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 from satsym.report.results import files
 from satsym.solution import Flight, Solution
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def pictures(result: Solution | Flight, formats: Sequence[str] = ("png",)) -> dict[str, files.Content]:
@@ -29,17 +33,31 @@ def pictures(result: Solution | Flight, formats: Sequence[str] = ("png",)) -> di
         ``invariants`` where the model has none, ``convergence`` for fewer than three iterations, and all but that where
         there is no trajectory.
     """
-    from satsym.report.plots import pages, style
+    from satsym.report.plots import style
+
+    drawn: dict[str, files.Content] = {}
+    with style.applied():
+        for name, page in _pages(result):
+            drawn |= {f"{name}.{kind}": files.binary(style.rendered(page, kind)) for kind in formats}
+    return drawn
+
+
+def figures(result: Solution | Flight) -> dict[str, Figure]:
+    """The same as figures of matplotlib, by name, for people who go on drawing."""
+    from satsym.report.plots import style
+
+    with style.applied():
+        return dict(_pages(result))
+
+
+def _pages(result: Solution | Flight) -> Iterator[tuple[str, Figure]]:
+    from satsym.report.plots import pages
     from satsym.report.plots.convergence import convergence
     from satsym.report.plots.overview import overview
     from satsym.report.plots.scene import Scene
 
-    pages_of = (overview, pages.orbit, pages.states, pages.controls, pages.costates, pages.invariants, convergence)
     scene = Scene.of(result)
-    drawn: dict[str, files.Content] = {}
-    with style.applied():
-        for picture in pages_of:
-            page = picture(scene)
-            if page is not None:
-                drawn |= {f"{picture.__name__}.{kind}": files.binary(style.rendered(page, kind)) for kind in formats}
-    return drawn
+    for picture in (overview, pages.orbit, pages.states, pages.controls, pages.costates, pages.invariants, convergence):
+        page = picture(scene)
+        if page is not None:
+            yield picture.__name__, page

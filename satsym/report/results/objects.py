@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from satsym import __version__
+from satsym.report.results.certificate import certificate_object, number
 from satsym.report.results.unit_names import units
 from satsym.spec import ProblemSpec, Variable
 from satsym.status import Status
@@ -14,7 +14,8 @@ from satsym.status import Status
 if TYPE_CHECKING:
     from satsym.arrays import Array
     from satsym.instance import Instance
-    from satsym.solution import Certificate, Flight, Solution
+    from satsym.kernels import Kernels
+    from satsym.solution import Flight, Solution
 
 
 SCHEMA = 1
@@ -40,6 +41,14 @@ def head(command: str, spec: ProblemSpec, instance: str | None, status: Status) 
     }
 
 
+def head_about(command: str, given: Instance | Kernels, status: Status) -> dict[str, Any]:
+    """The same for what is about an instance, or about a model as such."""
+    from satsym.kernels import Kernels
+
+    name, model = (None, given) if isinstance(given, Kernels) else (given.name, given.model)
+    return head(command, model.spec, name, status)
+
+
 def solution_object(solution: Solution) -> dict[str, Any]:
     """What ``satsym solve --json`` prints.
 
@@ -63,34 +72,6 @@ def solution_object(solution: Solution) -> dict[str, Any]:
         "iterations": solution.iterations,
         "wall_s": number(solution.wall_s),
         "certificate": certificate_object(solution.certificate) if solution.certificate else None,
-    }
-
-
-def certificate_object(certificate: Certificate) -> dict[str, Any]:
-    """The certificate of a solution, as JSON has it."""
-    return {
-        "verdict": certificate.verdict.value,
-        "boundary_residual": number(certificate.boundary_residual),
-        "dynamics_defect": number(certificate.dynamics_defect),
-        "stationarity": number(certificate.stationarity),
-        "hamiltonian_drift": number(certificate.hamiltonian_drift),
-        "legendre_clebsch": number(certificate.legendre_clebsch),
-        "conjugate_time": number(certificate.conjugate_time),
-        "checks": [
-            {"name": c.name, "value": number(c.value), "limit": number(c.limit), "passed": c.passed}
-            for c in certificate.checks
-        ],
-        "competitors": [
-            {
-                "kind": c.kind.value,
-                "tried": c.tried,
-                "solved": c.solved,
-                "unanswered": c.unanswered,
-                "cheapest": number(c.cheapest),
-            }
-            for c in certificate.competitors
-        ],
-        "not_checked": [kind.value for kind in certificate.not_checked],
     }
 
 
@@ -141,12 +122,6 @@ def instance_object(instance: Instance) -> dict[str, Any]:
 def bounded(instance: Instance) -> bool:
     """Whether anything limits the control."""
     return instance.control_set.bounded
-
-
-def number(value: float | None) -> float | None:
-    """A finite float, without the sign of a zero; ``None`` for anything else."""
-    value = math.nan if value is None else float(value)
-    return value + 0.0 if math.isfinite(value) else None
 
 
 def _variable(variable: Variable) -> dict[str, Any]:

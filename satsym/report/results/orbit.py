@@ -1,4 +1,4 @@
-"""What ``satsym analyse --json`` prints of an orbit."""
+"""What ``satsym analyse --json`` prints: all of it, and what it has of an orbit."""
 
 from __future__ import annotations
 
@@ -6,15 +6,37 @@ from typing import TYPE_CHECKING, Any
 
 from satsym.analysis.orbits.conic import TOLERANCE
 from satsym.report.display import length_unit, time_unit
-from satsym.report.results.linear import complex_object, eigenvalue_object, numbers, rows
-from satsym.report.results.objects import number
+from satsym.report.results.exact import exact
+from satsym.report.results.linear import analysis_object, complex_object, eigenvalue_object, numbers, rows
+from satsym.report.results.objects import head_about, number
+from satsym.status import Status
 
 if TYPE_CHECKING:
+    from satsym.analysis.linear.structure import Analysis
     from satsym.analysis.orbits.elements import Elements
     from satsym.analysis.orbits.floquet import Floquet
     from satsym.analysis.orbits.point import Point
     from satsym.analysis.orbits.survey import Survey
+    from satsym.instance import Instance
+    from satsym.kernels import Kernels
     from satsym.spec import ProblemSpec
+    from satsym.symbolic import Derivation
+
+
+def examination_object(
+    given: Instance | Kernels, found: Analysis | None, orbit: Survey | None, derivation: Derivation | None = None
+) -> dict[str, Any]:
+    """What ``satsym analyse --json`` prints.
+
+    Parameters
+    ----------
+    given, found, orbit
+        What was examined, and the two parts of what was found; see :func:`satsym.analysis.subject.examined`.
+    derivation
+        Of the model, where it is at hand; a shipped one is looked for.
+    """
+    algebra = exact(found.about.model, derivation) if found else None
+    return head_about("analyse", given, Status.CONVERGED) | analysis_object(found, algebra) | orbit_object(orbit)
 
 
 def orbit_object(found: Survey | None) -> dict[str, Any]:

@@ -65,17 +65,19 @@ def decoded(path: Path) -> tuple[bytes, str, dict[str, Listed]]:
         raise unusable(path, f"cannot be read ({printable(str(error))})") from None
     if found.files is None:
         raise unusable(path, "does not list its files, as results of this version do")
-    wrong = next((name for name, each in found.files.items() if not _sound(name, each)), None)
+    wrong = next(
+        (name for name, each in found.files.items() if not (may_hold(name) and 0 <= each.bytes <= LARGEST)), None
+    )
     if wrong is not None or len(found.files) > MOST_FILES:
         which = shown(wrong) if wrong is not None else f"more than {MOST_FILES}"
         raise unusable(path, f"lists files that no set has: {which}")
     return raw, found.command, found.files
 
 
-def _sound(name: str, each: Listed) -> bool:
-    """Whether a set may have such a file: a plain name in its own folder."""
+def may_hold(name: str) -> bool:
+    """Whether a set may have a file of this name: a plain one in its own folder."""
     plain = name.isprintable() and 0 < len(name) <= 100 and name[0] not in ". " and not set("/\\:") & set(name)
-    return plain and name != LIST and 0 <= each.bytes <= LARGEST
+    return plain and name != LIST
 
 
 def is_listed(path: Path, listed: Listed) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -13,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.report.results import arrays, sets
+from satsym.report.results.certificate import Stored as StoredCertificate
+from satsym.report.results.certificate import absent
 from satsym.report.results.files import Content
 from satsym.report.results.set_list import LIST, unusable
 from satsym.solution import Flight, Invariant, Iteration, Solution
@@ -54,6 +55,7 @@ class _Result(msgspec.Struct):
     objective: float | None = None
     iterations: int = 0
     wall_s: float | None = None
+    certificate: StoredCertificate | None = None
     feedback: str = ""
     invariants: dict[str, _Kept] = {}
     metrics: dict[str, float | None] = {}
@@ -96,7 +98,7 @@ def contents(found: Solution | Flight) -> dict[str, Content]:
 
 
 def read(instance: Instance, folder: Path) -> tuple[Solution | Flight, sets.Found]:
-    """What ``satsym solve`` or ``satsym simulate`` wrote into a folder; without the certificate of a solution.
+    """What ``satsym solve`` or ``satsym simulate`` wrote into a folder.
 
     Parameters
     ----------
@@ -143,7 +145,7 @@ def _solution(instance: Instance, result: _Result, stored: Stored) -> Solution:
         method=result.method,
         status=Status(str(stored["status"])),
         message=result.message,
-        objective=_float(result.objective),
+        objective=absent(result.objective),
         times=stored["times"],
         x=stored["x"],
         u=stored["u"],
@@ -151,7 +153,8 @@ def _solution(instance: Instance, result: _Result, stored: Stored) -> Solution:
         switching_times=tuple(tuple(met[controls == i].tolist()) for i in range(len(stored["u"]))),
         iterations=result.iterations,
         history=tuple(Iteration(k, float(cost), float(left)) for k, (cost, left) in enumerate(stored["history"].T)),
-        wall_s=_float(result.wall_s),
+        wall_s=absent(result.wall_s),
+        certificate=result.certificate.certificate() if result.certificate else None,
     )
 
 
@@ -164,8 +167,8 @@ def _flight(instance: Instance, result: _Result, stored: Stored) -> Flight:
         times=stored["times"],
         x=stored["x"],
         u=stored["u"],
-        invariants={name: Invariant(_float(k.initial), _float(k.drift)) for name, k in result.invariants.items()},
-        metrics={name: _float(value) for name, value in result.metrics.items()},
+        invariants={name: Invariant(absent(k.initial), absent(k.drift)) for name, k in result.invariants.items()},
+        metrics={name: absent(value) for name, value in result.metrics.items()},
     )
 
 
@@ -214,7 +217,3 @@ def _starts_at(x: NDArray[Any], initial: Sequence[float]) -> bool:
     with np.errstate(all="ignore"):
         off = np.abs(x[:, 0] - initial)
         return not (off > SAME * np.nanmax(np.abs(x), axis=1, initial=0.0)).any()
-
-
-def _float(value: float | None) -> float:
-    return math.nan if value is None else value

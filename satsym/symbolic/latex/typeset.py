@@ -29,6 +29,11 @@ class NamedMatrix:
         """The equations it is made of, row by row."""
         return tuple(e for row in self.entries for e in row if e is not None)
 
+    @property
+    def matrix(self) -> sp.Matrix:
+        """The entries alone."""
+        return sp.Matrix([[0 if e is None else e.rhs for e in row] for row in self.entries])
+
 
 class Typesetter:
     """Prints expressions in the notation of one derivation."""

@@ -25,6 +25,11 @@ class Family:
     columns: tuple[str, ...]
     entries: tuple[tuple[sp.Expr, ...], ...]
 
+    @property
+    def matrix(self) -> sp.Matrix:
+        """The same without the names."""
+        return sp.Matrix(self.entries)
+
 
 Found: TypeAlias = Equation | Family | sp.Expr
 

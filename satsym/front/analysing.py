@@ -1,0 +1,176 @@
+"""Analyses and regulators as users meet them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from satsym.analysis import subject as subjects
+from satsym.front import html
+from satsym.front.instance import Instance
+from satsym.instance import Instance as Case
+from satsym.kernels import Kernels
+from satsym.report.results.files import to_json
+from satsym.status import Status
+
+if TYPE_CHECKING:
+    from satsym import symbolic
+    from satsym.analysis.linear.structure import Analysis as Linear
+    from satsym.analysis.orbits.survey import Survey
+    from satsym.analysis.regulator.feedback import Design
+    from satsym.arrays import Array
+    from satsym.front.derivation import Derivation
+
+Subject: TypeAlias = "Instance | symbolic.Problem | symbolic.Model | Derivation | str | Path"
+
+
+class _Said:
+    """What has an object for JSON and a text for people."""
+
+    @cached_property
+    def _object(self) -> dict[str, Any]:
+        raise NotImplementedError
+
+    def to_dict(self) -> dict[str, Any]:
+        """What the command line prints with ``--json``."""
+        return dict(self._object)
+
+    def to_json(self) -> str:
+        """The same as text."""
+        return to_json(self._object)
+
+    def __getitem__(self, key: str) -> Any:
+        return self._object[key]
+
+    def _repr_html_(self) -> str:
+        said = self._object
+        listed = {key: value for key, value in said.items() if not isinstance(value, Mapping) and key != "units"}
+        deeper = [
+            f"<details><summary>{html.escape(key)}</summary>{html.facts(value)}</details>"
+            for key, value in said.items()
+            if isinstance(value, Mapping) and key != "units"
+        ]
+        return html.page(f"{said['command']} {said['instance'] or said['model']}", [], html.facts(listed), *deeper)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Analysis(_Said):
+    """Stability, controllability and observability, and an orbit; ``analysis["stability"]`` is a part of it.
+
+    Attributes
+    ----------
+    given
+        What was analysed.
+    linear, orbit
+        The linear analysis and that of the orbit, as floors below hand them back; one may be missing.
+    derivation
+        Of the model, where it is at hand.
+    """
+
+    given: Case | Kernels
+    linear: Linear | None
+    orbit: Survey | None
+    derivation: Derivation | None = None
+
+    @cached_property
+    def _object(self) -> dict[str, Any]:
+        from satsym.report.results.orbit import examination_object
+
+        derived = self.derivation.derived if self.derivation else None
+        return examination_object(self.given, self.linear, self.orbit, derived)
+
+    def __repr__(self) -> str:
+        from satsym.report.terminal.linear import analysis_text
+        from satsym.report.terminal.orbit import orbit_text
+
+        parts = [analysis_text(self.linear, False)] if self.linear else []
+        return "\n\n".join(parts + ([orbit_text(self.orbit, False)] if self.orbit else []))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Regulator(_Said):
+    """The linear feedback u = -K x that costs least.
+
+    Attributes
+    ----------
+    given
+        What it was designed for.
+    design
+        As the floor below hands it back.
+    """
+
+    given: Case | Kernels
+    design: Design
+
+    @property
+    def K(self) -> Array:
+        """The gain, a row for each active input."""
+        return self.design.regulator.K
+
+    @property
+    def P(self) -> Array:
+        """The solution of the Riccati equation."""
+        return self.design.regulator.P
+
+    @cached_property
+    def _object(self) -> dict[str, Any]:
+        from satsym.report.results.linear import regulator_object
+        from satsym.report.results.objects import head_about
+
+        return head_about("lqr", self.given, Status.CONVERGED) | regulator_object(self.design)
+
+    def __repr__(self) -> str:
+        from satsym.report.terminal.linear import regulator_text
+
+        return regulator_text(self.design)
+
+
+def analyse(subject: Subject) -> Analysis:
+    """Tell what a model does near its reference or an equilibrium, and an orbit about a centre.
+
+    Parameters
+    ----------
+    subject
+        An instance, or a model with its default parameters: by name or path, or as they are in Python.
+
+    Raises
+    ------
+    BadInput
+        If there is nothing to analyse, with one line that says why.
+    """
+    given, derivation = _given(subject)
+    return Analysis(given, *subjects.examined(given), derivation)
+
+
+def lqr(subject: Subject) -> Regulator:
+    """Find the linear feedback that costs least.
+
+    Parameters
+    ----------
+    subject
+        An instance with a table [lqr], or a model, whose weights are then all 1; as for :func:`analyse`.
+
+    Raises
+    ------
+    BadInput
+        If there is no such feedback, with one line that says why.
+    """
+    from satsym.analysis.regulator.feedback import designed
+
+    given, _ = _given(subject)
+    return Regulator(given, designed(given))
+
+
+def _given(subject: Subject) -> tuple[Case | Kernels, Derivation | None]:
+    """What floors below take, and the derivation of a model that is given as such."""
+    if isinstance(subject, Instance):
+        return subject.case, None
+    if isinstance(subject, str | Path):
+        return subjects.find(str(subject)), None
+    from satsym.front.derivation import derive
+
+    derivation = derive(subject)
+    return derivation.kernels, derivation

@@ -1,0 +1,183 @@
+"""Motions between their nodes: integrated from the nodes on both sides, so that they are as accurate as these.
+
+From each node the equations that the trajectory obeys are integrated by RK4, in as many steps as two runs need to
+agree; the two that meet between neighbouring nodes are blended, more of the nearer one. Where a control meets a bound
+or jumps between two nodes, each side keeps its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.arrays import Array
+from satsym.control_set import ControlSet
+from satsym.instance import Instance
+
+Rates: TypeAlias = Callable[[Array, Array, NDArray[np.intp]], Array]
+"""Of values (k, M) at times (M,), each in the interval behind the node of that number."""
+
+SHARE = 0.1
+"""Of the instance's tolerance: what the integration between nodes may add."""
+MOST = 64
+"""Steps between two nodes."""
+ROUNDING = 1e-13
+GAINED = 15.0
+"""The distance between two runs of RK4, one with half the steps, is so many times the error of the better one."""
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """Values between nodes.
+
+    Attributes
+    ----------
+    times, values
+        Nodes (N+1,) that never go back, and values there, shape (k, N+1).
+    rates
+        Of change.
+    corners
+        Times between nodes at which rates are not smooth.
+    tolerance
+        Relative to the size of each value.
+    """
+
+    times: Array
+    values: Array
+    rates: Rates
+    corners: Array
+    tolerance: float
+
+    def behind(self, t: Array) -> NDArray[np.intp]:
+        """Numbers of the intervals in which times lie; of a time that occurs twice the later, of the last the last."""
+        return np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, len(self.times) - 2)
+
+    @np.errstate(all="ignore")
+    def __call__(self, t: Array) -> Array:
+        """Values at times (M,) within the nodes, shape (k, M)."""
+        left = self.behind(t)
+        a, b = self.times[left], self.times[left + 1]
+        share = np.where(b > a, (t - a) / np.where(b > a, b - a, 1.0), 1.0)
+        weight = share**2 * (3.0 - 2.0 * share)
+        place = np.searchsorted(self.corners, a, side="right")
+        corner = np.append(self.corners, np.inf)[place]
+        weight = np.where(corner < b, t >= corner, weight)
+        first, second = self._from(left, left, t), self._from(left + 1, left, t)
+        both = (1.0 - weight) * first + weight * second
+        return np.where(weight == 0.0, first, np.where(weight == 1.0, second, both))
+
+    def _from(self, node: NDArray[np.intp], interval: NDArray[np.intp], t: Array) -> Array:
+        """Values at times by integration from nodes, in more and more steps until two runs agree."""
+        steps, found, enough = 1, self._run(node, interval, t, 1), SHARE * self.tolerance
+        size = np.abs(self.values).max(axis=1, keepdims=True)
+        before = np.inf
+        while steps < MOST:
+            steps *= 2
+            finer = self._run(node, interval, t, steps)
+            off = np.abs(finer - found) / GAINED
+            error = float(np.nanmax(off / np.where(size > 0.0, size, 1.0), initial=0.0))
+            found = finer
+            if not enough < error < before or error < ROUNDING:
+                break
+            before = error
+        return found
+
+    def _run(self, node: NDArray[np.intp], interval: NDArray[np.intp], t: Array, steps: int) -> Array:
+        now, z = self.times[node].copy(), self.values[:, node].copy()
+        h = (t - now) / steps
+        for _ in range(steps):
+            k1 = self.rates(now, z, interval)
+            k2 = self.rates(now + h / 2, z + h / 2 * k1, interval)
+            k3 = self.rates(now + h / 2, z + h / 2 * k2, interval)
+            k4 = self.rates(now + h, z + h * k3, interval)
+            # what does not move is not touched, whatever its rates are
+            z = np.where(h == 0.0, z, z + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4))
+            now = now + h
+        return z
+
+
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """Controls between nodes, arc by arc: a time that occurs twice ends one arc and begins the next.
+
+    Where they are constant they are exact. Else they are splines of degree five, which suits smooth arcs, or cubics
+    that do not overshoot (PCHIP), which suits jumps: what tells every second node better from the others. They keep
+    their bounds.
+    """
+
+    times: Array
+    values: Array
+    admissible: ControlSet
+    _arcs: list[Callable[[Array], Array]] = field(default_factory=list)
+
+    @cached_property
+    def edges(self) -> NDArray[np.intp]:
+        """The first node of each arc."""
+        return np.concatenate([[0], np.flatnonzero(np.diff(self.times) == 0.0) + 1])
+
+    def __call__(self, t: Array, left: NDArray[np.intp]) -> Array:
+        """Controls at times (M,), in the intervals behind nodes of these numbers; shape (m, M)."""
+        found = np.empty((len(self.values), len(t)))
+        arcs = np.searchsorted(self.edges, left, side="right") - 1
+        for arc in np.unique(arcs):
+            here = arcs == arc
+            found[:, here] = self._piece(int(arc))(t[here])
+        return found
+
+    def _piece(self, arc: int) -> Callable[[Array], Array]:
+        if not self._arcs:
+            ends = [*self.edges[1:].tolist(), len(self.times)]
+            self._arcs.extend(self._fitted(a, b) for a, b in zip(self.edges.tolist(), ends, strict=True))
+        return self._arcs[arc]
+
+    def _fitted(self, begin: int, end: int) -> Callable[[Array], Array]:
+        times, values = self.times[begin:end], self.values[:, begin:end]
+        if len(times) < 2 or not np.isfinite(values).all() or not np.ptp(values, axis=1).any():
+            return lambda t: np.repeat(values[:, :1], len(t), axis=1)
+        kept = np.unique([*range(0, len(times), 2), len(times) - 1])
+        misses = [np.abs(fit(times[kept], values[:, kept])(times) - values).max() for fit in (_spline, _monotone)]
+        fitted = (_spline if misses[0] <= misses[1] else _monotone)(times, values)
+        return lambda t: self.admissible.project(fitted(t))
+
+
+def _spline(times: Array, values: Array) -> Callable[[Array], Array]:
+    from scipy.interpolate import make_interp_spline
+
+    fitted: Callable[[Array], Array] = make_interp_spline(times, values, k=min(5, len(times) - 1), axis=1)
+    return fitted
+
+
+def _monotone(times: Array, values: Array) -> Callable[[Array], Array]:
+    from scipy.interpolate import PchipInterpolator
+
+    fitted: Callable[[Array], Array] = PchipInterpolator(times, values, axis=1)
+    return fitted
+
+
+def extremal(case: Instance, times: Array, x: Array, lam: Array, corners: Array) -> tuple[Motion, Pieces | None]:
+    """Motion of states and costates, (2n, N+1), under the control that minimises H."""
+    model, p, bounds, n = case.model, case.parameters, case.control_set.arguments, len(x)
+
+    def rates(t: Array, z: Array, _: NDArray[np.intp]) -> Array:
+        return np.asarray(model.canonical_batch(t, z[:n], z[n:], p, bounds))
+
+    return Motion(times, np.vstack([x, lam]), rates, corners, case.solver.tolerance), None
+
+
+def controlled(case: Instance, times: Array, x: Array, u: Array, lam: Array | None) -> tuple[Motion, Pieces]:
+    """Motion of states, and of costates where there are any, under controls as they are at the nodes."""
+    model, p, n = case.model, case.parameters, len(x)
+    pieces = Pieces(times, u, case.control_set)
+
+    def rates(t: Array, z: Array, left: NDArray[np.intp]) -> Array:
+        now = pieces(t, left)
+        moved = np.asarray(model.dynamics_batch(t, z[:n], now, p))
+        return moved if lam is None else np.vstack([moved, model.costate_rate_batch(t, z[:n], now, z[n:], p)])
+
+    values = x if lam is None else np.vstack([x, lam])
+    return Motion(times, values, rates, np.empty(0), case.solver.tolerance), pieces

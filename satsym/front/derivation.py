@@ -1,0 +1,258 @@
+"""Derivations as users meet them: equations by address, kernels, LaTeX and HTML, all in memory unless saved."""
+
+from __future__ import annotations
+
+import pickle
+from collections import OrderedDict
+from dataclasses import dataclass
+from functools import cached_property
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from satsym import symbolic
+from satsym.report import artefacts
+from satsym.status import BadInput
+from satsym.symbolic import Model, Problem, loader
+from satsym.symbolic.convention import in_convention, is_minimum
+from satsym.symbolic.latex.typeset import Typesetter, matrices
+from satsym.symbolic.lookup import addresses
+from satsym.symbolic.model import Convention
+from satsym.wording import counted, shown
+
+if TYPE_CHECKING:
+    import sympy as sp
+
+    from satsym.kernels import Kernels
+
+SHOWN = ("first_order", "hamiltonian", "control_law", "costate_equations")
+"""Steps of which a derivation consists for those who see it as one formula."""
+KEPT = 32
+"""Derivations that are kept: deriving takes a while."""
+
+
+@dataclass(frozen=True)
+class Equation:
+    """A derived equation; shown as a formula in notebooks.
+
+    Attributes
+    ----------
+    address
+        ``model:step.equation``.
+    lhs, rhs
+        Of sympy; the right-hand side may be a matrix.
+    latex
+        The equation in the notation of its derivation.
+    """
+
+    address: str
+    lhs: sp.Expr
+    rhs: sp.Expr
+    latex: str
+
+    def __repr__(self) -> str:
+        return f"{self.address}: {self.lhs} = {self.rhs}"
+
+    def _repr_latex_(self) -> str:
+        return f"$\\displaystyle {self.latex}$"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Derivation:
+    """What follows from a problem, or a model without a cost, every step of it checked.
+
+    Attributes
+    ----------
+    subject
+        What it follows from, as it was declared.
+    derived
+        The steps.
+    source
+        Name of the file that states it; what it would be called where there is none.
+    """
+
+    subject: Problem | Model
+    derived: symbolic.Derivation
+    source: str
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.subject, self.derived, self.source)
+
+    @property
+    def name(self) -> str:
+        """Of the problem, or of the model without a cost."""
+        return self.derived.name
+
+    @property
+    def title(self) -> str:
+        """One line for people."""
+        return self.derived.title
+
+    @cached_property
+    def kernels(self) -> Kernels:
+        """The functions that are generated from it, each verified against its expression; in memory alone."""
+        return self._generated[1]
+
+    @cached_property
+    def _generated(self) -> tuple[str, Kernels]:
+        if not is_minimum(self.derived):
+            return derive(self, "minimum")._generated
+        with loader.explained():
+            return artefacts.generated(self.derived, self.source)
+
+    @cached_property
+    def _typeset(self) -> Typesetter:
+        return Typesetter(self.derived)
+
+    def __getitem__(self, address: str) -> Equation | sp.Expr | sp.Matrix | dict[str, Equation]:
+        """What an address names.
+
+        Parameters
+        ----------
+        address
+            ``"step.equation"``, also with the model's name before it; ``"step"`` for all equations of a step, by name;
+            ``"step.A"`` for a matrix whose entries are equations; ``"declared.name"``.
+
+        Raises
+        ------
+        BadInput
+            If there is none, with what comes near.
+        """
+        model, _, rest = address.rpartition(":") if isinstance(address, str) else ("", "", "")
+        if model not in ("", self.name) or not rest:
+            raise BadInput(f'{shown(address)}: not in the derivation of {self.name}; write "step.equation"')
+        if "." not in rest and rest in self.derived:
+            return {e.name: self._equation(rest, e) for e in self.derived.step(rest).equations}
+        found = addresses.resolve(self.derived, f"{self.name}:{rest}")
+        if isinstance(found, symbolic.Equation):
+            return self._equation(rest.partition(".")[0], found)
+        return found.matrix if isinstance(found, addresses.Family) else found
+
+    def __iter__(self) -> Any:
+        """Addresses of all equations."""
+        return iter(addresses.addresses(self.derived))
+
+    def __contains__(self, address: object) -> bool:
+        try:
+            return isinstance(address, str) and self[address] is not None
+        except BadInput:
+            return False
+
+    def latex(self, lang: str = "en", *, fragment: bool = False) -> str:
+        """A LaTeX document of it, as ``satsym latex`` writes it.
+
+        Parameters
+        ----------
+        lang
+            ``"en"`` or ``"id"``.
+        fragment
+            Without a preamble, to be included.
+        """
+        from satsym.report.latex import document
+
+        return document.render(self.derived, language=lang, standalone=not fragment)
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write ``NAME.py`` and ``NAME.tex``, as ``satsym derive --out`` does; their paths.
+
+        Raises
+        ------
+        BadInput
+            If the folder cannot be written to.
+        """
+        from satsym.report.results.files import check_writable
+
+        check_writable(Path(folder))
+        texts = {f"{self.name}.py": self._generated[0], f"{self.name}.tex": self.latex()}
+        return artefacts.write(texts, Path(folder))
+
+    def __repr__(self) -> str:
+        steps = [(s.name, len(s.equations), len(s.checks)) for s in self.derived.steps]
+        wide = max(len(name) for name, _, _ in steps)
+        lines = [
+            f"  {name:<{wide}}  {counted(some, 'equation')}, {counted(checks, 'check')}" for name, some, checks in steps
+        ]
+        return "\n".join([f"{self.name}: {self.title}", *lines])
+
+    def _repr_latex_(self) -> str:
+        return _display([line for name in SHOWN if name in self.derived for line in self._lines(name)])
+
+    def _repr_html_(self) -> str:
+        from satsym.report.texts import load
+
+        texts = load("en")
+        parts = [f"<h4>{escape(self.title)}</h4>"]
+        for step in self.derived.steps:
+            title = texts.find("titles", step.name) or step.name
+            claims = ", ".join(f"{check.claim} ({check.error:.0e})" for check in step.checks)
+            parts.append(
+                f"<details><summary>{escape(title)}</summary>{escape(_display(self._lines(step.name)))}"
+                f"<small>{escape(claims)}</small></details>"
+            )
+        return "\n".join(parts)
+
+    def _lines(self, name: str) -> list[str]:
+        """The equations of a step; matrices whose entries they are come first, in place of these."""
+        step, tex = self.derived.step(name), self._typeset.tex
+        named = matrices(self.derived, step)
+        entries = [e for one in named for e in one.equations]
+        return [f"{one.prefix} &= {tex(one.matrix)}" for one in named] + [
+            f"{tex(e.lhs)} &= {tex(e.rhs)}" for e in step.equations if e not in entries
+        ]
+
+    def _equation(self, step: str, found: symbolic.Equation) -> Equation:
+        formula = f"{self._typeset.tex(found.lhs)} = {self._typeset.tex(found.rhs)}"
+        return Equation(f"{self.name}:{step}.{found.name}", found.lhs, found.rhs, formula)
+
+
+def _display(lines: list[str]) -> str:
+    body = r" \\ ".join(lines)
+    return rf"$$\begin{{aligned}} {body} \end{{aligned}}$$"
+
+
+Subject: TypeAlias = "Problem | Model | Derivation | str | Path"
+
+
+def derive(subject: Subject, convention: Convention | None = None) -> Derivation:
+    """Derive everything that follows from a problem, or from a model without a cost.
+
+    Parameters
+    ----------
+    subject
+        A problem or model; a shipped name; or ``"FILE.py"``, with ``:NAME`` where that file states several. A file is
+        Python and is executed.
+    convention
+        ``"minimum"`` or ``"maximum"``; by default as the problem says.
+
+    Raises
+    ------
+    BadInput
+        If there is no such thing, or it cannot be derived from: with one line that says why.
+    """
+    source = ""
+    if isinstance(subject, Derivation):
+        source, subject = subject.source, subject.subject
+    elif isinstance(subject, str | Path):
+        subject, path = loader.problem(str(subject))
+        source = artefacts.source_of(path)
+    if not isinstance(subject, Problem | Model):
+        raise BadInput(f"{shown(subject)} cannot be derived from; give a Problem, a model, or the name of one")
+    if convention not in (None, "minimum", "maximum"):
+        raise BadInput(f'convention: {shown(convention)} is neither "minimum" nor "maximum"')
+    chosen = in_convention(subject, convention)
+    return _kept(chosen, source or f"{chosen.name}.py")
+
+
+_KEPT: OrderedDict[bytes, Derivation] = OrderedDict()
+"""By what was asked, in full: problems hold tables, which may have changed since."""
+
+
+def _kept(subject: Problem | Model, source: str) -> Derivation:
+    key = pickle.dumps((subject, source))
+    if key not in _KEPT:
+        with loader.explained():
+            _KEPT[key] = Derivation(subject, symbolic.derive(subject), source)
+        while len(_KEPT) > KEPT:
+            _KEPT.popitem(last=False)
+    _KEPT.move_to_end(key)
+    return _KEPT[key]

@@ -1,0 +1,215 @@
+"""Instances made in Python: the same tables as in a file, checked by the same function, with the same messages."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from satsym import instance as instances
+from satsym.front import tables
+from satsym.instance import Written
+from satsym.status import BadInput
+from satsym.wording import shown
+
+if TYPE_CHECKING:
+    from satsym.front.derivation import Derivation
+    from satsym.kernels import Kernels
+    from satsym.solvers.repeated import Repeated
+    from satsym.symbolic import Model, Problem
+
+Table: TypeAlias = Mapping[Any, Any]
+"""Names, or symbols, and values: numbers, or texts such as ``"5 km"``, ``"reference"``, ``"free"``."""
+
+TIMES = ("tf", "t0", "tf_guess")
+_NAME = re.compile(r"[^\W_][\w.-]{0,99}\Z")
+
+
+def load(name_or_path: str | Path) -> Instance:
+    """An instance from a file.
+
+    Parameters
+    ----------
+    name_or_path
+        A shipped name (`satsym instances` lists them), or the path of a TOML file.
+
+    Raises
+    ------
+    BadInput
+        With one line, ``FILE: KEY: what is wrong; what to do``.
+    """
+    return Instance.of_written(instances.read(name_or_path))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Instance:
+    """One case of a model: made by :func:`load` or :meth:`of`, and never changed.
+
+    Parameters
+    ----------
+    written
+        What was asked, as tables.
+    case
+        The same, checked against the model; what solvers take.
+    """
+
+    written: Written
+    case: instances.Instance
+
+    @classmethod
+    def of_written(cls, written: Written) -> Instance:
+        """The instance that tables describe, once they are found to be sound."""
+        return cls(written, written.instance())
+
+    @classmethod
+    def of(
+        cls,
+        model: str | Path | Problem | Model | Derivation,
+        *,
+        initial: Table | None = None,
+        tf: float | str | None = None,
+        final: Table | None = None,
+        t0: float | str | None = None,
+        tf_guess: float | str | None = None,
+        parameters: Table | None = None,
+        control: Table | None = None,
+        name: str | None = None,
+        **more: Any,
+    ) -> Instance:
+        """An instance of a model.
+
+        Parameters
+        ----------
+        model
+            A shipped name, a generated file as ``"DIR/NAME"``, or a problem (or model), which is derived and generated
+            in memory, once.
+        initial, final, parameters, control
+            The tables of these names.
+        tf, t0, tf_guess
+            The table [time].
+        name
+            What it is called in results; by default as its model.
+        more
+            The other keys of an instance file: ``title``, ``solver``, ``lqr``, ``guess``, ``classical``, ``limits``,
+            ``switching``.
+
+        Raises
+        ------
+        BadInput
+            With the line that an instance file would get.
+
+        Examples
+        --------
+        ::
+
+            Instance.of("polar_orbit", initial={"r": 1.1, "r_dot": 0, "theta": "5 deg", "theta_dot": 0.9}, tf=6.28)
+        """
+        kernels, called = _kernels(model), _called(model)
+        given = {"initial": initial, "final": final, "parameters": parameters, "control": control}
+        given["time"] = {"tf": tf, "t0": t0, "tf_guess": tf_guess}
+        tree = tables.merged({"model": called}, tables.plain(given))
+        last = called.rpartition("/")[2]
+        chosen = _checked(name) if name is not None else last if _NAME.match(last) else "instance"
+        written = Written(tables.merged(tree, more), chosen, Path(f"{chosen}.toml"), model=kernels)
+        return cls.of_written(written)
+
+    def with_(self, **changes: Any) -> Instance:
+        """The same with changes, checked anew.
+
+        Parameters
+        ----------
+        changes
+            As for :meth:`of`. Tables are merged, name by name; ``None`` takes away what was there, such as in
+            ``with_(final={"theta": None})``. ``model`` may be changed, too.
+
+        Raises
+        ------
+        BadInput
+            As for :meth:`of`.
+        """
+        written = self.written
+        if (name := changes.pop("name", None)) is not None:
+            written = replace(written, name=_checked(name), given="")
+        if (model := changes.pop("model", None)) is not None:
+            written = replace(written, model=_kernels(model))
+            changes["model"] = _called(model)
+        if times := {key: changes.pop(key) for key in TIMES if key in changes}:
+            changes["time"] = times
+        return self.of_written(replace(written, tree=tables.merged(written.tree, changes)))
+
+    @property
+    def name(self) -> str:
+        """What it is called in results."""
+        return self.case.name
+
+    @property
+    def title(self) -> str:
+        """One line for people; may be empty."""
+        return self.case.title
+
+    @property
+    def model(self) -> str:
+        """Name of its model."""
+        return self.case.model.spec.name
+
+    def to_dict(self) -> dict[str, Any]:
+        """What ``satsym instances --json`` says of it."""
+        from satsym.report.results.objects import instance_object
+
+        return instance_object(self.case)
+
+    def to_toml(self) -> str:
+        """The text of an instance file that says the same."""
+        return tables.toml(self.written.tree)
+
+    def repeated(self, compiled: bool | None = None) -> Repeated:
+        """Something that solves it again and again, for other initial states or parameters, in milliseconds.
+
+        Parameters
+        ----------
+        compiled
+            See :class:`~satsym.solvers.repeated.Repeated`.
+        """
+        from satsym.solvers.repeated import Repeated
+
+        return Repeated(self.case, compiled)
+
+    def __repr__(self) -> str:
+        return f"# {self.name}\n{self.to_toml()}".rstrip()
+
+
+def as_case(given: Instance | str | Path) -> Instance:
+    """An instance as it is, or the one of a name or path."""
+    if isinstance(given, Instance):
+        return given
+    if isinstance(given, str | Path):
+        return load(given)
+    raise BadInput(
+        f"{shown(given)} is no instance; make one with Instance.of(model, initial=..., tf=...), or load(...) one"
+    )
+
+
+def _called(model: Any) -> str:
+    """How tables name a model."""
+    return str(model) if isinstance(model, str | Path) else model.name
+
+
+def _kernels(model: Any) -> Kernels | None:
+    """Kernels of what is not a name; ``None`` where they are to be looked for."""
+    if isinstance(model, str | Path):
+        return None
+    from satsym.front.derivation import derive
+    from satsym.kernels.loading import check_name
+
+    derivation = derive(model)
+    check_name(derivation.name)
+    return derivation.kernels
+
+
+def _checked(name: str) -> str:
+    """A name that files of results can have."""
+    if not isinstance(name, str) or not _NAME.match(name):
+        raise BadInput(f"name: {shown(name)} is no name for an instance; write letters, digits, hyphens and dots")
+    return name

@@ -1,0 +1,162 @@
+"""What solutions and simulated trajectories have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, ClassVar, Generic, Self, TypeVar
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.front import between, html, saved
+from satsym.front.curves import Curve
+from satsym.front.instance import Instance
+from satsym.front.pictures import Pictures
+from satsym.report.results.files import to_json
+from satsym.solution import Flight, Solution
+from satsym.status import BadInput, Status
+from satsym.wording import printable
+
+Found = TypeVar("Found", Solution, Flight)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Result(Generic[Found]):
+    """A trajectory, with the instance it is of.
+
+    ``x`` and ``u`` are functions of time, ``x(t)``, and index like arrays of their values at the nodes, ``x[0, -1]``;
+    ``x["r"]`` is the state of that name. Between nodes the equations of motion are integrated from the nodes on both
+    sides, to a tenth of the instance's tolerance, so that what is seen there is as accurate as the nodes are.
+
+    Parameters
+    ----------
+    instance
+        What was solved or simulated.
+    found
+        The answer, as solvers hand it back.
+    """
+
+    instance: Instance
+    found: Found
+
+    _command: ClassVar[str]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.instance, self.found)  # what is computed on demand is left out
+
+    @property
+    def status(self) -> Status:
+        """How it ended."""
+        return self.found.status
+
+    @property
+    def message(self) -> str:
+        """One sentence for people, with advice where there is no answer."""
+        return self.status.explain(self.found.message)
+
+    @property
+    def times(self) -> Array:
+        """Nodes (N+1,); a time at which a control jumps occurs twice."""
+        return self.found.times
+
+    @cached_property
+    def x(self) -> Curve:
+        """States."""
+        n = len(self.found.x)
+        return self._curve("x", self.found.x, self._spec.state_names, lambda t: self._motion[0](t)[:n])
+
+    @cached_property
+    def u(self) -> Curve:
+        """Controls: those that the states and costates ask for at that time; where they jump, those from then on."""
+        return self._curve("u", self.found.u, self._spec.control_names, self._controls)
+
+    def plot(self, folder: str | Path | None = None, formats: Sequence[str] = ("png",)) -> Pictures:
+        """Pictures by name, which notebooks show; written into a folder where one is given.
+
+        Raises
+        ------
+        BadInput
+            If the folder cannot be written to.
+        """
+        pictures = Pictures(self.found)
+        if folder is not None:
+            pictures.save(folder, formats)
+        return pictures
+
+    def save(self, folder: str | Path, *, plot: bool = False) -> list[Path]:
+        """Write what the command line writes with ``--out`` (and ``--plot``), and the instance; the paths.
+
+        A result that the folder holds already is replaced, whole or not at all.
+
+        Raises
+        ------
+        BadInput
+            If the folder cannot be written to.
+        """
+        pictures = Pictures(self.found).contents() if plot else {}
+        return saved.save(self.instance, self.found, self.to_dict(), Path(folder), pictures)
+
+    @classmethod
+    def load(cls, folder: str | Path, instance: Instance | str | Path | None = None) -> Self:
+        """What was saved in a folder, by :meth:`save` or by the command line.
+
+        Parameters
+        ----------
+        folder
+            Where.
+        instance
+            What it is of; by default the instance that was saved with it, or the shipped one of its name.
+
+        Raises
+        ------
+        BadInput
+            If there is no whole result of this kind, or it is of another instance.
+        """
+        case, found = saved.read(Path(folder), instance)
+        if isinstance(found, Solution) != (cls._command == "solve"):
+            other = "simulate" if cls._command == "solve" else "solve"
+            raise BadInput(f"{printable(str(folder))}: holds the result of {other}, not of {cls._command}")
+        return cls(case, found)  # type: ignore[arg-type]
+
+    def to_dict(self) -> dict[str, Any]:
+        """What the command line prints with ``--json``."""
+        raise NotImplementedError
+
+    def to_json(self) -> str:
+        """The same as text."""
+        return to_json(self.to_dict())
+
+    @property
+    def _spec(self) -> Any:
+        return self.instance.case.model.spec
+
+    @property
+    def _lam(self) -> Array | None:
+        return None
+
+    @cached_property
+    def _motion(self) -> tuple[between.Motion, between.Pieces | None]:
+        return between.controlled(self.found.instance, self.times, self.found.x, self.found.u, self._lam)
+
+    def _controls(self, t: Array) -> Array:
+        motion, pieces = self._motion
+        left = motion.behind(t)
+        now = pieces(t, left) if pieces else self._law(t, motion(t))
+        node = np.where(t == self.times[left + 1], left + 1, left)
+        return np.where(t == self.times[node], self.found.u[:, node], now)
+
+    def _law(self, t: Array, z: Array) -> Array:
+        raise NotImplementedError
+
+    def _curve(self, what: str, values: Array, names: Sequence[str], at: Any) -> Curve:
+        whole = len(self.times) > 1 and np.isfinite(self.found.x).all()
+        absent = "" if whole else f"there is no trajectory ({self.status.value}); the message of the result says why"
+        return Curve(what, self.times, values, names, at, absent)
+
+    def _html(self, facts: dict[str, Any], *tables: str) -> str:
+        case = self.instance
+        lines = [f"{case.name}, model {case.model}: {self.status.value}", self.message]
+        return html.page(case.title or case.name, lines, html.facts(facts), *tables)

@@ -1,0 +1,79 @@
+"""Results in folders: the files that the command line writes, and what they belong to, so that both come back."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from satsym.front import tables
+from satsym.front.instance import Instance, as_case, load
+from satsym.instance import shipped
+from satsym.report.results import sets, trajectory
+from satsym.report.results.files import Content, check_writable, text
+from satsym.report.results.set_list import LIST, may_hold, unusable
+from satsym.solution import Flight, Solution
+from satsym.wording import printable
+
+
+def save(
+    instance: Instance,
+    found: Solution | Flight,
+    result: Mapping[str, Any],
+    folder: Path,
+    pictures: Mapping[str, Content],
+) -> list[Path]:
+    """Replace the result in a folder by this one, whole or not at all; the files that were written.
+
+    Beside those of ``satsym solve --out`` that is NAME.toml, the instance, and for a model that is not a shipped one
+    its generated module.
+
+    Raises
+    ------
+    BadInput
+        If the folder cannot be written to.
+    """
+    check_writable(folder)
+    return sets.write(folder, result, trajectory.contents(found) | dict(pictures) | _origin(instance))
+
+
+def _origin(instance: Instance) -> dict[str, Content]:
+    """The files from which the instance can be read again."""
+    model, tree, place = instance.case.model, dict(instance.written.tree), f"{instance.name}.toml"
+    if not may_hold(place):
+        return {}
+    if model.text is None:
+        return {place: text(tables.toml(tree))}
+    tree["model"] = f"./{model.spec.name}"
+    return {place: text(tables.toml(tree)), f"{model.spec.name}.py": text(model.text)}
+
+
+def read(folder: Path, instance: Instance | str | Path | None) -> tuple[Instance, Solution | Flight]:
+    """What was saved in a folder, and its instance: the one given, the one saved with it, or the shipped one.
+
+    Raises
+    ------
+    BadInput
+        If there is no whole result, or it is of another instance.
+    """
+    if instance is None:
+        given = _named(folder)
+    else:
+        given = as_case(instance)
+    found, _ = trajectory.read(given.case, folder)
+    return given, found
+
+
+def _named(folder: Path) -> Instance:
+    found = sets.read(folder)
+    name = str(msgspec.json.decode(found.result).get("instance"))
+    if f"{name}.toml" in found.listed:
+        return load(folder / f"{name}.toml")
+    if name in shipped():
+        return load(name)
+    raise unusable(
+        folder / LIST,
+        f"is of {printable(name)}, which is neither there nor a shipped instance; give that as `instance`",
+    )

@@ -1,0 +1,138 @@
+"""Solutions as users meet them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+
+from satsym import solution, solvers
+from satsym.arrays import Array
+from satsym.front import between, html
+from satsym.front.curves import Curve
+from satsym.front.instance import Instance, as_case
+from satsym.front.result import Result
+from satsym.report.results.objects import solution_object
+from satsym.report.terminal.solution import solution_text
+from satsym.solution import Certificate, Progress
+
+
+class Solution(Result[solution.Solution]):
+    """An optimum, with its certificate; or why there is none."""
+
+    _command: ClassVar[str] = "solve"
+
+    @property
+    def objective(self) -> float:
+        """The cost J; NaN where there is none."""
+        return self.found.objective
+
+    @property
+    def method(self) -> str:
+        """Of solving."""
+        return self.found.method
+
+    @property
+    def certificate(self) -> Certificate | None:
+        """What was measured of the answer, if there is one."""
+        return self.found.certificate
+
+    @property
+    def switching_times(self) -> dict[str, tuple[float, ...]]:
+        """For each control, the times at which it meets or leaves a bound."""
+        return dict(zip(self._spec.control_names, self.found.switching_times, strict=True))
+
+    @property
+    def iterations(self) -> int:
+        """Of the method."""
+        return self.found.iterations
+
+    @property
+    def wall_s(self) -> float:
+        """Seconds of solving."""
+        return self.found.wall_s
+
+    @cached_property
+    def lam(self) -> Curve:
+        """Costates, by the names of their states; over time as ``x`` and ``u``."""
+        n = len(self.found.x)
+        return self._curve("lam", self.found.lam, self._spec.state_names, lambda t: self._motion[0](t)[n:])
+
+    def to_dict(self) -> dict[str, Any]:
+        """What ``satsym solve --json`` prints."""
+        return solution_object(self.found)
+
+    @property
+    def _lam(self) -> Array:
+        return self.found.lam
+
+    @cached_property
+    def _motion(self) -> tuple[between.Motion, between.Pieces | None]:
+        found, case = self.found, self.found.instance
+        if case.model.spec.switching:  # the law of the kernels is that of the regularised problem
+            return between.controlled(case, found.times, found.x, found.u, found.lam)
+        corners = np.unique([t for times in found.switching_times for t in times])
+        return between.extremal(case, found.times, found.x, found.lam, corners)
+
+    @np.errstate(all="ignore")
+    def _law(self, t: Array, z: Array) -> Array:
+        case, n = self.found.instance, len(self.found.x)
+        bounds = case.control_set.arguments
+        return np.asarray(case.model.control_law_batch(t, z[:n], z[n:], case.parameters, bounds))
+
+    def __repr__(self) -> str:
+        return solution_text(self.found)
+
+    def _repr_html_(self) -> str:
+        said = self.to_dict()
+        facts = {name: said[name] for name in ("objective", "t_final", "method", "boundary_type", "switching_times")}
+        ends = zip(said["x_final"], said["x_final"].values(), said["costate_initial"].values(), strict=True)
+        certificate = said["certificate"] or {"verdict": None, "checks": []}
+        checks = [(c["name"], c["value"], c["limit"], "ok" if c["passed"] else "FAILED") for c in certificate["checks"]]
+        return self._html(
+            {**facts, "certificate": certificate["verdict"]},
+            html.table(("state", "final", "costate at t0"), ends),
+            html.table(("check", "value", "limit", ""), checks),
+        )
+
+
+def solve(instance: Instance | str | Path, progress: Progress | None = None, **options: Any) -> Solution:
+    """Solve an instance and certify the answer.
+
+    Parameters
+    ----------
+    instance
+        Made by ``load`` or ``Instance.of``; or a name or path, which is loaded.
+    progress
+        Called after each iteration.
+    options
+        Of the table [solver], instead of the instance's: ``method``, ``steps``, ``tolerance``, ``max_seconds``, ...
+
+    Returns
+    -------
+    Solution
+        Also where there is no answer: ``status`` and ``message`` say why.
+
+    Raises
+    ------
+    BadInput
+        If the instance cannot be used, with one line that says what, where and what to do.
+
+    Examples
+    --------
+    ::
+
+        solution = satsym.solve("soft-return", steps=200)
+        solution.objective, solution.x["r"](1.5), solution.certificate.verdict
+    """
+    case = as_case(instance)
+    case = case.with_(solver=options) if options else case
+    found = solvers.solve(case.case, progress)
+    if case.case.limits:
+        from satsym.analysis.comparison import limits_noted
+
+        found = limits_noted(found)
+    return Solution(case, replace(found, instance=case.case))

@@ -1,0 +1,79 @@
+"""The tables of an instance from Python values, merged, and as the text of a file."""
+
+from __future__ import annotations
+
+import json
+import numbers
+from collections.abc import Mapping
+from typing import Any
+
+DEEPEST = 6
+"""Levels of lists and tables in which anything is looked at: no instance has more."""
+
+
+def plain(value: Any, levels: int = DEEPEST) -> Any:
+    """A value as TOML would have it: numbers of any library, arrays, tuples, tables whose keys are symbols.
+
+    Whatever is none of that stays as it is, to be refused with the key where it stands.
+    """
+    if value is None or isinstance(value, bool | str | bytes) or not levels:
+        return value
+    if isinstance(value, Mapping):
+        return {_name(key): plain(entry, levels - 1) for key, entry in value.items() if entry is not None}
+    if isinstance(value, list | tuple):
+        return [plain(entry, levels - 1) for entry in value]
+    if isinstance(value, numbers.Integral):
+        return int(value)
+    if hasattr(value, "tolist"):  # of arrays, and of their numbers
+        return plain(value.tolist(), levels - 1)
+    try:
+        return float(value)
+    except (TypeError, ValueError, OverflowError):
+        return value
+
+
+def merged(tree: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """A tree with changes: tables are merged, other values replaced, and ``None`` takes a key away."""
+    found = dict(tree)
+    for key, value in changes.items():
+        name = _name(key)
+        if value is None:
+            found.pop(name, None)
+        elif isinstance(value, Mapping):
+            before = found.get(name, {})
+            found[name] = merged(before if isinstance(before, Mapping) else {}, value)
+        else:
+            found[name] = plain(value)
+    return found
+
+
+def toml(tree: Mapping[str, Any], table: str = "") -> str:
+    """The text of an instance file that holds these tables.
+
+    Parameters
+    ----------
+    tree
+        Texts, numbers, lists of them, and tables of these.
+    table
+        Where they stand.
+    """
+    inner = {name: value for name, value in tree.items() if isinstance(value, Mapping)}
+    lines = [f"{name} = {_written(value)}" for name, value in tree.items() if name not in inner]
+    head = [f"[{table}]"] if table and (lines or not inner) else []
+    parts = ["\n".join([*head, *lines, ""])] if head or lines else []
+    return "\n".join([*parts, *(toml(value, f"{table}.{name}" if table else name) for name, value in inner.items())])
+
+
+def _name(key: Any) -> str:
+    """A key as text: that of a symbol or a variable is its name."""
+    for attribute in ("symbol", "name"):
+        if isinstance(found := getattr(key, attribute, None), str):
+            return found
+    return str(key)
+
+
+def _written(value: Any) -> str:
+    if isinstance(value, list):
+        return f"[{', '.join(map(_written, value))}]"
+    # JSON's texts and numbers are TOML's too; but TOML knows no surrogates, so that other letters stand as they are
+    return json.dumps(value, ensure_ascii=False)

@@ -1,0 +1,77 @@
+"""Simulated motions as users meet them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, ClassVar
+
+from satsym.front import html
+from satsym.front.instance import Instance, as_case
+from satsym.front.result import Result
+from satsym.report.results.objects import flight_object
+from satsym.report.terminal.solution import flight_text
+from satsym.solution import Flight, Invariant
+
+
+class Trajectory(Result[Flight]):
+    """A simulated motion.
+
+    A law is not kept with what it did. Between nodes its controls are interpolated, unless they are constant: splines
+    where they are smooth, and where they jump as well as the steps tell when.
+    """
+
+    _command: ClassVar[str] = "simulate"
+
+    @property
+    def feedback(self) -> str:
+        """Name of the control law."""
+        return self.found.feedback
+
+    @property
+    def invariants(self) -> dict[str, Invariant]:
+        """Conserved quantities, by name: their initial values, and how far they drift."""
+        return self.found.invariants
+
+    @property
+    def metrics(self) -> dict[str, float]:
+        """Numbers that describe the motion, by name."""
+        return self.found.metrics
+
+    def to_dict(self) -> dict[str, Any]:
+        """What ``satsym simulate --json`` prints."""
+        return flight_object(self.found)
+
+    def __repr__(self) -> str:
+        return flight_text(self.found)
+
+    def _repr_html_(self) -> str:
+        said = self.to_dict()
+        kept = [(name, one["initial"], one["drift"]) for name, one in said["invariants"].items()]
+        return self._html(
+            {name: said[name] for name in ("feedback", "t_final")},
+            html.table(("state", "final"), said["x_final"].items()),
+            html.table(("invariant", "initial", "drift"), kept),
+            html.table(("metric", "value"), said["metrics"].items()),
+        )
+
+
+def simulate(instance: Instance | str | Path, feedback: str | None = None) -> Trajectory:
+    """Follow the motion of an instance under a control law.
+
+    Parameters
+    ----------
+    instance
+        Made by ``load`` or ``Instance.of``; or a name or path, which is loaded.
+    feedback
+        ``"none"``, ``"lqr"``, ``"classical"``, ``"switching"`` or ``"pulses"``; by default classical where the instance
+        states such a law, else none.
+
+    Raises
+    ------
+    BadInput
+        If the instance cannot be used, or does not suit the feedback.
+    """
+    from satsym.analysis.regulator.feedback import simulate as simulated
+
+    case = as_case(instance)
+    return Trajectory(case, simulated(case.case, feedback))
