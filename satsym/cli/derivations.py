@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -24,11 +25,12 @@ def checkout() -> Path | None:
 @contextmanager
 def explained() -> Iterator[None]:
     """Turns what is wrong with a derivation into bad input: one line, no traceback."""
-    from satsym.symbolic import DerivationError
-
     try:
         yield
-    except DerivationError as error:
+    except Exception as error:
+        derivation = sys.modules.get("satsym.symbolic.derivation")  # takes its time, and may not have been needed
+        if derivation is None or not isinstance(error, derivation.DerivationError):
+            raise
         raise BadInput(" ".join(str(error).split())) from error
 
 

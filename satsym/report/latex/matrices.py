@@ -73,8 +73,8 @@ def matrix_rows(address: str, name: str, matrix: Any, typeset: Typesetter) -> tu
     head, _, _ = name.partition(" = ")
     letter = head.lower() if head.isalpha() and len(head) == 1 else "m"
     written, named = fitted(cells, LINE - width(name) - 2.0, letter)
-    mirrored = matrix.is_symmetric()
-    if written is not None and not (named and mirrored):
+    mirrored = bool(named or written is None) and matrix.is_symmetric()  # which simplifies, and takes its time
+    if written is not None and not mirrored:
         places = [Row(f"{address}.{i}.{j}", plain(text), typeset.terms(matrix[i, j])) for text, (i, j) in named.items()]
         return [Row(address, plain(name), plain(array(written)))], places
     first, *rest = [
