@@ -3,4 +3,4 @@
 Importing it imports nothing else: the parts are modules of their own, see CONTRIBUTING.md for the map.
 """
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from satsym.cli import main
+from satsym.cli import main, requirements
 from satsym.report import artefacts, stamps
 
 OTHER = """
@@ -142,3 +142,19 @@ def test_where_nothing_can_be_kept_everything_is_derived(
     (tmp_path / "a file").touch()
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "a file"))
     assert derived() == derived() == ["strolling", "hiking"]
+
+
+def test_what_is_checked_in_is_written_with_one_version_of_sympy_and_own_models_with_any(
+    derived: Callable[..., list[str]], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (pinned,) = [one for one in requirements.requirements() if one.extra == "derive"]
+    real = requirements.metadata.version
+    monkeypatch.setattr(requirements.metadata, "version", lambda name: "1.13.3" if name == "sympy" else real(name))
+    capsys.readouterr()
+    for options in ([], ["--check"], ["--fresh"]):
+        assert main(["derive", *options]) == 3
+        error = capsys.readouterr().err
+        assert error.count("\n") == 1
+        assert "sympy 1.13.3" in error
+        assert f"sympy{pinned.versions}" in error
+    assert derived("--fresh") == ["strolling", "hiking"]

@@ -12,6 +12,7 @@ from satsym import sources
 from satsym.cli.derivations import checkout, explained
 from satsym.cli.options import place_option
 from satsym.cli.output import Live, complain, emit, live
+from satsym.cli.requirements import refuse_other_versions
 from satsym.status import ExitCode
 
 EXAMPLES = """\b
@@ -74,6 +75,7 @@ def _checked_in(paths: Sequence[Path]) -> Path:
     for path in paths:
         if path.resolve().parent != home / "derivations":
             raise click.UsageError(f"--out DIR is needed, because {path} is not in {home / 'derivations'}.")
+    refuse_other_versions()
     return home / "generated"
 
 
