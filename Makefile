@@ -9,7 +9,7 @@ COMPILE := $(BIN)/python -m compileall -q satsym generated
 # Each recipe says itself what the user needs to know; errors of the tools come through (pip -qq: errors only).
 .SILENT:
 .NOTPARALLEL:
-.PHONY: help demo test test-whole test-lowest lint format derive check-derive bench bench-returns bench-drift bench-truth clean
+.PHONY: help demo test test-whole test-versions lint format derive check-derive bench bench-returns bench-drift bench-truth clean
 
 help:  ## list the targets
 	grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /|/' | awk -F'|' '{printf "  make %-14s %s\n", $$1, $$2}'
@@ -22,13 +22,13 @@ demo: $(VENV)/installed  ## solve two shipped problems, with pictures, into resu
 	echo; echo "Results and pictures:"; ls -1 results/soft-return/solve/* results/its-thesis/solve/* | sed 's/^/  /'
 
 test: lint check-derive  ## lint, check generated/, run the tests, of the slowest ones a sample
-	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
+	$(BIN)/python -m pytest -n 2 --dist worksteal
 
 test-whole: lint check-derive  ## the same with every case of the slow tests
-	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder --whole
+	$(BIN)/python -m pytest -n 2 --dist worksteal --whole
 
-test-lowest:  ## try the oldest versions that pyproject.toml allows, in an environment of their own
-	$(PYTHON) .ci/lowest.py
+test-versions:  ## try the oldest and the newest versions that pyproject.toml allows, in environments of their own
+	$(PYTHON) .ci/versions.py oldest newest
 
 lint: $(VENV)/installed-dev  ## style, types, import floors
 	$(BIN)/ruff check --quiet
@@ -41,11 +41,11 @@ format: $(VENV)/installed-dev  ## let ruff put the style right
 	$(BIN)/ruff check --quiet --fix-only
 	$(BIN)/ruff format --quiet
 
-derive: $(VENV)/installed  ## write generated/ from derivations/, and the types of what it holds from the contract
+derive: $(VENV)/installed-dev  ## write generated/ from derivations/, and the types of what it holds from the contract
 	$(BIN)/satsym derive
 	$(BIN)/python -m satsym.codegen.protocol
 
-check-derive: $(VENV)/installed  ## fail if generated/ is not what derivations/ says
+check-derive: $(VENV)/installed-dev  ## fail if generated/ is not what derivations/ says
 	$(BIN)/satsym derive --check
 
 bench: $(VENV)/installed-bench  ## time satsym beside its peers

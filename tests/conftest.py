@@ -12,9 +12,10 @@ import pytest
 # Before NumPy is loaded: on small matrices threads gain nothing, and those of two workers take each other's time.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from tests.support.faults import found, ledger, noted, verdicts
+from satsym.report.plots import style
+from tests.support.faults import EveryFault, found, ledger, verdicts
 
-__all__ = ["found", "ledger", "noted", "verdicts"]
+__all__ = ["found", "ledger", "verdicts"]
 
 # The same examples on every run, and no deadline: two busy cores make any single example slow.
 hypothesis.settings.register_profile("satsym", deadline=None, derandomize=True)
@@ -28,6 +29,12 @@ FEW, SHARE = 4, 3
 def pytest_addoption(parser: pytest.Parser) -> None:
     """``--whole``: every case of every slow test (`make test-whole`)."""
     parser.addoption("--whole", action="store_true", help="run all cases of slow tests, not a sample")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Only where reports of all processes come together is it known what none of the tests reached."""
+    if not hasattr(config, "workerinput"):
+        config.pluginmanager.register(EveryFault())
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -55,3 +62,17 @@ def _no_windows() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("MPLBACKEND", "Agg")
         yield
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _coarse_pictures() -> Iterator[None]:
+    """Pictures drawn in the process of the tests are coarse, which takes less time; see ``full_resolution``."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(style._RC, "figure.dpi", 40)
+        yield
+
+
+@pytest.fixture
+def full_resolution(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pictures as users get them, for tests of how large they are."""
+    monkeypatch.setitem(style._RC, "figure.dpi", style.DPI)

@@ -1,16 +1,15 @@
 """Verdicts kept between runs: nothing is judged twice as long as nothing that it depends on has changed.
 
-The key is a digest of the ledger, of the derivations and instances, and of satsym itself. What is found is only ever
+The key is a digest of the ledger, of the derivations, kernels and instances, and of the modules of satsym that judging
+imports: how verdicts are drawn and printed is none of them. What is found is only ever
 compared and read as data; a file that is damaged or of another kind is ignored and written anew.
 """
 
 from __future__ import annotations
 
 import hashlib
-import os
 import sys
-import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from importlib.resources import files
@@ -18,13 +17,16 @@ from pathlib import Path
 
 import msgspec
 
+from satsym import kept, sources
 from satsym.auditing.judged import Judged
 from satsym.auditing.ledger import documents
 from satsym.auditing.ledger.contents import Ledger
 from satsym.auditing.run import audit as judge
 
-_PARTS = ("satsym", "satsym.derivations", "satsym.generated")
-_KEPT = (".py", ".toml")
+_JUDGING = ("satsym.auditing.run", "satsym.auditing.judged")
+_READ = (("satsym.derivations", "*.py"), ("satsym.generated", "*.py"), ("satsym", "instances/*.toml"))
+"""What judging takes from beside the modules it imports, by package and pattern."""
+
 _LIBRARIES = ("sympy", "numpy", "scipy", "pint", "mpmath")
 
 
@@ -42,42 +44,20 @@ def audit(
     """
     if items:
         return judge(ledger, items, announce)
-    path = _folder() / f"{ledger.document.key[:40]}-{_digest(ledger)}.json"
-    kept = None if fresh else _read(path)
-    if kept is not None:
-        return kept
+    path = kept.folder("audit") / f"{ledger.document.key[:40]}-{_digest(ledger)}.json"
+    before = None if fresh else _read(path)
+    if before is not None:
+        return before
     found = judge(ledger, items, announce)
-    _write(path, found)
+    kept.write(path, msgspec.json.encode(found))
     return found
 
 
 def _read(path: Path) -> list[Judged] | None:
     try:
-        return msgspec.json.decode(path.read_bytes(), type=list[Judged])
-    except (OSError, ValueError, msgspec.MsgspecError):
+        return msgspec.json.decode(kept.read(path), type=list[Judged])
+    except (ValueError, msgspec.MsgspecError):
         return None
-
-
-def _write(path: Path, found: list[Judged]) -> None:
-    """Written beside and moved, so that no reader meets half a file; a folder that cannot be written is no error."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=path.parent, suffix=".part")
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(msgspec.json.encode(found))
-        Path(name).replace(path)
-    except OSError:
-        return
-
-
-def _folder() -> Path:
-    """The folder of the user's for what can be computed again."""
-    if stated := os.environ.get("XDG_CACHE_HOME"):
-        return Path(stated) / "satsym" / "audit"
-    if sys.platform == "win32" and (local := os.environ.get("LOCALAPPDATA")):
-        return Path(local) / "satsym" / "audit"
-    home = Path.home()
-    return home / ("Library/Caches" if sys.platform == "darwin" else ".cache") / "satsym" / "audit"
 
 
 def _digest(ledger: Ledger) -> str:
@@ -97,12 +77,9 @@ def _program() -> str:
             digest.update(f"{library} {version(library)}".encode())
         except PackageNotFoundError:
             continue
-    for part in _PARTS:
-        for path in sorted(_files(Path(str(files(part))))):
+    digest.update(sources.digest(_JUDGING).encode())
+    for package, pattern in _READ:
+        for path in sorted(Path(str(files(package))).glob(pattern)):
             digest.update(path.name.encode())
             digest.update(path.read_bytes())
     return digest.hexdigest()
-
-
-def _files(folder: Path) -> Iterator[Path]:
-    return (path for path in folder.rglob("*") if path.suffix in _KEPT and path.is_file())

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from importlib import metadata
 
 from satsym.cli.derivations import checkout
+from satsym.status import BadInput
 
 _REQUIREMENT = re.compile(r"([A-Za-z0-9._-]+)([^;]*)(?:;.*extra == ['\"]([^'\"]+)['\"])?")
 _CLAUSE = re.compile(r"(==|>=|<)\s*([0-9][0-9.]*)(\.\*)?")
@@ -39,6 +40,22 @@ class Requirement:
 def requirements() -> list[Requirement]:
     """All of them, as the installed package states them, or the checkout that runs without being installed."""
     return [Requirement(m[1], m[2].strip(), m[3]) for line in _stated() if (m := _REQUIREMENT.match(line))]
+
+
+def refuse_other_versions() -> None:
+    """What is checked in was written with certain versions, as the extra `derive` states them.
+
+    Raises
+    ------
+    BadInput
+        If another one is here.
+    """
+    for pinned in requirements():
+        if pinned.extra == "derive" and (version := pinned.installed) and not pinned.allows(version):
+            raise BadInput(
+                f"{pinned.name} {version} is installed, and generated/ is written with {pinned.name}{pinned.versions}; "
+                f"install it (pip install '{pinned.name}{pinned.versions}'), or derive elsewhere with --out DIR"
+            )
 
 
 def _stated() -> list[str]:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import difflib
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from satsym.report import stamps
 from satsym.report.results.files import write_text
 
 if TYPE_CHECKING:
@@ -43,15 +44,70 @@ def render(paths: Iterable[Path], announce: Callable[[str], None] = lambda name:
     Raises
     ------
     BadInput
-        If a file cannot be read.
-    DerivationError
-        If something cannot be derived, or what was generated deviates from it.
+        If a file cannot be read, something cannot be derived, or what was generated deviates from it.
     """
     from satsym.symbolic import loader
 
-    jobs = [(path, problem.name) for path in paths for problem in loader.load(path)]
+    return _derived([(path, problem.name) for path in paths for problem in loader.load(path)], announce)
+
+
+def renew(
+    paths: Sequence[Path], folder: Path, announce: Callable[[str], None] = lambda name: None, *, fresh: bool = False
+) -> dict[str, str | None]:
+    """As :func:`render`, but nothing is derived that a folder holds already, as the stamps of earlier runs tell.
+
+    Parameters
+    ----------
+    paths, announce
+        As there.
+    folder
+        Where the files belong.
+    fresh
+        Derive everything, and keep stamps of it.
+
+    Returns
+    -------
+    dict
+        File name -> text; ``None`` where the file that is there has that text.
+
+    Raises
+    ------
+    BadInput
+        As there.
+    """
+    engine = stamps.engine()
+    known = {path: None if fresh else stamps.read(path, engine) for path in paths}
+    done = {path for path, stamp in known.items() if stamp and stamps.holds(stamp, folder)}
+    stated = {path: _stated(path) for path in paths if path not in done}
+    jobs = [
+        (path, name)
+        for path, identities in stated.items()
+        for name, identity in identities.items()
+        if not stamps.spares(known[path], name, identity, folder)
+    ]
+    texts = _derived(jobs, announce)
+    for path, identities in stated.items():
+        stamps.keep(path, known[path], engine, identities, texts)
+    names = [name for path in paths for name in (stated[path] if path in stated else stamps.problems(known[path]))]
+    return {f"{name}{suffix}": texts.get(f"{name}{suffix}") for name in names for suffix in SUFFIXES}
+
+
+def _stated(path: Path) -> dict[str, str]:
+    """Name of each problem of a derivation file -> its identity."""
+    from satsym.symbolic import loader
+    from satsym.symbolic.identity import identity
+
+    return {problem.name: identity(problem) for problem in loader.load(path)}
+
+
+def _derived(jobs: Sequence[tuple[Path, str]], announce: Callable[[str], None]) -> dict[str, str]:
+    """File name -> text, for problems of derivation files."""
     rendered: dict[str, str] = {}
-    with _workers(len(jobs)) as each:
+    if not jobs:
+        return rendered
+    from satsym.symbolic import loader
+
+    with loader.explained(), _workers(len(jobs)) as each:
         for (_, name), texts in zip(jobs, each(_rendered, jobs), strict=True):
             announce(name)
             rendered |= texts

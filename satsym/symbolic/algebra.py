@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
 
 import sympy as sp
 
@@ -38,6 +39,7 @@ def tidy(expression: sp.Expr, by: Sequence[sp.Symbol] = ()) -> sp.Expr:
     return sp.Add(*parts)
 
 
+@lru_cache(maxsize=4096)  # problems of one model ask alike
 def _shortest(expression: sp.Expr) -> sp.Expr:
     candidates = [_expand(expression), sp.factor(expression), sp.together(expression)]
     return min(candidates, key=sp.count_ops)

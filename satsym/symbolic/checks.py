@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
 from typing import Any, TypeAlias
 
 import mpmath as mp
@@ -40,9 +41,14 @@ def points(symbols: Iterable[sp.Symbol], seed: str, count: int = POINTS) -> Iter
 
 def numeric(expressions: Sequence[sp.Expr]) -> Callable[[Mapping[sp.Symbol, Any]], list[Any]]:
     """A function that evaluates the expressions at a point, in the working precision of mpmath."""
-    symbols = sorted(set().union(*(sp.sympify(e).free_symbols for e in expressions)), key=lambda s: s.name)
-    function = sp.lambdify(symbols, list(expressions), modules=[MPMATH_FUNCTIONS, "mpmath"])
+    symbols, function = _compiled(tuple(expressions))
     return lambda point: function(*(point[s] for s in symbols))
+
+
+@lru_cache(maxsize=1024)  # checks ask at every point anew
+def _compiled(expressions: tuple[sp.Expr, ...]) -> tuple[list[sp.Symbol], Callable[..., list[Any]]]:
+    symbols = sorted(set().union(*(sp.sympify(e).free_symbols for e in expressions)), key=lambda s: s.name)
+    return symbols, sp.lambdify(symbols, list(expressions), modules=[MPMATH_FUNCTIONS, "mpmath"])
 
 
 def deviation(found: Iterable[Any], expected: Iterable[Any]) -> float:
@@ -115,8 +121,8 @@ def _largest(values: Iterable[Any]) -> float:
 
 
 def identity(claim: str, expressions: Iterable[sp.Expr]) -> Check:
-    """Check that expressions are identically zero, by simplification."""
-    remainders = [r for r in (sp.simplify(e) for e in expressions) if r != 0]
+    """Check that expressions are identically zero, by simplification where multiplying out does not show it."""
+    remainders = [e for e in expressions if sp.expand(e) != 0 and sp.simplify(e) != 0]
     return Check(claim, float(len(remainders)), 0.0)
 
 

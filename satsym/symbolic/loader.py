@@ -7,51 +7,70 @@ import importlib.util
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from importlib.resources import files
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
+from satsym import sources
+from satsym.sources import digest_of, shipped
 from satsym.status import BadInput
 from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.model import Model, Problem
 from satsym.wording import printable, suggestion
 
-SUFFIX = ".py"
+__all__ = ["explained", "find", "load", "problem", "reached", "shipped"]
+
+_REACHED: dict[Path, dict[Path, str]] = {}
+"""Derivation files that were executed -> what they read, themselves included, with digests of its content."""
+
+_IMPORTED: dict[Path, str] = {}
+"""Modules that any of them imported, neither satsym's nor a library's: the second one to import them opens nothing."""
+
+_EXECUTING: list[Path] = []
+"""The files whose execution has begun and is not over, each asked for by the one before."""
+
+_LIBRARIES = tuple({sys.prefix, sys.base_prefix, sys.exec_prefix, str(Path(__file__).resolve().parent.parent)})
 
 
-def shipped() -> list[Path]:
-    """Derivation files that come with satsym, by name."""
-    folder = Path(str(files("satsym.derivations")))
-    return sorted(p for p in folder.glob(f"*{SUFFIX}") if not p.name.startswith("_"))
+def reached(path: Path) -> dict[Path, str]:
+    """The files that a loaded derivation file consists of, itself and all that it read, with their digests.
+
+    What it took from elsewhere, such as the environment, is not known here.
+    """
+    imported = {each: digest for each, digest in _IMPORTED.items() if each not in _REACHED}
+    return imported | _REACHED.get(path.resolve(), {})
+
+
+def _watch(event: str, arguments: tuple[Any, ...]) -> None:
+    """Note what a derivation file opens. Python calls this at every event, so that it has to be quick."""
+    if event == "open" and _EXECUTING and isinstance(arguments[0], str) and not arguments[0].startswith(_LIBRARIES):
+        asking = tuple(_EXECUTING)
+        _EXECUTING.clear()  # what is opened here is not opened by the file
+        opened = _source(Path(arguments[0]).absolute())
+        digest = digest_of(opened)
+        _EXECUTING.extend(asking)
+        if opened.suffix == sources.SUFFIX:
+            _IMPORTED.setdefault(opened, digest)
+        for each in asking:
+            _REACHED[each][opened] = digest
+
+
+def _source(path: Path) -> Path:
+    """The source behind a compiled file; any other file itself."""
+    return path.parents[1] / f"{path.name.partition('.')[0]}.py" if path.suffix == ".pyc" else path
+
+
+sys.addaudithook(_watch)
 
 
 def find(name_or_path: str, folder: Path | None = None) -> Path:
-    """The derivation file of a name, or at a path.
-
-    Parameters
-    ----------
-    name_or_path
-        A path ending in ``.py``; or a name: the file in ``folder`` if there is one, else the shipped one.
-    folder
-        Where the asking file lies.
-
-    Raises
-    ------
-    BadInput
-        If there is none.
-    """
-    if name_or_path.endswith(SUFFIX):
-        path = Path(name_or_path)
-        if path.is_file():
-            return path
-        raise BadInput(f"{name_or_path}: no such derivation file")
-    candidates = [folder / f"{name_or_path}{SUFFIX}"] if folder else []
-    candidates += [p for p in shipped() if p.stem == name_or_path]
-    for candidate in candidates:
-        if candidate.is_file():
-            return candidate
-    known = ", ".join(p.stem for p in shipped())
-    raise BadInput(f"{name_or_path}: no such derivation; give a file ending in {SUFFIX}, or one of {known}")
+    """As :func:`satsym.sources.find`; what a file that is being executed looked for in vain is noted, too."""
+    found = sources.find(name_or_path, folder)
+    if folder is not None and not name_or_path.endswith(sources.SUFFIX):
+        first = folder / f"{name_or_path}{sources.SUFFIX}"
+        for asking in _EXECUTING:
+            _REACHED[asking].setdefault(first.resolve(), digest_of(first))
+    return found
 
 
 def load(path: Path) -> tuple[Problem | Model, ...]:
@@ -81,7 +100,9 @@ def problem(name: str) -> tuple[Problem | Model, Path]:
     BadInput
         If there is none, or more than one.
     """
-    file, _, wanted = name.rpartition(":") if ".py:" in name else (name if name.endswith(SUFFIX) else "", "", name)
+    file, _, wanted = (
+        name.rpartition(":") if ".py:" in name else (name if name.endswith(sources.SUFFIX) else "", "", name)
+    )
     paths = [find(file)] if file else shipped()
     found = {one.name: (one, path) for path in paths for one in load(path)}
     if file and wanted == name:
@@ -103,23 +124,33 @@ def explained() -> Iterator[None]:
 
 
 def _module(path: Path) -> ModuleType:
-    """Execute a file under a name that its path determines, once."""
+    """Execute a file under a name that its path determines; once, unless it or what it asks for has changed since."""
     resolved = path.resolve()
     name = f"satsym_derivation_{hashlib.sha256(str(resolved).encode()).hexdigest()[:12]}_{path.stem}"
-    if name in sys.modules:
-        return sys.modules[name]
+    if name not in sys.modules or any(digest_of(each) != known for each, known in _REACHED[resolved].items()):
+        _execute(path, name)
+    for asking in _EXECUTING:
+        _REACHED[asking] |= _REACHED[resolved]
+    return sys.modules[name]
+
+
+def _execute(path: Path, name: str) -> None:
+    resolved = path.resolve()
     spec = importlib.util.spec_from_file_location(name, resolved)
     if spec is None or spec.loader is None or not resolved.is_file():
         raise BadInput(f"{path}: cannot be read as Python")
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module
+    _REACHED[resolved] = {resolved: digest_of(resolved)}
+    _EXECUTING.append(resolved)
     try:
         spec.loader.exec_module(module)
     except Exception as error:
         del sys.modules[name]
         line = _line_in(resolved, error)
         raise BadInput(f"{path}{line}: {type(error).__name__}: {' '.join(str(error).split())}") from error
-    return module
+    finally:
+        _EXECUTING.pop()
 
 
 def _line_in(path: Path, error: Exception) -> str:

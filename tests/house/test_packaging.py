@@ -5,10 +5,12 @@ from __future__ import annotations
 import importlib.metadata
 import importlib.resources
 import json
+import re
 import shutil
 import subprocess
 import sys
 import sysconfig
+import tomllib
 import venv
 import zipfile
 from pathlib import Path
@@ -16,6 +18,7 @@ from pathlib import Path
 import pytest
 
 import satsym
+from satsym.cli.requirements import Requirement
 
 SOURCES = {"satsym": "satsym", "derivations": "satsym/derivations", "generated": "satsym/generated"}
 
@@ -98,3 +101,24 @@ def test_checkout_is_imported_under_the_installed_names(repository: Path) -> Non
 
 def test_version_is_the_installed_one() -> None:
     assert importlib.metadata.version("satsym") == satsym.__version__
+
+
+def test_the_citation_names_this_version_and_the_changelog_dates_it(repository: Path) -> None:
+    citation = (repository / "CITATION.cff").read_text(encoding="utf-8")
+    stated = dict(re.findall(r"^([a-z-]+): (\S.*)$", citation, re.MULTILINE))
+    assert stated["version"] == satsym.__version__
+    heading = f"## {stated['version']} - {stated['date-released']}"
+    assert heading in (repository / "CHANGELOG.md").read_text(encoding="utf-8").splitlines()
+
+
+def test_the_version_of_sympy_that_generated_is_written_with_is_one_that_users_may_have(repository: Path) -> None:
+    with (repository / "pyproject.toml").open("rb") as file:
+        project = tomllib.load(file)["project"]
+    (pin,) = project["optional-dependencies"]["derive"]
+    (range_,) = (one for one in project["dependencies"] if one.startswith("sympy"))
+    assert pin.startswith("sympy==")
+    allowed = Requirement("sympy", range_.removeprefix("sympy"))
+    assert allowed.allows(pin.removeprefix("sympy=="))
+    assert not allowed.allows("1.13.2")
+    assert not allowed.allows("1.15.0")
+    assert "satsym[derive]" in project["optional-dependencies"]["dev"]

@@ -118,12 +118,17 @@ def derived(name: str) -> Derivation:
 
 
 def compiled(text: str, folder: Path) -> str:
-    """The log of the last of three runs."""
+    """The log of the run after which another one would change nothing, the third at the latest."""
     (folder / "it.tex").write_text(text, encoding="utf-8")
-    for draft in (["-draftmode"], ["-draftmode"], []):
+    before = None
+    for draft in (["-draftmode"], [], []):
         command = ["pdflatex", *draft, "-interaction=nonstopmode", "-halt-on-error", "-no-shell-escape", "it.tex"]
         done = subprocess.run(command, cwd=folder, capture_output=True, check=False, stdin=subprocess.DEVNULL)
         assert done.returncode == 0, done.stdout.decode(errors="replace")[-2000:]
+        references = (folder / "it.aux").read_bytes()
+        if references == before:
+            break
+        before = references
     return (folder / "it.log").read_text(encoding="utf-8", errors="replace")
 
 

@@ -176,6 +176,7 @@ def png_size(path: Path) -> tuple[int, int]:
     return width, height
 
 
+@pytest.mark.usefixtures("full_resolution")
 def test_a_solution_gives_all_pictures_as_png_of_sane_size(soft_return: Solution, tmp_path: Path) -> None:
     written = save(soft_return, tmp_path / "new" / "folder")
     assert stems(written) == SOLVED
@@ -225,6 +226,7 @@ def test_a_flight_with_feedback_shows_its_controls(tmp_path: Path) -> None:
     ],
     ids=["one state", "box", "ball in space", "many, with bad LaTeX", "any title"],
 )
+@pytest.mark.usefixtures("full_resolution")
 def test_any_model_can_be_drawn(given: Instance, pictures: str, tmp_path: Path) -> None:
     written = save(solution(given), tmp_path)
     assert " ".join(stems(written)) == pictures

@@ -155,6 +155,7 @@ def test_instances_of_different_systems_are_not_compared() -> None:
         comparison.compare([instance.load("lapan-classical"), instance.load("return-to-orbit")])
 
 
+@pytest.mark.usefixtures("full_resolution")
 @pytest.mark.slow
 def test_compare_prints_a_table_and_draws_a_page(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     names = ["lapan-classical", "lapan-minimum-time"]

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 import click
 
+from satsym import sources
 from satsym.cli.derivations import checkout
 from satsym.cli.options import place_option
-from satsym.cli.output import complain, emit, live
+from satsym.cli.output import Live, complain, emit, live
+from satsym.cli.requirements import refuse_other_versions
 from satsym.status import ExitCode
 
 EXAMPLES = """\b
 Examples:
   satsym derive                         all of derivations/ into generated/ (in a checkout)
   satsym derive --check                 does generated/ still say what derivations/ says?
+  satsym derive --fresh                 all of it anew, whatever was derived before
   satsym derive my_model.py --out DIR   your own; then write model = "DIR/NAME" in an instance
 
 A derivation file is Python and is executed: derive only files that you trust."""
@@ -29,32 +32,39 @@ SIGNATURE = "Written by satsym from "
 @click.argument("files", metavar="[FILE]...", nargs=-1)
 @place_option("--out", metavar="DIR", help="Write there instead of to the checkout's generated/.")
 @click.option("--check", is_flag=True, help="Write nothing; print what would change, and exit with 6 if anything does.")
-def derive(files: tuple[str, ...], out: Path | None, check: bool) -> ExitCode:
+@click.option("--fresh", is_flag=True, help="Derive everything anew, also what has not changed since it was derived.")
+def derive(files: tuple[str, ...], out: Path | None, check: bool, fresh: bool) -> ExitCode:
     """Derive kernels and LaTeX from derivation files.
 
     Takes the FILEs, or where none is named all that come with satsym, and writes NAME.py and NAME.tex for each
-    problem. Every step is checked by machine, and so is every generated function, before anything is written.
+    problem. Every step is checked by machine, and so is every generated function, before anything is written. What
+    neither changed itself nor was derived by code that changed is left alone; --check derives all of it.
     """
     from satsym.report import artefacts
     from satsym.report.results.files import check_writable
-    from satsym.symbolic import loader
 
-    paths = [loader.find(file) for file in files] if files else loader.shipped()
+    paths = [sources.find(file) for file in files] if files else sources.shipped()
     folder = out or _checked_in(paths)
     whole = not files and out is None
     if not check:
         check_writable(folder)
-    with live() as line, loader.explained():
-        rendered = artefacts.render(paths, lambda name: line.show(f"derived {name} ..."))
-    if check:
-        return _compare(artefacts.differences(rendered, folder, whole), folder, _command(files, out))
-    changed = {name: text for name, text in rendered.items() if not _holds(folder / name, text)}
+    with live() as line:
+        if check:
+            rendered = artefacts.render(paths, _announcing(line))
+            differences = artefacts.differences(rendered, folder, whole)
+            return _compare(differences, folder, _command(files, out))
+        renewed = artefacts.renew(paths, folder, _announcing(line), fresh=fresh)
+    changed = {name: text for name, text in renewed.items() if text is not None and not _holds(folder / name, text)}
     artefacts.write(changed, folder)
-    done = [f"{folder / name}  {'written' if name in changed else 'unchanged'}" for name in rendered]
+    done = [f"{folder / name}  {'written' if name in changed else 'unchanged'}" for name in renewed]
     if whole:
-        done += _leftovers_removed(folder, rendered)
+        done += _leftovers_removed(folder, renewed)
     emit("\n".join(done))
     return ExitCode.DONE
+
+
+def _announcing(line: Live) -> Callable[[str], None]:
+    return lambda name: line.show(f"derived {name} ...")
 
 
 def _checked_in(paths: Sequence[Path]) -> Path:
@@ -65,6 +75,7 @@ def _checked_in(paths: Sequence[Path]) -> Path:
     for path in paths:
         if path.resolve().parent != home / "derivations":
             raise click.UsageError(f"--out DIR is needed, because {path} is not in {home / 'derivations'}.")
+    refuse_other_versions()
     return home / "generated"
 
 
@@ -85,7 +96,7 @@ def _holds(path: Path, text: str) -> bool:
     return path.is_file() and path.read_bytes() == text.encode()
 
 
-def _leftovers_removed(folder: Path, rendered: Mapping[str, str]) -> list[str]:
+def _leftovers_removed(folder: Path, rendered: Iterable[str]) -> list[str]:
     """Remove what satsym once wrote and would not write now; a line for each file that no derivation leads to."""
     from satsym.report.artefacts import KEPT, SUFFIXES
 

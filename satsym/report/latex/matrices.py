@@ -73,8 +73,8 @@ def matrix_rows(address: str, name: str, matrix: Any, typeset: Typesetter) -> tu
     head, _, _ = name.partition(" = ")
     letter = head.lower() if head.isalpha() and len(head) == 1 else "m"
     written, named = fitted(cells, LINE - width(name) - 2.0, letter)
-    mirrored = matrix.is_symmetric()
-    if written is not None and not (named and mirrored):
+    mirrored = bool(named or written is None) and _mirrored(matrix)
+    if written is not None and not mirrored:
         places = [Row(f"{address}.{i}.{j}", plain(text), typeset.terms(matrix[i, j])) for text, (i, j) in named.items()]
         return [Row(address, plain(name), plain(array(written)))], places
     first, *rest = [
@@ -84,6 +84,14 @@ def matrix_rows(address: str, name: str, matrix: Any, typeset: Typesetter) -> tu
         if not typeset.is_zero(matrix[i, j]) and not (mirrored and j < i)
     ]
     return [replace(first, address=address), *rest], []
+
+
+def _mirrored(matrix: Any) -> bool:
+    """Whether a matrix is its own transpose; entries are simplified only where none shows that it is not."""
+    if matrix.rows != matrix.cols:
+        return False
+    pairs = [(matrix[i, j], matrix[j, i]) for i in range(matrix.rows) for j in range(i)]
+    return all((a == 0) == (b == 0) for a, b in pairs) and bool(matrix.is_symmetric())
 
 
 def _indexed(name: str, i: int, j: int) -> str:

@@ -10,10 +10,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import sympy
 
 from satsym import instance
 from satsym.analysis.linear.equilibrium import linearise
 from satsym.cli import main
+from satsym.cli.requirements import requirements
 from satsym.kernels import load
 
 CASE = """
@@ -27,6 +29,19 @@ q = 0.0
 q_dot = 0.0
 [time]
 tf = "1000 ms"
+"""
+
+
+OWN = """
+from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
+
+STATES = (Variable("q", "q", "m", "place"), Variable("q_dot", "v", "m/s", "speed"))
+CONTROLS = (Variable("u", "u", "m/s^2", "push"),)
+(q, q_dot), (u,) = symbols_of(STATES), symbols_of(CONTROLS)
+cart = FirstOrder(
+    name="cart", title="A cart", states=STATES, controls=CONTROLS, parameters=(), rates={q: q_dot, q_dot: u}
+)
+PROBLEMS = (Problem(name="own", title="Own", model=cart, running_cost=u**2 / 2),)
 """
 
 
@@ -73,6 +88,15 @@ def check() -> None:
         k.forward(nodes, case.initial, rest, rest[:, 1:], case.parameters) for k in (case.model, case.model.compiled())
     )
     expect("compiled code computes the same", np.allclose(ours[0], compiled[0], rtol=1e-12))
+    Path("own.py").write_text(OWN, encoding="utf-8")
+    expect("own models are derived", not quietly("derive", "own.py", "--out", "made"))
+    Path("own.toml").write_text(CASE.replace("double_integrator_energy", "made/own"), encoding="utf-8")
+    expect("they are solved", abs(run("solve", "own.toml")["objective"] - 6.0) < 1e-8)
+    pinned = next(r for r in requirements() if r.extra == "derive" and r.name == "sympy")
+    if not pinned.allows(sympy.__version__):
+        with contextlib.redirect_stderr(io.StringIO()) as said:
+            expect("what is checked in is not written with another sympy", quietly("derive", "--check") == 3)
+        expect("and the one that it is written with is named", pinned.versions in said.getvalue())
     expect("LaTeX", not quietly("latex", "polar_orbit"))
 
 

@@ -1,0 +1,38 @@
+"""What can be computed again, kept between runs in the user's folder for such things."""
+
+from __future__ import annotations
+
+import os
+import sys
+import tempfile
+from pathlib import Path
+
+
+def folder(purpose: str) -> Path:
+    """Where things of one purpose are kept; the folder need not exist."""
+    if stated := os.environ.get("XDG_CACHE_HOME"):
+        return Path(stated) / "satsym" / purpose
+    if sys.platform == "win32" and (local := os.environ.get("LOCALAPPDATA")):
+        return Path(local) / "satsym" / purpose
+    home = Path.home()
+    return home / ("Library/Caches" if sys.platform == "darwin" else ".cache") / "satsym" / purpose
+
+
+def read(path: Path) -> bytes:
+    """What was kept at a path; nothing where nothing was, or where it cannot be read."""
+    try:
+        return path.read_bytes()
+    except OSError:
+        return b""
+
+
+def write(path: Path, content: bytes) -> None:
+    """Written beside and moved, so that no reader meets half a file; a folder that cannot be written is no error."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=path.parent, suffix=".part")
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(content)
+        Path(name).replace(path)
+    except OSError:
+        return

@@ -1,0 +1,152 @@
+"""Source files: derivations by name, and which modules of satsym a module is made of.
+
+What was computed once need not be computed again as long as the code that computed it is the same. That code is found
+by reading import statements, also those inside functions, without importing anything.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Iterable, Iterator
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+
+from satsym.status import BadInput
+
+SUFFIX = ".py"
+DATA = ".toml"
+
+_HOME = Path(__file__).parent
+_ROOT = __name__.partition(".")[0]
+_IMPORT = re.compile(
+    r"^[ \t]*(?:from[ \t]+(?P<package>[.\w]+)[ \t]+)?import\b[ \t]*"
+    r"(?P<names>\((?:[^()#]|#[^\n]*)*\)|[^\n#]+)",
+    re.MULTILINE,
+)
+_BY_NAME = re.compile(r"\bimport_module\(")
+
+
+def shipped() -> list[Path]:
+    """Derivation files that come with satsym, by name."""
+    folder = Path(str(files("satsym.derivations")))
+    return sorted(p for p in folder.glob(f"*{SUFFIX}") if not p.name.startswith("_"))
+
+
+def find(name_or_path: str, folder: Path | None = None) -> Path:
+    """The derivation file of a name, or at a path.
+
+    Parameters
+    ----------
+    name_or_path
+        A path ending in ``.py``; or a name: the file in ``folder`` if there is one, else the shipped one.
+    folder
+        Where the asking file lies.
+
+    Raises
+    ------
+    BadInput
+        If there is none.
+    """
+    if name_or_path.endswith(SUFFIX):
+        path = Path(name_or_path)
+        if path.is_file():
+            return path
+        raise BadInput(f"{name_or_path}: no such derivation file")
+    candidates = [folder / f"{name_or_path}{SUFFIX}"] if folder else []
+    candidates += [p for p in shipped() if p.stem == name_or_path]
+    for candidate in candidates:
+        if candidate.is_file():
+            return candidate
+    known = ", ".join(p.stem for p in shipped())
+    raise BadInput(f"{name_or_path}: no such derivation; give a file ending in {SUFFIX}, or one of {known}")
+
+
+def digest_of(path: Path) -> str:
+    """A digest of a file's content; empty where there is no file."""
+    try:
+        return hashlib.blake2b(path.read_bytes(), digest_size=16).hexdigest()
+    except OSError:
+        return ""
+
+
+def digest(modules: Iterable[str]) -> str:
+    """A digest of the code of these modules and of all that they import of satsym, with the data beside it."""
+    found = hashlib.blake2b(digest_size=16)
+    for path in reached(tuple(modules)):
+        found.update(path.relative_to(_HOME).as_posix().encode())
+        found.update(digest_of(path).encode())
+    return found.hexdigest()
+
+
+@cache
+def reached(modules: tuple[str, ...]) -> tuple[Path, ...]:
+    """The files of these modules, of all modules of satsym that they import, and the data in those modules' folders.
+
+    A module that imports others by names which are computed counts as importing all in its folder. The topmost package
+    is there whatever is imported, and hands out the others only when it is asked to: what it imports does not count.
+    """
+    waiting, known = [path for name in modules for path in _files_of(name)], set()
+    while waiting:
+        path = waiting.pop()
+        if path in known:
+            continue
+        known.add(path)
+        known.update(_data(path.parent))
+        if path.suffix == SUFFIX and path != _HOME / "__init__.py":
+            waiting += _imported(path)
+    return tuple(sorted(known))
+
+
+def _imported(path: Path) -> Iterator[Path]:
+    text = path.read_text(encoding="utf-8")
+    for name in imports(text, _module(path)):
+        yield from _files_of(name)
+    if _BY_NAME.search(text):
+        yield from path.parent.rglob(f"*{SUFFIX}")
+
+
+def imports(text: str, module: str = "") -> set[str]:
+    """Dotted names of modules that a text may import: whatever comes from a package may be a module of it."""
+    found = set()
+    for statement in _IMPORT.finditer(text):
+        listed = re.sub(r"#[^\n]*|[()]", " ", statement["names"]).split(",")
+        names = [name.split()[0] for name in listed if name.strip()]
+        package = statement["package"]
+        if package is None:
+            found.update(names)
+            continue
+        if package.startswith("."):
+            dots = len(package) - len(package.lstrip("."))
+            above = module.split(".")[:-dots]
+            package = ".".join([*above, *filter(None, [package.lstrip(".")])])
+        found.update([package, *(f"{package}.{name}" for name in names)])
+    return found
+
+
+def _module(path: Path) -> str:
+    """Dotted name of a file, a package's ``__init__`` under its own so that relative imports are resolved alike."""
+    return ".".join([_ROOT, *path.relative_to(_HOME).with_suffix("").parts])
+
+
+def _files_of(name: str) -> list[Path]:
+    """The files that importing a dotted name executes: those of the packages around it, too; none if not of satsym."""
+    root, *parts = name.split(".")
+    if root != _ROOT:
+        return []
+    around = ["/".join(parts[:depth]) for depth in range(len(parts) + 1)]
+    names = [place for each in around for place in (f"{each}/__init__{SUFFIX}".lstrip("/"), f"{each}{SUFFIX}")]
+    return [_modules()[place] for place in names if place in _modules()]
+
+
+@cache
+def _modules() -> dict[str, Path]:
+    """All source files of satsym by their place in it."""
+    return {path.relative_to(_HOME).as_posix(): path for path in _HOME.rglob(f"*{SUFFIX}")}
+
+
+@cache
+def _data(folder: Path) -> list[Path]:
+    """The data files that lie in a folder."""
+    return list(folder.glob(f"*{DATA}"))
