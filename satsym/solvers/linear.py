@@ -127,9 +127,7 @@ def _extremal(instance: Instance, limits: Limits, effort: bool) -> Extremal:
     except np.linalg.LinAlgError:
         error = float("nan")
     if not (error <= instance.solver.tolerance and _violation(arcs) <= CONTRADICTED):
-        message = (
-            "the conditions contradict each other or leave costates open: the end may be out of the control's reach"
-        )
+        message = "the conditions contradict each other or leave costates open: the end may not be reachable"
         return unfinished(problem, arcs, message, 1, limits)
     tau = np.linspace(0.0, 1.0, instance.solver.steps + 1)
     control = limits.in_blocks(lambda part: problem.control(part, arcs(part), arcs.theta, bounded=False), tau)
