@@ -130,7 +130,7 @@ def _of_attraction(of: Evaluation, drift: Array) -> Iterator[Relation]:
     place, mu = state[:3], state[6]
     distance = np.sqrt((place * place).sum(axis=0))
     yield Relation(name, "velocity is the rate of change of place", state[3:6], rates[:3], terms[:3])
-    yield Relation(name, "acceleration is that of a central force", rates[3:6], -mu * place / distance**3, terms[3:6])
+    yield Relation(name, "acceleration is that of Kepler motion", rates[3:6], -mu * place / distance**3, terms[3:6])
     if of.has("position"):
         found = of("position")
         yield Relation("position", "place in space", found, place[: len(found)], distance * FAINT)
