@@ -56,8 +56,8 @@ def stability(eigenvalues: Sequence[Eigenvalue]) -> Stability:
         return Stability(UNSTABLE, reason, False)
     listed = ", ".join(shown(each.value) for each in axis if each.value.imag >= 0.0)
     reason = (
-        f"the eigenvalues {listed} on the imaginary axis have Jordan blocks of size 1 only, and none lies in the "
-        "right half-plane"
+        f"on the imaginary axis lie {listed}, in Jordan blocks of size 1 only, and no eigenvalue lies in the right "
+        "half-plane"
     )
     return Stability(MARGINAL, reason, False)
 
