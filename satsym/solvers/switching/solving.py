@@ -91,7 +91,9 @@ def _by_least_time(instance: Instance, stopped: homotopy.Stopped, limits: Limits
         return stopped
     least, given, name = found.refined.at.end - instance.t0, instance.tf - instance.t0, found.refined.structure.name
     if found.origin is Origin.REACH and least > given * (1.0 + ENOUGH):
-        message = f"the least time to the given end is {least:.10g} (structure {name}), and only {given:.10g} is given"
+        message = (
+            f"the minimum time to the given end is {least:.10g} (structure {name}), and only {given:.10g} is given"
+        )
         return replace(stopped, status=Status.INFEASIBLE, message=message)
     near = attempt(instance, _relaxed(instance, found), limits) if least < given else None
     if near is not None:
