@@ -11,7 +11,7 @@ from satsym.symbolic.loader import find, load
 orbit = next(p.model for p in load(find("polar_orbit", Path(__file__).parent)) if isinstance(p, Problem))
 
 STATES = (
-    Variable("x1", "x_1", "km", "deviation of the distance from the centre of attraction"),
+    Variable("x1", "x_1", "km", "deviation of the distance from the centre of force"),
     Variable("x2", "x_2", "km/s", "deviation of the radial velocity"),
     Variable("x3", "x_3", "km", "deviation of the angle, as a length along the reference orbit"),
     Variable("x4", "x_4", "km/s", "deviation of the angular velocity, as a velocity along the reference orbit"),
@@ -26,7 +26,7 @@ sigma, omega = symbols_of(PARAMETERS)
 
 clohessy_wiltshire = Linearised(
     name="clohessy_wiltshire",
-    title="Motion of a satellite near a circular orbit, linearised",
+    title="Clohessy-Wiltshire equations: motion in the plane of a circular orbit, linearised",
     of=orbit,
     about=orbit.reference,
     states=STATES,

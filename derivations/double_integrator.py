@@ -1,4 +1,4 @@
-"""A body on a line with a bounded acceleration: the least time, the least energy and the least fuel to a state.
+"""A body on a line with a bounded acceleration: minimum time, minimum energy and minimum fuel to a state.
 
 The plainest problems on which optimal controls switch; all three have solutions in closed form.
 """
@@ -28,7 +28,7 @@ motion = FirstOrder(
 
 double_integrator_time = Problem(
     name="double_integrator_time",
-    title="Least time for a body on a line",
+    title="Minimum time for a body on a line",
     model=motion,
     running_cost=1,
     control_set="box",
@@ -36,7 +36,7 @@ double_integrator_time = Problem(
 
 double_integrator_energy = Problem(
     name="double_integrator_energy",
-    title="Least energy for a body on a line",
+    title="Minimum energy for a body on a line",
     model=motion,
     running_cost=u1**2 / 2,
     control_set="box",
@@ -44,7 +44,7 @@ double_integrator_energy = Problem(
 
 double_integrator_fuel = Problem(
     name="double_integrator_fuel",
-    title="Least fuel for a body on a line, weighing time against it",
+    title="Minimum fuel for a body on a line, weighing time against it",
     # Where the final time is free, fuel alone has no minimum: coasting longer is always cheaper.
     model=replace(motion, parameters=(TIME_WEIGHT,)),
     running_cost=weight_time + abs(u1),

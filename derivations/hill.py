@@ -21,7 +21,7 @@ PARAMETERS = (
     Variable("omega", r"\omega", "rad/s", "angular velocity of the reference orbit", 1.0, positive=True),
 )
 MU = Variable("mu", r"\mu", "km**3/s**2", "gravitational parameter", positive=True)
-DISTANCE = Variable("y1", "y_1", "km", "deviation of the distance from the centre")
+DISTANCE = Variable("y1", "y_1", "km", "deviation of the distance from the centre of force")
 HEIGHT = Variable("y2", "y_2", "km", "distance from the plane of the reference orbit")
 
 x, y, z, x_dot, y_dot, z_dot = symbols_of(ORIGINAL)
@@ -33,7 +33,7 @@ distance = sqrt(place.dot(place))
 
 turning = Newton(
     name="two_body_turning",
-    title="Two-body motion in turning axes",
+    title="Two-body motion in rotating axes",
     states=ORIGINAL,
     controls=CONTROLS,
     parameters=PARAMETERS,

@@ -101,14 +101,14 @@ pitch_classical = ClosedLoop(
     where={I_x: I_z},
 )
 
-LIMIT = Variable("torque_max", r"T_{\max}", "N*m", "largest torque of the wheel", positive=True)
-SCALED_POWER = Variable("scaled_power", "p", "1", "power in units of what heats the motor at the largest torque")
+LIMIT = Variable("torque_max", r"T_{\max}", "N*m", "maximum torque of the wheel", positive=True)
+SCALED_POWER = Variable("scaled_power", "p", "1", "power in units of what heats the motor at the maximum torque")
 C_P = Variable("C_p", "C_p", "1", "weight of the wheel's power against the heat", 0.1)
 SCALED_STATES = (
     Variable("X1", "X_1", "1", "pitch angle"),
-    Variable("X2", "X_2", "1", "its rate, in units of time that go with the largest torque"),
+    Variable("X2", "X_2", "1", "its rate, in units of time that go with the maximum torque"),
 )
-SCALED_CONTROLS = (Variable("U", "U", "1", "torque of the wheel, as a share of the largest"),)
+SCALED_CONTROLS = (Variable("U", "U", "1", "torque of the wheel, relative to its maximum"),)
 X1, X2 = symbols_of(SCALED_STATES)
 (U,) = symbols_of(SCALED_CONTROLS)
 torque_max, C_p, scaled_power = symbols_of((LIMIT, C_P, SCALED_POWER))
@@ -116,7 +116,7 @@ unit_of_time = sqrt(I_y / torque_max)
 
 pitch_scaled = Scaled(
     name="pitch_scaled",
-    title="Pitch axis of a symmetric satellite in plain numbers",
+    title="Pitch axis of a symmetric satellite, nondimensional",
     of=pitch_wheel,
     states=SCALED_STATES,
     controls=SCALED_CONTROLS,
@@ -133,7 +133,7 @@ relative = 1 - I_wy / I_y
 pitch_scaled_power = replace(
     pitch_scaled,
     name="pitch_scaled_power",
-    title="Pitch axis of a symmetric satellite in plain numbers, with the power of its motor",
+    title="Pitch axis of a symmetric satellite with the power of its motor, nondimensional",
     parameters=(C_P,),
     groups={C_p: K_t * I_y / (K_m * R_a * I_wy * relative * torque_max * unit_of_time)},
     along={wheel_speed: I_y * theta_dot / I_wy},
@@ -158,28 +158,28 @@ pitch_symmetric = Reduced(
 )
 pitch_minimum_energy = Problem(
     name="pitch_minimum_energy",
-    title="Pitch manoeuvre that takes least electrical energy",
+    title="Pitch manoeuvre of minimum electrical energy",
     model=pitch_symmetric,
     running_cost=power,
     control_set="box",
 )
 pitch_minimum_time = Problem(
     name="pitch_minimum_time",
-    title="Pitch manoeuvre in least time",
+    title="Pitch manoeuvre in minimum time",
     model=pitch_symmetric,
     running_cost=1,
     control_set="box",
 )
 pitch_scaled_energy = Problem(
     name="pitch_scaled_energy",
-    title="Pitch manoeuvre that takes least energy, in plain numbers",
+    title="Pitch manoeuvre of minimum energy, nondimensional",
     model=pitch_scaled_power,
     running_cost=scaled_power,
     control_set="box",
 )
 pitch_scaled_time = Problem(
     name="pitch_scaled_time",
-    title="Pitch manoeuvre in least time, in plain numbers",
+    title="Pitch manoeuvre in minimum time, nondimensional",
     model=pitch_scaled,
     running_cost=1,
     control_set="box",

@@ -11,7 +11,7 @@ from sympy import Matrix, cos, sin
 from satsym.symbolic import Definition, Newton, Problem, Variable, symbols_of, t
 
 STATES = (
-    Variable("r", "r", "km", "distance from the centre of attraction", positive=True),
+    Variable("r", "r", "km", "distance from the centre of force", positive=True),
     Variable("r_dot", r"\dot r", "km/s", "radial velocity"),
     Variable("theta", r"\theta", "rad", "polar angle in the inertial plane", kind="angle"),
     Variable("theta_dot", r"\dot\theta", "rad/s", "angular velocity"),
@@ -60,7 +60,7 @@ MISS = (k1 * (r - sigma) ** 2 + k2 * r_dot**2 + k3 * (theta - omega * t) ** 2 + 
 
 polar_orbit = Problem(
     name="polar_orbit",
-    title="Least-effort transfer of a satellite in polar coordinates",
+    title="Minimum-effort transfer of a satellite in polar coordinates",
     model=orbit,
     running_cost=EFFORT,
     terminal_cost=MISS,
@@ -79,7 +79,7 @@ polar_orbit_timed = Problem(
 
 polar_orbit_ball = Problem(
     name="polar_orbit_ball",
-    title="Least-effort transfer of a satellite with one steerable engine, in polar coordinates",
+    title="Minimum-effort transfer of a satellite with one steerable engine, in polar coordinates",
     # One engine pointed anywhere in the plane: its thrust is limited in norm and has one weight.
     model=replace(orbit, parameters=tuple(v for v in PARAMETERS if v.symbol != "c2")),
     running_cost=c1 * (u1**2 + u2**2) / 2,

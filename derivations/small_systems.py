@@ -69,7 +69,7 @@ time_varying = Linearised(
 
 singular_regulator = Problem(
     name="singular_regulator",
-    title="Least square deviation, at no cost of the control",
+    title="Minimum square deviation, at no cost of the control",
     # Full control towards zero, where it stays on an arc of order one.
     model=FirstOrder(
         name="integrator", title="A rate", states=STATES[:1], controls=(CONTROL,), parameters=(), rates={x1: u1}

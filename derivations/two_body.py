@@ -16,7 +16,7 @@ STATES = (
     Variable("v_z", "v_z", "km/s", "third component of the velocity"),
 )
 CONTROLS = tuple(Variable(f"a_{q}", f"a_{q}", "km/s**2", f"thrust per unit mass along {q}") for q in "xyz")
-MU = Variable("mu", r"\mu", "km**3/s**2", "gravitational parameter of the centre", 1.0, positive=True)
+MU = Variable("mu", r"\mu", "km**3/s**2", "gravitational parameter of the central body", 1.0, positive=True)
 
 x, y, z, v_x, v_y, v_z = symbols_of(STATES)
 (mu,) = symbols_of((MU,))

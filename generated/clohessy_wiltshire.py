@@ -1,8 +1,8 @@
-"""Motion of a satellite near a circular orbit, linearised.
+"""Clohessy-Wiltshire equations: motion in the plane of a circular orbit, linearised.
 
 Written by satsym from derivations/clohessy_wiltshire.py. Do not edit: mend that file instead, then run
     satsym derive derivations/clohessy_wiltshire.py
-Digest: 5a0abfbc5248a887129b35ccef299e70957d9f89e0e455983cb29cb6820a3b85
+Digest: 5216b044367ea33987ed8ce2e0e92b6f74a81d6e788829d0858db6c67954b297
 """
 
 import math
@@ -13,10 +13,10 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'clohessy_wiltshire',
-    'title': 'Motion of a satellite near a circular orbit, linearised',
+    'title': 'Clohessy-Wiltshire equations: motion in the plane of a circular orbit, linearised',
     'source': 'derivations/clohessy_wiltshire.py',
     'states': (
-        {'symbol': 'x1', 'latex': 'x_1', 'unit': 'km', 'meaning': 'deviation of the distance from the centre of attraction'},
+        {'symbol': 'x1', 'latex': 'x_1', 'unit': 'km', 'meaning': 'deviation of the distance from the centre of force'},
         {'symbol': 'x2', 'latex': 'x_2', 'unit': 'km/s', 'meaning': 'deviation of the radial velocity'},
         {'symbol': 'x3', 'latex': 'x_3', 'unit': 'km', 'meaning': 'deviation of the angle, as a length along the reference orbit'},
         {'symbol': 'x4', 'latex': 'x_4', 'unit': 'km/s', 'meaning': 'deviation of the angular velocity, as a velocity along the reference orbit'},

@@ -1,8 +1,8 @@
-"""Least energy for a body on a line.
+"""Minimum energy for a body on a line.
 
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
-Digest: 8049a7ce46f15b9878592810966b260efcf9f1070b7753081affe0be566c2b39
+Digest: 38cba691012f71f62a2161ab552c5a0b73d0c58d91447d4645c4cee5af41b5cb
 """
 
 import math
@@ -13,7 +13,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'double_integrator_energy',
-    'title': 'Least energy for a body on a line',
+    'title': 'Minimum energy for a body on a line',
     'source': 'derivations/double_integrator.py',
     'states': (
         {'symbol': 'q', 'latex': 'q', 'unit': 'm', 'meaning': 'position'},

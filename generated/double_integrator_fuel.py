@@ -1,8 +1,8 @@
-"""Least fuel for a body on a line, weighing time against it.
+"""Minimum fuel for a body on a line, weighing time against it.
 
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
-Digest: 60a002a6b3f650662bc7bd24aa746a167b5ec657d1452d4a1524465fc2ddc9ef
+Digest: c0e029bd2e82c51dafb216f0abff918008ba29cb8e4f5b84e89cd7e0912811cd
 """
 
 import math
@@ -13,7 +13,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'double_integrator_fuel',
-    'title': 'Least fuel for a body on a line, weighing time against it',
+    'title': 'Minimum fuel for a body on a line, weighing time against it',
     'source': 'derivations/double_integrator.py',
     'states': (
         {'symbol': 'q', 'latex': 'q', 'unit': 'm', 'meaning': 'position'},
@@ -189,7 +189,7 @@ def costate_rate(t, x, u, lam, p):
 
 
 def canonical(t, x, lam, p, bounds):
-    """Rates of change of states and costates under the control law of the smoothed companion."""
+    """Rates of change of states and costates under the control law of the regularised problem."""
     q, q_dot = x
     lambda_q, lambda_q_dot = lam
     (weight_time,) = p
@@ -570,7 +570,7 @@ def costate_rate_batch(t, x, u, lam, p, out=None):
 
 
 def canonical_batch(t, x, lam, p, bounds, out=None):
-    """Rates of change of states and costates under the control law of the smoothed companion. Batch form."""
+    """Rates of change of states and costates under the control law of the regularised problem. Batch form."""
     q, q_dot = x
     lambda_q, lambda_q_dot = lam
     (weight_time,) = p

@@ -1,8 +1,8 @@
-"""Least time for a body on a line.
+"""Minimum time for a body on a line.
 
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
-Digest: a0cbb53ef92d1f3974cd225c6a4777cfe24271e3f10f39769592096e660cff25
+Digest: b7a5804bc84e1f53498ac18e2d16ddbb27825189bb520e8b8f866c8a87ba98ab
 """
 
 import math
@@ -13,7 +13,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'double_integrator_time',
-    'title': 'Least time for a body on a line',
+    'title': 'Minimum time for a body on a line',
     'source': 'derivations/double_integrator.py',
     'states': (
         {'symbol': 'q', 'latex': 'q', 'unit': 'm', 'meaning': 'position'},
@@ -245,7 +245,7 @@ def costate_rate(t, x, u, lam, p):
 
 
 def canonical(t, x, lam, p, bounds):
-    """Rates of change of states and costates under the control law of the smoothed companion."""
+    """Rates of change of states and costates under the control law of the regularised problem."""
     q, q_dot = x
     lambda_q, lambda_q_dot = lam
     u1_min, u1_max, smoothing, magnitude_share = bounds
@@ -670,7 +670,7 @@ def costate_rate_batch(t, x, u, lam, p, out=None):
 
 
 def canonical_batch(t, x, lam, p, bounds, out=None):
-    """Rates of change of states and costates under the control law of the smoothed companion. Batch form."""
+    """Rates of change of states and costates under the control law of the regularised problem. Batch form."""
     q, q_dot = x
     lambda_q, lambda_q_dot = lam
     u1_min, u1_max, smoothing, magnitude_share = bounds

@@ -2,7 +2,7 @@
 
 Written by satsym from derivations/hill.py. Do not edit: mend that file instead, then run
     satsym derive derivations/hill.py
-Digest: 75b237390361a15fc27092fa662cd0ad3555b84505b81c65508b922ae11e16df
+Digest: 666ac34e9f1f6ba8954902737331d1386bc8d9ff9c94432cbfd4fbe5692b8234
 """
 
 import math
@@ -41,7 +41,7 @@ MODEL = {
     'position': (),
     'multipliers': (),
     'outputs': (
-        {'symbol': 'y1', 'latex': 'y_1', 'unit': 'km', 'meaning': 'deviation of the distance from the centre'},
+        {'symbol': 'y1', 'latex': 'y_1', 'unit': 'km', 'meaning': 'deviation of the distance from the centre of force'},
         {'symbol': 'y2', 'latex': 'y_2', 'unit': 'km', 'meaning': 'distance from the plane of the reference orbit'},
     ),
     'linear': (

@@ -1,8 +1,8 @@
-"""Pitch manoeuvre that takes least electrical energy.
+"""Pitch manoeuvre of minimum electrical energy.
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Digest: 83cda27a639ac6647c148cb2598daf6d37091aacf7b7b661da7803a72377310d
+Digest: 6b1355b887464cdd6e4f23e7da9ed510fe380fadb93db46ef09b6fc213d89f12
 """
 
 import math
@@ -13,7 +13,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'pitch_minimum_energy',
-    'title': 'Pitch manoeuvre that takes least electrical energy',
+    'title': 'Pitch manoeuvre of minimum electrical energy',
     'source': 'derivations/pitch_wheel.py',
     'states': (
         {'symbol': 'theta', 'latex': '\\theta', 'unit': 'rad', 'meaning': 'pitch angle from the local vertical'},

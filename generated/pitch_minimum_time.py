@@ -1,8 +1,8 @@
-"""Pitch manoeuvre in least time.
+"""Pitch manoeuvre in minimum time.
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Digest: 34ae2b1eb99840af331fc0ea798ffa4a073934b50a6424ec19716ee4d05ead47
+Digest: 7091d46987285afa417b0e445db28bcc6e7efe0bd10dfadb3a4b2e6521e0515b
 """
 
 import math
@@ -13,7 +13,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'pitch_minimum_time',
-    'title': 'Pitch manoeuvre in least time',
+    'title': 'Pitch manoeuvre in minimum time',
     'source': 'derivations/pitch_wheel.py',
     'states': (
         {'symbol': 'theta', 'latex': '\\theta', 'unit': 'rad', 'meaning': 'pitch angle from the local vertical'},
@@ -305,7 +305,7 @@ def costate_rate(t, x, u, lam, p):
 
 
 def canonical(t, x, lam, p, bounds):
-    """Rates of change of states and costates under the control law of the smoothed companion."""
+    """Rates of change of states and costates under the control law of the regularised problem."""
     theta, theta_dot = x
     lambda_theta, lambda_theta_dot = lam
     I_y, I_wy, nominal_speed, R_a, K_t, K_m = p
@@ -793,7 +793,7 @@ def costate_rate_batch(t, x, u, lam, p, out=None):
 
 
 def canonical_batch(t, x, lam, p, bounds, out=None):
-    """Rates of change of states and costates under the control law of the smoothed companion. Batch form."""
+    """Rates of change of states and costates under the control law of the regularised problem. Batch form."""
     theta, theta_dot = x
     lambda_theta, lambda_theta_dot = lam
     I_y, I_wy, nominal_speed, R_a, K_t, K_m = p

@@ -1,8 +1,8 @@
-"""Pitch axis of a symmetric satellite in plain numbers.
+"""Pitch axis of a symmetric satellite, nondimensional.
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Digest: 9d08529630927c127e530b59734cec9102e0e25ca8a7505ec5af4192b48769ae
+Digest: 10664c69bf390965482767f5f653549aad98056b593d4bd0a2d155f79a6a98f4
 """
 
 import math
@@ -13,14 +13,14 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'pitch_scaled',
-    'title': 'Pitch axis of a symmetric satellite in plain numbers',
+    'title': 'Pitch axis of a symmetric satellite, nondimensional',
     'source': 'derivations/pitch_wheel.py',
     'states': (
         {'symbol': 'X1', 'latex': 'X_1', 'meaning': 'pitch angle'},
-        {'symbol': 'X2', 'latex': 'X_2', 'meaning': 'its rate, in units of time that go with the largest torque'},
+        {'symbol': 'X2', 'latex': 'X_2', 'meaning': 'its rate, in units of time that go with the maximum torque'},
     ),
     'controls': (
-        {'symbol': 'U', 'latex': 'U', 'meaning': 'torque of the wheel, as a share of the largest'},
+        {'symbol': 'U', 'latex': 'U', 'meaning': 'torque of the wheel, relative to its maximum'},
     ),
     'parameters': (),
     'control_set': None,

@@ -1,8 +1,8 @@
-"""Pitch manoeuvre that takes least energy, in plain numbers.
+"""Pitch manoeuvre of minimum energy, nondimensional.
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Digest: 8a8b29e1c62dec07b991613e1a3bb57a01b68ba50a25ec309380892577fc1dbc
+Digest: 186b0e79f0fe05cdabf0359abd40a078848716938c1c7e72b2b93207f8463696
 """
 
 import math
@@ -13,14 +13,14 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'pitch_scaled_energy',
-    'title': 'Pitch manoeuvre that takes least energy, in plain numbers',
+    'title': 'Pitch manoeuvre of minimum energy, nondimensional',
     'source': 'derivations/pitch_wheel.py',
     'states': (
         {'symbol': 'X1', 'latex': 'X_1', 'meaning': 'pitch angle'},
-        {'symbol': 'X2', 'latex': 'X_2', 'meaning': 'its rate, in units of time that go with the largest torque'},
+        {'symbol': 'X2', 'latex': 'X_2', 'meaning': 'its rate, in units of time that go with the maximum torque'},
     ),
     'controls': (
-        {'symbol': 'U', 'latex': 'U', 'meaning': 'torque of the wheel, as a share of the largest'},
+        {'symbol': 'U', 'latex': 'U', 'meaning': 'torque of the wheel, relative to its maximum'},
     ),
     'parameters': (
         {'symbol': 'C_p', 'latex': 'C_p', 'meaning': "weight of the wheel's power against the heat", 'default': 0.1},
@@ -34,7 +34,7 @@ MODEL = {
     'position': (),
     'multipliers': (),
     'quantities': (
-        {'symbol': 'scaled_power', 'latex': 'p', 'meaning': 'power in units of what heats the motor at the largest torque'},
+        {'symbol': 'scaled_power', 'latex': 'p', 'meaning': 'power in units of what heats the motor at the maximum torque'},
     ),
 }
 

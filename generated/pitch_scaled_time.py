@@ -1,8 +1,8 @@
-"""Pitch manoeuvre in least time, in plain numbers.
+"""Pitch manoeuvre in minimum time, nondimensional.
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Digest: a8b69e8fd0be586645df51dae66af7d1ad5e0f7fd5a08742a85bc1ca63789da3
+Digest: 7f212b096a02e43f28aae699a87e08a59355359d0fbcb140a9fe2a2894bc5ff5
 """
 
 import math
@@ -13,14 +13,14 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'pitch_scaled_time',
-    'title': 'Pitch manoeuvre in least time, in plain numbers',
+    'title': 'Pitch manoeuvre in minimum time, nondimensional',
     'source': 'derivations/pitch_wheel.py',
     'states': (
         {'symbol': 'X1', 'latex': 'X_1', 'meaning': 'pitch angle'},
-        {'symbol': 'X2', 'latex': 'X_2', 'meaning': 'its rate, in units of time that go with the largest torque'},
+        {'symbol': 'X2', 'latex': 'X_2', 'meaning': 'its rate, in units of time that go with the maximum torque'},
     ),
     'controls': (
-        {'symbol': 'U', 'latex': 'U', 'meaning': 'torque of the wheel, as a share of the largest'},
+        {'symbol': 'U', 'latex': 'U', 'meaning': 'torque of the wheel, relative to its maximum'},
     ),
     'parameters': (),
     'control_set': 'box',
@@ -245,7 +245,7 @@ def costate_rate(t, x, u, lam, p):
 
 
 def canonical(t, x, lam, p, bounds):
-    """Rates of change of states and costates under the control law of the smoothed companion."""
+    """Rates of change of states and costates under the control law of the regularised problem."""
     X1, X2 = x
     lambda_X1, lambda_X2 = lam
     U_min, U_max, smoothing, magnitude_share = bounds
@@ -670,7 +670,7 @@ def costate_rate_batch(t, x, u, lam, p, out=None):
 
 
 def canonical_batch(t, x, lam, p, bounds, out=None):
-    """Rates of change of states and costates under the control law of the smoothed companion. Batch form."""
+    """Rates of change of states and costates under the control law of the regularised problem. Batch form."""
     X1, X2 = x
     lambda_X1, lambda_X2 = lam
     U_min, U_max, smoothing, magnitude_share = bounds

@@ -1,8 +1,8 @@
-"""Least-effort transfer of a satellite in polar coordinates.
+"""Minimum-effort transfer of a satellite in polar coordinates.
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
-Digest: ffa691ab4c3f24ce6578e8807c593600e0f147989524161c32630c544d46acbb
+Digest: f40a71c794223e7a88190fc9416d7ca67631b488c8c2e1c8131101ed20ae1eba
 """
 
 import math
@@ -13,10 +13,10 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'polar_orbit',
-    'title': 'Least-effort transfer of a satellite in polar coordinates',
+    'title': 'Minimum-effort transfer of a satellite in polar coordinates',
     'source': 'derivations/polar_orbit.py',
     'states': (
-        {'symbol': 'r', 'latex': 'r', 'unit': 'km', 'meaning': 'distance from the centre of attraction', 'positive': True},
+        {'symbol': 'r', 'latex': 'r', 'unit': 'km', 'meaning': 'distance from the centre of force', 'positive': True},
         {'symbol': 'r_dot', 'latex': '\\dot r', 'unit': 'km/s', 'meaning': 'radial velocity'},
         {'symbol': 'theta', 'latex': '\\theta', 'unit': 'rad', 'meaning': 'polar angle in the inertial plane', 'kind': 'angle'},
         {'symbol': 'theta_dot', 'latex': '\\dot\\theta', 'unit': 'rad/s', 'meaning': 'angular velocity'},

@@ -1,8 +1,8 @@
-"""Least-effort transfer of a satellite with one steerable engine, in polar coordinates.
+"""Minimum-effort transfer of a satellite with one steerable engine, in polar coordinates.
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
-Digest: 16d5e955d4018bbb3cb4707fe51001c997f839ae13ce295919c078b44a250a10
+Digest: f4b88079926fb2245f5166f4ae3b130fbec187cab6c01d24fc17a255708e35df
 """
 
 import math
@@ -13,10 +13,10 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'polar_orbit_ball',
-    'title': 'Least-effort transfer of a satellite with one steerable engine, in polar coordinates',
+    'title': 'Minimum-effort transfer of a satellite with one steerable engine, in polar coordinates',
     'source': 'derivations/polar_orbit.py',
     'states': (
-        {'symbol': 'r', 'latex': 'r', 'unit': 'km', 'meaning': 'distance from the centre of attraction', 'positive': True},
+        {'symbol': 'r', 'latex': 'r', 'unit': 'km', 'meaning': 'distance from the centre of force', 'positive': True},
         {'symbol': 'r_dot', 'latex': '\\dot r', 'unit': 'km/s', 'meaning': 'radial velocity'},
         {'symbol': 'theta', 'latex': '\\theta', 'unit': 'rad', 'meaning': 'polar angle in the inertial plane', 'kind': 'angle'},
         {'symbol': 'theta_dot', 'latex': '\\dot\\theta', 'unit': 'rad/s', 'meaning': 'angular velocity'},

@@ -2,7 +2,7 @@
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
-Digest: e1f7b36bfb87ddd72a611c75072a806831bc0bcaa06e5ae70a3d2684a824c04e
+Digest: 4e33f8e5a853c2e35a95565d08bfdb3144593124a0d43456d56b6cae4fbe6fdd
 """
 
 import math
@@ -16,7 +16,7 @@ MODEL = {
     'title': 'Transfer of a satellite in polar coordinates, weighing time against effort',
     'source': 'derivations/polar_orbit.py',
     'states': (
-        {'symbol': 'r', 'latex': 'r', 'unit': 'km', 'meaning': 'distance from the centre of attraction', 'positive': True},
+        {'symbol': 'r', 'latex': 'r', 'unit': 'km', 'meaning': 'distance from the centre of force', 'positive': True},
         {'symbol': 'r_dot', 'latex': '\\dot r', 'unit': 'km/s', 'meaning': 'radial velocity'},
         {'symbol': 'theta', 'latex': '\\theta', 'unit': 'rad', 'meaning': 'polar angle in the inertial plane', 'kind': 'angle'},
         {'symbol': 'theta_dot', 'latex': '\\dot\\theta', 'unit': 'rad/s', 'meaning': 'angular velocity'},

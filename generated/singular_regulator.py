@@ -1,8 +1,8 @@
-"""Least square deviation, at no cost of the control.
+"""Minimum square deviation, at no cost of the control.
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Digest: c93a8e6298ba83f23be8bf0371a55f976cea5f25935dfbd11f95c246e31fa6a3
+Digest: 77ff440ed1441b5b9506a6ef7623eb855d08b0bacf3c3a9c4c5bcd1b3c88fa29
 """
 
 import math
@@ -13,7 +13,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'singular_regulator',
-    'title': 'Least square deviation, at no cost of the control',
+    'title': 'Minimum square deviation, at no cost of the control',
     'source': 'derivations/small_systems.py',
     'states': (
         {'symbol': 'x1', 'latex': 'x_1', 'meaning': 'state 1'},
@@ -152,7 +152,7 @@ def costate_rate(t, x, u, lam, p):
 
 
 def canonical(t, x, lam, p, bounds):
-    """Rates of change of states and costates under the control law of the smoothed companion."""
+    """Rates of change of states and costates under the control law of the regularised problem."""
     (x1,) = x
     (lambda_x1,) = lam
     u1_min, u1_max, smoothing, magnitude_share = bounds
@@ -451,7 +451,7 @@ def costate_rate_batch(t, x, u, lam, p, out=None):
 
 
 def canonical_batch(t, x, lam, p, bounds, out=None):
-    """Rates of change of states and costates under the control law of the smoothed companion. Batch form."""
+    """Rates of change of states and costates under the control law of the regularised problem. Batch form."""
     (x1,) = x
     (lambda_x1,) = lam
     u1_min, u1_max, smoothing, magnitude_share = bounds

@@ -2,7 +2,7 @@
 
 Written by satsym from derivations/two_body.py. Do not edit: mend that file instead, then run
     satsym derive derivations/two_body.py
-Digest: b1166cec40d235a22a9f032e00d995ae8600a16b85d997bda1baa3d500640130
+Digest: c4e50c77f3d938b29175ea68028ead953344973f230faf09e845497247c15419
 """
 
 import math
@@ -29,7 +29,7 @@ MODEL = {
         {'symbol': 'a_z', 'latex': 'a_z', 'unit': 'km/s**2', 'meaning': 'thrust per unit mass along z'},
     ),
     'parameters': (
-        {'symbol': 'mu', 'latex': '\\mu', 'unit': 'km**3/s**2', 'meaning': 'gravitational parameter of the centre', 'default': 1.0, 'positive': True},
+        {'symbol': 'mu', 'latex': '\\mu', 'unit': 'km**3/s**2', 'meaning': 'gravitational parameter of the central body', 'default': 1.0, 'positive': True},
     ),
     'control_set': None,
     'has_cost': False,

@@ -2,7 +2,7 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Digest: 789ae212508f7add8ff5bf8ac12b88c956988784437963bc333335f3cdf75fe0
+Digest: 54b699dd675e77b7d6d7ffaeeb22b3f6455c76c78a094efdd7a42428332e3b08
 """
 
 import math
@@ -177,7 +177,7 @@ def costate_rate(t, x, u, lam, p):
 
 
 def canonical(t, x, lam, p, bounds):
-    """Rates of change of states and costates under the control law of the smoothed companion."""
+    """Rates of change of states and costates under the control law of the regularised problem."""
     x1, x2 = x
     lambda_x1, lambda_x2 = lam
     u1_min, u1_max, smoothing, magnitude_share = bounds
@@ -584,7 +584,7 @@ def costate_rate_batch(t, x, u, lam, p, out=None):
 
 
 def canonical_batch(t, x, lam, p, bounds, out=None):
-    """Rates of change of states and costates under the control law of the smoothed companion. Batch form."""
+    """Rates of change of states and costates under the control law of the regularised problem. Batch form."""
     x1, x2 = x
     lambda_x1, lambda_x2 = lam
     u1_min, u1_max, smoothing, magnitude_share = bounds

@@ -45,7 +45,7 @@ class Grid:
         if nodes.ndim != 1 or len(nodes) < 2 or not np.isfinite(nodes).all() or not (np.diff(nodes) > 0.0).all():
             raise ValueError("the nodes of a grid are at least two finite numbers that strictly increase")
         if not np.isin(self.kinks, nodes).all():
-            raise ValueError("every kink of a grid is one of its nodes")
+            raise ValueError("every corner of a grid is one of its nodes")
         object.__setattr__(self, "nodes", _sealed(nodes))
 
     @classmethod

@@ -27,7 +27,7 @@ def extremal_functions(derivation: Derivation, s: Symbols) -> list[Function]:
     z, (rates, h) = sp.Matrix([*s.x, *s.lam]), _under_the_law(derivation, s)
     ends = _ends(derivation, len(s.x)).xreplace({n.HAMILTONIAN: h})
     unknown = sp.Matrix([*z, *s.nu, s.t])
-    smoothed = " of the smoothed companion" if switching.switches(derivation) else ""
+    smoothed = " of the regularised problem" if switching.switches(derivation) else ""
     return [
         Function(
             "canonical",

@@ -82,7 +82,7 @@ def deadband(table: SwitchingTable | None, spec: ProblemSpec) -> float | None:
         return None
     if not spec.switching_curve:
         raise BadInput(
-            f"[switching] model {spec.name} has no switching curve in closed form, as problems of least time with "
+            f"[switching] model {spec.name} has no switching curve in closed form, as minimum-time problems with "
             "two integrators have; leave the table out"
         )
     position = spec.states[spec.state_names.index(spec.switching_curve[0])]

@@ -23,8 +23,10 @@ def of_switching(of: Evaluation) -> Iterator[Relation]:
     idle = of("hamiltonian", u=np.zeros_like(u))
     gained = np.array([of("hamiltonian", u=each) - idle for each in alone.swapaxes(0, 1)])
     terms = FAINT * np.abs(idle)
-    yield Relation("switching_function", "share of each control in H", sigma * u + weight * np.abs(u), gained, terms)
-    together, claim = of("hamiltonian") - idle, "sum of the shares of the controls"
+    yield Relation(
+        "switching_function", "contribution of each control to H", sigma * u + weight * np.abs(u), gained, terms
+    )
+    together, claim = of("hamiltonian") - idle, "sum of the contributions of the controls"
     yield Relation("hamiltonian", claim, together, gained.sum(axis=0), terms)
     rates = {"x": of("dynamics"), "lam": of("costate_rate")}
     parts = [of.slope("switching_function", a) * rate for a, rate in rates.items()]
@@ -32,10 +34,10 @@ def of_switching(of: Evaluation) -> Iterator[Relation]:
     total = by_time + sum(part.sum(axis=-2) for part in parts)
     terms = np.abs(by_time) + sum(np.abs(part).sum(axis=-2) for part in parts)
     yield Relation("switching_rate", "rate of change along an extremal", of("switching_rate"), total, terms)
-    yield Relation("control_law", "H is least there", of("control_law"), _law(of, sigma, weight))
+    yield Relation("control_law", "H is minimal there", of("control_law"), _law(of, sigma, weight))
     none = np.zeros_like(of.at["lam"])
     indifferent = of("switching_function", lam=none)
-    yield Relation("control_law", "of least magnitude", of("control_law", lam=none), _law(of, indifferent, weight))
+    yield Relation("control_law", "of minimum magnitude", of("control_law", lam=none), _law(of, indifferent, weight))
     for row, name in enumerate(("dynamics", "costate_rate")):
         n = len(of.at["x"])
         block = of("extremal_jacobian")[row * n : (row + 1) * n]
@@ -61,7 +63,7 @@ def _limits(of: Evaluation) -> tuple[Array, Array, Array, Array]:
 
 
 def _law(of: Evaluation, sigma: Array, weight: Array) -> Array:
-    """The least of sigma u + weight |u| in the box; where all of an interval is, of least magnitude or its middle."""
+    """The least of sigma u + weight |u| in the box; where all of an interval is, of minimum magnitude or its middle."""
     low, high, *_ = _limits(of)
     rest = np.where(weight > 0.0, np.minimum(np.maximum(0.0, low), high), 0.5 * (low + high))
     return np.asarray(np.where(sigma > weight, low, np.where(sigma < -weight, high, rest)))

@@ -58,7 +58,7 @@ def _of_regular_law(of: Evaluation) -> Iterator[Relation]:
         yield Relation("control_law", "within its ball", norm, np.minimum(norm, np.asarray(limits.radius)))
     else:
         left = slope
-    yield Relation("control_law", "H is least there", left, np.zeros_like(left), terms)
+    yield Relation("control_law", "H is minimal there", left, np.zeros_like(left), terms)
 
 
 def _outside_box(of: Evaluation, law: Array, slope: Array, low: Array, high: Array) -> Array:

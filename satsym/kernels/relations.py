@@ -106,10 +106,10 @@ def _of_motion(of: Evaluation) -> Iterator[Relation]:
         curve = of("reference")
         rates, pace = of("dynamics", x=curve, u=rest), of.slope("reference", "t")[..., 0, :]
         terms = np.abs(of.slope("dynamics", "x", x=curve, u=rest) * curve).sum(axis=-2)
-        yield Relation("reference", "motion without control", pace, rates, FAINT * terms)
+        yield Relation("reference", "uncontrolled motion", pace, rates, FAINT * terms)
     if of.has("invariants"):
         left, terms = along(of, "invariants", drift)
-        yield Relation("invariants", "constant without control", left, np.zeros_like(left), terms)
+        yield Relation("invariants", "constant along the uncontrolled motion", left, np.zeros_like(left), terms)
     if of.has("balances"):
         rates, terms = along(of, "balances", of("dynamics"))
         stated = of("balances")[1::2]
@@ -130,7 +130,7 @@ def _of_attraction(of: Evaluation, drift: Array) -> Iterator[Relation]:
     place, mu = state[:3], state[6]
     distance = np.sqrt((place * place).sum(axis=0))
     yield Relation(name, "velocity is the rate of change of place", state[3:6], rates[:3], terms[:3])
-    yield Relation(name, "acceleration is that of attraction", rates[3:6], -mu * place / distance**3, terms[3:6])
+    yield Relation(name, "acceleration is that of Kepler motion", rates[3:6], -mu * place / distance**3, terms[3:6])
     if of.has("position"):
         found = of("position")
         yield Relation("position", "place in space", found, place[: len(found)], distance * FAINT)

@@ -27,12 +27,12 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         return found
     if none_conceivable(found):
         message = (
-            "the best control is none: the final state is free and costs nothing, so the costates vanish and any "
-            "control only adds to the cost; the motion is the one without control"
+            "the optimal control is zero: the final state is free and costs nothing, so the costates vanish and any "
+            "control only adds to the cost; the motion is the uncontrolled one"
         )
         return replace(found, message=message)
     return bottomless(found) or replace(
         found,
         status=Status.NOT_CONVERGED,
-        message="without control the costates vanish, so it is stationary, but another control may be cheaper",
+        message="its costates vanish, so the uncontrolled motion is stationary, but another control may be cheaper",
     )

@@ -127,14 +127,12 @@ def _extremal(instance: Instance, limits: Limits, effort: bool) -> Extremal:
     except np.linalg.LinAlgError:
         error = float("nan")
     if not (error <= instance.solver.tolerance and _violation(arcs) <= CONTRADICTED):
-        message = (
-            "the conditions contradict each other or leave costates open: the end may be out of the control's reach"
-        )
+        message = "the conditions contradict each other or leave costates open: the end may not be reachable"
         return unfinished(problem, arcs, message, 1, limits)
     tau = np.linspace(0.0, 1.0, instance.solver.steps + 1)
     control = limits.in_blocks(lambda part: problem.control(part, arcs(part), arcs.theta, bounded=False), tau)
     if instance.control_set.violation(control) > 0.0:
-        raise _refusal(instance, "bounds on its control are met")
+        raise _refusal(instance, "bounds on its control are active")
     cost = arcs.cost() * problem.scale.cost
     limits.tell(cost, error)
     kind = "matrix exponentials" if isinstance(arcs, Exponential) else "variational equations"

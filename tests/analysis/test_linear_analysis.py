@@ -177,7 +177,7 @@ def test_companion_forms_are_the_same_system(omega: float):
     assert np.allclose(np.linalg.solve(T, one.A @ T), form.A, rtol=1e-9, atol=1e-12 * omega)
     assert np.allclose(np.linalg.solve(T, one.B), form.B, atol=1e-9)
     assert np.allclose(one.C @ T, form.C)
-    with pytest.raises(BadInput, match=r"u1 cannot move the mode s = 0"):
+    with pytest.raises(BadInput, match=r"u1 cannot control the mode s = 0"):
         companion_form(satellite(omega).with_inputs(["u1"]))
     with pytest.raises(BadInput, match="one input"):
         companion_form(satellite(omega))
@@ -193,7 +193,7 @@ def test_poles_go_where_they_are_wanted(inputs: list[str], omega: float):
 
 
 def test_poles_that_cannot_be_placed_are_refused():
-    with pytest.raises(BadInput, match="cannot move the mode"):
+    with pytest.raises(BadInput, match="cannot control the mode"):
         place(satellite().with_inputs(["u1"]), [-1.0, -2.0, -3.0, -4.0])
     with pytest.raises(BadInput, match="conjugates"):
         place(satellite(), [-1.0, -2.0, -1.0 + 1.0j, -1.0 + 1.0j])

@@ -144,7 +144,7 @@ def test_people_get_a_summary(run: Run, subject: str) -> None:
     code, out, err = run("analyse", subject)
     assert (code, err) == (0, "")
     assert "Jordan block of size 2" in out
-    assert "u1 alone 3 (not the mode s = 0)" in out
+    assert "u1 alone 3 (without the mode s = 0)" in out
     assert max(map(len, out.splitlines())) <= 100
 
 
@@ -162,7 +162,7 @@ def test_summaries_of_other_kinds_of_systems() -> None:
         ({"Q": "[1, 1, 1, -1]"}, "[lqr] Q: not positive semidefinite"),
         ({"Q": "[[1, 1, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]"}, "[lqr] Q: not symmetric"),
         ({"R": "[0]"}, "[lqr] R: not positive definite"),
-        ({"inputs": '["u1"]'}, "[lqr] inputs: not stabilisable, u1 cannot move the mode s = 0"),
+        ({"inputs": '["u1"]'}, "[lqr] inputs: not stabilisable, u1 cannot control the mode s = 0"),
         ({"Q": "[1, 1, 0, 1]"}, "[lqr] Q: not detectable, the mode s = 0"),
     ],
 )

@@ -140,7 +140,7 @@ def test_beyond_the_centre_is_nan_and_the_others_go_on(orbit: Kernels):
         ({"steps": 0}, "steps: 0; take at least one"),
         ({"p": (1.0, 2.0)}, "p: 2 components; the model has 1"),
         ({"p": ([1.0, 2.0, 3.0],)}, "p: not a number or an array of 2"),
-        ({"u": (1.0, 0.0, 0.0), "method": "symplectic"}, "u: the symplectic method is for motions without control"),
+        ({"u": (1.0, 0.0, 0.0), "method": "symplectic"}, "u: the symplectic method is for uncontrolled motions"),
         ({"method": "simplectic"}, 'method: "simplectic"; did you mean "symplectic"'),
         ({"u": (1.0,)}, "u: 1 components; the model has 3"),
     ],

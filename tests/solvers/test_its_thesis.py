@@ -59,7 +59,7 @@ def test_the_optimum_is_no_control_at_no_cost(name):
     assert not solution.lam.any()
     assert solution.iterations == 0
     assert solution.switching_times == ((), ())
-    assert "best control is none" in solution.message
+    assert "optimal control is zero" in solution.message
     assert "final state is free and costs nothing" in solution.message
 
 

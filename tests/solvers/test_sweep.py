@@ -230,7 +230,7 @@ def test_too_few_iterations_are_not_converged_with_advice():
 def test_a_start_that_leads_nowhere_is_named_with_advice(start, status, what):
     solution = solve(replace(shipped("soft-return", steps=50), initial=start))
     assert solution.status is status
-    assert solution.message == f"the motion under the starting control {what}"
+    assert solution.message == f"the motion under the initial guess of the control {what}"
     assert "initial state" in solution.status.advice
     assert np.isnan(solution.objective)
     assert np.isnan(solution.lam).all()

@@ -203,7 +203,7 @@ def within_already(plant: Plant) -> BadInput:
     (name, _), case = plant.instance.model.spec.switching_curve, plant.instance
     return BadInput(
         f"{case.name}: [initial] {name} lies within the deadband of its target already; state another one, or a "
-        "final time to fly to"
+        "final time to simulate to"
     )
 
 

@@ -109,4 +109,4 @@ def _reachable(given: LinearSystem) -> None:
     lost = controllability(given).lost
     if lost:
         modes = ", ".join(shown(each.value) for each in lost if each.value.imag >= 0.0)
-        raise BadInput(f"{', '.join(given.inputs) or 'no input'} cannot move the mode s = {modes}; add an input")
+        raise BadInput(f"{', '.join(given.inputs) or 'no input'} cannot control the mode s = {modes}; add an input")

@@ -55,7 +55,10 @@ def stability(eigenvalues: Sequence[Eigenvalue]) -> Stability:
         )
         return Stability(UNSTABLE, reason, False)
     listed = ", ".join(shown(each.value) for each in axis if each.value.imag >= 0.0)
-    reason = f"on the imaginary axis lie {listed}, in Jordan blocks of size 1 only, and nothing lies to its right"
+    reason = (
+        f"on the imaginary axis lie {listed}, in Jordan blocks of size 1 only, and no eigenvalue lies in the right "
+        "half-plane"
+    )
     return Stability(MARGINAL, reason, False)
 
 

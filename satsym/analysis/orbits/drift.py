@@ -127,7 +127,7 @@ def drift(
         If the model's motion is not Kepler's, or the orbit not an ellipse.
     """
     if not instance.model.spec.keplerian:
-        raise BadInput(f"{instance.name}: its motion is not Kepler's; take a model of one centre of attraction")
+        raise BadInput(f"{instance.name}: its motion is not Kepler's; take a model of Kepler motion")
     state = instance.model.inertial_state(0.0, instance.initial, instance.parameters)
     start, mu = np.array(state[:6]), float(state[6])
     radius = float(np.linalg.norm(start[:3]))

@@ -66,7 +66,7 @@ def basin(about: Linearisation, found: Regulator, case: Instance | None = None) 
         If the horizon is finite: nothing steers after its end.
     """
     if found.horizon is not None:
-        raise BadInput("a basin of attraction needs an infinite horizon; leave out [lqr] horizon")
+        raise BadInput("a region of attraction needs an infinite horizon; leave out [lqr] horizon")
     n, names = len(about.point), about.system.states
     time = PATIENCE / float(-found.eigenvalues.real.max())
     if not about.nonlinear and (case is None or not _bounded(case)):

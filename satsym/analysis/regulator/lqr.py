@@ -190,19 +190,19 @@ def _stabilising(given: LinearSystem, Q: Array, R: Array) -> tuple[Array, NDArra
 
 
 def _obstacle(given: LinearSystem, Q: Array) -> str:
-    """Why no gain is best; empty if there is one."""
+    """Why no gain is optimal; empty if there is one."""
     stuck = [each for each in controllability(given).lost if each.value.real >= 0.0]
     if stuck:
         return (
-            f"[lqr] inputs: not stabilisable, {' and '.join(given.inputs)} cannot move the mode s = {_listed(stuck)}, "
-            "which does not decay; add an input"
+            f"[lqr] inputs: not stabilisable, {' and '.join(given.inputs)} cannot control the mode "
+            f"s = {_listed(stuck)}, which does not decay; add an input"
         )
     seen = system(given.A, given.B, Q, states=given.states, inputs=given.inputs)
     unseen = [each for each in observability(seen).lost if each.value.real == 0.0]
     if unseen:
         return (
             f"[lqr] Q: not detectable, the mode s = {_listed(unseen)} on the imaginary axis costs nothing, so no gain "
-            "is best; weigh a state that takes part in it"
+            "is optimal; weigh a state that takes part in it"
         )
     return ""
 

@@ -31,10 +31,10 @@ Examples:
 @out_option
 @plot_option("analyse")
 def analyse(subject: str, as_json: bool, out: Path | None, plot: bool) -> ExitCode:
-    """Tell what a model does near its reference or an equilibrium, and an orbit about a centre.
+    """Analyse a model near its reference or an equilibrium, and an orbit about a central body.
 
     X is a shipped model or instance, or the path of one. Eigenvalues with their Jordan blocks, stability with its
-    reason, the Routh array, and how much of the state the inputs move and the outputs show: by numbers, and exactly
+    reason, the Routh array, the controllable and the observable subspace of inputs and outputs: by numbers, and exactly
     where the model is linear. Of an instance that starts on an orbit: its elements and kind, the eigenvalues at the
     start and why they decide nothing, its monodromy matrix and Floquet multipliers.
     """

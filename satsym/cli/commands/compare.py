@@ -34,9 +34,9 @@ SHARES = (0.25, 0.5, 1.0, 2.0, 4.0)
 @out_option
 @plot_option("compare")
 def compare(subjects: tuple[str, ...], as_json: bool, ranged: bool, out: Path | None, plot: bool) -> ExitCode:
-    """Fly or solve instances of one system, and set the numbers that describe them side by side.
+    """Simulate or solve instances of one system, and set the numbers that describe them side by side.
 
-    An instance that states a law ([classical]) is flown under it, any other is solved. Totals, largest and last
+    An instance that states a law ([classical]) is simulated under it, any other is solved. Totals, maximum and final
     values, durations. NAME, where results go, is that of the first X.
     """
     from satsym import instance

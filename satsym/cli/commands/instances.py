@@ -12,8 +12,8 @@ EXAMPLES = """\b
 Example:
   satsym instances
 
-The type is the case of transversality: 1 final time and final state given, 2 final time free, 3 final state free,
-4 final time free and final state on the reference, 5 both free."""
+The type is that of the transversality conditions: 1 final time and final state given, 2 final time free,
+3 final state free, 4 final time free and final state on the reference, 5 both free."""
 
 
 @click.command(epilog=EXAMPLES)

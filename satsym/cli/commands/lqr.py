@@ -28,7 +28,7 @@ Examples:
 @out_option
 @plot_option("lqr")
 def lqr(subject: str, as_json: bool, out: Path | None, plot: bool) -> ExitCode:
-    """Find the gain that costs least: u = -K x for the deviation x.
+    """Find the gain of minimum cost: u = -K x for the deviation x.
 
     X is an instance with an [lqr] table, or a model, whose weights are then all 1; shipped, or the path of one. The
     cost is the integral of x'Qx + u'Ru, without a factor 1/2.

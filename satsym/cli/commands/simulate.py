@@ -12,15 +12,15 @@ from satsym.cli.saving import folder_for, save, trajectory_files
 from satsym.status import ExitCode
 
 FEEDBACKS = ("none", "lqr", "classical", "switching", "pulses")
-"""Control laws to fly with; here once more, because ``--help`` loads no solver."""
+"""Control laws to simulate with; here once more, because ``--help`` loads no solver."""
 
 EXAMPLES = """\b
 Examples:
-  satsym simulate its-thesis            where the satellite goes if nobody steers it
+  satsym simulate its-thesis            the uncontrolled trajectory of the satellite
   satsym simulate its-thesis --plot     with pictures, into results/its-thesis/simulate
   satsym simulate geo-lqr --feedback lqr    the nonlinear motion under the linear law
   satsym simulate lapan-classical       a pitch manoeuvre under the law that it states
-  satsym simulate lapan-minimum-time --feedback switching    the same in least time, by the switching curve
+  satsym simulate lapan-minimum-time --feedback switching    the same in minimum time, by the switching curve
   satsym simulate lapan-minimum-time --feedback pulses       the same by a sensor of the position alone"""
 
 
@@ -37,9 +37,9 @@ Examples:
 @trajectory_option
 @plot_option("simulate")
 def simulate(subject: str, feedback: str | None, as_json: bool, out: Path | None, plot: bool) -> ExitCode:
-    """Follow the motion under a control law.
+    """Simulate the motion under a control law.
 
-    X is a shipped instance (`satsym instances` lists them) or the path of a TOML file. The motion is followed from
+    X is a shipped instance (`satsym instances` lists them) or the path of a TOML file. The motion is simulated from
     the initial state to the final time, and what ought to be conserved is measured.
     """
     from satsym import instance

@@ -61,7 +61,7 @@ def solve(
     steps: int | None,
     tolerance: float | None,
 ) -> ExitCode:
-    """Find the control that costs least.
+    """Find the control of minimum cost.
 
     X is a shipped instance (`satsym instances` lists them) or the path of a TOML file. A summary is printed;
     states, controls and costates over time go into files with --out or --plot. METHOD, N and EPS replace what

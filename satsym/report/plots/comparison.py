@@ -133,7 +133,7 @@ def _totals(figure: Figure, grid: Any, row: int, cases: Sequence[Case]) -> None:
         )
         for place, value, case in zip(places, values, cases, strict=True):
             sudden = abs(case.metrics.get("impulse", 0.0)) if key != "transition_time" else 0.0
-            said = f" {value:.4g}" + (f", {sudden:.4g} at once" if sudden else "")
+            said = f" {value:.4g}" + (f", {sudden:.4g} as an impulse" if sudden else "")
             if key == "transition_time" and case.how == "classical":
                 said = f"{said}, until within {SETTLED:.0%}" if np.isfinite(value) else " not settled"
             axes.text(np.nan_to_num(value), place, said, va="center", ha="left", fontsize=9.0, color=style.INK)

@@ -34,7 +34,7 @@ def convergence(scene: Scene) -> Figure | None:
     last = float(known[-1]) if known.size else 0.0
     _decades(left, at, np.abs(costs - last), style.PURPLE)
     left.set_ylabel(r"$|J - J_{\mathrm{last}}|$")
-    left.set_title(f"cost, in the end {number(last, 10)}" if known.size else "cost")
+    left.set_title(f"final cost {number(last, 10)}" if known.size else "cost")
     _decades(right, at, np.abs(residuals), style.GREEN)
     right.set_ylabel("residual")
     # Solved without bounds first, then within them, say: each phase begins with a residual of its own.

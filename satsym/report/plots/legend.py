@@ -25,7 +25,7 @@ def motion(scene: Scene, colour: str) -> list[Entry]:
     if scene.reference is not None:
         found.append((line(**style.REFERENCE), "reference"))
     if scene.free is not None:
-        found.append((line(**style.FREE), "without control"))
+        found.append((line(**style.FREE), "uncontrolled"))
     return found
 
 
@@ -37,11 +37,11 @@ def on_axes(quantities: Iterable[Series], colour: str) -> list[Entry]:
     if any(read(q).deviation for q in quantities):
         found.append((line(linestyle="none"), r"$\Delta$: minus reference"))
     if any(q.target is not None for q in quantities):
-        found.append((line(**style.TARGET), "required end"))
+        found.append((line(**style.TARGET), "final condition"))
     if any(q.active is not None for q in quantities):
-        found.append((Patch(**style.FORBIDDEN), "not allowed"))
+        found.append((Patch(**style.FORBIDDEN), "inadmissible"))
     if any(q.active is not None and q.active.any() for q in quantities):
-        found.append((Patch(color=colour, alpha=style.SHADE, linewidth=0.0), "on a bound"))
+        found.append((Patch(color=colour, alpha=style.SHADE, linewidth=0.0), "saturated"))
     return found
 
 

@@ -39,7 +39,7 @@ def page(design: Design, case: Instance) -> Figure:
     grid = figure.add_gridspec(n + m, 2)
     delta = _delta(design)
     columns = [
-        ("without control", style.BLUE, found.free.x, found.exact_free),
+        ("uncontrolled", style.BLUE, found.free.x, found.exact_free),
         ("with $u = -K\\,x$", style.GREEN, found.steered.x, found.exact_steered),
     ]
     for j, (title, colour, linear, exact) in enumerate(columns):
@@ -56,11 +56,11 @@ def page(design: Design, case: Instance) -> Figure:
         axes.tick_params(labelbottom=i == m - 1)
     axes.set_xlabel(display.labelled("$t$", unit))
     axes = figure.add_subplot(grid[n:, 0])
-    cost = Variable("J", "J", meaning="cost until then")
+    cost = Variable("J", "J", meaning="accumulated cost")
     exact_cost = None if found.exact_steered is None else found.exact_steered.cost(design.regulator, found.times)
     linear_cost = found.steered.cost(design.regulator, found.times)
     _curve(axes, times, cost, linear_cost, exact_cost, style.PURPLE)
-    axes.set_title("cost until then, with $u = -K\\,x$")
+    axes.set_title("accumulated cost, with $u = -K\\,x$")
     axes.set_xlabel(display.labelled("$t$", unit))
     figure.align_ylabels()
     if found.exact_free is not None:
@@ -106,7 +106,9 @@ def reach(design: Design, case: Instance) -> Figure | None:
     figure = style.titled(design.title, 0.8 * style.WIDTH, 1.2 + 0.85 * len(states))
     for axes, state, initial in zip(np.atleast_1d(figure.subplots(len(states), 1)), states, start, strict=True):
         _interval(axes, state, found.extents[state.symbol], float(initial), _delta(design))
-    axes.set_xlabel("what a single state may be off for the motion to return\nthe dot is where the instance starts")
+    axes.set_xlabel(
+        "region of attraction, for a deviation of one state alone\nthe dot is the initial state of the instance"
+    )
     return figure
 
 

@@ -104,7 +104,7 @@ def _name(result: Solution | Flight) -> str:
         return "solution" if result.status.answered else "last iterate"
     if result.feedback != "none":
         return f"with {result.feedback}"
-    return "without control" if _coasts(result) else "flight"
+    return "uncontrolled" if _coasts(result) else "trajectory"
 
 
 def _coasts(result: Solution | Flight) -> bool:

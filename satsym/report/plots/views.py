@@ -77,5 +77,7 @@ def _along_normal(path: Array, normal: Array) -> View:
     first = path[:, int(distance.argmin()) if near else 0]
     first = first - (first @ normal) * normal
     first = first / np.linalg.norm(first)
-    towards = "towards the nearest point" if near else "towards the start"
-    return View(np.vstack([first, np.cross(normal, first)]), (towards, "at right angles"), "in the plane of the motion")
+    towards, name = (
+        ("towards periapsis", "perifocal axes") if near else ("towards the start", "in the plane of the motion")
+    )
+    return View(np.vstack([first, np.cross(normal, first)]), (towards, "at right angles"), name)

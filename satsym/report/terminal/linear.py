@@ -48,8 +48,8 @@ def analysis_text(found: Analysis, colour: bool = False) -> str:
             _matrix("C", system.C, system.outputs, system.states),
             table([header, *eigenvalues], right=(1, 2)),
             _polynomial("characteristic polynomial", found.polynomial, found.routh),
-            _reach("controllability", "moves", "inputs", found.controllability, len(system.states))
-            + _reach("observability", "shows", "outputs", found.observability, len(system.states)),
+            _reach("controllability", "controllable", "inputs", found.controllability, len(system.states))
+            + _reach("observability", "observable", "outputs", found.observability, len(system.states)),
         ]
     )
 
@@ -81,7 +81,7 @@ def _where(about: Linearisation) -> str:
     if about.model.spec.linear:
         found = "which is linear"
     else:
-        found = "linearised on its reference" if about.on_reference else "linearised at an equilibrium"
+        found = "linearised about its reference" if about.on_reference else "linearised about an equilibrium"
     return found if about.constant else f"{found}, its coefficients at t = {figure(about.t0)}"
 
 
@@ -112,7 +112,7 @@ def _polynomial(what: str, coefficients: Array, array: Routh) -> list[str]:
     written = " + ".join(f"{'' if c == '1' and s else c}{' ' if s and c != '1' else ''}{s}" for c, s in terms)
     column = ", ".join(figure(value, 6) for value in array.column)
     count = array.sign_changes
-    says = f"{count} change{'s' * (count != 1)} of sign: {count or 'no'} root{'s' * (count != 1)} on the right"
+    says = f"{count} sign change{'s' * (count != 1)}: {count or 'no'} right-half-plane root{'s' * (count != 1)}"
     axis = f", {array.on_axis} on the imaginary axis" if array.on_axis else ""
     met = f" (met: {array.special_case})" if array.special_case else ""
     return wrapped(f"{what}: {written.replace('+ -', '- ')}") + wrapped(f"Routh column: {column}; {says}{axis}{met}")
@@ -122,10 +122,10 @@ def _reach(word: str, verb: str, kind: str, found: Reach | None, n: int) -> list
     if found is None:
         return [f"  {word}: there are no {kind}"]
     alone = [
-        f"{name} alone {each.rank}" + (f" (not the mode s = {_modes(each)})" if each.lost else "")
+        f"{name} alone {each.rank}" + (f" (without the mode s = {_modes(each)})" if each.lost else "")
         for name, each in found.alone.items()
     ]
-    return wrapped(f"{word}: rank {found.rank} of {n}; {verb}: " + ", ".join(alone))
+    return wrapped(f"{word}: {verb} subspace of dimension {found.rank} of {n}; " + ", ".join(alone))
 
 
 def _modes(found: Reach) -> str:

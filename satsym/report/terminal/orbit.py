@@ -85,10 +85,11 @@ def _tolerances(conic: Conic) -> str:
     border = {
         Conic.CIRCLE: f"a circle: the eccentricity is at most {TOLERANCE:g}",
         Conic.ELLIPSE: f"an ellipse: the eccentricity is above {TOLERANCE:g}, up to which it would be a circle, and "
-        f"the square of the speed falls short of that of escape by more than a share of {TOLERANCE:g}",
-        Conic.PARABOLA: f"a parabola: the square of the speed is that of escape within a share of {TOLERANCE:g}",
-        Conic.HYPERBOLA: f"a hyperbola: the square of the speed exceeds that of escape by more than a share of "
+        f"the square of the speed falls short of that of escape by more than a relative tolerance of {TOLERANCE:g}",
+        Conic.PARABOLA: f"a parabola: the square of the speed is that of escape within a relative tolerance of "
         f"{TOLERANCE:g}",
+        Conic.HYPERBOLA: f"a hyperbola: the square of the speed exceeds that of escape by more than a relative "
+        f"tolerance of {TOLERANCE:g}",
         Conic.RECTILINEAR: f"rectilinear: the velocity is along the radius within {TOLERANCE:g} rad",
     }
     return f"called {border[conic]}"
@@ -148,7 +149,7 @@ def _turning(found: Floquet, time: str) -> list[str]:
     if found.turning is None:
         return []
     unit = _per("1", time)
-    header = ("in axes that turn with the orbit: eigenvalue", "algebraic", "Jordan blocks", "unit")
+    header = ("in axes that rotate with the orbit: eigenvalue", "algebraic", "Jordan blocks", "unit")
     rows = [
         (complex_number(each.value), str(each.algebraic), ", ".join(map(str, each.blocks)), unit if each.value else "")
         for each in found.turning.eigenvalues

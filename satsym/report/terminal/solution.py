@@ -196,7 +196,7 @@ def _reference(instance: Instance, times: Array) -> Sequence[float] | None:
 def _controls(instance: Instance, times: Array, u: Array) -> list[str]:
     """A line for each control, and one for their norm where it is bounded."""
     spec = instance.model.spec
-    rows = [("control", "least", "greatest", "bounds", "at a bound", "unit")]
+    rows = [("control", "minimum", "maximum", "bounds", "saturated", "unit")]
     for i, control in enumerate(spec.controls):
         limits = (instance.lower[i], instance.upper[i]) if spec.control_set == "box" else (-math.inf, math.inf)
         unit = "" if control.unit == "1" else control.unit
@@ -228,7 +228,7 @@ def _switching(solution: Solution, unit: str) -> list[str]:
         if times:
             more = f" and {len(times) - SHOWN_TIMES} more" if len(times) > SHOWN_TIMES else ""
             listed = ", ".join(figure(t) for t in times[:SHOWN_TIMES])
-            rows.append(("meets or leaves a bound:", control, f"at {listed}{more} {unit}".rstrip()))
+            rows.append(("switching times:", control, f"at {listed}{more} {unit}".rstrip()))
     return table([("", "", ""), *rows])[1:] if rows else []
 
 

@@ -43,10 +43,10 @@ class Conjugate:
     def checks(self) -> list[Check]:
         """Each is a deficit that must not be positive."""
         if not self.resolved:
-            return [Check("conjugate times not resolved", 1.0, 0.0)]
-        found = [Check("conjugate times", float(self.passed), 0.0)]
+            return [Check("conjugate points not resolved", 1.0, 0.0)]
+        found = [Check("conjugate points: none", float(self.passed), 0.0)]
         if self.curvature < float("inf"):
-            found.append(Check("curvature in the free end", float(not self.curvature > -FLAT), 0.0))
+            found.append(Check("second-order condition at the free endpoint", float(not self.curvature > -FLAT), 0.0))
         if self.passed == 0 and (self.touching or abs(self.curvature) <= FLAT):
             found.append(Check(NOT_STRICT, 1.0, 0.0))
         return found

@@ -77,7 +77,7 @@ def _judged(solution: Solution, deadline: float, seed: int) -> tuple[Certificate
             close = neighbours(solution)
             second = _sufficient(solution, field, close)
             if competitors.none_conceivable(solution):
-                second.append(Check("cheaper by: anything", 0.0, 0.0))
+                second.append(Check("no cheaper competitor", 0.0, 0.0))
             else:
                 others = competitors.compared(solution, deadline, seed)
                 second += [_cheaper(kind) for kind in others.kinds if math.isfinite(kind.margin)]
@@ -123,7 +123,7 @@ def _along(solution: Solution, recomputed: Flow, defect: str) -> list[Check]:
         Check(defect, conditions.dynamics_defect(solution, recomputed), DEFECT),
         Check(conditions.STATIONARITY, conditions.stationarity(solution), STATIONARY),
         Check("cost", conditions.off_cost(solution, recomputed), COST),
-        Check("outside the domain", float(not model.in_domain(recomputed.x)), 0.0),
+        Check("domain violation", float(not model.in_domain(recomputed.x)), 0.0),
     ]
     drift = conditions.hamiltonian_drift(solution, recomputed)
     return checks if drift is None else [*checks, Check(conditions.HAMILTONIAN, drift, DRIFT)]

@@ -75,7 +75,7 @@ def fly(
     if symplectic:
         kernels.require_separable()
         if controls.any():
-            raise BadInput(f"u: the symplectic method is for motions without control; take RK4 for {kernels.spec.name}")
+            raise BadInput(f"u: the symplectic method is for uncontrolled motions; take RK4 for {kernels.spec.name}")
     arrays = _Kicks if symplectic else _RungeKutta
     advance = kernels.block_step(symplectic) if compiled else arrays(kernels).advance
     x = np.empty((len(start), len(nodes), count))

@@ -184,7 +184,7 @@ def _explained(problem: SweepProblem, sweep: Sweep, run: Run[Descent] | Run[Rela
     if run.status is not Status.CONVERGED:
         return run.message
     if not sweep.lam.any() and not sweep.u.any():
-        return f"{run.message}; without control all costates vanish"
+        return f"{run.message}; all costates of the uncontrolled motion vanish"
     return run.message
 
 
@@ -197,7 +197,7 @@ def _without_answer(problem: SweepProblem, start: Forward, wall_s: float) -> Sol
         instance=problem.instance,
         method="sweep",
         status=status,
-        message=f"the motion under the starting control {what}",
+        message=f"the motion under the initial guess of the control {what}",
         objective=float("nan"),
         times=problem.grid.nodes,
         x=start.x[:, ::2],

@@ -40,12 +40,12 @@ class Origin(Enum):
 
     STRUCTURE = "a given structure"
     REST = "rest"
-    REACH = "the set of all ends that are reached"
+    REACH = "the reachable set"
     SATURATED = "controls saturated at a bound"
-    EFFORT = "the signs of least effort"
+    EFFORT = "the signs of minimum effort"
     DRAWN = "switching times that were drawn"
     SMOOTHED = "the regularised problem, smoothed by {:.1e}"
-    LEAST_TIME = "the structure of the least time"
+    LEAST_TIME = "the structure of the minimum time"
 
 
 @dataclass(frozen=True, eq=False)

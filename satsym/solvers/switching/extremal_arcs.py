@@ -153,7 +153,7 @@ def _piece(field: Field, start: float, end: float, z: Array, accuracy: Accuracy)
 
     def counted() -> None:
         if next(evaluations) > MOST and field.singular is not None:
-            raise ArithmeticError("a motion under singular control goes astray")
+            raise ArithmeticError("the motion under singular control diverges")
 
     if not accuracy.slopes:
 

@@ -91,7 +91,9 @@ def _by_least_time(instance: Instance, stopped: homotopy.Stopped, limits: Limits
         return stopped
     least, given, name = found.refined.at.end - instance.t0, instance.tf - instance.t0, found.refined.structure.name
     if found.origin is Origin.REACH and least > given * (1.0 + ENOUGH):
-        message = f"the least time to the given end is {least:.10g} (structure {name}), and only {given:.10g} is given"
+        message = (
+            f"the minimum time to the given end is {least:.10g} (structure {name}), and only {given:.10g} is given"
+        )
         return replace(stopped, status=Status.INFEASIBLE, message=message)
     near = attempt(instance, _relaxed(instance, found), limits) if least < given else None
     if near is not None:
@@ -99,7 +101,7 @@ def _by_least_time(instance: Instance, stopped: homotopy.Stopped, limits: Limits
     if stopped.status is Status.INFEASIBLE:
         return stopped
     alone = ", and at that only one control arrives, whatever it costs" if abs(given / least - 1.0) <= ENOUGH else ""
-    message = f"{stopped.message}; the least time to the given end is {least:.10g} (structure {name}){alone}"
+    message = f"{stopped.message}; the minimum time to the given end is {least:.10g} (structure {name}){alone}"
     return replace(stopped, message=message)
 
 
@@ -187,7 +189,7 @@ def _by_effort(instance: Instance, limits: Limits) -> Exact | homotopy.Stopped:
 
 
 def _beside(instance: Instance, duration: float, shares: Sequence[float], limits: Limits) -> list[Exact]:
-    """Extremals to which the signs of least effort lead in shares of a duration."""
+    """Extremals to which the signs of minimum effort lead in shares of a duration."""
     starts = unbroken(_signs(instance, near) for near in least_effort.beside(instance, duration, shares, limits))
     found = (_first_of(instance, start, limits, thorough=False) for start in starts)
     return [exact for exact in found if exact]
@@ -216,9 +218,9 @@ def _smoothed(instance: Instance, limits: Limits, thorough: bool = True) -> Exac
     except homotopy.Stopped as stopped:
         last_seen = stopped
     except FAILURES as error:
-        last_seen = homotopy.Stopped(Status.NOT_CONVERGED, f"no smoothed solution was found ({error})")
+        last_seen = homotopy.Stopped(Status.NOT_CONVERGED, f"no regularised solution was found ({error})")
     else:
-        message = "no structure that was recognised in smoothed solutions satisfies the minimum principle"
+        message = "no structure recognised in regularised solutions satisfies Pontryagin's minimum principle"
         assert last is not None
         last_seen = homotopy.Stopped(Status.NOT_CONVERGED, message, last.problem, last.curve)
     for candidate, smoothing in waiting:

@@ -13,14 +13,14 @@ UNSWITCHED = sp.Symbol("H_0", real=True)
 """The part of H without controls."""
 
 SMOOTHING = sp.Symbol("smoothing", positive=True)
-"""The weight of u^2 / 2 in the smoothed companion."""
+"""The weight of u^2 / 2 in the regularised problem."""
 
 SHARE = sp.Symbol("magnitude_share", real=True)
-"""The share of the weights of magnitudes that counts in the smoothed companion."""
+"""What multiplies the weights of magnitudes in the regularised problem."""
 
 COMPANION = (
-    Variable(SMOOTHING.name, r"\varepsilon", meaning="weight of u^2 / 2 in the smoothed companion", positive=True),
-    Variable(SHARE.name, r"\kappa", meaning="share of the weights of magnitudes that counts in it"),
+    Variable(SMOOTHING.name, r"\varepsilon", meaning="weight of u^2 / 2 in the regularised problem", positive=True),
+    Variable(SHARE.name, r"\kappa", meaning="factor of the weights of magnitudes in it"),
 )
 """What follows the bounds of the box in the ``bounds`` argument of the kernels of a switching problem."""
 

@@ -150,7 +150,7 @@ def _panel(axes: Axes, drawn: Drawn, view: View, unit: str) -> tuple[float, str]
 def _caption(orbit: Elements, factor: float, unit: str) -> str:
     """The kind of orbit, and the numbers that its shape shows."""
     called = "" if unit == "1" else f" {unit}"
-    apses = [(orbit.periapsis, "nearest"), (orbit.apoapsis, "farthest")]
+    apses = [(orbit.periapsis, "periapsis"), (orbit.apoapsis, "apoapsis")]
     shown = [f"{what} {figure(value / factor)}{called}" for value, what in apses if value]
     return ", ".join([f"{orbit.conic.value}: e = {figure(orbit.eccentricity)}", *shown])
 
@@ -179,7 +179,7 @@ def _flight(found: Survey) -> str:
     assert case.tf is not None
     span = case.tf - case.t0
     factor, unit = display.time_scale((v.unit for v in case.model.spec.states), span)
-    return f"motion, {figure(span / factor, 4)} {unit}".removesuffix(" 1")
+    return f"trajectory, {figure(span / factor, 4)} {unit}".removesuffix(" 1")
 
 
 def _flown(found: Survey) -> Array | None:

@@ -75,7 +75,7 @@ def of_design(design: Design) -> Figure:
     factor = _plane(axes, spec, [*(each.value for each in before), *after.tolist()])
     _open_loop(axes, before, factor)
     axes.plot(after.real * factor, after.imag * factor, **CLOSED)
-    entries = [(legend.line(**OPEN), "without control"), (legend.line(**CLOSED), "with $u = -K\\,x$")]
+    entries = [(legend.line(**OPEN), "uncontrolled"), (legend.line(**CLOSED), "with $u = -K\\,x$")]
     legend.below(page, entries)
     return page
 
@@ -90,7 +90,9 @@ def of_point(found: Survey) -> Figure:
     axes.plot(point.eigenvalues.real * factor, point.eigenvalues.imag * factor, **OPEN)
     axes.plot(point.closed_form.real * factor, point.closed_form.imag * factor, **EXACT)
     for value in (point.closed_form[1], point.closed_form[3]):
-        axes.annotate("2-fold", (0.0, value.imag * factor), (12.0, -3.0), textcoords="offset points", color=style.SOFT)
+        axes.annotate(
+            "multiplicity 2", (0.0, value.imag * factor), (12.0, -3.0), textcoords="offset points", color=style.SOFT
+        )
     closed_form = r"$\pm\sqrt{2\mu/r^3}$ and twice $\pm i\sqrt{\mu/r^3}$"
     legend.below(page, [(legend.line(**OPEN), "computed"), (legend.line(**EXACT), closed_form)])
     return page
@@ -122,5 +124,5 @@ def _open_loop(axes: Axes, found: Iterable[Eigenvalue], factor: float) -> None:
         axes.plot([at[0]], [at[1]], **OPEN)
         if each.algebraic > 1:
             blocks = "block" if each.geometric == 1 else "blocks"
-            said = f"{each.algebraic}-fold, Jordan {blocks} {' + '.join(map(str, each.blocks))}"
+            said = f"multiplicity {each.algebraic}, Jordan {blocks} {' + '.join(map(str, each.blocks))}"
             axes.annotate(said, at, (9.0, 8.0), textcoords="offset points", fontsize=9.0, color=style.SOFT)

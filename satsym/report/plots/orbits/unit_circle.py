@@ -50,7 +50,7 @@ def page(found: Survey) -> Figure | None:
     _near(near, floquet.multipliers, floquet.expected_scatter, ROOM * max(floquet.scatter, floquet.expected_scatter))
     entries = [
         (legend.line(**COMPUTED), "computed multipliers"),
-        (legend.line(**EXACT), "exact: 1, six-fold, Jordan blocks 2 + 1 + 1 + 1 + 1"),
+        (legend.line(**EXACT), "exact: 1, multiplicity 6, Jordan blocks 2 + 1 + 1 + 1 + 1"),
         (legend.line(**CIRCLE), "unit circle"),
         (legend.line(**SCATTER), "scatter expected"),
     ]

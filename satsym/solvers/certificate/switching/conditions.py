@@ -84,7 +84,7 @@ def _first_order(solution: Solution, again: Replay) -> list[Check]:
         Check("switching times", _moved(solution, again), TIMES),
         Check(conditions.STATIONARITY, _excess(solution), STATIONARY),
         Check("cost", conditions.off_cost(solution, flow), COST),
-        Check("outside the domain", float(not instance.model.in_domain(again.z[:n])), 0.0),
+        Check("domain violation", float(not instance.model.in_domain(again.z[:n])), 0.0),
     ]
     if any(piece.field.singular is not None for piece in again.pieces):
         checks.append(Check("switching function on singular arcs", _off_singular(again), STATIONARY))
@@ -100,8 +100,8 @@ def _sufficient(solution: Solution, again: Replay) -> list[Check]:
     rates, gap, distance = _strictness(again, extended, free)
     checks = [Check("not strict: other controls cost the same", 1.0, 0.0)] if any(free) else []
     checks += [
-        Check("switching is not strict", float(not rates > STRICT), 0.0),
-        Check("switches coincide", float(not gap > STRICT), 0.0),
+        Check("strict bang-bang condition", float(not rates > STRICT), 0.0),
+        Check("coinciding switching times", float(not gap > STRICT), 0.0),
         Check("switching function vanishes on an arc", float(not distance > STRICT), 0.0),
     ]
     if any(SINGULAR in piece.field.levels for piece in again.pieces):

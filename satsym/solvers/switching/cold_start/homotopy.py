@@ -83,7 +83,9 @@ def path(instance: Instance, limits: Limits) -> Iterator[Smoothed]:
 
         curve, reached = follow(sharper, curve, limits)
         if reached == 0.0:
-            raise Stopped(Status.NOT_CONVERGED, f"less smoothing than {smoothing:.1e} was not reached", problem, curve)
+            raise Stopped(
+                Status.NOT_CONVERGED, f"a regularisation below {smoothing:.1e} was not reached", problem, curve
+            )
         smoothing *= SHARPER**-reached
         problem = replace(problem, instance=regularised(instance, smoothing, 1.0))
         yield Smoothed(problem, curve)

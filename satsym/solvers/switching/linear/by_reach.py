@@ -67,7 +67,7 @@ def unreachable(instance: Instance, limits: Limits) -> str | None:
     plane = ", ".join(f"{names[i]}: {costate[i] / np.abs(costate).max():.3g}" for i in rows)
     return (
         f"no control within its bounds reaches the given end in {instance.tf - instance.t0:.10g}: "
-        f"the nearest one misses {told}, and costates at the end ({plane}) separate it from all that is reached"
+        f"the nearest one misses {told}, and costates at the end ({plane}) separate it from the reachable set"
     )
 
 

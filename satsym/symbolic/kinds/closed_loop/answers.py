@@ -58,7 +58,7 @@ def extremes(so_far: Derivation) -> Step:
     first, highest = _zeros(followed - command, damping), _zeros(sp.diff(followed, SECONDS), damping)
     turns = _zeros(control, damping)
     if not len(first) == len(highest) == len(turns) == 1:
-        raise DerivationError(f"{model.name}: the answer to a step has no single crossing, maximum and change of sign")
+        raise DerivationError(f"{model.name}: the step response has no single crossing, maximum and change of sign")
     overshoot = sp.simplify(followed.xreplace({SECONDS: highest[0]}) / command - 1)
     before, at_turn = (_integral(control).subs(SECONDS, place) for place in (sp.Integer(0), turns[0]))
     pieces = [impulse, at_turn - before, _in_the_end(_integral(control), damping) - at_turn]
