@@ -144,7 +144,7 @@ class Derivation:
         Parameters
         ----------
         lang
-            ``"en"`` or ``"id"``.
+            One of :func:`satsym.report.texts.languages`.
         fragment
             Without a preamble, to be included.
         """

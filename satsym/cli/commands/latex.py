@@ -9,6 +9,7 @@ import click
 
 from satsym.cli.options import place_option
 from satsym.cli.output import emit, live
+from satsym.report import texts
 from satsym.status import ExitCode
 
 if TYPE_CHECKING:
@@ -25,7 +26,12 @@ Examples:
 @click.argument("name")
 @place_option("-o", "--output", metavar="FILE", help="Write there instead of to stdout.")
 @click.option(
-    "--lang", "language", type=click.Choice(("en", "id")), default="en", help="Language of the text.", show_default=True
+    "--lang",
+    "language",
+    type=click.Choice(texts.languages()),
+    default="en",
+    help="Language of the text.",
+    show_default=True,
 )
 @click.option("--fragment", is_flag=True, help="Without a preamble, to be included.")
 @click.option(
