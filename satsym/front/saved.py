@@ -17,6 +17,9 @@ from satsym.report.results.set_list import LIST, may_hold, unusable
 from satsym.solution import Flight, Solution
 from satsym.wording import printable
 
+ASKED = ("parameters", "initial", "final", "t0", "tf", "lower", "upper", "max_norm", "classical")
+"""What of an instance decides its results; options of solvers do not."""
+
 
 def save(
     instance: Instance,
@@ -58,22 +61,32 @@ def read(folder: Path, instance: Instance | str | Path | None) -> tuple[Instance
     BadInput
         If there is no whole result, or it is of another instance.
     """
-    if instance is None:
-        given = _named(folder)
-    else:
-        given = as_case(instance)
-    found, _ = trajectory.read(given.case, folder)
-    return given, found
+    given = None if instance is None else as_case(instance)
+    own = _own(folder)
+    case = given or own
+    if case is None:
+        name = printable(_name(folder))
+        raise unusable(
+            folder / LIST, f"is of {name}, which is neither there nor a shipped instance; give that as `instance`"
+        )
+    found, _ = trajectory.read(case.case, folder)
+    if given and own and (changed := [part for part in ASKED if _part(given, part) != _part(own, part)]):
+        raise unusable(folder / LIST, f"is of another {given.name}: {', '.join(changed)} differ")
+    return case, found
 
 
-def _named(folder: Path) -> Instance:
-    found = sets.read(folder)
-    name = str(msgspec.json.decode(found.result).get("instance"))
-    if f"{name}.toml" in found.listed:
+def _own(folder: Path) -> Instance | None:
+    """The instance that was saved in a folder, or the shipped one of that name."""
+    name = _name(folder)
+    if f"{name}.toml" in sets.read(folder).listed:
         return load(folder / f"{name}.toml")
-    if name in shipped():
-        return load(name)
-    raise unusable(
-        folder / LIST,
-        f"is of {printable(name)}, which is neither there nor a shipped instance; give that as `instance`",
-    )
+    return load(name) if name in shipped() else None
+
+
+def _name(folder: Path) -> str:
+    return str(msgspec.json.decode(sets.read(folder).result).get("instance"))
+
+
+def _part(instance: Instance, name: str) -> object:
+    found = getattr(instance.case, name)
+    return dict(found) if isinstance(found, Mapping) else found

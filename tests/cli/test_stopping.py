@@ -7,6 +7,8 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -59,7 +61,10 @@ def test_a_signal_ends_a_run_with_one_line_and_no_file(tmp_path: Path, sign: str
     (tmp_path / "case.toml").write_text(LONG, encoding="utf-8")
     command = [sys.executable, "-c", STARTED, "solve", "case.toml", "--out", "there"]
     pipe = subprocess.PIPE
-    with subprocess.Popen(command, cwd=tmp_path, env=ENVIRONMENT, stdout=pipe, stderr=pipe) as going:
+    with (
+        interruptible(),
+        subprocess.Popen(command, cwd=tmp_path, env=ENVIRONMENT, stdout=pipe, stderr=pipe) as going,
+    ):
         assert going.stdout is not None
         assert going.stdout.readline() == b"solving\n"
         time.sleep(0.2)
@@ -82,6 +87,16 @@ sys.exit(main())
 """
 
 
+@contextmanager
+def interruptible() -> Iterator[None]:
+    """With SIGINT heard, also where the tests themselves run in the background, which ignores it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
 @pytest.mark.parametrize(("sign", "error"), [(signal.SIGTERM, Terminated), (signal.SIGINT, KeyboardInterrupt)])
 def test_a_stop_that_comes_within_a_finaliser_is_not_lost(
     sign: signal.Signals, error: type[BaseException], capfd: pytest.CaptureFixture[str]
@@ -91,7 +106,7 @@ def test_a_stop_that_comes_within_a_finaliser_is_not_lost(
             signal.raise_signal(sign)
 
     def working() -> None:
-        with terminable():
+        with interruptible(), terminable():
             del [Careless()][0]
             time.sleep(30.0)
 

@@ -168,6 +168,25 @@ def test_what_the_command_line_saved_comes_back_too(tmp_path: Path, capsys: pyte
     capsys.readouterr()
 
 
+@pytest.mark.parametrize(
+    ("changes", "what"),
+    [
+        ({"tf": 7.0}, "tf"),
+        ({"final": {"r": 1.01}}, "final"),
+        ({"parameters": {"c1": 2.0}}, "parameters"),
+        ({"control": {"u1": [-5.0, 5.0]}}, "lower, upper"),
+    ],
+)
+def test_a_result_is_not_loaded_for_an_instance_that_has_changed(
+    tmp_path: Path, changes: dict[str, Any], what: str
+) -> None:
+    solution = solved("soft-return")
+    solution.save(tmp_path)
+    assert satsym.Solution.load(tmp_path, solution.instance.with_(title="anew", solver={"steps": 7}))
+    with pytest.raises(BadInput, match=f"is of another soft-return: {what} differ"):
+        satsym.Solution.load(tmp_path, solution.instance.with_(**changes))
+
+
 def test_a_changed_instance_does_not_come_back_as_the_shipped_one(tmp_path: Path) -> None:
     found = satsym.solve(satsym.load("soft-return").with_(initial={"r": 1.05}), steps=20)
     found.save(tmp_path)

@@ -149,7 +149,7 @@ def test_durations_that_lead_to_an_end_need_not_be_an_interval(weak: Instance) -
         if expected is not None:
             assert found.objective == pytest.approx(expected, rel=1e-3)
         elif tf > first:
-            assert "separate it from all that is reached" in found.message
+            assert "separate it from the reachable set" in found.message
 
 
 def test_costates_separate_only_what_is_not_reached() -> None:
