@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from satsym.arrays import Array
+from satsym.front.tables import name_of
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
@@ -79,7 +80,9 @@ class Curve(np.lib.mixins.NDArrayOperatorsMixin):
 
     def __getitem__(self, key: Any) -> Any:
         if not isinstance(key, str):
-            return self._values[key]
+            if not isinstance(getattr(key, "name", None), str):
+                return self._values[key]
+            key = name_of(key)
         if key not in self.names:
             raise BadInput(f"{self._what}: has no {shown(key)}; {suggestion(key, self.names)}")
         place = self.names.index(key)

@@ -88,7 +88,7 @@ class Instance:
         initial, final, parameters, control
             The tables of these names.
         tf, t0, tf_guess
-            The table [time].
+            The table [time]: final time, or ``"free"`` where it is to be found; initial time; where to look for it.
         name
             What it is called in results; by default as its model.
         more

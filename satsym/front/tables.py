@@ -19,7 +19,7 @@ def plain(value: Any, levels: int = DEEPEST) -> Any:
     if value is None or isinstance(value, bool | str | bytes) or not levels:
         return value
     if isinstance(value, Mapping):
-        return {_name(key): plain(entry, levels - 1) for key, entry in value.items() if entry is not None}
+        return {name_of(key): plain(entry, levels - 1) for key, entry in value.items() if entry is not None}
     if isinstance(value, list | tuple):
         return [plain(entry, levels - 1) for entry in value]
     if isinstance(value, numbers.Integral):
@@ -36,7 +36,7 @@ def merged(tree: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any
     """A tree with changes: tables are merged, other values replaced, and ``None`` takes a key away."""
     found = dict(tree)
     for key, value in changes.items():
-        name = _name(key)
+        name = name_of(key)
         if value is None:
             found.pop(name, None)
         elif isinstance(value, Mapping):
@@ -64,7 +64,7 @@ def toml(tree: Mapping[str, Any], table: str = "") -> str:
     return "\n".join([*parts, *(toml(value, f"{table}.{name}" if table else name) for name, value in inner.items())])
 
 
-def _name(key: Any) -> str:
+def name_of(key: Any) -> str:
     """A key as text: that of a symbol or a variable is its name."""
     for attribute in ("symbol", "name"):
         if isinstance(found := getattr(key, attribute, None), str):

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, get_args
 
 import sympy as sp
 
+from satsym.spec import ControlSetKind
 from satsym.symbolic.algebra import constants_of
 from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.model import Model, Problem, symbols_of
+from satsym.wording import shown
 
 
 def refuse_misfits(model: Model, problem: Problem | None) -> None:
@@ -28,6 +30,9 @@ def refuse_misfits(model: Model, problem: Problem | None) -> None:
         raise DerivationError(
             f"{model.name}: the reference must have one curve for each state; look at {', '.join(odd)}"
         )
+    if problem and problem.control_set not in get_args(ControlSetKind):
+        kinds = " or ".join(f'"{kind}"' for kind in get_args(ControlSetKind))
+        raise DerivationError(f"{problem.name}: control_set: got {shown(problem.control_set)}; write {kinds}")
     if problem and not model.controls:
         raise DerivationError(f"{problem.name}: the model has no controls, so there is nothing to optimise")
 
@@ -69,6 +74,8 @@ def _complaint(foreign: set[sp.Symbol], everything: set[sp.Symbol]) -> str:
     names = {s.name for s in everything}
     if undeclared := sorted(s.name for s in foreign if s.name not in names):
         return f"uses undeclared symbols: {', '.join(undeclared)}"
-    if twins := sorted(s.name for s in foreign - everything):
-        return f"uses other symbols than the declared ones (take those from symbols_of): {', '.join(twins)}"
+    if twins := {s.name for s in foreign - everything}:
+        meant = sorted((s for s in everything if s.name in twins), key=lambda s: s.name)
+        written = (f'symbols("{s.name}", {"positive" if s.is_positive else "real"}=True)' for s in meant)
+        return f"uses other symbols than the declared ones; take those from symbols_of, or write {', '.join(written)}"
     return f"cannot depend on {', '.join(sorted(s.name for s in foreign))}"

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import sympy
 
 import satsym
 from satsym.cli import main
@@ -250,3 +251,10 @@ def test_kernels_are_those_of_the_minimum_convention(repository: Path) -> None:
     derivation = satsym.derive("double_integrator_time", "maximum")
     assert derivation.kernels.text == (repository / "generated" / "double_integrator_time.py").read_text()
     assert derivation["hamiltonian.H"].rhs != satsym.derive("double_integrator_time")["hamiltonian.H"].rhs
+
+
+def test_symbols_name_what_they_are_symbols_of() -> None:
+    found = solved("soft-return")
+    assert found.x[sympy.Symbol("r", positive=True)](0.0) == found.x["r"](0.0)
+    with pytest.raises(BadInput, match="has no"):
+        found.x[sympy.Symbol("rr")]

@@ -193,7 +193,9 @@ def test_undeclared_symbols_are_named_with_the_place(subject: Problem | Model, w
 )
 def test_a_symbol_with_the_right_name_and_other_assumptions_is_refused(subject: Problem | Model) -> None:
     """It would count as a constant, and every derivative by it would silently be zero."""
-    assert "take those from symbols_of" in complaint(subject)
+    said = complaint(subject)
+    assert "take those from symbols_of, or write symbols(" in said
+    assert ('("k", positive=True)' in said) == (subject.name == "plane")
 
 
 @pytest.mark.parametrize(
@@ -341,6 +343,10 @@ def test_a_problem_needs_a_control() -> None:
     assert complaint(problem(model, running_cost=q1**2)) == (
         "task: the model has no controls, so there is nothing to optimise"
     )
+
+
+def test_a_control_set_is_one_of_three() -> None:
+    assert complaint(problem(control_set="boxx")) == ('task: control_set: got "boxx"; write "free" or "box" or "ball"')
 
 
 def test_roots_of_states_need_positive_states() -> None:
