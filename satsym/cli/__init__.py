@@ -38,4 +38,4 @@ def main(argv: Sequence[str] | None = None) -> int:
 
             return run(argv)
     except KeyboardInterrupt as error:  # while the command was still being loaded, or was over
-        return stopped(error) or 1
+        return stopped(error)

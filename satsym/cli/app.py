@@ -26,7 +26,7 @@ from satsym.cli.commands.plot import plot
 from satsym.cli.commands.simulate import simulate
 from satsym.cli.commands.solve import solve
 from satsym.cli.output import Unheard, complain, hearable, silence, unless_unwritable
-from satsym.cli.stopping import INTERRUPTED, stopped
+from satsym.cli.stopping import comes_of_a_stop, stopped
 from satsym.status import BadInput, ExitCode
 from satsym.wording import printable
 
@@ -60,8 +60,7 @@ class Program(click.Group):
         except (click.ClickException, click.exceptions.Exit):
             raise
         except (Exception, KeyboardInterrupt) as error:
-            code = stopped(error)
-            return _failed(error) if code is None else code
+            return stopped(error) if comes_of_a_stop(error) else _failed(error)
 
 
 @click.group(
@@ -85,7 +84,7 @@ def run(argv: Sequence[str] | None = None) -> int:
             error.show()
         return error.exit_code
     except click.Abort as error:  # what click makes of an interruption
-        return stopped(error.__cause__ or KeyboardInterrupt()) or INTERRUPTED
+        return stopped(error.__cause__ or error)
     except Unheard as error:
         return _unheard(error)
     return int(outcome or 0)

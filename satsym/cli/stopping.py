@@ -20,10 +20,8 @@ INTERRUPTED = 130
 TERMINATED = 143
 """As the shell reports programs that SIGINT or SIGTERM ended."""
 
-
 AGAIN = 0.02
 """Seconds after which a stop that Python ignored is repeated."""
-
 
 _asked: list[int] = []
 """Signals that have come to stop the command."""
@@ -35,11 +33,11 @@ class Terminated(KeyboardInterrupt):
 
 @contextmanager
 def terminable() -> Iterator[None]:
-    """Let SIGTERM raise :class:`Terminated`, unless whoever started the process had it ignored."""
+    """Let SIGTERM raise :class:`Terminated`, unless whoever started the process had it ignored; lose no stop."""
+    _asked.clear()
     if threading.current_thread() is not threading.main_thread() or signal.getsignal(signal.SIGTERM) is signal.SIG_IGN:
         yield
         return
-    _asked.clear()
     interrupt, hook = signal.getsignal(signal.SIGINT), sys.unraisablehook
     terminate = signal.signal(signal.SIGTERM, _raise)
     if interrupt is signal.default_int_handler:
@@ -66,14 +64,13 @@ def terminable() -> Iterator[None]:
         signal.signal(signal.SIGINT, interrupt)
 
 
-def stopped(error: BaseException) -> int | None:
-    """Say on stderr, as far as it can be written to, that the command was stopped; its exit code.
+def comes_of_a_stop(error: BaseException) -> bool:
+    """Whether an error is a stop, or comes after one: libraries that are broken off may raise anything."""
+    return bool(_asked) or isinstance(error, KeyboardInterrupt)
 
-    ``None`` where it was not. Whatever comes after a stop comes of it: a library that is broken off in the middle of
-    tidying up may raise anything.
-    """
-    if not (_asked or isinstance(error, KeyboardInterrupt)):
-        return None
+
+def stopped(error: BaseException) -> int:
+    """Say on stderr, as far as it can be written to, that the command was stopped; its exit code."""
     terminated = isinstance(error, Terminated) or signal.SIGTERM in _asked
     complain("terminated" if terminated else "interrupted")
     return TERMINATED if terminated else INTERRUPTED

@@ -17,7 +17,10 @@ from satsym.report.results.set_list import LIST, may_hold, unusable
 from satsym.solution import Flight, Solution
 from satsym.wording import printable
 
-ASKED = ("parameters", "initial", "final", "t0", "tf", "lower", "upper", "max_norm", "classical")
+ASKED = (
+    *("parameters", "initial", "final", "t0", "tf", "lower", "upper", "max_norm"),
+    *("lqr", "classical", "limits", "deadband"),
+)
 """What of an instance decides its results; options of solvers do not."""
 
 
@@ -62,29 +65,19 @@ def read(folder: Path, instance: Instance | str | Path | None) -> tuple[Instance
         If there is no whole result, or it is of another instance.
     """
     given = None if instance is None else as_case(instance)
-    own = _own(folder)
-    case = given or own
+    listed = sets.read(folder)
+    name = str(msgspec.json.decode(listed.result).get("instance"))
+    own = load(folder / f"{name}.toml") if f"{name}.toml" in listed.listed else None
+    case = given or own or (load(name) if name in shipped() else None)
     if case is None:
-        name = printable(_name(folder))
         raise unusable(
-            folder / LIST, f"is of {name}, which is neither there nor a shipped instance; give that as `instance`"
+            folder / LIST,
+            f"is of {printable(name)}, which is neither there nor a shipped instance; give that as `instance`",
         )
     found, _ = trajectory.read(case.case, folder)
     if given and own and (changed := [part for part in ASKED if _part(given, part) != _part(own, part)]):
         raise unusable(folder / LIST, f"is of another {given.name}: {', '.join(changed)} differ")
     return case, found
-
-
-def _own(folder: Path) -> Instance | None:
-    """The instance that was saved in a folder, or the shipped one of that name."""
-    name = _name(folder)
-    if f"{name}.toml" in sets.read(folder).listed:
-        return load(folder / f"{name}.toml")
-    return load(name) if name in shipped() else None
-
-
-def _name(folder: Path) -> str:
-    return str(msgspec.json.decode(sets.read(folder).result).get("instance"))
 
 
 def _part(instance: Instance, name: str) -> object:

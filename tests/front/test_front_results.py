@@ -169,6 +169,13 @@ def test_what_the_command_line_saved_comes_back_too(tmp_path: Path, capsys: pyte
     capsys.readouterr()
 
 
+def test_a_file_with_the_name_of_a_shipped_instance_gets_its_own_result(tmp_path: Path) -> None:
+    own = tmp_path / "soft-return.toml"
+    own.write_text(satsym.load("soft-return").with_(tf=7.0).to_toml(), encoding="utf-8")
+    assert main(["simulate", str(own), "--out", str(tmp_path / "a")]) == 0
+    assert Trajectory.load(tmp_path / "a", own).times[-1] == 7.0
+
+
 @pytest.mark.parametrize(
     ("changes", "what"),
     [
@@ -176,6 +183,7 @@ def test_what_the_command_line_saved_comes_back_too(tmp_path: Path, capsys: pyte
         ({"final": {"r": 1.01}}, "final"),
         ({"parameters": {"c1": 2.0}}, "parameters"),
         ({"control": {"u1": [-5.0, 5.0]}}, "lower, upper"),
+        ({"limits": {"r": 5.0}}, "limits"),
     ],
 )
 def test_a_result_is_not_loaded_for_an_instance_that_has_changed(
