@@ -2,16 +2,28 @@
 
 ``confirmed``, ``misprint`` (right elsewhere in the document, or what follows does not use it), ``wrong`` (used by what
 follows, or a false claim), ``unsound`` (a right result by an invalid step), ``artefact`` (produced by the algorithm,
-not by the problem), ``unit error``, ``illegible``.
+not by the problem), ``unit error``, ``imprecise`` (a last digit off), ``notation`` (a letter used for two things),
+``undecided``, ``illegible``.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, TypeAlias, get_args
 
-Verdict: TypeAlias = Literal["confirmed", "misprint", "wrong", "unsound", "artefact", "unit error", "illegible"]
-VERDICTS: tuple[Verdict, ...] = ("confirmed", "misprint", "wrong", "unsound", "artefact", "unit error", "illegible")
+Verdict: TypeAlias = Literal[
+    "confirmed",
+    "misprint",
+    "wrong",
+    "unsound",
+    "artefact",
+    "unit error",
+    "imprecise",
+    "notation",
+    "undecided",
+    "illegible",
+]
+VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 
 
 @dataclass(frozen=True)

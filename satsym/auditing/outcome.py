@@ -22,8 +22,9 @@ class Outcome:
         What is right, in the document's symbols.
     plan, remedy
         Of a formula: how it was compared, and what puts it right.
-    sound, artefact, unit, slip
-        As a predicate says; ``unit``: only the unit is wrong.
+    sound, artefact, unit, slip, near
+        Whether its reason holds; whether the printed algorithm produces it; whether only its unit is wrong; whether it
+        is a slip in print; whether it fails by a last digit alone.
     remark
         A sentence for the diagnosis.
     evidence
@@ -41,6 +42,7 @@ class Outcome:
     artefact: bool = False
     unit: bool = False
     slip: bool = False
+    near: bool = False
     remark: str = ""
     evidence: Mapping[str, object] = field(default_factory=dict)
     command: str = ""

@@ -38,6 +38,40 @@ class Quantity:
     value: float
     dimension: Mapping[str, Fraction]
 
+    def __str__(self) -> str:
+        unit = base_unit(self.dimension)
+        return f"{self.value:.6g}" if unit == "1" else f"{self.value:.6g} {unit}"
+
+    def __add__(self, other: Quantity) -> Quantity:
+        return Quantity(self.value + other.value, _same([self, other]))
+
+    def __sub__(self, other: Quantity) -> Quantity:
+        return Quantity(self.value - other.value, _same([self, other]))
+
+    def __neg__(self) -> Quantity:
+        return Quantity(-self.value, self.dimension)
+
+    def __abs__(self) -> Quantity:
+        return Quantity(abs(self.value), self.dimension)
+
+    def __mul__(self, other: Quantity | float) -> Quantity:
+        if isinstance(other, Quantity):
+            return Quantity(self.value * other.value, _sum(self.dimension, other.dimension, Fraction(1)))
+        return Quantity(self.value * other, self.dimension)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Quantity | float) -> Quantity:
+        if isinstance(other, Quantity):
+            return Quantity(self.value / other.value, _sum(self.dimension, other.dimension, Fraction(-1)))
+        return Quantity(self.value / other, self.dimension)
+
+    def __rtruediv__(self, other: float) -> Quantity:
+        return Quantity(other / self.value, _sum({}, self.dimension, Fraction(-1)))
+
+    def __pow__(self, exponent: int) -> Quantity:
+        return Quantity(self.value**exponent, _sum({}, self.dimension, Fraction(exponent)))
+
 
 @dataclass(frozen=True)
 class PrintedNumber:

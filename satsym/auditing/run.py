@@ -50,7 +50,7 @@ def audit(ledger: Ledger, items: Sequence[str] = (), announce: Callable[[str], N
 
 def _outcome(bench: Bench, row: Row) -> Outcome:
     from satsym.auditing import refusal
-    from satsym.auditing.judge import formula, value
+    from satsym.auditing.judge import claim, formula, value
     from satsym.auditing.outcome import Outcome
 
     if not row.table.legible:
@@ -75,6 +75,8 @@ def _outcome(bench: Bench, row: Row) -> Outcome:
             evidence=found.evidence,
             command=found.command,
         )
+    if row.claims is not None:
+        return claim.judge(bench, row)
     judges = {"number": value.number, "unit": value.unit}
     return judges.get(row.table.kind, formula.judge)(bench, row)
 
@@ -83,7 +85,7 @@ def _counted(bench: Bench, row: Row) -> Outcome:
     """The outcome of a row, within what a row may take."""
     from satsym.auditing import refusal
 
-    limit = budget.FORMULA if row.asks is None else budget.PREDICATE
+    limit = budget.FORMULA if row.asks is None and row.claims is None else budget.PREDICATE
     return refusal.named(bench, row, limit, lambda: _outcome(bench, row))
 
 

@@ -71,6 +71,8 @@ class _Context:
             return "illegible", [sentences.illegible(row.table.says)]
         if row.asks is not None:
             return self._of_predicate(outcome)
+        if row.claims is not None:
+            return self._of_claim(outcome)
         if outcome.unit:
             return "unit error", [outcome.remark]
         if not outcome.right and row.table.kind in FORMULAS:
@@ -80,6 +82,19 @@ class _Context:
         if row.follows is not None and not self._follows(row, {}) and not self._follows_once_mended(row):
             return "unsound", [sentences.unsound(row.uses)]
         return "confirmed", []
+
+    def _of_claim(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
+        derived = outcome.derived
+        if outcome.right is None:
+            return "undecided", [sentences.undecided(derived)]
+        if outcome.right:
+            return ("confirmed", []) if outcome.sound else ("unsound", [sentences.unsound_claim(derived)])
+        if outcome.artefact:
+            return "artefact", [sentences.artefact(derived)]
+        if outcome.near:
+            return "imprecise", [sentences.false_claim(derived)]
+        by_role: dict[str, Verdict] = {"citation": "misprint", "notation": "notation"}
+        return by_role.get(outcome.row.table.role, "wrong"), [sentences.false_claim(derived)]
 
     def _of_predicate(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
         derived, remark = outcome.derived, sentences.sentence(outcome.remark)

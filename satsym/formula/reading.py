@@ -42,6 +42,7 @@ _OF_LIBRARIES = {"np.sqrt": "sqrt", "np.linalg.norm": "norm"}
 """What printed programs call some of them."""
 
 _FOREIGN = re.compile(r"""[^A-Za-z0-9_ .,+\-*/()\[\]='":@\n]""")
+_FOREIGN_TO_RELATIONS = re.compile(r"""[^A-Za-z0-9_ .,+\-*/()\[\]='":@\n<>!]""")
 _TOO_DEEP = f"brackets or signs are nested more than {MAX_DEPTH} deep; write it flatter"
 _QUOTED = re.compile(r"""'[ !-&(-\[\]-~]*'|"[ !#-\[\]-~]*\"""")
 """Printable characters in quotes, without quotes and backslashes."""
@@ -86,9 +87,9 @@ def expression(text: str, functions: Functions = FUNCTIONS, *, judging: bool = F
     BadInput
         With the reason, and the column where there is one.
     """
-    _measure(text, judging)
+    measured(text, judging)
     line = _LAMBDA.sub(_STAND_IN, text.strip().replace("\n", " "))
-    tree = _Reader(line, functions, judging).node(_parsed(line, text))
+    tree = _Reader(line, functions, judging).node(parsed(line, text, "a formula"))
     Scales(MAX_TERMS).checked(tree)
     return tree
 
@@ -101,7 +102,7 @@ def statement(text: str, functions: Functions = FUNCTIONS, *, judging: bool = Fa
     BadInput
         As for :func:`expression`, or if there are several equality signs.
     """
-    _measure(text, judging)
+    measured(text, judging)
     sides = _sides(text)
     if len(sides) > 2:
         raise BadInput("has several equality signs; write a row for each equality")
@@ -124,12 +125,19 @@ def checked_name(name: str) -> str:
     return name
 
 
-def _measure(text: str, judging: bool) -> None:
+def measured(text: str, judging: bool, relations: bool = False) -> None:
+    """Refuse a text that is too long or too deep, or has characters that mean nothing in a formula (a relation).
+
+    Raises
+    ------
+    BadInput
+        With what is wrong.
+    """
     if len(text) > MAX_LENGTH:
         raise BadInput(f"longer than {MAX_LENGTH} characters; split it into parts")
     if judging:
         text = _QUOTED.sub("''", text)
-    foreign = _FOREIGN.search(text)
+    foreign = (_FOREIGN_TO_RELATIONS if relations else _FOREIGN).search(text)
     if foreign:
         raise BadInput(f'the character "{printable(foreign[0])}" has no meaning here (column {foreign.start() + 1})')
     depth = 0
@@ -155,16 +163,23 @@ def _sides(text: str) -> list[str]:
     return [*sides, text[start:]]
 
 
-def _parsed(line: str, text: str) -> ast.expr:
+def parsed(line: str, text: str, what: str) -> ast.expr:
+    """What Python's parser makes of a line that has been measured.
+
+    Raises
+    ------
+    BadInput
+        If it is no expression.
+    """
     if not line:
-        raise BadInput("is empty; write a formula")
+        raise BadInput(f"is empty; write {what}")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             return ast.parse(line, mode="eval").body
     except SyntaxError as error:
         where = f" (column {error.offset})" if error.offset else ""
-        raise BadInput(f"{shown(text)} is not a formula{where}; write products with * and powers with **") from None
+        raise BadInput(f"{shown(text)} is not {what}{where}; write products with * and powers with **") from None
     except (RecursionError, MemoryError, ValueError):
         raise BadInput(_TOO_DEEP) from None
 

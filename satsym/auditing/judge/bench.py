@@ -242,6 +242,10 @@ class Bench:
             raise BadInput(f"{shown(name)} means {written(meaning)}: differentiate by, or replace, what is one symbol")
         return meaning.name
 
+    def of_row(self, row: Row) -> Any:
+        """What a row prints, in our names, as sympy has it."""
+        return self._of_row(row, Sympy, None)
+
     def _of_row(self, row: Row, kind: type, instead: Formula | None) -> Any:
         engine = self._engine(row, kind, self._ours, {})
         formula = instead if instead is not None else in_ours(row.printed, self.scope(row))

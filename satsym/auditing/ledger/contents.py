@@ -9,6 +9,7 @@ from pathlib import Path
 from satsym.auditing.ledger.schema import DocumentTable, RowTable, SymbolTable
 from satsym.auditing.ledger.scopes import Scope
 from satsym.auditing.predicates import Finding, Question
+from satsym.auditing.propositions.reading import Proposition
 from satsym.formula.tree import Call, Equality, Node, Text, calls
 
 
@@ -33,6 +34,10 @@ class Row:
         How the document says it follows, over printed rows, in the document's symbols.
     asks
         The predicate that judges it.
+    claims
+        The proposition that has to hold: what a claim prints, or what another row is held against.
+    because, produced
+        The reason given, and what tells that the printed algorithm produces it.
     """
 
     table: RowTable
@@ -42,10 +47,15 @@ class Row:
     holds: Node | Equality | None = None
     follows: Node | Equality | None = None
     asks: Callable[[Question], Finding] | None = None
+    claims: Proposition | None = None
+    because: Proposition | None = None
+    produced: Proposition | None = None
 
     @property
     def uses(self) -> list[str]:
         """Keys of the rows it is said to follow from."""
+        if not isinstance(self.table.follows, str):
+            return list(self.table.follows)
         return list(dict.fromkeys(row_key(call) for call in calls_in(self.follows) if call.function == "row"))
 
 

@@ -12,7 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from satsym.auditing import language, predicates, quantities
+from satsym.auditing import language, measurements, predicates, quantities
 from satsym.auditing.ledger import documents, rows, schema, vocabulary
 from satsym.auditing.ledger import scopes as notation
 from satsym.auditing.ledger.contents import Ledger, Row, calls_in, row_key
@@ -20,6 +20,7 @@ from satsym.auditing.ledger.documents import HEAD
 from satsym.auditing.ledger.positions import Part
 from satsym.auditing.ledger.schema import DocumentTable, RowTable, SymbolTable, WrongKey
 from satsym.auditing.ledger.scopes import Scope, WrongScope
+from satsym.auditing.propositions.reading import is_proposition, proposition
 from satsym.formula import budget, reading
 from satsym.formula.tree import Node, substituted
 from satsym.formula.weight import Scales
@@ -27,6 +28,7 @@ from satsym.instance import files
 from satsym.status import BadInput
 from satsym.wording import printable, shown, suggestion
 
+REASONS = ("because", "produced")
 TABLES = ("format", "document", "scope", "symbols", "inputs", "derived", "row")
 
 
@@ -160,6 +162,8 @@ class _Reader:
         if not table.legible:
             return row
         scope = self._scopes[table.scope]
+        if not table.holds if table.kind == "claim" else is_proposition(table.holds):
+            return self._claim(index, row, scope)
         with self._telling("row", "holds", index, key):
             if not table.holds:
                 raise BadInput("missing; write an address, an expression over addresses, or a predicate")
@@ -177,9 +181,32 @@ class _Reader:
                 row = replace(row, follows=rows.follows(table, self._derived, self._known, scope))
         return row
 
+    def _claim(self, index: int, row: Row, scope: Scope) -> Row:
+        """A row that a proposition judges: its own, or what it is held against."""
+        table, words = row.table, measurements.words(scope.meanings)
+        own = table.kind != "claim"
+        with self._telling("row", "printed", index, row.key):
+            if not table.printed or (not own and not isinstance(table.printed, str)):
+                raise BadInput(
+                    "missing; write the proposition in quotes" if not own else "missing; write what is printed"
+                )
+            row = replace(row, printed=rows.readable(table, scope) if own else None)
+        found: dict[str, Any] = {}
+        for key, text in (
+            ("claims", table.holds if own else table.printed),
+            *((k, getattr(table, k)) for k in REASONS),
+        ):
+            with self._telling("row", key if key in REASONS else "holds" if own else "printed", index, row.key):
+                found[key] = proposition(str(text), words, own=own) if text else None
+        with self._telling("row", "from", index, row.key):
+            if isinstance(table.follows, str) and table.follows:
+                raise BadInput('write the keys of the rows that it is drawn from as a list, such as ["2.19", "2.20"]')
+        return replace(row, **found)
+
     def _asking(self, index: int, row: Row) -> Row:
         """The row with its predicate, if that is what judges it."""
-        call = rows.predicate_call(row.table) if row.table.legible and row.holds is None else None
+        undecided = row.table.legible and row.holds is None and row.claims is None
+        call = rows.predicate_call(row.table) if undecided else None
         if call is None:
             return row
         with self._telling("row", "holds", index, row.key):
@@ -196,6 +223,15 @@ class _Reader:
             for key, formula in (("holds", row.holds), ("from", row.follows)):
                 with self._telling("row", key, index, row.key):
                     _check_rows_named(row, formula, by_key)
+            for claim in filter(None, (row.claims, row.because, row.produced)):
+                with self._telling("row", "printed" if row.table.kind == "claim" else "holds", index, row.key):
+                    for name in claim.rows:
+                        if name not in by_key:
+                            raise BadInput(f"there is no row {shown(name)}; {suggestion(name, by_key)}")
+            with self._telling("row", "from", index, row.key):
+                for name in row.uses:
+                    if name not in by_key or name == row.key:
+                        raise BadInput(f"no other row {shown(name)}; {suggestion(name, by_key)}")
 
     def _check_units(self, found: Sequence[Row]) -> None:
         for name, text in self._inputs.items():

@@ -48,6 +48,14 @@ def printed(table: RowTable, scope: Scope, by_predicate: bool) -> Node | Equalit
     return entries
 
 
+def readable(table: RowTable, scope: Scope) -> Node | Equality | tuple[tuple[Node, ...], ...] | None:
+    """The printed formula of a row that a proposition judges; ``None`` where what is printed is none."""
+    try:
+        return printed(table, scope, by_predicate=False)
+    except BadInput:
+        return None
+
+
 def held_against(
     table: RowTable, derived: Mapping[str, Node], known: Vocabulary, inputs: Mapping[str, str]
 ) -> Node | Equality:
@@ -65,7 +73,7 @@ def held_against(
 
 def follows(table: RowTable, derived: Mapping[str, Node], known: Vocabulary, scope: Scope) -> Node | Equality:
     """How a row is said to follow from others."""
-    formula = _with(reading.statement(table.follows, language.JUDGING, judging=True), derived)
+    formula = _with(reading.statement(str(table.follows), language.JUDGING, judging=True), derived)
     for name in sorted(notation.names_used(formula)):
         if not scope.knows(name) and not known.knows(name):
             raise BadInput(f"{shown(name)} is no symbol of [scope.{scope.name}]; {suggestion(name, scope.meanings)}")

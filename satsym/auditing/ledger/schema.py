@@ -12,6 +12,9 @@ from satsym.wording import printable, shown, suggestion
 
 FORMAT = 1
 Kind = Literal["equation", "matrix", "number", "table", "algorithm", "claim", "unit"]
+Role = Literal[
+    "premise", "step", "result", "conclusion", "definition", "instruction", "citation", "consistency", "notation"
+]
 
 Text = Annotated[str, Meta(description="text in quotes")]
 Texts = Annotated[tuple[str, ...], Meta(description='a list of texts, such as ["a", "b"]')]
@@ -49,7 +52,11 @@ class SymbolTable(Table, frozen=True):
 
 
 class RowTable(Table, frozen=True, rename={"follows": "from"}):
-    """One printed thing, and what it is held against."""
+    """One printed thing, and what it is held against.
+
+    Of a claim, ``printed`` is the proposition, ``because`` the reason that the document gives, ``from`` the rows that
+    it is drawn from, and ``produced`` what tells that the printed algorithm brings it about, if the problem does not.
+    """
 
     item: Text
     kind: Kind
@@ -60,14 +67,20 @@ class RowTable(Table, frozen=True, rename={"follows": "from"}):
     says: Text = ""
     original: Text = ""
     scope: Text = "main"
-    follows: Text = ""
+    follows: Text | Texts = ""
+    because: Text = ""
+    produced: Text = ""
+    role: Role = "step"
     columns: Texts = ()
     inputs: Formulas = {}
     legible: Flag = True
 
 
 KINDS: tuple[str, ...] = get_args(Kind)
-_WORDS = {"kind": "one of " + ", ".join(f'"{kind}"' for kind in KINDS)}
+_WORDS = {
+    "kind": "one of " + ", ".join(f'"{kind}"' for kind in KINDS),
+    "role": "one of " + ", ".join(f'"{role}"' for role in get_args(Role)),
+}
 
 
 class WrongKey(BadInput):

@@ -303,3 +303,13 @@ def has_a_value(expression: sp.Expr) -> bool:
 def nullspace(rows: Sequence[Sequence[sp.Expr]]) -> list[list[sp.Expr]]:
     """Columns that span what a matrix maps to zero."""
     return [list(column) for column in sp.Matrix(rows).nullspace(simplify=True)]
+
+
+def exact_matrix(rows: Sequence[Sequence[str]]) -> sp.ImmutableMatrix:
+    """A matrix of rational numbers, each written as a text such as ``"-1/2"``."""
+    return sp.ImmutableMatrix([[sp.Rational(entry) for entry in row] for row in rows])
+
+
+def matrix_of(rows: Sequence[Sequence[sp.Expr]]) -> sp.ImmutableMatrix:
+    """A matrix of expressions."""
+    return sp.ImmutableMatrix([list(row) for row in rows])

@@ -1,0 +1,113 @@
+"""Claims: whether the proposition of a row is true, whether its reason is, and what brings it about where it is not."""
+
+from __future__ import annotations
+
+from functools import cached_property, lru_cache
+from typing import Any
+
+from satsym.auditing import measurements
+from satsym.auditing.judge.bench import Bench
+from satsym.auditing.ledger.contents import Row
+from satsym.auditing.outcome import Outcome
+from satsym.auditing.propositions.evaluation import Answer, Evaluation
+from satsym.auditing.propositions.reading import Proposition, Words
+from satsym.formula.values import Matrix, Relation
+from satsym.formula.writing import written
+from satsym.status import BadInput
+from satsym.symbolic.lookup import formulas
+from satsym.wording import shown
+
+
+def judge(bench: Bench, row: Row) -> Outcome:
+    """The outcome of a row that a proposition judges."""
+    assert row.claims is not None
+    pages = _Pages(bench, row)
+    found = pages.answer(row.claims)
+    reason = pages.answer(row.because) if row.because is not None and found.truth else None
+    produced = pages.answer(row.produced) if row.produced is not None and found.truth is False else None
+    deciding = next((answer for answer in (reason, produced) if answer is not None), found)
+    said = "; ".join(dict.fromkeys((*found.reasons, *deciding.reasons)))
+    return Outcome(
+        row,
+        found.truth,
+        said,
+        sound=not found.vacuous and (reason is None or reason.truth is not False),
+        artefact=produced is not None and bool(produced.truth),
+        near=found.near,
+        evidence={**found.evidence, **deciding.evidence},
+    )
+
+
+class _Pages:
+    """The document as a proposition of one of its rows sees it."""
+
+    def __init__(self, bench: Bench, row: Row) -> None:
+        self._bench, self._row = bench, row
+
+    def answer(self, proposition: Proposition) -> Answer:
+        """Whether a proposition is true; one that looks nothing up in the document is asked once for all rows."""
+        if proposition.stands_alone:
+            return _alone(proposition.text)
+        return Evaluation(self._words, self, self._row.table.printed).answer(proposition)
+
+    @cached_property
+    def _words(self) -> Words:
+        return measurements.words(self._bench.scope(self._row).meanings)
+
+    def row(self, key: str) -> Any:
+        """The printed formula of a row in our names; of an equality the right-hand side."""
+        other = self._bench.rows[key]
+        if other.printed is None:
+            raise BadInput(f"row {key} prints no formula; text['{key}'] is what stands there")
+        return _exact(self._bench.of_row(other))
+
+    def text(self, key: str) -> Any:
+        """What a row prints, letter by letter."""
+        return self._bench.rows[key].table.printed
+
+    def symbol(self, name: str) -> Any:
+        """What a symbol of the notation means."""
+        _, engine = self._bench.engines(self._row)
+        return _exact(engine.value(self._bench.scope(self._row).meanings[name]))
+
+    def meanings(self, letter: str) -> list[str]:
+        """What the document uses a letter for; one that stands in no notation is unknown."""
+        scopes = self._bench.ledger.scopes
+        found = {scope.meanings[letter] for scope in scopes.values() if letter in scope.meanings}
+        if not found:
+            raise BadInput(f"no notation of the ledger has the letter {shown(letter)}")
+        return sorted(map(written, found))
+
+    @property
+    def items(self) -> list[str]:
+        """What the document numbers."""
+        return list(self._bench.ledger.document.numbers)
+
+
+@lru_cache(maxsize=4096)
+def _alone(text: str) -> Answer:
+    from satsym.auditing.propositions.reading import proposition
+
+    words = measurements.words()
+    return Evaluation(words, _Nowhere()).answer(proposition(text, words))
+
+
+class _Nowhere:
+    """No document: for propositions that look nothing up."""
+
+    def row(self, key: str) -> Any:
+        """No row."""
+        raise LookupError(key)
+
+    text = symbol = meanings = row
+
+    @property
+    def items(self) -> list[str]:
+        """No numbers."""
+        return []
+
+
+def _exact(found: Any) -> Any:
+    if isinstance(found, Relation):
+        return _exact(found.rhs)
+    return formulas.matrix_of(found.rows) if isinstance(found, Matrix) else found

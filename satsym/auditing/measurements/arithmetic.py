@@ -1,0 +1,101 @@
+"""Functions of numbers, lists and curves, exact where their arguments are."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from satsym.auditing.measurements import measurement
+from satsym.auditing.propositions.relations import compared_order, is_equal
+from satsym.auditing.propositions.values import is_exact
+
+
+@measurement
+def abs_(x: Any) -> Any:
+    """Size of a number, of each point of a curve."""
+    return abs(x)
+
+
+@measurement
+def re(z: Any) -> Any:
+    """Real part."""
+    return z.as_real_imag()[0] if is_exact(z) else np.real(z)
+
+
+@measurement
+def im(z: Any) -> Any:
+    """Imaginary part."""
+    return z.as_real_imag()[1] if is_exact(z) else np.imag(z)
+
+
+@measurement
+def min_(values: Sequence[Any]) -> Any:
+    """The smallest of a list, or of a curve."""
+    return _extreme(values, -1)
+
+
+@measurement
+def max_(values: Sequence[Any]) -> Any:
+    """The largest of a list, or of a curve."""
+    return _extreme(values, 1)
+
+
+@measurement
+def len_(values: Sequence[Any]) -> int:
+    """How many there are."""
+    return len(values)
+
+
+@measurement
+def sum_(values: Sequence[Any]) -> Any:
+    """The sum of a list."""
+    total = values[0]
+    for entry in values[1:]:
+        total = total + entry
+    return total
+
+
+@measurement
+def different(values: Sequence[Any]) -> list[Any]:
+    """The entries of a list, each once."""
+    found: list[Any] = []
+    for entry in values:
+        if not any(is_equal(entry, other) for other in found):
+            found.append(entry)
+    return found
+
+
+@measurement
+def sqrt(x: Any) -> Any:
+    """Square root."""
+    return x.sqrt() if hasattr(x, "sqrt") else np.emath.sqrt(x)
+
+
+@measurement
+def first(values: Sequence[Any]) -> Any:
+    """The first entry."""
+    return values[0]
+
+
+@measurement
+def last(values: Sequence[Any]) -> Any:
+    """The last entry."""
+    return values[-1]
+
+
+@measurement
+def turning_points(curve: Sequence[float]) -> int:
+    """How often a curve turns from rising to falling or back."""
+    slopes = np.diff(np.asarray(curve, dtype=float))
+    return int((slopes[1:] * slopes[:-1] < 0.0).sum())
+
+
+def _extreme(values: Any, sign: int) -> Any:
+    if isinstance(values, np.ndarray):
+        return float(values.max() if sign > 0 else values.min())
+    best = values[0]
+    for entry in values[1:]:
+        best = entry if sign * compared_order(entry, best) > 0 else best
+    return best

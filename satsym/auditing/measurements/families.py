@@ -1,0 +1,95 @@
+"""Families over which claims quantify: textbook systems of every kind, and members at random.
+
+No member is chosen for a claim, and none is told what is claimed of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from satsym.auditing.measurements import value
+from satsym.auditing.propositions.values import Family, Record
+
+_SEED = 20
+
+BLOCKS: Mapping[str, list[list[str]]] = {
+    "simple, negative": [["-1/2"]],
+    "double with one eigenvector, negative": [["-1/2", "1"], ["0", "-1/2"]],
+    "complex, negative": [["-1/2", "1"], ["-1", "-1/2"]],
+    "zero": [["0"]],
+    "double zero with two eigenvectors": [["0", "0"], ["0", "0"]],
+    "imaginary": [["0", "1"], ["-1", "0"]],
+    "double zero with one eigenvector": [["0", "1"], ["0", "0"]],
+    "double imaginary with one eigenvector each": [
+        ["0", "1", "1", "0"],
+        ["-1", "0", "0", "1"],
+        ["0", "0", "0", "1"],
+        ["0", "0", "-1", "0"],
+    ],
+    "positive": [["1/4"]],
+    "complex, positive": [["1/4", "1"], ["-1", "1/4"]],
+}
+"""Blocks with every kind of eigenvalue: real and complex, simple and multiple, with all eigenvectors and with fewer."""
+
+
+@value
+def linear() -> Family:
+    """Systems x' = A x: every block by itself, and pairs of them, mixed by a change of basis; exact matrices."""
+    rng = np.random.default_rng(_SEED)
+    names = list(BLOCKS)
+    pairs = [(a, b) for i, a in enumerate(names) for b in names[i + 1 :] if len(BLOCKS[a]) + len(BLOCKS[b]) <= 4]
+    members = [Record(name, {"A": _exact(BLOCKS[name])}) for name in names]
+    for a, b in pairs:
+        whole = _diagonal(BLOCKS[a], BLOCKS[b])
+        basis = _basis(rng, whole.rows)
+        members.append(Record(f"{a}; {b}", {"A": basis * whole * basis.inv()}))
+    return Family("LINEAR", "linear systems", tuple(members))
+
+
+@value
+def controlled() -> Family:
+    """Systems x' = A x + B u, y = C x with two or four states; in half of them inputs miss a part, outputs another."""
+    rng = np.random.default_rng(_SEED)
+    members = []
+    for k in range(24):
+        n, m = (2, 1) if k % 3 == 0 else (4, 1 + k % 2)
+        a = [[str(entry) for entry in row] for row in rng.integers(-2, 3, (n, n))]
+        b = [[str(entry) for entry in row] for row in rng.integers(-2, 3, (n, m))]
+        c = [[str(entry) for entry in row] for row in rng.integers(-2, 3, (1, n))]
+        if k % 4 == 1:  # the last state moves by itself, and no input moves it
+            a[-1], b[-1] = ["0"] * (n - 1) + [a[-1][-1]], ["0"] * m
+        if k % 4 == 3:  # nothing shows the last state
+            for row in a[:-1]:
+                row[-1] = "0"
+            c[0][-1] = "0"
+        basis = _basis(rng, n)
+        parts = {"A": basis * _exact(a) * basis.inv(), "B": basis * _exact(b), "C": _exact(c) * basis.inv()}
+        inputs, outputs = [f"u{i + 1}" for i in range(m)], ["y1"]
+        members.append(Record(f"system {k + 1}", {**parts, "inputs": inputs, "outputs": outputs}))
+    return Family("CONTROLLED", "linear systems with inputs and outputs", tuple(members))
+
+
+def _exact(rows: list[list[str]]) -> Any:
+    """A matrix of exact numbers."""
+    from satsym.symbolic.lookup import formulas
+
+    return formulas.exact_matrix(rows)
+
+
+def _diagonal(one: list[list[str]], other: list[list[str]]) -> Any:
+    n, m = len(one), len(other)
+    return _exact([row + ["0"] * m for row in one] + [["0"] * n + row for row in other])
+
+
+def _basis(rng: np.random.Generator, n: int) -> Any:
+    """A change of basis with whole entries, as its inverse has: shears, one after the other."""
+    basis = np.eye(n, dtype=int)
+    for _ in range(n):
+        i, j = rng.choice(n, 2, replace=False)
+        shear = np.eye(n, dtype=int)
+        shear[i, j] = rng.choice([-1, 1])
+        basis = basis @ shear
+    return _exact([[str(entry) for entry in row] for row in basis])

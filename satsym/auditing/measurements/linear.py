@@ -1,0 +1,218 @@
+"""Linear systems: matrices, eigenvalues and ranks exactly; how their motions behave, by the motions themselves.
+
+Wherever a system is asked for, the name of a model, a member of a family or a square matrix will do.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.auditing.measurements import measurement
+from satsym.auditing.propositions.values import Record, Undecided, is_exact
+from satsym.status import BadInput
+from satsym.wording import shown, suggestion
+
+_LATE = 40.0
+"""From here on motions are compared: what grows like t doubles until twice this time, what is bounded does not."""
+_MOMENTS = 16
+"""How often they are looked at before and after; what turns is not always at its largest."""
+_NODES = 40
+_ZERO = 1e-9
+
+
+@measurement
+@cache
+def system(model: str) -> Record:
+    """A linear model: its exact matrices A, B and C, and the names of its states, inputs and outputs."""
+    from satsym.symbolic.linear.matrices import system_of
+    from satsym.symbolic.lookup.library import derivation
+
+    found = system_of(derivation(model))
+    parts = {"A": found.a, "B": found.b, "C": found.c}
+    names = {"states": list(found.states), "inputs": list(found.inputs), "outputs": list(found.outputs)}
+    return Record(model, {**parts, **names})
+
+
+@measurement
+def inputs_of(of: Any, inputs: Sequence[str]) -> Record:
+    """A system with some of its inputs alone."""
+    whole = system_of(of)
+    return Record(whole.name, {**whole.parts, "B": _columns(whole, inputs), "inputs": list(inputs)})
+
+
+@measurement
+def eigenvalues(of: Any) -> list[Any]:
+    """All eigenvalues, each as often as it is a root of the characteristic polynomial; exact."""
+    return [e.value for e in _spectrum(matrix(of)).eigenvalues for _ in range(e.algebraic)]
+
+
+@measurement
+def algebraic(eigenvalue: Any, of: Any) -> int:
+    """How often an eigenvalue is a root of the characteristic polynomial."""
+    return int(_eigenvalue(eigenvalue, of).algebraic)
+
+
+@measurement
+def geometric(eigenvalue: Any, of: Any) -> int:
+    """How many independent eigenvectors an eigenvalue has."""
+    return int(_eigenvalue(eigenvalue, of).geometric)
+
+
+@measurement
+def rank(of: Any) -> int:
+    """Rank of a matrix, exact where its entries are."""
+    return int(of.rank()) if is_exact(of) else int(np.linalg.matrix_rank(np.asarray(of, dtype=float)))
+
+
+@measurement
+def dimension(of: Any) -> int:
+    """How many states a system has, or rows a matrix."""
+    return int(matrix(of).shape[0])
+
+
+@measurement
+def controllability(of: Any, inputs: Sequence[str] = ()) -> Any:
+    """The matrix [B, AB, ..., A^(n-1) B], of some inputs alone."""
+    whole = system_of(of)
+    return _krylov(whole.part("A"), _columns(whole, inputs))
+
+
+@measurement
+def observability(of: Any, outputs: Sequence[str] = ()) -> Any:
+    """The matrix [C; CA; ...; C A^(n-1)], of some outputs alone."""
+    whole = system_of(of)
+    rows = whole.part("C")
+    if outputs:
+        rows = rows.extract([_place(whole, "outputs", name) for name in outputs], list(range(rows.cols)))
+    return _krylov(whole.part("A").T, rows.T).T
+
+
+@measurement
+def controllable(of: Any, inputs: Sequence[str] = ()) -> bool:
+    """Whether some input carries every state to every other: by the Gramian, not by a rank."""
+    whole = system_of(of)
+    return _definite(_gramian(numbers(whole.part("A")), numbers(_columns(whole, inputs))))
+
+
+@measurement
+def observable(of: Any) -> bool:
+    """Whether the output over an interval tells the state it began at: by the Gramian, not by a rank."""
+    whole = system_of(of)
+    return _definite(_gramian(numbers(whole.part("A")).T, numbers(whole.part("C")).T))
+
+
+@measurement
+def flow(of: Any, t: float) -> Array:
+    """e^(At), by scaling and squaring; letters of A are taken as 1."""
+    from scipy.linalg import expm
+
+    return np.asarray(expm(t * numbers(matrix(of))))
+
+
+@measurement
+def stable(of: Any) -> bool:
+    """Whether motions that start near zero stay near it: by e^(At) itself, later and later."""
+    early, late = _sizes(of)
+    return late <= 1.5 * early
+
+
+@measurement
+def asymptotically_stable(of: Any) -> bool:
+    """Whether motions that start near zero stay near it and die out: by e^(At) itself, later and later."""
+    early, late = _sizes(of)
+    return late <= 1.5 * early and late < 1e-3
+
+
+def system_of(of: Any) -> Record:
+    """A system by its name, or as it stands; a matrix is one without inputs."""
+    if isinstance(of, str):
+        return system(of)
+    return of if isinstance(of, Record) else Record("the system", {"A": of})
+
+
+def matrix(of: Any) -> Any:
+    """A of a system, or a matrix as it stands."""
+    return system_of(of).part("A")
+
+
+def numbers(of: Any) -> Array:
+    """A matrix with numbers, its letters taken as 1."""
+    if not is_exact(of):
+        return np.asarray(of, dtype=float)
+    rows, cols = of.shape
+    plain = of.subs(dict.fromkeys(of.free_symbols, 1))
+    return np.array(plain.tolist(), dtype=float).reshape(rows, cols)
+
+
+@cache
+def _spectrum(a: Any) -> Any:
+    from satsym.symbolic.analysis import spectrum
+
+    return spectrum(a)
+
+
+def _eigenvalue(value: Any, of: Any) -> Any:
+    for entry in _spectrum(matrix(of)).eigenvalues:
+        if entry.value == value or (not is_exact(value) and abs(complex(entry.value) - complex(value)) < _ZERO):
+            return entry
+    raise BadInput(f"{value} is no eigenvalue of {system_of(of).name}")
+
+
+def _place(whole: Record, of: str, name: str) -> int:
+    known = whole.part(of)
+    if name not in known:
+        raise BadInput(f"{whole.name} has no {shown(name)}; {suggestion(name, known)}")
+    return int(known.index(name))
+
+
+def _columns(whole: Record, inputs: Sequence[str]) -> Any:
+    b = whole.part("B")
+    if not inputs:
+        return b
+    return b.extract(list(range(b.rows)), [_place(whole, "inputs", name) for name in inputs])
+
+
+def _krylov(a: Any, b: Any) -> Any:
+    blocks = [b]
+    for _ in range(a.rows - 1):
+        blocks.append(a * blocks[-1])
+    return b.hstack(*blocks)
+
+
+def _gramian(a: Array, b: Array, end: float = 2.0) -> Array:
+    """The integral of e^(As) B B' e^(A's) over [0, end], by Gauss-Legendre quadrature."""
+    from scipy.linalg import expm
+
+    places, weights = np.polynomial.legendre.leggauss(_NODES)
+    total = np.zeros_like(a)
+    for place, weight in zip(places, weights, strict=True):
+        column = expm(0.5 * end * (place + 1.0) * a) @ b
+        total += 0.5 * end * weight * column @ column.T
+    return total
+
+
+def _definite(gramian: Array) -> bool:
+    sizes = np.linalg.eigvalsh(gramian)
+    if sizes[-1] <= 0.0:
+        return False
+    if 1e-13 < sizes[0] / sizes[-1] < 1e-10:
+        raise Undecided(f"the Gramian is nearly singular ({sizes[0] / sizes[-1]:.0e})")
+    return bool(sizes[0] / sizes[-1] >= 1e-10)
+
+
+def _sizes(of: Any) -> tuple[float, float]:
+    """The largest norm of e^(At) around some time, and around twice that time."""
+    a = numbers(matrix(of))
+    largest = []
+    for start in (_LATE, 2.0 * _LATE):
+        moments = start * (1.0 + 0.25 * np.arange(_MOMENTS) / _MOMENTS)
+        largest.append(max(float(np.linalg.norm(flow(a, float(t)), 2)) for t in moments))
+    if not all(map(math.isfinite, largest)):
+        return 1.0, math.inf
+    return largest[0], largest[1]

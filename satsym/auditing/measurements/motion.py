@@ -1,0 +1,144 @@
+"""Motions of shipped instances: where they begin, the optimum, what a constant control does, what none does."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from satsym import instance as instances
+from satsym.arrays import Array
+from satsym.auditing.measurements import linear, measurement
+from satsym.auditing.propositions.values import Record, Undecided
+from satsym.status import BadInput, Status
+from satsym.wording import shown, suggestion
+
+if TYPE_CHECKING:
+    from satsym.instance import Instance
+    from satsym.solution import Solution
+
+STEPS = 4000
+
+
+@measurement
+def start(instance: str) -> Record:
+    """The initial state of an instance."""
+    case = loaded(instance)
+    return _state(case, case.initial, f"the start of {instance}")
+
+
+@measurement
+def end(instance: str) -> Record:
+    """The final state of the optimum of an instance."""
+    return _state(loaded(instance), solved(instance).x[:, -1], f"the end of {instance}")
+
+
+@measurement
+def reference(instance: str, t: float | None = None) -> Record:
+    """The state on the reference of an instance, at the final time or another."""
+    case = loaded(instance)
+    time = case.tf if t is None else t
+    if time is None:
+        raise BadInput(f"{instance} has a free final time; name one")
+    return _state(case, case.model.reference(time, case.parameters), f"the reference of {instance}")
+
+
+@measurement
+def parameter(instance: str, name: str) -> float:
+    """A parameter of an instance."""
+    case = loaded(instance)
+    names = [v.symbol for v in case.model.spec.parameters]
+    if name not in names:
+        raise BadInput(f"{instance} has no parameter {shown(name)}; {suggestion(name, names)}")
+    return float(case.parameters[names.index(name)])
+
+
+@measurement
+def least_cost(instance: str, **parameters: float) -> Record:
+    """The optimum of an instance, or of one with other parameters: J, the final time, and states, controls by name."""
+    found = solved(instance, **{name: float(value) for name, value in parameters.items()})
+    if found.status is not Status.CONVERGED:
+        raise Undecided(f"{instance}: {found.status}")
+    spec = loaded(instance).model.spec
+    curves = {v.symbol: np.asarray(row) for v, row in zip(spec.states, np.asarray(found.x), strict=True)}
+    curves |= {v.symbol: np.asarray(row) for v, row in zip(spec.controls, np.asarray(found.u), strict=True)}
+    curves |= {f"lambda_{v.symbol}": np.asarray(r) for v, r in zip(spec.states, np.asarray(found.lam), strict=True)}
+    times = np.asarray(found.times)
+    return Record(
+        f"the optimum of {instance}", {"J": found.objective, "t": times, "t_final": float(times[-1]), **curves}
+    )
+
+
+@measurement
+def steered(instance: str, controls: Sequence[float] | float = 0.0) -> Record:
+    """The motion of an instance under constant controls: ``t`` and the states by name, and its ``end``."""
+    case = loaded(instance)
+    if case.tf is None:
+        raise BadInput(f"{instance} has a free final time")
+    times = np.linspace(case.t0, case.tf, STEPS + 1)
+    constant = np.broadcast_to(np.asarray(controls, dtype=float), (len(case.model.spec.controls),))
+    u = np.repeat(constant[:, None], STEPS + 1, axis=1)
+    x, _, integral = case.model.forward(times, case.initial, u, u[:, 1:], case.parameters)
+    parts: dict[str, Any] = {v.symbol: np.asarray(row) for v, row in zip(case.model.spec.states, x, strict=True)}
+    last = _state(case, x[:, -1], "its end")
+    return Record(
+        f"{instance} under constant controls", {"t": times, "end": last, "integral": float(integral), **parts}
+    )
+
+
+@measurement
+def free_deviation(model: str, instance: str) -> Record:
+    """Deviations without control in a linear model, from the start of an instance taken for deviations: by e^(At)."""
+    case, found = loaded(instance), linear.system(model)
+    if case.tf is None:
+        raise BadInput(f"{instance} has a free final time")
+    letters = {s.name: s for s in found.part("A").free_symbols}
+    known = {v.symbol: p for v, p in zip(case.model.spec.parameters, case.parameters, strict=True)}
+    a = linear.numbers(found.part("A").subs({letters[n]: known[n] for n in letters if n in known}))
+    times = np.linspace(case.t0, case.tf, STEPS + 1)
+    advance, x = linear.flow(a, float(times[1] - times[0])), np.array(case.initial, dtype=float)
+    rows = [x]
+    for _ in range(STEPS):
+        rows.append(advance @ rows[-1])
+    path = np.array(rows).T
+    curves = dict(zip(found.part("states"), path, strict=True))
+    sizes = np.linalg.norm(path, axis=0)
+    return Record(f"{model} without control", {"t": times, "size": sizes, **curves})
+
+
+@measurement
+def distance(one: Record, other: Record, states: Sequence[str] = ()) -> float:
+    """The largest difference of two states, relative where a value exceeds 1; of all but angles, or of some."""
+    angles = one.parts.get("angles", ())
+    names = states or [name for name in one.part("names") if name not in angles]
+    return max(abs(one.part(n) - other.part(n)) / max(1.0, abs(other.part(n))) for n in names)
+
+
+@cache
+def loaded(name: str) -> Instance:
+    """A shipped instance."""
+    return instances.load(name)
+
+
+@cache
+def solved(name: str, **parameters: float) -> Solution:
+    """The optimum of a shipped instance, with other parameters where some are given."""
+    from satsym.solvers import solve
+
+    case = loaded(name)
+    names = [v.symbol for v in case.model.spec.parameters]
+    for other in parameters:
+        if other not in names:
+            raise BadInput(f"{name} has no parameter {shown(other)}; {suggestion(other, names)}")
+    values = dict(zip(names, case.parameters, strict=True)) | parameters
+    return solve(replace(case, parameters=tuple(values[n] for n in names)))
+
+
+def _state(case: Instance, values: Sequence[float] | Array, name: str) -> Record:
+    spec = case.model.spec
+    parts: dict[str, Any] = {v.symbol: float(value) for v, value in zip(spec.states, values, strict=True)}
+    angles = [v.symbol for v in spec.states if v.kind == "angle"]
+    return Record(name, {**parts, "names": list(spec.state_names), "angles": angles})

@@ -1,0 +1,1 @@
+"""Claims as propositions: read from the ledger's safe language, and found true, false or undecided."""

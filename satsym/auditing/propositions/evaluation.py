@@ -1,0 +1,360 @@
+"""Whether a proposition is true: by measuring its terms, relation by relation.
+
+Truth has three values, as Kleene's logic has: what cannot be measured is undecided, and so is what depends on it. An
+answer says what decides it: the relation that fails, the member that refutes, or in how many members it holds.
+"""
+
+from __future__ import annotations
+
+import ast
+import operator
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, Protocol, TypeAlias
+
+import numpy as np
+
+from satsym.auditing.propositions.reading import (
+    CONNECTIVES,
+    ITEMS,
+    MEANINGS,
+    PRINTED,
+    QUANTIFIERS,
+    Proposition,
+    Words,
+    row_key,
+)
+from satsym.auditing.propositions.relations import Fit, compared
+from satsym.auditing.propositions.values import Family, Record, Undecided, in_words
+from satsym.status import BadInput
+
+Truth: TypeAlias = bool | None
+"""True, false, or ``None`` where it is undecided."""
+_RELATIONS: Mapping[type[ast.cmpop], str] = {
+    ast.Eq: "=", ast.NotEq: "!=", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=",
+    ast.In: "in", ast.NotIn: "not in",
+}  # fmt: skip
+_OPERATORS: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = {
+    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
+    ast.Pow: operator.pow, ast.MatMult: operator.matmul,
+}  # fmt: skip
+_MAX_POWER = 64
+_BREAKS = (ArithmeticError, ValueError, TypeError, LookupError, AttributeError, np.linalg.LinAlgError)
+
+
+class Document(Protocol):
+    """What a proposition may look up in the document that it stands in."""
+
+    def row(self, key: str) -> Any:
+        """The printed formula of a row, as an exact expression or matrix."""
+
+    def text(self, key: str) -> Any:
+        """What a row prints, letter by letter."""
+
+    def symbol(self, name: str) -> Any:
+        """What a symbol of the notation means."""
+
+    def meanings(self, letter: str) -> list[str]:
+        """What the document uses a letter for."""
+
+    @property
+    def items(self) -> list[str]:
+        """What the document numbers."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Whether a proposition is true, and what decides it.
+
+    Attributes
+    ----------
+    truth
+        True, false or undecided.
+    reasons
+        The relations that decide it, with the values measured.
+    evidence
+        Measured values by their terms.
+    members
+        Of the largest family that it was tried on.
+    vacuous
+        Whether it holds of a family only because no member meets its condition.
+    near
+        Whether it fails by a last digit alone.
+    """
+
+    truth: Truth
+    reasons: tuple[str, ...] = ()
+    evidence: Mapping[str, str] = field(default_factory=dict)
+    members: int = 0
+    vacuous: bool = False
+    near: bool = False
+
+
+class Evaluation:
+    """One proposition, evaluated.
+
+    Parameters
+    ----------
+    words
+        Measurements, families and conventions.
+    document
+        Where rows and symbols are looked up.
+    own
+        What the row itself prints.
+    """
+
+    def __init__(self, words: Words, document: Document, own: Any = None) -> None:
+        self._words, self._document, self._own = words, document, own
+
+    def answer(self, proposition: Proposition) -> Answer:
+        """Whether a proposition is true.
+
+        Raises
+        ------
+        BadInput
+            If its terms make no sense together.
+        """
+        with np.errstate(all="ignore"):
+            return self._judge(proposition.tree, {})
+
+    def _judge(self, node: ast.expr, bound: Mapping[str, Any]) -> Answer:
+        if isinstance(node, ast.BoolOp):
+            return _joined([self._judge(part, bound) for part in node.values], isinstance(node.op, ast.And))
+        if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
+            return _denied(self._judge(node.operand, bound))
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+            name = node.func.id
+            if name in QUANTIFIERS:
+                return self._quantified(node.args[0], bound, name == "all")
+            if name in CONNECTIVES:
+                first = self._judge(node.args[0], bound)
+                if name == "implies" and first.truth is False:  # what is implied need not have a value then
+                    return replace(first, truth=True, vacuous=True, near=False)
+                second = self._judge(node.args[1], bound)
+                return _implied(first, second) if name == "implies" else _equivalent(first, second)
+        return self._leaf(node, bound)
+
+    def _leaf(self, node: ast.expr, bound: Mapping[str, Any]) -> Answer:
+        try:
+            if isinstance(node, ast.Compare):
+                return self._compared(node, bound)
+            value = self._value(node, bound)
+        except Undecided as reason:
+            return Answer(None, (str(reason),))
+        if value is None:
+            return Answer(None, (f"{_text(node)} is undecided",))
+        if not isinstance(value, bool | np.bool_):
+            raise BadInput(f"{_text(node)} is {in_words(value)}, neither true nor false; write a relation")
+        return Answer(bool(value), (f"{_text(node)} is {in_words(value)}",), {_text(node): in_words(value)})
+
+    def _compared(self, node: ast.Compare, bound: Mapping[str, Any]) -> Answer:
+        terms = [node.left, *node.comparators]
+        values = [self._value(term, bound) for term in terms]
+        evidence = {
+            _text(t): in_words(v) for t, v in zip(terms, values, strict=True) if not isinstance(t, ast.Constant)
+        }
+        said = "; ".join(f"{term} = {value}" for term, value in evidence.items() if term != value)
+        for sign, left, right in zip(node.ops, values, values[1:], strict=False):
+            try:
+                found = compared(sign, left, right)
+            except _BREAKS as error:
+                raise BadInput(
+                    f"{_text(node)}: {in_words(left)} and {in_words(right)} do not compare ({error})"
+                ) from None
+            if not found.holds:
+                near = found.fit is Fit.NEAR and isinstance(sign, ast.Eq)
+                return Answer(False, (said or f"not {_text(node)}",), evidence, near=near)
+        return Answer(True, (said or _text(node),), evidence)
+
+    def _quantified(self, node: ast.expr, bound: Mapping[str, Any], universal: bool) -> Answer:
+        if not isinstance(node, ast.GeneratorExp):
+            entries = self._value(node, bound)
+            answers = [_plain(node, entry) for entry in entries]
+            return _joined(answers, universal) if answers else Answer(universal, ("there is none",))
+        answers, total, of = [], 0, "members"
+        for member, inner, family in self._members(node.generators, bound):
+            total += 1
+            of = family.of if isinstance(family, Family) else "cases"
+            found = self._judge(node.elt, inner)
+            if found.truth is not universal:
+                named = f" ({member})" if member else ""
+                found = replace(found, reasons=tuple(f"{reason}{named}" for reason in found.reasons))
+                if found.truth is (not universal):
+                    return replace(found, members=max(total, found.members), vacuous=False)
+            answers.append(found)
+        if any(answer.truth is None for answer in answers):
+            open_ = next(answer for answer in answers if answer.truth is None)
+            return Answer(None, open_.reasons, members=total)
+        vacuous = universal and bool(answers) and all(answer.vacuous for answer in answers)
+        said = f"{'so' if universal else 'not so'} in all of {total} {of}" if total else "there is none"
+        if vacuous:
+            said = f"no one of {total} {of} meets the condition"
+        elif total == 1 and answers:
+            said = "; ".join(answers[0].reasons)
+        evidence = answers[0].evidence if total == 1 else {of: str(total)}
+        return Answer(universal, (said,), evidence, total, vacuous)
+
+    def _members(
+        self, parts: list[ast.comprehension], bound: Mapping[str, Any]
+    ) -> Iterator[tuple[str, Mapping[str, Any], Any]]:
+        """Each member by name, with what is bound, and the first family it comes from."""
+        part, *others = parts
+        family = self._value(part.iter, bound)
+        for member in _iterated(part, family):
+            inner = {**bound, **_unpacked(part.target, member)}
+            conditions = [self._judge(condition, inner).truth for condition in part.ifs]
+            if not all(conditions):
+                continue
+            name = member.name if isinstance(member, Record) else in_words(member)
+            if not others:
+                yield name, inner, family
+                continue
+            for further, whole, _ in self._members(others, inner):
+                yield f"{name}, {further}", whole, family
+
+    def _value(self, node: ast.expr, bound: Mapping[str, Any]) -> Any:
+        if isinstance(node, ast.Constant):
+            return node.value
+        if isinstance(node, ast.Name):
+            return self._named(node.id, bound)
+        if isinstance(node, ast.List | ast.Tuple):
+            return [self._value(entry, bound) for entry in node.elts]
+        if isinstance(node, ast.ListComp | ast.GeneratorExp):
+            return [self._value(node.elt, inner) for _, inner, _ in self._members(node.generators, bound)]
+        if isinstance(node, ast.Attribute):
+            return self._part(node, bound)
+        if isinstance(node, ast.Subscript):
+            return self._entry(node, bound)
+        if isinstance(node, ast.Call):
+            return self._called(node, bound)
+        if isinstance(node, ast.BinOp):
+            return self._worked_out(node, bound)
+        if isinstance(node, ast.UnaryOp) and not isinstance(node.op, ast.Not):
+            value = self._value(node.operand, bound)
+            return -value if isinstance(node.op, ast.USub) else value
+        found = self._judge(node, bound)
+        if found.truth is None:
+            raise Undecided("; ".join(found.reasons))
+        return found.truth
+
+    def _named(self, name: str, bound: Mapping[str, Any]) -> Any:
+        if name in bound:
+            return bound[name]
+        if name in (PRINTED, ITEMS):
+            return self._own if name == PRINTED else self._document.items
+        return self._words.values[name]() if name in self._words.values else self._document.symbol(name)
+
+    def _part(self, node: ast.Attribute, bound: Mapping[str, Any]) -> Any:
+        whole = self._value(node.value, bound)
+        if not isinstance(whole, Record):
+            raise BadInput(f"{_text(node.value)} is {in_words(whole)}, which has no parts")
+        return whole.part(node.attr)
+
+    def _entry(self, node: ast.Subscript, bound: Mapping[str, Any]) -> Any:
+        if isinstance(node.value, ast.Name) and node.value.id == "row":
+            return self._document.row(row_key(node))
+        if isinstance(node.value, ast.Name) and node.value.id == "text":
+            return self._document.text(row_key(node))
+        if isinstance(node.value, ast.Name) and node.value.id == MEANINGS and isinstance(node.slice, ast.Constant):
+            return self._document.meanings(str(node.slice.value))
+        whole, index = self._value(node.value, bound), self._value(node.slice, bound)
+        try:
+            return whole.part(str(index)) if isinstance(whole, Record) else whole[_index(index)]
+        except _BREAKS:
+            raise BadInput(f"{_text(node)}: there is no such entry in {in_words(whole)}") from None
+
+    def _called(self, node: ast.Call, bound: Mapping[str, Any]) -> Any:
+        assert isinstance(node.func, ast.Name)
+        name = node.func.id
+        if name in (*QUANTIFIERS, *CONNECTIVES):
+            found = self._judge(node, bound)
+            if found.truth is None:
+                raise Undecided("; ".join(found.reasons))
+            return found.truth
+        arguments = [self._value(argument, bound) for argument in node.args]
+        named = {str(keyword.arg): self._value(keyword.value, bound) for keyword in node.keywords}
+        try:
+            return self._words.functions[name](*arguments, **named)
+        except (BadInput, Undecided):
+            raise
+        except _BREAKS as error:
+            raise BadInput(f"{_text(node)} has no value: {error}") from None
+
+    def _worked_out(self, node: ast.BinOp, bound: Mapping[str, Any]) -> Any:
+        left, right = self._value(node.left, bound), self._value(node.right, bound)
+        if isinstance(node.op, ast.Pow) and not (isinstance(right, int | float) and abs(right) <= _MAX_POWER):
+            raise BadInput(f"{_text(node)}: an exponent is a number, at most {_MAX_POWER}")
+        try:
+            return _OPERATORS[type(node.op)](left, right)
+        except _BREAKS as error:
+            raise BadInput(f"{_text(node)} has no value: {error}") from None
+
+
+def _index(index: Any) -> Any:
+    return tuple(index) if isinstance(index, list) else index
+
+
+def _plain(node: ast.expr, entry: Any) -> Answer:
+    if not isinstance(entry, bool | np.bool_):
+        raise BadInput(f"{_text(node)} holds {in_words(entry)}, neither true nor false")
+    return Answer(bool(entry), (f"{_text(node)}: {in_words(entry)}",))
+
+
+def _iterated(part: ast.comprehension, family: Any) -> Iterable[Any]:
+    if isinstance(family, str | Record):
+        raise BadInput(f"{_text(part.iter)} is {in_words(family)}, and no family or list")
+    try:
+        return list(family)
+    except TypeError:
+        raise BadInput(f"{_text(part.iter)} is {in_words(family)}, and no family or list") from None
+
+
+def _unpacked(target: ast.expr, member: Any) -> dict[str, Any]:
+    if isinstance(target, ast.Name):
+        return {target.id: member}
+    assert isinstance(target, ast.Tuple)
+    names = [part.id for part in target.elts if isinstance(part, ast.Name)]
+    try:
+        return dict(zip(names, member, strict=True))
+    except (TypeError, ValueError):
+        raise BadInput(f"a member is {in_words(member)}, not {len(names)} values") from None
+
+
+def _joined(answers: list[Answer], conjunction: bool) -> Answer:
+    """And, or of several."""
+    deciding = [answer for answer in answers if answer.truth is (not conjunction)]
+    if deciding:
+        first = deciding[0]
+        return replace(first, near=all(answer.near for answer in deciding))
+    undecided = [answer for answer in answers if answer.truth is None]
+    if undecided:
+        return undecided[0]
+    together = {k: v for answer in answers for k, v in answer.evidence.items()}
+    reasons = tuple(dict.fromkeys(reason for answer in answers for reason in answer.reasons))
+    members = max(answer.members for answer in answers)
+    return Answer(conjunction, reasons, together, members, any(answer.vacuous for answer in answers))
+
+
+def _denied(answer: Answer) -> Answer:
+    return replace(answer, truth=None if answer.truth is None else not answer.truth, vacuous=False, near=False)
+
+
+def _implied(first: Answer, second: Answer) -> Answer:
+    if first.truth is None and second.truth is not True:
+        return replace(first, truth=None)
+    if second.truth is False:
+        both = {**first.evidence, **second.evidence}
+        return replace(second, reasons=(*first.reasons, *second.reasons), evidence=both)
+    return second
+
+
+def _equivalent(first: Answer, second: Answer) -> Answer:
+    if first.truth is None or second.truth is None:
+        return first if first.truth is None else second
+    both = {**first.evidence, **second.evidence}
+    reasons = tuple(dict.fromkeys((*first.reasons, *second.reasons)))
+    return Answer(first.truth is second.truth, reasons, both, max(first.members, second.members))
+
+
+def _text(node: ast.AST) -> str:
+    return ast.unparse(node)

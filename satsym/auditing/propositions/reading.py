@@ -1,0 +1,231 @@
+"""The language of claims: the text of a proposition -> a checked tree of Python's own expression syntax.
+
+Nothing is ever evaluated here. The text is measured before Python's parser sees it; what the parser gives back may
+hold only the kinds of nodes that are listed, and every name must be known: a measurement, a family, a convention, a
+member that a quantifier binds, or a symbol of the row's notation.
+"""
+
+from __future__ import annotations
+
+import ast
+import inspect
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from satsym.formula.reading import MAX_LENGTH, measured, parsed
+from satsym.status import BadInput
+from satsym.wording import shown, suggestion
+
+QUANTIFIERS = ("all", "any")
+"""They take a comprehension: ``all(P(s) for s in FAMILY)``."""
+CONNECTIVES = ("implies", "iff")
+"""They take two propositions."""
+LOOKUPS = ("row", "text")
+"""``row['2.19', 'k1']`` is the printed formula of a row, ``text['program', 'lines']`` its letters as they stand."""
+MEANINGS = "meanings"
+"""``meanings['x1']`` lists what the document uses a letter for, from its notations."""
+ITEMS = "items"
+"""What the document numbers: equations, theorems, tables, figures."""
+PRINTED = "printed"
+"""In ``holds``: what the row itself prints, letter by letter."""
+
+_ALLOWED: tuple[type[ast.AST], ...] = (
+    *(ast.Expression, ast.Constant, ast.Name, ast.Attribute, ast.Subscript, ast.Call, ast.keyword, ast.Tuple, ast.List),
+    *(ast.UnaryOp, ast.USub, ast.UAdd, ast.Not, ast.BoolOp, ast.And, ast.Or, ast.Compare, ast.BinOp),
+    *(ast.Eq, ast.NotEq, ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.In, ast.NotIn),
+    *(ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Pow, ast.MatMult),
+    *(ast.GeneratorExp, ast.ListComp, ast.comprehension, ast.Load, ast.Store),
+)
+_WORDS: Mapping[type[ast.AST], str] = {ast.Lambda: "lambda", ast.IfExp: "if/else", ast.NamedExpr: ":=", ast.Is: "is"}
+
+
+@dataclass(frozen=True)
+class Words:
+    """What a proposition may name.
+
+    Attributes
+    ----------
+    functions
+        Measurements by name.
+    values
+        Families, conventions and constants by name, each made when it is asked for.
+    symbols
+        Symbols of the notation.
+    """
+
+    functions: Mapping[str, Callable[..., Any]]
+    values: Mapping[str, Callable[[], Any]]
+    symbols: Collection[str] = ()
+
+
+@dataclass(frozen=True)
+class Proposition:
+    """A claim that can be found true or false.
+
+    Attributes
+    ----------
+    text
+        As the ledger has it.
+    tree
+        The same, checked.
+    rows
+        Keys of the rows that it looks up.
+    symbols
+        Symbols of the notation that it names, and ``printed``.
+    """
+
+    text: str
+    tree: ast.expr
+    rows: tuple[str, ...] = ()
+    symbols: tuple[str, ...] = ()
+
+    @property
+    def stands_alone(self) -> bool:
+        """Whether it says the same in every document: it looks up no row and no symbol of a notation."""
+        return not self.rows and not self.symbols
+
+
+def proposition(text: str, words: Words, *, own: bool = False) -> Proposition:
+    """Read a proposition.
+
+    Parameters
+    ----------
+    text
+        Python's expression syntax.
+    words
+        What it may name.
+    own
+        Whether it may speak of what its own row prints, as ``printed``.
+
+    Raises
+    ------
+    BadInput
+        With the reason, and the column where there is one.
+    """
+    if len(text) > MAX_LENGTH:
+        raise BadInput(f"longer than {MAX_LENGTH} characters; split it into parts")
+    measured(text, judging=True, relations=True)
+    line = " ".join(text.split())
+    tree = parsed(line, text, "a proposition")
+    check = _Check(words, own)
+    check.visit(tree)
+    return Proposition(text, tree, tuple(dict.fromkeys(keys_in(tree))), tuple(check.symbols))
+
+
+def is_proposition(text: str) -> bool:
+    """Whether a text is a relation or joined of relations, and not a formula or an address."""
+    try:
+        tree = ast.parse(text.strip(), mode="eval").body
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return False
+    denied = isinstance(tree, ast.UnaryOp) and isinstance(tree.op, ast.Not)
+    named = isinstance(tree, ast.Call) and isinstance(tree.func, ast.Name) and tree.func.id
+    return denied or isinstance(tree, ast.Compare | ast.BoolOp) or named in (*QUANTIFIERS, *CONNECTIVES)
+
+
+def keys_in(tree: ast.AST) -> list[str]:
+    """Keys of the rows that a tree looks up."""
+    return [
+        row_key(node)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Subscript) and isinstance(node.value, ast.Name) and node.value.id in LOOKUPS
+    ]
+
+
+def row_key(node: ast.Subscript) -> str:
+    """The key that ``row['item']`` or ``row['item', 'part']`` names."""
+    parts = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
+    if not all(isinstance(part, ast.Constant) and isinstance(part.value, str) for part in parts):
+        raise BadInput("a row is named by its item and part in quotes, such as row['2.19', 'k1']")
+    return " ".join(str(part.value) for part in parts if isinstance(part, ast.Constant))
+
+
+class _Check(ast.NodeVisitor):
+    """Refuses what is not listed, and names that nothing bears."""
+
+    def __init__(self, words: Words, own: bool) -> None:
+        self._words, self._own = words, own
+        self._bound: list[str] = []
+        self.symbols: dict[str, None] = {}
+
+    def generic_visit(self, node: ast.AST) -> None:
+        if not isinstance(node, _ALLOWED):
+            what = _WORDS.get(type(node), f"this ({type(node).__name__})")
+            raise BadInput(f"{what} is not allowed here{_column(node)}")
+        super().generic_visit(node)
+
+    def visit_Name(self, node: ast.Name) -> None:
+        words = self._words
+        if node.id in self._bound or node.id in words.values:
+            return
+        if node.id in words.symbols or node.id == ITEMS or (self._own and node.id == PRINTED):
+            self.symbols[node.id] = None
+            return
+        known = [*self._bound, *words.values, *words.symbols]
+        hint = "is a measurement; give it its arguments in brackets" if node.id in words.functions else ""
+        raise BadInput(f"{shown(node.id)} {hint or f'means nothing here; {suggestion(node.id, known)}'}{_column(node)}")
+
+    def visit_Attribute(self, node: ast.Attribute) -> None:
+        if node.attr.startswith("_"):
+            raise BadInput(f"{shown(node.attr)} is no part of anything{_column(node)}")
+        self.visit(node.value)
+
+    def visit_Subscript(self, node: ast.Subscript) -> None:
+        if isinstance(node.value, ast.Name) and node.value.id in LOOKUPS:
+            row_key(node)
+            return
+        if isinstance(node.value, ast.Name) and node.value.id == MEANINGS:
+            if not isinstance(node.slice, ast.Constant):
+                raise BadInput(f"name one letter in quotes, such as meanings['x1']{_column(node)}")
+            self.symbols[MEANINGS] = None
+            return
+        self.generic_visit(node)
+
+    def visit_Call(self, node: ast.Call) -> None:
+        if not isinstance(node.func, ast.Name):
+            raise BadInput(f"calling what is not a plain name is not allowed here{_column(node)}")
+        name = node.func.id
+        if name in QUANTIFIERS:
+            if len(node.args) != 1 or node.keywords:
+                raise BadInput(f"{name} takes one comprehension or list{_column(node)}")
+        elif name in CONNECTIVES:
+            if len(node.args) != 2 or node.keywords:
+                raise BadInput(f"{name} takes two propositions{_column(node)}")
+        elif name not in self._words.functions:
+            known = [*self._words.functions, *QUANTIFIERS, *CONNECTIVES]
+            raise BadInput(f"the measurement {shown(name)} is unknown{_column(node)}; {suggestion(name, known)}")
+        else:
+            self._check_arguments(name, node)
+        for argument in [*node.args, *(keyword.value for keyword in node.keywords)]:
+            self.visit(argument)
+
+    def _check_arguments(self, name: str, node: ast.Call) -> None:
+        signature = inspect.signature(self._words.functions[name])
+        if any(keyword.arg is None for keyword in node.keywords):
+            raise BadInput(f"** is not allowed here{_column(node)}")
+        try:
+            signature.bind(*node.args, **{str(keyword.arg): keyword.value for keyword in node.keywords})
+        except TypeError as error:
+            raise BadInput(f"{name}: {error}; its arguments are {', '.join(signature.parameters) or 'none'}") from None
+
+    def _visit_comprehension(self, node: ast.GeneratorExp | ast.ListComp) -> None:
+        before = list(self._bound)
+        for part in node.generators:
+            self.visit(part.iter)
+            targets = part.target.elts if isinstance(part.target, ast.Tuple) else [part.target]
+            for target in targets:
+                if not isinstance(target, ast.Name) or target.id in {*self._words.values, *self._words.functions}:
+                    raise BadInput(f"write a new name for each member{_column(part.target)}")
+                self._bound.append(target.id)
+            for condition in part.ifs:
+                self.visit(condition)
+        self.visit(node.elt)
+        self._bound = before
+
+    visit_GeneratorExp = _visit_comprehension
+    visit_ListComp = _visit_comprehension
+
+
+def _column(node: ast.AST) -> str:
+    return f" (column {node.col_offset + 1})" if hasattr(node, "col_offset") else ""

@@ -1,0 +1,231 @@
+"""Relations between values: when two are equal, and which is the greater.
+
+Exact values are compared exactly. Measured ones are equal where they agree but for what measuring leaves
+(:data:`RELATIVE`, :data:`ABSOLUTE`), and one is less than the other only if it is so by more. A number in quotes is
+what a document prints: it stands for the interval that rounding, or cutting, its digits allows, in its unit.
+"""
+
+from __future__ import annotations
+
+import ast
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+import numpy as np
+
+from satsym.auditing import quantities
+from satsym.auditing.propositions.values import Undecided, in_words, is_exact
+from satsym.auditing.quantities import PrintedNumber, Quantity
+from satsym.status import BadInput
+
+RELATIVE, ABSOLUTE = 1e-6, 1e-9
+"""How far two measured numbers may be apart and still be called equal."""
+
+
+class Fit(Enum):
+    """How a value lies to a printed number."""
+
+    INSIDE = "inside"
+    NEAR = "near"  # a last digit off
+    OUTSIDE = "outside"
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A relation between two values.
+
+    Attributes
+    ----------
+    holds
+        Whether it is true.
+    left, right
+        The values.
+    fit
+        How the value lies to the printed number, where there is one.
+    """
+
+    holds: bool
+    left: Any
+    right: Any
+    fit: Fit | None = None
+
+
+def compared(operator: ast.cmpop, left: Any, right: Any) -> Comparison:
+    """Two values in a relation.
+
+    Raises
+    ------
+    Undecided
+        If a value is no number, or exact ones cannot be told apart.
+    BadInput
+        If what they are does not compare.
+    """
+    if isinstance(operator, ast.In | ast.NotIn):
+        inside = any(_equal(left, entry).holds for entry in _entries(right))
+        return Comparison(inside == isinstance(operator, ast.In), left, right)
+    if isinstance(operator, ast.Eq | ast.NotEq):
+        found = _equal(left, right)
+        return found if isinstance(operator, ast.Eq) else Comparison(not found.holds, left, right)
+    return Comparison(_ORDERS[type(operator)](_order(left, right)), left, right)
+
+
+_ORDERS: Mapping[type[ast.cmpop], Callable[[int], bool]] = {
+    ast.Lt: lambda sign: sign < 0,
+    ast.LtE: lambda sign: sign <= 0,
+    ast.Gt: lambda sign: sign > 0,
+    ast.GtE: lambda sign: sign >= 0,
+}
+
+
+def is_equal(left: Any, right: Any) -> bool:
+    """Whether two values are equal."""
+    return _equal(left, right).holds
+
+
+def compared_order(left: Any, right: Any) -> int:
+    """1 where the first is greater, -1 where it is less, 0 where they are equal."""
+    return _order(left, right)
+
+
+def fit(value: Any, printed: PrintedNumber) -> Fit:
+    """How a value lies to a printed number: inside what its digits claim, a last digit off, or outside.
+
+    Digits claim what rounds to them, and what is cut to them: 0.15 may stand for anything from 0.145 to below 0.16.
+    """
+    number = _in_printed_unit(value, printed.unit)
+    half = float(printed.half_unit)
+    sign = -1.0 if printed.value < 0 else 1.0
+    above = sign * (number - float(printed.value)) / half
+    slack = 1e-9 * max(1.0, abs(float(printed.value)) / half)
+    if -1.0 - slack <= above <= 2.0 + slack:
+        return Fit.INSIDE
+    return Fit.NEAR if -3.0 - slack <= above <= 4.0 + slack else Fit.OUTSIDE
+
+
+def _in_printed_unit(value: Any, unit: str) -> float:
+    number = _real(value.value if isinstance(value, Quantity) else value)
+    if isinstance(value, Quantity):
+        one = quantities.in_base_units(f"1 {unit}") if unit != "1" else Quantity(1.0, {})
+        if dict(one.dimension) != dict(value.dimension):
+            raise BadInput(f"{in_words(value)} is not measured in {unit}")
+        return number / one.value
+    if unit != "1":
+        raise BadInput(f"{in_words(value)} is a plain number, and is not measured in {unit}")
+    return number
+
+
+def _equal(left: Any, right: Any) -> Comparison:
+    if isinstance(left, str) and not isinstance(right, str):
+        left, right = right, left
+    if isinstance(left, str) or isinstance(left, bool | np.bool_):
+        return Comparison(bool(left == right), left, right)
+    if isinstance(right, str):
+        if _is_sequence(left):
+            raise BadInput(f"a list and the text {in_words(right)} do not compare")
+        how = fit(left, quantities.printed_number(right))
+        return Comparison(how is Fit.INSIDE, left, right, how)
+    if _is_sequence(left) or _is_sequence(right):
+        one, other = _entries(left), _entries(right)
+        if len(one) != len(other):
+            return Comparison(False, left, right)
+        pairs = [_equal(a, b) for a, b in zip(one, other, strict=True)]
+        fits = [pair.fit for pair in pairs if not pair.holds]
+        worst = Fit.NEAR if fits and all(how is Fit.NEAR for how in fits) else None
+        return Comparison(all(pair.holds for pair in pairs), left, right, worst)
+    return Comparison(_same(left, right), left, right)
+
+
+def _same(left: Any, right: Any) -> bool:
+    if isinstance(left, Quantity) or isinstance(right, Quantity):
+        return _order(left, right) == 0
+    if is_exact(left) or is_exact(right):
+        if not _has_floats(left) and not _has_floats(right):
+            return _is_zero(left - right)
+        left, right = complex(left), complex(right)
+    if not (np.isfinite(left) and np.isfinite(right)):
+        raise Undecided(f"{in_words(left)} and {in_words(right)} are not both numbers")
+    return bool(abs(left - right) <= max(RELATIVE * max(abs(left), abs(right)), ABSOLUTE))
+
+
+def _order(left: Any, right: Any) -> int:
+    """The sign of the difference; 0 where they are equal."""
+    if isinstance(left, str):
+        return -_order(right, left)
+    if isinstance(right, str):
+        printed = quantities.printed_number(right)
+        left, right = _in_printed_unit(left, printed.unit), float(printed.value)
+    if isinstance(left, Quantity) or isinstance(right, Quantity):
+        left, right = (v if isinstance(v, Quantity) else Quantity(float(v), {}) for v in (left, right))
+        if left.value and right.value and dict(left.dimension) != dict(right.dimension):
+            raise BadInput(f"{in_words(left)} and {in_words(right)} are of different dimensions")
+        # the scale of a quantity is that of its unit, so that only relative differences count
+        size = max(abs(left.value), abs(right.value))
+        gap = left.value - right.value
+        return 0 if abs(gap) <= RELATIVE * size else int(np.sign(gap))
+    if is_exact(left) or is_exact(right):
+        gap = left - right
+        if not _has_floats(gap):
+            return _exact_sign(gap)
+    left, right = _real(left), _real(right)
+    return 0 if _same(left, right) else (-1 if left < right else 1)
+
+
+def _exact_sign(gap: Any) -> int:
+    if _is_zero(gap):
+        return 0
+    for sign, known in ((1, gap.is_positive), (-1, gap.is_negative)):
+        if known:
+            return sign
+    if gap.is_number:
+        return 1 if float(gap) > 0.0 else -1
+    simple = gap.factor()
+    if simple.is_positive or simple.is_negative:
+        return 1 if simple.is_positive else -1
+    raise Undecided(f"the sign of {gap} depends on its letters")
+
+
+def _is_zero(gap: Any) -> bool:
+    from satsym.symbolic.lookup import formulas
+
+    return bool(gap.is_zero) or formulas.is_zero(gap)
+
+
+def _has_floats(value: Any) -> bool:
+    return isinstance(value, float | complex | np.number) or (is_exact(value) and value.has(*_floats()))
+
+
+def _floats() -> tuple[Any, ...]:
+    import sympy
+
+    return (sympy.Float,)
+
+
+def _real(value: Any) -> float:
+    number = complex(value)
+    if not math.isfinite(abs(number)):
+        raise Undecided(f"{in_words(value)} is no number")
+    if abs(number.imag) > max(RELATIVE * abs(number), ABSOLUTE):
+        raise BadInput(f"{in_words(value)} is complex, and neither less nor greater than anything")
+    return number.real
+
+
+def _is_sequence(value: Any) -> bool:
+    return isinstance(value, list | tuple | np.ndarray) or bool(getattr(value, "is_Matrix", False))
+
+
+def _entries(value: Any) -> list[Any]:
+    if getattr(value, "is_Matrix", False):
+        return list(value.tolist())
+    if isinstance(value, np.ndarray):
+        return list(value.tolist())
+    if isinstance(value, list | tuple):
+        return list(value)
+    if isinstance(value, str):
+        raise BadInput(f"{in_words(value)} is no list")
+    try:
+        return list(value)
+    except TypeError:
+        raise BadInput(f"{in_words(value)} is no list") from None

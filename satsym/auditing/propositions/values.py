@@ -1,0 +1,103 @@
+"""What the terms of a proposition are: numbers, exact expressions, matrices, lists, texts, and records of these."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from satsym.auditing.quantities import Quantity
+from satsym.status import BadInput
+from satsym.wording import shown, suggestion
+
+_LISTED = 6
+"""Entries of a list that are shown."""
+
+
+class Undecided(Exception):
+    """A measurement that has no answer; the reason is said."""
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """Named values that belong together: the state at an end, a trajectory, a member of a family.
+
+    Attributes
+    ----------
+    name
+        How it is called where it confirms or refutes.
+    parts
+        Its values by name; a proposition writes ``record.name``.
+    """
+
+    name: str
+    parts: Mapping[str, Any] = field(default_factory=dict)
+
+    def part(self, name: str) -> Any:
+        """One of its values.
+
+        Raises
+        ------
+        BadInput
+            If it has none of this name.
+        """
+        if name not in self.parts:
+            raise BadInput(f"{self.name} has no {shown(name)}; {suggestion(name, self.parts)}")
+        return self.parts[name]
+
+
+@dataclass(frozen=True, eq=False)
+class Family:
+    """Members of a kind, some from textbooks and some at random, over which a claim quantifies.
+
+    Attributes
+    ----------
+    name, of
+        As the language has it, and what its members are, in the plural.
+    """
+
+    name: str
+    of: str
+    members: tuple[Record, ...]
+
+    def __iter__(self) -> Iterator[Record]:
+        return iter(self.members)
+
+    def __len__(self) -> int:
+        return len(self.members)
+
+
+def is_exact(value: Any) -> bool:
+    """Whether a value is an expression or a matrix of sympy's."""
+    return type(value).__module__.startswith("sympy.")
+
+
+def is_number(value: Any) -> bool:
+    """Whether a value is a plain number, exact or not."""
+    if isinstance(value, bool | np.bool_ | str):
+        return False
+    return isinstance(value, int | float | complex | np.number) or (is_exact(value) and bool(value.is_number))
+
+
+def in_words(value: Any) -> str:
+    """A value as a person would write it, in a few characters."""
+    if isinstance(value, bool | np.bool_):
+        return str(bool(value)).lower()
+    if isinstance(value, Record):
+        return value.name
+    if isinstance(value, Quantity):
+        return str(value)
+    if isinstance(value, complex | np.complexfloating):
+        return f"{value.real:.6g}{value.imag:+.6g}i" if value.imag else f"{value.real:.6g}"
+    if isinstance(value, float | np.floating):
+        return f"{value:.6g}"
+    if isinstance(value, np.ndarray):
+        return in_words(value.tolist()) if value.size <= _LISTED**2 else f"{value.size} numbers"
+    if is_exact(value) and getattr(value, "is_Matrix", False):
+        return in_words(value.tolist())
+    if isinstance(value, list | tuple):
+        inside = [in_words(entry) for entry in value[:_LISTED]]
+        return f"[{', '.join(inside)}{', ...' if len(value) > _LISTED else ''}]"
+    return str(value)
