@@ -24,3 +24,15 @@ PUBLISHED = {
     "g_standard": Constant("9.80665 m/s^2", "CGPM 1901, exact"),
     "G_newton": Constant("6.67430e-11 m^3/kg/s^2", "CODATA 2018"),
 }
+
+CUSTOMARY = {
+    "R_earth": ("6371 km", "6378 km", "6400 km"),  # mean radius (IUGG); equatorial, cut; school books
+    "sidereal_day": ("24 h",),  # the mean solar day
+    "sidereal_year": ("365 day", "365.25 day"),  # the common and the Julian year
+    "c_light": ("3e8 m/s",),
+    "g_standard": ("9.8 m/s^2", "9.81 m/s^2", "10 m/s^2"),
+    "mu_earth": ("398600 km^3/s^2", "3.986e5 km^3/s^2", "4e5 km^3/s^2"),
+    "au": ("1.5e8 km", "1.496e8 km"),
+    "G_newton": ("6.67e-11 m^3/kg/s^2", "6.673e-11 m^3/kg/s^2"),
+}
+"""What textbooks calculate with instead: a number that comes out with one of these is imprecise, not wrong."""

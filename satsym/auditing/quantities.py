@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
 from collections.abc import Mapping
@@ -11,10 +12,13 @@ from fractions import Fraction
 from satsym import units
 from satsym.auditing.constants import PUBLISHED
 from satsym.formula.reading import FUNCTIONS, MAX_DIGITS
-from satsym.formula.tree import Add, Call, Div, Equality, Mul, Neg, Node, Num, Pow, Sym, Text, constant, walk
+from satsym.formula.tree import Add, Call, Div, Equality, Mul, Neg, Node, Num, Pow, Sym, Text, constant, symbols, walk
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
+ROUNDED = "~"
+"""Before an input that is measured, or was rounded; an input without it is chosen, and exact."""
+_CORNERS = 8
 _PRINTED = re.compile(
     r" *(?P<sign>[-+]?) *(?P<whole>[0-9]*)(?:\.(?P<part>[0-9]*))?(?:[eE](?P<power>[-+]?[0-9]{1,3}))? *"
 )
@@ -91,6 +95,7 @@ def printed_number(text: str) -> PrintedNumber:
     BadInput
         If the text does not begin with a number.
     """
+    text = text.removeprefix(ROUNDED)
     match = _PRINTED.match(text)
     if match is None or not (match["whole"] or match["part"]):
         raise BadInput(f'{shown(text)} is not a number with a unit; write for instance "35786 km"')
@@ -186,6 +191,24 @@ def evaluated(tree: Node, inputs: Mapping[str, str]) -> Quantity:
     if not math.isfinite(found.value):
         raise BadInput("the formula has no finite value")
     return found
+
+
+def bounds(tree: Node, inputs: Mapping[str, str]) -> tuple[float, float]:
+    """The smallest and the largest value of a formula whose rounded inputs may be anywhere in what their digits claim.
+
+    An input is marked as rounded by a tilde (``"~ 6378 km"``). The corners of the box are taken, which is enough for
+    what rises or falls with each input.
+    """
+    rounded = [name for name in sorted(symbols(tree)) if inputs.get(name, "").startswith(ROUNDED)][:_CORNERS]
+    found = []
+    for signs in itertools.product((-1, 1), repeat=len(rounded)):
+        shifted = dict(inputs)
+        for name, sign in zip(rounded, signs, strict=True):
+            number = printed_number(inputs[name])
+            value = number.value + sign * number.half_unit
+            shifted[name] = f"{float(value)!r} {number.unit}" if number.unit != "1" else f"{float(value)!r}"
+        found.append(evaluated(tree, shifted).value)
+    return min(found), max(found)
 
 
 def _evaluated(tree: Node, inputs: Mapping[str, str]) -> Quantity:

@@ -94,9 +94,9 @@ def unsound(items: Sequence[str]) -> str:
     return f"The result is right, but it does not follow from {_listed(items)} in the way that is said."
 
 
-def wrong_number(derived: str, cut_off: bool) -> str:
-    """A number differs from the one computed."""
-    return f"It is {derived}{': the last digit is cut off, not rounded' if cut_off else ''}."
+def wrong_number(derived: str, custom: str = "") -> str:
+    """A number differs from the one computed; with a customary value of a constant it would not."""
+    return f"It is {derived}{f'; the printed digits come out with the customary {custom}' if custom else ''}."
 
 
 def misprinted_claim(derived: str) -> str:

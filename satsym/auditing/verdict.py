@@ -78,7 +78,7 @@ class _Context:
         if not outcome.right and row.table.kind in FORMULAS:
             return self._of_wrong_formula(outcome)
         if not outcome.right:
-            return "wrong", [outcome.remark]
+            return "imprecise" if outcome.near else "wrong", [outcome.remark]
         if row.follows is not None and not self._follows(row, {}) and not self._follows_once_mended(row):
             return "unsound", [sentences.unsound(row.uses)]
         return "confirmed", []

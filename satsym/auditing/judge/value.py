@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
 
 from satsym.auditing import quantities, sentences
+from satsym.auditing.constants import CUSTOMARY
 from satsym.auditing.judge.bench import Bench
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
-from satsym.formula.tree import Equality, Node
+from satsym.auditing.propositions.relations import Fit, fit_of_range
+from satsym.formula.tree import Equality, Node, symbols
 from satsym.formula.values import Kernel, Matrix, Relation, Roots
 from satsym.status import BadInput
 from satsym.symbolic.lookup import formulas, library
 
-_ROUNDING = 1e-12
 _ZEROS = 6
 """Digits that claim nothing and are written all the same, before a power of ten is."""
 
@@ -38,15 +40,29 @@ def _measured(bench: Bench, row: Row, printed: quantities.PrintedNumber, tree: N
         derived = f"{found.value:.6g} {quantities.base_unit(found.dimension)}"
         remark = sentences.wrong_unit(library.written_dimension(stated.dimension), wanted)
         return Outcome(row, False, derived, unit=True, remark=remark)
-    value = found.value / quantities.scale(printed.unit)
+    scale = quantities.scale(printed.unit)
+    value, (low, high) = found.value / scale, (bound / scale for bound in quantities.bounds(tree, inputs))
     unit = "" if printed.unit == "1" else f" {printed.unit}"
     derived = f"{_rounded(value, printed)}{unit}"
-    right = abs(value - float(printed.value)) <= float(printed.half_unit) * (1 + _ROUNDING)
-    evidence = {"recomputed": value, "allowed": float(printed.half_unit)}
-    gap = value - float(printed.value)
-    cut_off = value * gap > 0 and abs(gap) < 2 * float(printed.half_unit)
-    remark = "" if right else sentences.wrong_number(derived, cut_off)
-    return Outcome(row, right, derived, remark=remark, evidence=evidence)
+    evidence: dict[str, object] = {"recomputed": value, "a unit of the last digit": 2.0 * float(printed.half_unit)}
+    if high > low:
+        evidence |= {"with rounded inputs, from": low, "to": high}
+    how, custom = fit_of_range(low, high, printed), ""
+    if how is not Fit.INSIDE:
+        custom = _customary(printed, tree, inputs, scale)
+    remark = "" if how is Fit.INSIDE else sentences.wrong_number(derived, custom)
+    near = how is Fit.NEAR or bool(custom)
+    return Outcome(row, how is Fit.INSIDE, derived, near=near, remark=remark, evidence=evidence)
+
+
+def _customary(printed: quantities.PrintedNumber, tree: Node, inputs: Mapping[str, str], scale: float) -> str:
+    """The customary value of a constant with which the printed digits come out, in words; empty if none does."""
+    for name in sorted(symbols(tree) - inputs.keys()):
+        for text in CUSTOMARY.get(name, ()):
+            found = quantities.evaluated(tree, {**inputs, name: text}).value / scale
+            if fit_of_range(found, found, printed) is Fit.INSIDE:
+                return f"{name} = {text}"
+    return ""
 
 
 def _exact(bench: Bench, row: Row, printed: quantities.PrintedNumber) -> Outcome:
@@ -58,9 +74,10 @@ def _exact(bench: Bench, row: Row, printed: quantities.PrintedNumber) -> Outcome
     )
     if by_sympy is None or by_sympy != by_trees:
         raise BadInput(f"a number is held against {formulas.text(target.exact)}, which is none")
-    right = abs(by_sympy - printed.value) <= printed.half_unit
-    derived = str(by_sympy)
-    return Outcome(row, right, derived, remark="" if right else sentences.wrong_number(derived, False))
+    how, derived = fit_of_range(float(by_sympy), float(by_sympy), printed), str(by_sympy)
+    right = how is Fit.INSIDE if by_sympy.denominator != 1 else by_sympy == printed.value
+    remark = "" if right else sentences.wrong_number(derived)
+    return Outcome(row, right, derived, near=how is Fit.NEAR and by_sympy.denominator != 1, remark=remark)
 
 
 def _rounded(value: float, printed: quantities.PrintedNumber) -> str:

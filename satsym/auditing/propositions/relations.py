@@ -96,13 +96,18 @@ def fit(value: Any, printed: PrintedNumber) -> Fit:
     Digits claim what rounds to them, and what is cut to them: 0.15 may stand for anything from 0.145 to below 0.16.
     """
     number = _in_printed_unit(value, printed.unit)
+    return fit_of_range(number, number, printed)
+
+
+def fit_of_range(low: float, high: float, printed: PrintedNumber) -> Fit:
+    """As :func:`fit`, for a value in the printed unit that is known to lie in a range."""
     half = float(printed.half_unit)
     sign = -1.0 if printed.value < 0 else 1.0
-    above = sign * (number - float(printed.value)) / half
+    above = sorted(sign * (number - float(printed.value)) / half for number in (low, high))
     slack = 1e-9 * max(1.0, abs(float(printed.value)) / half)
-    if -1.0 - slack <= above <= 2.0 + slack:
+    if above[1] >= -1.0 - slack and above[0] <= 2.0 + slack:
         return Fit.INSIDE
-    return Fit.NEAR if -3.0 - slack <= above <= 4.0 + slack else Fit.OUTSIDE
+    return Fit.NEAR if above[1] >= -3.0 - slack and above[0] <= 4.0 + slack else Fit.OUTSIDE
 
 
 def _in_printed_unit(value: Any, unit: str) -> float:
@@ -120,7 +125,7 @@ def _in_printed_unit(value: Any, unit: str) -> float:
 def _equal(left: Any, right: Any) -> Comparison:
     if isinstance(left, str) and not isinstance(right, str):
         left, right = right, left
-    if isinstance(left, str) or isinstance(left, bool | np.bool_):
+    if isinstance(left, str | bool | np.bool_):
         return Comparison(bool(left == right), left, right)
     if isinstance(right, str):
         if _is_sequence(left):
