@@ -32,7 +32,7 @@ class Judged:
 
     Attributes
     ----------
-    document, item, part, kind, says, where
+    document, item, part, kind, says, where, role, original
         As the ledger has them.
     printed
         Verbatim.
@@ -42,6 +42,12 @@ class Judged:
         A referee's sentences; empty for what is confirmed.
     evidence
         Measured numbers, and the command that recomputes them.
+    form
+        What rows with the same fault share: the edit that puts them right, or the form of the claim.
+    spoiled_by
+        Faulty rows that it follows from.
+    cause, weight
+        Of the finding it belongs to, once rows are looked at together.
     """
 
     document: str
@@ -55,6 +61,12 @@ class Judged:
     verdict: Verdict
     diagnosis: str
     evidence: str
+    role: str = ""
+    original: str = ""
+    form: str = ""
+    spoiled_by: tuple[str, ...] = ()
+    cause: str = ""
+    weight: str = ""
 
     @property
     def key(self) -> str:

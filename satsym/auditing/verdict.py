@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from functools import partial
 
 from satsym.auditing import refusal, sentences
+from satsym.auditing.causes import SILENT, with_causes
+from satsym.auditing.diagnosis.edits import Change, Edit
 from satsym.auditing.judge.bench import Bench, Formula
 from satsym.auditing.judge.compare import plans
 from satsym.auditing.judge.formula import corrected
 from satsym.auditing.judged import Judged, Verdict
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
+from satsym.auditing.propositions.reading import shape
 from satsym.formula import budget
+from satsym.formula.tree import Mul, Neg, Node
 from satsym.formula.values import Kernel, Roots
+from satsym.formula.writing import written
 
 FORMULAS = ("equation", "matrix")
 """Kinds of rows that may be misprinted; a line of a program is executed, and a number is claimed."""
@@ -34,7 +40,7 @@ def verdicts(bench: Bench, outcomes: Sequence[Outcome], wanted: Sequence[str] | 
     by_key = {outcome.row.key: outcome for outcome in outcomes}
     context = _Context(bench, by_key)
     chosen = [o for o in outcomes if wanted is None or o.row.key in wanted]
-    return [refusal.named(bench, o.row, budget.VERDICT, partial(context.judged, o)) for o in chosen]
+    return with_causes([refusal.named(bench, o.row, budget.VERDICT, partial(context.judged, o)) for o in chosen])
 
 
 class _Context:
@@ -63,6 +69,10 @@ class _Context:
             verdict=verdict,
             diagnosis=" ".join(filter(None, said)) if verdict != "confirmed" else "",
             evidence=f"{numbers}; {command}" if numbers else command,
+            role=row.table.role,
+            original=row.table.original,
+            form=_form(outcome),
+            spoiled_by=tuple(self._spoiled_by(outcome)) if verdict not in SILENT else (),
         )
 
     def _verdict(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
@@ -84,17 +94,16 @@ class _Context:
         return "confirmed", []
 
     def _of_claim(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
-        derived = outcome.derived
+        derived, remark = outcome.derived, sentences.sentence(outcome.remark)
         if outcome.right is None:
             return "undecided", [sentences.undecided(derived)]
         if outcome.right:
-            return ("confirmed", []) if outcome.sound else ("unsound", [sentences.unsound_claim(derived)])
+            return ("confirmed", []) if outcome.sound else ("unsound", [sentences.unsound_claim(derived), remark])
         if outcome.artefact:
-            return "artefact", [sentences.artefact(derived)]
-        if outcome.near:
-            return "imprecise", [sentences.false_claim(derived)]
+            return "artefact", [sentences.artefact(derived), remark]
         by_role: dict[str, Verdict] = {"citation": "misprint", "notation": "notation"}
-        return by_role.get(outcome.row.table.role, "wrong"), [sentences.false_claim(derived)]
+        verdict = "imprecise" if outcome.near else by_role.get(outcome.row.table.role, "wrong")
+        return verdict, [sentences.false_claim(derived), remark]
 
     def _of_predicate(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
         derived, remark = outcome.derived, sentences.sentence(outcome.remark)
@@ -115,7 +124,7 @@ class _Context:
         slips = [o.row.key for o in same if o.right is False and o.remedy and _same(o, outcome)]
         carried, mended = self._used_by(row)
         verdict: Verdict = "wrong" if carried and not right_elsewhere else "misprint"
-        source = self._wrong_among(row.uses) if row.follows is not None and self._follows(row, {}) else []
+        source = self._spoiled_by(outcome)
         return verdict, [
             outcome.remark,
             sentences.right_elsewhere(right_elsewhere) if right_elsewhere else "",
@@ -124,6 +133,13 @@ class _Context:
             sentences.not_carried_on(mended) if mended else "",
             sentences.same_slip(slips) if slips else "",
         ]
+
+    def _spoiled_by(self, outcome: Outcome) -> list[str]:
+        """Faulty rows that a faulty row follows from."""
+        row = outcome.row
+        if row.claims is not None:
+            return [key for key in row.uses if self._outcomes[key].right is False]
+        return self._wrong_among(row.uses) if row.follows is not None and self._follows(row, {}) else []
 
     def _used_by(self, row: Row) -> tuple[list[str], list[str]]:
         """Rows that carry the error on, and rows that follow from the right formula only."""
@@ -180,6 +196,29 @@ def _same(one: Outcome, other: Outcome) -> bool:
     return [(e.change, e.old, e.new) for _, e in one.remedy.edits] == [
         (e.change, e.old, e.new) for _, e in other.remedy.edits
     ] and bool(one.remedy.edits)
+
+
+def _form(outcome: Outcome) -> str:
+    """What rows with the same fault share: the shape of a claim, whatever its names and numbers; or the same edits."""
+    if outcome.row.claims is not None:
+        return shape(outcome.row.claims.tree)
+    if outcome.remedy is None:
+        return ""
+    return "; ".join(sorted({_change(edit) for _, edit in outcome.remedy.edits}))
+
+
+def _change(edit: Edit) -> str:
+    """What an edit does, wherever it does it: of a factor too many, or missing, only the factor counts."""
+    if edit.change in (Change.DROPPED_FACTOR, Change.MISSING_FACTOR):
+        old, new = (Counter(map(written, _factors(part))) for part in (edit.old, edit.new))
+        return f"{edit.change.name} {' * '.join((old - new) | (new - old))}"
+    return f"{edit.change.name} {written(edit.old)} -> {written(edit.new)}"
+
+
+def _factors(node: Node) -> tuple[Node, ...]:
+    if isinstance(node, Neg):
+        return _factors(node.operand)
+    return tuple(f for factor in node.factors for f in _factors(factor)) if isinstance(node, Mul) else (node,)
 
 
 def _shown(value: object) -> str:

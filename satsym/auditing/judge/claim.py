@@ -26,14 +26,16 @@ def judge(bench: Bench, row: Row) -> Outcome:
     reason = pages.answer(row.because) if row.because is not None and found.truth else None
     produced = pages.answer(row.produced) if row.produced is not None and found.truth is False else None
     deciding = next((answer for answer in (reason, produced) if answer is not None), found)
+    sound = not found.vacuous and (reason is None or reason.truth is not False)
     said = "; ".join(dict.fromkeys((*found.reasons, *deciding.reasons)))
     return Outcome(
         row,
         found.truth,
         said,
-        sound=not found.vacuous and (reason is None or reason.truth is not False),
+        sound=sound,
         artefact=produced is not None and bool(produced.truth),
         near=found.near,
+        remark="" if found.truth and sound else pages.explained(row.why),
         evidence={**found.evidence, **deciding.evidence},
     )
 
@@ -49,6 +51,11 @@ class _Pages:
         if proposition.stands_alone:
             return _alone(proposition.text)
         return Evaluation(self._words, self, self._row.table.printed).answer(proposition)
+
+    def explained(self, why: tuple[str | Proposition, ...]) -> str:
+        """A sentence with what its terms measure."""
+        evaluation = Evaluation(self._words, self, self._row.table.printed)
+        return "".join(part if isinstance(part, str) else evaluation.term(part) for part in why)
 
     @cached_property
     def _words(self) -> Words:

@@ -38,6 +38,8 @@ class Row:
         The proposition that has to hold: what a claim prints, or what another row is held against.
     because, produced
         The reason given, and what tells that the printed algorithm produces it.
+    why
+        A sentence that explains why it is not so: texts, and terms to be measured between them.
     """
 
     table: RowTable
@@ -50,6 +52,7 @@ class Row:
     claims: Proposition | None = None
     because: Proposition | None = None
     produced: Proposition | None = None
+    why: tuple[str | Proposition, ...] = ()
 
     @property
     def uses(self) -> list[str]:

@@ -20,7 +20,7 @@ from satsym.auditing.ledger.documents import HEAD
 from satsym.auditing.ledger.positions import Part
 from satsym.auditing.ledger.schema import DocumentTable, RowTable, SymbolTable, WrongKey
 from satsym.auditing.ledger.scopes import Scope, WrongScope
-from satsym.auditing.propositions.reading import is_proposition, proposition
+from satsym.auditing.propositions.reading import explanation, is_proposition, proposition
 from satsym.formula import budget, reading
 from satsym.formula.tree import Node, substituted
 from satsym.formula.weight import Scales
@@ -198,6 +198,8 @@ class _Reader:
         ):
             with self._telling("row", key if key in REASONS else "holds" if own else "printed", index, row.key):
                 found[key] = proposition(str(text), words, own=own) if text else None
+        with self._telling("row", "why", index, row.key):
+            found["why"] = explanation(table.why, words)
         with self._telling("row", "from", index, row.key):
             if isinstance(table.follows, str) and table.follows:
                 raise BadInput('write the keys of the rows that it is drawn from as a list, such as ["2.19", "2.20"]')

@@ -55,7 +55,8 @@ class RowTable(Table, frozen=True, rename={"follows": "from"}):
     """One printed thing, and what it is held against.
 
     Of a claim, ``printed`` is the proposition, ``because`` the reason that the document gives, ``from`` the rows that
-    it is drawn from, and ``produced`` what tells that the printed algorithm brings it about, if the problem does not.
+    it is drawn from, and ``produced`` what tells that the printed algorithm brings it about, if the problem does not. ``why`` is a sentence for people, with
+    measured terms in braces, that explains a claim which is not confirmed.
     """
 
     item: Text
@@ -70,6 +71,7 @@ class RowTable(Table, frozen=True, rename={"follows": "from"}):
     follows: Text | Texts = ""
     because: Text = ""
     produced: Text = ""
+    why: Text = ""
     role: Role = "step"
     columns: Texts = ()
     inputs: Formulas = {}

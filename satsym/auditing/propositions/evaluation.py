@@ -39,6 +39,8 @@ _OPERATORS: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.Pow: operator.pow, ast.MatMult: operator.matmul,
 }  # fmt: skip
 _MAX_POWER = 64
+_TOLD = 4
+"""Members of a list for each of which what is measured is told."""
 _BREAKS = (ArithmeticError, ValueError, TypeError, LookupError, AttributeError, np.linalg.LinAlgError)
 
 
@@ -117,6 +119,20 @@ class Evaluation:
         with np.errstate(all="ignore"):
             return self._judge(proposition.tree, {})
 
+    def term(self, proposition: Proposition) -> str:
+        """The value of a term that is no proposition, in words.
+
+        Raises
+        ------
+        BadInput
+            If it has none.
+        """
+        with np.errstate(all="ignore"):
+            try:
+                return in_words(self._value(proposition.tree, {}))
+            except Undecided as reason:
+                return f"undecided ({reason})"
+
     def _judge(self, node: ast.expr, bound: Mapping[str, Any]) -> Answer:
         if isinstance(node, ast.BoolOp):
             return _joined([self._judge(part, bound) for part in node.values], isinstance(node.op, ast.And))
@@ -176,11 +192,9 @@ class Evaluation:
             total += 1
             of = family.of if isinstance(family, Family) else "cases"
             found = self._judge(node.elt, inner)
-            if found.truth is not universal:
-                named = f" ({member})" if member else ""
-                found = replace(found, reasons=tuple(f"{reason}{named}" for reason in found.reasons))
-                if found.truth is (not universal):
-                    return replace(found, members=max(total, found.members), vacuous=False)
+            found = replace(found, reasons=tuple(f"{reason} ({member})" for reason in found.reasons))
+            if found.truth is (not universal):
+                return replace(found, members=max(total, found.members), vacuous=False)
             answers.append(found)
         if any(answer.truth is None for answer in answers):
             open_ = next(answer for answer in answers if answer.truth is None)
@@ -189,10 +203,11 @@ class Evaluation:
         said = f"{'so' if universal else 'not so'} in all of {total} {of}" if total else "there is none"
         if vacuous:
             said = f"no one of {total} {of} meets the condition"
-        elif total == 1 and answers:
-            said = "; ".join(answers[0].reasons)
-        evidence = answers[0].evidence if total == 1 else {of: str(total)}
-        return Answer(universal, (said,), evidence, total, vacuous)
+        if not vacuous and 0 < total <= _TOLD:
+            evidence = {k: v for answer in answers for k, v in answer.evidence.items()}
+            reasons = dict.fromkeys(reason for answer in answers for reason in answer.reasons)
+            return Answer(universal, tuple(reasons), evidence, total)
+        return Answer(universal, (said,), {of: str(total)}, total, vacuous)
 
     def _members(
         self, parts: list[ast.comprehension], bound: Mapping[str, Any]

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ast
 import inspect
+import re
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -30,6 +31,7 @@ ITEMS = "items"
 PRINTED = "printed"
 """In ``holds``: what the row itself prints, letter by letter."""
 
+_BRACES = re.compile(r"\{([^{}]*)\}")
 _ALLOWED: tuple[type[ast.AST], ...] = (
     *(ast.Expression, ast.Constant, ast.Name, ast.Attribute, ast.Subscript, ast.Call, ast.keyword, ast.Tuple, ast.List),
     *(ast.UnaryOp, ast.USub, ast.UAdd, ast.Not, ast.BoolOp, ast.And, ast.Or, ast.Compare, ast.BinOp),
@@ -113,6 +115,20 @@ def proposition(text: str, words: Words, *, own: bool = False) -> Proposition:
     return Proposition(text, tree, tuple(dict.fromkeys(keys_in(tree))), tuple(check.symbols))
 
 
+def explanation(text: str, words: Words) -> tuple[str | Proposition, ...]:
+    """A sentence with terms in braces: texts, and the terms between them, read.
+
+    Raises
+    ------
+    BadInput
+        If a term cannot be read, or a brace is not closed.
+    """
+    parts = _BRACES.split(text)
+    if any(brace in part for part in parts[::2] for brace in "{}"):
+        raise BadInput("a brace stands alone; write a term between { and }")
+    return tuple(proposition(part, words) if k % 2 else part for k, part in enumerate(parts) if part)
+
+
 def is_proposition(text: str) -> bool:
     """Whether a text is a relation or joined of relations, and not a formula or an address."""
     try:
@@ -122,6 +138,22 @@ def is_proposition(text: str) -> bool:
     denied = isinstance(tree, ast.UnaryOp) and isinstance(tree.op, ast.Not)
     named = isinstance(tree, ast.Call) and isinstance(tree.func, ast.Name) and tree.func.id
     return denied or isinstance(tree, ast.Compare | ast.BoolOp) or named in (*QUANTIFIERS, *CONNECTIVES)
+
+
+def shape(tree: ast.expr) -> str:
+    """The form of a proposition, whatever its numbers, texts and parts are called."""
+
+    class Masked(ast.NodeTransformer):
+        def visit_Constant(self, _: ast.Constant) -> ast.Name:
+            return ast.Name("_", ast.Load())
+
+        def visit_Attribute(self, node: ast.Attribute) -> ast.Attribute:
+            return ast.Attribute(self.visit(node.value), "_", ast.Load())
+
+        def visit_List(self, _: ast.List) -> ast.Name:
+            return ast.Name("_", ast.Load())
+
+    return ast.unparse(Masked().visit(ast.parse(ast.unparse(tree), mode="eval").body))
 
 
 def keys_in(tree: ast.AST) -> list[str]:

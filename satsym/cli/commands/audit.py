@@ -24,9 +24,16 @@ Examples:
 @place_option("--latex", metavar="FILE", help="Write a report for LaTeX, too.")
 @click.option("--item", "items", metavar="X", multiple=True, help="Judge this item alone; may be repeated.")
 @click.option("--coverage", is_flag=True, help="List the document's numbers that have no row; judge nothing.")
+@click.option("--rows", is_flag=True, help="Give every row that is not confirmed in full, after the findings.")
 @click.option("--fresh", is_flag=True, help="Compute anew, whatever is in the cache.")
 def audit(
-    ledgers: tuple[str, ...], as_json: bool, latex: Path | None, items: tuple[str, ...], coverage: bool, fresh: bool
+    ledgers: tuple[str, ...],
+    as_json: bool,
+    latex: Path | None,
+    items: tuple[str, ...],
+    coverage: bool,
+    rows: bool,
+    fresh: bool,
 ) -> ExitCode:
     """Judge what documents print.
 
@@ -57,5 +64,5 @@ def audit(
     if as_json:
         emit_json(reporting.audit_object([row for rows in judged.values() for row in rows]))
     else:
-        emit(reporting.audit_text(read, judged))
+        emit(reporting.audit_text(read, judged, rows=rows or bool(items)))
     return ExitCode.DONE
