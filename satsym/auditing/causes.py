@@ -55,7 +55,7 @@ class Finding:
     @property
     def statement(self) -> str:
         """What is wrong, of the first place."""
-        return self.places[0].diagnosis
+        return next((row.why for row in self.places if row.why), self.places[0].diagnosis)
 
     @property
     def correction(self) -> str:

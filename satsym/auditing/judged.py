@@ -42,6 +42,8 @@ class Judged:
         A referee's sentences; empty for what is confirmed.
     evidence
         Measured numbers, and the command that recomputes them.
+    why
+        Why it is not so, in a sentence for people, where the ledger has one.
     form
         What rows with the same fault share: the edit that puts them right, or the form of the claim.
     spoiled_by
@@ -63,6 +65,7 @@ class Judged:
     evidence: str
     role: str = ""
     original: str = ""
+    why: str = ""
     form: str = ""
     spoiled_by: tuple[str, ...] = ()
     cause: str = ""

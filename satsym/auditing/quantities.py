@@ -43,7 +43,7 @@ class Quantity:
     dimension: Mapping[str, Fraction]
 
     def __str__(self) -> str:
-        unit = base_unit(self.dimension)
+        unit = re.sub(r"\^1(?!\d)", "", base_unit(self.dimension))
         return f"{self.value:.6g}" if unit == "1" else f"{self.value:.6g} {unit}"
 
     def __add__(self, other: Quantity) -> Quantity:

@@ -105,9 +105,9 @@ def fit_of_range(low: float, high: float, printed: PrintedNumber) -> Fit:
     sign = -1.0 if printed.value < 0 else 1.0
     above = sorted(sign * (number - float(printed.value)) / half for number in (low, high))
     slack = 1e-9 * max(1.0, abs(float(printed.value)) / half)
-    if above[1] >= -1.0 - slack and above[0] <= 2.0 + slack:
+    if above[1] >= -1.0 - slack and above[0] < 2.0 - slack:
         return Fit.INSIDE
-    return Fit.NEAR if above[1] >= -3.0 - slack and above[0] <= 4.0 + slack else Fit.OUTSIDE
+    return Fit.NEAR if above[1] >= -3.0 - slack and above[0] < 4.0 - slack else Fit.OUTSIDE
 
 
 def _in_printed_unit(value: Any, unit: str) -> float:
