@@ -103,7 +103,8 @@ def test_a_universal_that_no_member_meets_is_vacuous() -> None:
     ("value", "printed", "how"),
     [
         (0.1449, "0.15", Fit.NEAR), (0.1451, "0.15", Fit.INSIDE), (0.1599, "0.15", Fit.INSIDE),
-        (0.1601, "0.15", Fit.NEAR), (0.1701, "0.15", Fit.OUTSIDE), (-0.1599, "-0.15", Fit.INSIDE), (-0.1449, "-0.15", Fit.NEAR),
+        (0.1601, "0.15", Fit.NEAR), (0.1701, "0.15", Fit.OUTSIDE), (-0.1599, "-0.15", Fit.INSIDE),
+        (-0.1449, "-0.15", Fit.NEAR),
         (35786.0, "36000", Fit.INSIDE), (35400.0, "36000", Fit.NEAR), (1.0e-7, "0.0000001", Fit.INSIDE),
     ],
 )  # fmt: skip

@@ -21,7 +21,7 @@ from satsym.wording import shown
 def judge(bench: Bench, row: Row) -> Outcome:
     """The outcome of a row that a proposition judges."""
     assert row.claims is not None
-    pages = _Pages(bench, row)
+    pages = Pages(bench, row)
     found = pages.answer(row.claims)
     reason = pages.answer(row.because) if row.because is not None and found.truth else None
     produced = pages.answer(row.produced) if row.produced is not None and found.truth is False else None
@@ -40,7 +40,7 @@ def judge(bench: Bench, row: Row) -> Outcome:
     )
 
 
-class _Pages:
+class Pages:
     """The document as a proposition of one of its rows sees it."""
 
     def __init__(self, bench: Bench, row: Row) -> None:
