@@ -9,7 +9,7 @@ COMPILE := $(BIN)/python -m compileall -q satsym generated
 # Each recipe says itself what the user needs to know; errors of the tools come through (pip -qq: errors only).
 .SILENT:
 .NOTPARALLEL:
-.PHONY: help demo test test-whole test-versions lint format derive check-derive bench bench-returns bench-drift bench-truth clean
+.PHONY: help demo test test-whole test-versions lint format derive check-derive bench bench-returns bench-drift bench-audit bench-truth clean
 
 help:  ## list the targets
 	grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /|/' | awk -F'|' '{printf "  make %-14s %s\n", $$1, $$2}'
@@ -56,6 +56,9 @@ bench-returns: $(VENV)/installed-bench  ## solve 12,000 random returns to an orb
 
 bench-drift: $(VENV)/installed-bench  ## follow orbits for 10,000 revolutions by each propagator (takes minutes)
 	$(BIN)/python tests/bench/drift.py
+
+bench-audit: $(VENV)/installed-dev  ## plant slips in what the documents print: how many are caught and named (takes minutes)
+	$(BIN)/python -m tests.bench.audit
 
 bench-truth: $(VENV)/installed-bench  ## random instances of all classes beside independent answers (takes hours)
 	$(BIN)/python -m tests.bench.truth.run

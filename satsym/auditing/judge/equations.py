@@ -14,7 +14,9 @@ from satsym.formula.angles import Complex, Monomial, TooManyTerms, terms_of
 from satsym.formula.bound import BoundPoint
 from satsym.formula.calculus import difference, product, raised
 from satsym.formula.tree import Equality, Neg, Node, Sym, number
+from satsym.formula.values import Matrix
 from satsym.formula.writing import written
+from satsym.status import BadInput
 from satsym.symbolic.lookup import formulas
 
 _MOST_FACTORS = 60
@@ -62,6 +64,8 @@ class Equal(Plan):
     def cell_holds(self, index: int, cell: Node) -> bool:
         """Whether one cell would be right."""
         found, target = self.both(cell), self._target[index]
+        if isinstance(found.exact, Matrix):
+            raise BadInput("a symbol that means a matrix stands where it is held against an expression")
         return self.vanish(difference(found.trees, target.trees), found.exact - target.exact)
 
     def residuals(self, point: field.Point, cells: Cells) -> Iterator[list[int]]:
