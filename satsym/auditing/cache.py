@@ -8,12 +8,17 @@ compared and read as data; a file that is damaged or of another kind is ignored 
 from __future__ import annotations
 
 import hashlib
+import os
 import sys
 from collections.abc import Callable, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from importlib.resources import files
+from multiprocessing import get_context
 from pathlib import Path
+from queue import Empty
+from typing import Any
 
 import msgspec
 
@@ -21,12 +26,15 @@ from satsym import kept, sources
 from satsym.auditing.judged import Judged
 from satsym.auditing.ledger import documents
 from satsym.auditing.ledger.contents import Ledger
+from satsym.auditing.ledger.load import read
 from satsym.auditing.run import audit as judge
 
 _JUDGING = ("satsym.auditing.run", "satsym.auditing.judged")
 _READ = (("satsym.derivations", "*.py"), ("satsym.generated", "*.py"), ("satsym", "instances/*.toml"))
 """What judging takes from beside the modules it imports, by package and pattern."""
 
+_LOOK = 0.1
+"""Seconds after which it is looked whether a process has ended."""
 _LIBRARIES = ("sympy", "numpy", "scipy", "pint", "mpmath")
 
 
@@ -44,13 +52,67 @@ def audit(
     """
     if items:
         return judge(ledger, items, announce)
-    path = kept.folder("audit") / f"{ledger.document.key[:40]}-{_digest(ledger)}.json"
-    before = None if fresh else _read(path)
+    before = None if fresh else _read(_place(ledger))
     if before is not None:
         return before
     found = judge(ledger, items, announce)
-    kept.write(path, msgspec.json.encode(found))
+    kept.write(_place(ledger), msgspec.json.encode(found))
     return found
+
+
+def audit_all(
+    ledgers: Sequence[Ledger],
+    items: Sequence[str] = (),
+    announce: Callable[[str], None] = lambda _: None,
+    *,
+    fresh: bool = False,
+) -> dict[str, list[Judged]]:
+    """As :func:`audit`, of several documents by key; those that are not kept in a process for each processor."""
+    found = {} if fresh or items else {x.document.key: rows for x in ledgers if (rows := _read(_place(x))) is not None}
+    left = sorted((x for x in ledgers if x.document.key not in found), key=lambda ledger: -len(ledger.rows))
+    processes = min(os.cpu_count() or 1, len(left))
+    if items or processes < 2:
+        found |= {ledger.document.key: audit(ledger, items, announce, fresh=fresh) for ledger in left}
+    else:
+        context = get_context("spawn")
+        queue = context.Queue()
+        with ProcessPoolExecutor(processes, context, _telling, (queue,)) as pool:
+            running = {ledger.document.key: pool.submit(_judged, ledger.path) for ledger in left}
+            _follow(list(running.values()), queue, announce)
+            found |= {key: future.result() for key, future in running.items()}
+    return {ledger.document.key: found[ledger.document.key] for ledger in ledgers}
+
+
+def _follow(running: Sequence[Future[list[Judged]]], queue: Any, announce: Callable[[str], None]) -> None:
+    """Announce what the processes tell, until all have ended or one has failed."""
+    last: dict[str, str] = {}
+    while not all(future.done() for future in running):
+        if any(future.done() and future.exception() for future in running):
+            for future in running:
+                future.cancel()
+        try:
+            document, _, row = queue.get(timeout=_LOOK).partition(": ")
+        except Empty:
+            continue
+        last[document] = f"{document} {row.partition(',')[0].removeprefix('row ')}"
+        announce("; ".join(last.values()))
+
+
+_tell: list[Any] = []
+"""Where a process puts what is announced."""
+
+
+def _telling(queue: Any) -> None:
+    _tell.append(queue)
+
+
+def _judged(path: Path) -> list[Judged]:
+    """All rows of a ledger, in a process of its own."""
+    return audit(read(path), (), _tell[0].put, fresh=True)
+
+
+def _place(ledger: Ledger) -> Path:
+    return kept.folder("audit") / f"{ledger.document.key[:40]}-{_digest(ledger)}.json"
 
 
 def _read(path: Path) -> list[Judged] | None:

@@ -55,7 +55,7 @@ def audit(
             emit(reporting.coverage_text(read))
         return ExitCode.DONE
     with live() as line:
-        judged = {x.document.key: cache.audit(x, items, line.show, fresh=fresh) for x in read}
+        judged = cache.audit_all(read, items, line.show, fresh=fresh)
     if latex is not None:
         from satsym.report.latex.audit import render
         from satsym.report.results.files import write_text
