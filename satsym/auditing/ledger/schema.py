@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Annotated, Any, Literal, get_args
 
 import msgspec
@@ -103,7 +104,7 @@ def table(tree: Any, kind: type[Any]) -> Any:
     """
     if not isinstance(tree, dict):
         raise WrongKey("", f"got {shown(tree)}; write a table")
-    fields = {entry.encode_name: entry for entry in msgspec.structs.fields(kind)}
+    fields = _fields(kind)
     for key in tree:
         if key not in fields:
             raise WrongKey(key, f"unknown key; {suggestion(key, fields)}")
@@ -116,6 +117,11 @@ def table(tree: Any, kind: type[Any]) -> Any:
         except msgspec.ValidationError:
             raise WrongKey(key, f"got {shown(value)}; write {_wanted(key, fields[key].type)}") from None
     return msgspec.convert(tree, kind)
+
+
+@cache
+def _fields(kind: type[Any]) -> dict[str, Any]:
+    return {entry.encode_name: entry for entry in msgspec.structs.fields(kind)}
 
 
 def _wanted(key: str, kind: Any) -> str:

@@ -34,9 +34,14 @@ def value(function: F) -> F:
 
 def words(symbols: Collection[str] = ()) -> Words:
     """What a proposition may name, in a notation with these symbols."""
+    _load()
+    return Words(_FUNCTIONS, _VALUES, symbols)
+
+
+@cache
+def _load() -> None:
     for module in pkgutil.iter_modules(__path__):
         importlib.import_module(f"{__name__}.{module.name}")
-    return Words(_FUNCTIONS, _VALUES, symbols)
 
 
 def _entered(function: Callable[..., Any], name: str, registry: dict[str, Any]) -> None:
