@@ -104,7 +104,7 @@ def table(tree: Any, kind: type[Any]) -> Any:
     """
     if not isinstance(tree, dict):
         raise WrongKey("", f"got {shown(tree)}; write a table")
-    fields = _fields(kind)
+    fields = _fields(kind)  # type: ignore[arg-type]
     for key in tree:
         if key not in fields:
             raise WrongKey(key, f"unknown key; {suggestion(key, fields)}")
