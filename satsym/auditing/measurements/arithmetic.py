@@ -86,6 +86,39 @@ def last(values: Sequence[Any]) -> Any:
 
 
 @measurement
+def mean(values: Sequence[float]) -> float:
+    """The mean of a curve."""
+    return float(np.mean(values))
+
+
+@measurement
+def early(curve: Sequence[Any]) -> Sequence[Any]:
+    """The first tenth of a curve."""
+    return curve[: max(1, len(curve) // 10)]
+
+
+@measurement
+def late(curve: Sequence[Any]) -> Sequence[Any]:
+    """The last tenth of a curve."""
+    return curve[-max(1, len(curve) // 10) :]
+
+
+@measurement
+def area(curve: Sequence[float], t: Sequence[float]) -> float:
+    """The integral of a curve over its times, by a cubic spline."""
+    from scipy.interpolate import CubicSpline
+
+    return float(CubicSpline(t, curve).integrate(t[0], t[-1]))
+
+
+@measurement
+def defined(of: Any, **values: float) -> bool:
+    """Whether a formula has a value where its letters have these, those that are not named being 1."""
+    known = {letter: values.get(letter.name, 1) for letter in of.free_symbols}
+    return bool(of.subs(known).is_finite)
+
+
+@measurement
 def turning_points(curve: Sequence[float]) -> int:
     """How often a curve turns from rising to falling or back."""
     slopes = np.diff(np.asarray(curve, dtype=float))
