@@ -10,7 +10,7 @@ from satsym.auditing.judge.bench import Bench
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
 from satsym.auditing.propositions.evaluation import Answer, Evaluation
-from satsym.auditing.propositions.reading import Proposition, Words
+from satsym.auditing.propositions.reading import Proposition, Words, matching
 from satsym.formula.values import Matrix, Relation
 from satsym.formula.writing import written
 from satsym.status import BadInput

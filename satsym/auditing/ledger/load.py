@@ -20,7 +20,7 @@ from satsym.auditing.ledger.documents import HEAD
 from satsym.auditing.ledger.positions import Part
 from satsym.auditing.ledger.schema import DocumentTable, RowTable, SymbolTable, WrongKey
 from satsym.auditing.ledger.scopes import Scope, WrongScope
-from satsym.auditing.propositions.reading import matching, explanation, is_proposition, proposition
+from satsym.auditing.propositions.reading import explanation, is_proposition, matching, proposition
 from satsym.formula import budget, reading
 from satsym.formula.tree import Node, substituted
 from satsym.formula.weight import Scales

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -114,8 +115,12 @@ def area(curve: Sequence[float], t: Sequence[float]) -> float:
 @measurement
 def defined(of: Any, **values: float) -> bool:
     """Whether a formula has a value where its letters have these, those that are not named being 1."""
-    known = {letter: values.get(letter.name, 1) for letter in of.free_symbols}
-    return bool(of.subs(known).is_finite)
+    from satsym.symbolic.lookup import formulas
+
+    known = {letter: formulas.rational(Fraction(values.get(letter.name, 1))) for letter in of.free_symbols}
+    if any(part.func.__name__ in ("Min", "Max") for part in (of, *of.args)):  # sympy raises where these have no value
+        return all(defined(part, **values) for part in of.args)
+    return bool(of.xreplace(known).is_finite)
 
 
 @measurement
