@@ -10,7 +10,7 @@ from satsym.auditing.judge.bench import Bench
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
 from satsym.auditing.propositions.evaluation import Answer, Evaluation
-from satsym.auditing.propositions.reading import Proposition, Words
+from satsym.auditing.propositions.reading import Proposition, Words, matching
 from satsym.formula.values import Matrix, Relation
 from satsym.formula.writing import written
 from satsym.status import BadInput
@@ -69,8 +69,9 @@ class Pages:
         return _exact(self._bench.of_row(other))
 
     def text(self, key: str) -> Any:
-        """What a row prints, letter by letter."""
-        return self._bench.rows[key].table.printed
+        """What a row prints, letter by letter; of a key that ends in a star all rows that begin so, in order."""
+        found = [row.table.printed for name, row in self._bench.rows.items() if matching(key)(name)]
+        return found if key.endswith("*") else found[0]
 
     def symbol(self, name: str) -> Any:
         """What a symbol of the notation means."""

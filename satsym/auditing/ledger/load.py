@@ -20,7 +20,7 @@ from satsym.auditing.ledger.documents import HEAD
 from satsym.auditing.ledger.positions import Part
 from satsym.auditing.ledger.schema import DocumentTable, RowTable, SymbolTable, WrongKey
 from satsym.auditing.ledger.scopes import Scope, WrongScope
-from satsym.auditing.propositions.reading import explanation, is_proposition, proposition
+from satsym.auditing.propositions.reading import explanation, is_proposition, matching, proposition
 from satsym.formula import budget, reading
 from satsym.formula.tree import Node, substituted
 from satsym.formula.weight import Scales
@@ -228,7 +228,7 @@ class _Reader:
             for claim in filter(None, (row.claims, row.because, row.produced)):
                 with self._telling("row", "printed" if row.table.kind == "claim" else "holds", index, row.key):
                     for name in claim.rows:
-                        if name not in by_key:
+                        if not any(map(matching(name), by_key)):
                             raise BadInput(f"there is no row {shown(name)}; {suggestion(name, by_key)}")
             with self._telling("row", "from", index, row.key):
                 for name in row.uses:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -83,6 +84,43 @@ def first(values: Sequence[Any]) -> Any:
 def last(values: Sequence[Any]) -> Any:
     """The last entry."""
     return values[-1]
+
+
+@measurement
+def mean(values: Sequence[float]) -> float:
+    """The mean of a curve."""
+    return float(np.mean(values))
+
+
+@measurement
+def early(curve: Sequence[Any]) -> Sequence[Any]:
+    """The first tenth of a curve."""
+    return curve[: max(1, len(curve) // 10)]
+
+
+@measurement
+def late(curve: Sequence[Any]) -> Sequence[Any]:
+    """The last tenth of a curve."""
+    return curve[-max(1, len(curve) // 10) :]
+
+
+@measurement
+def area(curve: Sequence[float], t: Sequence[float]) -> float:
+    """The integral of a curve over its times, by a cubic spline."""
+    from scipy.interpolate import CubicSpline
+
+    return float(CubicSpline(t, curve).integrate(t[0], t[-1]))
+
+
+@measurement
+def defined(of: Any, **values: float) -> bool:
+    """Whether a formula has a value where its letters have these, those that are not named being 1."""
+    from satsym.symbolic.lookup import formulas
+
+    known = {letter: formulas.rational(Fraction(values.get(letter.name, 1))) for letter in of.free_symbols}
+    if any(part.func.__name__ in ("Min", "Max") for part in (of, *of.args)):  # sympy raises where these have no value
+        return all(defined(part, **values) for part in of.args)
+    return bool(of.xreplace(known).is_finite)
 
 
 @measurement

@@ -50,7 +50,7 @@ def reference(instance: str, t: float | None = None) -> Record:
 def parameter(instance: str, name: str) -> float:
     """A parameter of an instance."""
     case = loaded(instance)
-    names = [v.symbol for v in case.model.spec.parameters]
+    names = _parameters(case)
     if name not in names:
         raise BadInput(f"{instance} has no parameter {shown(name)}; {suggestion(name, names)}")
     return float(case.parameters[names.index(name)])
@@ -58,26 +58,54 @@ def parameter(instance: str, name: str) -> float:
 
 @measurement
 def least_cost(instance: str, **parameters: float) -> Record:
-    """The optimum of an instance, or of one with other parameters: J, the final time, and states, controls by name."""
-    found = solved(instance, **{name: float(value) for name, value in parameters.items()})
+    """The optimum of an instance, or of one with other parameters.
+
+    Its parts are J, the terminal cost S and the running cost V, the times, the final one, states, controls and costates.
+    """
+    parameters = {name: float(value) for name, value in parameters.items()}
+    found = solved(instance, **parameters)
     if found.status is not Status.CONVERGED:
         raise Undecided(f"{instance}: {found.status}")
     spec = loaded(instance).model.spec
     curves = {v.symbol: np.asarray(row) for v, row in zip(spec.states, np.asarray(found.x), strict=True)}
     curves |= {v.symbol: np.asarray(row) for v, row in zip(spec.controls, np.asarray(found.u), strict=True)}
     curves |= {f"lambda_{v.symbol}": np.asarray(r) for v, r in zip(spec.states, np.asarray(found.lam), strict=True)}
-    times = np.asarray(found.times)
+    times, case = np.asarray(found.times), loaded(instance)
+    p = tuple({**dict(zip(_parameters(case), case.parameters, strict=True)), **parameters}.values())
+    last = float(times[-1])
+    curves["V"] = np.array(
+        [
+            case.model.running_cost(float(t), tuple(x), tuple(u), p)
+            for t, x, u in zip(times, np.asarray(found.x).T, np.asarray(found.u).T, strict=True)
+        ]
+    )
+    final = float(case.model.terminal_cost(last, tuple(found.x[:, -1]), p))
     return Record(
-        f"the optimum of {instance}", {"J": found.objective, "t": times, "t_final": float(times[-1]), **curves}
+        f"the optimum of {instance}", {"J": found.objective, "S": final, "t": times, "t_final": last, **curves}
     )
 
 
 @measurement
 def steered(instance: str, controls: Sequence[float] | float = 0.0) -> Record:
     """The motion of an instance under constant controls: ``t`` and the states by name, and its ``end``."""
+    return _steered(loaded(instance), controls)
+
+
+@measurement
+def displaced(instance: str, **by: float) -> Record:
+    """The motion without control that begins on the reference of an instance, with some states displaced by so much."""
     case = loaded(instance)
+    names = case.model.spec.state_names
+    for name in by:
+        if name not in names:
+            raise BadInput(f"{instance} has no state {shown(name)}; {suggestion(name, names)}")
+    on = case.model.reference(case.t0, case.parameters)
+    return _steered(replace(case, initial=tuple(x + by.get(n, 0.0) for n, x in zip(names, on, strict=True))), 0.0)
+
+
+def _steered(case: Instance, controls: Sequence[float] | float) -> Record:
     if case.tf is None:
-        raise BadInput(f"{instance} has a free final time")
+        raise BadInput(f"{case.name} has a free final time")
     times = np.linspace(case.t0, case.tf, STEPS + 1)
     constant = np.broadcast_to(np.asarray(controls, dtype=float), (len(case.model.spec.controls),))
     u = np.repeat(constant[:, None], STEPS + 1, axis=1)
@@ -85,7 +113,7 @@ def steered(instance: str, controls: Sequence[float] | float = 0.0) -> Record:
     parts: dict[str, Any] = {v.symbol: np.asarray(row) for v, row in zip(case.model.spec.states, x, strict=True)}
     last = _state(case, x[:, -1], "its end")
     return Record(
-        f"{instance} under constant controls", {"t": times, "end": last, "integral": float(integral), **parts}
+        f"{case.name} under constant controls", {"t": times, "end": last, "integral": float(integral), **parts}
     )
 
 
@@ -110,6 +138,20 @@ def free_deviation(model: str, instance: str) -> Record:
 
 
 @measurement
+def rates_at(model: str, x: Sequence[float], **parameters: float) -> Array:
+    """The rates of a model without control in some state; parameters that are not given as the model has them, or 1."""
+    from satsym import kernels
+
+    system = kernels.load(model)
+    known = {v.symbol: 1.0 if v.default is None else float(v.default) for v in system.spec.parameters}
+    for other in parameters:
+        if other not in known:
+            raise BadInput(f"{model} has no parameter {shown(other)}; {suggestion(other, known)}")
+    p = tuple({**known, **parameters}.values())
+    return np.array(system.dynamics(0.0, tuple(x), (0.0,) * len(system.spec.controls), p), dtype=float)
+
+
+@measurement
 def distance(one: Record, other: Record, states: Sequence[str] = ()) -> float:
     """The largest difference of two states, relative where a value exceeds 1; of all but angles, or of some."""
     angles = one.parts.get("angles", ())
@@ -129,12 +171,16 @@ def solved(name: str, **parameters: float) -> Solution:
     from satsym.solvers import solve
 
     case = loaded(name)
-    names = [v.symbol for v in case.model.spec.parameters]
+    names = _parameters(case)
     for other in parameters:
         if other not in names:
             raise BadInput(f"{name} has no parameter {shown(other)}; {suggestion(other, names)}")
     values = dict(zip(names, case.parameters, strict=True)) | parameters
     return solve(replace(case, parameters=tuple(values[n] for n in names)))
+
+
+def _parameters(case: Instance) -> list[str]:
+    return [v.symbol for v in case.model.spec.parameters]
 
 
 def _state(case: Instance, values: Sequence[float] | Array, name: str) -> Record:

@@ -40,7 +40,13 @@ class Run:
     evaluations: tuple[int, ...]
 
 
-def run(program: Program, given: Mapping[str, Any] | None = None, *, until: str = "") -> Run:
+def run(
+    program: Program,
+    given: Mapping[str, Any] | None = None,
+    *,
+    until: str = "",
+    world: Mapping[str, Any] | None = None,
+) -> Run:
     """Walk through a program.
 
     Parameters
@@ -49,6 +55,8 @@ def run(program: Program, given: Mapping[str, Any] | None = None, *, until: str 
         Values that variables get instead of what the program assigns to them.
     until
         Stop once this name has a value; by default go on to the end.
+    world
+        Values that names have before the program begins.
 
     Raises
     ------
@@ -59,11 +67,12 @@ def run(program: Program, given: Mapping[str, Any] | None = None, *, until: str 
     BadInput
         If it does what is not known here.
     """
-    return budget.within(budget.PREDICATE, lambda: _run(program, given or {}, until))
+    return budget.within(budget.PREDICATE, lambda: _run(program, given or {}, until, world or {}))
 
 
-def _run(program: Program, given: Mapping[str, Any], until: str) -> Run:
+def _run(program: Program, given: Mapping[str, Any], until: str, world: Mapping[str, Any]) -> Run:
     walker = _Walker(program, given)
+    walker.world.update(world)
     with np.errstate(all="ignore"):
         for statement in program.statements:
             walker.statement(statement)

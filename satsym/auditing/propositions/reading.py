@@ -23,7 +23,8 @@ QUANTIFIERS = ("all", "any")
 CONNECTIVES = ("implies", "iff")
 """They take two propositions."""
 LOOKUPS = ("row", "text")
-"""``row['2.19', 'k1']`` is the printed formula of a row, ``text['program', 'lines']`` its letters as they stand."""
+"""``row['2.19', 'k1']`` is the printed formula of a row, ``text['program', 'lines']`` its letters as they stand.
+``text['program', 'loop*']`` lists those of all rows that begin so."""
 MEANINGS = "meanings"
 """``meanings['x1']`` lists what the document uses a letter for, from its notations."""
 ITEMS = "items"
@@ -154,6 +155,11 @@ def shape(tree: ast.expr) -> str:
             return ast.Name("_", ast.Load())
 
     return ast.unparse(Masked().visit(ast.parse(ast.unparse(tree), mode="eval").body))
+
+
+def matching(key: str) -> Callable[[str], bool]:
+    """Whether a row is meant by a key; one that ends in a star means all rows that begin so."""
+    return lambda name: name.startswith(key[:-1]) if key.endswith("*") else name == key
 
 
 def keys_in(tree: ast.AST) -> list[str]:

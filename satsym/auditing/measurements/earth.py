@@ -1,0 +1,127 @@
+"""Satellites of the Earth: constants and quantities with units, orbits, and what is seen of them from the ground."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import Any
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.auditing import quantities
+from satsym.auditing.constants import PUBLISHED
+from satsym.auditing.measurements import measurement, value
+from satsym.auditing.propositions.values import Family, Record
+from satsym.auditing.quantities import Quantity
+from satsym.status import BadInput
+from satsym.wording import shown, suggestion
+
+_MOMENTS = 360
+_STATION = math.radians(30.0), math.radians(20.0)
+"""A ground station: its latitude, and how far it is to the east of where the satellite begins."""
+_SEED = 11
+
+
+@measurement
+def quantity(text: str) -> Quantity:
+    """A number with a unit, taken as exact."""
+    return quantities.in_base_units(text)
+
+
+@measurement
+def constant(name: str) -> Quantity:
+    """A published constant, such as ``mu_earth``."""
+    if name not in PUBLISHED:
+        raise BadInput(f"no published constant {shown(name)}; {suggestion(name, PUBLISHED)}")
+    return quantities.in_base_units(PUBLISHED[name].quantity)
+
+
+@value
+def orbits() -> Family:
+    """Orbits of the Earth: periods of half a turn of the Earth, one and two; circles and ellipses; all inclinations."""
+    day, rng = constant("sidereal_day").value, np.random.default_rng(_SEED)
+    plain = itertools.product((0.5, 1.0, 2.0), (0.0, 0.1, 0.4), (0.0, 28.5, 63.4, 180.0), (0.0, 270.0))
+    random = rng.uniform((0.2, 0.0, 0.0, 0.0), (3.0, 0.6, 180.0, 360.0), (8, 4))
+    return Family("ORBITS", "orbits", tuple(_orbit(p * day, *rest) for p, *rest in (*plain, *random.tolist())))
+
+
+@value
+def geostationary() -> Record:
+    """The circle in the plane of the equator whose period is that of the Earth's rotation."""
+    return _orbit(constant("sidereal_day").value)
+
+
+@measurement
+def circular(altitude: str) -> Record:
+    """The circular orbit over the equator at an altitude."""
+    radius = quantity(altitude).value + constant("R_earth").value
+    return _orbit(2.0 * math.pi * math.sqrt(radius**3 / constant("mu_earth").value))
+
+
+@measurement
+def gravity(orbit: Record) -> Quantity:
+    """The acceleration by the Earth's attraction at the mean distance of an orbit."""
+    return constant("mu_earth") / orbit.part("axis") ** 2
+
+
+@measurement
+def ground_swing(orbit: Record) -> float:
+    """The largest angle (degrees) by which the point below a satellite moves over the Earth in a day."""
+    return _swing(_fixed(orbit))
+
+
+@measurement
+def antenna_swing(orbit: Record) -> float:
+    """The largest angle (degrees) by which a ground station has to turn its antenna in a day to follow a satellite."""
+    latitude, east = _STATION
+    station = np.array([math.cos(latitude) * math.cos(east), math.cos(latitude) * math.sin(east), math.sin(latitude)])
+    return _swing(_fixed(orbit) - station[:, None] * constant("R_earth").value)
+
+
+@measurement
+def signal_time(orbit: Record, legs: int, elevation: float) -> Quantity:
+    """How long a signal takes between the ground and a circular orbit, so many times; seen at an elevation (degrees)."""
+    ground, axis = constant("R_earth").value, orbit.part("axis").value
+    up = ground * math.sin(math.radians(elevation))
+    return Quantity(legs * (math.sqrt(axis**2 - ground**2 + up**2) - up), {"[length]": 1}) / constant("c_light")
+
+
+@measurement
+def seen_latitude(orbit: Record) -> float:
+    """The latitude (degrees) up to which a satellite on a circle over the equator is above the horizon."""
+    return math.degrees(math.acos(constant("R_earth").value / orbit.part("axis").value))
+
+
+def _orbit(period: float, eccentricity: float = 0.0, inclination: float = 0.0, perigee: float = 0.0) -> Record:
+    """An orbit by its elements, angles in degrees."""
+    mu, ground = constant("mu_earth"), constant("R_earth")
+    length, time = ground.dimension, constant("sidereal_day").dimension
+    axis = Quantity((mu.value * (period / (2.0 * math.pi)) ** 2) ** (1.0 / 3.0), length)
+    name = f"period {period / 3600.0:.3g} h, eccentricity {eccentricity:.2g}, inclination {inclination:.3g} degrees"
+    shape: dict[str, Any] = {"eccentricity": eccentricity, "inclination": inclination, "perigee": perigee}
+    return Record(name, {"period": Quantity(period, time), "axis": axis, "altitude": axis - ground, **shape})
+
+
+def _fixed(orbit: Record) -> Array:
+    """Positions over a day in axes that turn with the Earth, shape (3, moments), by Kepler's equation."""
+    e, tilt, perigee = orbit.part("eccentricity"), *np.radians([orbit.part("inclination"), orbit.part("perigee")])
+    share = np.linspace(0.0, 1.0, _MOMENTS)
+    day = constant("sidereal_day").value
+    mean = 2.0 * math.pi * share * day / orbit.part("period").value
+    eccentric = mean.copy()
+    for _ in range(50):
+        eccentric -= (eccentric - e * np.sin(eccentric) - mean) / (1.0 - e * np.cos(eccentric))
+    x, y = np.cos(eccentric) - e, math.sqrt(1.0 - e**2) * np.sin(eccentric)
+    along = np.array([x * math.cos(perigee) - y * math.sin(perigee), x * math.sin(perigee) + y * math.cos(perigee)])
+    turned = 2.0 * math.pi * share
+    across = along[1] * math.cos(tilt)
+    fixed = [along[0] * np.cos(turned) + across * np.sin(turned), across * np.cos(turned) - along[0] * np.sin(turned)]
+    return orbit.part("axis").value * np.array([*fixed, along[1] * math.sin(tilt)])
+
+
+def _swing(vectors: Array) -> float:
+    """The largest angle from the first direction, in degrees."""
+    directions = vectors / np.linalg.norm(vectors, axis=0)
+    gaps = np.linalg.norm(directions - directions[:, :1], axis=0)
+    return float(np.degrees(2.0 * np.arcsin(np.minimum(1.0, gaps / 2.0))).max())

@@ -1,0 +1,200 @@
+"""Numerical integration: a method is the lines of one step, and its order is measured by steps along a known motion.
+
+Lines are assignments. A name that ends in the mark of a node is a value there: ``x_n`` (or ``x_i``, ``x_j``) at the
+node, ``x_n1`` at the next, ``x_n0`` at the one before, ``x_nh`` and ``x_n0h`` half way to these; ``h`` is the step.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from satsym import kernels
+from satsym.arrays import Array
+from satsym.auditing.measurements import measurement, value
+from satsym.auditing.program import text as programs
+from satsym.auditing.program.run import run
+from satsym.auditing.propositions.values import Record, Undecided
+from satsym.formula.runge_kutta import classical_weights
+from satsym.status import BadInput
+
+_MARK = re.compile(r"(\w+)_([nij])(1|0h|0|h)?")
+_OFFSETS = {"": 0.0, "1": 1.0, "0": -1.0, "h": 0.5, "0h": -0.5}
+_NODES = np.linspace(0.25, 1.0, 7)
+_STEPS = (1 / 16, 1 / 32)
+_SLACK = 0.3
+"""How far a measured order may be from a whole number."""
+_SPAN = (0.0, 1.25)
+_SEED = 3
+
+
+@value
+def rk4() -> list[str]:
+    """The classical method of order four for y' = f(x, y)."""
+    weighted = " + ".join(f"{b}*k{s}" for s, b in enumerate(classical_weights(), start=1))
+    stages = [f"k{s} = f(x_n + h*{c}, y_n + h*{c}*k{max(s - 1, 1)})" for s, c in ((2, 0.5), (3, 0.5), (4, 1))]
+    return ["k1 = f(x_n, y_n)", *stages, f"y_n1 = y_n + h*({weighted})"]
+
+
+@value
+def heun() -> list[str]:
+    """Heun's method for y' = f(x, y)."""
+    return ["k1 = f(x_n, y_n)", "k2 = f(x_n + h, y_n + h*k1)", "y_n1 = y_n + h/2*(k1 + k2)"]
+
+
+@value
+def euler() -> list[str]:
+    """Euler's method for y' = f(x, y)."""
+    return ["y_n1 = y_n + h*f(x_n, y_n)"]
+
+
+@measurement
+def runge_kutta(unknown: Sequence[str], others: Sequence[str] = (), previous: bool = False) -> list[str]:
+    """The classical method for several unknowns, in stages ``k1_x = h*f1(...)``; with what else the rates depend on.
+
+    ``previous`` goes from a node to the one before it.
+    """
+    sign, there = ("-", "0") if previous else ("+", "1")
+    lines = []
+    for stage, share, at in ((1, 0, ""), (2, 0.5, "h"), (3, 0.5, "h"), (4, 1, there)):
+        mark = f"_n{'0h' if previous and at == 'h' else at}"
+        moved = [f"{x}_n {sign} {share}*k{stage - 1}_{x}" if share else f"{x}_n" for x in unknown]
+        arguments = ", ".join([*moved, *(f"{name}{mark}" for name in others)])
+        lines += [f"k{stage}_{x} = h*f{i}({arguments})" for i, x in enumerate(unknown, start=1)]
+    for x in unknown:
+        weighted = " + ".join(f"{b}*k{s}_{x}" for s, b in enumerate(classical_weights(), start=1))
+        lines.append(f"{x}_n{there} = {x}_n {sign} ({weighted})")
+    return lines
+
+
+@measurement
+def with_line(lines: Sequence[str], line: str) -> list[str]:
+    """A method in which one line stands in the place of that which gives the same name its value."""
+    name = line.partition("=")[0].strip()
+    if name not in (other.partition("=")[0].strip() for other in lines):
+        raise BadInput(f"no line of the method gives {name} a value")
+    return [line if other.partition("=")[0].strip() == name else other for other in lines]
+
+
+@measurement
+def moving(model: str, states: Sequence[str], controls: Sequence[str] = (), costates: Sequence[str] = ()) -> Record:
+    """A motion of a model under controls that vary, by the names that are given to its states, controls and costates.
+
+    ``f1``, ``f2``, ... are the rates of the states, or of the costates where these are named, for lines of a method.
+    """
+    return _motion(model, tuple(states), tuple(controls), tuple(costates))
+
+
+@measurement
+def order(lines: Sequence[str], along: Record | None = None) -> int:
+    """The order of a method, by the errors that steps of it make along a known motion; without one, of y' = cos(x) y.
+
+    The error of a step of order p falls like the power p + 1 of the step.
+    """
+    known = along or _growth()
+    errors = [_error(lines, known, step) for step in _STEPS]
+    if not all(np.isfinite(errors)) or min(errors) <= 0.0:
+        raise Undecided("the steps have no error that could be measured")
+    found = float(np.log(errors[0] / errors[1]) / np.log(_STEPS[0] / _STEPS[1])) - 1.0
+    if abs(found - round(found)) > _SLACK:
+        raise Undecided(f"the measured order is {found:.2f}, near no whole number")
+    return round(found)
+
+
+@measurement
+def error(lines: Sequence[str], steps: int) -> float:
+    """The error that so many steps of a method leave on the way from x = 0 to x = 1, for y' = cos(x) y."""
+    known, h = _growth(), 1.0 / steps
+    curves = known.part("curves")
+    y = curves["y"](np.array(0.0))
+    for k in range(steps):
+        world = {"x_n": k * h, "y_n": y, "h": h, "f": known.part("f")}
+        y = run(programs.read(lines), world=world).values["y_n1"]
+    return float(abs(y - curves["y"](np.array(1.0))))
+
+
+def _error(lines: Sequence[str], along: Record, h: float) -> float:
+    """The largest error of one step, from several nodes at once."""
+    program, curves = programs.read(lines), along.part("curves")
+    given = [name for statement in program.statements for name in programs.given_names(statement)]
+    used = {name for statement in program.statements for name in programs.names_in(statement)}
+    world: dict[str, Any] = {name: part for name, part in along.parts.items() if name != "curves"} | {"h": h}
+    errors = []
+    for name in {*used, *given}:
+        marked = _MARK.fullmatch(name)
+        if marked and marked[1] in curves:
+            exact = curves[marked[1]](_NODES + h * _OFFSETS[marked[3] or ""])
+            if name in given:
+                errors.append((name, exact))
+            else:
+                world[name] = exact
+    if not errors:
+        raise BadInput("no line gives a value at another node")
+    try:
+        values = run(program, world=world).values
+    except programs.Stops as stop:
+        raise Undecided(str(stop)) from None
+    return float(max(np.abs(values[name] - exact).max() for name, exact in errors))
+
+
+@cache
+def _growth() -> Record:
+    """y' = cos(x) y."""
+    curves = {"x": lambda t: t, "y": lambda t: np.exp(np.sin(t))}
+    return Record("y' = cos(x) y", {"curves": curves, "f": lambda x, y: np.cos(x) * y})
+
+
+@cache
+def _motion(model: str, states: tuple[str, ...], controls: tuple[str, ...], costates: tuple[str, ...]) -> Record:
+    from scipy.integrate import solve_ivp
+
+    system, rng = kernels.load(model), np.random.default_rng(_SEED)
+    n, m = len(states), len(system.spec.controls)
+    if n != len(system.spec.states) or len(controls) not in (0, m) or len(costates) not in (0, n):
+        raise BadInput(f"{model} has {len(system.spec.states)} states and {m} controls; name all of a kind, or none")
+    letters = {v.symbol: 1.0 for v in system.spec.parameters if v.default}
+    p = tuple(letters.get(v.symbol, 0.0) for v in system.spec.parameters)
+    phases = np.arange(m)
+
+    def u(t: Any) -> Array:
+        return 0.05 * np.cos(3.0 * np.asarray(t)[..., None] + phases) * bool(controls)
+
+    def states_rate(x: Array, v: Array) -> Array:
+        return np.array(system.dynamics(0.0, tuple(x), tuple(v), p))
+
+    def costates_rate(lam: Array, x: Array, v: Array) -> Array:
+        return np.array(system.costate_rate(0.0, tuple(x), tuple(v), tuple(lam), p))
+
+    def both(t: float, y: Array) -> Array:
+        rate = states_rate(y[:n], u(t))
+        return np.concatenate([rate, costates_rate(y[n:], y[:n], u(t))]) if costates else rate
+
+    start = rng.uniform(0.8, 1.2, n + len(costates))
+    found = solve_ivp(both, _SPAN, start, method="DOP853", rtol=1e-13, atol=1e-14, max_step=1 / 64, dense_output=True)
+    curves: dict[str, Callable[[Array], Array]] = {
+        name: lambda t, k=k: found.sol(t)[k] for k, name in enumerate((*states, *costates))
+    }
+    curves |= {name: lambda t, k=k: u(t)[..., k] for k, name in enumerate(controls)}
+    rates = _components(costates_rate if costates else states_rate, (n, n, m) if costates else (n, m))
+    return Record(f"a motion of {model}", {"curves": curves, **letters, **rates})
+
+
+def _components(rate: Callable[..., Array], sizes: Sequence[int]) -> Mapping[str, Callable[..., Array]]:
+    """``f1``, ``f2``, ... of single numbers or of curves."""
+
+    def component(k: int) -> Callable[..., Array]:
+        def f(*arguments: Any) -> Array:
+            columns = np.broadcast_arrays(*arguments)
+            if len(columns) != sum(sizes):
+                raise BadInput(f"f{k + 1} takes {sum(sizes)} arguments, and is given {len(columns)}")
+            points = np.stack(columns, axis=-1)
+            flat = [rate(*np.split(point, np.cumsum(sizes)[:-1]))[k] for point in points.reshape(-1, sum(sizes))]
+            return np.array(flat).reshape(points.shape[:-1])
+
+        return f
+
+    return {f"f{k + 1}": component(k) for k in range(sizes[0])}
