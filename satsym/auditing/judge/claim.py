@@ -50,7 +50,7 @@ class Pages:
         """Whether a proposition is true; one that looks nothing up in the document is asked once for all rows."""
         if proposition.stands_alone:
             return _alone(proposition.text)
-        return Evaluation(self._words, self, self._row.table.printed).answer(proposition)
+        return Evaluation(self._words, self, _listed(self._row.table.printed)).answer(proposition)
 
     def explained(self, why: tuple[str | Proposition, ...]) -> str:
         """A sentence with what its terms measure."""
@@ -70,7 +70,7 @@ class Pages:
 
     def text(self, key: str) -> Any:
         """What a row prints, letter by letter."""
-        return self._bench.rows[key].table.printed
+        return _listed(self._bench.rows[key].table.printed)
 
     def symbol(self, name: str) -> Any:
         """What a symbol of the notation means."""
@@ -112,6 +112,10 @@ class _Nowhere:
     def items(self) -> list[str]:
         """No numbers."""
         return []
+
+
+def _listed(printed: Any) -> Any:
+    return list(printed) if isinstance(printed, tuple) else printed
 
 
 def _exact(found: Any) -> Any:
