@@ -50,7 +50,10 @@ class Pages:
         """Whether a proposition is true; one that looks nothing up in the document is asked once for all rows."""
         if proposition.stands_alone:
             return _alone(proposition.text)
-        return Evaluation(self._words, self, _listed(self._row.table.printed)).answer(proposition)
+        try:
+            return Evaluation(self._words, self, _listed(self._row.table.printed)).answer(proposition)
+        except BadInput as error:  # what is printed may make no sense there
+            return Answer(None, (str(error),))
 
     def explained(self, why: tuple[str | Proposition, ...]) -> str:
         """A sentence with what its terms measure."""
