@@ -102,6 +102,8 @@ class _Context:
             return ("confirmed", []) if outcome.sound else ("unsound", [sentences.unsound_claim(derived), remark])
         if outcome.artefact:
             return "artefact", [sentences.artefact(derived), remark]
+        if outcome.row.table.kind == "unit":
+            return "unit error", [sentences.false_claim(derived), remark]
         by_role: dict[str, Verdict] = {"citation": "misprint", "notation": "notation"}
         verdict = "imprecise" if outcome.near else by_role.get(outcome.row.table.role, "wrong")
         return verdict, [sentences.false_claim(derived), remark]

@@ -108,7 +108,7 @@ def by_velocity_it_is_zero(document: Rows, key: str) -> str:
     printed = mu * (3 * place * place.T / length**5 - sp.eye(3) / length**3)
     by_r = (-mu * place / length**3).jacobian(place)
     by_r_dot = (-mu * place / length**3).jacobian(sp.symbols("v_x v_y v_z"))
-    assert document[key]["printed"][:2] == ["v_dot", "r_dot"]
+    assert document[key]["printed"] == "dv_by_dr_dot"
     assert sp.simplify(by_r - printed) == sp.zeros(3)
     return "misprint" if by_r_dot == sp.zeros(3) != printed else "confirmed"
 
@@ -150,7 +150,7 @@ def resonance(document: Rows, key: str) -> str:
 def mass_of_the_sun(document: Rows, key: str) -> str:
     """G M of the Sun is known to ten digits; over CODATA's G it is not 1.989."""
     mass = 1.32712440018e20 / scipy.constants.value("Newtonian constant of gravitation")
-    return "wrong" if f"{mass:.3e}" != document[key]["printed"].split(" ")[0].replace("e30", "e+30") else "confirmed"
+    return "imprecise" if f"{mass:.3e}" != document[key]["printed"].split(" ")[0].replace("e30", "e+30") else "confirmed"
 
 
 def two_names(document: Rows, key: str) -> str:
@@ -204,7 +204,7 @@ def drawn_before_judged(document: Rows, key: str) -> str:
 
 def below_escape(document: Rows, key: str) -> str:
     """By the vis-viva equation: neither reading of the garbled number reaches the speed of escape."""
-    readings = map(float, re.findall(r"'([^']*) m/s'", document[key]["holds"]))
+    readings = map(float, re.search(r"for more in \[(.*)\]", document[key]["printed"])[1].split(","))
     return "wrong" if max(readings) + V0 < np.sqrt(2.0 * MU / R0) else "confirmed"
 
 
@@ -217,13 +217,13 @@ def program_says_no(document: Rows, key: str) -> str:
 def distance_and_vector(document: Rows, key: str) -> str:
     """r is a number in one function of the program, and is taken apart into three in the other."""
     text = "\n".join(whole(document))
-    return "wrong" if "r = np.sqrt(" in text and "def calculateJacobi(r, v):\n    x, y, z = r" in text else "confirmed"
+    return "notation" if "r = np.sqrt(" in text and "def calculateJacobi(r, v):\n    x, y, z = r" in text else "confirmed"
 
 
 def coordinate_and_vector(document: Rows, key: str) -> str:
     """x is a coordinate of the position, and what A is applied to."""
-    both = document["II.1.a position"]["printed"][0] == ["x"], document["II.3 definition"]["printed"].startswith("A x")
-    return "wrong" if all(both) else "confirmed"
+    both = document["II.1.a position"]["printed"][0] == ["x"], "Ax = lambda x" in document["II.3 definition"]["original"]
+    return "notation" if all(both) else "confirmed"
 
 
 def harmonic(document: Rows, key: str) -> str:

@@ -50,7 +50,10 @@ class Pages:
         """Whether a proposition is true; one that looks nothing up in the document is asked once for all rows."""
         if proposition.stands_alone:
             return _alone(proposition.text)
-        return Evaluation(self._words, self, self._row.table.printed).answer(proposition)
+        try:
+            return Evaluation(self._words, self, _listed(self._row.table.printed)).answer(proposition)
+        except BadInput as error:  # what is printed may make no sense there
+            return Answer(None, (str(error),))
 
     def explained(self, why: tuple[str | Proposition, ...]) -> str:
         """A sentence with what its terms measure."""
@@ -70,7 +73,7 @@ class Pages:
 
     def text(self, key: str) -> Any:
         """What a row prints, letter by letter; of a key that ends in a star all rows that begin so, in order."""
-        found = [row.table.printed for name, row in self._bench.rows.items() if matching(key)(name)]
+        found = [_listed(row.table.printed) for name, row in self._bench.rows.items() if matching(key)(name)]
         return found if key.endswith("*") else found[0]
 
     def symbol(self, name: str) -> Any:
@@ -113,6 +116,10 @@ class _Nowhere:
     def items(self) -> list[str]:
         """No numbers."""
         return []
+
+
+def _listed(printed: Any) -> Any:
+    return list(printed) if isinstance(printed, tuple) else printed
 
 
 def _exact(found: Any) -> Any:

@@ -243,7 +243,7 @@ class _Reader:
             with self._telling("symbols", name):
                 quantities.check_unit(symbol.unit or "1")
         for index, row in enumerate(found):
-            if row.table.legible and row.table.kind in ("number", "unit"):
+            if row.table.legible and row.claims is None and row.table.kind in ("number", "unit"):
                 with self._telling("row", "printed", index, row.key):
                     text = str(row.table.printed)
                     quantities.check_unit(text if row.table.kind == "unit" else quantities.printed_number(text).unit)

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from satsym.auditing.measurements import measurement
 from satsym.auditing.propositions.relations import compared_order, is_equal
-from satsym.auditing.propositions.values import is_exact
+from satsym.auditing.propositions.values import Undecided, is_exact
 
 
 @measurement
@@ -71,7 +73,13 @@ def different(values: Sequence[Any]) -> list[Any]:
 @measurement
 def sqrt(x: Any) -> Any:
     """Square root."""
-    return x.sqrt() if hasattr(x, "sqrt") else np.emath.sqrt(x)
+    if hasattr(x, "sqrt"):
+        return x.sqrt()
+    if not is_exact(x):
+        return np.emath.sqrt(x)
+    from satsym.symbolic.lookup import formulas
+
+    return formulas.function("sqrt", [x])
 
 
 @measurement
@@ -137,3 +145,60 @@ def _extreme(values: Any, sign: int) -> Any:
     for entry in values[1:]:
         best = entry if sign * compared_order(entry, best) > 0 else best
     return best
+
+
+@measurement
+def norm(of: Any) -> Any:
+    """The Euclidean length of a list of numbers, or of a column."""
+    entries = _flat(of)
+    return sqrt(sum_([entry * entry for entry in entries]))
+
+
+@measurement
+def cosine(one: Any, other: Any) -> Any:
+    """The cosine of the angle between two lists of numbers, or columns."""
+    pairs = zip(_flat(one), _flat(other), strict=True)
+    return sum_([a * b for a, b in pairs]) / (norm(one) * norm(other))
+
+
+@measurement
+def sign(x: Any) -> int:
+    """-1, 0 or 1."""
+    return compared_order(x, 0)
+
+
+@measurement
+def part(values: Sequence[Any], start: int, stop: int) -> Any:
+    """The entries of a list from one place up to, but without, another; the first place is 0."""
+    return values[start:stop]
+
+
+@measurement
+def columns(matrix: Any) -> list[Any]:
+    """The columns of a matrix."""
+    return [matrix[:, i] for i in range(matrix.shape[1])]
+
+
+@measurement
+def enumerated(values: Sequence[Any]) -> list[Any]:
+    """Each entry of a list with its place, the first of which is 0."""
+    return [list(pair) for pair in enumerate(values)]
+
+
+@measurement
+def steps(values: Sequence[Any]) -> list[Any]:
+    """By how much each entry exceeds the one before it."""
+    return [b - a for a, b in pairwise(values)]
+
+
+@measurement
+def order(errors: Sequence[float]) -> float:
+    """The power of the step with which errors fall as it is halved again and again, to one decimal."""
+    if min(errors[-2:]) <= 0.0:
+        raise Undecided("there is no error left to compare")
+    return round(math.log2(errors[-2] / errors[-1]), 1)
+
+
+def _flat(of: Any) -> list[Any]:
+    """The entries of a list, an array or a column."""
+    return [entry for line in of.tolist() for entry in line] if getattr(of, "is_Matrix", False) else list(of)

@@ -48,7 +48,9 @@ def inputs_of(of: Any, inputs: Sequence[str]) -> Record:
 
 @measurement
 def eigenvalues(of: Any) -> list[Any]:
-    """All eigenvalues, each as often as it is a root of the characteristic polynomial; exact."""
+    """All eigenvalues, each as often as it is a root of the characteristic polynomial; exact where the matrix is."""
+    if not is_exact(matrix(of)):
+        return list(np.linalg.eigvals(numbers(matrix(of))).astype(complex))
     return [e.value for e in _spectrum(matrix(of)).eigenvalues for _ in range(e.algebraic)]
 
 
@@ -62,6 +64,26 @@ def algebraic(eigenvalue: Any, of: Any) -> int:
 def geometric(eigenvalue: Any, of: Any) -> int:
     """How many independent eigenvectors an eigenvalue has."""
     return int(_eigenvalue(eigenvalue, of).geometric)
+
+
+@measurement
+def eigenvectors(of: Any) -> list[Record]:
+    """Independent eigenvectors as columns, each with its eigenvalue: ``value``, ``vector``; exact."""
+    a = matrix(of)
+    return [
+        Record(f"eigenvector {k + 1} for {e.value}", {"value": e.value, "vector": column})
+        for e in _spectrum(a).eigenvalues
+        for k, column in enumerate((a - e.value * a.eye(a.rows)).nullspace(simplify=True))
+    ]
+
+
+@measurement
+def growth_rate(of: Any) -> float:
+    """The exponent with which motions grow in the long run, by e^(At) itself; what grows like a power of t has none."""
+    sizes = [_largest(numbers(matrix(of)), start, start + _LATE) for start in (_LATE, 2.0 * _LATE)]
+    if not (sizes[0] > 0.0 and math.isfinite(sizes[1])):
+        raise Undecided("motions grow or shrink beyond all numbers")
+    return math.log(sizes[1] / sizes[0]) / _LATE
 
 
 @measurement
@@ -208,11 +230,25 @@ def _definite(gramian: Array) -> bool:
 
 def _sizes(of: Any) -> tuple[float, float]:
     """The largest norm of e^(At) around some time, and around twice that time."""
-    a = numbers(matrix(of))
-    largest = []
-    for start in (_LATE, 2.0 * _LATE):
-        moments = start * (1.0 + 0.25 * np.arange(_MOMENTS) / _MOMENTS)
-        largest.append(max(float(np.linalg.norm(flow(a, float(t)), 2)) for t in moments))
-    if not all(map(math.isfinite, largest)):
-        return 1.0, math.inf
-    return largest[0], largest[1]
+    a = matrix(of)
+    return _exact_sizes(a) if is_exact(a) else _sizes_of(numbers(a))
+
+
+@cache
+def _exact_sizes(a: Any) -> tuple[float, float]:
+    return _sizes_of(numbers(a))
+
+
+def _sizes_of(a: Array) -> tuple[float, float]:
+    early, late = (_largest(a, start, 1.25 * start) for start in (_LATE, 2.0 * _LATE))
+    return (early, late) if math.isfinite(early) and math.isfinite(late) else (1.0, math.inf)
+
+
+def _largest(a: Array, start: float, end: float) -> float:
+    """The largest norm of e^(At) at some moments."""
+    here, step = flow(a, start), flow(a, (end - start) / _MOMENTS)
+    largest = 0.0
+    for _ in range(_MOMENTS):
+        largest = max(largest, float(np.linalg.norm(here, 2))) if np.isfinite(here).all() else math.inf
+        here = step @ here
+    return largest

@@ -195,7 +195,8 @@ def _exact_sign(gap: Any) -> int:
 def _is_zero(gap: Any) -> bool:
     from satsym.symbolic.lookup import formulas
 
-    return bool(gap.is_zero) or formulas.is_zero(gap)
+    known = gap.is_zero
+    return formulas.is_zero(gap) if known is None else bool(known)
 
 
 def _has_floats(value: Any) -> bool:

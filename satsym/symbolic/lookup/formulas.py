@@ -159,7 +159,7 @@ def is_zero(expression: sp.Expr) -> bool:
     if e == 0:
         return True
     if e.is_number:
-        return bool(sp.simplify(e) == 0)
+        return bool(sp.expand(e) == 0 or sp.simplify(e) == 0)
     numerator = sp.expand(sp.fraction(sp.together(sp.expand(e, power_base=True)))[0])
     if numerator == 0:
         return True
@@ -308,6 +308,22 @@ def nullspace(rows: Sequence[Sequence[sp.Expr]]) -> list[list[sp.Expr]]:
 def exact_matrix(rows: Sequence[Sequence[str]]) -> sp.ImmutableMatrix:
     """A matrix of rational numbers, each written as a text such as ``"-1/2"``."""
     return sp.ImmutableMatrix([[sp.Rational(entry) for entry in row] for row in rows])
+
+
+def exact(value: Any) -> Any:
+    """A number as sympy has it, or an expression or a matrix as it stands."""
+    return sp.sympify(value)
+
+
+def solutions(expression: sp.Expr, symbol: sp.Symbol) -> list[sp.Expr]:
+    """For which values of a symbol an expression is zero."""
+    return list(sp.solve(expression, symbol))
+
+
+def compiled(expressions: Sequence[sp.Expr], symbols: Sequence[sp.Symbol]) -> Callable[..., list[float]]:
+    """A function of plain numbers that gives the values of expressions."""
+    found: Callable[..., list[float]] = sp.lambdify(list(symbols), list(expressions), modules="math")
+    return found
 
 
 def matrix_of(rows: Sequence[Sequence[sp.Expr]]) -> sp.ImmutableMatrix:

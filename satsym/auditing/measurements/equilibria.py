@@ -1,0 +1,139 @@
+"""Equilibria of nonlinear systems, what textbooks prove of their stability, and motions that begin near them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from satsym.arrays import Array
+from satsym.auditing.measurements import linear, measurement, value
+from satsym.auditing.propositions.values import Family, Record
+from satsym.formula import reading
+
+_SEED = 53
+_NEAR_BY = 0.02
+"""How far from an equilibrium motions begin."""
+_FAR = 10.0
+"""What comes so far stays there: it is not followed any further."""
+_FAST = 100.0
+"""What would move faster goes its way at this speed, so that what explodes takes a while."""
+_UNTIL, _NODES = 400.0, 2001
+_ATTRACTIVE, _STABLE, _UNSTABLE = "asymptotically stable", "stable", "unstable"
+
+CATALOGUE: Mapping[str, tuple[tuple[str, str], tuple[int, int], str]] = {
+    "pendulum with friction, hanging": (("x2", "-sin(x1) - x2/5"), (0, 0), _ATTRACTIVE),
+    "pendulum, hanging": (("x2", "-sin(x1)"), (0, 0), _STABLE),
+    "pendulum, upright": (("x2", "sin(x1)"), (0, 0), _UNSTABLE),
+    "oscillator with cubic damping": (("x2", "-x1 - 10000*x2**3"), (0, 0), _ATTRACTIVE),
+    "oscillator with cubic driving": (("x2", "-x1 + 10000*x2**3"), (0, 0), _UNSTABLE),
+    "oscillator of van der Pol": (("x2", "x2*(1 - x1**2) - x1"), (0, 0), _UNSTABLE),
+    "Duffing's equation, at the saddle": (("x2", "x1 - x1**3"), (0, 0), _UNSTABLE),
+    "Duffing's equation with friction, in a well": (("x2", "x1 - x1**3 - x2/5"), (1, 0), _ATTRACTIVE),
+    "cubic decay": (("-10000*x1**3", "-x2"), (0, 0), _ATTRACTIVE),
+    "cubic growth": (("10000*x1**3", "-x2"), (0, 0), _UNSTABLE),
+    "a circle of which one point stands still": (
+        ("(1 - sqrt(x1**2 + x2**2))*x1 - 10*(1 - x1/sqrt(x1**2 + x2**2))*x2",
+         "(1 - sqrt(x1**2 + x2**2))*x2 + 10*(1 - x1/sqrt(x1**2 + x2**2))*x1"), (1, 0), _UNSTABLE,
+    ),
+}  # fmt: skip
+"""Rates of x1 and x2, the equilibrium, and what is known of it; by energy or distance as a function of Liapunov's.
+
+On the circle (r' = r (1 - r), angle' = 10 (1 - cos angle)) all motions end at the point that stands still, but those on
+one side of it go once round before.
+"""
+
+
+@value
+def equilibria() -> Family:
+    """Equilibria of nonlinear systems in the plane: textbook ones, and at random with linear parts that decide."""
+    rng = np.random.default_rng(_SEED)
+    members = [_member(name, *entry) for name, entry in CATALOGUE.items()]
+    for k in range(6):
+        p, q = int(rng.integers(1, 5)), int(rng.integers(1, 5))
+        sign, known = (1, _UNSTABLE) if k % 3 == 0 else (-1, _ATTRACTIVE)
+        a, b, c = (int(n) for n in rng.integers(-2, 3, 3))
+        # x1'' + ... = 0 with the characteristic polynomial s^2 - sign*p*s/4 + q/2
+        rates = ("x2", f"{sign * p}/4*x2 - {q}/2*x1 + ({a})*x1**2 + ({b})*x1*x2 + ({c})*x2**2")
+        members.append(_member(f"random system {k + 1}", rates, (0, 0), known))
+    return Family("EQUILIBRIA", "equilibria of nonlinear systems", tuple(members))
+
+
+@measurement
+def followed(of: Any, start: ArrayLike | None = None) -> Record:
+    """The motion of a member of a family from a state, or from near its equilibrium.
+
+    Its parts are ``t``, ``x1``, ``x2``, ..., its distance from the equilibrium, ``size``, and from its start, ``gone``.
+    What goes far away is not followed beyond.
+    """
+    return _followed(linear.system_of(of) if isinstance(of, str) else of, None if start is None else tuple(start))
+
+
+@cache
+def _followed(of: Any, start: tuple[float, ...] | None) -> Record:
+    whole = linear.system_of(of)
+    n = linear.dimension(whole)
+    rest = np.asarray(whole.parts.get("rest", np.zeros(n)))
+    begin = rest + _NEAR_BY * _way(n) if start is None else np.array(start, dtype=float)
+    t, x = _nonlinear(whole, begin, rest) if "formulas" in whole.parts else _linear(whole, begin)
+    curves = {f"x{i + 1}": row for i, row in enumerate(x)}
+    sizes = {"size": np.linalg.norm(x.T - rest, axis=1), "gone": np.linalg.norm(x.T - begin, axis=1)}
+    return Record(f"a motion of {whole.name}", {"t": t, **sizes, **curves})
+
+
+def rates(of: Record, x: ArrayLike) -> Array:
+    """The rates of a member in some state."""
+    if "formulas" not in of.parts:
+        return linear.numbers(of.part("A")) @ np.asarray(x, dtype=float)
+    return np.array(of.part("formulas")(*np.asarray(x, dtype=float)))
+
+
+def jacobian(of: Record, x: ArrayLike) -> Array:
+    """Their derivatives by the states."""
+    if "slopes" not in of.parts:
+        return linear.numbers(of.part("A"))
+    return np.array(of.part("slopes")(*np.asarray(x, dtype=float))).reshape(2, 2)
+
+
+def _member(name: str, texts: tuple[str, str], rest: tuple[int, int], stability: str) -> Record:
+    from satsym.symbolic.lookup import formulas
+
+    x = [formulas.symbol("x1"), formulas.symbol("x2")]
+    f = [formulas.from_tree(reading.expression(text), formulas.symbol) for text in texts]
+    slopes = [entry.diff(letter) for entry in f for letter in x]
+    place = dict(zip(x, rest, strict=True))
+    a = formulas.matrix_of([[e.subs(place) for e in slopes[:2]], [e.subs(place) for e in slopes[2:]]])
+    ways = {"formulas": formulas.compiled(f, x), "slopes": formulas.compiled(slopes, x)}
+    at = np.array(rest, dtype=float)
+    return Record(name, {"A": a, "rest": at, "elsewhere": at + [0.3, 0.2], "stability": stability, **ways})
+
+
+def _way(n: int) -> Array:
+    way = np.arange(1.0, n + 1.0)[::-1]
+    return way / np.linalg.norm(way)
+
+
+def _nonlinear(of: Record, begin: Array, rest: Array) -> tuple[Array, Array]:
+    from scipy.integrate import odeint
+
+    field: Callable[..., list[float]] = of.part("formulas")
+
+    def moved(x: Array, _: float) -> list[float]:
+        f = field(*x)
+        slow = min(1.0, _FAST / max(math.hypot(*f), _FAST), max(0.0, _FAR - math.hypot(*(x - rest))))
+        return [slow * entry for entry in f]
+
+    t = np.linspace(0.0, _UNTIL, _NODES)
+    return t, np.asarray(odeint(moved, begin, t, rtol=1e-9, atol=1e-12, mxstep=10_000)).T
+
+
+def _linear(of: Record, begin: Array) -> tuple[Array, Array]:
+    t = np.linspace(0.0, 60.0, 1201)
+    step, rows = linear.flow(of, float(t[1])), [begin]
+    for _ in t[1:]:
+        rows.append(step @ rows[-1])
+    return t, np.array(rows).T

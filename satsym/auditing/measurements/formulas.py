@@ -1,0 +1,79 @@
+"""What is done to exact formulas: derivatives, values, integrals, solutions; matrices made of numbers and blocks."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from satsym.auditing.measurements import measurement
+from satsym.auditing.propositions.values import is_exact
+from satsym.status import BadInput
+from satsym.wording import shown
+
+
+@measurement
+def diff(of: Any, by: Any, times: int = 1) -> Any:
+    """The derivative of a formula, or of each entry of a matrix, by a letter."""
+    return of.diff(_letter(of, by), times) if is_exact(of) else 0
+
+
+@measurement
+def subs(of: Any, **values: Any) -> Any:
+    """A formula with values for some of its letters, all put in at once."""
+    places = {s: values[s.name] for s in of.free_symbols if s.name in values} if is_exact(of) else {}
+    return of.xreplace({s: _exact(v) for s, v in places.items()}) if places else of
+
+
+@measurement
+def letters(of: Any) -> list[str]:
+    """The letters of a formula."""
+    return sorted(s.name for s in of.free_symbols) if is_exact(of) else []
+
+
+@measurement
+def solutions(of: Any, by: Any) -> list[Any]:
+    """For which values of a letter a formula is zero."""
+    from satsym.symbolic.lookup import formulas
+
+    return formulas.solutions(of, _letter(of, by))
+
+
+@measurement
+def integral(of: Any, by: Any, start: Any, end: Any) -> Any:
+    """The integral of a formula over a letter, exactly."""
+    return of.integrate((_letter(of, by), _exact(start), _exact(end)))
+
+
+@measurement
+def det(of: Any) -> Any:
+    """The determinant of a matrix."""
+    return of.det()
+
+
+@measurement
+def eye(n: int) -> Any:
+    """The identity with n rows."""
+    from satsym.symbolic.lookup import formulas
+
+    return formulas.exact_matrix([[str(int(i == j)) for j in range(n)] for i in range(n)])
+
+
+@measurement
+def blocks(rows: Any) -> Any:
+    """The matrix that is made up of rows of blocks."""
+    lines = [row[0].hstack(*row) for row in rows]
+    return lines[0].vstack(*lines)
+
+
+def _letter(of: Any, by: Any) -> Any:
+    if is_exact(by) and not getattr(by, "is_Symbol", False):
+        raise BadInput(f"{shown(str(by))} is no letter")
+    name = by if isinstance(by, str) else by.name
+    from satsym.symbolic.lookup import formulas
+
+    return next((s for s in of.free_symbols if s.name == name), by if is_exact(by) else formulas.symbol(name))
+
+
+def _exact(value: Any) -> Any:
+    from satsym.symbolic.lookup import formulas
+
+    return formulas.exact(value)

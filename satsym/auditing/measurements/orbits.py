@@ -1,0 +1,176 @@
+"""Motions about a centre: what their orbits are, where they come to, what neighbours do, what the equations give there.
+
+A motion is the name of an instance, or a record with its position, velocity and mu, such as a member of a family.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from satsym import kernels
+from satsym.analysis.orbits.elements import elements
+from satsym.analysis.orbits.kepler import propagate
+from satsym.arrays import Array
+from satsym.auditing.measurements import equilibria, measurement, motion, value
+from satsym.auditing.propositions.values import Family, Record, Undecided
+from satsym.status import BadInput
+from satsym.wording import shown, suggestion
+
+_SEED = 47
+_KICK = 1e-6
+_NEIGHBOURS = 10
+_PLACES = 400
+_IMPROVED = 6
+
+
+@value
+def motions() -> Family:
+    """Motions about a centre: circle, ellipses, parabola and hyperbola through one place, others, and some at random."""
+    rng, across = np.random.default_rng(_SEED), (0.0, 1.0, 0.0)
+    starts: dict[str, tuple[Sequence[float], Sequence[float], float]] = {
+        "circle": ((1.0, 0.0, 0.0), across, 1.0),
+        "ellipse from its periapsis": ((1.0, 0.0, 0.0), (0.0, 1.2, 0.0), 1.0),
+        "ellipse from its apoapsis": ((1.0, 0.0, 0.0), (0.0, 0.8, 0.0), 1.0),
+        "inclined ellipse": ((1.0, 0.2, -0.3), (-0.3, 0.7, 0.4), 1.0),
+        "retrograde ellipse": ((0.0, 1.5, 0.0), (0.9, 0.1, 0.0), 1.3),
+        "parabola": ((1.0, 0.0, 0.0), (0.0, math.sqrt(2.0), 0.0), 1.0),
+        "hyperbola": ((1.0, 0.0, 0.0), (0.0, 1.6, 0.0), 1.0),
+        "inclined hyperbola": ((0.4, -0.8, 0.5), (1.1, 1.0, -0.6), 0.9),
+    }
+    for k in range(4):
+        starts[f"random motion {k + 1}"] = (rng.normal(size=3), rng.normal(size=3), float(rng.uniform(0.5, 2.0)))
+    return Family("MOTIONS", "motions about a centre", tuple(_motion(name, *start) for name, start in starts.items()))
+
+
+@measurement
+def orbit(of: Any, velocity: ArrayLike | None = None, mu: float | None = None) -> Record:
+    """The orbit of a motion, or of a position, a velocity and mu.
+
+    Its parts are the conic, eccentricity, energy, angular momentum, and where there are such the period, the
+    semi-major axis, the distances of both apsides and the speed at infinity.
+    """
+    found = elements(*_start(of, velocity, mu))
+    parts = {name: getattr(found, name) for name in ("eccentricity", "energy", "angular_momentum", "periapsis")}
+    optional = {name: getattr(found, name) for name in ("period", "semi_major_axis", "apoapsis", "excess_speed")}
+    there = {name: size for name, size in optional.items() if size is not None}
+    return Record(f"the orbit, {found.conic.value}", {"conic": found.conic.value, **parts, **there})
+
+
+@measurement
+def coasted(of: Any, t: Any, velocity: ArrayLike | None = None, mu: float | None = None) -> Array:
+    """Position and velocity after a time, or at many times as columns: in closed form."""
+    position, speed, pull = _start(of, velocity, mu)
+    if np.ndim(t) == 0:
+        return np.concatenate([np.ravel(p) for p in propagate(position, speed, pull, float(t))])
+    return np.vstack([np.asarray(p) for p in propagate(position[:, None], speed[:, None], pull, np.asarray(t))])
+
+
+@measurement
+def turned(of: Any, t: float, velocity: ArrayLike | None = None, mu: float | None = None) -> float:
+    """The angle by which the position has turned after a time."""
+    start = _start(of, velocity, mu)
+    places = coasted(start[0], np.linspace(0.0, t, _PLACES), start[1], start[2])[:3]
+    one, next_ = places[:, :-1], places[:, 1:]
+    across = np.linalg.norm(np.cross(one, next_, axis=0), axis=0)
+    return float(np.arctan2(across, (one * next_).sum(axis=0)).sum())
+
+
+@measurement
+def straying(of: Any, revolution: int) -> float:
+    """How far neighbours are from an orbit as a curve in some revolution, as a multiple of their first deviation."""
+    position, velocity, mu = _start(of, None, None)
+    found = elements(position, velocity, mu)
+    if found.period is None:
+        raise Undecided("the orbit is not closed")
+    rng, start = np.random.default_rng(_SEED), np.concatenate([position, velocity])
+    length = float(np.linalg.norm(position))
+    scale = np.array([length] * 3 + [float(np.linalg.norm(velocity))] * 3)
+    once = np.linspace(0.0, found.period, _PLACES, endpoint=False)
+    t, farthest = found.period * (revolution - 1.0 + np.linspace(0.0, 1.0, 40, endpoint=False)), 0.0
+    for _ in range(_NEIGHBOURS):
+        shift = rng.normal(size=6)
+        moved = start + _KICK * scale * shift / np.linalg.norm(shift)
+        places = coasted(moved[:3], t, moved[3:], mu)[:3]
+        farthest = max(farthest, _distance(places, start, mu, once) / length / _KICK)
+    return farthest
+
+
+@measurement
+def rates_at(of: Any, x: ArrayLike, **parameters: float) -> Array:
+    """The rates of a model without control, or of a member of a family, in some state."""
+    if isinstance(of, Record):
+        return equilibria.rates(of, x)
+    model, p = _model(of, parameters)
+    return np.array(model.dynamics(0.0, tuple(np.asarray(x, dtype=float)), (0.0,) * len(model.spec.controls), p))
+
+
+@measurement
+def jacobian_at(of: Any, x: ArrayLike, **parameters: float) -> Array:
+    """The derivatives of these rates by the states."""
+    if isinstance(of, Record):
+        return equilibria.jacobian(of, x)
+    model, p = _model(of, parameters)
+    n = len(model.spec.states)
+    found = model.jacobian_x(0.0, tuple(np.asarray(x, dtype=float)), (0.0,) * len(model.spec.controls), p)
+    return np.array(found).reshape(n, n)
+
+
+@measurement
+def approaching(x: ArrayLike) -> list[Array]:
+    """Points nearer and nearer to a point, each half as far from it as the one before."""
+    centre = np.asarray(x, dtype=float)
+    way = np.random.default_rng(_SEED).normal(size=centre.shape)
+    size = max(1.0, float(np.abs(centre).max())) / float(np.linalg.norm(way))
+    return [centre + size * h * way for h in (2e-3, 1e-3)]
+
+
+def _motion(name: str, position: Sequence[float], velocity: Sequence[float], mu: float) -> Record:
+    r, v = np.array(position), np.array(velocity)
+    return Record(name, {"position": r, "velocity": v, "mu": mu, "x": np.concatenate([r, v])})
+
+
+def _start(of: Any, velocity: ArrayLike | None, mu: float | None) -> tuple[Array, Array, float]:
+    if isinstance(of, str):
+        return _of_instance(of)
+    if isinstance(of, Record):
+        return of.part("position"), of.part("velocity"), of.part("mu")
+    if velocity is None or mu is None:
+        raise BadInput("name a motion, or give a position, a velocity and mu")
+    return np.asarray(of, dtype=float), np.asarray(velocity, dtype=float), float(mu)
+
+
+@cache
+def _of_instance(name: str) -> tuple[Array, Array, float]:
+    case = motion.loaded(name)
+    if not case.model.spec.keplerian:
+        raise BadInput(f"{shown(name)} is no motion about a centre; name an instance such as itb-earth")
+    state = case.model.inertial_state(case.t0, case.initial, case.parameters)
+    return np.asarray(state[:3]), np.asarray(state[3:6]), float(state[6])
+
+
+def _model(name: str, parameters: dict[str, float]) -> tuple[Any, tuple[float, ...]]:
+    model = kernels.load(name)
+    known = {v.symbol: float(v.default) if v.default is not None else 1.0 for v in model.spec.parameters}
+    for other in parameters:
+        if other not in known:
+            raise BadInput(f"{name} has no parameter {shown(other)}; {suggestion(other, known)}")
+    return model, tuple(float(v) for v in (known | parameters).values())
+
+
+def _distance(places: Array, start: Array, mu: float, t: Array) -> float:
+    """The largest distance of places from the path of a start, near which it is sampled at times t.
+
+    From the nearest sample on, the time is improved until the way to the path is normal to it.
+    """
+    path = coasted(start[:3], t, start[3:], mu)[:3]
+    time = t[np.argmin(np.linalg.norm(path[:, None, :] - places[:, :, None], axis=0), axis=1)]
+    for _ in range(_IMPROVED):
+        state = coasted(start[:3], time, start[3:], mu)
+        time = time + ((places - state[:3]) * state[3:]).sum(axis=0) / (state[3:] ** 2).sum(axis=0)
+    return float(np.linalg.norm(places - coasted(start[:3], time, start[3:], mu)[:3], axis=0).max())

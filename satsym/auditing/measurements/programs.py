@@ -1,0 +1,151 @@
+"""What printed Python programs do: values, functions, output and pictures of lines that are walked through.
+
+A program is a list of lines, as ``text['program', 'lines']`` gives it, or lists joined by ``+``. Values that are given
+by name take the place of those that the lines assign. A line that is put at the end is tried in the program's world.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from satsym.auditing import quantities
+from satsym.auditing.measurements import measurement
+from satsym.auditing.program import text as programs
+from satsym.auditing.program.library import Module
+from satsym.auditing.program.run import Run, run
+from satsym.auditing.program.text import Program, Stops
+from satsym.auditing.propositions.values import Record, Undecided, is_exact
+from satsym.status import BadInput
+from satsym.wording import shown, suggestion
+
+_BRACKET = re.compile(r"\(([^)]*)\)")
+_MAIN = ("x", "y", "z")
+
+
+@measurement
+def values(program: Sequence[str], **given: Any) -> Record:
+    """The variables of a program by name, once it has gone through."""
+    found = _walked(program, given)
+    return Record("the program", {name: _plain(value) for name, value in found.values.items()})
+
+
+@measurement
+def called(program: Sequence[str], name: str, *arguments: Any, **given: Any) -> Any:
+    """What a function of a program returns."""
+    found = _walked(program, given).values.get(name)
+    if not callable(found):
+        raise BadInput(f"the program has no function {shown(name)}; {suggestion(name, list(_assigned(_read(program))))}")
+    return np.asarray(_trying(lambda: found(*(np.asarray(a) if isinstance(a, list) else a for a in arguments))))
+
+
+@measurement
+def output(program: Sequence[str], **given: Any) -> list[str]:
+    """The lines that a program prints."""
+    return list(_walked(program, given).said)
+
+
+@measurement
+def drawn(program: Sequence[str], call: str, **given: Any) -> list[Record]:
+    """Each call of one of matplotlib's functions: its arguments x, y, ... in order, and those that have names."""
+    return [
+        Record(call, {"arguments": list(d.arguments), **dict(zip(_MAIN, d.arguments, strict=False)), **d.named})
+        for d in _walked(program, given).drawn
+        if d.name == call
+    ]
+
+
+@measurement
+def stops(program: Sequence[str]) -> list[str]:
+    """Why a program would stop before its end, as Python would; empty where it goes through."""
+    try:
+        _run(_read(program).text, ())
+    except Stops as error:
+        return [str(error)]
+    except BadInput as error:
+        raise Undecided(str(error)) from None
+    return []
+
+
+@measurement
+def unassigned(program: Sequence[str]) -> list[str]:
+    """Names that have no value yet where a line uses them."""
+    return list(dict.fromkeys(loose.name for loose in programs.loose_names(_read(program))))
+
+
+@measurement
+def assigned(program: Sequence[str]) -> list[str]:
+    """Names that the lines give a value, imports and functions among them."""
+    return list(_assigned(_read(program)))
+
+
+@measurement
+def used(program: Sequence[str]) -> list[str]:
+    """Names that the lines use."""
+    return sorted({name for statement in _read(program).statements for name in programs.names_in(statement)})
+
+
+@measurement
+def sources(program: Sequence[str], name: str) -> list[str]:
+    """Names that a value is made from, directly or by others."""
+    return sorted(programs.sources(_read(program), [name]) - {name})
+
+
+@measurement
+def unit_in(label: str) -> float:
+    """How many base units the unit is that a label has in brackets."""
+    found = _BRACKET.search(label)
+    if found is None:
+        raise BadInput(f"{shown(label)} has no unit in brackets")
+    return quantities.scale(found[1].lower() if found[1].isupper() and len(found[1]) > 1 else found[1])
+
+
+def _read(program: Sequence[str]) -> Program:
+    try:
+        return programs.read([program] if isinstance(program, str) else program)
+    except BadInput as error:
+        raise Undecided(str(error)) from None
+
+
+def _assigned(program: Program) -> dict[str, None]:
+    return dict.fromkeys(name for statement in program.statements for name in programs.given_names(statement))
+
+
+def _walked(program: Sequence[str], given: Mapping[str, Any]) -> Run:
+    found = _read(program)
+    first = [f"{name} = 0.0" for name in given if name not in _assigned(found)]
+    numbers = {name: np.asarray(_numeric(value)) for name, value in given.items()}
+    frozen = tuple((name, value.shape, tuple(value.ravel().tolist())) for name, value in numbers.items())
+    return _trying(lambda: _run("\n".join([*first, found.text]), frozen))
+
+
+@lru_cache(maxsize=512)
+def _run(text: str, given: tuple[tuple[str, tuple[int, ...], tuple[Any, ...]], ...]) -> Run:
+    values = {name: np.array(entries).reshape(shape) if shape else entries[0] for name, shape, entries in given}
+    return run(programs.read(text.splitlines()), values)
+
+
+def _numeric(value: Any) -> Any:
+    """Exact numbers, and those in lists, as floats."""
+    if isinstance(value, list):
+        return [_numeric(entry) for entry in value]
+    if not is_exact(value):
+        return value
+    number = complex(value)
+    return number if number.imag else number.real
+
+
+def _trying(work: Callable[[], Any]) -> Any:
+    """What work returns; a program that stops, or does what is not known here, has no values."""
+    try:
+        return work()
+    except BadInput as error:
+        raise Undecided(str(error)) from None
+
+
+def _plain(value: Any) -> Any:
+    return Record(value.name, value.attributes) if isinstance(value, Module) else value

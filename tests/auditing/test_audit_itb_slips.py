@@ -1,0 +1,78 @@
+"""What the ITB paper prints, with a slip planted in a row: the row is confirmed no longer."""
+
+from __future__ import annotations
+
+import pytest
+
+from satsym.auditing import audit, read
+from satsym.auditing.ledger import documents
+from tests.support import ledgers
+from tests.support.itb_routes import rows
+
+PROGRAM = {  # row: what stands there, and what is planted
+    "listing 1 lines": ("import eig", "import eigh"),
+    "listing 4 lines": ("r**3", "r**2"),
+    "listing 5 lines": ("3 * mu * z**2", "3 * mu * y**2"),
+    "listing 5 identity": ("[:3, 3:]", "[3:, 3:]"),
+    "listing 6 y0": ("(r0, v0)", "(v0, r0)"),
+    "listing 6 one year": ("3.154", "3.174"),
+    "listing 6 t_span": ("3.154e7", "3.1e7"),
+    "listing 6 t_eval": ("1000", "999"),
+    "listing 7 eig": ("eigenvalues, eigenvectors", "eigenvectors, eigenvalues"),
+    "listing 7 print eigenvalues": ("{eigenvalues}", "{jacobian}"),
+    "listing 7 print stability": ("'Yes' if", "'No' if"),
+    "listing 8 frame": ('"equal"', '"tight"'),
+    "listing 8 Sun": ("[0], [0]", "[1e11], [0]"),
+    "program imports": ("import numpy as np", "import numpy as xp"),
+    "program orbitalEquation": ("[vx, vy", "[vy, vx"),
+    "program calculateJacobi": ("d2z_dx = d2x_dz", "d2z_dx = d2x_dy"),
+    "program solution": ("rtol=1e-9", "rtol=1e-1"),
+    "program x, y, z": ("x, y, z", "x, z, y"),
+    "program jacobian": ("(r0, v0)", "(v0, r0)"),
+}
+WHOLE = {
+    "program lines": ("eig(jacobian)", "eig(jacob)"),
+    "listing 3 lines": ("G * M_sun", "G + M_sun"),
+    "listing 6 lines": ("v0 = np.array([0, 29.78e3, 0])", "v0 = np.array([29.78e3, 0, 0])"),
+}
+RIGHT = {
+    "listing 7 calculateJacobi": ("calculateJacobi", "calculate_jacobian"),
+    "listing 8 label": ("Stable Orbit", "Orbit"),
+    "listing 8 x axis": ("x / 1e11", "x / 149597870700"),
+    "program y axis": ("y (AU)", "y (Gm)"),
+}
+DIVISOR = {"program y axis": ("1e11", "1e9")}
+
+
+def _changed(printed: object, old: str, new: str) -> object:
+    if isinstance(printed, list):
+        return [_changed(entry, old, new) for entry in printed]
+    return str(printed).replace(old, new)
+
+
+def _verdicts(tmp_path, *slips):
+    (head, *_) = documents.files_of(documents.locate("itb_eigen"))
+    changed = {key: dict(row) for key, row in rows().items()}
+    for planted in slips:
+        for key, (old, new) in planted.items():
+            before = changed[key]["printed"]
+            changed[key]["printed"] = _changed(before, old, new)
+            assert changed[key]["printed"] != before
+    path = ledgers.write(tmp_path, list(changed.values()), head.read_text(encoding="utf-8"))
+    keys = [key for planted in slips for key in planted]
+    return {row.key: row.verdict for row in audit(read(path), keys) if row.key in keys}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("planted", [PROGRAM, WHOLE], ids=["lines", "programs"])
+def test_a_slip_in_what_is_printed_is_noticed(tmp_path, planted):
+    found = _verdicts(tmp_path, planted)
+    assert set(found) == set(planted)
+    assert [key for key, verdict in found.items() if verdict == "confirmed"] == []
+
+
+@pytest.mark.slow
+def test_what_is_put_right_is_confirmed(tmp_path):
+    found = _verdicts(tmp_path, RIGHT, DIVISOR)
+    assert found.pop("listing 8 label") == "confirmed"
+    assert set(found.values()) == {"confirmed"}
