@@ -15,3 +15,15 @@ def near() -> float:
 def often() -> int:
     """A curve goes up and down where it turns at least so often."""
     return 2
+
+
+@value
+def epsilons() -> list[float]:
+    """Distances from an equilibrium within which motions are to stay."""
+    return [1e-2, 1.0, 1e2]
+
+
+@value
+def deltas() -> list[float]:
+    """Distances from an equilibrium at which motions start: far smaller and far larger ones than :func:`epsilons`."""
+    return [1e-6, 1e-3, 1.0, 1e3, 1e6]

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 import numpy as np
@@ -48,8 +48,47 @@ def inputs_of(of: Any, inputs: Sequence[str]) -> Record:
 
 @measurement
 def eigenvalues(of: Any) -> list[Any]:
-    """All eigenvalues, each as often as it is a root of the characteristic polynomial; exact."""
-    return [e.value for e in _spectrum(matrix(of)).eigenvalues for _ in range(e.algebraic)]
+    """All eigenvalues, each as often as it is a root of the characteristic polynomial; exact if the matrix is.
+
+    Those of a matrix with plain numbers are sorted by their real parts, and then downwards by their imaginary parts.
+    """
+    a = matrix(of)
+    if is_exact(a):
+        return [e.value for e in _spectrum(a).eigenvalues for _ in range(e.algebraic)]
+    return sorted(np.linalg.eigvals(a).tolist(), key=lambda z: (round(z.real, 9), -z.imag))
+
+
+@measurement
+def eigenvectors(eigenvalue: Any, of: Any) -> list[Any]:
+    """Columns that span the eigenvectors of an eigenvalue, in the order of their independence; numbers."""
+    a = numbers(matrix(of))
+    from scipy.linalg import null_space
+
+    return list(null_space(a - complex(eigenvalue) * np.eye(len(a)), rcond=1e-9).T)
+
+
+@measurement
+def characteristic(of: Any) -> list[Any]:
+    """Coefficients of det(s I - A), the highest power first."""
+    a = matrix(of)
+    return list(a.charpoly().all_coeffs()) if is_exact(a) else list(np.poly(a))
+
+
+@measurement
+def closed_loop(of: Any, gain: Any, inputs: Sequence[str] = ()) -> Record:
+    """x' = (A - B K) x, of some inputs alone; letters of A are taken as 1."""
+    whole = system_of(of)
+    a = numbers(whole.part("A")) - numbers(_columns(whole, inputs)) @ numbers(gain)
+    return Record(f"{whole.name} with feedback", {**whole.parts, "A": a})
+
+
+@measurement
+def stabilisable(of: Any, inputs: Sequence[str] = ()) -> bool:
+    """Whether some feedback makes all real parts negative: by Hautus' test at each eigenvalue that is not so."""
+    whole = system_of(of)
+    a, b = numbers(whole.part("A")), numbers(_columns(whole, inputs))
+    lost = [v for v in np.linalg.eigvals(a) if v.real > -_ZERO and _rank(np.hstack([v * np.eye(len(a)) - a, b])) < len(a)]
+    return not lost
 
 
 @measurement
@@ -143,11 +182,14 @@ def matrix(of: Any) -> Any:
 
 def numbers(of: Any) -> Array:
     """A matrix with numbers, its letters taken as 1."""
-    if not is_exact(of):
-        return np.asarray(of, dtype=float)
-    rows, cols = of.shape
-    plain = of.subs(dict.fromkeys(of.free_symbols, 1))
-    return np.array(plain.tolist(), dtype=float).reshape(rows, cols)
+    return _numbers(of) if is_exact(of) else np.asarray(of, dtype=float)
+
+
+@lru_cache(maxsize=4096)
+def _numbers(of: Any) -> Array:
+    found = np.array(of.subs(dict.fromkeys(of.free_symbols, 1)).tolist(), dtype=float).reshape(of.shape)
+    found.flags.writeable = False
+    return found
 
 
 @cache
@@ -162,6 +204,10 @@ def _eigenvalue(value: Any, of: Any) -> Any:
         if entry.value == value or (not is_exact(value) and abs(complex(entry.value) - complex(value)) < _ZERO):
             return entry
     raise BadInput(f"{value} is no eigenvalue of {system_of(of).name}")
+
+
+def _rank(of: Any) -> int:
+    return int(np.linalg.matrix_rank(of, tol=1e-7))
 
 
 def _place(whole: Record, of: str, name: str) -> int:

@@ -175,6 +175,8 @@ def _order(left: Any, right: Any) -> int:
         if not _has_floats(gap):
             return _exact_sign(gap)
     left, right = _real(left), _real(right)
+    if math.isinf(left) or math.isinf(right):
+        return (left > right) - (left < right)
     return 0 if _same(left, right) else (-1 if left < right else 1)
 
 
@@ -195,7 +197,7 @@ def _exact_sign(gap: Any) -> int:
 def _is_zero(gap: Any) -> bool:
     from satsym.symbolic.lookup import formulas
 
-    return bool(gap.is_zero) or formulas.is_zero(gap)
+    return bool(gap.is_zero) or (not gap.is_Rational and formulas.is_zero(gap))
 
 
 def _has_floats(value: Any) -> bool:
@@ -210,7 +212,7 @@ def _floats() -> tuple[Any, ...]:
 
 def _real(value: Any) -> float:
     number = complex(value)
-    if not math.isfinite(abs(number)):
+    if math.isnan(abs(number)):
         raise Undecided(f"{in_words(value)} is no number")
     if abs(number.imag) > max(RELATIVE * abs(number), ABSOLUTE):
         raise BadInput(f"{in_words(value)} is complex, and neither less nor greater than anything")
