@@ -14,6 +14,7 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.auditing.measurements import measurement
+from satsym.auditing.propositions.relations import is_equal
 from satsym.auditing.propositions.values import Record, Undecided, is_exact
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
@@ -65,6 +66,34 @@ def eigenvectors(eigenvalue: Any, of: Any) -> list[Any]:
     from scipy.linalg import null_space
 
     return list(null_space(a - complex(eigenvalue) * np.eye(len(a)), rcond=1e-9).T)
+
+
+@measurement
+def jordan(of: Any) -> Record:
+    """A basis P of chains of an exact matrix, as columns, and the eigenvalue that belongs to each."""
+    from satsym.symbolic.analysis.jordan import jordan_form
+
+    found = jordan_form(_spectrum(matrix(of)))
+    if found is None:
+        raise Undecided("no closed form of the eigenvalues")
+    return Record("the Jordan form", {"P": found.basis, "values": [found.form[i, i] for i in range(found.form.rows)]})
+
+
+@measurement
+def routh(coefficients: Sequence[Any]) -> list[list[Any]]:
+    """The rows of Routh's array by its plain rule, padded with zeros, up to one that begins with zero.
+
+    Coefficients are those of a polynomial, the highest power first, or a matrix of one row.
+    """
+    given = list(coefficients)
+    width = (len(given) + 1) // 2
+    zero = given[0] - given[0]
+    found = [[*line, *[zero] * (width - len(line))] for line in (given[0::2], given[1::2])]
+    while len(found) < len(given) and not is_equal(found[-1][0], 0):
+        above, line = found[-2:]
+        after = [(line[0] * a - above[0] * b) / line[0] for a, b in zip(above[1:], line[1:], strict=True)]
+        found.append([*after, zero])
+    return found
 
 
 @measurement
