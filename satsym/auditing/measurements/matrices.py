@@ -50,6 +50,12 @@ def shape(of: Any) -> list[int]:
 
 
 @measurement
+def entries(of: Any) -> list[Any]:
+    """All entries, row by row."""
+    return list(of) if is_exact(of) else np.asarray(of).ravel().tolist()
+
+
+@measurement
 def rows(of: Any, places: Sequence[int]) -> Any:
     """Some rows of a matrix, counted from one."""
     chosen = [place - 1 for place in places]
