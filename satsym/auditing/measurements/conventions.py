@@ -31,3 +31,21 @@ def years() -> list[Quantity]:
 def pi() -> float:
     """Half a turn."""
     return math.pi
+
+
+@value
+def epsilons() -> list[float]:
+    """Distances from an equilibrium within which motions are to stay."""
+    return [1e-2, 1.0, 1e2]
+
+
+@value
+def deltas() -> list[float]:
+    """Distances from an equilibrium at which motions start: far smaller and far larger ones than :func:`epsilons`."""
+    return [1e-6, 1e-3, 1.0, 1e3, 1e6]
+
+
+@value
+def halved() -> list[float]:
+    """Steps that go to zero, each half of the one before, for limits."""
+    return [2.0**-k for k in range(6, 12)]

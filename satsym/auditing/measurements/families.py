@@ -72,6 +72,19 @@ def controlled() -> Family:
     return Family("CONTROLLED", "linear systems with inputs and outputs", tuple(members))
 
 
+@value
+def symmetric() -> Family:
+    """Symmetric matrices of every kind: with positive, with negative eigenvalues, with both, and with zero."""
+    rng = np.random.default_rng(_SEED)
+    members = []
+    for signs in ([1, 1], [1, 0], [1, -1], [0, 0], [-1, -1], [1], [-1], [1, 1, 1], [1, 1, 0], [1, 1, -1], [-1, -1, 0]):
+        sizes = np.array(signs) * rng.uniform(0.5, 3.0, len(signs))
+        basis = np.linalg.qr(rng.normal(size=(len(signs), len(signs))))[0]
+        whole = basis @ np.diag(sizes) @ basis.T
+        members.append(0.5 * (whole + whole.T))
+    return Family("SYMMETRIC", "symmetric matrices", tuple(members))
+
+
 def _exact(rows: list[list[str]]) -> Any:
     """A matrix of exact numbers."""
     from satsym.symbolic.lookup import formulas

@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 import numpy as np
 
 from satsym.arrays import Array
 from satsym.auditing.measurements import measurement
+from satsym.auditing.propositions.relations import is_equal
 from satsym.auditing.propositions.values import Record, Undecided, is_exact
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
@@ -48,10 +49,77 @@ def inputs_of(of: Any, inputs: Sequence[str]) -> Record:
 
 @measurement
 def eigenvalues(of: Any) -> list[Any]:
-    """All eigenvalues, each as often as it is a root of the characteristic polynomial; exact where the matrix is."""
-    if not is_exact(matrix(of)):
-        return list(np.linalg.eigvals(numbers(matrix(of))).astype(complex))
-    return [e.value for e in _spectrum(matrix(of)).eigenvalues for _ in range(e.algebraic)]
+    """All eigenvalues, each as often as it is a root of the characteristic polynomial; exact if the matrix is.
+
+    Those of a matrix with plain numbers are sorted by their real parts, and then downwards by their imaginary parts.
+    """
+    a = matrix(of)
+    if is_exact(a):
+        return [e.value for e in _spectrum(a).eigenvalues for _ in range(e.algebraic)]
+    return sorted(np.linalg.eigvals(a).tolist(), key=lambda z: (round(z.real, 9), -z.imag))
+
+
+@measurement
+def eigenvectors(eigenvalue: Any, of: Any) -> list[Any]:
+    """Columns that span the eigenvectors of an eigenvalue, in the order of their independence; numbers."""
+    a = numbers(matrix(of))
+    from scipy.linalg import null_space
+
+    return list(null_space(a - complex(eigenvalue) * np.eye(len(a)), rcond=1e-9).T)
+
+
+@measurement
+def jordan(of: Any) -> Record:
+    """A basis P of chains of an exact matrix, as columns, and the eigenvalue that belongs to each."""
+    from satsym.symbolic.analysis.jordan import jordan_form
+
+    found = jordan_form(_spectrum(matrix(of)))
+    if found is None:
+        raise Undecided("no closed form of the eigenvalues")
+    return Record("the Jordan form", {"P": found.basis, "values": [found.form[i, i] for i in range(found.form.rows)]})
+
+
+@measurement
+def routh(coefficients: Sequence[Any]) -> list[list[Any]]:
+    """The rows of Routh's array by its plain rule, padded with zeros, up to one that begins with zero.
+
+    Coefficients are those of a polynomial, the highest power first, or a matrix of one row.
+    """
+    given = list(coefficients)
+    width = (len(given) + 1) // 2
+    zero = given[0] - given[0]
+    found = [[*line, *[zero] * (width - len(line))] for line in (given[0::2], given[1::2])]
+    while len(found) < len(given) and not is_equal(found[-1][0], 0):
+        above, line = found[-2:]
+        after = [(line[0] * a - above[0] * b) / line[0] for a, b in zip(above[1:], line[1:], strict=True)]
+        found.append([*after, zero])
+    return found
+
+
+@measurement
+def characteristic(of: Any) -> list[Any]:
+    """Coefficients of det(s I - A), the highest power first."""
+    a = matrix(of)
+    return list(a.charpoly().all_coeffs()) if is_exact(a) else list(np.poly(a))
+
+
+@measurement
+def closed_loop(of: Any, gain: Any, inputs: Sequence[str] = ()) -> Record:
+    """x' = (A - B K) x, of some inputs alone; letters of A are taken as 1."""
+    whole = system_of(of)
+    a = numbers(whole.part("A")) - numbers(_columns(whole, inputs)) @ numbers(gain)
+    return Record(f"{whole.name} with feedback", {**whole.parts, "A": a})
+
+
+@measurement
+def stabilisable(of: Any, inputs: Sequence[str] = ()) -> bool:
+    """Whether some feedback makes all real parts negative: by Hautus' test at each eigenvalue that is not so."""
+    whole = system_of(of)
+    a, b = numbers(whole.part("A")), numbers(_columns(whole, inputs))
+    lost = [
+        v for v in np.linalg.eigvals(a) if v.real > -_ZERO and _rank(np.hstack([v * np.eye(len(a)) - a, b])) < len(a)
+    ]
+    return not lost
 
 
 @measurement
@@ -165,11 +233,14 @@ def matrix(of: Any) -> Any:
 
 def numbers(of: Any) -> Array:
     """A matrix with numbers, its letters taken as 1."""
-    if not is_exact(of):
-        return np.asarray(of, dtype=float)
-    rows, cols = of.shape
-    plain = of.subs(dict.fromkeys(of.free_symbols, 1))
-    return np.array(plain.tolist(), dtype=float).reshape(rows, cols)
+    return _numbers(of) if is_exact(of) else np.asarray(of, dtype=float)
+
+
+@lru_cache(maxsize=4096)
+def _numbers(of: Any) -> Array:
+    found = np.array(of.subs(dict.fromkeys(of.free_symbols, 1)).tolist(), dtype=float).reshape(of.shape)
+    found.flags.writeable = False
+    return found
 
 
 @cache
@@ -184,6 +255,10 @@ def _eigenvalue(value: Any, of: Any) -> Any:
         if entry.value == value or (not is_exact(value) and abs(complex(entry.value) - complex(value)) < _ZERO):
             return entry
     raise BadInput(f"{value} is no eigenvalue of {system_of(of).name}")
+
+
+def _rank(of: Any) -> int:
+    return int(np.linalg.matrix_rank(of, tol=1e-7))
 
 
 def _place(whole: Record, of: str, name: str) -> int:

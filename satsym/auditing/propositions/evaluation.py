@@ -25,7 +25,7 @@ from satsym.auditing.propositions.reading import (
     row_key,
 )
 from satsym.auditing.propositions.relations import Fit, compared
-from satsym.auditing.propositions.values import Family, Record, Undecided, in_words
+from satsym.auditing.propositions.values import Family, Record, Undecided, alike, in_words
 from satsym.status import BadInput
 
 Truth: TypeAlias = bool | None
@@ -296,10 +296,12 @@ class Evaluation:
             raise BadInput(f"{_text(node)} has no value: {error}") from None
 
     def _worked_out(self, node: ast.BinOp, bound: Mapping[str, Any]) -> Any:
-        left, right = self._value(node.left, bound), self._value(node.right, bound)
+        left, right = alike(self._value(node.left, bound), self._value(node.right, bound))
         if isinstance(node.op, ast.Pow) and not (isinstance(right, int | float) and abs(right) <= _MAX_POWER):
             raise BadInput(f"{_text(node)}: an exponent is a number, at most {_MAX_POWER}")
         try:
+            if isinstance(node.op, ast.Pow) and isinstance(left, np.ndarray) and left.ndim > 1:
+                return np.linalg.matrix_power(left, right)
             return _OPERATORS[type(node.op)](left, right)
         except _BREAKS as error:
             raise BadInput(f"{_text(node)} has no value: {error}") from None

@@ -175,6 +175,8 @@ def _order(left: Any, right: Any) -> int:
         if not _has_floats(gap):
             return _exact_sign(gap)
     left, right = _real(left), _real(right)
+    if math.isinf(left) or math.isinf(right):
+        return (left > right) - (left < right)
     return 0 if _same(left, right) else (-1 if left < right else 1)
 
 
@@ -211,7 +213,7 @@ def _floats() -> tuple[Any, ...]:
 
 def _real(value: Any) -> float:
     number = complex(value)
-    if not math.isfinite(abs(number)):
+    if math.isnan(abs(number)):
         raise Undecided(f"{in_words(value)} is no number")
     if abs(number.imag) > max(RELATIVE * abs(number), ABSOLUTE):
         raise BadInput(f"{in_words(value)} is complex, and neither less nor greater than anything")

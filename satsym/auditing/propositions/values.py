@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -79,6 +80,23 @@ def is_number(value: Any) -> bool:
     if isinstance(value, bool | np.bool_ | str):
         return False
     return isinstance(value, int | float | complex | np.number) or (is_exact(value) and bool(value.is_number))
+
+
+@lru_cache(maxsize=4096)
+def _entries(of: Any) -> Any:
+    found = np.array(of.tolist(), dtype=complex)
+    return found if np.imag(found).any() else np.real(found)
+
+
+def alike(left: Any, right: Any) -> tuple[Any, Any]:
+    """Two values that can be calculated with together: an exact one beside measured ones becomes a measured one."""
+    for one, other in ((left, right), (right, left)):
+        if isinstance(one, np.ndarray) and is_exact(other):
+            measured = _entries(other) if getattr(other, "is_Matrix", False) else complex(other)
+            if isinstance(measured, complex) and not measured.imag:
+                measured = measured.real
+            return (left, measured) if one is left else (measured, right)
+    return left, right
 
 
 def in_words(value: Any) -> str:

@@ -1,0 +1,185 @@
+"""Motions of linear systems, followed by integration or by e^(At); what inputs bring about, and what they cannot."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.auditing.measurements import linear, measurement
+from satsym.auditing.measurements.matrices import dense
+from satsym.auditing.propositions.values import Record
+
+_LATE, _GROWN = 80.0, 1.5
+_STEPS, _MOMENTS = 400, 2000
+_LOST = 1e-9
+
+
+@measurement
+def motion(of: Any, start: Any, t: float) -> Array:
+    """The state at a time from a start on, of x' = A x: by integration, of all unit vectors at once."""
+    return np.asarray(_transition(linear.matrix(of), t) @ dense(start))
+
+
+@measurement
+def trajectory(of: Any, start: Any, until: float) -> Record:
+    """The motion of x' = A x from a start on: ``t``, the states by name, and their ``size``; by e^(At)."""
+    system = linear.system_of(of)
+    a = linear.numbers(system.part("A"))
+    advance, x = linear.flow(a, until / _MOMENTS), np.asarray(dense(start), dtype=float).ravel()
+    path = [x]
+    for _ in range(_MOMENTS):
+        path.append(advance @ path[-1])
+    curves = np.array(path).T
+    names = system.parts.get("states") or [f"x{k + 1}" for k in range(len(a))]
+    times = np.linspace(0.0, until, _MOMENTS + 1)
+    parts = {"t": times, "size": np.linalg.norm(curves, axis=0), "curves": list(curves)}
+    return Record(f"the motion of {system.name}", {**parts, **dict(zip(names, curves, strict=True))})
+
+
+@measurement
+def flow_rate(of: Any, t: float) -> Array:
+    """The derivative of e^(At) by t: by Cauchy's integral around t."""
+    from scipy.linalg import expm
+
+    a, points = linear.numbers(linear.matrix(of)), np.exp(2j * math.pi * np.arange(16) / 16)
+    return np.asarray(np.real(np.mean([expm(a * (t + 0.2 * z)) / (0.2 * z) for z in points], axis=0)))
+
+
+@measurement
+def limit(values: Sequence[Any]) -> Any:
+    """The limit of a sequence whose steps are halved from one entry to the next: by Richardson's extrapolation."""
+    column = [_dense(entry) for entry in values]
+    for power in range(1, len(values)):
+        column = [(2.0**power * b - a) / (2.0**power - 1.0) for a, b in zip(column, column[1:], strict=False)]
+    return column[0]
+
+
+@measurement
+def farthest(of: Any, size: float) -> float:
+    """How far motions get that start no farther from zero than this; infinite where that has no bound."""
+    largest, bounded = _reach(linear.matrix(of))
+    return size * largest if bounded else math.inf
+
+
+@measurement
+def remaining(of: Any, size: float) -> float:
+    """How far motions that start so far from zero are in the end; infinite where that has no bound."""
+    a = linear.matrix(of)
+    if not _reach(a)[1]:
+        return math.inf
+    left = max(float(np.linalg.norm(linear.flow(a, t), 2)) for t in np.linspace(_LATE, 1.2 * _LATE, 20))
+    return 0.0 if left < _LOST else size * left
+
+
+@measurement
+def quadrature(start: float, end: float, nodes: int = 24) -> list[list[float]]:
+    """Places and weights that integrate a smooth function over an interval, by Gauss and Legendre."""
+    places, weights = np.polynomial.legendre.leggauss(nodes)
+    half = 0.5 * (end - start)
+    return [[float(start + half * (p + 1.0)), float(half * w)] for p, w in zip(places, weights, strict=True)]
+
+
+@measurement
+def gramian(of: Any, t: float) -> Array:
+    """The integral of e^(-As) B B' e^(-A's) over [0, t]: from one exponential of twice the size (Van Loan)."""
+    from scipy.linalg import expm
+
+    system = linear.system_of(of)
+    a, b = -linear.numbers(system.part("A")), linear.numbers(system.part("B"))
+    n = len(a)
+    whole = expm(t * np.block([[-a, b @ b.T], [np.zeros((n, n)), a.T]]))
+    return np.asarray(whole[n:, n:].T @ whole[:n, n:])
+
+
+@measurement
+def wave(of: Any, t: float) -> Array:
+    """An input that is not special in any way, at a time."""
+    return np.array([math.cos(3.0 * t + k) + k * t for k in range(linear.system_of(of).part("B").shape[1])])
+
+
+@measurement
+def driven(of: Any, t: float) -> Array:
+    """The state at a time, from zero under the ``wave``: by integration."""
+    system = linear.system_of(of)
+    a, b = linear.numbers(system.part("A")), linear.numbers(system.part("B"))
+    return _followed(lambda s, x: np.asarray(a @ x + b @ wave(system, s)), np.zeros(len(a)), t)
+
+
+@measurement
+def steered_to(of: Any, start: Any, aim: Any) -> Array:
+    """The state after 1, under the input of least energy that comes as near to an aim as any does: by integration."""
+    a, b = (linear.numbers(linear.system_of(of).part(name)) for name in "AB")
+    moved, pushed, effort = _steering(a.tobytes(), b.tobytes(), a.shape, b.shape)
+    return np.asarray(moved @ dense(start) + pushed @ (effort @ (dense(aim) - moved @ dense(start))))
+
+
+@measurement
+def placing_gain(of: Any, coefficients: Sequence[float]) -> Any:
+    """K such that det(s I - A - B K) has these coefficients, of a system with one input: by Ackermann's formula."""
+    system = linear.system_of(of)
+    a, b = system.part("A"), system.part("B")
+    wanted = sum((a ** (a.rows - k) * c for k, c in enumerate(coefficients)), a * 0)
+    last = a.zeros(1, a.rows - 1).row_join(a.eye(1))
+    return -last * linear.controllability(Record("", {"A": a, "B": b})).inv() * wanted
+
+
+@measurement
+def stabilising_gain(of: Any) -> Array:
+    """K such that A + B K moves all that inputs move to the left: by Bass' equation."""
+    from scipy.linalg import solve_continuous_lyapunov
+
+    system = linear.system_of(of)
+    a, b = linear.numbers(system.part("A")), linear.numbers(system.part("B"))
+    shift = 1.0 + float(np.linalg.norm(a, 2))
+    weight = solve_continuous_lyapunov(a + shift * np.eye(len(a)), 2.0 * b @ b.T)
+    return np.asarray(-b.T @ np.linalg.pinv(weight, rcond=1e-10, hermitian=True))
+
+
+def _followed(rates: Callable[[float, Array], Array], start: Any, t: float) -> Array:
+    from scipy.integrate import solve_ivp
+
+    begin = np.asarray(dense(start), dtype=float).ravel()
+    found = solve_ivp(rates, (0.0, t), begin, rtol=1e-11, atol=1e-12, method="DOP853")
+    return np.asarray(found.y[:, -1])
+
+
+def _dense(of: Any) -> Array:
+    return np.asarray(dense(of), dtype=float)
+
+
+@cache
+def _steering(a_: bytes, b_: bytes, *shapes: tuple[int, int]) -> tuple[Array, Array, Array]:
+    """After 1: what a start becomes, what the inputs B' e^(-A's) d bring about, and which d a distance asks for."""
+    a, b = (np.frombuffer(part).reshape(size) for part, size in zip((a_, b_), shapes, strict=True))
+    n = len(a)
+
+    def rates(s: float, x: Array) -> Array:
+        both = x.reshape(n, 2 * n)
+        return np.asarray((a @ both + np.hstack([np.zeros((n, n)), b @ b.T @ linear.flow(-a.T, s)])).ravel())
+
+    whole = _followed(rates, np.hstack([np.eye(n), np.zeros((n, n))]), 1.0).reshape(n, 2 * n)
+    return whole[:, :n], whole[:, n:], np.linalg.pinv(whole[:, n:], rcond=1e-9)
+
+
+@cache
+def _transition(a: Any, t: float) -> Array:
+    matrix = linear.numbers(a)
+    n = len(matrix)
+    return _followed(lambda _, x: np.asarray((matrix @ x.reshape(n, n)).ravel()), np.eye(n), t).reshape(n, n)
+
+
+@cache
+def _reach(a: Any) -> tuple[float, bool]:
+    """The largest norm of e^(At) that is seen, and whether it has a bound."""
+    step = linear.flow(a, _LATE / _STEPS)
+    moved, sizes = np.eye(len(step)), []
+    for _ in range(_STEPS):
+        sizes.append(float(np.linalg.norm(moved, 2)))
+        moved = step @ moved
+    early = max(sizes[: _STEPS // 2])
+    return max(sizes), max(sizes[_STEPS // 2 :]) <= _GROWN * early

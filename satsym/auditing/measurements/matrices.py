@@ -1,0 +1,183 @@
+"""Matrices: exact where their entries are, else with numbers; a vector is a column, or a list of numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.auditing.measurements import measurement
+from satsym.auditing.propositions.values import is_exact, is_number
+from satsym.status import BadInput
+
+_SEED = 3
+
+
+@measurement
+def det(of: Any) -> Any:
+    """The determinant, exact where the matrix has letters."""
+    return of.det(method="berkowitz") if is_exact(of) and of.free_symbols else np.linalg.det(dense(of))
+
+
+@measurement
+def inverse(of: Any) -> Any:
+    """The inverse, exact where the matrix has letters."""
+    return of.inv() if is_exact(of) and of.free_symbols else np.linalg.inv(dense(of))
+
+
+@measurement
+def transpose(of: Any) -> Any:
+    """The transpose."""
+    return of.T
+
+
+@measurement
+def eye(size: int) -> Any:
+    """The identity."""
+    from satsym.symbolic.lookup import formulas
+
+    return formulas.exact_matrix([[str(int(i == j)) for j in range(size)] for i in range(size)])
+
+
+@measurement
+def shape(of: Any) -> list[int]:
+    """Numbers of rows and columns."""
+    return [int(size) for size in of.shape]
+
+
+@measurement
+def entries(of: Any) -> list[Any]:
+    """All entries, row by row."""
+    return list(of) if is_exact(of) else np.asarray(of).ravel().tolist()
+
+
+@measurement
+def rows(of: Any, places: Sequence[int]) -> Any:
+    """Some rows of a matrix, counted from one."""
+    chosen = [place - 1 for place in places]
+    return of.extract(chosen, list(range(of.cols))) if is_exact(of) else np.asarray(of)[chosen]
+
+
+@measurement
+def hstack(parts: Sequence[Any]) -> Any:
+    """Matrices beside each other."""
+    return parts[0].hstack(*parts) if all(map(is_exact, parts)) else np.column_stack([dense(part) for part in parts])
+
+
+@measurement
+def vstack(parts: Sequence[Any]) -> Any:
+    """Matrices above each other."""
+    return parts[0].vstack(*parts) if all(map(is_exact, parts)) else np.vstack([dense(part) for part in parts])
+
+
+@measurement
+def diagonal(parts: Sequence[Any]) -> Any:
+    """Numbers, or square matrices, along the diagonal of a matrix that is zero elsewhere."""
+    from satsym.symbolic.lookup import formulas
+
+    size = len(parts)
+    if all(is_exact(part) and is_number(part) for part in parts):
+        zero = parts[0] - parts[0]
+        return formulas.matrix_of([[parts[i] if i == j else zero for j in range(size)] for i in range(size)])
+    from scipy.linalg import block_diag
+
+    return np.asarray(block_diag(*[np.atleast_2d(dense(part)) for part in parts]))
+
+
+@measurement
+def kernel(of: Any) -> list[Any]:
+    """Columns that span what a matrix maps to zero, exact where it has letters."""
+    if is_exact(of) and of.free_symbols:
+        return list(of.nullspace(simplify=True))
+    from scipy.linalg import null_space
+
+    return list(null_space(dense(of), rcond=1e-9).T)
+
+
+@measurement
+def norm(of: Any) -> float:
+    """The root of the sum of the squares of all entries."""
+    return float(np.linalg.norm(dense(of)))
+
+
+@measurement
+def rotation(angle: Any) -> Array:
+    """[cos, -sin; sin, cos] of an angle."""
+    turn = float(angle)
+    return np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
+
+
+@measurement
+def exp(x: Any) -> Any:
+    """The exponential of a number, or of each point of a curve; exact of an exact number."""
+    from satsym.symbolic.lookup import formulas
+
+    return formulas.function("exp", [x]) if is_exact(x) else np.exp(x)
+
+
+@measurement
+def factorial(n: int) -> int:
+    """1 times 2 times ... times n."""
+    return math.factorial(n)
+
+
+@measurement
+def naturals(count: int) -> list[int]:
+    """0, 1, 2, ...: so many."""
+    return list(range(count))
+
+
+@measurement
+def vectors(of: Any) -> list[Array]:
+    """Vectors to try with a square matrix, or of a size: zero, units, random ones, and the matrix's own directions.
+
+    These are what it maps to zero, and if it is symmetric its eigenvectors.
+    """
+    size = of if isinstance(of, int) else int(of.shape[0])
+    rng = np.random.default_rng(_SEED)
+    found = [np.zeros(size), *np.eye(size), *rng.normal(size=(2 * size, size))]
+    if isinstance(of, int):
+        return found
+    a = dense(of)
+    return [*found, *(np.linalg.eigh(a)[1].T if (a == a.T).all() else kernel(a))]
+
+
+@measurement
+def numeric(of: Any) -> Array:
+    """A matrix with plain numbers."""
+    return dense(of)
+
+
+@measurement
+def second_derivatives(of: Any, by: Sequence[str]) -> list[Any]:
+    """All second derivatives of an expression, or of the entries of a matrix, by letters."""
+    entries = list(of) if getattr(of, "is_Matrix", False) else [of]
+    letters = {s.name: s for entry in entries for s in entry.free_symbols}
+    known = [letters[name] for name in by if name in letters]
+    return [entry.diff(a).diff(b) for entry in entries for i, a in enumerate(known) for b in known[i:]]
+
+
+@measurement
+def put_in(expression: Any, **values: float) -> Any:
+    """An expression with numbers for some of its letters."""
+    letters = {s.name: s for s in expression.free_symbols}
+    return expression.subs({letters[name]: value for name, value in values.items() if name in letters})
+
+
+def dense(of: Any) -> Array:
+    """A matrix, a column or a number with plain numbers."""
+    return _measured(of) if is_exact(of) else np.asarray(of)
+
+
+@lru_cache(maxsize=4096)
+def _measured(of: Any) -> Array:
+    if of.free_symbols:
+        raise BadInput(f"{of} has letters where numbers are needed")
+    found = np.array(of.tolist() if getattr(of, "is_Matrix", False) else of, dtype=complex)
+    found = found if np.imag(found).any() else np.real(found)
+    found.flags.writeable = False
+    return found

@@ -1,0 +1,148 @@
+"""Linear-quadratic regulators: gains by Riccati's equation, costs by integrals along motions, costates by e^(Ht).
+
+A system may bring its weights Q and R; where it does not, and none are given, both are the identity.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.auditing.measurements import linear, measurement, value
+from satsym.auditing.measurements.matrices import dense
+from satsym.auditing.propositions.values import Family, Record, Undecided
+
+_SEED = 19
+_ROUNDS, _NODES = 16, 16
+
+
+@value
+def regulators() -> Family:
+    """Systems that inputs can steer, with weights: the textbooks', and others at random, some of which are unstable."""
+    rng = np.random.default_rng(_SEED)
+    given: dict[str, tuple[Any, Any, Any, Any]] = {
+        "integrator": ([[0.0]], [[1.0]], [[1.0]], [[2.0]]),
+        "double integrator": ([[0.0, 1.0], [0.0, 0.0]], [[0.0], [1.0]], np.eye(2), [[1.0]]),
+        "oscillator": ([[0.0, 1.0], [-1.0, 0.0]], [[0.0], [1.0]], np.diag([1.0, 0.5]), [[0.5]]),
+        "pendulum upright": ([[0.0, 1.0], [1.0, 0.0]], [[0.0], [1.0]], np.diag([2.0, 1.0]), [[1.0]]),
+    }
+    for k in range(4):
+        n, m = 2 + k % 2, 1 + k // 2
+        root = rng.uniform(-1.0, 1.0, (n, n))
+        weights = root @ root.T + 0.2 * np.eye(n), np.diag(rng.uniform(0.5, 2.0, m))
+        given[f"system {k + 1}"] = (rng.uniform(-1.0, 1.0, (n, n)), rng.uniform(-1.0, 1.0, (n, m)), *weights)
+    members = [
+        Record(name, {key: np.array(part, dtype=float) for key, part in zip("ABQR", parts, strict=True)})
+        for name, parts in given.items()
+    ]
+    return Family("REGULATORS", "systems with weights", tuple(members))
+
+
+@measurement
+def regulator(of: Any, inputs: Sequence[str] = (), Q: Any = None, R: Any = None) -> Record:
+    """The regulator of a system, of some inputs alone: the gain K of u = -K x, P, and the closed loop's matrix A.
+
+    Raises
+    ------
+    Undecided
+        If there is none.
+    """
+    found = _parts(of, inputs, Q, R)
+    P, K = _solved(*(part.tobytes() for part in found), *(part.shape for part in found))
+    return Record("the regulator", {"K": K, "P": P, "A": found[0] - found[1] @ K})
+
+
+@measurement
+def cost(of: Any, gain: Any, start: Any) -> float:
+    """The integral of x'Qx + u'Ru from a start on, without an end, along u = -K x: summed over doubled intervals."""
+    x, parts = np.asarray(dense(start), dtype=float).ravel(), (*_parts(of), np.atleast_2d(dense(gain)).astype(float))
+    return float(x @ _summed(*(part.tobytes() for part in parts), *(part.shape for part in parts)) @ x)
+
+
+@measurement
+def other_gains(of: Any, inputs: Sequence[str] = ()) -> list[Array]:
+    """Gains near the regulator's and farther from it, all of which make the loop stable."""
+    found = _parts(of, inputs)
+    K, rng, gains = regulator(of, inputs).part("K"), np.random.default_rng(_SEED), []
+    for size in (0.01, 0.03, 0.1, 0.3):
+        for _ in range(3):
+            other = K + size * max(1.0, float(np.linalg.norm(K))) * rng.normal(size=K.shape)
+            if np.linalg.eigvals(found[0] - found[1] @ other).real.max() < 0.0:
+                gains.append(other)
+    return gains
+
+
+@measurement
+def hamiltonian(of: Any, Q: Any = None) -> Array:
+    """[A, -B R^-1 B'; -Q, -A'], which moves states and costates of the optimum."""
+    a, b, q, r = _parts(of, (), Q)
+    return np.block([[a, -b @ np.linalg.solve(r, b.T)], [-q, -a.T]])
+
+
+@measurement
+def riccati(of: Any, t: float) -> Array:
+    """P at a time before the end of a finite interval, at whose end it is 0: -P' = A'P + PA + Q - P B R^-1 B'P."""
+    from scipy.integrate import solve_ivp
+
+    a, b, q, r = _parts(of)
+    n, g = len(a), b @ np.linalg.solve(r, b.T)
+
+    def rate(_: float, entries: Array) -> Array:
+        p = entries.reshape(n, n)
+        return np.asarray((a.T @ p + p @ a + q - p @ g @ p).ravel())
+
+    found = solve_ivp(rate, (0.0, t), np.zeros(n * n), rtol=1e-10, atol=1e-12, method="DOP853")
+    return np.asarray(found.y[:, -1].reshape(n, n))
+
+
+@measurement
+def costate(of: Any, start: Any, t: float) -> Array:
+    """The costate at the start of the optimum over a finite interval, for the cost with 1/2: by e^(Ht), 0 at its end."""
+    whole = linear.flow(hamiltonian(of), t)
+    n = len(whole) // 2
+    return -np.linalg.solve(whole[n:, n:], whole[n:, :n] @ dense(start))
+
+
+def _parts(of: Any, inputs: Sequence[str] = (), Q: Any = None, R: Any = None) -> tuple[Array, Array, Array, Array]:
+    """A, B, Q and R with numbers."""
+    whole = linear.system_of(of)
+    if inputs:
+        whole = linear.inputs_of(whole, inputs)
+    a, b = linear.numbers(whole.part("A")), linear.numbers(whole.part("B"))
+    q = whole.parts.get("Q", np.eye(len(a))) if Q is None else dense(Q)
+    r = whole.parts.get("R", np.eye(b.shape[1])) if R is None else dense(R)
+    return a, b, np.asarray(q, dtype=float), np.asarray(r, dtype=float)
+
+
+@lru_cache(maxsize=512)
+def _summed(*of: Any) -> Array:
+    a, b, q, r, K = (np.frombuffer(part).reshape(size) for part, size in zip(of[:5], of[5:], strict=True))
+    loop, weight = a - b @ K, q + K.T @ r @ K
+    if np.linalg.eigvals(loop).real.max() >= 0.0:
+        raise Undecided("the loop is not stable, and what it costs has no bound")
+    whole, length = np.zeros_like(a), 0.5 / max(1.0, float(np.linalg.norm(loop, 2)))
+    for place, share in zip(*np.polynomial.legendre.leggauss(_NODES), strict=True):
+        moved = linear.flow(loop, 0.5 * length * (place + 1.0))
+        whole += 0.5 * length * share * moved.T @ weight @ moved
+    step = linear.flow(loop, length)
+    for _ in range(_ROUNDS):  # over twice the time at each round
+        whole, step = whole + step.T @ whole @ step, step @ step
+    return whole
+
+
+@lru_cache(maxsize=512)
+def _solved(a: bytes, b: bytes, q: bytes, r: bytes, *shapes: tuple[int, int]) -> tuple[Array, Array]:
+    from satsym.analysis.linear import system as systems
+    from satsym.analysis.regulator.lqr import lqr
+    from satsym.status import BadInput
+
+    parts = [np.frombuffer(part).reshape(size) for part, size in zip((a, b, q, r), shapes, strict=True)]
+    try:
+        found = lqr(systems.system(parts[0], parts[1]), parts[2], parts[3])
+    except BadInput as error:
+        raise Undecided(str(error)) from None
+    return found.P, found.K
