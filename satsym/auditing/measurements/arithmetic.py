@@ -150,8 +150,9 @@ def _extreme(values: Any, sign: int) -> Any:
 @measurement
 def norm(of: Any) -> Any:
     """The Euclidean length of a list of numbers, or of a column."""
-    entries = _flat(of)
-    return sqrt(sum_([entry * entry for entry in entries]))
+    if isinstance(of, np.ndarray):
+        return float(np.linalg.norm(of))
+    return sqrt(sum_([entry * entry for entry in _flat(of)]))
 
 
 @measurement
@@ -192,7 +193,7 @@ def steps(values: Sequence[Any]) -> list[Any]:
 
 
 @measurement
-def order(errors: Sequence[float]) -> float:
+def convergence_order(errors: Sequence[float]) -> float:
     """The power of the step with which errors fall as it is halved again and again, to one decimal."""
     if min(errors[-2:]) <= 0.0:
         raise Undecided("there is no error left to compare")

@@ -44,20 +44,6 @@ def integral(of: Any, by: Any, start: Any, end: Any) -> Any:
 
 
 @measurement
-def det(of: Any) -> Any:
-    """The determinant of a matrix."""
-    return of.det()
-
-
-@measurement
-def eye(n: int) -> Any:
-    """The identity with n rows."""
-    from satsym.symbolic.lookup import formulas
-
-    return formulas.exact_matrix([[str(int(i == j)) for j in range(n)] for i in range(n)])
-
-
-@measurement
 def blocks(rows: Any) -> Any:
     """The matrix that is made up of rows of blocks."""
     lines = [row[0].hstack(*row) for row in rows]

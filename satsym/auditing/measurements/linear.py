@@ -60,7 +60,7 @@ def eigenvalues(of: Any) -> list[Any]:
 
 
 @measurement
-def eigenvectors(eigenvalue: Any, of: Any) -> list[Any]:
+def eigenspace(eigenvalue: Any, of: Any) -> list[Any]:
     """Columns that span the eigenvectors of an eigenvalue, in the order of their independence; numbers."""
     a = numbers(matrix(of))
     from scipy.linalg import null_space

@@ -20,7 +20,7 @@ _SEED = 3
 @measurement
 def det(of: Any) -> Any:
     """The determinant, exact where the matrix has letters."""
-    return of.det(method="berkowitz") if is_exact(of) and of.free_symbols else np.linalg.det(dense(of))
+    return of.det(method="berkowitz") if is_exact(of) else np.linalg.det(dense(of))
 
 
 @measurement
@@ -96,12 +96,6 @@ def kernel(of: Any) -> list[Any]:
     from scipy.linalg import null_space
 
     return list(null_space(dense(of), rcond=1e-9).T)
-
-
-@measurement
-def norm(of: Any) -> float:
-    """The root of the sum of the squares of all entries."""
-    return float(np.linalg.norm(dense(of)))
 
 
 @measurement

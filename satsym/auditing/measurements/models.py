@@ -32,7 +32,7 @@ def rates(model: str) -> list[Any]:
 
 
 @measurement
-def letters(model: str) -> list[str]:
+def variables(model: str) -> list[str]:
     """Names of the states and controls of a model."""
     from satsym.symbolic.lookup.library import derivation
 

@@ -138,20 +138,6 @@ def free_deviation(model: str, instance: str) -> Record:
 
 
 @measurement
-def rates_at(model: str, x: Sequence[float], **parameters: float) -> Array:
-    """The rates of a model without control in some state; parameters that are not given as the model has them, or 1."""
-    from satsym import kernels
-
-    system = kernels.load(model)
-    known = {v.symbol: 1.0 if v.default is None else float(v.default) for v in system.spec.parameters}
-    for other in parameters:
-        if other not in known:
-            raise BadInput(f"{model} has no parameter {shown(other)}; {suggestion(other, known)}")
-    p = tuple({**known, **parameters}.values())
-    return np.array(system.dynamics(0.0, tuple(x), (0.0,) * len(system.spec.controls), p), dtype=float)
-
-
-@measurement
 def distance(one: Record, other: Record, states: Sequence[str] = ()) -> float:
     """The largest difference of two states, relative where a value exceeds 1; of all but angles, or of some."""
     angles = one.parts.get("angles", ())

@@ -1,17 +1,12 @@
-<<<<<<< HEAD
 """What printed Python programs do: values, functions, output and pictures of lines that are walked through.
 
 A program is a list of lines, as ``text['program', 'lines']`` gives it, or lists joined by ``+``. Values that are given
 by name take the place of those that the lines assign. A line that is put at the end is tried in the program's world.
 """
-=======
-"""Printed programs, letter by letter: names they use, signs they hold, what libraries give back."""
->>>>>>> claims-uny
 
 from __future__ import annotations
 
 import re
-<<<<<<< HEAD
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
@@ -44,7 +39,9 @@ def called(program: Sequence[str], name: str, *arguments: Any, **given: Any) -> 
     """What a function of a program returns."""
     found = _walked(program, given).values.get(name)
     if not callable(found):
-        raise BadInput(f"the program has no function {shown(name)}; {suggestion(name, list(_assigned(_read(program))))}")
+        raise BadInput(
+            f"the program has no function {shown(name)}; {suggestion(name, list(_assigned(_read(program))))}"
+        )
     return np.asarray(_trying(lambda: found(*(np.asarray(a) if isinstance(a, list) else a for a in arguments))))
 
 
@@ -154,50 +151,3 @@ def _trying(work: Callable[[], Any]) -> Any:
 
 def _plain(value: Any) -> Any:
     return Record(value.name, value.attributes) if isinstance(value, Module) else value
-=======
-from collections.abc import Sequence
-from typing import Any
-
-from satsym.auditing.measurements import linear, measurement, regulators, value
-from satsym.auditing.propositions.values import Record
-
-_NAME = re.compile(r"[A-Za-z_]\w*")
-_CALL = re.compile(r"([A-Za-z_]\w*)\s*\(")
-
-
-@value
-def maple_linalg() -> list[str]:
-    """Names of Maple's package linalg for eigenvalues and -vectors (its help page, "linalg: Overview")."""
-    return ["eigenvals", "eigenvalues", "eigenvectors", "eigenvects"]
-
-
-@measurement
-def count(text: str, sign: str) -> int:
-    """How often a sign stands in a text."""
-    return text.count(sign)
-
-
-@measurement
-def called(text: str) -> list[str]:
-    """The names of what a line calls, in order."""
-    return _CALL.findall(text)
-
-
-@measurement
-def unbound(lines: Sequence[str], known: Sequence[str] = ()) -> list[str]:
-    """Names that lines ``name = expression`` use before they have a value; those that are known have one."""
-    bound, early = {*known}, []
-    for line in lines:
-        target, _, expression = line.partition("=")
-        early += [name for name in _NAME.findall(expression) if name not in bound and name not in early]
-        bound.add(target.strip())
-    return early
-
-
-@measurement
-def matlab_lqr(A: Any, B: Any, Q: Any, R: Any) -> list[Any]:
-    """What MATLAB's lqr(A, B, Q, R) gives back, in its order [K, S, e] (Control System Toolbox, reference page of lqr)."""
-    system = Record("the system", {"A": linear.numbers(A), "B": linear.numbers(B)})
-    found = regulators.regulator(system, Q=Q, R=R)
-    return [found.part("K"), found.part("P"), linear.eigenvalues(found)]
->>>>>>> claims-uny
