@@ -105,7 +105,8 @@ class _Context:
         if outcome.row.table.kind == "unit":
             return "unit error", [sentences.false_claim(derived), remark]
         by_role: dict[str, Verdict] = {"citation": "misprint", "notation": "notation"}
-        verdict = "imprecise" if outcome.near else by_role.get(outcome.row.table.role, "wrong")
+        verdict = by_role.get(outcome.row.table.role, "wrong")
+        verdict = "imprecise" if outcome.near else "unit error" if outcome.unit else verdict
         return verdict, [sentences.false_claim(derived), remark]
 
     def _of_predicate(self, outcome: Outcome) -> tuple[Verdict, list[str]]:

@@ -113,9 +113,15 @@ def test_printed_digits_stand_for_what_rounds_or_is_cut_to_them(value: float, pr
 
 
 def test_a_last_digit_off_is_near_only_where_all_that_fails_is_near() -> None:
-    assert answer("double(0.0722) == '0.15'").near
-    assert not answer("double(0.0722) == '0.15' and 1 == 2").near
-    assert not answer("not double(0.0722) == '0.15'").near
+    assert answer("double(0.0722) == '0.15'").miss is Fit.NEAR
+    assert answer("double(0.0722) == '0.15' and 1 == 2").miss is None
+    assert answer("not double(0.0722) == '0.15'").miss is None
+
+
+def test_what_is_off_by_the_factor_of_a_unit_is_told_from_what_is_wrong() -> None:
+    assert answer("length() == 0.001*length()").miss is Fit.UNIT
+    assert answer("length() == 3*length()").miss is None
+    assert answer("length() == -0.001*length()").miss is None
 
 
 BAD = {

@@ -11,6 +11,7 @@ from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
 from satsym.auditing.propositions.evaluation import Answer, Evaluation
 from satsym.auditing.propositions.reading import Proposition, Words, matching
+from satsym.auditing.propositions.relations import Fit
 from satsym.formula.values import Matrix, Relation
 from satsym.formula.writing import written
 from satsym.status import BadInput
@@ -34,7 +35,8 @@ def judge(bench: Bench, row: Row) -> Outcome:
         said,
         sound=sound,
         artefact=produced is not None and bool(produced.truth),
-        near=found.near,
+        near=found.miss is Fit.NEAR,
+        unit=found.miss is Fit.UNIT,
         remark="" if found.truth and sound else pages.explained(row.why),
         evidence={**found.evidence, **deciding.evidence},
     )

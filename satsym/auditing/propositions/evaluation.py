@@ -80,8 +80,8 @@ class Answer:
         Of the largest family that it was tried on.
     vacuous
         Whether it holds of a family only because no member meets its condition.
-    near
-        Whether it fails by a last digit alone.
+    miss
+        How it fails where it does so by a last digit, or by the factor of a unit, alone.
     """
 
     truth: Truth
@@ -89,7 +89,7 @@ class Answer:
     evidence: Mapping[str, str] = field(default_factory=dict)
     members: int = 0
     vacuous: bool = False
-    near: bool = False
+    miss: Fit | None = None
 
 
 class Evaluation:
@@ -145,7 +145,7 @@ class Evaluation:
             if name in CONNECTIVES:
                 first = self._judge(node.args[0], bound)
                 if name == "implies" and first.truth is False:  # what is implied need not have a value then
-                    return replace(first, truth=True, vacuous=True, near=False)
+                    return replace(first, truth=True, vacuous=True, miss=None)
                 second = self._judge(node.args[1], bound)
                 return _implied(first, second) if name == "implies" else _equivalent(first, second)
         return self._leaf(node, bound)
@@ -178,8 +178,8 @@ class Evaluation:
                     f"{_text(node)}: {in_words(left)} and {in_words(right)} do not compare ({error})"
                 ) from None
             if not found.holds:
-                near = found.fit is Fit.NEAR and isinstance(sign, ast.Eq)
-                return Answer(False, (said or f"not {_text(node)}",), evidence, near=near)
+                miss = found.fit if found.fit in (Fit.NEAR, Fit.UNIT) and isinstance(sign, ast.Eq) else None
+                return Answer(False, (said or f"not {_text(node)}",), evidence, miss=miss)
         return Answer(True, (said or _text(node),), evidence)
 
     def _quantified(self, node: ast.expr, bound: Mapping[str, Any], universal: bool) -> Answer:
@@ -342,7 +342,7 @@ def _joined(answers: list[Answer], conjunction: bool) -> Answer:
     deciding = [answer for answer in answers if answer.truth is (not conjunction)]
     if deciding:
         first = deciding[0]
-        return replace(first, near=all(answer.near for answer in deciding))
+        return replace(first, miss=first.miss if all(answer.miss is first.miss for answer in deciding) else None)
     undecided = [answer for answer in answers if answer.truth is None]
     if undecided:
         return undecided[0]
@@ -353,7 +353,7 @@ def _joined(answers: list[Answer], conjunction: bool) -> Answer:
 
 
 def _denied(answer: Answer) -> Answer:
-    return replace(answer, truth=None if answer.truth is None else not answer.truth, vacuous=False, near=False)
+    return replace(answer, truth=None if answer.truth is None else not answer.truth, vacuous=False, miss=None)
 
 
 def _implied(first: Answer, second: Answer) -> Answer:

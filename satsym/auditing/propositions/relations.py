@@ -30,6 +30,7 @@ class Fit(Enum):
 
     INSIDE = "inside"
     NEAR = "near"  # a last digit off
+    UNIT = "unit"  # off by the factor of a unit
     OUTSIDE = "outside"
 
 
@@ -132,15 +133,27 @@ def _equal(left: Any, right: Any) -> Comparison:
             raise BadInput(f"a list and the text {in_words(right)} do not compare")
         how = fit(left, quantities.printed_number(right))
         return Comparison(how is Fit.INSIDE, left, right, how)
+    if isinstance(left, Quantity) and isinstance(right, Quantity):
+        holds = _order(left, right) == 0
+        return Comparison(holds, left, right, Fit.UNIT if not holds and _of_unit(left, right) else None)
     if _is_sequence(left) or _is_sequence(right):
         one, other = _entries(left), _entries(right)
         if len(one) != len(other):
             return Comparison(False, left, right)
         pairs = [_equal(a, b) for a, b in zip(one, other, strict=True)]
         fits = [pair.fit for pair in pairs if not pair.holds]
-        worst = Fit.NEAR if fits and all(how is Fit.NEAR for how in fits) else None
+        worst = fits[0] if fits and all(how is fits[0] for how in fits) else None
         return Comparison(all(pair.holds for pair in pairs), left, right, worst)
     return Comparison(_same(left, right), left, right)
+
+
+def _of_unit(one: Quantity, other: Quantity) -> bool:
+    """Whether two quantities differ by powers of ten, or of the degree in radians, alone."""
+    if one.value * other.value <= 0.0:
+        return False
+    ratio = math.log(one.value / other.value)
+    steps = (ratio / math.log(10.0), ratio / math.log(math.radians(1.0)))
+    return any(round(step) and abs(step - round(step)) < RELATIVE for step in steps)
 
 
 def _same(left: Any, right: Any) -> bool:
