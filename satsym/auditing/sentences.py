@@ -64,6 +64,11 @@ def also_inhomogeneous(fault: str) -> str:
     return f" Its dimensions show it, too: it {fault}."
 
 
+def takes_over(keys: Sequence[str]) -> str:
+    """A row goes wrong by what it is taken from alone."""
+    return f"It follows from {_listed(keys)} as printed, and nothing else is wrong with it."
+
+
 def right_elsewhere(items: Sequence[str]) -> str:
     """The document has the same thing right in another place."""
     return f"The document has it right in {_listed(items)}."

@@ -11,15 +11,16 @@ from satsym.auditing.causes import SILENT, with_causes
 from satsym.auditing.diagnosis.edits import Change, Edit
 from satsym.auditing.judge.bench import Bench, Formula
 from satsym.auditing.judge.compare import plans
-from satsym.auditing.judge.formula import corrected
+from satsym.auditing.judge.formula import corrected, shown
 from satsym.auditing.judged import Judged, Verdict
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
 from satsym.auditing.propositions.reading import shape
 from satsym.formula import budget
 from satsym.formula.tree import Mul, Neg, Node
-from satsym.formula.values import Kernel, Roots
+from satsym.formula.values import Kernel, Matrix, Relation, Roots
 from satsym.formula.writing import written
+from satsym.symbolic.lookup import formulas
 
 FORMULAS = ("equation", "matrix")
 """Kinds of rows that may be misprinted; a line of a program is executed, and a number is claimed."""
@@ -65,7 +66,7 @@ class _Context:
             says=row.table.says,
             where=row.table.where,
             printed=row.table.printed,
-            derived=outcome.derived,
+            derived=shown(outcome.plan, None) if outcome.plan and self._takes_over(outcome) else outcome.derived,
             verdict=verdict,
             diagnosis=" ".join(filter(None, said)) if verdict != "confirmed" else "",
             evidence=f"{numbers}; {command}" if numbers else command,
@@ -129,10 +130,11 @@ class _Context:
         carried, mended = self._used_by(row)
         verdict: Verdict = "wrong" if carried and not right_elsewhere else "misprint"
         source = self._spoiled_by(outcome)
+        takes_over = self._takes_over(outcome)
         return verdict, [
-            outcome.remark,
+            outcome.remark if not takes_over else sentences.takes_over(source),
             sentences.right_elsewhere(right_elsewhere) if right_elsewhere else "",
-            sentences.follows_from_wrong(source) if source else "",
+            sentences.follows_from_wrong(source) if source and not takes_over else "",
             sentences.carried_on(carried) if carried else "",
             sentences.not_carried_on(mended) if mended else "",
             sentences.same_slip(slips) if slips else "",
@@ -161,6 +163,25 @@ class _Context:
     def _follows_once_mended(self, row: Row) -> bool:
         wrong = self._wrong_among(row.uses)
         return bool(wrong) and self._follows(row, {key: self._corrected(key) for key in wrong})
+
+    def _takes_over(self, outcome: Outcome) -> bool:
+        """Whether nothing is wrong with a formula but what it takes over from others, and follows from as printed."""
+        row = outcome.row
+        source = self._spoiled_by(outcome) if row.claims is None and outcome.right is False else []
+        if not source:
+            return False
+        right = {key: self._corrected(key) for key in source}
+        found, target = (
+            value.rhs if isinstance(value, Relation) else value
+            for value in (self._bench.follows(row, right).exact, self._bench.target(row).exact)
+        )
+        if isinstance(found, Matrix) and isinstance(target, Matrix) and found.shape == target.shape:
+            entries = [[entry for line in matrix.rows for entry in line] for matrix in (found, target)]
+            return all(formulas.is_zero(one - other) for one, other in zip(*entries, strict=True))
+        no_formula = (Roots, Kernel, Matrix)
+        if isinstance(found, no_formula) or isinstance(target, no_formula):
+            return False
+        return formulas.is_zero(found - target)
 
     def _wrong_among(self, keys: Sequence[str]) -> list[str]:
         """Formulas that differ from what they are held against."""

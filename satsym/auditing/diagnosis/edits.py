@@ -41,10 +41,10 @@ class Change(IntEnum):
     FACTOR = 3
     EXPONENT = 4
     FUNCTION = 5
-    BRACKET = 6
-    SYMBOL = 7
-    DROPPED_FACTOR = 8
-    DROPPED_TERM = 9
+    SYMBOL = 6
+    DROPPED_FACTOR = 7
+    DROPPED_TERM = 8
+    BRACKET = 9
     INVERTED = 10
     MISSING_FACTOR = 11
     MISSING_TERM = 12

@@ -38,14 +38,20 @@ def mended_terms(plan: Plan, indices: Sequence[int]) -> list[tuple[int, Edit]]:
 
     The term is one that a sum lacks, or one that ought to be another.
     """
-    found: list[tuple[int, int, int, Edit]] = []
+    found: list[tuple[int, int, int, int, Edit]] = []
     for i in indices:
         for gap in () if isinstance(plan.printed[i], Num) else _gaps(plan, i):
             for path, node, slope in _linear_places(plan.printed[i]):
                 for change, at, old, new, term in _mended(plan, gap, path, node, slope):
                     edit = Edit(change, at, old, new, replaced(plan.printed[i], at, new))
-                    found.append((change, size(term), i, edit))
-    return [(i, edit) for *_, i, edit in sorted(found, key=lambda entry: entry[:3])]
+                    found.append((change, size(term), -_alike(old, term), i, edit))
+    return [(i, edit) for *_, i, edit in sorted(found, key=lambda entry: entry[:4])]
+
+
+def _alike(one: Node, other: Node) -> int:
+    """How many letters two terms share, whatever dots and primes they bear: a slip of the pen keeps most of them."""
+    stems = [{name.removeprefix("d_").removesuffix("_hat") for name in symbols(term)} for term in (one, other)]
+    return len(stems[0] & stems[1])
 
 
 def _mended(
