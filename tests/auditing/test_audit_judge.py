@@ -201,7 +201,7 @@ def test_a_slip_that_the_document_has_right_elsewhere_is_a_misprint(tmp_path: Pa
     assert "right in second" in found["first"].diagnosis
     assert "carried on into third" in found["first"].diagnosis
     assert "The same slip is in third" in found["first"].diagnosis
-    assert "does follow from first as printed" in found["third"].diagnosis
+    assert "follows from first as printed, and nothing else is wrong" in found["third"].diagnosis
 
 
 @pytest.fixture(scope="module")
@@ -255,8 +255,12 @@ NUMBERS = {
     "rounded": ("35790 km", "altitude", "confirmed"),
     "rounded to thousands": ("36000 km", "altitude", "confirmed"),
     "other unit": ("22236 mi", "altitude", "confirmed"),
-    "one off": ("35787 km", "altitude", "wrong"),
-    "cut off": ("0.66 m", "h*2/3", "wrong"),
+    "one off": ("35787 km", "altitude", "imprecise"),
+    "two off": ("35788 km", "altitude", "wrong"),
+    "cut off": ("0.66 m", "h*2/3", "confirmed"),
+    "a rounded input": ("0.68 m", "about*2/3", "confirmed"),
+    "more than a rounded input leaves open": ("0.61 m", "about*2/3", "wrong"),
+    "of a school book": ("3.00e6 m", "c_light*one/100", "imprecise"),
     "decimals count": ("0.50 m", "h/2", "confirmed"),
     "decimals count, too": ("0.5 m", "h*0.54", "confirmed"),
     "and are held to": ("0.50 m", "h*0.54", "wrong"),
@@ -267,12 +271,12 @@ NUMBERS = {
 
 
 @pytest.mark.parametrize("key", NUMBERS)
-def test_numbers_are_held_to_half_a_unit_in_the_last_place(tmp_path: Path, key: str) -> None:
+def test_numbers_are_held_to_what_their_digits_claim(tmp_path: Path, key: str) -> None:
     printed, holds, verdict = NUMBERS[key]
     head = FREE + '[inputs]\naltitude = "35786.03 km"\n'
-    found = judged(tmp_path, [row("it", printed, holds, "number", inputs={"h": "1 m"})], head)["it"]
+    found = judged(tmp_path, [row("it", printed, holds, "number", inputs={"h": "1 m", "about": "~ 1.0 m", "one": "1 s"})], head)["it"]
     assert found.verdict == verdict
-    assert ("cut off, not rounded" in found.diagnosis) == (key == "cut off")
+    assert ("customary c_light = 3e8 m/s" in found.diagnosis) == (key == "of a school book")
 
 
 @pytest.mark.parametrize(
