@@ -180,4 +180,4 @@ def two_systems(document: Rows, key: str) -> str:
 
 def two_meanings(first: str, second: str) -> Route:
     """A letter that stands for two expressions, which differ."""
-    return lambda document, key: "confirmed" if same(sp.sympify(first), sp.sympify(second)) else "wrong"
+    return lambda document, key: "confirmed" if same(sp.sympify(first), sp.sympify(second)) else "notation"
