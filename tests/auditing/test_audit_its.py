@@ -39,7 +39,6 @@ ROUTES: dict[str, dict[str, Route]] = {
         "abstract cost": claims.halved_guess,
         "section 1.1 geostationary": claims.ellipse,
         "section 2.2 geostationary": claims.ellipse,
-        "section 2.3.2 sidereal day": claims.sidereal_hours,
         "section 2.3.3 coverage": claims.polar_caps,
         "section 1.1 gravity": claims.gravity,
         "section 2.4 gravity": claims.gravity,

@@ -111,10 +111,6 @@ def polar_caps(document: Rows, key: str) -> str:
     return "wrong" if above < 0.0 else "confirmed"
 
 
-def sidereal_hours(document: Rows, key: str) -> str:
-    return "confirmed" if document[key]["printed"] == f"{DAY / 3600:.4f} h" else "wrong"
-
-
 def units(printed: str, needed: str) -> Route:
     """Two units: of one dimension, and of one size where numbers are to fit."""
 
