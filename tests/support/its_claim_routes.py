@@ -131,12 +131,12 @@ def not_earth(document: Rows, key: str) -> str:
 
 def degrees(document: Rows, key: str) -> str:
     """r theta_dot^2 with 1 km and 1 degree per second is not 1 km/s^2."""
-    return "wrong" if not math.isclose(1.0 * math.radians(1.0) ** 2, 1.0) else "confirmed"
+    return "unit error" if not math.isclose(1.0 * math.radians(1.0) ** 2, 1.0) else "confirmed"
 
 
 def force(document: Rows, key: str) -> str:
     """A mass of 1 kg gains 1 km/s in a second by 1000 N."""
-    return "wrong" if UNITS.Quantity(1, "kg*km/s**2").to("newton").magnitude != 1.0 else "confirmed"
+    return "unit error" if UNITS.Quantity(1, "kg*km/s**2").to("newton").magnitude != 1.0 else "confirmed"
 
 
 def ellipse(document: Rows, key: str) -> str:
