@@ -123,7 +123,7 @@ def steady_motion(document: Rows, key: str) -> str:
     """On r = sigma, theta = omega t: rates (0, 0, omega, 0), and none depends on theta."""
     rates = sp.Matrix([rd, r * thd**2 - sigma**3 * omega**2 / r**2, thd, -2 * rd * thd / r])
     on = rates.subs({r: sigma, rd: 0, thd: omega})
-    assert "theta = omega t" in document[key]["says"]
+    assert "titik setimbang" in document[key]["original"]
     if sp.simplify(on) == sp.zeros(4, 1):
         return "confirmed"
     return "unsound" if rates.diff(th) == sp.zeros(4, 1) and on[2] == omega else "wrong"
@@ -161,12 +161,12 @@ def defective(document: Rows, key: str) -> str:
     assert any(jordan[i, i] == 0 and jordan[i, i + 1] == 1 for i in range(3)), "unstable"
     oscillator = sp.Matrix([[0, 1], [-1, 0]])
     bounded = oscillator.is_diagonalizable() and all(sp.re(v) == 0 for v in oscillator.eigenvals())
-    return "unsound" if bounded and "real part zero" in document[key]["printed"] else "confirmed"
+    return "unsound" if bounded and "bernilai nol" in document[key]["original"] else "confirmed"
 
 
 def no_displacement(document: Rows, key: str) -> str:
     """On the reference r = sigma = 1 and theta_dot = omega = 1, which is where the motion starts."""
-    state = re.search(r"state='(\w+)'", document[key]["holds"])[1]  # type: ignore[index]
+    state = re.search(r"start\('its-thesis'\)\.(\w+)", document[key]["printed"])[1]  # type: ignore[index]
     at_start = {"r": 1.0, "r_dot": 0.0, "theta": 0.0, "theta_dot": 1.0}[state]
     return "wrong" if START[STATES.index(state)] - at_start != 1.0 else "confirmed"
 
@@ -180,4 +180,4 @@ def two_systems(document: Rows, key: str) -> str:
 
 def two_meanings(first: str, second: str) -> Route:
     """A letter that stands for two expressions, which differ."""
-    return lambda document, key: "confirmed" if same(sp.sympify(first), sp.sympify(second)) else "wrong"
+    return lambda document, key: "confirmed" if same(sp.sympify(first), sp.sympify(second)) else "notation"

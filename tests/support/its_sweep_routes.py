@@ -115,11 +115,22 @@ def frozen_states(document: Rows, key: str) -> str:
     return "wrong" if 1.7 < error(40) / error(80) < 2.3 else "confirmed"
 
 
+def frozen_controls(document: Rows, key: str) -> str:
+    """The state after a step, as a series in h, where a control grows like t: off by h^2 with that of node n."""
+    found = re.search(r"k(\d) of x", key)
+    stages = (int(found[1]),) if found else (2, 3, 4)
+    h, rate = sp.Symbol("h"), sp.Integer(1)
+    slopes = [rate * h * (0 if k in stages else share) for k, share in zip((1, 2, 3, 4), (0, 0.5, 0.5, 1), strict=True)]
+    step = h * sum(w * s for w, s in zip((1, 2, 2, 1), slopes, strict=True)) / 6
+    assert all("u1_n, u2_n" in document[f"section 4.4 step 5, k{k} of x2"]["printed"] for k in stages)
+    return "wrong" if sp.simplify(step - rate * h**2 / 2) != 0 else "confirmed"
+
+
 def index_slip(document: Rows, key: str) -> str:
     """lambda3 does not change here; the printed formula makes it lambda1 in one step. The listing has it right."""
-    values = {f"k{k}l{i}": 0.0 for k in (1, 2, 3, 4) for i in (1, 2, 3, 4)} | {"lambda1": 0.7, "lambda3": 0.2}
-    assert "lambda3(j+1)" in document["appendix B costate, lambda3(j)"]["printed"]
-    found = eval(document[key]["printed"], {}, values)  # noqa: S307, our own ledger
+    values = {f"k{k}_lambda{i}": 0.0 for k in (1, 2, 3, 4) for i in (1, 2, 3, 4)} | {"lambda1_n": 0.7, "lambda3_n": 0.2}
+    assert "lambda3(j+1)" in document["appendix B costate, lambda3(j)"]["original"]
+    found = eval(document[key]["printed"].partition("=")[2].strip(), {}, values)  # noqa: S307, our own ledger
     return "confirmed" if found == 0.2 else "misprint"
 
 
@@ -134,7 +145,7 @@ def zero_over_zero(document: Rows, key: str) -> str:
 def line_of_the_listing(document: Rows, key: str) -> str:
     """A line, executed at random numbers, against the textbook's, and against itself with h = 1 inside the stages."""
     loop, name = re.fullmatch(r"appendix B (\w+), (\S+)", key).groups()  # type: ignore[union-attr]
-    line = document[key]["printed"]
+    line = document[key]["original"]
     rng = np.random.default_rng(len(line))
     arrays = {f"x{i}{s}": rng.uniform(0.5, 1.5, 3) for i in range(1, 5) for s in ("", "s")}
     arrays |= {f"lambda{i}": rng.uniform(-1, 1, 3) for i in range(1, 5)} | {
@@ -214,9 +225,9 @@ def program(lines: tuple[str, ...]) -> Callable[[dict], None]:
 def body(document: Rows, loop: str) -> tuple[str, ...]:
     """The lines of a loop in their order, without the one that comes too early."""
     return tuple(
-        row["printed"]
+        row["original"]
         for key, row in document.items()
-        if key.startswith(f"appendix B {loop}, ") and "listing_line" in row["holds"]
+        if key.startswith(f"appendix B {loop}, ") and row.get("scope") == "listing"
     )
 
 

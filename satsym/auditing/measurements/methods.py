@@ -158,16 +158,16 @@ def _motion(model: str, states: tuple[str, ...], controls: tuple[str, ...], cost
         raise BadInput(f"{model} has {len(system.spec.states)} states and {m} controls; name all of a kind, or none")
     letters = {v.symbol: 1.0 for v in system.spec.parameters if v.default}
     p = tuple(letters.get(v.symbol, 0.0) for v in system.spec.parameters)
-    phases = np.arange(m)
+    phases, still = np.arange(m), (0.0,) * m
 
     def u(t: Any) -> Array:
         return 0.05 * np.cos(3.0 * np.asarray(t)[..., None] + phases) * bool(controls)
 
     def states_rate(x: Array, v: Array) -> Array:
-        return np.array(system.dynamics(0.0, tuple(x), tuple(v), p))
+        return np.array(system.dynamics(0.0, tuple(x), tuple(v) or still, p))
 
     def costates_rate(lam: Array, x: Array, v: Array) -> Array:
-        return np.array(system.costate_rate(0.0, tuple(x), tuple(v), tuple(lam), p))
+        return np.array(system.costate_rate(0.0, tuple(x), tuple(v) or still, tuple(lam), p))
 
     def both(t: float, y: Array) -> Array:
         rate = states_rate(y[:n], u(t))
@@ -179,7 +179,7 @@ def _motion(model: str, states: tuple[str, ...], controls: tuple[str, ...], cost
         name: lambda t, k=k: found.sol(t)[k] for k, name in enumerate((*states, *costates))
     }
     curves |= {name: lambda t, k=k: u(t)[..., k] for k, name in enumerate(controls)}
-    rates = _components(costates_rate if costates else states_rate, (n, n, m) if costates else (n, m))
+    rates = _components(costates_rate if costates else states_rate, (n, n, len(controls)) if costates else (n, len(controls)))
     return Record(f"a motion of {model}", {"curves": curves, **letters, **rates})
 
 

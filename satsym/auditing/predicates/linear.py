@@ -47,19 +47,6 @@ def _command(model: str) -> str:
 
 
 @predicate
-def eigenvalues_on_axis(model: str) -> Finding:
-    """Whether all eigenvalues have real part zero."""
-    found = analysis(model)
-    real = [e.value.as_real_imag()[0] for e in found.eigenvalues]
-    return Finding(
-        all(part == 0 for part in real),
-        f"eigenvalues {_listed(found)}",
-        {f"real part {k}": str(part) for k, part in enumerate(real, start=1)},
-        _command(model),
-    )
-
-
-@predicate
 def unstable(model: str, reason: str) -> Finding:
     """Whether the system is unstable, and for the reason given: ``multiplicity``, ``real parts zero`` or ``positive``.
 
@@ -82,25 +69,3 @@ def unstable(model: str, reason: str) -> Finding:
         sound=stability.cause == reasons[reason],
         remark=remark,
     )
-
-
-@predicate
-def controllable(model: str) -> Finding:
-    """Whether the controllability matrix has full rank."""
-    found = analysis(model)
-    if found.controllability is None:
-        raise BadInput(f"controllable: {model} has no inputs")
-    rank, n = found.controllability.rank, len(found.system.states)
-    alone = {f"rank with {name} alone": reach.rank for name, reach in found.by_input.items()}
-    return Finding(rank == n, f"rank {rank} of {n}", {"rank": rank, "states": n, **alone}, _command(model))
-
-
-@predicate
-def observable(model: str) -> Finding:
-    """Whether the observability matrix has full rank."""
-    found = analysis(model)
-    if found.observability is None:
-        raise BadInput(f"observable: {model} has no outputs")
-    rank, n = found.observability.rank, len(found.system.states)
-    alone = {f"rank with {name} alone": reach.rank for name, reach in found.by_output.items()}
-    return Finding(rank == n, f"rank {rank} of {n}", {"rank": rank, "states": n, **alone}, _command(model))
