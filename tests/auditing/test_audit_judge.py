@@ -260,7 +260,7 @@ NUMBERS = {
     "cut off": ("0.66 m", "h*2/3", "confirmed"),
     "a rounded input": ("0.68 m", "about*2/3", "confirmed"),
     "more than a rounded input leaves open": ("0.61 m", "about*2/3", "wrong"),
-    "of a school book": ("3.00e6 m", "c_light*one/100", "imprecise"),
+    "of a school book": ("3.000e6 m", "c_light*one/100", "imprecise"),
     "decimals count": ("0.50 m", "h/2", "confirmed"),
     "decimals count, too": ("0.5 m", "h*0.54", "confirmed"),
     "and are held to": ("0.50 m", "h*0.54", "wrong"),
