@@ -63,7 +63,8 @@ def changes(text: str) -> Iterator[Changed]:
         for kind, replace in _changes_of(node):
             other = copy.deepcopy(tree)
             replace(list(ast.walk(other))[place])
-            yield Changed(kind, ast.unparse(other))
+            if ast.dump(other) != ast.dump(tree):
+                yield Changed(kind, ast.unparse(other))
 
 
 def _changes_of(node: ast.AST) -> Iterator[tuple[str, Any]]:

@@ -14,6 +14,8 @@ from satsym.arrays import Array
 from satsym.auditing.measurements import linear, measurement, value
 from satsym.auditing.propositions.values import Family, Record
 from satsym.formula import reading
+from satsym.status import BadInput
+from satsym.wording import shown, suggestion
 
 _SEED = 53
 _NEAR_BY = 0.02
@@ -61,6 +63,15 @@ def equilibria() -> Family:
         rates = ("x2", f"{sign * p}/4*x2 - {q}/2*x1 + ({a})*x1**2 + ({b})*x1*x2 + ({c})*x2**2")
         members.append(_member(f"random system {k + 1}", rates, (0, 0), known))
     return Family("EQUILIBRIA", "equilibria of nonlinear systems", tuple(members))
+
+
+@measurement
+def equilibrium(name: str) -> Record:
+    """A member of the family of equilibria."""
+    found = {member.name: member for member in equilibria()}
+    if name not in found:
+        raise BadInput(f"no equilibrium {shown(name)}; {suggestion(name, found)}")
+    return found[name]
 
 
 @measurement

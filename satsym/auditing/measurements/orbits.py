@@ -132,7 +132,7 @@ def approaching(x: ArrayLike) -> list[Array]:
 
 def _motion(name: str, position: Sequence[float], velocity: Sequence[float], mu: float) -> Record:
     r, v = np.array(position), np.array(velocity)
-    return Record(name, {"position": r, "velocity": v, "mu": mu, "x": np.concatenate([r, v])})
+    return Record(name, {"called": name, "position": r, "velocity": v, "mu": mu, "x": np.concatenate([r, v])})
 
 
 def _start(of: Any, velocity: ArrayLike | None, mu: float | None) -> tuple[Array, Array, float]:
