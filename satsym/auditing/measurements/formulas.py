@@ -6,6 +6,8 @@ from typing import Any
 
 from satsym.auditing.measurements import measurement
 from satsym.auditing.propositions.values import is_exact
+from satsym.formula import reading
+from satsym.formula.tree import Equality, symbols
 from satsym.status import BadInput
 from satsym.wording import shown
 
@@ -27,6 +29,13 @@ def subs(of: Any, **values: Any) -> Any:
 def letters(of: Any) -> list[str]:
     """The letters of a formula."""
     return sorted(s.name for s in of.free_symbols) if is_exact(of) else []
+
+
+@measurement
+def left(equation: str) -> list[str]:
+    """The letters on the left-hand side of an equation as it is printed; none where it has but one side."""
+    formula = reading.statement(equation)
+    return sorted(symbols(formula.lhs)) if isinstance(formula, Equality) else []
 
 
 @measurement
