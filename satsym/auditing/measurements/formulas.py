@@ -40,7 +40,7 @@ def left(equation: str) -> list[str]:
 
 @measurement
 def solutions(of: Any, by: Any) -> list[Any]:
-    """For which values of a letter a formula is zero."""
+    """For which real values of a letter a formula is zero."""
     from satsym.symbolic.lookup import formulas
 
     return formulas.solutions(of, _letter(of, by))
