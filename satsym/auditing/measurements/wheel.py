@@ -1,10 +1,9 @@
 """Manoeuvres of a pitch axis with a reaction wheel: by the classical law, by switching, and with the least heat.
 
-An instance with a ``[classical]`` table gives the numbers. Motions are simulated with the generated equations of motion;
-a motion has its times ``t``, ``angle``, ``rate`` and wheel ``speed`` (the deviation from the nominal one), the
-``torque``, the ``impulse`` that was spent up to each time, the ``heat`` (the integral of the torque squared, that the
-motor's resistance turns into heat; what its back-EMF takes comes to nothing between two states of rest) and its
-``duration``.
+An instance with a ``[classical]`` table gives the numbers. Motions are simulated with the generated equations; one has
+its times ``t``, ``angle``, ``rate``, wheel ``speed`` (the deviation from the nominal one), ``torque``, the ``impulse``
+spent by then, its ``duration``, and the ``heat``: the integral of the torque squared, as the motor's resistance makes
+it. What its back-EMF takes comes to nothing between two states of rest.
 """
 
 from __future__ import annotations
@@ -130,9 +129,9 @@ def wheel_drift(instance: str, torque: float) -> float:
 
 @measurement
 def crossing_time(shares: list[float], controls: list[float]) -> float:
-    """How long a body of inertia 1 takes over the distance 1 under forces, given at shares of the time, straight between.
+    """How long a body of inertia 1 takes over the distance 1 from rest to rest, under forces at shares of the time.
 
-    A force that jumps is given twice at that share. It must come to rest.
+    They are straight between; one that jumps is given twice at that share.
     """
     fine = np.unique(np.concatenate([np.linspace(0.0, 1.0, 20001), shares]))
     middle = 0.5 * (fine[1:] + fine[:-1])
@@ -146,8 +145,8 @@ def crossing_time(shares: list[float], controls: list[float]) -> float:
 def _numbers(instance: str) -> dict[str, float]:
     case = motion.loaded(instance)
     law = case.classical
-    if law is None:
-        raise BadInput(f"{instance} has no table [classical]")
+    if law is None or law.damping is None:
+        raise BadInput(f"{instance} has no damping in a table [classical]")
     found = {v.symbol: float(p) for v, p in zip(case.model.spec.parameters, case.parameters, strict=True)}
     return {**found, "E": law.damping, "P_c": law.command}
 
@@ -168,9 +167,9 @@ def _simulated(
     further: Callable[[Array], float] | None = None,
     spent: float = 0.0,
 ) -> Record:
-    """The motion under torques one after the other, each for its time, from (angle, rate, wheel speed, a further state).
+    """The motion under torques one after the other, each for its time, from angle, rate and wheel speed.
 
-    ``further`` is the rate of that state, ``spent`` the impulse with which it begins.
+    ``further`` is the rate of a further state, ``spent`` the impulse with which it begins.
     """
     from scipy.integrate import solve_ivp
 
