@@ -133,7 +133,7 @@ def test_least_time_is_not_least_energy(found):
 def test_letters_with_several_meanings(found, ledger):
     for letter, key in (("Omega", "letters Omega"), ("X2", "letters X2")):
         assert len({scope[letter] for scope in ledger["scope"].values() if letter in scope}) > 1
-        found("wrong", key)
+        found("notation", key)
 
 
 def test_references_are_one_too_low(found, ledger):

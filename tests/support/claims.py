@@ -59,7 +59,10 @@ def changes(text: str) -> Iterator[Changed]:
     """All propositions with one leaf changed."""
     tree = ast.parse(" ".join(text.split()), mode="eval")
     nodes = list(ast.walk(tree))
+    keys = {id(part) for node in nodes if isinstance(node, ast.Subscript) for part in ast.walk(node.slice)}
     for place, node in enumerate(nodes):
+        if id(node) in keys:
+            continue  # the name of a row
         for kind, replace in _changes_of(node):
             other = copy.deepcopy(tree)
             replace(list(ast.walk(other))[place])

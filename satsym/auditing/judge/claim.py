@@ -59,7 +59,7 @@ class Pages:
 
     def explained(self, why: tuple[str | Proposition, ...]) -> str:
         """A sentence with what its terms measure."""
-        evaluation = Evaluation(self._words, self, self._row.table.printed)
+        evaluation = Evaluation(self._words, self, _listed(self._row.table.printed))
         return "".join(part if isinstance(part, str) else evaluation.term(part) for part in why)
 
     @cached_property

@@ -28,6 +28,12 @@ def years() -> list[Quantity]:
 
 
 @value
+def infinity() -> float:
+    """Beyond all numbers."""
+    return math.inf
+
+
+@value
 def pi() -> float:
     """Half a turn."""
     return math.pi

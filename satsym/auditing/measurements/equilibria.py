@@ -14,6 +14,8 @@ from satsym.arrays import Array
 from satsym.auditing.measurements import linear, measurement, value
 from satsym.auditing.propositions.values import Family, Record
 from satsym.formula import reading
+from satsym.status import BadInput
+from satsym.wording import shown, suggestion
 
 _SEED = 53
 _NEAR_BY = 0.02
@@ -64,13 +66,25 @@ def equilibria() -> Family:
 
 
 @measurement
+def equilibrium(name: str) -> Record:
+    """A member of the family of equilibria."""
+    found = {member.name: member for member in equilibria()}
+    if name not in found:
+        raise BadInput(f"no equilibrium {shown(name)}; {suggestion(name, found)}")
+    return found[name]
+
+
+@measurement
 def followed(of: Any, start: ArrayLike | None = None) -> Record:
     """The motion of a member of a family from a state, or from near its equilibrium.
 
     Its parts are ``t``, ``x1``, ``x2``, ..., its distance from the equilibrium, ``size``, and from its start, ``gone``.
     What goes far away is not followed beyond.
     """
-    return _followed(linear.system_of(of) if isinstance(of, str) else of, None if start is None else tuple(start))
+    return _followed(
+        linear.system_of(of) if isinstance(of, str) else of,
+        None if start is None else tuple(np.asarray(start, dtype=float).tolist()),
+    )
 
 
 @cache
@@ -109,7 +123,7 @@ def _member(name: str, texts: tuple[str, str], rest: tuple[int, int], stability:
     a = formulas.matrix_of([[e.subs(place) for e in slopes[:2]], [e.subs(place) for e in slopes[2:]]])
     ways = {"formulas": formulas.compiled(f, x), "slopes": formulas.compiled(slopes, x)}
     at = np.array(rest, dtype=float)
-    return Record(name, {"A": a, "rest": at, "elsewhere": at + [0.3, 0.2], "stability": stability, **ways})
+    return Record(name, {"A": a, "rest": at, "elsewhere": at + np.array([0.3, 0.2]), "stability": stability, **ways})
 
 
 def _way(n: int) -> Array:

@@ -6,6 +6,8 @@ from typing import Any
 
 from satsym.auditing.measurements import measurement
 from satsym.auditing.propositions.values import is_exact
+from satsym.formula import reading
+from satsym.formula.tree import Equality, symbols
 from satsym.status import BadInput
 from satsym.wording import shown
 
@@ -30,8 +32,15 @@ def letters(of: Any) -> list[str]:
 
 
 @measurement
+def left(equation: str) -> list[str]:
+    """The letters on the left-hand side of an equation as it is printed; none where it has but one side."""
+    formula = reading.statement(equation)
+    return sorted(symbols(formula.lhs)) if isinstance(formula, Equality) else []
+
+
+@measurement
 def solutions(of: Any, by: Any) -> list[Any]:
-    """For which values of a letter a formula is zero."""
+    """For which real values of a letter a formula is zero."""
     from satsym.symbolic.lookup import formulas
 
     return formulas.solutions(of, _letter(of, by))

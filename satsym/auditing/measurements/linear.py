@@ -137,12 +137,7 @@ def geometric(eigenvalue: Any, of: Any) -> int:
 @measurement
 def eigenvectors(of: Any) -> list[Record]:
     """Independent eigenvectors as columns, each with its eigenvalue: ``value``, ``vector``; exact."""
-    a = matrix(of)
-    return [
-        Record(f"eigenvector {k + 1} for {e.value}", {"value": e.value, "vector": column})
-        for e in _spectrum(a).eigenvalues
-        for k, column in enumerate((a - e.value * a.eye(a.rows)).nullspace(simplify=True))
-    ]
+    return _eigenvectors(matrix(of))
 
 
 @measurement
@@ -241,6 +236,15 @@ def _numbers(of: Any) -> Array:
     found = np.array(of.subs(dict.fromkeys(of.free_symbols, 1)).tolist(), dtype=float).reshape(of.shape)
     found.flags.writeable = False
     return found
+
+
+@cache
+def _eigenvectors(a: Any) -> list[Record]:
+    return [
+        Record(f"eigenvector {k + 1} for {e.value}", {"value": e.value, "vector": column})
+        for e in _spectrum(a).eigenvalues
+        for k, column in enumerate((a - e.value * a.eye(a.rows)).nullspace(simplify=True))
+    ]
 
 
 @cache

@@ -31,9 +31,9 @@ _IMPROVED = 6
 
 @value
 def motions() -> Family:
-    """Motions about a centre: circle, ellipses, parabola and hyperbola through one place, others, and some at random."""
+    """Motions about a centre: circle, ellipses, parabola and hyperbola through one place, others, and random ones."""
     rng, across = np.random.default_rng(_SEED), (0.0, 1.0, 0.0)
-    starts: dict[str, tuple[Sequence[float], Sequence[float], float]] = {
+    starts: dict[str, tuple[Sequence[float] | Array, Sequence[float] | Array, float]] = {
         "circle": ((1.0, 0.0, 0.0), across, 1.0),
         "ellipse from its periapsis": ((1.0, 0.0, 0.0), (0.0, 1.2, 0.0), 1.0),
         "ellipse from its apoapsis": ((1.0, 0.0, 0.0), (0.0, 0.8, 0.0), 1.0),
@@ -130,9 +130,9 @@ def approaching(x: ArrayLike) -> list[Array]:
     return [centre + size * h * way for h in (2e-3, 1e-3)]
 
 
-def _motion(name: str, position: Sequence[float], velocity: Sequence[float], mu: float) -> Record:
+def _motion(name: str, position: ArrayLike, velocity: ArrayLike, mu: float) -> Record:
     r, v = np.array(position), np.array(velocity)
-    return Record(name, {"position": r, "velocity": v, "mu": mu, "x": np.concatenate([r, v])})
+    return Record(name, {"called": name, "position": r, "velocity": v, "mu": mu, "x": np.concatenate([r, v])})
 
 
 def _start(of: Any, velocity: ArrayLike | None, mu: float | None) -> tuple[Array, Array, float]:

@@ -316,8 +316,8 @@ def exact(value: Any) -> Any:
 
 
 def solutions(expression: sp.Expr, symbol: sp.Symbol) -> list[sp.Expr]:
-    """For which values of a symbol an expression is zero."""
-    return list(sp.solve(expression, symbol))
+    """For which real values of a symbol an expression is zero; what may be real counts."""
+    return [found for found in sp.solve(expression, symbol) if found.is_real is not False]
 
 
 def compiled(expressions: Sequence[sp.Expr], symbols: Sequence[sp.Symbol]) -> Callable[..., list[float]]:

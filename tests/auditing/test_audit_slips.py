@@ -1,13 +1,13 @@
-"""What the ITB paper prints, with a slip planted in a row: the row is confirmed no longer."""
+"""What the papers print, with a slip planted in a row: the row is confirmed no longer; put right, it is."""
 
 from __future__ import annotations
+
+import tomllib
 
 import pytest
 
 from satsym.auditing import audit, read
-from satsym.auditing.ledger import documents
 from tests.support import ledgers
-from tests.support.itb_routes import rows
 
 PROGRAM = {  # row: what stands there, and what is planted
     "listing 1 lines": ("import eig", "import eigh"),
@@ -44,35 +44,50 @@ RIGHT = {
 DIVISOR = {"program y axis": ("1e11", "1e9")}
 
 
+PITCH = {
+    "7 left-hand side": ("2*zeta", "zeta"),
+    "12 command": ("P_c/s", "P_c/s**2"),
+    "21": ("C2 - C1*tau", "C1*tau - C2"),
+}
+PITCH_RIGHT = {
+    "24 torque": ("I_wy*d_Omega", "I_wy*d_Omega*(1 - I_wy/I_y)"),
+    "29 limits": ("(C1*tau - C2 + C_p*X2)/(2*(tau*C_p - 1))", "(C2 - C1*tau)/2"),
+}
+
+
 def _changed(printed: object, old: str, new: str) -> object:
     if isinstance(printed, list):
         return [_changed(entry, old, new) for entry in printed]
     return str(printed).replace(old, new)
 
 
-def _verdicts(tmp_path, *slips):
-    (head, *_) = documents.files_of(documents.locate("itb_eigen"))
-    changed = {key: dict(row) for key, row in rows().items()}
+def _verdicts(tmp_path, document, *slips):
+    text = ledgers.whole(document)
+    changed = {f"{row['item']} {row.get('part', '')}".strip(): row for row in tomllib.loads(text)["row"]}
     for planted in slips:
         for key, (old, new) in planted.items():
             before = changed[key]["printed"]
             changed[key]["printed"] = _changed(before, old, new)
             assert changed[key]["printed"] != before
-    path = ledgers.write(tmp_path, list(changed.values()), head.read_text(encoding="utf-8"))
+    path = ledgers.write(tmp_path, list(changed.values()), text[: text.index("[[row]]")])
     keys = [key for planted in slips for key in planted]
     return {row.key: row.verdict for row in audit(read(path), keys) if row.key in keys}
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("planted", [PROGRAM, WHOLE], ids=["lines", "programs"])
-def test_a_slip_in_what_is_printed_is_noticed(tmp_path, planted):
-    found = _verdicts(tmp_path, planted)
+@pytest.mark.parametrize(
+    ("document", "planted"),
+    [("itb_eigen", PROGRAM), ("itb_eigen", WHOLE), ("lapan_pitch", PITCH)],
+    ids=["lines", "programs", "pitch"],
+)
+def test_a_slip_in_what_is_printed_is_noticed(tmp_path, document, planted):
+    found = _verdicts(tmp_path, document, planted)
     assert set(found) == set(planted)
     assert [key for key, verdict in found.items() if verdict == "confirmed"] == []
 
 
 @pytest.mark.slow
-def test_what_is_put_right_is_confirmed(tmp_path):
-    found = _verdicts(tmp_path, RIGHT, DIVISOR)
-    assert found.pop("listing 8 label") == "confirmed"
+@pytest.mark.parametrize(("document", "planted"), [("itb_eigen", (RIGHT, DIVISOR)), ("lapan_pitch", (PITCH_RIGHT,))])
+def test_what_is_put_right_is_confirmed(tmp_path, document, planted):
+    found = _verdicts(tmp_path, document, *planted)
     assert set(found.values()) == {"confirmed"}
