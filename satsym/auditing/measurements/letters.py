@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from typing import Any
 
 from satsym.auditing.measurements import linear, measurement, regulators, value
 from satsym.auditing.propositions.values import Record
 
-_NAME = re.compile(r"[A-Za-z_]\w*")
 _CALL = re.compile(r"([A-Za-z_]\w*)\s*\(")
 
 
@@ -29,17 +27,6 @@ def count(text: str, sign: str) -> int:
 def calls(text: str) -> list[str]:
     """The names of what a line calls, in order."""
     return _CALL.findall(text)
-
-
-@measurement
-def unbound(lines: Sequence[str], known: Sequence[str] = ()) -> list[str]:
-    """Names that lines ``name = expression`` use before they have a value; those that are known have one."""
-    bound, early = {*known}, []
-    for line in lines:
-        target, _, expression = line.partition("=")
-        early += [name for name in _NAME.findall(expression) if name not in bound and name not in early]
-        bound.add(target.strip())
-    return early
 
 
 @measurement
