@@ -55,10 +55,7 @@ def _measured(bench: Bench, row: Row, printed: quantities.PrintedNumber, tree: N
     if how is not Fit.INSIDE:
         custom = _customary(printed, tree, inputs, scale)
         cgs = _CGS_NAMES.sub(lambda name: _CGS[name[0]], printed.unit)
-        other = found.value / quantities.scale(cgs)
-        if cgs != printed.unit and not custom and (
-            fit_of_range(other, other, printed) is Fit.INSIDE or _customary(printed, tree, inputs, quantities.scale(cgs))
-        ):
+        if not custom and cgs != printed.unit and _comes_out_in(cgs, printed, tree, inputs):
             return Outcome(row, False, derived, unit=True, remark=sentences.number_of(cgs, derived), evidence=evidence)
     remark = "" if how is Fit.INSIDE else sentences.wrong_number(derived, custom)
     near = how is Fit.NEAR or bool(custom)
@@ -73,6 +70,13 @@ def _customary(printed: quantities.PrintedNumber, tree: Node, inputs: Mapping[st
             if fit_of_range(found, found, printed) is Fit.INSIDE:
                 return f"{name} = {text}"
     return ""
+
+
+def _comes_out_in(unit: str, printed: quantities.PrintedNumber, tree: Node, inputs: Mapping[str, str]) -> bool:
+    """Whether the printed digits are those of another unit."""
+    scale = quantities.scale(unit)
+    found = quantities.evaluated(tree, inputs).value / scale
+    return fit_of_range(found, found, printed) is Fit.INSIDE or bool(_customary(printed, tree, inputs, scale))
 
 
 def _exact(bench: Bench, row: Row, printed: quantities.PrintedNumber) -> Outcome:

@@ -31,7 +31,7 @@ def calls(text: str) -> list[str]:
 
 @measurement
 def matlab_lqr(A: Any, B: Any, Q: Any, R: Any) -> list[Any]:
-    """What MATLAB's lqr(A, B, Q, R) gives back, in its order [K, S, e] (Control System Toolbox, reference page of lqr)."""
+    """What MATLAB's lqr(A, B, Q, R) gives back, in its order [K, S, e] (Control System Toolbox, page of lqr)."""
     system = Record("the system", {"A": linear.numbers(A), "B": linear.numbers(B)})
     found = regulators.regulator(system, Q=Q, R=R)
     return [found.part("K"), found.part("P"), linear.eigenvalues(found)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from functools import cache
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -55,7 +56,7 @@ def limit(values: Sequence[Any]) -> Any:
     """The limit of a sequence whose steps are halved from one entry to the next: by Richardson's extrapolation."""
     column = [_dense(entry) for entry in values]
     for power in range(1, len(values)):
-        column = [(2.0**power * b - a) / (2.0**power - 1.0) for a, b in zip(column, column[1:], strict=False)]
+        column = [(2.0**power * b - a) / (2.0**power - 1.0) for a, b in pairwise(column)]
     return column[0]
 
 
