@@ -104,6 +104,11 @@ def wrong_number(derived: str, custom: str = "") -> str:
     return f"It is {derived}{f'; the printed digits come out with the customary {custom}' if custom else ''}."
 
 
+def number_of(unit: str, derived: str) -> str:
+    """A number is right in another unit."""
+    return f"The number is that of {unit}; it should be {derived}."
+
+
 def misprinted_claim(derived: str) -> str:
     """A false statement that is plainly a slip in print."""
     return f"A slip in print: {derived}."

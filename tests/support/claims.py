@@ -86,7 +86,7 @@ def _changes_of(node: ast.AST) -> Iterator[tuple[str, Any]]:
                 yield kind, lambda n, o=others: setattr(n, "value", _another(n.value, o))
         if node.value[:1].isdigit() or node.value[:2] in ("0.", "-0"):
             yield "digit", lambda n: setattr(n, "value", other_digit(n.value))
-    if isinstance(node, ast.Attribute):
+    if isinstance(node, ast.Attribute) and len(_states(node.attr)) > 1:
         yield "state", lambda n: setattr(n, "attr", _another(n.attr, _states(n.attr)))
 
 

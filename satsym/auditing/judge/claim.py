@@ -16,7 +16,7 @@ from satsym.formula.values import Matrix, Relation
 from satsym.formula.writing import written
 from satsym.status import BadInput
 from satsym.symbolic.lookup import formulas
-from satsym.wording import shown
+from satsym.wording import shown, suggestion
 
 
 def judge(bench: Bench, row: Row) -> Outcome:
@@ -68,7 +68,9 @@ class Pages:
 
     def row(self, key: str) -> Any:
         """The printed formula of a row in our names; of an equality the right-hand side."""
-        other = self._bench.rows[key]
+        other = self._bench.rows.get(key)
+        if other is None:
+            raise BadInput(f"there is no row {shown(key)}; {suggestion(key, self._bench.rows)}")
         if other.printed is None:
             raise BadInput(f"row {key} prints no formula; text['{key}'] is what stands there")
         return _exact(self._bench.of_row(other))
@@ -76,6 +78,8 @@ class Pages:
     def text(self, key: str) -> Any:
         """What a row prints, letter by letter; of a key that ends in a star all rows that begin so, in order."""
         found = [_listed(row.table.printed) for name, row in self._bench.rows.items() if matching(key)(name)]
+        if not found:
+            raise BadInput(f"there is no row {shown(key)}; {suggestion(key, self._bench.rows)}")
         return found if key.endswith("*") else found[0]
 
     def symbol(self, name: str) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from fractions import Fraction
 
@@ -16,6 +17,9 @@ from satsym.formula.values import Kernel, Matrix, Relation, Roots
 from satsym.status import BadInput
 from satsym.symbolic.lookup import formulas, library
 
+_CGS = {"N": "dyn", "J": "erg", "m": "cm", "kg": "g"}
+"""Names of units of the system of centimetre, gram and second for those of today's."""
+_CGS_NAMES = re.compile(rf"\b({'|'.join(_CGS)})\b")
 _ZEROS = 6
 """Digits that claim nothing and are written all the same, before a power of ten is."""
 
@@ -50,6 +54,9 @@ def _measured(bench: Bench, row: Row, printed: quantities.PrintedNumber, tree: N
     how, custom = fit_of_range(low, high, printed), ""
     if how is not Fit.INSIDE:
         custom = _customary(printed, tree, inputs, scale)
+        cgs = _CGS_NAMES.sub(lambda name: _CGS[name[0]], printed.unit)
+        if not custom and cgs != printed.unit and _comes_out_in(cgs, printed, tree, inputs):
+            return Outcome(row, False, derived, unit=True, remark=sentences.number_of(cgs, derived), evidence=evidence)
     remark = "" if how is Fit.INSIDE else sentences.wrong_number(derived, custom)
     near = how is Fit.NEAR or bool(custom)
     return Outcome(row, how is Fit.INSIDE, derived, near=near, remark=remark, evidence=evidence)
@@ -63,6 +70,13 @@ def _customary(printed: quantities.PrintedNumber, tree: Node, inputs: Mapping[st
             if fit_of_range(found, found, printed) is Fit.INSIDE:
                 return f"{name} = {text}"
     return ""
+
+
+def _comes_out_in(unit: str, printed: quantities.PrintedNumber, tree: Node, inputs: Mapping[str, str]) -> bool:
+    """Whether the printed digits are those of another unit."""
+    scale = quantities.scale(unit)
+    found = quantities.evaluated(tree, inputs).value / scale
+    return fit_of_range(found, found, printed) is Fit.INSIDE or bool(_customary(printed, tree, inputs, scale))
 
 
 def _exact(bench: Bench, row: Row, printed: quantities.PrintedNumber) -> Outcome:

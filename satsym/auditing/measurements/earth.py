@@ -88,6 +88,19 @@ def signal_time(orbit: Record, legs: int, elevation: float) -> Quantity:
 
 
 @measurement
+def distance_after(orbit: Record, share: float) -> Quantity:
+    """The distance from the Earth's centre after a share of a revolution from the perigee on, by Kepler's equation."""
+    e, mean = orbit.part("eccentricity"), 2.0 * math.pi * share
+    return orbit.part("axis") * float(1.0 - e * np.cos(_eccentric_anomaly(np.array([mean]), e)[0]))
+
+
+@measurement
+def pass_time(orbit: Record) -> Quantity:
+    """How long a satellite on a circle that comes overhead is above the horizon of a ground that does not turn."""
+    return orbit.part("period") * (math.acos(constant("R_earth").value / orbit.part("axis").value) / math.pi)
+
+
+@measurement
 def seen_latitude(orbit: Record) -> float:
     """The latitude (degrees) up to which a satellite on a circle over the equator is above the horizon."""
     return math.degrees(math.acos(constant("R_earth").value / orbit.part("axis").value))
@@ -109,15 +122,20 @@ def _fixed(orbit: Record) -> Array:
     share = np.linspace(0.0, 1.0, _MOMENTS)
     day = constant("sidereal_day").value
     mean = 2.0 * math.pi * share * day / orbit.part("period").value
-    eccentric = mean.copy()
-    for _ in range(50):
-        eccentric -= (eccentric - e * np.sin(eccentric) - mean) / (1.0 - e * np.cos(eccentric))
+    eccentric = _eccentric_anomaly(mean, e)
     x, y = np.cos(eccentric) - e, math.sqrt(1.0 - e**2) * np.sin(eccentric)
     along = np.array([x * math.cos(perigee) - y * math.sin(perigee), x * math.sin(perigee) + y * math.cos(perigee)])
     turned = 2.0 * math.pi * share
     across = along[1] * math.cos(tilt)
     fixed = [along[0] * np.cos(turned) + across * np.sin(turned), across * np.cos(turned) - along[0] * np.sin(turned)]
     return orbit.part("axis").value * np.array([*fixed, along[1] * math.sin(tilt)])
+
+
+def _eccentric_anomaly(mean: Array, e: float) -> Array:
+    found = mean.copy()
+    for _ in range(50):
+        found -= (found - e * np.sin(found) - mean) / (1.0 - e * np.cos(found))
+    return found
 
 
 def _swing(vectors: Array) -> float:

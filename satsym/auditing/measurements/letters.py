@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from typing import Any
 
 from satsym.auditing.measurements import linear, measurement, regulators, value
 from satsym.auditing.propositions.values import Record
 
-_NAME = re.compile(r"[A-Za-z_]\w*")
 _CALL = re.compile(r"([A-Za-z_]\w*)\s*\(")
 
 
@@ -32,19 +30,8 @@ def calls(text: str) -> list[str]:
 
 
 @measurement
-def unbound(lines: Sequence[str], known: Sequence[str] = ()) -> list[str]:
-    """Names that lines ``name = expression`` use before they have a value; those that are known have one."""
-    bound, early = {*known}, []
-    for line in lines:
-        target, _, expression = line.partition("=")
-        early += [name for name in _NAME.findall(expression) if name not in bound and name not in early]
-        bound.add(target.strip())
-    return early
-
-
-@measurement
 def matlab_lqr(A: Any, B: Any, Q: Any, R: Any) -> list[Any]:
-    """What MATLAB's lqr(A, B, Q, R) gives back, in its order [K, S, e] (Control System Toolbox, reference page of lqr)."""
+    """What MATLAB's lqr(A, B, Q, R) gives back, in its order [K, S, e] (Control System Toolbox, page of lqr)."""
     system = Record("the system", {"A": linear.numbers(A), "B": linear.numbers(B)})
     found = regulators.regulator(system, Q=Q, R=R)
     return [found.part("K"), found.part("P"), linear.eigenvalues(found)]

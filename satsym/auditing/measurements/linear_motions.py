@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from functools import cache
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,7 @@ _LOST = 1e-9
 @measurement
 def motion(of: Any, start: Any, t: float) -> Array:
     """The state at a time from a start on, of x' = A x: by integration, of all unit vectors at once."""
-    return np.asarray(_transition(linear.matrix(of), t) @ dense(start))
+    return np.asarray(_transition(*_key(of), t) @ dense(start))
 
 
 @measurement
@@ -55,14 +56,14 @@ def limit(values: Sequence[Any]) -> Any:
     """The limit of a sequence whose steps are halved from one entry to the next: by Richardson's extrapolation."""
     column = [_dense(entry) for entry in values]
     for power in range(1, len(values)):
-        column = [(2.0**power * b - a) / (2.0**power - 1.0) for a, b in zip(column, column[1:], strict=False)]
+        column = [(2.0**power * b - a) / (2.0**power - 1.0) for a, b in pairwise(column)]
     return column[0]
 
 
 @measurement
 def farthest(of: Any, size: float) -> float:
     """How far motions get that start no farther from zero than this; infinite where that has no bound."""
-    largest, bounded = _reach(linear.matrix(of))
+    largest, bounded = _reach(*_key(of))
     return size * largest if bounded else math.inf
 
 
@@ -70,7 +71,7 @@ def farthest(of: Any, size: float) -> float:
 def remaining(of: Any, size: float) -> float:
     """How far motions that start so far from zero are in the end; infinite where that has no bound."""
     a = linear.matrix(of)
-    if not _reach(a)[1]:
+    if not _reach(*_key(of))[1]:
         return math.inf
     left = max(float(np.linalg.norm(linear.flow(a, t), 2)) for t in np.linspace(_LATE, 1.2 * _LATE, 20))
     return 0.0 if left < _LOST else size * left
@@ -166,18 +167,23 @@ def _steering(a_: bytes, b_: bytes, *shapes: tuple[int, int]) -> tuple[Array, Ar
     return whole[:, :n], whole[:, n:], np.linalg.pinv(whole[:, n:], rcond=1e-9)
 
 
+def _key(of: Any) -> tuple[bytes, int]:
+    """A of a system with plain numbers, as what is kept is found by."""
+    a = linear.numbers(linear.matrix(of))
+    return a.tobytes(), len(a)
+
+
 @cache
-def _transition(a: Any, t: float) -> Array:
-    matrix = linear.numbers(a)
-    n = len(matrix)
+def _transition(a: bytes, n: int, t: float) -> Array:
+    matrix = np.frombuffer(a).reshape(n, n)
     return _followed(lambda _, x: np.asarray((matrix @ x.reshape(n, n)).ravel()), np.eye(n), t).reshape(n, n)
 
 
 @cache
-def _reach(a: Any) -> tuple[float, bool]:
+def _reach(a: bytes, n: int) -> tuple[float, bool]:
     """The largest norm of e^(At) that is seen, and whether it has a bound."""
-    step = linear.flow(a, _LATE / _STEPS)
-    moved, sizes = np.eye(len(step)), []
+    step = linear.flow(np.frombuffer(a).reshape(n, n), _LATE / _STEPS)
+    moved, sizes = np.eye(n), []
     for _ in range(_STEPS):
         sizes.append(float(np.linalg.norm(moved, 2)))
         moved = step @ moved

@@ -20,7 +20,7 @@ _SEED = 3
 @measurement
 def det(of: Any) -> Any:
     """The determinant, exact where the matrix has letters."""
-    return of.det(method="berkowitz") if is_exact(of) else np.linalg.det(dense(of))
+    return of.det(method="berkowitz") if is_exact(of) and of.free_symbols else np.linalg.det(dense(of))
 
 
 @measurement
@@ -153,13 +153,6 @@ def second_derivatives(of: Any, by: Sequence[str]) -> list[Any]:
     letters = {s.name: s for entry in entries for s in entry.free_symbols}
     known = [letters[name] for name in by if name in letters]
     return [entry.diff(a).diff(b) for entry in entries for i, a in enumerate(known) for b in known[i:]]
-
-
-@measurement
-def put_in(expression: Any, **values: float) -> Any:
-    """An expression with numbers for some of its letters."""
-    letters = {s.name: s for s in expression.free_symbols}
-    return expression.subs({letters[name]: value for name, value in values.items() if name in letters})
 
 
 def dense(of: Any) -> Array:

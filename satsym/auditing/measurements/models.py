@@ -50,9 +50,15 @@ def integrated(rates: Sequence[Any], names: Sequence[str], start: Sequence[float
     unknown = sorted({s.name for rate in rates for s in rate.free_symbols} - {*names})
     if unknown:
         raise BadInput(f"no number for {', '.join(unknown)} in the rates; put one in")
-    found = formulas.numeric_function(list(rates), list(names))
+    found = formulas.compiled(rates, [_letter(rates, name) for name in names])
     times = np.linspace(0.0, until, _POINTS + 1)
     path = solve_ivp(
         lambda t, x: found(*x), (0.0, until), start, t_eval=times, rtol=1e-10, atol=1e-12, method="DOP853"
     ).y
     return Record("the motion", {"t": times, **dict(zip(names, path, strict=True))})
+
+
+def _letter(rates: Sequence[Any], name: str) -> Any:
+    from satsym.symbolic.lookup import formulas
+
+    return next((s for rate in rates for s in rate.free_symbols if s.name == name), formulas.symbol(name))

@@ -134,7 +134,7 @@ def free_deviation(model: str, instance: str) -> Record:
     path = np.array(rows).T
     curves = dict(zip(found.part("states"), path, strict=True))
     sizes = np.linalg.norm(path, axis=0)
-    return Record(f"{model} without control", {"t": times, "size": sizes, **curves})
+    return Record(f"{model} without control", {"t": times, "size": sizes, "curves": list(path), **curves})
 
 
 @measurement

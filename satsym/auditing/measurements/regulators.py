@@ -101,7 +101,7 @@ def riccati(of: Any, t: float) -> Array:
 
 @measurement
 def costate(of: Any, start: Any, t: float) -> Array:
-    """The costate at the start of the optimum over a finite interval, for the cost with 1/2: by e^(Ht), 0 at its end."""
+    """The costate at the start of the optimum over a finite interval, of the cost with 1/2; 0 at its end: by e^(Ht)."""
     whole = linear.flow(hamiltonian(of), t)
     n = len(whole) // 2
     return -np.linalg.solve(whole[n:, n:], whole[n:, :n] @ dense(start))

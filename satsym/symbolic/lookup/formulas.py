@@ -329,12 +329,3 @@ def compiled(expressions: Sequence[sp.Expr], symbols: Sequence[sp.Symbol]) -> Ca
 def matrix_of(rows: Sequence[Sequence[sp.Expr]]) -> sp.ImmutableMatrix:
     """A matrix of expressions."""
     return sp.ImmutableMatrix([list(row) for row in rows])
-
-
-def numeric_function(expressions: Sequence[sp.Expr], names: Sequence[str]) -> Callable[..., list[float]]:
-    """A function of numbers, in the order of their names, that gives the values of expressions."""
-    letters = {s.name: s for e in expressions for s in e.free_symbols}
-    found: Callable[..., list[float]] = sp.lambdify(
-        [letters.get(n, sp.Symbol(n)) for n in names], list(expressions), "math"
-    )
-    return found
