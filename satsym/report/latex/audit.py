@@ -32,7 +32,9 @@ _LONGEST_WORD = 12
 _MACROS = r"""\usepackage{graphicx}
 % {width}{body}: a column of a finding
 \newcommand\satsymcolumn[2]{\parbox[t]{#1\linewidth}{\raggedright\hbadness=10000 #2}}
-\newcommand\satsymfact[2]{\par\noindent\satsymcolumn{0.16}{\color{black!60}#1}\satsymcolumn{0.84}{#2}\par}
+% {what is said}{the same as a proposition}
+\newcommand\satsymbeside[2]{\par\noindent\satsymcolumn{0.44}{#1}\hfill\satsymcolumn{0.53}{#2}\par\smallskip}
+\newcommand\satsymfact[2]{\par\noindent\satsymcolumn{0.16}{\textcolor{black!60}{#1}}\satsymcolumn{0.84}{#2}\par}
 """
 
 
@@ -115,10 +117,14 @@ def _in_full(review: Review, number: int, finding: Finding) -> Iterator[str]:
     spoiled = escape(review.places(finding.spoiled)) if finding.spoiled else ""
     evidence, command = recompute(row)
     right = formula_tex.read(correction(row)) if is_mathematical(row) else None
+    original = rf"\textit{{{_breakable(row.original)}}}" if row.original else ""
+    beside = original if row.kind == "claim" else ""
+    if beside:
+        yield rf"\satsymbeside{{{beside}}}{{{_printed(None, flat(row.printed))}}}"
     facts = {
-        "says": rf"\textit{{{_breakable(row.original)}}}" if row.original else "",
-        "about": "" if row.original else _breakable(row.says),
-        "claims" if row.kind == "claim" else "printed": _printed(review.formulas.get(row.key), flat(row.printed)),
+        "says": "" if beside else original,
+        "about": "" if original else _breakable(row.says),
+        "printed": "" if beside else _printed(review.formulas.get(row.key), flat(row.printed)),
         "in_fact": _sentence(fact(row)),
         "measured": _breakable(measured(row)),
         "right": _printed(right, correction(row)),
