@@ -17,6 +17,7 @@ from satsym.formula.writing import written
 from satsym.status import BadInput
 from tests.support.ledgers import HEAD, judged, row
 
+
 def run(*lines: str) -> program_run.Run:
     return program_run.run(program.read(lines))
 

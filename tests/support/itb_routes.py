@@ -150,7 +150,9 @@ def resonance(document: Rows, key: str) -> str:
 def mass_of_the_sun(document: Rows, key: str) -> str:
     """G M of the Sun is known to ten digits; over CODATA's G it is not 1.989."""
     mass = 1.32712440018e20 / scipy.constants.value("Newtonian constant of gravitation")
-    return "imprecise" if f"{mass:.3e}" != document[key]["printed"].split(" ")[0].replace("e30", "e+30") else "confirmed"
+    return (
+        "imprecise" if f"{mass:.3e}" != document[key]["printed"].split(" ")[0].replace("e30", "e+30") else "confirmed"
+    )
 
 
 def two_names(document: Rows, key: str) -> str:
@@ -217,12 +219,17 @@ def program_says_no(document: Rows, key: str) -> str:
 def distance_and_vector(document: Rows, key: str) -> str:
     """r is a number in one function of the program, and is taken apart into three in the other."""
     text = "\n".join(whole(document))
-    return "notation" if "r = np.sqrt(" in text and "def calculateJacobi(r, v):\n    x, y, z = r" in text else "confirmed"
+    return (
+        "notation" if "r = np.sqrt(" in text and "def calculateJacobi(r, v):\n    x, y, z = r" in text else "confirmed"
+    )
 
 
 def coordinate_and_vector(document: Rows, key: str) -> str:
     """x is a coordinate of the position, and what A is applied to."""
-    both = document["II.1.a position"]["printed"][0] == ["x"], "Ax = lambda x" in document["II.3 definition"]["original"]
+    both = (
+        document["II.1.a position"]["printed"][0] == ["x"],
+        "Ax = lambda x" in document["II.3 definition"]["original"],
+    )
     return "notation" if all(both) else "confirmed"
 
 

@@ -16,8 +16,8 @@ IN_FULL = (Weight.OVERTURNS, Weight.RESULT)
 """What is told in full; of the rest a sentence does."""
 OPEN = ("undecided", "illegible")
 """Verdicts that are none."""
-_PLACES = 6
-"""Items that are named before the rest is counted."""
+_PLACES, _ITEMS = 3, 6
+"""Rows, and items, that are named before the rest is counted."""
 _END = re.compile(r"[.](?=\s+[^\W_])")
 _DENIED = "It does not hold: "
 
@@ -92,15 +92,18 @@ class Review:
         return items([row for row in self.rows if row.item not in other])
 
     def places(self, rows: Sequence[Judged]) -> str:
-        """Where a finding shows: by name, or by item where there are many."""
-        named = list(dict.fromkeys(row.key for row in rows))
-        if len(named) > _PLACES:
-            named = items(rows)
-        if len(named) <= _PLACES:
-            return self.texts.listed(named)
-        shown = {name.partition(" (")[0] for name in named[: _PLACES - 1]}
-        rest = sum(row.item not in shown for row in rows)
-        return self.texts.counted("audit", "more", rest, listed=", ".join(named[: _PLACES - 1]))
+        """Where a finding shows; of many the first."""
+        return self._named([row.key for row in rows])
+
+    def spoiled(self, found: Finding) -> str:
+        """What is wrong because of a finding, by item."""
+        return self._named(items(found.spoiled), _ITEMS)
+
+    def _named(self, names: Sequence[str], most: int = _PLACES) -> str:
+        if len(names) <= most:
+            return self.texts.listed(list(names))
+        first = ", ".join(names[: most - 1])
+        return self.texts.counted("audit", "more", len(names) - most + 1, listed=first)
 
     @cached_property
     def summary(self) -> list[str]:
@@ -125,29 +128,26 @@ class Review:
         return sentences
 
     def _conclusions(self) -> list[str]:
-        """Those that fall, why, and those that stand."""
+        """Those that fall, with the reason of each, and those that stand."""
         conclusions = [row for row in self.rows if row.role == "conclusion" and row.verdict not in OPEN]
-        fallen = {row.key for found in self.findings for row in found.overturned}
-        falling = [row for row in conclusions if row.key in fallen]
-        standing = [row for row in conclusions if row.key not in fallen]
+        causes = [(number, found) for number, found in enumerate(self.findings, start=1) if found.overturned]
+        falling = {row.key for _, found in causes for row in found.overturned}
+        standing = [row for row in conclusions if row.key not in falling]
         said, total = [], len(conclusions)
-        if falling:
-            said.append(
-                self._say("fall", total, quoted=self._quoted(falling), falling=self._say("falls", len(falling)))
+        if causes:
+            reasons = "; ".join(
+                f"({number}) {_quoted(found.overturned[0])} ({'; '.join(row.key for row in found.overturned)}): "
+                f"{brief(found)}"
+                for number, found in causes
             )
-            reasons = [f"({n}) {brief(f)}" for n, f in enumerate(self.findings, start=1) if f.overturned]
-            said.append(self._say("why", len(reasons), reasons="; ".join(reasons)))
+            falls = self._say("falls", len(falling))
+            said.append(self._say("fall", total, reasons=reasons, falling=falls))
         if standing:
-            key, number = ("stand", len(standing)) if falling else ("all_stand", total)
-            said.append(self._say(key, number, quoted=self._quoted(standing)))
+            reason = f", {self.texts.get('audit', 'other_reason')}"
+            quoted = [f"{_quoted(row)} ({row.key}){reason if row.verdict == 'unsound' else ''}" for row in standing]
+            key, number = ("stand", len(standing)) if causes else ("all_stand", total)
+            said.append(self._say(key, number, quoted="; ".join(quoted)))
         return said
-
-    def _quoted(self, rows: Sequence[Judged]) -> str:
-        reason = f", {self.texts.get('audit', 'other_reason')}"
-        return "; ".join(
-            f'"{row.original or row.says or flat(row.printed)}" ({row.key}){reason if row.verdict == "unsound" else ""}'
-            for row in rows
-        )
 
     def _say(self, key: str, number: int, **fill: str) -> str:
         return self.texts.counted("audit", key, number, **fill)
@@ -162,6 +162,10 @@ def title(reviews: Sequence[Review]) -> str:
 def where(row: Judged) -> str:
     """Where it stands, unless its name says so."""
     return "" if row.key.startswith(row.where) else row.where
+
+
+def _quoted(row: Judged) -> str:
+    return f'"{row.original or row.says or flat(row.printed)}"'
 
 
 def counts(judged: Sequence[Judged]) -> dict[str, int]:
@@ -191,6 +195,11 @@ def measured(row: Judged) -> str:
 def correction(row: Judged) -> str:
     """What is right there, where what is said of it does not say so."""
     return "" if row.why or row.derived in row.diagnosis else row.derived
+
+
+def is_put_in_words(row: Judged) -> bool:
+    """Whether the diagnosis of a formula is the edit that puts it right."""
+    return row.kind != "claim" and bool(row.form)
 
 
 def is_mathematical(row: Judged) -> bool:

@@ -114,7 +114,7 @@ def _in_full(review: Review, number: int, finding: Finding) -> Iterator[str]:
     verdict = escape(texts.get("verdicts", row.verdict))
     heading = rf"\paragraph{{{number}.~{escape(review.places(finding.places))}}} \emph{{{verdict}}}"
     yield f"{heading}{f' ({escape(where(row))})' if where(row) else ''}"
-    spoiled = escape(review.places(finding.spoiled)) if finding.spoiled else ""
+    spoiled = escape(review.spoiled(finding)) if finding.spoiled else ""
     evidence, command = recompute(row)
     right = formula_tex.read(correction(row)) if is_mathematical(row) else None
     original = rf"\textit{{{_breakable(row.original)}}}" if row.original else ""

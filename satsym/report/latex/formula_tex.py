@@ -9,8 +9,8 @@ from typing import TypeAlias
 
 from satsym.formula import reading
 from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, constant
-from satsym.formula.writing import written
-from satsym.report.latex.tex import escape
+from satsym.formula.writing import GREEK, written
+from satsym.report.latex.tex import GREEK_CAPITALS, escape
 from satsym.report.latex.width import width
 from satsym.status import BadInput
 
@@ -20,10 +20,7 @@ Printed: TypeAlias = Node | Equality | tuple[tuple[Node, ...], ...]
 WIDEST = 34.0
 """Width of a line, in em of the main font."""
 
-_GREEK = frozenset(
-    "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi chi psi "
-    "omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega".split()
-)
+_GREEK = GREEK | {letter.capitalize() for letter in GREEK_CAPITALS}
 _ACCENTS = {"dot": r"\dot", "ddot": r"\ddot", "hat": r"\hat", "bar": r"\bar", "vector": r"\vec"}
 _FUNCTIONS = {
     "asin": "arcsin",

@@ -8,13 +8,28 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from satsym.auditing import Judged, Ledger
 from satsym.auditing.causes import SILENT, Finding
-from satsym.report.findings.review import IN_FULL, Review, brief, correction, fact, flat, items, measured, where
+from satsym.report.findings.review import (
+    IN_FULL,
+    Review,
+    brief,
+    correction,
+    fact,
+    flat,
+    is_put_in_words,
+    items,
+    measured,
+    recompute,
+    where,
+)
 from satsym.report.texts import Texts, load
 from satsym.wording import printable
 
 WIDTH = 100
 _NARROWEST = 40
 _INDENT = "  "
+_LABEL = 10
+_SHORT = 30
+"""Characters of what is printed that stand behind a verdict."""
 _SEPARABLE = re.compile(r"[^*/+=,;:)(&|-]*[*/+=,;:)(&|-]+|[^*/+=,;:)(&|-]+")
 """Where a word that is longer than a line may be parted: after signs."""
 
@@ -76,11 +91,10 @@ def _document(review: Review, rows: bool) -> Iterator[str]:
 def _in_full(review: Review, number: int, finding: Finding) -> Iterator[str]:
     """A finding with what is printed, what is true, and what it spoils."""
     row, texts = finding.places[0], review.texts
-    verdict = texts.get("verdicts", row.verdict)
-    yield from _wrapped(f"{number}. {review.places(finding.places)}: {verdict}", 1, hanging=2)
-    yield from _row_facts(texts, row)
+    yield from _heading(texts, row, f"{number}. {review.places(finding.places)}", "", 2)
+    yield from _facts(texts, row, short=True)
     if finding.spoiled:
-        yield from _labelled(texts.get("audit", "spoils"), review.places(finding.spoiled))
+        yield from _labelled(texts.get("audit", "spoils"), review.spoiled(finding))
 
 
 def _in_brief(review: Review, number: int, finding: Finding) -> list[str]:
@@ -89,35 +103,48 @@ def _in_brief(review: Review, number: int, finding: Finding) -> list[str]:
 
 def _row(texts: Texts, row: Judged) -> Iterator[str]:
     """A row in full."""
-    stands = f" ({where(row)})" if where(row) else ""
-    yield from ("", *_wrapped(f"{row.key}: {texts.get('verdicts', row.verdict)}{stands}", 1))
-    yield from _row_facts(texts, row)
+    yield ""
+    yield from _heading(texts, row, row.key, f" ({where(row)})" if where(row) else "", 1)
+    yield from _facts(texts, row)
     yield from _wrapped(row.evidence, 3)
 
 
-def _row_facts(texts: Texts, row: Judged) -> Iterator[str]:
-    """What is printed and what is so instead, each once."""
-    said = row.original or row.says
+def _heading(texts: Texts, row: Judged, named: str, stands: str, hanging: int) -> list[str]:
+    """A row with its verdict, and what it prints where that is short."""
+    heading = f"{named}: {texts.get('verdicts', row.verdict)}{stands}"
+    printed = f", {texts.get('audit', 'printed')} {flat(row.printed)}" if _is_short(row) else ""
+    return _wrapped(heading + printed, 1, hanging)
+
+
+def _facts(texts: Texts, row: Judged, *, short: bool = False) -> Iterator[str]:
+    """What is printed and what is so instead, each once; if short, without what only a reader of code can follow."""
+    said, found, command = row.original or row.says, measured(row), recompute(row)[1]
+    long = short and len(found) > _width() - 2 * len(_INDENT) * 3 - _LABEL
     facts = {
         "says": said if row.kind == "claim" or not row.printed else "",
-        "claims" if row.kind == "claim" else "printed": flat(row.printed),
+        "claims" if row.kind == "claim" else "printed": "" if _is_short(row) else flat(row.printed),
         "in_fact": fact(row),
-        "measured": measured(row),
-        "right": correction(row),
+        "measured": "" if long else found,
+        "recompute": command if long else "",
+        "right": "" if short and is_put_in_words(row) else correction(row),
     }
     for key, text in facts.items():
         if text:
             yield from _labelled(texts.get("audit", key), text)
 
 
+def _is_short(row: Judged) -> bool:
+    return row.kind != "claim" and 0 < len(flat(row.printed)) <= _SHORT
+
+
 def _labelled(label: str, text: str) -> list[str]:
-    return _wrapped(f"{label:9} {text}", 3)
+    return _wrapped(f"{label:{_LABEL}}{text}", 3)
 
 
 def _wrapped(text: str, depth: int = 0, hanging: int = 1) -> list[str]:
     """Lines as wide as the terminal; a word that is longer than that is parted after its signs."""
     indent, further = _INDENT * depth, _INDENT * (depth + hanging)
-    width = max(_NARROWEST, min(WIDTH, shutil.get_terminal_size((WIDTH, 24)).columns))
+    width = _width()
     lines, line = [], indent
     for word in printable(text, len(text)).split(" "):
         for place, piece in enumerate(_pieces(word, width - len(further))):
@@ -127,6 +154,10 @@ def _wrapped(text: str, depth: int = 0, hanging: int = 1) -> list[str]:
                 line, gap = further, ""
             line += gap + piece
     return [*lines, line.rstrip()] if line.strip() else lines
+
+
+def _width() -> int:
+    return max(_NARROWEST, min(WIDTH, shutil.get_terminal_size((WIDTH, 24)).columns))
 
 
 def _pieces(word: str, room: int) -> list[str]:
