@@ -123,15 +123,15 @@ def _read(path: Path) -> list[Judged] | None:
 
 
 def _digest(ledger: Ledger) -> str:
-    digest = hashlib.blake2b(_program().encode(), digest_size=16)
+    digest = hashlib.blake2b(program().encode(), digest_size=16)
     for path in documents.files_of(ledger.path):
         digest.update(path.read_bytes())
     return digest.hexdigest()
 
 
 @cache
-def _program() -> str:
-    """A digest of everything that verdicts depend on beside the ledger."""
+def program(modules: tuple[str, ...] = _JUDGING) -> str:
+    """A digest of everything that verdicts, or what some modules find, depend on beside the ledger."""
     digest = hashlib.blake2b(digest_size=16)
     digest.update(sys.version.encode())
     for library in _LIBRARIES:
@@ -139,7 +139,7 @@ def _program() -> str:
             digest.update(f"{library} {version(library)}".encode())
         except PackageNotFoundError:
             continue
-    digest.update(sources.digest(_JUDGING).encode())
+    digest.update(sources.digest(modules).encode())
     for package, pattern in _READ:
         for path in sorted(Path(str(files(package))).glob(pattern)):
             digest.update(path.name.encode())

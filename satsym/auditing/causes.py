@@ -16,6 +16,8 @@ SILENT = ("confirmed", "illegible", "undecided")
 """Verdicts that find no fault."""
 _FALSE = ("wrong", "artefact", "unit error")
 _MILD = {"imprecise", "notation"}
+_RESULTS = ("number", "table")
+"""Kinds of rows that are results whatever depends on them."""
 
 
 class Weight(str, Enum):
@@ -116,7 +118,7 @@ def _weight(places: Sequence[Judged], spoiled: Sequence[Judged]) -> Weight:
     if any(map(_falls, (*places, *spoiled))):
         return Weight.OVERTURNS
     false = [row for row in (*places, *spoiled) if row.verdict in _FALSE]
-    if spoiled or any(row.kind != "claim" or row.role == "result" for row in false):
+    if spoiled or any(row.kind in _RESULTS or row.role == "result" for row in false):
         return Weight.RESULT
     if all(row.verdict == "notation" for row in places):
         return Weight.NOTATION

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from satsym.auditing.diagnosis.edits import Change, Edit
 from satsym.formula.tree import Add, Neg, Node
-from satsym.formula.writing import written
+from satsym.formula.writing import GREEK, written
 
 if TYPE_CHECKING:
     from satsym.auditing.diagnosis.smallest_edit import Remedy
@@ -28,6 +29,8 @@ _EDITS = {
     Change.TERM: "the term `{old}` should be `{new}`",
     Change.ENTRY: "`{old}` should be `{new}`",
 }
+_WORD = re.compile(r"(?:a|[a-z]{2,})(?=[,:;]? (?![=<>+*/]))")
+"""A word that begins a clause; single letters, names with digits and what is called or compared are symbols."""
 _MANY = {Change.INDEX: "`{old}` should be `{new}`", Change.DROPPED_FACTOR: "`{old}` is a factor too many"}
 
 
@@ -162,9 +165,12 @@ def _signed(term: Node) -> str:
 
 
 def sentence(clause: str) -> str:
-    """A clause as a sentence of its own; nothing for none."""
+    """A clause as a sentence of its own, where it does not begin with a symbol; nothing for none."""
     clause = clause.strip().rstrip(".")
-    return f"{clause[:1].upper()}{clause[1:]}." if clause else ""
+    first = _WORD.match(clause)
+    if first and first[0].lower() not in GREEK:
+        clause = f"{clause[:1].upper()}{clause[1:]}"
+    return f"{clause}." if clause else ""
 
 
 def _listed(items: Sequence[str]) -> str:

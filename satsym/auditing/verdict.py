@@ -17,7 +17,7 @@ from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
 from satsym.auditing.propositions.reading import shape
 from satsym.formula import budget
-from satsym.formula.tree import Mul, Neg, Node
+from satsym.formula.tree import ONE, Mul, Neg, Node
 from satsym.formula.values import Kernel, Matrix, Relation, Roots
 from satsym.formula.writing import written
 from satsym.symbolic.lookup import formulas
@@ -235,7 +235,7 @@ def _form(outcome: Outcome) -> str:
 def _change(edit: Edit) -> str:
     """What an edit does, wherever it does it: of a factor too many, or missing, only the factor counts."""
     if edit.change in (Change.DROPPED_FACTOR, Change.MISSING_FACTOR):
-        old, new = (Counter(map(written, _factors(part))) for part in (edit.old, edit.new))
+        old, new = (Counter(written(f) for f in _factors(part) if f != ONE) for part in (edit.old, edit.new))
         return f"{edit.change.name} {' * '.join((old - new) | (new - old))}"
     return f"{edit.change.name} {written(edit.old)} -> {written(edit.new)}"
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from satsym.report import texts
 from satsym.status import BadInput
 
 
@@ -36,6 +37,14 @@ def place_option(*names: str, metavar: str, help: str) -> Callable[[Callable[...
     return click.option(*names, metavar=metavar, type=Place(), help=help)
 
 
+language_option = click.option(
+    "--lang",
+    "language",
+    type=click.Choice(texts.languages()),
+    default="en",
+    help="Language of the text.",
+    show_default=True,
+)
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 subject_argument = click.argument("subject", metavar="X")
 trajectory_option = place_option(

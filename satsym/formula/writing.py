@@ -6,6 +6,11 @@ from fractions import Fraction
 
 from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, Text
 
+GREEK = frozenset(
+    "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi chi psi "
+    "omega".split()
+)
+"""Letters that are written as words."""
 _SUM, _PRODUCT, _POWER, _ATOM = range(4)
 
 

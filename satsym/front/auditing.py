@@ -11,6 +11,7 @@ from typing import Any
 from satsym import auditing
 from satsym.auditing import Judged, Ledger, cache
 from satsym.front import html
+from satsym.report.findings import objects, review
 from satsym.report.results.files import to_json
 from satsym.report.terminal import audit as reporting
 
@@ -38,7 +39,7 @@ class Audit:
     @property
     def counts(self) -> dict[str, int]:
         """How many rows have each verdict."""
-        return reporting.counts(self.rows)
+        return review.counts(self.rows)
 
     def __iter__(self) -> Iterator[Judged]:
         return iter(self.rows)
@@ -48,17 +49,23 @@ class Audit:
 
     def to_dict(self) -> dict[str, Any]:
         """What ``satsym audit --json`` prints."""
-        return reporting.audit_object(self.rows)
+        return objects.audit_object(self.rows)
 
     def to_json(self) -> str:
         """The same as text."""
         return to_json(self.to_dict())
 
-    def latex(self) -> str:
+    def latex(self, language: str = "en") -> str:
         """A report for LaTeX."""
         from satsym.report.latex.audit import render
 
-        return render(self.ledgers, self.judged)
+        return render(self.ledgers, self.judged, language)
+
+    def html(self, language: str = "en") -> str:
+        """A report as a page of its own."""
+        from satsym.report.html.audit import render
+
+        return render(self.ledgers, self.judged, language)
 
     def __repr__(self) -> str:
         return reporting.audit_text(self.ledgers, self.judged)

@@ -274,7 +274,9 @@ NUMBERS = {
 def test_numbers_are_held_to_what_their_digits_claim(tmp_path: Path, key: str) -> None:
     printed, holds, verdict = NUMBERS[key]
     head = FREE + '[inputs]\naltitude = "35786.03 km"\n'
-    found = judged(tmp_path, [row("it", printed, holds, "number", inputs={"h": "1 m", "about": "~ 1.0 m", "one": "1 s"})], head)["it"]
+    found = judged(
+        tmp_path, [row("it", printed, holds, "number", inputs={"h": "1 m", "about": "~ 1.0 m", "one": "1 s"})], head
+    )["it"]
     assert found.verdict == verdict
     assert ("customary c_light = 3e8 m/s" in found.diagnosis) == (key == "of a school book")
 

@@ -61,7 +61,9 @@ def test_gains_place_what_can_be_placed() -> None:
     gain = linear_motions.placing_gain(DOUBLE, [1, 5, 6])
     assert gain.tolist() == [[-6, -5]]
     assert linear.characteristic(DOUBLE.part("A") + DOUBLE.part("B") * gain) == [1, 5, 6]
-    kept = np.linalg.eigvals(linear.numbers(HALF.part("A")) + linear.numbers(HALF.part("B")) @ linear_motions.stabilising_gain(HALF))
+    kept = np.linalg.eigvals(
+        linear.numbers(HALF.part("A")) + linear.numbers(HALF.part("B")) @ linear_motions.stabilising_gain(HALF)
+    )
     assert sorted(kept.real)[1] == pytest.approx(2)
     assert min(kept.real) < 0
     assert not linear.stabilisable(HALF)

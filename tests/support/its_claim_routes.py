@@ -50,7 +50,7 @@ def returned(*names: str) -> Route:
 
 
 def halved_guess(document: Rows, key: str) -> str:
-    """J is a sum of squares, so 0 at u = 0; where a listing is printed, the digits are the guess 0.01 after one mean."""
+    """J is a sum of squares, 0 at u = 0; where a listing is printed, the digits are the guess 0.01 after a mean."""
     printed, n = document[key]["printed"], 250
     if "appendix B u1" not in document:
         return "wrong" if "0.0" in str(printed) else "confirmed"

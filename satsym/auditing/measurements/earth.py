@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -81,10 +82,12 @@ def antenna_swing(orbit: Record) -> float:
 
 @measurement
 def signal_time(orbit: Record, legs: int, elevation: float) -> Quantity:
-    """How long a signal takes between the ground and a circular orbit, so many times; seen at an elevation (degrees)."""
+    """How long a signal takes so many times between the ground and a circular orbit; seen at an elevation (degrees)."""
     ground, axis = constant("R_earth").value, orbit.part("axis").value
     up = ground * math.sin(math.radians(elevation))
-    return Quantity(legs * (math.sqrt(axis**2 - ground**2 + up**2) - up), {"[length]": 1}) / constant("c_light")
+    return Quantity(legs * (math.sqrt(axis**2 - ground**2 + up**2) - up), {"[length]": Fraction(1)}) / constant(
+        "c_light"
+    )
 
 
 @measurement

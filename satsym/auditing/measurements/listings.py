@@ -76,7 +76,7 @@ class _Quotients(ast.NodeTransformer):
 
 
 def _quotient(one: Any, other: Any) -> Any:
-    """The number q for which q times the other row comes closest to the one; of numbers, what divides entry by entry."""
+    """The q for which q times the other row comes closest to the one; of numbers, what divides entry by entry."""
     rows = np.ndim(one) and np.ndim(other)
     return np.array([np.dot(one, other) / np.dot(other, other)]) if rows else one / other
 

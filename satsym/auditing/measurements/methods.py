@@ -175,11 +175,15 @@ def _motion(model: str, states: tuple[str, ...], controls: tuple[str, ...], cost
 
     start = rng.uniform(0.8, 1.2, n + len(costates))
     found = solve_ivp(both, _SPAN, start, method="DOP853", rtol=1e-13, atol=1e-14, max_step=1 / 64, dense_output=True)
-    curves: dict[str, Callable[[Array], Array]] = {
-        name: lambda t, k=k: found.sol(t)[k] for k, name in enumerate((*states, *costates))
-    }
-    curves |= {name: lambda t, k=k: u(t)[..., k] for k, name in enumerate(controls)}
-    rates = _components(costates_rate if costates else states_rate, (n, n, len(controls)) if costates else (n, len(controls)))
+
+    def component(of: Callable[[Array], Array], k: int) -> Callable[[Array], Array]:
+        return lambda t: of(t)[k]
+
+    curves = {name: component(found.sol, k) for k, name in enumerate((*states, *costates))}
+    curves |= {name: component(lambda t: u(t).T, k) for k, name in enumerate(controls)}
+    rates = _components(
+        costates_rate if costates else states_rate, (n, n, len(controls)) if costates else (n, len(controls))
+    )
     return Record(f"a motion of {model}", {"curves": curves, **letters, **rates})
 
 

@@ -60,7 +60,7 @@ def parameter(instance: str, name: str) -> float:
 def least_cost(instance: str, **parameters: float) -> Record:
     """The optimum of an instance, or of one with other parameters.
 
-    Its parts are J, the terminal cost S and the running cost V, the times, the final one, states, controls and costates.
+    Its parts are J, the terminal cost S and the running cost V, the times, the final one, states, controls, costates.
     """
     parameters = {name: float(value) for name, value in parameters.items()}
     found = solved(instance, **parameters)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from satsym.cli.options import json_option, place_option
+from satsym.cli.options import json_option, language_option, place_option
 from satsym.cli.output import emit, emit_json, live
 from satsym.status import ExitCode
 
@@ -14,25 +14,30 @@ EXAMPLES = """\b
 Examples:
   satsym audit                          all documents that come with satsym
   satsym audit its_thesis --item 4.27   one equation, recomputed
-  satsym audit my_ledger.toml --latex report.tex
+  satsym audit --html audit.html        a page of all of them, for people
+  satsym audit my_ledger.toml --latex report.tex --lang id
   satsym audit --coverage               which numbers of the documents have no row"""
 
 
 @click.command(epilog=EXAMPLES)
 @click.argument("ledgers", metavar="[LEDGER]...", nargs=-1)
 @json_option
+@place_option("--html", metavar="FILE", help="Write a report as a page of its own, too.")
 @place_option("--latex", metavar="FILE", help="Write a report for LaTeX, too.")
 @click.option("--item", "items", metavar="X", multiple=True, help="Judge this item alone; may be repeated.")
 @click.option("--coverage", is_flag=True, help="List the document's numbers that have no row; judge nothing.")
 @click.option("--rows", is_flag=True, help="Give every row that is not confirmed in full, after the findings.")
+@language_option
 @click.option("--fresh", is_flag=True, help="Compute anew, whatever is in the cache.")
 def audit(
     ledgers: tuple[str, ...],
     as_json: bool,
+    html: Path | None,
     latex: Path | None,
     items: tuple[str, ...],
     coverage: bool,
     rows: bool,
+    language: str,
     fresh: bool,
 ) -> ExitCode:
     """Judge what documents print.
@@ -43,6 +48,7 @@ def audit(
     """
     from satsym import auditing
     from satsym.auditing import cache
+    from satsym.report.findings import objects
     from satsym.report.terminal import audit as reporting
 
     paths = [auditing.locate(name) for name in ledgers] if ledgers else auditing.shipped()
@@ -50,19 +56,24 @@ def audit(
     auditing.refuse_unknown_items(read, items)
     if coverage:
         if as_json:
-            emit_json(reporting.coverage_object(read))
+            emit_json(objects.coverage_object(read))
         else:
             emit(reporting.coverage_text(read))
         return ExitCode.DONE
     with live() as line:
         judged = cache.audit_all(read, items, line.show, fresh=fresh)
+        if html is not None:
+            from satsym.report.html.audit import render as page
+            from satsym.report.results.files import write_text
+
+            write_text(html, page(read, judged, language, line.show))
     if latex is not None:
         from satsym.report.latex.audit import render
         from satsym.report.results.files import write_text
 
-        write_text(latex, render(read, judged))
+        write_text(latex, render(read, judged, language))
     if as_json:
-        emit_json(reporting.audit_object([row for rows in judged.values() for row in rows]))
+        emit_json(objects.audit_object([row for rows in judged.values() for row in rows]))
     else:
-        emit(reporting.audit_text(read, judged, rows=rows or bool(items)))
+        emit(reporting.audit_text(read, judged, rows=rows or bool(items), language=language))
     return ExitCode.DONE

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from satsym.cli.options import place_option
+from satsym.cli.options import language_option, place_option
 from satsym.cli.output import emit, live
-from satsym.report import texts
 from satsym.status import ExitCode
 
 if TYPE_CHECKING:
@@ -25,14 +24,7 @@ Examples:
 @click.command(epilog=f"\b{EXAMPLES}")
 @click.argument("name")
 @place_option("-o", "--output", metavar="FILE", help="Write there instead of to stdout.")
-@click.option(
-    "--lang",
-    "language",
-    type=click.Choice(texts.languages()),
-    default="en",
-    help="Language of the text.",
-    show_default=True,
-)
+@language_option
 @click.option("--fragment", is_flag=True, help="Without a preamble, to be included.")
 @click.option(
     "--convention",

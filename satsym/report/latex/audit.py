@@ -1,24 +1,44 @@
-"""A referee's report on documents, in LaTeX: what is confirmed first, then each remark with what is printed."""
+"""A referee's report on documents, in LaTeX: what falls and what stands, then findings by their weight."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
-from satsym.auditing import Judged, Ledger
-from satsym.formula import reading
+from satsym.auditing import VERDICTS, Judged, Ledger
+from satsym.auditing.causes import Finding, Weight
+from satsym.report.findings.review import (
+    IN_FULL,
+    Review,
+    brief,
+    correction,
+    fact,
+    flat,
+    is_mathematical,
+    items,
+    measured,
+    recompute,
+    title,
+    where,
+)
 from satsym.report.latex import formula_tex
-from satsym.report.latex.document import PREAMBLE
-from satsym.report.latex.tex import escape
-from satsym.report.terminal.audit import counts, items
-from satsym.status import BadInput
+from satsym.report.latex.document import PREAMBLE, UNHYPHENATED
+from satsym.report.latex.tex import escape, name
+from satsym.report.latex.width import width
+from satsym.report.texts import Texts, load
 
-FORMULAS = ("equation", "matrix", "algorithm")
 _CODE = re.compile(r"`([^`]*)`")
 _LONGEST_WORD = 12
+_MACROS = r"""\usepackage{graphicx}
+% {width}{body}: a column of a finding
+\newcommand\satsymcolumn[2]{\parbox[t]{#1\linewidth}{\raggedright\hbadness=10000 #2}}
+% {what is said}{the same as a proposition}
+\newcommand\satsymbeside[2]{\par\noindent\satsymcolumn{0.44}{#1}\hfill\satsymcolumn{0.53}{#2}\par\smallskip}
+\newcommand\satsymfact[2]{\par\noindent\satsymcolumn{0.16}{\textcolor{black!60}{#1}}\satsymcolumn{0.84}{#2}\par}
+"""
 
 
-def render(ledgers: Sequence[Ledger], judged: Mapping[str, Sequence[Judged]]) -> str:
+def render(ledgers: Sequence[Ledger], judged: Mapping[str, Sequence[Judged]], language: str = "en") -> str:
     """A document with a section for each ledger.
 
     Parameters
@@ -27,70 +47,105 @@ def render(ledgers: Sequence[Ledger], judged: Mapping[str, Sequence[Judged]]) ->
         What the documents print.
     judged
         Key of a document -> its rows with their verdicts.
+    language
+        Of all but what the documents print and of what is measured.
 
     Returns
     -------
     str
         LaTeX that depends on nothing but the arguments.
     """
-    sections = [_section(ledger, judged[ledger.document.key]) for ledger in ledgers]
+    texts = load(language)
+    reviews = [Review(ledger, judged[ledger.document.key], texts) for ledger in ledgers]
+    hyphens = "" if language == "en" else UNHYPHENATED
+    head = [
+        rf"\begin{{center}}{{\LARGE {escape(title(reviews))}\par}}\vspace{{1ex}}{escape(texts.get('audit', 'made'))}",
+        r"\end{center}",
+        *_legend(texts, reviews),
+    ]
+    body = "\n\n".join([*head, *(part for review in reviews for part in _section(review))])
     source = "% Written by satsym audit. Do not edit.\n"
-    return f"{source}{PREAMBLE}\\begin{{document}}\n" + "\n".join(sections) + "\\end{document}\n"
+    return f"{source}{PREAMBLE}{hyphens}{_MACROS}\\begin{{document}}\n{body}\n\\end{{document}}\n"
 
 
-def _section(ledger: Ledger, judged: Sequence[Judged]) -> str:
-    document = ledger.document
-    by = ", ".join(filter(None, [document.authors, str(document.year or "")]))
-    parts = [rf"\section*{{{escape(document.title)}}}"]
-    if by:
-        parts.append(escape(by))
-    right = [row for row in judged if row.verdict == "confirmed"]
-    remarks = [row for row in judged if row.verdict != "confirmed"]
-    if right:
-        listed = ", ".join(map(escape, items(right)))
-        parts.append(rf"\textbf{{Confirmed}} ({len(right)} of {len(judged)}): {listed}.")
-    if not remarks:
-        return "\n\n".join([*parts, "There is nothing to correct.", ""])
-    listed = ", ".join(f"{number} {verdict}" for verdict, number in counts(remarks).items())
-    parts.append(rf"\textbf{{Remarks}}: {listed}.")
-    return "\n\n".join([*parts, *map(_remark, remarks), ""])
+def _legend(texts: Texts, reviews: Sequence[Review]) -> Iterator[str]:
+    """What verdicts and weights mean, and how many rows of which document have each verdict."""
+    yield rf"\section*{{{escape(texts.get('audit', 'legend'))}}}"
+    head = " & ".join([escape(texts.get("audit", "verdict")), *(name(review.key) for review in reviews)])
+    lines = [
+        " & ".join([escape(texts.get("verdicts", v)), *(str(review.counts.get(v, 0)) for review in reviews)])
+        for v in VERDICTS
+        if any(v in review.counts for review in reviews)
+    ]
+    body = " \\\\\n".join(lines)
+    columns = f"@{{}}l{'r' * len(reviews)}@{{}}"
+    yield rf"\begin{{tabular}}{{{columns}}}\toprule {head} \\ \midrule" + f"\n{body}" + r" \\ \bottomrule\end{tabular}"
+    for names, meanings, keys in (
+        ("verdicts", "verdict_meanings", VERDICTS),
+        ("weights", "weight_meanings", [w.value for w in Weight]),
+    ):
+        pairs = "; ".join(rf"\emph{{{escape(texts.get(names, k))}}}: {escape(texts.get(meanings, k))}" for k in keys)
+        yield f"{pairs}."
 
 
-def _remark(row: Judged) -> str:
-    where = rf" ({escape(row.where)})" if row.where else ""
-    lines = [rf"\paragraph{{{escape(row.key)}}} \emph{{{row.verdict}}}{where}. {escape(row.says)}"]
-    if row.printed:
-        lines.append(_printed("Printed:", row, row.printed))
-    if row.derived and row.derived not in row.diagnosis:
-        lines.append(_printed("Derived:", row, row.derived))
-    lines.append(_sentence(row.diagnosis))
-    lines.append(rf"{{\footnotesize {_breakable(row.evidence)}\par}}")
-    return "\n\n".join(filter(None, lines))
+def _section(review: Review) -> Iterator[str]:
+    texts = review.texts
+    yield rf"\section*{{{escape(review.ledger.document.title)}}}"
+    yield escape(review.byline)
+    yield " ".join(map(_sentence, review.summary))
+    if not review.findings:
+        yield escape(texts.get("audit", "nothing"))
+    for weight, group in review.by_weight:
+        yield rf"\subsection*{{{escape(texts.get('weights', weight.value))}}}"
+        for number, finding in group:
+            yield from (_in_full if weight in IN_FULL else _in_brief)(review, number, finding)
+    for heading, listed in (("not_judged", items(review.open)), ("confirmed_items", review.confirmed_items)):
+        if listed:
+            yield rf"\subsection*{{{escape(texts.get('audit', heading))}}}"
+            yield f"{', '.join(map(escape, listed))}."
 
 
-def _printed(label: str, row: Judged, what: object) -> str:
-    """A formula as a display, anything else as text."""
-    if row.kind in FORMULAS:
-        try:
-            return f"{label}\n{_formula(what)}"
-        except BadInput:
-            pass
-    return f"{label} {_breakable(_flat(what))}"
+def _in_brief(review: Review, number: int, finding: Finding) -> Iterator[str]:
+    yield rf"\noindent\textbf{{{number}.~{escape(review.places(finding.places))}}}: {_sentence(brief(finding))}."
 
 
-def _formula(what: object) -> str:
-    if isinstance(what, str) and not what.startswith("["):
-        return formula_tex.display(reading.statement(what))
-    if isinstance(what, str):
-        tree = reading.expression(what, judging=True)
-        rows = [list(getattr(row, "entries", (row,))) for row in getattr(tree, "entries", ())]
-        return formula_tex.matrix(rows)
-    lines = [[line] if isinstance(line, str) else list(line) for line in what] if isinstance(what, Sequence) else []
-    return formula_tex.matrix([[reading.expression(entry) for entry in line] for line in lines])
+def _in_full(review: Review, number: int, finding: Finding) -> Iterator[str]:
+    row, texts = finding.places[0], review.texts
+    verdict = escape(texts.get("verdicts", row.verdict))
+    heading = rf"\paragraph{{{number}.~{escape(review.places(finding.places))}}} \emph{{{verdict}}}"
+    yield f"{heading}{f' ({escape(where(row))})' if where(row) else ''}"
+    spoiled = escape(review.spoiled(finding)) if finding.spoiled else ""
+    evidence, command = recompute(row)
+    right = formula_tex.read(correction(row)) if is_mathematical(row) else None
+    original = rf"\textit{{{_breakable(row.original)}}}" if row.original else ""
+    beside = original if row.kind == "claim" else ""
+    if beside:
+        yield rf"\satsymbeside{{{beside}}}{{{_printed(None, flat(row.printed))}}}"
+    facts = {
+        "says": "" if beside else original,
+        "about": "" if original else _breakable(row.says),
+        "printed": "" if beside else _printed(review.formulas.get(row.key), flat(row.printed)),
+        "in_fact": _sentence(fact(row)),
+        "measured": _breakable(measured(row)),
+        "right": _printed(right, correction(row)),
+        "spoils": spoiled,
+        "evidence": "" if measured(row) else rf"\footnotesize {_breakable(evidence)}" if evidence else "",
+        "recompute": rf"\footnotesize\texttt{{{_breakable(command)}}}",
+    }
+    yield "\n".join(rf"\satsymfact{{{escape(texts.get('audit', k))}}}{{{text}}}" for k, text in facts.items() if text)
 
 
-def _flat(what: object) -> str:
-    return what if isinstance(what, str) else f"[{', '.join(map(_flat, what))}]" if isinstance(what, Sequence) else ""
+def _printed(formula: formula_tex.Printed | None, text: str) -> str:
+    """A formula typeset, anything else in typewriter."""
+    if formula is None:
+        return rf"\texttt{{{_breakable(text)}}}" if text else ""
+    return r" \newline\quad ".join(map(_fitted, formula_tex.lines(formula)))
+
+
+def _fitted(tex: str) -> str:
+    """Mathematics, made smaller where it is wider than the column."""
+    plain = rf"$\displaystyle {tex}$"
+    return plain if width(tex) <= formula_tex.WIDEST else rf"\resizebox{{\linewidth}}{{!}}{{{plain}}}"
 
 
 def _sentence(text: str) -> str:
@@ -100,11 +155,8 @@ def _sentence(text: str) -> str:
 
 
 def _inline(text: str) -> str:
-    try:
-        sign = "+" if text.startswith("+") else ""
-        return f"${sign}{formula_tex.formula(reading.statement(text.removeprefix('+')))}$"
-    except BadInput:
-        return rf"\texttt{{{_breakable(text)}}}"
+    tex = formula_tex.inline(text)
+    return rf"\texttt{{{_breakable(text)}}}" if tex is None else f"${tex}$"
 
 
 def _breakable(text: str) -> str:
@@ -113,7 +165,7 @@ def _breakable(text: str) -> str:
     for word in text.split():
         escaped = escape(word)
         if len(word) > _LONGEST_WORD:
-            escaped = re.sub(r"([*/+=,;)-]|\\_)(?=[^\s}])", r"\1\\allowbreak{}", escaped)
+            escaped = re.sub(r"([*/+=,;.()-]|\\_)(?=[^\s}])", r"\1\\allowbreak{}", escaped)
         words.append(escaped)
     before, after = (" " if text[k : k + 1].isspace() else "" for k in (0, len(text) - 1))
     return f"{before}{' '.join(words)}{after}"

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from itertools import pairwise
+from typing import TypeAlias
 
-from satsym.formula.tree import Add, Call, Div, Equality, Mul, Neg, Node, Num, Pow, Sym, constant
-from satsym.formula.writing import written
-from satsym.report.latex.tex import escape
+from satsym.formula import reading
+from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, constant
+from satsym.formula.writing import GREEK, written
+from satsym.report.latex.tex import GREEK_CAPITALS, escape
 from satsym.report.latex.width import width
+from satsym.status import BadInput
+
+Printed: TypeAlias = Node | Equality | tuple[tuple[Node, ...], ...]
+"""A formula, or a matrix of them."""
 
 WIDEST = 34.0
 """Width of a line, in em of the main font."""
 
-_GREEK = frozenset(
-    "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi chi psi "
-    "omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega".split()
-)
+_GREEK = GREEK | {letter.capitalize() for letter in GREEK_CAPITALS}
 _ACCENTS = {"dot": r"\dot", "ddot": r"\ddot", "hat": r"\hat", "bar": r"\bar", "vector": r"\vec"}
 _FUNCTIONS = {
     "asin": "arcsin",
@@ -29,26 +33,51 @@ _BASE = re.compile(r"([A-Za-z]+?)([0-9]+[A-Za-z0-9]*)?\Z")
 _SUM, _PRODUCT, _ATOM = range(3)
 
 
-def formula(tree: Node | Equality) -> str:
-    """A formula on one line."""
+def formula(tree: Printed) -> str:
+    """A formula or a matrix on one line."""
+    if isinstance(tree, tuple):
+        return matrix(tree)
     if isinstance(tree, Equality):
         return f"{formula(tree.lhs)} = {formula(tree.rhs)}"
     return _tex(tree)[0]
 
 
-def display(tree: Node | Equality) -> str:
-    """A displayed formula, on several lines if it is wide."""
-    lines = _lines(tree)
-    if len(lines) == 1:
-        return f"\\[ {lines[0]} \\]"
-    body = " \\\\\n".join(f"&{line}" if k == 0 else f"&\\quad {line}" for k, line in enumerate(lines))
-    return f"\\[ \\begin{{aligned}}\n{body}\n\\end{{aligned}} \\]"
+def lines(tree: Printed) -> list[str]:
+    """A formula on as many lines as its width asks for; a sum is broken between its terms."""
+    whole = formula(tree)
+    right = tree.rhs if isinstance(tree, Equality) else tree
+    if width(whole) <= WIDEST or not isinstance(right, Add):
+        return [whole]
+    found = [f"{formula(tree.lhs)} = " if isinstance(tree, Equality) else ""]
+    for k, term in enumerate(right.terms):
+        piece = _signed(term, first=k == 0)
+        if k and width(found[-1] + piece) > WIDEST:
+            found.append("")
+        found[-1] += piece
+    return [line.strip() for line in found]
 
 
-def matrix(entries: list[list[Node]]) -> str:
-    """A displayed matrix."""
+def matrix(entries: Sequence[Sequence[Node]]) -> str:
+    """A matrix."""
     rows = " \\\\ ".join(" & ".join(map(formula, row)) for row in entries)
-    return f"\\[ \\begin{{pmatrix}} {rows} \\end{{pmatrix}} \\]"
+    return f"\\begin{{pmatrix}} {rows} \\end{{pmatrix}}"
+
+
+def read(text: str) -> Printed | None:
+    """The formula or matrix that a text is; ``None`` where it is none."""
+    try:
+        tree = reading.statement(text, judging=text.startswith("["))
+    except BadInput:
+        return None
+    if not isinstance(tree, Grid):
+        return tree
+    return tuple(entry.entries if isinstance(entry, Grid) else (entry,) for entry in tree.entries)
+
+
+def inline(text: str) -> str | None:
+    """A formula in a sentence, which may be a term with its sign; ``None`` where a text is none."""
+    found = read(text.removeprefix("+"))
+    return None if found is None else f"{'+' if text.startswith('+') else ''}{formula(found)}"
 
 
 def symbol(name: str) -> str:
@@ -83,20 +112,6 @@ def _index(part: str) -> str:
     if part in _GREEK:
         return rf"\{part}"
     return part if len(part) == 1 or part.isdigit() else rf"\mathrm{{{part}}}"
-
-
-def _lines(tree: Node | Equality) -> list[str]:
-    whole = formula(tree)
-    right = tree.rhs if isinstance(tree, Equality) else tree
-    if width(whole) <= WIDEST or not isinstance(right, Add):
-        return [whole]
-    lines = [f"{formula(tree.lhs)} = " if isinstance(tree, Equality) else ""]
-    for k, term in enumerate(right.terms):
-        piece = _signed(term, first=k == 0)
-        if k and width(lines[-1] + piece) > WIDEST:
-            lines.append("")
-        lines[-1] += piece
-    return [line.strip() for line in lines]
 
 
 def _signed(term: Node, first: bool) -> str:

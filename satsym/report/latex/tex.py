@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 import unicodedata
 
+from satsym.formula.writing import GREEK
+
 _SPECIAL = {
     "\\": r"\textbackslash{}",
     "{": r"\{",
@@ -40,11 +42,7 @@ _SYMBOLS = {
     "³": r"\ensuremath{^3}",
     "\N{NO-BREAK SPACE}": "~",
 }
-_GREEK = (
-    "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi chi psi "
-    "omega"
-).split()
-_GREEK_CAPITALS = frozenset("gamma delta theta lambda xi pi sigma upsilon phi psi omega".split())
+GREEK_CAPITALS = frozenset("gamma delta theta lambda xi pi sigma upsilon phi psi omega".split())
 _ACCENTS = {"\u0300", "\u0301", "\u0302", "\u0303", "\u0308", "\u030a", "\u030b", "\u030c", "\u0327", "\u0328"}
 _UNIT = re.compile(r"(?P<operator>[*/]?)(?P<name>[A-Za-zµ%]+|1)(?:(?:\*\*|\^)(?P<power>-?[0-9]+))?")
 
@@ -64,10 +62,10 @@ def _character(c: str) -> str:
     if c in _SYMBOLS:
         return _SYMBOLS[c]
     name = unicodedata.name(c, "")
-    if name.startswith("GREEK") and (letter := name.split()[-1].lower().replace("lamda", "lambda")) in _GREEK:
+    if name.startswith("GREEK") and (letter := name.split()[-1].lower().replace("lamda", "lambda")) in GREEK:
         if name.startswith("GREEK SMALL LETTER"):
             return rf"\ensuremath{{\{letter}}}"
-        if letter in _GREEK_CAPITALS:
+        if letter in GREEK_CAPITALS:
             return rf"\ensuremath{{\{letter.capitalize()}}}"
     plain, mark = unicodedata.normalize("NFD", c)[:1], unicodedata.normalize("NFD", c)[1:]
     if plain.isascii() and plain.isalpha() and mark in _ACCENTS and ord(c) < 0x180:

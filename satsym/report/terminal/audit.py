@@ -1,75 +1,54 @@
-"""The audit for people: what falls and what stands first, then findings by their weight; and objects for JSON."""
+"""The audit on a terminal: what falls and what stands first, then findings by their weight."""
 
 from __future__ import annotations
 
 import re
 import shutil
-import textwrap
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
 
-from satsym.auditing import VERDICTS, Judged, Ledger
-from satsym.auditing.causes import SILENT, Finding, Weight, findings
+from satsym.auditing import Judged, Ledger
+from satsym.auditing.causes import SILENT, Finding
+from satsym.report.findings.review import (
+    IN_FULL,
+    Review,
+    brief,
+    correction,
+    fact,
+    flat,
+    is_put_in_words,
+    items,
+    measured,
+    recompute,
+    where,
+)
+from satsym.report.texts import Texts, load
 from satsym.wording import printable
 
 WIDTH = 100
+_NARROWEST = 40
 _INDENT = "  "
-_LONGEST = 4000
-_PLACES = 6
-"""Items that are named before the rest is counted."""
-_HEADINGS = {
-    Weight.OVERTURNS: "Overturns a conclusion",
-    Weight.RESULT: "Wrong results",
-    Weight.SLIP: "Slips without consequence",
-    Weight.IMPRECISE: "Imprecise",
-    Weight.NOTATION: "Notation",
-}
-_IN_FULL = (Weight.OVERTURNS, Weight.RESULT)
+_LABEL = 10
+_SHORT = 30
+"""Characters of what is printed that stand behind a verdict."""
+_SEPARABLE = re.compile(r"[^*/+=,;:)(&|-]*[*/+=,;:)(&|-]+|[^*/+=,;:)(&|-]+")
+"""Where a word that is longer than a line may be parted: after signs."""
 
 
-def audit_object(judged: Sequence[Judged]) -> dict[str, Any]:
-    """All rows, the findings, and how many rows there are of each verdict, for JSON."""
-    by_document: dict[str, list[Judged]] = {}
-    for row in judged:
-        by_document.setdefault(row.document, []).append(row)
-    found = [finding for rows in by_document.values() for finding in findings(rows)]
-    return {
-        "rows": [_row_object(row) for row in judged],
-        "findings": [_finding_object(finding) for finding in found],
-        "counts": counts(judged),
-    }
-
-
-def counts(judged: Sequence[Judged]) -> dict[str, int]:
-    """How many rows have each verdict; those that no row has are left out."""
-    found = {verdict: sum(row.verdict == verdict for row in judged) for verdict in VERDICTS}
-    return {verdict: number for verdict, number in found.items() if number}
-
-
-def coverage_object(ledgers: Sequence[Ledger]) -> dict[str, Any]:
-    """What of the documents has no row, for JSON."""
-    return {
-        "coverage": [
-            {
-                "document": x.document.key,
-                "numbers": len(x.document.numbers),
-                "rows": len(x.rows),
-                "missing": x.uncovered(),
-            }
-            for x in ledgers
-        ]
-    }
-
-
-def audit_text(ledgers: Sequence[Ledger], judged: Mapping[str, Sequence[Judged]], *, rows: bool = False) -> str:
+def audit_text(
+    ledgers: Sequence[Ledger], judged: Mapping[str, Sequence[Judged]], *, rows: bool = False, language: str = "en"
+) -> str:
     """The findings of some documents, for the terminal.
 
     Parameters
     ----------
     rows
         Whether every row that is not confirmed follows in full.
+    language
+        Of all but what the documents print and of what is measured.
     """
-    return "\n\n".join("\n".join(_document(ledger, judged[ledger.document.key], rows)) for ledger in ledgers)
+    texts = load(language)
+    reviews = [Review(ledger, judged[ledger.document.key], texts) for ledger in ledgers]
+    return "\n\n".join("\n".join(_document(review, rows)) for review in reviews)
 
 
 def coverage_text(ledgers: Sequence[Ledger]) -> str:
@@ -86,170 +65,102 @@ def coverage_text(ledgers: Sequence[Ledger]) -> str:
     return "\n".join(lines)
 
 
-def summary(judged: Sequence[Judged], found: Sequence[Finding]) -> list[str]:
-    """Which conclusions of a document fall, which stand, and why: three to six sentences."""
-    right = sum(row.verdict == "confirmed" for row in judged)
-    said = [f"Of {len(judged)} things that are printed {right} are confirmed."]
-    conclusions = [row for row in judged if row.role == "conclusion" and row.verdict not in ("illegible", "undecided")]
-    fallen = {row.key for finding in found for row in finding.overturned}
-    falling = [row for row in conclusions if row.key in fallen]
-    standing = [row for row in conclusions if row.key not in fallen]
-    if falling:
-        said.append(f"Of {len(conclusions)} conclusions {len(falling)} fall: {_quoted(falling)}.")
-        why = [f"{_at(f)}: {_first(f.statement)}" for f in found if f.weight is Weight.OVERTURNS]
-        said.append(f"The reasons: {'; '.join(why)}.")
-    if standing:
-        said.append(f"{'These stand' if falling else 'All conclusions stand'}: {_quoted(standing)}.")
-    rest = {weight: sum(f.weight is weight for f in found) for weight in Weight if weight is not Weight.OVERTURNS}
-    words = [f"{number} {_counted(weight, number)}" for weight, number in rest.items() if number]
-    if words:
-        said.append(f"{'Besides, there' if falling else 'There'} are {_listed(words)}.")
-    open_ = sum(row.verdict in ("illegible", "undecided") for row in judged)
-    if open_:
-        said.append(f"{open_} could not be read or decided.")
-    return said
-
-
-def _document(ledger: Ledger, judged: Sequence[Judged], rows: bool) -> list[str]:
-    document, found = ledger.document, findings(judged)
-    by = ", ".join(filter(None, [document.authors, str(document.year or "")]))
-    lines = [*_wrapped(f"{document.key}: {document.title}{f' ({by})' if by else ''}", 0), ""]
-    lines += _wrapped(" ".join(summary(judged, found)))
-    if not found:
-        return [*lines, "", f"{_INDENT}There is nothing to correct."]
-    number = 0
-    for weight in Weight:
-        chosen = [finding for finding in found if finding.weight is weight]
-        if chosen:
-            lines += ["", f"{_INDENT}{_HEADINGS[weight]}"]
-        for finding in chosen:
-            number += 1
-            lines += _in_full(number, finding) if weight in _IN_FULL else _in_a_line(number, finding)
-    open_ = [row for row in judged if row.verdict in ("illegible", "undecided")]
-    if open_:
-        lines += ["", f"{_INDENT}Not judged", *_wrapped(f"{', '.join(items(open_))}.", 2)]
+def _document(review: Review, rows: bool) -> Iterator[str]:
+    texts = review.texts
+    by = f" ({review.byline})" if review.byline else ""
+    yield from _wrapped(f"{review.key}: {review.ledger.document.title}{by}", hanging=1)
+    yield ""
+    yield from _wrapped(" ".join(review.summary), 1)
+    if not review.findings:
+        yield from ("", f"{_INDENT}{texts.get('audit', 'nothing')}")
+    for weight, group in review.by_weight:
+        yield from ("", f"{_INDENT}{texts.get('weights', weight.value)}")
+        for number, finding in group:
+            yield from (_in_full if weight in IN_FULL else _in_brief)(review, number, finding)
+    if review.open:
+        listed = ", ".join(items(review.open))
+        yield from ("", f"{_INDENT}{texts.get('audit', 'not_judged')}", *_wrapped(f"{listed}.", 2))
     if rows:
-        for row in judged:
-            lines += _row(row) if row.verdict not in SILENT else []
-    else:
-        lines += ["", *_wrapped(f"Every row: satsym audit {ledger.name} --rows; one: --item ITEM.")]
-    return lines
+        for row in review.rows:
+            yield from _row(texts, row) if row.verdict not in SILENT else ()
+    elif review.findings:
+        command = f"satsym audit {review.ledger.name} --rows"
+        yield from ("", *_wrapped(texts.get("audit", "every_row", command=command), 1))
 
 
-def _in_full(number: int, finding: Finding) -> list[str]:
+def _in_full(review: Review, number: int, finding: Finding) -> Iterator[str]:
     """A finding with what is printed, what is true, and what it spoils."""
-    row = finding.places[0]
-    lines = _wrapped(f"{number}. {places(finding.places)}: {row.verdict}", 1)
-    if row.original and row.kind == "claim":
-        lines += _wrapped(f"says     {_flat(row.original)}", 3)
-    if row.printed:
-        lines += _wrapped(f"{'that is ' if row.kind == 'claim' else 'printed '} {_flat(row.printed)}", 3)
-    lines += _wrapped(row.diagnosis, 3)
-    if row.derived and row.derived not in row.diagnosis:
-        lines += _wrapped(f"right    {row.derived}", 3)
+    row, texts = finding.places[0], review.texts
+    yield from _heading(texts, row, f"{number}. {review.places(finding.places)}", "", 2)
+    yield from _facts(texts, row, short=True)
     if finding.spoiled:
-        lines += _wrapped(f"spoils   {places(finding.spoiled)}", 3)
-    return lines
+        yield from _labelled(texts.get("audit", "spoils"), review.spoiled(finding))
 
 
-def _in_a_line(number: int, finding: Finding) -> list[str]:
-    return _wrapped(f"{number}. {places(finding.places)}: {_first(finding.statement)}.", 1)
+def _in_brief(review: Review, number: int, finding: Finding) -> list[str]:
+    return _wrapped(f"{number}. {review.places(finding.places)}: {brief(finding)}.", 1, hanging=2)
 
 
-def _row(row: Judged) -> list[str]:
+def _row(texts: Texts, row: Judged) -> Iterator[str]:
     """A row in full."""
-    lines = ["", *_wrapped(f"{row.key}: {row.verdict}{f' ({row.where})' if row.where else ''}")]
-    for label, text in (("says", row.original or row.says), ("printed", _flat(row.printed)), ("derived", row.derived)):
-        if text and text not in row.diagnosis:
-            lines += _wrapped(f"{label:8} {text}", 2)
-    return [*lines, *_wrapped(row.diagnosis, 2), *_wrapped(row.evidence, 2)]
+    yield ""
+    yield from _heading(texts, row, row.key, f" ({where(row)})" if where(row) else "", 1)
+    yield from _facts(texts, row)
+    yield from _wrapped(row.evidence, 3)
 
 
-def _row_object(row: Judged) -> dict[str, Any]:
-    return {
-        "document": row.document,
-        "item": row.item,
-        "part": row.part,
-        "kind": row.kind,
-        "role": row.role,
-        "printed": row.printed,
-        "derived": row.derived,
-        "verdict": row.verdict,
-        "cause": row.cause or None,
-        "weight": row.weight or None,
-        "diagnosis": row.diagnosis,
-        "evidence": row.evidence,
+def _heading(texts: Texts, row: Judged, named: str, stands: str, hanging: int) -> list[str]:
+    """A row with its verdict, and what it prints where that is short."""
+    heading = f"{named}: {texts.get('verdicts', row.verdict)}{stands}"
+    printed = f", {texts.get('audit', 'printed')} {flat(row.printed)}" if _is_short(row) else ""
+    return _wrapped(heading + printed, 1, hanging)
+
+
+def _facts(texts: Texts, row: Judged, *, short: bool = False) -> Iterator[str]:
+    """What is printed and what is so instead, each once; if short, without what only a reader of code can follow."""
+    said, found, command = row.original or row.says, measured(row), recompute(row)[1]
+    long = short and len(found) > _width() - 2 * len(_INDENT) * 3 - _LABEL
+    facts = {
+        "says": said if row.kind == "claim" or not row.printed else "",
+        "claims" if row.kind == "claim" else "printed": "" if _is_short(row) else flat(row.printed),
+        "in_fact": fact(row),
+        "measured": "" if long else found,
+        "recompute": command if long else "",
+        "right": "" if short and is_put_in_words(row) else correction(row),
     }
+    for key, text in facts.items():
+        if text:
+            yield from _labelled(texts.get("audit", key), text)
 
 
-def _finding_object(finding: Finding) -> dict[str, Any]:
-    return {
-        "document": finding.document,
-        "cause": finding.cause,
-        "weight": finding.weight.value,
-        "places": [row.key for row in finding.places],
-        "spoils": [row.key for row in finding.spoiled],
-        "statement": finding.statement,
-        "correction": finding.correction,
-    }
+def _is_short(row: Judged) -> bool:
+    return row.kind != "claim" and 0 < len(flat(row.printed)) <= _SHORT
 
 
-def items(judged: Sequence[Judged]) -> list[str]:
-    """Items, each once; how many rows it has in brackets where there are several."""
-    numbers: dict[str, int] = {}
-    for row in judged:
-        numbers[row.item] = numbers.get(row.item, 0) + 1
-    return [f"{item} ({number})" if number > 1 else item for item, number in numbers.items()]
+def _labelled(label: str, text: str) -> list[str]:
+    return _wrapped(f"{label:{_LABEL}}{text}", 3)
 
 
-def places(rows: Sequence[Judged]) -> str:
-    """Where a finding shows: by name, or by item where there are many."""
-    if len(rows) == 1:
-        return rows[0].key
-    named = items(rows)
-    if len(named) <= _PLACES:
-        return ", ".join(named)
-    rest = len(rows) - sum(row.item in {n.partition(" (")[0] for n in named[: _PLACES - 1]} for row in rows)
-    return f"{', '.join(named[: _PLACES - 1])} and {rest} more"
+def _wrapped(text: str, depth: int = 0, hanging: int = 1) -> list[str]:
+    """Lines as wide as the terminal; a word that is longer than that is parted after its signs."""
+    indent, further = _INDENT * depth, _INDENT * (depth + hanging)
+    width = _width()
+    lines, line = [], indent
+    for word in printable(text, len(text)).split(" "):
+        for place, piece in enumerate(_pieces(word, width - len(further))):
+            gap = "" if place or not line.strip() else " "
+            if line.strip() and len(line) + len(gap) + len(piece) > width:
+                lines.append(line.rstrip())
+                line, gap = further, ""
+            line += gap + piece
+    return [*lines, line.rstrip()] if line.strip() else lines
 
 
-def _at(finding: Finding) -> str:
-    return finding.places[0].key
+def _width() -> int:
+    return max(_NARROWEST, min(WIDTH, shutil.get_terminal_size((WIDTH, 24)).columns))
 
 
-def _first(text: str) -> str:
-    """The first sentence, without its end."""
-    return re.split(r"\.(?= [A-Z`])", text.strip(), maxsplit=1)[0].rstrip(".").removeprefix("It does not hold: ")
-
-
-def _quoted(rows: Sequence[Judged]) -> str:
-    return "; ".join(f'"{_flat(row.original or row.says or row.printed)}" ({row.key})' for row in rows)
-
-
-def _counted(weight: Weight, number: int) -> str:
-    nouns = {Weight.RESULT: "wrong result", Weight.SLIP: "slip", Weight.IMPRECISE: "imprecise number"}
-    noun = nouns.get(weight, "matter of notation")
-    if number == 1:
-        return noun
-    return noun.replace("matter", "matters") if weight is Weight.NOTATION else f"{noun}s"
-
-
-def _listed(words: Sequence[str]) -> str:
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
-
-
-def _flat(printed: Any) -> str:
-    if isinstance(printed, str):
-        return printed
-    return f"[{', '.join(map(_flat, printed))}]"
-
-
-def _wrapped(text: str, depth: int = 1) -> list[str]:
-    indent = _INDENT * depth
-    return textwrap.wrap(
-        printable(text, _LONGEST),
-        min(WIDTH, shutil.get_terminal_size((WIDTH, 24)).columns),
-        initial_indent=indent,
-        subsequent_indent=indent + _INDENT,
-        break_on_hyphens=False,
-    )
+def _pieces(word: str, room: int) -> list[str]:
+    if len(word) <= room:
+        return [word]
+    return [part[k : k + room] for part in _SEPARABLE.findall(word) for k in range(0, len(part), room)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,6 +12,8 @@ from typing import Any
 
 from satsym.status import BadInput
 from satsym.wording import shown
+
+_HOLE = re.compile(r"<([a-z_]+)>")
 
 
 class MissingText(LookupError):
@@ -22,7 +25,7 @@ class MissingText(LookupError):
 
 @dataclass(frozen=True)
 class Texts:
-    """The texts of one language; they hold LaTeX, and ``<name>`` where something is filled in."""
+    """The texts of one language; those of derivations hold LaTeX; ``<name>`` where something is filled in."""
 
     language: str
     tables: Mapping[str, Mapping[str, str]]
@@ -38,9 +41,13 @@ class Texts:
         text = self.find(table, key)
         if text is None:
             raise MissingText(f'{self.language}.toml: no text for "{key}" in [{table}]')
-        for place, value in fill.items():
-            text = text.replace(f"<{place}>", value)
-        return text
+        return _HOLE.sub(lambda hole: fill.get(hole[1], hole[0]), text)
+
+    def counted(self, table: str, key: str, number: int, **fill: str) -> str:
+        """Likewise of a text that says something of one or, after a bar, of many; ``<number>`` is the number."""
+        one, _, many = self.get(table, key).partition("|")
+        text = many if many and number != 1 else one
+        return _HOLE.sub(lambda hole: {"number": str(number), **fill}.get(hole[1], hole[0]), text)
 
     def find(self, table: str, key: str) -> str | None:
         """The text at a key of a table, as it stands there; ``None`` if there is none."""

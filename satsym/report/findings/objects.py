@@ -1,0 +1,67 @@
+"""An audit as objects for JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from satsym.auditing import Judged, Ledger
+from satsym.auditing.causes import Finding, findings
+from satsym.report.findings.review import counts
+
+
+def audit_object(judged: Sequence[Judged]) -> dict[str, Any]:
+    """All rows, the findings, and how many rows there are of each verdict."""
+    by_document: dict[str, list[Judged]] = {}
+    for row in judged:
+        by_document.setdefault(row.document, []).append(row)
+    found = [finding for rows in by_document.values() for finding in findings(rows)]
+    return {
+        "rows": [_row_object(row) for row in judged],
+        "findings": [_finding_object(finding) for finding in found],
+        "counts": counts(judged),
+    }
+
+
+def coverage_object(ledgers: Sequence[Ledger]) -> dict[str, Any]:
+    """What of the documents has no row."""
+    return {
+        "coverage": [
+            {
+                "document": x.document.key,
+                "numbers": len(x.document.numbers),
+                "rows": len(x.rows),
+                "missing": x.uncovered(),
+            }
+            for x in ledgers
+        ]
+    }
+
+
+def _row_object(row: Judged) -> dict[str, Any]:
+    return {
+        "document": row.document,
+        "item": row.item,
+        "part": row.part,
+        "kind": row.kind,
+        "role": row.role,
+        "printed": row.printed,
+        "derived": row.derived,
+        "verdict": row.verdict,
+        "cause": row.cause or None,
+        "weight": row.weight or None,
+        "diagnosis": row.diagnosis,
+        "evidence": row.evidence,
+    }
+
+
+def _finding_object(finding: Finding) -> dict[str, Any]:
+    return {
+        "document": finding.document,
+        "cause": finding.cause,
+        "weight": finding.weight.value,
+        "places": [row.key for row in finding.places],
+        "spoils": [row.key for row in finding.spoiled],
+        "statement": finding.statement,
+        "correction": finding.correction,
+    }

@@ -1,0 +1,224 @@
+"""One document, judged: its findings numbered by weight, and the sentences that say what falls and what stands."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from satsym.auditing import VERDICTS, Judged, Ledger
+from satsym.auditing.causes import Finding, Weight, findings
+from satsym.report.texts import Texts
+
+IN_FULL = (Weight.OVERTURNS, Weight.RESULT)
+"""What is told in full; of the rest a sentence does."""
+OPEN = ("undecided", "illegible")
+"""Verdicts that are none."""
+_PLACES, _ITEMS = 3, 6
+"""Rows, and items, that are named before the rest is counted."""
+_END = re.compile(r"[.](?=\s+[^\W_])")
+_DENIED = "It does not hold: "
+
+
+@dataclass(frozen=True)
+class Review:
+    """A document and what was found in it.
+
+    Attributes
+    ----------
+    ledger, rows
+        What it prints, and how that was judged.
+    texts
+        Of the language of the report.
+    """
+
+    ledger: Ledger
+    rows: Sequence[Judged]
+    texts: Texts
+
+    @property
+    def key(self) -> str:
+        """Of the document."""
+        return self.ledger.document.key
+
+    @property
+    def byline(self) -> str:
+        """Authors and year."""
+        document = self.ledger.document
+        return ", ".join(filter(None, [document.authors, str(document.year or "")]))
+
+    @cached_property
+    def findings(self) -> list[Finding]:
+        """Those on which most depends first."""
+        return findings(self.rows)
+
+    @cached_property
+    def number_of(self) -> dict[str, int]:
+        """Key of a faulty row -> the number of its finding."""
+        return {
+            row.key: number
+            for number, found in enumerate(self.findings, start=1)
+            for row in (*found.places, *found.spoiled)
+        }
+
+    @property
+    def by_weight(self) -> Iterable[tuple[Weight, list[tuple[int, Finding]]]]:
+        """The numbered findings of each weight that there are some of."""
+        numbered = list(enumerate(self.findings, start=1))
+        groups = [(weight, [entry for entry in numbered if entry[1].weight is weight]) for weight in Weight]
+        return [(weight, group) for weight, group in groups if group]
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """How many rows have each verdict."""
+        return counts(self.rows)
+
+    @cached_property
+    def formulas(self) -> dict[str, Any]:
+        """Key of a row -> the formula or matrix that it prints, if it prints one."""
+        return {row.key: row.printed for row in self.ledger.rows if row.printed is not None}
+
+    @property
+    def open(self) -> list[Judged]:
+        """Rows that could not be judged."""
+        return [row for row in self.rows if row.verdict in OPEN]
+
+    @property
+    def confirmed_items(self) -> list[str]:
+        """Items all of whose parts are confirmed."""
+        other = {row.item for row in self.rows if row.verdict != "confirmed"}
+        return items([row for row in self.rows if row.item not in other])
+
+    def places(self, rows: Sequence[Judged]) -> str:
+        """Where a finding shows; of many the first."""
+        return self._named([row.key for row in rows])
+
+    def spoiled(self, found: Finding) -> str:
+        """What is wrong because of a finding, by item."""
+        return self._named(items(found.spoiled), _ITEMS)
+
+    def _named(self, names: Sequence[str], most: int = _PLACES) -> str:
+        if len(names) <= most:
+            return self.texts.listed(list(names))
+        first = ", ".join(names[: most - 1])
+        return self.texts.counted("audit", "more", len(names) - most + 1, listed=first)
+
+    @cached_property
+    def summary(self) -> list[str]:
+        """Which conclusions fall, which stand, and why: at most six sentences."""
+        right = sum(row.verdict == "confirmed" for row in self.rows)
+        rest = self._say("rest", len(self.findings)) if self.findings else ""
+        sentences = [self._say("checked", len(self.rows), right=str(right), rest=rest), *self._conclusions()]
+        overturns = any(found.weight is Weight.OVERTURNS for found in self.findings)
+        if self.findings and not overturns:
+            first = self.findings[0]
+            heaviest = self._say("heaviest", 1, place=self.places(first.places), statement=brief(first))
+            sentences.append(heaviest)
+        listed = [
+            self.texts.counted("weights_counted", weight.value, len(group))
+            for weight, group in self.by_weight
+            if weight is not Weight.OVERTURNS
+        ]
+        if listed:
+            sentences.append(self._say("besides" if overturns else "findings", 1, listed=self.texts.listed(listed)))
+        if self.open:
+            sentences.append(self._say("open", len(self.open)))
+        return sentences
+
+    def _conclusions(self) -> list[str]:
+        """Those that fall, with the reason of each, and those that stand."""
+        conclusions = [row for row in self.rows if row.role == "conclusion" and row.verdict not in OPEN]
+        causes = [(number, found) for number, found in enumerate(self.findings, start=1) if found.overturned]
+        falling = {row.key for _, found in causes for row in found.overturned}
+        standing = [row for row in conclusions if row.key not in falling]
+        said, total = [], len(conclusions)
+        if causes:
+            reasons = "; ".join(
+                f"({number}) {_quoted(found.overturned[0])} ({'; '.join(row.key for row in found.overturned)}): "
+                f"{brief(found)}"
+                for number, found in causes
+            )
+            falls = self._say("falls", len(falling))
+            said.append(self._say("fall", total, reasons=reasons, falling=falls))
+        if standing:
+            reason = f", {self.texts.get('audit', 'other_reason')}"
+            quoted = [f"{_quoted(row)} ({row.key}){reason if row.verdict == 'unsound' else ''}" for row in standing]
+            key, number = ("stand", len(standing)) if causes else ("all_stand", total)
+            said.append(self._say(key, number, quoted="; ".join(quoted)))
+        return said
+
+    def _say(self, key: str, number: int, **fill: str) -> str:
+        return self.texts.counted("audit", key, number, **fill)
+
+
+def title(reviews: Sequence[Review]) -> str:
+    """Of a report."""
+    texts, documents = reviews[0].texts, reviews[0].ledger.document.title
+    return texts.counted("audit", "title", len(reviews), documents=documents)
+
+
+def where(row: Judged) -> str:
+    """Where it stands, unless its name says so."""
+    return "" if row.key.startswith(row.where) else row.where
+
+
+def _quoted(row: Judged) -> str:
+    return f'"{row.original or row.says or flat(row.printed)}"'
+
+
+def counts(judged: Sequence[Judged]) -> dict[str, int]:
+    """How many rows have each verdict; those that no row has are left out."""
+    found = {verdict: sum(row.verdict == verdict for row in judged) for verdict in VERDICTS}
+    return {verdict: number for verdict, number in found.items() if number}
+
+
+def items(judged: Sequence[Judged]) -> list[str]:
+    """Items, each once; how many rows it has in brackets where there are several."""
+    numbers: dict[str, int] = {}
+    for row in judged:
+        numbers[row.item] = numbers.get(row.item, 0) + 1
+    return [f"{item} ({number})" if number > 1 else item for item, number in numbers.items()]
+
+
+def fact(row: Judged) -> str:
+    """What is so instead: the sentence for people where there is one, else the diagnosis."""
+    return row.why or row.diagnosis.removeprefix(_DENIED)
+
+
+def measured(row: Judged) -> str:
+    """What was measured, where the sentence for people does not say it."""
+    return row.derived if row.why and row.derived not in row.why else ""
+
+
+def correction(row: Judged) -> str:
+    """What is right there, where what is said of it does not say so."""
+    return "" if row.why or row.derived in row.diagnosis else row.derived
+
+
+def is_put_in_words(row: Judged) -> bool:
+    """Whether the diagnosis of a formula is the edit that puts it right."""
+    return row.kind != "claim" and bool(row.form)
+
+
+def is_mathematical(row: Judged) -> bool:
+    """Whether what is right there is a formula or a matrix."""
+    return row.kind in ("equation", "matrix", "algorithm")
+
+
+def recompute(row: Judged) -> tuple[str, str]:
+    """What was measured in numbers, and the command that does it again."""
+    numbers, _, command = row.evidence.rpartition("; satsym ")
+    return (numbers, f"satsym {command}") if numbers else ("", row.evidence)
+
+
+def brief(found: Finding) -> str:
+    """The first sentence of what is wrong, without its end."""
+    said = next((row.why for row in found.places if row.why), fact(found.places[0])).strip()
+    return _END.split(said, maxsplit=1)[0].rstrip(".")
+
+
+def flat(printed: Any) -> str:
+    """What is printed, on one line."""
+    return printed if isinstance(printed, str) else f"[{', '.join(map(flat, printed))}]"
