@@ -117,5 +117,5 @@ def turns(document: str, row: Row, changed: Changed, before: Answer) -> bool:
     """Whether a change turns a claim, or makes it say nothing any more."""
     try:
         return judged(document, row, changed.text).truth is not before.truth
-    except BadInput:
+    except (BadInput, LookupError):  # what it names is not there
         return True

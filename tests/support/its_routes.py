@@ -166,7 +166,7 @@ def defective(document: Rows, key: str) -> str:
 
 def no_displacement(document: Rows, key: str) -> str:
     """On the reference r = sigma = 1 and theta_dot = omega = 1, which is where the motion starts."""
-    state = re.search(r"start\('its-thesis'\)\.(\w+)", document[key]["printed"])[1]  # type: ignore[index]
+    state = re.search(r"\)\.(\w+) == 1", document[key]["printed"])[1]  # type: ignore[index]
     at_start = {"r": 1.0, "r_dot": 0.0, "theta": 0.0, "theta_dot": 1.0}[state]
     return "wrong" if START[STATES.index(state)] - at_start != 1.0 else "confirmed"
 

@@ -119,7 +119,10 @@ def _steered(case: Instance, controls: Sequence[float] | float) -> Record:
 
 @measurement
 def free_deviation(model: str, instance: str) -> Record:
-    """Deviations without control in a linear model, from the start of an instance taken for deviations: by e^(At)."""
+    """Deviations without control in a linear model, from the start of an instance taken for deviations: by e^(At).
+
+    Its parts are the times, each deviation by its name, all ``curves``, and their ``size`` together.
+    """
     case, found = loaded(instance), linear.system(model)
     if case.tf is None:
         raise BadInput(f"{instance} has a free final time")
@@ -135,6 +138,14 @@ def free_deviation(model: str, instance: str) -> Record:
     curves = dict(zip(found.part("states"), path, strict=True))
     sizes = np.linalg.norm(path, axis=0)
     return Record(f"{model} without control", {"t": times, "size": sizes, "curves": list(path), **curves})
+
+
+@measurement
+def difference(one: Record, other: Record) -> Record:
+    """What one state has more than another, state by state."""
+    names = one.part("names")
+    parts = {name: one.part(name) - other.part(name) for name in names}
+    return Record(f"the difference of {one.name} and {other.name}", {**parts, "names": names})
 
 
 @measurement
