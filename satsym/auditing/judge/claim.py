@@ -54,8 +54,10 @@ class Pages:
             return _alone(proposition.text)
         try:
             return Evaluation(self._words, self, _listed(self._row.table.printed)).answer(proposition)
-        except BadInput as error:  # what is printed may make no sense there
-            return Answer(None, (str(error),))
+        except BadInput as error:
+            if not proposition.quotes:
+                raise
+            return Answer(None, (str(error),))  # letters that stand there may make no sense
 
     def explained(self, why: tuple[str | Proposition, ...]) -> str:
         """A sentence with what its terms measure."""

@@ -175,18 +175,6 @@ def part(values: Sequence[Any], start: int, stop: int) -> Any:
 
 
 @measurement
-def columns(matrix: Any) -> list[Any]:
-    """The columns of a matrix."""
-    return [matrix[:, i] for i in range(matrix.shape[1])]
-
-
-@measurement
-def enumerated(values: Sequence[Any]) -> list[Any]:
-    """Each entry of a list with its place, the first of which is 0."""
-    return [list(pair) for pair in enumerate(values)]
-
-
-@measurement
 def steps(values: Sequence[Any]) -> list[Any]:
     """By how much each entry exceeds the one before it."""
     return [b - a for a, b in pairwise(values)]

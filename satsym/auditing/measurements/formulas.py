@@ -26,12 +26,6 @@ def subs(of: Any, **values: Any) -> Any:
 
 
 @measurement
-def letters(of: Any) -> list[str]:
-    """The letters of a formula."""
-    return sorted(s.name for s in of.free_symbols) if is_exact(of) else []
-
-
-@measurement
 def left(equation: str) -> list[str]:
     """The letters on the left-hand side of an equation as it is printed; none where it has but one side."""
     formula = reading.statement(equation)

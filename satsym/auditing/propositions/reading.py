@@ -84,6 +84,13 @@ class Proposition:
     symbols: tuple[str, ...] = ()
 
     @property
+    def quotes(self) -> bool:
+        """Whether it looks at letters as they stand in the document, such as the lines of a program."""
+        return PRINTED in self.symbols or any(
+            isinstance(node, ast.Name) and node.id == "text" for node in ast.walk(self.tree)
+        )
+
+    @property
     def stands_alone(self) -> bool:
         """Whether it says the same in every document: it looks up no row and no symbol of a notation."""
         return not self.rows and not self.symbols

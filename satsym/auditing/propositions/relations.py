@@ -215,13 +215,9 @@ def _is_zero(gap: Any) -> bool:
 
 
 def _has_floats(value: Any) -> bool:
-    return isinstance(value, float | complex | np.number) or (is_exact(value) and value.has(*_floats()))
-
-
-def _floats() -> tuple[Any, ...]:
-    import sympy
-
-    return (sympy.Float,)
+    return isinstance(value, float | complex | np.number) or (
+        is_exact(value) and any(part.is_Float for part in value.atoms())
+    )
 
 
 def _real(value: Any) -> float:
