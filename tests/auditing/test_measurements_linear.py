@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from satsym.auditing.measurements import earth, letters, linear, linear_motions, matrices, models, regulators
+from satsym.auditing.measurements import earth, letters, linear, linear_motions, matrices, models, regulators, spectra
 from satsym.auditing.measurements import words as all_words
 from satsym.auditing.propositions.values import Record, Undecided
 
@@ -60,7 +60,7 @@ def test_inputs_bring_about_what_integrals_say() -> None:
 def test_gains_place_what_can_be_placed() -> None:
     gain = linear_motions.placing_gain(DOUBLE, [1, 5, 6])
     assert gain.tolist() == [[-6, -5]]
-    assert linear.characteristic(DOUBLE.part("A") + DOUBLE.part("B") * gain) == [1, 5, 6]
+    assert spectra.characteristic(DOUBLE.part("A") + DOUBLE.part("B") * gain) == [1, 5, 6]
     kept = np.linalg.eigvals(
         linear.numbers(HALF.part("A")) + linear.numbers(HALF.part("B")) @ linear_motions.stabilising_gain(HALF)
     )
@@ -74,20 +74,20 @@ def test_gains_place_what_can_be_placed() -> None:
 
 def test_rouths_array_is_that_of_the_textbook() -> None:
     # Ogata, Modern Control Engineering, example 5-11
-    assert linear.routh([1, 2, 3, 4, 5]) == [[1, 3, 5], [2, 4, 0], [1, 5, 0], [-6, 0, 0], [5, 0, 0]]
-    assert linear.routh([1, -2, -1, 2]) == [[1, -1], [-2, 2], [0, 0]]
+    assert spectra.routh([1, 2, 3, 4, 5]) == [[1, 3, 5], [2, 4, 0], [1, 5, 0], [-6, 0, 0], [5, 0, 0]]
+    assert spectra.routh([1, -2, -1, 2]) == [[1, -1], [-2, 2], [0, 0]]
     a = sp.symbols("a0:4")
-    assert sp.simplify(linear.routh(a)[2][0] - (a[1] * a[2] - a[0] * a[3]) / a[1]) == 0
+    assert sp.simplify(spectra.routh(a)[2][0] - (a[1] * a[2] - a[0] * a[3]) / a[1]) == 0
 
 
 def test_chains_make_the_jordan_form() -> None:
     a = M([[3, 1], [-1, 1]])
-    found = linear.jordan(a)
+    found = spectra.jordan(a)
     form = found.part("P").inv() * a * found.part("P")
     assert found.part("values") == [2, 2]
     assert form == M([[2, 1], [0, 2]])
-    assert len(linear.eigenspace(2, a)) == 1
-    assert len(linear.eigenspace(0, M([[0, 0], [0, 0]]))) == 2
+    assert len(spectra.eigenspace(2, a)) == 1
+    assert len(spectra.eigenspace(0, M([[0, 0], [0, 0]]))) == 2
 
 
 @pytest.mark.parametrize("t", [0.3, 1.0])

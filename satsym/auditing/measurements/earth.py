@@ -19,6 +19,8 @@ from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
 _MOMENTS = 360
+_ROUNDS = 12
+"""Of Newton's method for Kepler's equation; five would do up to an eccentricity of 0.6."""
 _STATION = math.radians(30.0), math.radians(20.0)
 """A ground station: its latitude, and how far it is to the east of where the satellite begins."""
 _SEED = 11
@@ -136,7 +138,7 @@ def _fixed(orbit: Record) -> Array:
 
 def _eccentric_anomaly(mean: Array, e: float) -> Array:
     found = mean.copy()
-    for _ in range(50):
+    for _ in range(_ROUNDS):
         found -= (found - e * np.sin(found) - mean) / (1.0 - e * np.cos(found))
     return found
 

@@ -14,7 +14,6 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.auditing.measurements import measurement
-from satsym.auditing.propositions.relations import is_equal
 from satsym.auditing.propositions.values import Record, Undecided, is_exact
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
@@ -55,52 +54,8 @@ def eigenvalues(of: Any) -> list[Any]:
     """
     a = matrix(of)
     if is_exact(a):
-        return [e.value for e in _spectrum(a).eigenvalues for _ in range(e.algebraic)]
+        return [e.value for e in spectrum_of(a).eigenvalues for _ in range(e.algebraic)]
     return sorted(np.linalg.eigvals(a).tolist(), key=lambda z: (round(z.real, 9), -z.imag))
-
-
-@measurement
-def eigenspace(eigenvalue: Any, of: Any) -> list[Any]:
-    """Columns that span the eigenvectors of an eigenvalue, in the order of their independence; numbers."""
-    a = numbers(matrix(of))
-    from scipy.linalg import null_space
-
-    return list(null_space(a - complex(eigenvalue) * np.eye(len(a)), rcond=1e-9).T)
-
-
-@measurement
-def jordan(of: Any) -> Record:
-    """A basis P of chains of an exact matrix, as columns, and the eigenvalue that belongs to each."""
-    from satsym.symbolic.analysis.jordan import jordan_form
-
-    found = jordan_form(_spectrum(matrix(of)))
-    if found is None:
-        raise Undecided("no closed form of the eigenvalues")
-    return Record("the Jordan form", {"P": found.basis, "values": [found.form[i, i] for i in range(found.form.rows)]})
-
-
-@measurement
-def routh(coefficients: Sequence[Any]) -> list[list[Any]]:
-    """The rows of Routh's array by its plain rule, padded with zeros, up to one that begins with zero.
-
-    Coefficients are those of a polynomial, the highest power first, or a matrix of one row.
-    """
-    given = list(coefficients)
-    width = (len(given) + 1) // 2
-    zero = given[0] - given[0]
-    found = [[*line, *[zero] * (width - len(line))] for line in (given[0::2], given[1::2])]
-    while len(found) < len(given) and not is_equal(found[-1][0], 0):
-        above, line = found[-2:]
-        after = [(line[0] * a - above[0] * b) / line[0] for a, b in zip(above[1:], line[1:], strict=True)]
-        found.append([*after, zero])
-    return found
-
-
-@measurement
-def characteristic(of: Any) -> list[Any]:
-    """Coefficients of det(s I - A), the highest power first."""
-    a = matrix(of)
-    return list(a.charpoly().all_coeffs()) if is_exact(a) else list(np.poly(a))
 
 
 @measurement
@@ -242,20 +197,21 @@ def _numbers(of: Any) -> Array:
 def _eigenvectors(a: Any) -> list[Record]:
     return [
         Record(f"eigenvector {k + 1} for {e.value}", {"value": e.value, "vector": column})
-        for e in _spectrum(a).eigenvalues
+        for e in spectrum_of(a).eigenvalues
         for k, column in enumerate((a - e.value * a.eye(a.rows)).nullspace(simplify=True))
     ]
 
 
 @cache
-def _spectrum(a: Any) -> Any:
+def spectrum_of(a: Any) -> Any:
+    """The exact eigenvalues of a matrix, with their multiplicities."""
     from satsym.symbolic.analysis import spectrum
 
     return spectrum(a)
 
 
 def _eigenvalue(value: Any, of: Any) -> Any:
-    for entry in _spectrum(matrix(of)).eigenvalues:
+    for entry in spectrum_of(matrix(of)).eigenvalues:
         if entry.value == value or (not is_exact(value) and abs(complex(entry.value) - complex(value)) < _ZERO):
             return entry
     raise BadInput(f"{value} is no eigenvalue of {system_of(of).name}")

@@ -69,12 +69,6 @@ def hstack(parts: Sequence[Any]) -> Any:
 
 
 @measurement
-def vstack(parts: Sequence[Any]) -> Any:
-    """Matrices above each other."""
-    return parts[0].vstack(*parts) if all(map(is_exact, parts)) else np.vstack([dense(part) for part in parts])
-
-
-@measurement
 def diagonal(parts: Sequence[Any]) -> Any:
     """Numbers, or square matrices, along the diagonal of a matrix that is zero elsewhere."""
     from satsym.symbolic.lookup import formulas

@@ -15,15 +15,6 @@ _POINTS = 2000
 
 
 @measurement
-def at(address: str) -> Any:
-    """What a derivation has at an address such as ``polar_orbit:first_order.r``."""
-    from satsym.symbolic.lookup import library
-
-    name, _, where = address.partition(":")
-    return library.derivation(name).equation(where).rhs
-
-
-@measurement
 def rates(model: str) -> list[Any]:
     """The rates of the states of a model, exact."""
     from satsym.symbolic.lookup.library import derivation
