@@ -142,7 +142,7 @@ class _Document:
         """What is printed and what is so instead."""
         right = correction(row)
         return {
-            "says": tag("q", row.original, lang=self._language) if row.original else "",
+            "says": self._original(row),
             "about": "" if row.original else row.says,
             "claims" if row.kind == "claim" else "printed": self._printed(row),
             "in_fact": joined(*_formulas(fact(row))),
@@ -174,7 +174,7 @@ class _Document:
         return tag(
             "tr",
             tag("th", row.key, " ", tag("small", where(row)), scope="row"),
-            tag("td", self._printed(row)),
+            tag("td", self._original(row), self._printed(row)),
             tag("td", self._verdict(row), " ", found),
             *(tag("td", links, data_label=self._word(key)) for key, links in self._sources(row.key).items()),
             id=self._anchors[row.key],
@@ -182,6 +182,10 @@ class _Document:
             data_weight=row.weight,
             data_verdict=row.verdict,
         )
+
+    def _original(self, row: Judged) -> Markup:
+        """The document's own words."""
+        return tag("q", row.original, lang=self._language) if row.original else Markup()
 
     def _printed(self, row: Judged) -> Markup:
         """What is printed: mathematics, lines of a program, a table, or a proposition."""
