@@ -106,7 +106,9 @@ def _section(review: Review) -> Iterator[str]:
 
 
 def _in_brief(review: Review, number: int, finding: Finding) -> Iterator[str]:
-    yield rf"\noindent\textbf{{{number}.~{escape(review.places(finding.places))}}}: {_sentence(brief(finding))}."
+    said = rf"\noindent\textbf{{{number}.~{escape(review.places(finding.places))}}}: {_sentence(brief(finding))}."
+    formula = review.formulas.get(finding.places[0].key)
+    yield f"{said}\n{_fact(review.texts, 'printed', _printed(formula, ''))}" if formula is not None else said
 
 
 def _in_full(review: Review, number: int, finding: Finding) -> Iterator[str]:
@@ -132,7 +134,11 @@ def _in_full(review: Review, number: int, finding: Finding) -> Iterator[str]:
         "evidence": "" if measured(row) else rf"\footnotesize {_breakable(evidence)}" if evidence else "",
         "recompute": rf"\footnotesize{_typewriter(command)}",
     }
-    yield "\n".join(rf"\satsymfact{{{escape(texts.get('audit', k))}}}{{{text}}}" for k, text in facts.items() if text)
+    yield "\n".join(_fact(texts, key, text) for key, text in facts.items() if text)
+
+
+def _fact(texts: Texts, key: str, text: str) -> str:
+    return rf"\satsymfact{{{escape(texts.get('audit', key))}}}{{{text}}}"
 
 
 def _printed(formula: formula_tex.Printed | None, text: str) -> str:
