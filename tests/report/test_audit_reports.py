@@ -50,6 +50,7 @@ ROWS = [
         "3", "stable('saddle')", "", "claim", original="titik ini stabil " + NASTY, role="conclusion", **{"from": ["2"]}
     ),
     row("4", "not stable('saddle')", "", "claim", original="titik ini pelana", role="conclusion", **{"from": ["1"]}),
+    row("finding-1", "d_x = x", RATE),
     row("4 <", NASTY, "len(printed) > 3", "algorithm"),
     row("5", [["1", "2"], ["3", NASTY]], "len(printed) == 2", "table"),
 ]
@@ -81,6 +82,7 @@ def judged(document: Ledger) -> dict[str, list[Judged]]:
             document, "3", "wrong", diagnosis="It does not hold: 1.", why=f"It runs away. {NASTY}", spoiled_by=("2",)
         ),
         verdict(document, "4", "confirmed"),
+        verdict(document, "finding-1", "confirmed"),
         verdict(document, "4 <", "wrong", diagnosis=f"It does not hold: {NASTY}.", derived=NASTY, role="result"),
         verdict(document, "5", "undecided", diagnosis="It cannot be decided."),
     ]
@@ -152,9 +154,9 @@ def test_every_row_is_on_the_page_and_linked(pages: dict[str, str], judged: dict
     rows = dict(re.findall(r'(<tr id="small\.[^>]*>.*?</tr>)()', pages["en"]))
     assert len(rows) == len(judged["small"])
     linked = {re.search(r'id="([^"]*)"', row)[1]: set(re.findall(r'href="#([^"]*)"', row)) for row in rows}  # type: ignore[index]
-    assert linked["small.2"] == {"small.finding-1", "small.1", RATE}
-    assert linked["small.3"] == {"small.finding-1", "small.2"}
-    assert linked["small.4--2"] == {"small.finding-2"}
+    assert linked["small.2"] == {"small-finding-1", "small.1", RATE}
+    assert linked["small.3"] == {"small-finding-1", "small.2"}
+    assert linked["small.4--2"] == {"small-finding-2"}
     assert linked["small.5"] == set()
     assert RATE in ids
 
@@ -202,7 +204,7 @@ def test_the_summary_says_what_falls_and_stands_and_why(
     review = Review(document, judged["small"], load(language))
     assert 3 <= len(review.summary) <= 6
     checked, falls, stands, *_ = review.summary
-    assert "6" in checked
+    assert "7" in checked
     assert "titik ini stabil" in falls
     assert "It runs away" not in falls  # that is the consequence, not the cause
     assert "The sign of `x` is reversed" in falls
@@ -222,12 +224,12 @@ def test_what_is_right_has_nothing_to_correct(document: Ledger, judged: dict[str
     right = {"small": [replace(row, verdict="confirmed", diagnosis="", why="") for row in judged["small"]]}
     assert "There is nothing to correct." in audit_text([document], right)
     assert "There is nothing to correct." in page.render([document], right)
-    assert Review(document, right["small"], load("en")).confirmed_items == ["1", "2", "3", "4", "4 <", "5"]
+    assert Review(document, right["small"], load("en")).confirmed_items == ["1", "2", "3", "4", "finding-1", "4 <", "5"]
 
 
 def test_an_item_counts_as_confirmed_if_all_its_parts_are(document: Ledger, judged: dict[str, list[Judged]]) -> None:
     rows = [replace(row, item="1") if row.key in ("1", "2") else row for row in judged["small"]]
-    assert Review(document, rows, load("en")).confirmed_items == ["4"]
+    assert Review(document, rows, load("en")).confirmed_items == ["4", "finding-1"]
 
 
 # The terminal
