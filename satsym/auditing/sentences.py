@@ -34,12 +34,13 @@ _WORD = re.compile(r"(?:a|[a-z]{2,})(?=[,:;]? (?![=<>+*/]))")
 _MANY = {Change.INDEX: "`{old}` should be `{new}`", Change.DROPPED_FACTOR: "`{old}` is a factor too many"}
 
 
-def wrong_formula(labels: Sequence[str], remedy: Remedy | None, difference: str, why: str) -> str:
-    """What is wrong with a formula."""
+def wrong_formula(labels: Sequence[str], remedy: Remedy | None, difference: str, why: str, derived: str) -> str:
+    """What is wrong with a formula; where no edit tells, what it lacks, or what it should be."""
     if why:
         return f"The size does not fit: {why}."
     if remedy is None:
-        return f"No small edit puts it right{f'; it lacks `{difference}`' if difference else ''}."
+        lacking = f"lacks `{difference}`" if difference else f"should be `{derived}`"
+        return f"No small edit puts it right; it {lacking}."
     if remedy.exchange:
         return sentence(remedy.exchange)
     return sentence("; ".join(f"{_place(labels[cell])}{edit_in_words(edit)}" for cell, edit in remedy.edits))

@@ -20,7 +20,7 @@ from satsym.cli import main
 from tests.support.ledgers import HAMILTONIAN, HEAD, TANGENTIAL, row, text, write
 
 Run = Callable[..., tuple[int, str, str]]
-KEYS = ["document", "item", "kind", "printed", "derived", "verdict", "diagnosis", "evidence"]
+KEYS = "document item part kind role printed derived verdict cause weight diagnosis evidence".split()
 GOOD = row("1", "d_x4 = (u2 - 2*x2*x4)/x1", TANGENTIAL, says="rate of x4", where="section 1")
 SLIP = row("2", "d_x4 = -(2*x2*x4 + u2)/x1", TANGENTIAL, part="again", says="the same", where="section 2")
 NUMBER = row("table 1", "35786 km", "altitude", "number")
@@ -55,7 +55,7 @@ def complaint(error: str) -> str:
 def test_json_has_the_rows_and_how_many_of_each_verdict(audited: Run, tmp_path: Path) -> None:
     code, out, err = audited(write(tmp_path, [GOOD, SLIP, NUMBER, MATRIX]), "--json")
     found = json.loads(out)
-    assert (code, err, list(found)) == (0, "", ["rows", "counts"])
+    assert (code, err, list(found)) == (0, "", ["rows", "findings", "counts"])
     assert all(list(entry) == KEYS for entry in found["rows"])
     assert found["counts"] == {"confirmed": 2, "misprint": 2}
     assert [entry["item"] for entry in found["rows"]] == ["1", "2", "table 1", "3"]
@@ -67,8 +67,25 @@ def test_what_is_right_is_said_first(audited: Run, tmp_path: Path) -> None:
     code, out, err = audited(write(tmp_path, [SLIP, GOOD]))
     assert (code, err) == (0, "")
     assert out.startswith("small: A small document (A. Writer, 2024)\n")
-    assert out.index("Confirmed, 1 of 2: 1.") < out.index("Remarks: 1 misprint.") < out.index("The sign of `u2`")
-    assert "2 again: misprint (section 2)" in out
+    assert (
+        out.index("checked 1 are confirmed") < out.index("Slips without consequence") < out.rindex("The sign of `u2`")
+    )
+    assert "1. 2 again: The sign of `u2` is reversed." in out
+    assert (
+        "2 again: misprint (section 2), printed d_x4 = -(2*x2*x4 + u2)/x1"
+        in audited(tmp_path / "small.toml", "--rows")[1]
+    )
+
+
+def test_a_page_is_written_whole_and_in_the_language_asked_for(audited: Run, tmp_path: Path) -> None:
+    path, page = write(tmp_path, [GOOD, SLIP, MATRIX]), tmp_path / "page.html"
+    code, out, _ = audited(path, "--html", page, "--lang", "id")
+    written = page.read_text(encoding="utf-8")
+    assert code == 0
+    assert "Kekeliruan tanpa akibat" in out
+    assert written.startswith('<!doctype html>\n<html lang="id">')
+    assert 'href="#polar_orbit:first_order.theta_dot"' in written
+    assert 'id="polar_orbit:first_order.theta_dot"' in written
 
 
 def test_nothing_to_correct_is_said_too(audited: Run, tmp_path: Path) -> None:
@@ -133,7 +150,7 @@ def test_a_cache_that_cannot_be_written_is_no_error(audited: Run, tmp_path: Path
 
 @needs_tex
 def test_the_report_compiles(audited: Run, tmp_path: Path) -> None:
-    odd = row("5 % & $ # _ ~ ^ \\", "x_2 is 100 %, {it} says: \\input{x}", "one_meaning(symbol='x1')", "claim")
+    odd = row("5 % & $ # _ ~ ^ \\", "stable('saddle')", "", "claim", original="x_2 is 100 %, {it} says: \\input{x}")
     long = row("H", HAMILTONIAN.replace("u1)", "u2)"), "polar_orbit:hamiltonian.H")
     path = write(tmp_path, [GOOD, SLIP, MATRIX, long, odd, row("torn", "", "", legible=False)])
     assert audited(path, "--latex", tmp_path / "report.tex")[0] == 0

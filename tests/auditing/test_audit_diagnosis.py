@@ -58,6 +58,11 @@ SLIPS = {
     "missing term in a bracket": ("d_x4 = -(2*x2*x4)/x1", TANGENTIAL, "The term `+u2/x1` is missing."),
     "term too many": ("d_x2 = x1*x4**2 - g/x1**2 + u1 + u2", RADIAL, "has a term too many"),
     "factor too many": ("d_x2 = x1*x4**2*x1 - g/x1**2 + u1", RADIAL, "a factor too many"),
+    "factor twice": (
+        "x1*(x2 + x1*u1*x4)",
+        "r*(r_dot + u1*theta_dot)",
+        "`x1*u1*x4` should be `u1*x4`: a factor too many.",
+    ),
     "missing factor": ("d_x4 = (u2 - 2*x2)/x1", TANGENTIAL, "`2*x2` lacks a factor: it should be `2*x2*x4`."),
     "other letter": ("d_x2 = x1*x4**2 - m/x1**2 + u1", RADIAL, "`m` should be `g`."),
     "upside down": ("d_x4 = x1/(u2 - 2*x2*x4)", TANGENTIAL, "`x1/(u2 - 2*x2*x4)` is upside down."),
@@ -68,7 +73,7 @@ SLIPS = {
         "The sign of `2*g/x1**3*lambda2` is reversed; the sign of `(2*x2*x4 - u2)/x1**2*lambda4` is reversed.",
     ),
     "everywhere": ("d_x2 = x2*x4**2 - g/x2**2 + u1", RADIAL, "`x2` should be `x1` at 2 places."),
-    "beyond repair": ("d_x2 = x3**3 + u2*x1", RADIAL, "No small edit puts it right"),
+    "beyond repair": ("d_x2 = x3**3 + u2*x1", RADIAL, "No small edit puts it right; it "),
 }
 MATRICES = {
     "rows": ([["1", "0"], ["0", "0"], ["0", "0"], ["0", "1/x1"]], "Rows 1 and 2 are exchanged."),

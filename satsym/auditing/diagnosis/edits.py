@@ -5,7 +5,6 @@ The size of an edit is that of its kind: a sign is smaller than an index, an ind
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
@@ -69,8 +68,6 @@ class Edit:
         The whole formula after it.
     times
         At how many places, where it is the same slip at several.
-    doubled
-        Whether it drops a factor that multiplies the bracket around it already.
     """
 
     change: Change
@@ -79,12 +76,6 @@ class Edit:
     new: Node
     result: Node
     times: int = 1
-    doubled: bool = False
-
-    @property
-    def size(self) -> int:
-        """That of its kind; a factor is sooner written twice than a bracket misplaced."""
-        return Change.FUNCTION if self.doubled else self.change
 
 
 class Letters(Protocol):
@@ -123,21 +114,8 @@ def single_edits(formula: Node, letters: Letters, usable: Callable[[str], bool] 
     for path, node in walk(formula):
         if not in_exponent(formula, path):
             for change, new in _changes(formula, path, node, letters, usable):
-                doubled = change is Change.DROPPED_FACTOR and _is_doubled(formula, path, node, new)
-                found.append(Edit(change, path, node, new, replaced(formula, path, new), doubled=doubled))
-    return sorted(found, key=lambda edit: edit.size)
-
-
-def _is_doubled(formula: Node, path: Path, node: Node, new: Node) -> bool:
-    """Whether what a product is shortened by multiplies something around it, too."""
-    around: list[Node] = []
-    for step in path:
-        if isinstance(formula, Mul):
-            around += [factor for place, factor in enumerate(formula.factors) if place != step]
-        formula = children(formula)[step]
-    left = Counter(node.factors if isinstance(node, Mul) else ())
-    left.subtract(new.factors if isinstance(new, Mul) else (new,))
-    return any(number > 0 and factor in around for factor, number in left.items())
+                found.append(Edit(change, path, node, new, replaced(formula, path, new)))
+    return sorted(found, key=lambda edit: edit.change)
 
 
 def repeated_edits(formula: Node, letters: Letters, usable: Callable[[str], bool] = lambda _: True) -> Iterator[Edit]:

@@ -98,7 +98,7 @@ def _first(plan: Plan, edits: Iterable[tuple[int, Edit]]) -> Remedy | None:
 
 def _single(plan: Plan, indices: Sequence[int]) -> Remedy | None:
     edits = [(i, edit) for i in indices for edit in _edits(plan, i)]
-    return _first(plan, sorted(edits, key=lambda entry: entry[1].size))
+    return _first(plan, sorted(edits, key=lambda entry: entry[1].change))
 
 
 def _repeated(plan: Plan, indices: Sequence[int]) -> Remedy | None:
@@ -149,7 +149,7 @@ def _pair(plan: Plan, indices: Sequence[int]) -> Remedy | None:
             missing = tuple((w - e) % field.PRIME for w, e in zip(wanted, effect, strict=True))
             for k, second in partners.get(missing, ()):
                 if (i, first.path) < (k, second.path) and (i != k or second.path[: len(first.path)] != first.path):
-                    found.append((first.size + second.size, ((i, first), (k, second))))
+                    found.append((first.change + second.change, ((i, first), (k, second))))
     for _, pair in sorted(found, key=lambda entry: entry[0])[:PAIRS]:
         cells = plan.printed
         for i, edit in pair:
@@ -185,7 +185,7 @@ def _edit_and_factor(plan: Plan, indices: Sequence[int]) -> Remedy | None:
         known = {name: [point.symbol(name) for point in plan.points] for name in sorted(plan.useful)}
     except (field.NoValue, field.Undecided):
         return None
-    for edit in sorted(_edits(plan, i), key=lambda edit: edit.size):
+    for edit in sorted(_edits(plan, i), key=lambda edit: edit.change):
         try:
             values = [point.value(edit.result) for point in plan.points]
         except field.NoValue:

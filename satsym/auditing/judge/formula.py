@@ -29,7 +29,7 @@ def judge(bench: Bench, row: Row) -> Outcome:
     compared, found = next(((way, fix) for way in ways if (fix := remedy(way)) is not None), (ways[0], None))
     derived = shown(compared, found.cells if found else None)
     why = compared.why if isinstance(compared, Never) else ""
-    remark = sentences.wrong_formula(compared.labels, found, "" if found else compared.difference(), why)
+    remark = sentences.wrong_formula(compared.labels, found, "" if found else compared.difference(), why, derived)
     if fault:
         remark += sentences.also_inhomogeneous(fault)
     return Outcome(row, False, derived, compared, found, remark=remark)

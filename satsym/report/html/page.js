@@ -1,5 +1,5 @@
 "use strict";
-const form = document.getElementById("filters");
+const form = document.getElementById("filter-form");
 const entries = [...document.querySelectorAll("[data-verdict]")];
 const findings = entries.filter((entry) => entry.matches(".finding"));
 const output = form.querySelector("output");
@@ -11,7 +11,7 @@ function show() {
   for (const group of document.querySelectorAll("section.weight, details.all"))
     group.hidden = !group.querySelector("[data-verdict]:not([hidden])");
   const chosen = form.elements.document.value;
-  for (const part of document.querySelectorAll("main > section:not(#derived)"))
+  for (const part of document.querySelectorAll("main > section:not(#derived-equations)"))
     part.hidden = Boolean(chosen) && part.id !== chosen;
   const number = findings.filter((finding) => !finding.hidden).length;
   output.textContent = (number === 1 ? output.dataset.one : output.dataset.many).replace("<number>", number);

@@ -59,8 +59,8 @@ def render(ledgers: Sequence[Ledger], judged: Mapping[str, Sequence[Judged]], la
     reviews = [Review(ledger, judged[ledger.document.key], texts) for ledger in ledgers]
     hyphens = "" if language == "en" else UNHYPHENATED
     head = [
-        rf"\begin{{center}}{{\LARGE {escape(title(reviews))}\par}}\vspace{{1ex}}{escape(texts.get('audit', 'made'))}",
-        r"\end{center}",
+        rf"\begin{{center}}{{\LARGE {_breakable(title(reviews))}\par}}\vspace{{1ex}}",
+        rf"{escape(texts.get('audit', 'made'))}\end{{center}}",
         *_legend(texts, reviews),
     ]
     body = "\n\n".join([*head, *(part for review in reviews for part in _section(review))])
@@ -90,8 +90,8 @@ def _legend(texts: Texts, reviews: Sequence[Review]) -> Iterator[str]:
 
 def _section(review: Review) -> Iterator[str]:
     texts = review.texts
-    yield rf"\section*{{{escape(review.ledger.document.title)}}}"
-    yield escape(review.byline)
+    yield rf"\section*{{{_breakable(review.ledger.document.title)}}}"
+    yield _breakable(review.byline)
     yield " ".join(map(_sentence, review.summary))
     if not review.findings:
         yield escape(texts.get("audit", "nothing"))
@@ -106,7 +106,9 @@ def _section(review: Review) -> Iterator[str]:
 
 
 def _in_brief(review: Review, number: int, finding: Finding) -> Iterator[str]:
-    yield rf"\noindent\textbf{{{number}.~{escape(review.places(finding.places))}}}: {_sentence(brief(finding))}."
+    said = rf"\noindent\textbf{{{number}.~{escape(review.places(finding.places))}}}: {_sentence(brief(finding))}."
+    formula = review.formulas.get(finding.places[0].key)
+    yield f"{said}\n{_fact(review.texts, 'printed', _printed(formula, ''))}" if formula is not None else said
 
 
 def _in_full(review: Review, number: int, finding: Finding) -> Iterator[str]:
@@ -130,15 +132,19 @@ def _in_full(review: Review, number: int, finding: Finding) -> Iterator[str]:
         "right": _printed(right, correction(row)),
         "spoils": spoiled,
         "evidence": "" if measured(row) else rf"\footnotesize {_breakable(evidence)}" if evidence else "",
-        "recompute": rf"\footnotesize\texttt{{{_breakable(command)}}}",
+        "recompute": rf"\footnotesize{_typewriter(command)}",
     }
-    yield "\n".join(rf"\satsymfact{{{escape(texts.get('audit', k))}}}{{{text}}}" for k, text in facts.items() if text)
+    yield "\n".join(_fact(texts, key, text) for key, text in facts.items() if text)
+
+
+def _fact(texts: Texts, key: str, text: str) -> str:
+    return rf"\satsymfact{{{escape(texts.get('audit', key))}}}{{{text}}}"
 
 
 def _printed(formula: formula_tex.Printed | None, text: str) -> str:
     """A formula typeset, anything else in typewriter."""
     if formula is None:
-        return rf"\texttt{{{_breakable(text)}}}" if text else ""
+        return _typewriter(text) if text else ""
     return r" \newline\quad ".join(map(_fitted, formula_tex.lines(formula)))
 
 
@@ -156,7 +162,13 @@ def _sentence(text: str) -> str:
 
 def _inline(text: str) -> str:
     tex = formula_tex.inline(text)
-    return rf"\texttt{{{_breakable(text)}}}" if tex is None else f"${tex}$"
+    return _typewriter(text) if tex is None else f"${tex}$"
+
+
+def _typewriter(text: str) -> str:
+    """Text as it is typed, with straight quotes."""
+    straight = _breakable(text).replace("'", r"\textquotesingle{}")
+    return rf"\texttt{{{straight}}}"
 
 
 def _breakable(text: str) -> str:

@@ -1,0 +1,311 @@
+"""The audit's reports for people: terminal, page and LaTeX say the same, each finding once, whatever a ledger holds."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+from collections import Counter
+from dataclasses import replace
+from html.parser import HTMLParser
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from satsym.auditing import VERDICTS, Judged, Ledger
+from satsym.auditing.causes import Weight
+from satsym.auditing.sentences import sentence
+from satsym.report.findings.objects import audit_object
+from satsym.report.findings.review import Review
+from satsym.report.html import audit as page
+from satsym.report.html.markup import Markup, joined, tag
+from satsym.report.html.mathml import math
+from satsym.report.latex import audit as typeset
+from satsym.report.terminal.audit import audit_text
+from satsym.report.texts import languages, load
+from tests.support.ledgers import ledger, row
+
+NASTY = (
+    """</script><script>alert(1)</script><img src=x onerror=alert(1)> "q" 'p' & &lt;b&gt; `<i>` $x$ \\input{x} % # _"""
+)
+RATE = "saddle:first_order.x1"
+HEAD = f"""
+format = 1
+[document]
+key = "small"
+title = {json.dumps(NASTY)}
+authors = {json.dumps(NASTY)}
+language = "id"
+model = "saddle"
+[scope.main]
+x = "x1"
+d_x = "d_x1"
+""".replace("'</", "'''</").replace("% # _'", "% # _'''")
+ROWS = [
+    row("1", "d_x = x", RATE, where="chapter 1"),
+    row("2", "d_x = -x", RATE, **{"from": "row['1']"}),
+    row(
+        "3", "stable('saddle')", "", "claim", original="titik ini stabil " + NASTY, role="conclusion", **{"from": ["2"]}
+    ),
+    row("4", "not stable('saddle')", "", "claim", original="titik ini pelana", role="conclusion", **{"from": ["1"]}),
+    row("finding-1", "d_x = x", RATE),
+    row("4 <", NASTY, "len(printed) > 3", "algorithm"),
+    row("5", [["1", "2"], ["3", NASTY]], "len(printed) == 2", "table"),
+]
+
+
+def verdict(ledger: Ledger, key: str, found: str, **more: object) -> Judged:
+    """A row of a ledger, judged by hand."""
+    table = next(row.table for row in ledger.rows if row.key == key)
+    same = {
+        name: getattr(table, name) for name in ("item", "part", "kind", "says", "where", "printed", "role", "original")
+    }
+    evidence = f'{NASTY} = 1; satsym audit small --item "{key}"'
+    judged = Judged("small", **same, derived="", verdict="confirmed", diagnosis="", evidence=evidence)
+    return replace(judged, verdict=found, **more)
+
+
+@pytest.fixture(scope="module")
+def document(tmp_path_factory: pytest.TempPathFactory) -> Ledger:
+    return ledger(tmp_path_factory.mktemp("ledger"), ROWS, HEAD)
+
+
+@pytest.fixture(scope="module")
+def judged(document: Ledger) -> dict[str, list[Judged]]:
+    slip = "The sign of `x` is reversed. `<script>` is none."
+    rows = [
+        verdict(document, "1", "confirmed"),
+        verdict(document, "2", "misprint", diagnosis=slip, derived="d_x = x", form="SIGN x"),
+        verdict(
+            document, "3", "wrong", diagnosis="It does not hold: 1.", why=f"It runs away. {NASTY}", spoiled_by=("2",)
+        ),
+        verdict(document, "4", "confirmed"),
+        verdict(document, "finding-1", "confirmed"),
+        verdict(document, "4 <", "wrong", diagnosis=f"It does not hold: {NASTY}.", derived=NASTY, role="result"),
+        verdict(document, "5", "undecided", diagnosis="It cannot be decided."),
+    ]
+    return {"small": rows}
+
+
+@pytest.fixture(scope="module")
+def pages(document: Ledger, judged: dict[str, list[Judged]]) -> dict[str, str]:
+    return {language: page.render([document], judged, language) for language in languages()}
+
+
+class Elements(HTMLParser):
+    """Elements of a page with their attributes, and whether they are closed in order."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.found: list[tuple[str, dict[str, str | None]]] = []
+        self.open: list[str] = []
+        self.text: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.found.append((tag, dict(attrs)))
+        if tag not in ("meta", "wbr"):
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.found.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        self.text.append(data)
+
+    def ids(self) -> list[str]:
+        return [str(attributes["id"]) for _, attributes in self.found if "id" in attributes]
+
+    def links(self) -> list[str]:
+        return [str(attributes["href"]) for name, attributes in self.found if name == "a"]
+
+
+# The page
+
+
+@pytest.mark.parametrize("language", languages())
+def test_nothing_that_a_ledger_holds_becomes_markup(pages: dict[str, str], language: str) -> None:
+    elements = Elements(pages[language])
+    assert elements.open == []
+    names = Counter(name for name, _ in elements.found)
+    assert (names["script"], names["img"], names["i"]) == (1, 0, 0)
+    assert not [key for _, attributes in elements.found for key in attributes if key.startswith("on")]
+    assert "<script>alert(1)</script><img src=x onerror=alert(1)>" in "".join(elements.text)
+
+
+def test_a_page_needs_nothing_but_itself(pages: dict[str, str]) -> None:
+    elements = Elements(pages["en"])
+    assert "://" not in pages["en"]
+    assert not {"src", "srcset", "action", "xlink:href"} & {key for _, a in elements.found for key in a}
+    assert not re.search(r"url\(|@import", pages["en"])
+    assert {"link", "iframe", "object", "base"}.isdisjoint(name for name, _ in elements.found)
+
+
+def test_every_row_is_on_the_page_and_linked(pages: dict[str, str], judged: dict[str, list[Judged]]) -> None:
+    elements = Elements(pages["en"])
+    ids = elements.ids()
+    assert len(ids) == len(set(ids))
+    assert all(link.startswith("#") and link[1:] in ids for link in elements.links())
+    rows = dict(re.findall(r'(<tr id="small\.[^>]*>.*?</tr>)()', pages["en"]))
+    assert len(rows) == len(judged["small"])
+    linked = {re.search(r'id="([^"]*)"', row)[1]: set(re.findall(r'href="#([^"]*)"', row)) for row in rows}  # type: ignore[index]
+    assert linked["small.2"] == {"small-finding-1", "small.1", RATE}
+    assert linked["small.3"] == {"small-finding-1", "small.2"}
+    assert linked["small.4--2"] == {"small-finding-2"}
+    assert linked["small.5"] == set()
+    assert RATE in ids
+
+
+def test_a_page_can_be_heard_and_reached_by_keys(pages: dict[str, str]) -> None:
+    for language, text in pages.items():
+        elements = Elements(text)
+        assert ("html", {"lang": language}) in elements.found
+        names = Counter(name for name, _ in elements.found)
+        assert all(names[name] == 1 for name in ("h1", "main", "header", "nav", "title", "output"))
+        levels = [int(name[1]) for name, _ in elements.found if re.fullmatch("h[1-6]", name)]
+        assert all(after - before <= 1 for before, after in pairwise(levels))
+        assert [a["lang"] for name, a in elements.found if name == "q"].count("id") >= 3  # the document's own words
+        assert next(a.get("lang") for name, a in elements.found if name == "h2") == "id"
+        assert all("scope" in a for name, a in elements.found if name == "th")
+
+
+def test_reports_are_the_same_every_time(
+    document: Ledger, judged: dict[str, list[Judged]], pages: dict[str, str]
+) -> None:
+    assert page.render([document], judged, "id") == pages["id"]
+    assert typeset.render([document], judged, "id") == typeset.render([document], judged, "id")
+
+
+def test_text_is_escaped_unless_it_is_markup() -> None:
+    assert tag("a", "<b>", tag("b", "&"), title='"<') == '<a title="&quot;&lt;">&lt;b&gt;<b>&amp;</b></a>'
+    assert joined("<", Markup("<br>"), by="|") == "&lt;|<br>"
+
+
+def test_mathematics_is_read_as_it_is_written() -> None:
+    assert "<mtext>max</mtext>" in math(r"u_{\mathrm{max}}")
+    assert re.search(r'<mo form="prefix">.</mo>', math(r"x = -\frac{1}{2}"))
+    assert "form=" not in math("a - b")
+    assert "\\" not in math(r"\max\biggl\{a, b\biggr\}")
+    assert "<script>" not in math(r"\text{<script>&lt;script>}")
+
+
+# What is said first
+
+
+@pytest.mark.parametrize("language", languages())
+def test_the_summary_says_what_falls_and_stands_and_why(
+    document: Ledger, judged: dict[str, list[Judged]], language: str
+) -> None:
+    review = Review(document, judged["small"], load(language))
+    assert 3 <= len(review.summary) <= 6
+    checked, falls, stands, *_ = review.summary
+    assert "7" in checked
+    assert "titik ini stabil" in falls
+    assert "It runs away" not in falls  # that is the consequence, not the cause
+    assert "The sign of `x` is reversed" in falls
+    assert "titik ini pelana" in stands
+    assert "titik ini stabil" not in stands
+
+
+def test_a_conclusion_that_is_right_for_another_reason_stands_with_a_word_about_it(
+    document: Ledger, judged: dict[str, list[Judged]]
+) -> None:
+    rows = [replace(row, verdict="unsound") if row.key == "4" else row for row in judged["small"]]
+    stands = Review(document, rows, load("en")).summary[2]
+    assert stands.endswith('"titik ini pelana" (4), though not for the reason given.')
+
+
+def test_what_is_right_has_nothing_to_correct(document: Ledger, judged: dict[str, list[Judged]]) -> None:
+    right = {"small": [replace(row, verdict="confirmed", diagnosis="", why="") for row in judged["small"]]}
+    assert "There is nothing to correct." in audit_text([document], right)
+    assert "There is nothing to correct." in page.render([document], right)
+    assert Review(document, right["small"], load("en")).confirmed_items == ["1", "2", "3", "4", "finding-1", "4 <", "5"]
+
+
+def test_an_item_counts_as_confirmed_if_all_its_parts_are(document: Ledger, judged: dict[str, list[Judged]]) -> None:
+    rows = [replace(row, item="1") if row.key in ("1", "2") else row for row in judged["small"]]
+    assert Review(document, rows, load("en")).confirmed_items == ["4", "finding-1"]
+
+
+# The terminal
+
+
+@pytest.mark.parametrize("width", [60, 80, 100])
+@pytest.mark.parametrize("language", languages())
+def test_lines_fit_the_terminal_and_lose_nothing(
+    monkeypatch: pytest.MonkeyPatch, document: Ledger, judged: dict[str, list[Judged]], width: int, language: str
+) -> None:
+    long = [replace(row, why="averylongname_" * 9 + "(x)+" * 40) if row.key == "3" else row for row in judged["small"]]
+    monkeypatch.setenv("COLUMNS", str(width))
+    narrow = audit_text([document], {"small": long}, rows=True, language=language)
+    assert max(map(len, narrow.splitlines())) <= width
+    assert "".join(long[2].why.split()) in "".join(narrow.split())
+    monkeypatch.setenv("COLUMNS", "100")
+    assert "".join(audit_text([document], judged, rows=True).split()) != "".join(narrow.split())
+    assert NASTY.replace(" ", "") in "".join(narrow.split())
+
+
+def test_each_finding_is_told_once_and_those_of_weight_in_full(
+    document: Ledger, judged: dict[str, list[Judged]]
+) -> None:
+    text = " ".join(audit_text([document], judged).split())
+    assert text.index("Overturns a conclusion 1. 2: misprint") < text.index("Wrong results 2. 4 <: wrong")
+    assert text.count("spoils 3") == 1
+    assert "right" not in text.partition("1. 2: misprint")[2].partition("Wrong results")[0]  # the edit says it
+    assert "Not judged 5." in text
+
+
+@pytest.mark.parametrize(
+    ("clause", "said"),
+    {
+        "the term is missing": "The term is missing.",
+        "a cost in J needs kg": "A cost in J needs kg.",
+        "unstable: it grows": "Unstable: it grows.",
+        "omega is negative": "omega is negative.",
+        "err1 and err2 are positive": "err1 and err2 are positive.",
+        "r = 25 after 60 s": "r = 25 after 60 s.",
+        "rank(R) = 3": "rank(R) = 3.",
+        "cost = 3": "cost = 3.",
+        "`u2` is reversed": "`u2` is reversed.",
+        "": "",
+    }.items(),
+)
+def test_symbols_keep_their_case(clause: str, said: str) -> None:
+    assert sentence(clause) == said
+
+
+# LaTeX and JSON
+
+
+@pytest.mark.skipif(shutil.which("pdflatex") is None, reason="no pdflatex to compile with")
+@pytest.mark.parametrize("language", languages())
+def test_whatever_a_ledger_holds_is_typeset(
+    document: Ledger, judged: dict[str, list[Judged]], language: str, tmp_path: Path
+) -> None:
+    (tmp_path / "it.tex").write_text(typeset.render([document], judged, language), encoding="utf-8")
+    command = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "-no-shell-escape", "it.tex"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, check=False)
+    log = done.stdout.decode("utf-8", "replace")
+    assert done.returncode == 0, log
+    assert "Overfull" not in log, re.findall(r"Overfull.*", log)
+
+
+def test_every_verdict_and_weight_has_its_words_in_every_language() -> None:
+    for language in languages():
+        tables = load(language).tables
+        assert set(tables["verdicts"]) == set(tables["verdict_meanings"]) == set(VERDICTS)
+        weights = {weight.value for weight in Weight}
+        assert set(tables["weights"]) == set(tables["weight_meanings"]) == set(tables["weights_counted"]) == weights
+
+
+def test_objects_have_the_findings_beside_the_rows(judged: dict[str, list[Judged]]) -> None:
+    found = audit_object(judged["small"])
+    assert list(found) == ["rows", "findings", "counts"]
+    assert found["findings"][0]["places"] == ["2"]
+    assert found["findings"][0]["spoils"] == ["3"]
+    assert [finding["weight"] for finding in found["findings"]] == ["overturns a conclusion", "wrong result"]
