@@ -22,29 +22,20 @@ UNSMOOTHED = 1e-100
 
 @dataclass(frozen=True)
 class ControlSet:
-    """Which controls are admissible, and how much of a regularisation there is.
-
-    Attributes
-    ----------
-    kind
-        Which of the following count; ``None`` for a model without a cost, whose controls are free.
-    lower, upper
-        Of a box: bounds in the model's order, infinite where there is none.
-    radius
-        Of a ball: the largest norm, infinite where there is none.
-    smoothing
-        What half the squared controls is weighed with in the cost of a regularised problem, in the unit of the running
-        cost over that of the squared control; zero where controls do not enter the Hamiltonian affinely.
-    share
-        Of the weight of |u| that counts there, 0 to 1.
-    """
+    """Which controls are admissible, and how much of a regularisation there is."""
 
     kind: ControlSetKind | None
+    """Which of the following count; ``None`` for a model without a cost, whose controls are free."""
     lower: Row = ()
     upper: Row = ()
+    """Of a box: bounds in the model's order, infinite where there is none."""
     radius: float = math.inf
+    """Of a ball: the largest norm, infinite where there is none."""
     smoothing: float = 0.0
+    """What half the squared controls is weighed with in the cost of a regularised problem, in the unit of the running
+    cost over that of the squared control; zero where controls do not enter the Hamiltonian affinely."""
     share: float = 1.0
+    """Of the weight of |u| that counts there, 0 to 1."""
 
     @classmethod
     def of(cls, spec: ProblemSpec, lower: Row, upper: Row, radius: float) -> ControlSet:

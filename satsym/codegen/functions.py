@@ -22,31 +22,21 @@ ARGUMENTS = tuple("t x original u lam nu gain riccati state_weight control_weigh
 
 @dataclass(frozen=True)
 class Function:
-    """One function of a generated module.
-
-    Attributes
-    ----------
-    name, summary
-        Its name, and the first line of its docstring.
-    arguments
-        Those of :data:`ARGUMENTS` it takes, in that order.
-    value
-        The expression it returns, or the matrix; a column is returned as a vector.
-    kind
-        ``"scalar"``, ``"vector"`` or ``"matrix"``.
-    hints
-        Names for the outputs, where they have any.
-    over_parameters
-        Whether each parameter may be an array in the batch form.
-    """
+    """One function of a generated module."""
 
     name: str
     summary: str
+    """Its name, and the first line of its docstring."""
     arguments: tuple[str, ...]
+    """Those of :data:`ARGUMENTS` it takes, in that order."""
     value: sp.Matrix
+    """The expression it returns, or the matrix; a column is returned as a vector."""
     kind: str
+    """``"scalar"``, ``"vector"`` or ``"matrix"``."""
     hints: tuple[str, ...] = ()
+    """Names for the outputs, where they have any."""
     over_parameters: bool = False
+    """Whether each parameter may be an array in the batch form."""
 
     @property
     def outputs(self) -> list[sp.Expr]:

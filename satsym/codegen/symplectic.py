@@ -24,19 +24,13 @@ from satsym.symbolic.model import symbols_of, t
 
 @dataclass(frozen=True)
 class Split:
-    """A motion q' = v, v' = a(q) without control.
-
-    Attributes
-    ----------
-    coordinates, velocities
-        The states q, and v in the same order.
-    accelerations
-        a, as the derivation has it.
-    """
+    """A motion q' = v, v' = a(q) without control."""
 
     coordinates: tuple[sp.Symbol, ...]
     velocities: tuple[sp.Symbol, ...]
+    """The states q, and v in the same order."""
     accelerations: tuple[sp.Expr, ...]
+    """a, as the derivation has it."""
 
 
 def split(derivation: Derivation) -> Split | None:

@@ -40,26 +40,19 @@ _NEAR_ZERO = 1e-3
 
 @dataclass(frozen=True, slots=True)
 class Weight:
-    """What a tree takes.
-
-    Attributes
-    ----------
-    nodes, depth, terms, digits, degree
-        See the limits.
-    most, least
-        About how large it is at points whose coordinates are of size one, and how near to zero it comes.
-    number
-        Whether no symbol is in it.
-    """
+    """What a tree takes."""
 
     nodes: int = 1
     depth: int = 1
     terms: int = 1
     digits: int = 1
     degree: int = 0
+    """See the limits."""
     most: float = 2.0
     least: float = 0.5
+    """About how large it is at points whose coordinates are of size one, and how near to zero it comes."""
     number: bool = False
+    """Whether no symbol is in it."""
 
 
 @dataclass

@@ -45,19 +45,13 @@ _FAILED = (ArithmeticError, ValueError, TypeError)
 
 @dataclass(frozen=True)
 class Contradiction:
-    """The worst disagreement of a function with others.
-
-    Attributes
-    ----------
-    function, claim
-        Which, and what it must be.
-    deviation
-        Relative, see :data:`LIMIT`; infinite where only one of two numbers is finite.
-    """
+    """The worst disagreement of a function with others."""
 
     function: str
     claim: str
+    """Which, and what it must be."""
     deviation: float
+    """Relative, see :data:`LIMIT`; infinite where only one of two numbers is finite."""
 
 
 def worst(kernels: Kernels, at: Mapping[str, Any], seed: int = SEED) -> Contradiction | None:

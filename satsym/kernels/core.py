@@ -38,26 +38,18 @@ class Kernels(Functions):
 
     Every generated function is an attribute (``kernels.dynamics(t, x, u, p)``), with the loops ``forward``,
     ``backward`` and ``symplectic`` wrapped for arrays; ``functions`` holds the loops as they were generated.
-
-    Attributes
-    ----------
-    spec
-        Names, units and kinds.
-    functions
-        The generated functions by name.
-    backend
-        ``"python"`` (floats; nothing to wait for) or ``"numba"`` (compiled at the first call of each).
-    origin
-        What :func:`satsym.kernels.load` was given, so that another process can load it again.
-    text
-        Of a module that is not a shipped one: from it another process makes the same, wherever it was read.
     """
 
     spec: ProblemSpec
+    """Names, units and kinds."""
     functions: Mapping[str, Function]
+    """The generated functions by name."""
     backend: Backend = "python"
+    """``"python"`` (floats; nothing to wait for) or ``"numba"`` (compiled at the first call of each)."""
     origin: tuple[str, Path | None] | None = None
+    """What :func:`satsym.kernels.load` was given, so that another process can load it again."""
     text: str | None = None
+    """Of a module that is not a shipped one: from it another process makes the same, wherever it was read."""
 
     def __post_init__(self) -> None:
         # Instance attributes, not __getattr__: solvers call these in inner loops.

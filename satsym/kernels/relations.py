@@ -19,25 +19,17 @@ from satsym.kernels.evaluation import FAINT, Evaluation
 
 @dataclass(frozen=True, eq=False)
 class Relation:
-    """Two sides that must be equal but for rounding.
-
-    Attributes
-    ----------
-    function
-        The one that is held against the others.
-    claim
-        What it must be.
-    left, right
-        Of one shape, the last axis for columns.
-    terms
-        Sizes of what the sides are sums of, where these may cancel; broadcast against the sides.
-    """
+    """Two sides that must be equal but for rounding."""
 
     function: str
+    """The one that is held against the others."""
     claim: str
+    """What it must be."""
     left: Array
     right: Array
+    """Of one shape, the last axis for columns."""
     terms: Array | float = 0.0
+    """Sizes of what the sides are sums of, where these may cancel; broadcast against the sides."""
 
 
 def deviations(found: Sequence[Relation], scale: Callable[[Array], Array]) -> list[float]:

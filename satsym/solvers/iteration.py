@@ -58,26 +58,18 @@ class Limits:
     """When to give up, and who watches until then.
 
     What a verdict depends on is limited by work, which is the same on every machine; the clock is there for people.
-
-    Attributes
-    ----------
-    iterations
-        Of the method.
-    deadline
-        On the clock of ``time.perf_counter``.
-    watch
-        Told cost and residual after inner steps, for a solver whose phases take long.
-    work
-        Columns that may be linearised, see :class:`Meter`.
-    meter
-        Shared by all limits that are derived from these.
     """
 
     iterations: int
+    """Of the method."""
     deadline: float
+    """On the clock of ``time.perf_counter``."""
     watch: Callable[[float, float], None] | None = None
+    """Told cost and residual after inner steps, for a solver whose phases take long."""
     work: float = float("inf")
+    """Columns that may be linearised, see :class:`Meter`."""
     meter: Meter = field(default_factory=Meter)
+    """Shared by all limits that are derived from these."""
 
     def tell(self, cost: float, residual: float) -> None:
         """Tell who watches, if anyone does."""

@@ -27,25 +27,17 @@ Event = Callable[[Array], float]
 
 @dataclass(frozen=True, eq=False)
 class Arc:
-    """A part of a motion under a constant control.
-
-    Attributes
-    ----------
-    start, end
-        Times.
-    control
-        What is held.
-    states
-        States (n, K) at times within, shape (K,).
-    event
-        Place of the event that ended it; ``None`` where its time was over.
-    """
+    """A part of a motion under a constant control."""
 
     start: float
     end: float
+    """Times."""
     control: float
+    """What is held."""
     states: Callable[[Array], Array]
+    """States (n, K) at times within, shape (K,)."""
     event: int | None
+    """Place of the event that ended it; ``None`` where its time was over."""
 
     @property
     def last(self) -> Array:
@@ -56,31 +48,21 @@ class Arc:
 
 @dataclass(frozen=True, eq=False)
 class Plant:
-    """What a switching feedback acts on.
-
-    Attributes
-    ----------
-    instance
-        Whose model has a switching curve.
-    position, rate
-        Places of these states.
-    target
-        Where they are to go.
-    deadband
-        Error of the position that is allowed.
-    final
-        The target as generated functions take it.
-    scale
-        A time within which the motion is over, for steps and to give up.
-    """
+    """What a switching feedback acts on."""
 
     instance: Instance
+    """Whose model has a switching curve."""
     position: int
     rate: int
+    """Places of these states."""
     target: tuple[float, float]
+    """Where they are to go."""
     deadband: float
+    """Error of the position that is allowed."""
     final: tuple[float, ...]
+    """The target as generated functions take it."""
     scale: float
+    """A time within which the motion is over, for steps and to give up."""
 
     def error(self, x: Array) -> float:
         """By how much the position is past its target."""

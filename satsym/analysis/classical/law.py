@@ -35,37 +35,26 @@ MOST_STEPS = 10_000
 
 @dataclass(frozen=True, eq=False)
 class Loop:
-    """The law, and the linear motion under it.
-
-    Attributes
-    ----------
-    follows, rate
-        Places of the state that follows the command and of its rate of change.
-    gains
-        Of the rate and of the state.
-    compensation
-        Control for each unit of the state that follows.
-    command, differentiator
-        As in the instance.
-    jump
-        How the states change at once when the command steps, shape (n,).
-    impulse
-        The integral of the control over that moment.
-    matrix, offset
-        The linear motion under the law, z' = M z + c; the last entry of z is the measured error where the
-        differentiator lags behind.
-    """
+    """The law, and the linear motion under it."""
 
     follows: int
     rate: int
+    """Places of the state that follows the command and of its rate of change."""
     gains: tuple[float, float]
+    """Of the rate and of the state."""
     compensation: float
+    """Control for each unit of the state that follows."""
     command: float
     differentiator: float
+    """As in the instance."""
     jump: Array
+    """How the states change at once when the command steps, shape (n,)."""
     impulse: float
+    """The integral of the control over that moment."""
     matrix: Array
     offset: Array
+    """The linear motion under the law, z' = M z + c; the last entry of z is the measured error where the differentiator
+    lags behind."""
 
     @property
     def fastest(self) -> float:

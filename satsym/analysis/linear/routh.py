@@ -31,24 +31,16 @@ Row: TypeAlias = tuple[Any, ...]
 
 @dataclass(frozen=True)
 class Routh:
-    """A Routh array.
-
-    Attributes
-    ----------
-    rows
-        One for each power of s from the highest down, all of the same length; after what special cases ask for.
-    special_cases
-        What was met, in order: ``"zero in the first column"``, ``"row of zeros"``.
-    sign_changes
-        Along the first column: the number of roots with positive real parts.
-    on_axis
-        Number of roots on the imaginary axis, counted with multiplicity.
-    """
+    """A Routh array."""
 
     rows: tuple[Row, ...]
+    """One for each power of s from the highest down, all of the same length; after what special cases ask for."""
     special_cases: tuple[str, ...]
+    """What was met, in order: ``"zero in the first column"``, ``"row of zeros"``."""
     sign_changes: int
+    """Along the first column: the number of roots with positive real parts."""
     on_axis: int
+    """Number of roots on the imaginary axis, counted with multiplicity."""
 
     @property
     def column(self) -> Row:

@@ -31,18 +31,12 @@ AXIS = 1e-11
 
 @dataclass(frozen=True)
 class Eigenvalue:
-    """An eigenvalue of a matrix.
-
-    Attributes
-    ----------
-    value
-        Exactly real, or exactly on the imaginary axis, where it is so within the tolerance.
-    blocks
-        Sizes of its Jordan blocks, the largest first.
-    """
+    """An eigenvalue of a matrix."""
 
     value: complex
+    """Exactly real, or exactly on the imaginary axis, where it is so within the tolerance."""
     blocks: tuple[int, ...]
+    """Sizes of its Jordan blocks, the largest first."""
 
     @property
     def algebraic(self) -> int:

@@ -35,27 +35,18 @@ _ON_THE_BORDER = (
 
 @dataclass(frozen=True, eq=False)
 class Floquet:
-    """What one revolution makes of neighbouring motions.
-
-    Attributes
-    ----------
-    status
-        ``"computed"``; or why there is nothing: ``"no period"``, ``"collision"``, ``"not resolved"``.
-    orbit
-        Whose neighbours they are.
-    monodromy
-        ``None`` unless computed, as are all other numbers here.
-    multipliers
-        Its eigenvalues, shape (6,).
-    turning
-        Hill's equations, where the orbit is nearly circular.
-    """
+    """What one revolution makes of neighbouring motions."""
 
     status: str
+    """``"computed"``; or why there is nothing: ``"no period"``, ``"collision"``, ``"not resolved"``."""
     orbit: Elements
+    """Whose neighbours they are."""
     monodromy: Monodromy | None
+    """``None`` unless computed, as are all other numbers here."""
     multipliers: Complex | None
+    """Its eigenvalues, shape (6,)."""
     turning: TurningAxes | None
+    """Hill's equations, where the orbit is nearly circular."""
 
     @property
     def verdict(self) -> str | None:

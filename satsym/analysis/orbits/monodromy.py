@@ -28,24 +28,16 @@ SYMPLECTIC = np.block([[np.zeros((3, 3)), np.eye(3)], [-np.eye(3), np.zeros((3, 
 
 @dataclass(frozen=True, eq=False)
 class Monodromy:
-    """An integrated monodromy matrix, in units of length and speed in which the orbit is of size one.
-
-    Attributes
-    ----------
-    start
-        State that the revolution starts from and comes back to, shape (6,).
-    matrix
-        Shape (6, 6).
-    exact
-        What the formula gives for it.
-    units
-        Of the three positions and the three velocities, powers of two, shape (6,).
-    """
+    """An integrated monodromy matrix, in units of length and speed in which the orbit is of size one."""
 
     start: Array
+    """State that the revolution starts from and comes back to, shape (6,)."""
     matrix: Array
+    """Shape (6, 6)."""
     exact: Array
+    """What the formula gives for it."""
     units: Array
+    """Of the three positions and the three velocities, powers of two, shape (6,)."""
 
     @property
     def original(self) -> Array:

@@ -32,22 +32,15 @@ MOST_STEPS = 20000
 
 @dataclass(frozen=True)
 class Basin:
-    """Deviations from which the motion returns.
-
-    Attributes
-    ----------
-    extents
-        By state: the most negative and the most positive deviation of this state alone, in the model's unit, up to
-        which every one that was tried returns; infinite where all did.
-    level
-        The largest x'Px up to which every deviation returns that was tried in any direction.
-    time
-        How long each had to do so.
-    """
+    """Deviations from which the motion returns."""
 
     extents: Mapping[str, tuple[float, float]]
+    """By state: the most negative and the most positive deviation of this state alone, in the model's unit, up to which
+    every one that was tried returns; infinite where all did."""
     level: float
+    """The largest x'Px up to which every deviation returns that was tried in any direction."""
     time: float
+    """How long each had to do so."""
 
 
 def basin(about: Linearisation, found: Regulator, case: Instance | None = None) -> Basin:

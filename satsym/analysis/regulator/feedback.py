@@ -27,21 +27,14 @@ MOST_GAINS = 20000
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """A regulator, and what it was designed for.
-
-    Attributes
-    ----------
-    about
-        The linearisation.
-    regulator
-        Of it.
-    instance
-        ``None`` for the design of a model as such.
-    """
+    """A regulator, and what it was designed for."""
 
     about: Linearisation
+    """The linearisation."""
     regulator: Regulator
+    """Of it."""
     instance: Instance | None
+    """``None`` for the design of a model as such."""
 
     @property
     def title(self) -> str:

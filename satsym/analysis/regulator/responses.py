@@ -35,23 +35,16 @@ class Response:
 
 @dataclass(frozen=True, eq=False)
 class Responses:
-    """The same disturbance, four times.
-
-    Attributes
-    ----------
-    times
-        Shape (N+1,).
-    free, steered
-        By the linear system, without control and with the gain.
-    exact_free, exact_steered
-        By the exact motion, within the instance's bounds; ``None`` where none is known but the linear one.
-    """
+    """The same disturbance, four times."""
 
     times: Array
+    """Shape (N+1,)."""
     free: Response
     steered: Response
+    """By the linear system, without control and with the gain."""
     exact_free: Response | None
     exact_steered: Response | None
+    """By the exact motion, within the instance's bounds; ``None`` where none is known but the linear one."""
 
 
 def responses(design: Design, case: Instance) -> Responses:

@@ -16,35 +16,25 @@ from satsym.spec import ProblemSpec
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """A solution or a flight, and what is drawn beside it.
-
-    Attributes
-    ----------
-    result
-        What was solved or simulated.
-    name
-        What its motion is called in a legend.
-    times, time_unit
-        Nodes in a readable unit, ``"1"`` where the model counts time in none.
-    time_factor
-        Model units of time in that unit.
-    x, u, lam
-        As in the result, NaN for what cannot be drawn or has left its domain; ``lam`` is ``None`` for a flight.
-    reference, free
-        States of the reference curve and of the motion without control at the nodes; ``None`` where there is none
-        or, for the latter, where it is the motion itself.
-    """
+    """A solution or a flight, and what is drawn beside it."""
 
     result: Solution | Flight
+    """What was solved or simulated."""
     name: str
+    """What its motion is called in a legend."""
     times: Array
     time_unit: str
+    """Nodes in a readable unit, ``"1"`` where the model counts time in none."""
     time_factor: float
+    """Model units of time in that unit."""
     x: Array
     u: Array
     lam: Array | None
+    """As in the result, NaN for what cannot be drawn or has left its domain; ``lam`` is ``None`` for a flight."""
     reference: Array | None
     free: Array | None
+    """States of the reference curve and of the motion without control at the nodes; ``None`` where there is none or,
+    for the latter, where it is the motion itself."""
 
     @classmethod
     def of(cls, result: Solution | Flight) -> Scene:

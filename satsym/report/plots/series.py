@@ -21,49 +21,34 @@ ON_BOUND = 1e-7
 
 @dataclass(frozen=True, eq=False)
 class Series:
-    """One quantity against time.
-
-    Attributes
-    ----------
-    latex, name
-        As a formula, and in letters where that cannot be set.
-    unit, meaning
-        As in :class:`~satsym.spec.Variable`.
-    values
-        At the nodes, NaN where there is nothing to draw.
-    reference, free
-        The same quantity on the reference curve, and in the motion without control.
-    target
-        The value that is required at the end.
-    angle
-        Whether it is an angle.
-    lower, upper
-        Bounds, infinite where there are none.
-    active
-        Nodes at which it is on a bound.
-    switching
-        Times at which it meets or leaves a bound, as in the scene.
-    size
-        What counts as large for it, where its values may be nothing but rounding errors.
-    from_zero
-        Whether its axis must show zero.
-    """
+    """One quantity against time."""
 
     latex: str
     name: str
+    """As a formula, and in letters where that cannot be set."""
     unit: str
     meaning: str
+    """As in :class:`~satsym.spec.Variable`."""
     values: Array
+    """At the nodes, NaN where there is nothing to draw."""
     reference: Array | None = None
     free: Array | None = None
+    """The same quantity on the reference curve, and in the motion without control."""
     target: float | None = None
+    """The value that is required at the end."""
     angle: bool = False
+    """Whether it is an angle."""
     lower: float = -math.inf
     upper: float = math.inf
+    """Bounds, infinite where there are none."""
     active: NDArray[np.bool_] | None = None
+    """Nodes at which it is on a bound."""
     switching: tuple[float, ...] = ()
+    """Times at which it meets or leaves a bound, as in the scene."""
     size: float = 0.0
+    """What counts as large for it, where its values may be nothing but rounding errors."""
     from_zero: bool = False
+    """Whether its axis must show zero."""
 
     @property
     def symbol(self) -> str:

@@ -36,27 +36,18 @@ STAGING = ".satsym-new-"
 
 @dataclass(frozen=True)
 class Found:
-    """A set that was read.
-
-    Attributes
-    ----------
-    folder
-        Where it is.
-    command
-        That wrote it.
-    result
-        The text of its result.json.
-    listed
-        Its other files.
-    contents
-        Of those that were wanted, the content.
-    """
+    """A set that was read."""
 
     folder: Path
+    """Where it is."""
     command: str
+    """That wrote it."""
     result: bytes
+    """The text of its result.json."""
     listed: Mapping[str, Listed]
+    """Its other files."""
     contents: Mapping[str, bytes]
+    """Of those that were wanted, the content."""
 
 
 def write(folder: Path, result: Mapping[str, Any], files: Mapping[str, Content]) -> list[Path]:

@@ -34,28 +34,19 @@ DROWNED = 1e-8
 
 @dataclass(frozen=True, eq=False)
 class Accessory:
-    """The second variation on pieces.
-
-    Attributes
-    ----------
-    form
-        In the controls' changes, normed so that these alone would give the unit matrix, and the change of a free final
-        time in units of the duration, shape (P, P).
-    ties
-        Rows that vanish where the end is as given, shape (c, P).
-    sizes
-        Of the boundary residuals that these ties are about, shape (c,).
-    controls
-        Changes of the controls at nodes and midpoints of the grid by the former, shape (m, 2 N + 1, P).
-    duration
-        Change of the final time by the former, shape (P,).
-    """
+    """The second variation on pieces."""
 
     form: Array
+    """In the controls' changes, normed so that these alone would give the unit matrix, and the change of a free final
+    time in units of the duration, shape (P, P)."""
     ties: Array
+    """Rows that vanish where the end is as given, shape (c, P)."""
     sizes: Array
+    """Of the boundary residuals that these ties are about, shape (c,)."""
     controls: Array
+    """Changes of the controls at nodes and midpoints of the grid by the former, shape (m, 2 N + 1, P)."""
     duration: Array
+    """Change of the final time by the former, shape (P,)."""
 
     @property
     def least(self) -> tuple[float, Array]:

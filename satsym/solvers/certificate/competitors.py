@@ -58,21 +58,14 @@ SAMPLES = 401
 
 @dataclass(frozen=True, eq=False)
 class Competitor:
-    """A competitor that was found.
-
-    Attributes
-    ----------
-    problem
-        Of which it is an extremal.
-    curve
-        Its states and costates, scaled; ``None`` where it ends at once, and has none.
-    cost
-        The cost J.
-    """
+    """A competitor that was found."""
 
     problem: TwoPoint
+    """Of which it is an extremal."""
     curve: Curve | None
+    """Its states and costates, scaled; ``None`` where it ends at once, and has none."""
     cost: float
+    """The cost J."""
 
 
 Search = Callable[[Limits], Competitor | None]
@@ -81,40 +74,26 @@ Search = Callable[[Limits], Competitor | None]
 
 @dataclass(frozen=True, eq=False)
 class Compared:
-    """What competitors of one kind came to.
-
-    Attributes
-    ----------
-    summary
-        As the certificate has it.
-    margin
-        How much dearer the cheapest is, relative to the cost; negative where it is cheaper, infinite without any.
-    cheapest
-        That one.
-    interrupted
-        Whether time was up before all were tried.
-    """
+    """What competitors of one kind came to."""
 
     summary: Competitors
+    """As the certificate has it."""
     margin: float
+    """How much dearer the cheapest is, relative to the cost; negative where it is cheaper, infinite without any."""
     cheapest: Competitor | None
+    """That one."""
     interrupted: bool
+    """Whether time was up before all were tried."""
 
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """All kinds that a problem allows.
-
-    Attributes
-    ----------
-    kinds
-        Those that were compared.
-    not_checked
-        Those that nobody tried, of which nothing was solved, or for which time was up.
-    """
+    """All kinds that a problem allows."""
 
     kinds: tuple[Compared, ...]
+    """Those that were compared."""
     not_checked: tuple[Kind, ...]
+    """Those that nobody tried, of which nothing was solved, or for which time was up."""
 
     @property
     def interrupted(self) -> list[Kind]:

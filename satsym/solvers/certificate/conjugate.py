@@ -17,27 +17,18 @@ NOT_STRICT = "not strict: other controls cost the same"
 
 @dataclass(frozen=True)
 class Conjugate:
-    """What neighbouring extremals from the same initial state say.
-
-    Attributes
-    ----------
-    resolved
-        Whether they could be followed.
-    passed
-        Conjugate times after the start, with their multiplicity.
-    time
-        The first of these, or ``None``.
-    touching
-        Whether the final time may be one, as far as can be told.
-    curvature
-        Least one of the cost in what is free at the end, relative; infinite where nothing is.
-    """
+    """What neighbouring extremals from the same initial state say."""
 
     resolved: bool
+    """Whether they could be followed."""
     passed: int = 0
+    """Conjugate times after the start, with their multiplicity."""
     time: float | None = None
+    """The first of these, or ``None``."""
     touching: bool = False
+    """Whether the final time may be one, as far as can be told."""
     curvature: float = float("inf")
+    """Least one of the cost in what is free at the end, relative; infinite where nothing is."""
 
     @property
     def checks(self) -> list[Check]:

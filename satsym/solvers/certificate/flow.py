@@ -37,22 +37,15 @@ STATIONS = 64
 
 @dataclass(frozen=True, eq=False)
 class Flow:
-    """States and costates along the canonical equations.
-
-    Attributes
-    ----------
-    times
-        Stations, shape (K,), switching times among them.
-    x, lam
-        States and costates there, shapes (n, K).
-    cost
-        Of the whole motion, the terminal cost included.
-    """
+    """States and costates along the canonical equations."""
 
     times: Array
+    """Stations, shape (K,), switching times among them."""
     x: Array
     lam: Array
+    """States and costates there, shapes (n, K)."""
     cost: float
+    """Of the whole motion, the terminal cost included."""
 
 
 def flow(solution: Solution) -> Flow | None:

@@ -40,18 +40,12 @@ PARTS, ROUNDS = 16, 6
 
 @dataclass(frozen=True, eq=False)
 class Phases:
-    """Eigenphases of the field of neighbouring extremals.
-
-    Attributes
-    ----------
-    values
-        Followed continuously from zero, in ascending order, shape (K, n).
-    frames
-        Orthonormal bases of the planes, shape (K, 2n, n).
-    """
+    """Eigenphases of the field of neighbouring extremals."""
 
     values: Array
+    """Followed continuously from zero, in ascending order, shape (K, n)."""
     frames: Array
+    """Orthonormal bases of the planes, shape (K, 2n, n)."""
 
     @property
     def passed(self) -> NDArray[np.intp]:

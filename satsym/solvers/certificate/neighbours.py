@@ -39,23 +39,16 @@ MISSED = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Neighbours:
-    """What neighbours came to.
-
-    Attributes
-    ----------
-    margin
-        How much dearer the cheapest pair of opposite ones is in the mean, relative to the cost; infinite where none
-        could be simulated.
-    curvature
-        The least of the second variation on short pieces of the control, in units of what the change of the control
-        costs; infinite where the end leaves no choice, NaN where it could not be resolved.
-    competitors
-        How many, and the cheapest.
-    """
+    """What neighbours came to."""
 
     margin: float
+    """How much dearer the cheapest pair of opposite ones is in the mean, relative to the cost; infinite where none
+    could be simulated."""
     curvature: float
+    """The least of the second variation on short pieces of the control, in units of what the change of the control
+    costs; infinite where the end leaves no choice, NaN where it could not be resolved."""
     competitors: Competitors
+    """How many, and the cheapest."""
 
     @property
     def checks(self) -> list[Check]:
@@ -70,30 +63,20 @@ class Neighbours:
 
 @dataclass(frozen=True, eq=False)
 class Simulations:
-    """Simulations of one instance with as many steps.
-
-    Attributes
-    ----------
-    instance
-        What is simulated.
-    rows
-        Indices of the boundary residuals that tie the final state.
-    scale
-        Sizes of these.
-    steps
-        Of each simulation.
-    end
-        The final time.
-    missed
-        Relative distance of the end to which the solution's own control leads from the solution's.
-    """
+    """Simulations of one instance with as many steps."""
 
     instance: Instance
+    """What is simulated."""
     rows: NDArray[np.intp]
+    """Indices of the boundary residuals that tie the final state."""
     scale: Array
+    """Sizes of these."""
     steps: int
+    """Of each simulation."""
     end: float
+    """The final time."""
     missed: float = 0.0
+    """Relative distance of the end to which the solution's own control leads from the solution's."""
 
     def grid(self, longer: float = 0.0) -> Grid:
         """To a final time that much later."""

@@ -38,18 +38,12 @@ DEPARTED = (0.5, -0.5, 0.1, -0.1)
 
 @dataclass(frozen=True)
 class Fall:
-    """A cost that falls without end.
-
-    Attributes
-    ----------
-    sizes
-        The largest control of each motion.
-    costs
-        What these cost.
-    """
+    """A cost that falls without end."""
 
     sizes: tuple[float, ...]
+    """The largest control of each motion."""
     costs: tuple[float, ...]
+    """What these cost."""
 
     @property
     def message(self) -> str:

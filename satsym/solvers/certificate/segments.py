@@ -41,31 +41,21 @@ SAME = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Segments:
-    """Steps from node to node of a solution, and how their ends follow their beginnings.
-
-    Attributes
-    ----------
-    times
-        Stations: the nodes and what lies between, where steps are shorter than segments, shape (K,).
-    begins
-        States and costates where each step begins, shape (2n, K-1).
-    transition
-        From each station to the next by states and costates in units of ``scale``, shape (K-1, 2n, 2n).
-    scale
-        Units of states and costates, shape (2n,). The products of the two are all the same, so that transitions
-        are symplectic.
-    nodes
-        Indices of the solution's times at which segments begin, and of the last.
-    steps
-        In each segment.
-    """
+    """Steps from node to node of a solution, and how their ends follow their beginnings."""
 
     times: Array
+    """Stations: the nodes and what lies between, where steps are shorter than segments, shape (K,)."""
     begins: Array
+    """States and costates where each step begins, shape (2n, K-1)."""
     transition: Array
+    """From each station to the next by states and costates in units of ``scale``, shape (K-1, 2n, 2n)."""
     scale: Array
+    """Units of states and costates, shape (2n,). The products of the two are all the same, so that transitions are
+    symplectic."""
     nodes: NDArray[np.intp]
+    """Indices of the solution's times at which segments begin, and of the last."""
     steps: int
+    """In each segment."""
 
     @property
     def growth(self) -> float:

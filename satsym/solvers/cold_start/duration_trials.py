@@ -26,25 +26,17 @@ from satsym.solvers.iteration import Limits
 
 @dataclass(frozen=True, eq=False)
 class Try:
-    """The problem of a given duration, solved.
-
-    Attributes
-    ----------
-    problem
-        With that duration, without bounds.
-    start
-        Its extremal.
-    cost, slope
-        What it costs, and the derivative of that by the duration.
-    floor
-        What every unit of time costs at least along this motion, without any control.
-    """
+    """The problem of a given duration, solved."""
 
     problem: TwoPoint
+    """With that duration, without bounds."""
     start: Start
+    """Its extremal."""
     cost: float
     slope: float
+    """What it costs, and the derivative of that by the duration."""
     floor: float
+    """What every unit of time costs at least along this motion, without any control."""
 
     @property
     def duration(self) -> float:

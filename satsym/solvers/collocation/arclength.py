@@ -120,22 +120,15 @@ def extremals(at: Problems, start: Curve) -> Iterator[Point]:
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """A curve at a share of the way: an extremal there, or near one.
-
-    Attributes
-    ----------
-    at
-        The path.
-    share, curve
-        Where on it, and the curve.
-    taken
-        Linearisations that it took to come here.
-    """
+    """A curve at a share of the way: an extremal there, or near one."""
 
     at: Problems
+    """The path."""
     share: float
     curve: Curve
+    """Where on it, and the curve."""
     taken: int = 0
+    """Linearisations that it took to come here."""
 
     @cached_property
     def problem(self) -> TwoPoint:

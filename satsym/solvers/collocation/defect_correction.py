@@ -41,22 +41,15 @@ FAINTEST = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Sharpened:
-    """A curve after its defect corrections.
-
-    Attributes
-    ----------
-    curve
-        On the same mesh, with more stages.
-    error
-        Estimate of its error, relative as in :meth:`Step.size`: the last correction, or what its polynomials leave
-        out.
-    omitted
-        The latter interval by interval, shape (N,).
-    """
+    """A curve after its defect corrections."""
 
     curve: Curve
+    """On the same mesh, with more stages."""
     error: float
+    """Estimate of its error, relative as in :meth:`Step.size`: the last correction, or what its polynomials leave
+    out."""
     omitted: Array
+    """The latter interval by interval, shape (N,)."""
 
 
 def sharpen(curve: Curve, linearised: Linearised, tolerance: float) -> Sharpened | None:

@@ -23,18 +23,12 @@ TINY = 1e-60
 
 @dataclass(frozen=True)
 class Regularised(Instance):
-    """An instance with ``smoothing``/2 times the squared control added to its running cost.
-
-    Attributes
-    ----------
-    smoothing
-        In the unit of the running cost over that of the squared control.
-    share
-        Of the weight of |u| that counts, 0 to 1.
-    """
+    """An instance with ``smoothing``/2 times the squared control added to its running cost."""
 
     smoothing: float = 1.0
+    """In the unit of the running cost over that of the squared control."""
     share: float = 1.0
+    """Of the weight of |u| that counts, 0 to 1."""
 
     @cached_property
     def control_set(self) -> ControlSet:

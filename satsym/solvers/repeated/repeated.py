@@ -25,30 +25,21 @@ from satsym.status import BadInput, Status
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """What solving once more came to.
-
-    Attributes
-    ----------
-    status, message
-        Outcome, and one sentence for people.
-    objective
-        The cost J; NaN where there is none.
-    times, x, lam
-        Nodes, shape (N+1,), with states and costates there, shapes (n, N+1), in the model's units.
-    origin
-        From where it was found: the last answer, a straight line, or a cold start.
-    extremal
-        The same in scaled variables.
-    """
+    """What solving once more came to."""
 
     status: Status
     message: str
+    """Outcome, and one sentence for people."""
     objective: float
+    """The cost J; NaN where there is none."""
     times: Array
     x: Array
     lam: Array
+    """Nodes, shape (N+1,), with states and costates there, shapes (n, N+1), in the model's units."""
     origin: Origin
+    """From where it was found: the last answer, a straight line, or a cold start."""
     extremal: Extremal
+    """The same in scaled variables."""
 
 
 class Repeated:

@@ -25,28 +25,19 @@ ASYMPTOTIC = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class Arcs:
-    """States and costates at the nodes of a mesh, from where the canonical equations take their course.
-
-    Attributes
-    ----------
-    problem
-        The two-point problem.
-    mesh
-        Nodes in [0, 1], shape (N+1,). Kinks must be among them, or the order is lost; with compiled kernels only the
-        path between the nodes asks for that.
-    nodes
-        Values there, shape (2n, N+1).
-    theta
-        Extra unknowns, shape (e,).
-    steps
-        Number S of integration steps in each arc.
-    """
+    """States and costates at the nodes of a mesh, from where the canonical equations take their course."""
 
     problem: TwoPoint
+    """The two-point problem."""
     mesh: Array
+    """Nodes in [0, 1], shape (N+1,). Kinks must be among them, or the order is lost; with compiled kernels only the
+    path between the nodes asks for that."""
     nodes: Array
+    """Values there, shape (2n, N+1)."""
     theta: Array
+    """Extra unknowns, shape (e,)."""
     steps: int = 1
+    """Number S of integration steps in each arc."""
 
     @cached_property
     def widths(self) -> Array:

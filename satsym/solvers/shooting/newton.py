@@ -36,38 +36,25 @@ MOST = 30
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """Where Newton ended.
-
-    Attributes
-    ----------
-    arcs
-        The last ones.
-    matching
-        The last linear system, ``None`` where it failed.
-    iterations
-        Number of corrections.
-    """
+    """Where Newton ended."""
 
     arcs: Arcs
+    """The last ones."""
     matching: Matching | None
+    """The last linear system, ``None`` where it failed."""
     iterations: int
+    """Number of corrections."""
 
 
 @dataclass(frozen=True, eq=False)
 class Residual:
-    """What is wrong with arcs that end there.
-
-    Attributes
-    ----------
-    defects
-        Where each arc ends, less where the next one begins, shape (N, 2n).
-    start, finish
-        Residuals at the boundary, shapes (n,) and (n + e,).
-    """
+    """What is wrong with arcs that end there."""
 
     defects: Array
+    """Where each arc ends, less where the next one begins, shape (N, 2n)."""
     start: Array
     finish: Array
+    """Residuals at the boundary, shapes (n,) and (n + e,)."""
 
 
 def residual(arcs: Arcs, ends: Array) -> Residual:

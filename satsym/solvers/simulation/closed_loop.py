@@ -27,38 +27,25 @@ EVERY = 256
 
 @dataclass(frozen=True)
 class Law:
-    """A control law.
-
-    Attributes
-    ----------
-    name
-        As results call it.
-    control
-        The controls at a time and state, in the model's order; bounds are not its business.
-    """
+    """A control law."""
 
     name: str
+    """As results call it."""
     control: Control
+    """The controls at a time and state, in the model's order; bounds are not its business."""
 
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A motion under a law.
-
-    Attributes
-    ----------
-    x, u
-        States (n, N+1) and controls (m, N+1) at the nodes, NaN after an early end.
-    steps
-        That the integrator took.
-    left_domain
-        Whether a state that must be positive vanished and so ended it.
-    """
+    """A motion under a law."""
 
     x: Array
     u: Array
+    """States (n, N+1) and controls (m, N+1) at the nodes, NaN after an early end."""
     steps: int
+    """That the integrator took."""
     left_domain: bool
+    """Whether a state that must be positive vanished and so ended it."""
 
 
 def fly(

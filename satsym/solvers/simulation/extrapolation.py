@@ -33,21 +33,14 @@ class NotFinite(Exception):
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """Values at the ends of the steps that were taken.
-
-    Attributes
-    ----------
-    times
-        Shape (K,), from the start to the end.
-    values
-        Shape (K, d).
-    columns
-        Of the extrapolation table that the steps needed at most.
-    """
+    """Values at the ends of the steps that were taken."""
 
     times: Array
+    """Shape (K,), from the start to the end."""
     values: Array
+    """Shape (K, d)."""
     columns: int = len(SUBSTEPS)
+    """Of the extrapolation table that the steps needed at most."""
 
     @property
     def end(self) -> Array:

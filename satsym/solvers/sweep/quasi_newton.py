@@ -47,21 +47,14 @@ SURE = 3.0
 
 @dataclass(frozen=True, eq=False)
 class Descent:
-    """Where the descent is.
-
-    Attributes
-    ----------
-    sweep
-        The current control with all that is known about it.
-    pairs
-        Recent (step, change of gradient) pairs in the scaled control, newest last.
-    stalled
-        Whether no step could be found from here.
-    """
+    """Where the descent is."""
 
     sweep: Sweep
+    """The current control with all that is known about it."""
     pairs: tuple[tuple[Array, Array], ...] = ()
+    """Recent (step, change of gradient) pairs in the scaled control, newest last."""
     stalled: bool = False
+    """Whether no step could be found from here."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -37,22 +37,15 @@ ASIDE = 100, 5.0
 
 @dataclass(frozen=True, eq=False)
 class Relaxed:
-    """Where the relaxation is.
-
-    Attributes
-    ----------
-    sweep
-        The last sweep that could be completed.
-    closest, since
-        Smallest distance of control and law so far, and the number of sweeps since then.
-    broken
-        Whether the next control led out of the domain or to numbers that are not finite.
-    """
+    """Where the relaxation is."""
 
     sweep: Sweep
+    """The last sweep that could be completed."""
     closest: float
     since: int = 0
+    """Smallest distance of control and law so far, and the number of sweeps since then."""
     broken: bool = False
+    """Whether the next control led out of the domain or to numbers that are not finite."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,21 +20,14 @@ ON_SPHERE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Tangent:
-    """The free directions.
-
-    Attributes
-    ----------
-    moves
-        Where a control moves along them; elsewhere a bound holds it. Shape (m, M).
-    normal
-        Unit normals of the sphere, zero where a control is not on it, shape (m, M); ``None`` without a ball.
-    curvature
-        The Hessian of H on the sphere, relative to H_uu; 1 elsewhere. Shape (M,), or a number.
-    """
+    """The free directions."""
 
     moves: NDArray[np.bool_]
+    """Where a control moves along them; elsewhere a bound holds it. Shape (m, M)."""
     normal: Array | None = None
+    """Unit normals of the sphere, zero where a control is not on it, shape (m, M); ``None`` without a ball."""
     curvature: Array | float = 1.0
+    """The Hessian of H on the sphere, relative to H_uu; 1 elsewhere. Shape (M,), or a number."""
 
     def along(self, field: Array) -> Array:
         """A field without its normal components, shape (m, M)."""

@@ -14,18 +14,12 @@ from satsym.symbolic.analysis.spectrum import Spectrum
 
 @dataclass(frozen=True)
 class CompanionForm:
-    """A basis in which one input drives a chain of integrators: T^-1 A T = matrix, T^-1 b = the last unit vector.
-
-    Attributes
-    ----------
-    matrix
-        The companion matrix of the characteristic polynomial.
-    basis
-        T.
-    """
+    """A basis in which one input drives a chain of integrators: T^-1 A T = matrix, T^-1 b = the last unit vector."""
 
     matrix: sp.ImmutableMatrix
+    """The companion matrix of the characteristic polynomial."""
     basis: sp.ImmutableMatrix
+    """T."""
 
 
 def companion(coefficients: Sequence[sp.Expr]) -> sp.ImmutableMatrix:

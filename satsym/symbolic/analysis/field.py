@@ -21,18 +21,12 @@ class NotExact(ValueError):
 
 @dataclass(frozen=True)
 class Field:
-    """The field that the entries of some matrices lie in.
-
-    Attributes
-    ----------
-    domain
-        Its elements, as sympy's polynomials know them.
-    restore
-        Symbols that stand for roots of parameters -> what they stand for.
-    """
+    """The field that the entries of some matrices lie in."""
 
     domain: Any
+    """Its elements, as sympy's polynomials know them."""
     restore: dict[sp.Symbol, sp.Expr]
+    """Symbols that stand for roots of parameters -> what they stand for."""
 
     def element(self, expression: sp.Expr) -> Any:
         """An expression over the field as an element of it."""

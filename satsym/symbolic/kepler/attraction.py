@@ -20,18 +20,12 @@ from satsym.symbolic.model import Particle, symbols_of
 
 @dataclass(frozen=True)
 class Attraction:
-    """An uncontrolled acceleration -k r / |r|^3.
-
-    Attributes
-    ----------
-    strength
-        k: a positive function of parameters and named constants.
-    distance
-        |r|, by the coordinates.
-    """
+    """An uncontrolled acceleration -k r / |r|^3."""
 
     strength: sp.Expr
+    """k: a positive function of parameters and named constants."""
     distance: sp.Expr
+    """|r|, by the coordinates."""
 
 
 def uncontrolled_force(model: Particle) -> sp.Matrix:

@@ -65,18 +65,12 @@ def known_dimensions(name: str) -> Known:
 
 @dataclass(frozen=True)
 class Names:
-    """The names that some derivations, and a ledger, have.
-
-    Attributes
-    ----------
-    symbols
-        Name -> symbol, with what is assumed of it.
-    definitions
-        Named constants -> their values, which are put in wherever they occur.
-    """
+    """The names that some derivations, and a ledger, have."""
 
     symbols: Mapping[str, sp.Symbol]
+    """Name -> symbol, with what is assumed of it."""
     definitions: Mapping[str, sp.Expr]
+    """Named constants -> their values, which are put in wherever they occur."""
 
     @cached_property
     def positive(self) -> frozenset[str]:

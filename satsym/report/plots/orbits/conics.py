@@ -45,27 +45,19 @@ SIDE = 5.4
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """What is drawn of an orbit, in the model's unit of length; curves have shape (3, N), points (3,).
-
-    Attributes
-    ----------
-    curve
-        The whole conic, of an open one as much as has room.
-    flown
-        The motion of the instance, once round at most; ``None`` where its time is free, or it meets the centre.
-    start, nearest, farthest, empty
-        The last is the focus that nothing is in; ``None`` where there is none.
-    asymptotes
-        Two rays from their common point, shape (3, 2) each; empty but for a hyperbola.
-    """
+    """What is drawn of an orbit, in the model's unit of length; curves have shape (3, N), points (3,)."""
 
     curve: Array
+    """The whole conic, of an open one as much as has room."""
     flown: Array | None
+    """The motion of the instance, once round at most; ``None`` where its time is free, or it meets the centre."""
     start: Array
     nearest: Array | None
     farthest: Array | None
     empty: Array | None
+    """The last is the focus that nothing is in; ``None`` where there is none."""
     asymptotes: tuple[Array, ...]
+    """Two rays from their common point, shape (3, 2) each; empty but for a hyperbola."""
 
     @classmethod
     def of(cls, found: Survey) -> Drawn:

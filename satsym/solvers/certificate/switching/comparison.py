@@ -26,19 +26,14 @@ WORK = 400_000
 
 @dataclass(frozen=True)
 class Comparison:
-    """What competitors came to.
-
-    Attributes
-    ----------
-    checks
-        One for each kind, by how much the cheapest undercuts the solution; and one for each kind for which time was up.
-    competitors, not_checked
-        As in :class:`satsym.solution.Certificate`.
-    """
+    """What competitors came to."""
 
     checks: tuple[Check, ...] = ()
+    """One for each kind, by how much the cheapest undercuts the solution; and one for each kind for which time was
+    up."""
     competitors: tuple[Competitors, ...] = ()
     not_checked: tuple[Kind, ...] = ()
+    """As in :class:`satsym.solution.Certificate`."""
 
 
 def allowed(instance: Instance) -> list[Kind]:

@@ -24,21 +24,14 @@ RANK = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Variation:
-    """First and second derivatives in the times.
-
-    Attributes
-    ----------
-    hessian
-        Of the Lagrangian, shape (P, P), in units of time that make its diagonal entries comparable.
-    constraints
-        What is given at the end by the times, shape (c, P).
-    asymmetry
-        Of the Hessian, relative: zero but for errors of integration.
-    """
+    """First and second derivatives in the times."""
 
     hessian: Array
+    """Of the Lagrangian, shape (P, P), in units of time that make its diagonal entries comparable."""
     constraints: Array
+    """What is given at the end by the times, shape (c, P)."""
     asymmetry: float
+    """Of the Hessian, relative: zero but for errors of integration."""
 
     @property
     def kernel(self) -> Array:

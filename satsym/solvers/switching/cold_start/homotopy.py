@@ -40,20 +40,14 @@ SHARPER = 4.0
 
 @dataclass(frozen=True)
 class Stopped(Exception):
-    """The way from nothing to the problem ends early.
-
-    Attributes
-    ----------
-    status, message
-        What came of it.
-    problem, curve
-        The last regularised problem that was solved, if any.
-    """
+    """The way from nothing to the problem ends early."""
 
     status: Status
     message: str
+    """What came of it."""
     problem: TwoPoint | None = None
     curve: Path | None = None
+    """The last regularised problem that was solved, if any."""
 
 
 def path(instance: Instance, limits: Limits) -> Iterator[Smoothed]:

@@ -56,19 +56,13 @@ SHORTEST = 1.0 / 256.0
 
 @dataclass(frozen=True, eq=False)
 class Smoothed:
-    """A smoothed extremal.
-
-    Attributes
-    ----------
-    problem, curve
-        The regularised problem, and its solution.
-    scaled
-        Factor of the costates by which those of the regularised problem are those of the problem.
-    """
+    """A smoothed extremal."""
 
     problem: TwoPoint
     curve: Curve
+    """The regularised problem, and its solution."""
     scaled: float = 1.0
+    """Factor of the costates by which those of the regularised problem are those of the problem."""
 
 
 def quick(instance: Instance, limits: Limits) -> Iterator[Smoothed]:

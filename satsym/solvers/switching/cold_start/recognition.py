@@ -25,21 +25,15 @@ LONG = 0.02
 
 @dataclass(frozen=True, eq=False)
 class Sample:
-    """A smoothed extremal at many times.
-
-    Attributes
-    ----------
-    times, z, u
-        Shapes (N,), (2n, N), (m, N), in the model's units.
-    sigma, weight
-        Switching functions and weights of |u|, shapes (m, N).
-    """
+    """A smoothed extremal at many times."""
 
     times: Array
     z: Array
     u: Array
+    """Shapes (N,), (2n, N), (m, N), in the model's units."""
     sigma: Array
     weight: Array
+    """Switching functions and weights of |u|, shapes (m, N)."""
 
 
 def sample(problem: TwoPoint, path: Path) -> Sample:

@@ -56,21 +56,14 @@ NOISE = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class Target:
-    """Where motions are to arrive.
-
-    Attributes
-    ----------
-    instance
-        Of a switching problem.
-    sizes
-        Of states, shape (n,).
-    ends
-        The final time of each plan, where it is given or to be kept, NaN where it is free; shape (M,).
-    """
+    """Where motions are to arrive."""
 
     instance: Instance
+    """Of a switching problem."""
     sizes: Array
+    """Of states, shape (n,)."""
     ends: Array
+    """The final time of each plan, where it is given or to be kept, NaN where it is free; shape (M,)."""
 
     @cached_property
     def _final(self) -> Array:
@@ -166,16 +159,11 @@ def _arrived(target: Target, plans: Plans, steps: _Steps, closely: float) -> lis
 
 @dataclass(frozen=True)
 class _Steps:
-    """How arcs are integrated, and who counts what that takes.
-
-    Attributes
-    ----------
-    quickest
-        Rate of the motion, by which the number of steps of fixed length is chosen; NaN for steps as long as errors
-        allow.
-    """
+    """How arcs are integrated, and who counts what that takes."""
 
     quickest: float
+    """Rate of the motion, by which the number of steps of fixed length is chosen; NaN for steps as long as errors
+    allow."""
     limits: Limits
 
     @classmethod
@@ -214,19 +202,13 @@ class _Steps:
 
 @dataclass(frozen=True, eq=False)
 class _Linearised:
-    """How plans miss the end, and how that and their costs change with the lengths of arcs.
-
-    Attributes
-    ----------
-    miss
-        Shape (c, M).
-    slopes, gradient
-        Of misses and costs, shapes (M, c, K) and (M, K).
-    """
+    """How plans miss the end, and how that and their costs change with the lengths of arcs."""
 
     miss: Array
+    """Shape (c, M)."""
     slopes: Array
     gradient: Array
+    """Of misses and costs, shapes (M, c, K) and (M, K)."""
 
     @property
     def worst(self) -> Array:

@@ -43,18 +43,12 @@ TIRED = 16
 
 @dataclass(frozen=True)
 class Arrival:
-    """A time in which the end may be reached first, and costates there that say how.
-
-    Attributes
-    ----------
-    duration
-        From the start; nothing arrives in less than the first of them.
-    costates
-        Of all states at the end, shape (n,), without a scale, one for each way to look for them.
-    """
+    """A time in which the end may be reached first, and costates there that say how."""
 
     duration: float
+    """From the start; nothing arrives in less than the first of them."""
     costates: tuple[Array, ...]
+    """Of all states at the end, shape (n,), without a scale, one for each way to look for them."""
 
 
 def arrivals(instance: Instance, motion: LinearMotion, limits: Limits) -> Iterator[Arrival]:

@@ -22,22 +22,15 @@ NO_GAIN = 1e-13
 
 @dataclass(frozen=True, eq=False)
 class Near:
-    """A point next to the nearest.
-
-    Attributes
-    ----------
-    point
-        Of the set, shape (d,): also the direction of a hyperplane between the set and the origin, if there is one.
-    distance
-        Of that hyperplane from the origin, a lower bound of the set's; not positive where there is none.
-    corners, shares
-        Support points, shape (k, d), whose mean with these weights the point is.
-    """
+    """A point next to the nearest."""
 
     point: Array
+    """Of the set, shape (d,): also the direction of a hyperplane between the set and the origin, if there is one."""
     distance: float
+    """Of that hyperplane from the origin, a lower bound of the set's; not positive where there is none."""
     corners: Array
     shares: Array
+    """Support points, shape (k, d), whose mean with these weights the point is."""
 
 
 def nearest_point(support: Callable[[Array], Array], first: Array, close: float, tight: float) -> Near:

@@ -35,38 +35,25 @@ SEARCHES = 60
 
 @dataclass(frozen=True)
 class Priced:
-    """The least cost of an end, as far as steps of equal length tell.
-
-    Attributes
-    ----------
-    cost
-        A bound from below that is met up to the accuracy of the search.
-    costate
-        Of all states at the end, shape (n,); the optimum minimises H with it.
-    """
+    """The least cost of an end, as far as steps of equal length tell."""
 
     cost: float
+    """A bound from below that is met up to the accuracy of the search."""
     costate: Array
+    """Of all states at the end, shape (n,); the optimum minimises H with it."""
 
 
 @dataclass(frozen=True, eq=False)
 class Reach:
-    """All ends that are reached in a given time.
-
-    Attributes
-    ----------
-    instance, motion
-        Whose.
-    duration
-        From the start.
-    finer
-        So many times more steps are taken than usual: short arcs do not show in fewer.
-    """
+    """All ends that are reached in a given time."""
 
     instance: Instance
     motion: LinearMotion
+    """Whose."""
     duration: float
+    """From the start."""
     finer: int = 1
+    """So many times more steps are taken than usual: short arcs do not show in fewer."""
 
     @cached_property
     def rows(self) -> NDArray[np.intp]:
