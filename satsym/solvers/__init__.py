@@ -88,9 +88,9 @@ def _in_time(method: Method) -> Solver:
         try:
             return solver(instance, progress)
         except TimeUp:
-            from satsym.solvers import out_of_time
+            from satsym.solvers import iteration
 
-            return out_of_time.solution(instance, method.name, time.perf_counter() - began)
+            return iteration.solution(instance, method.name, time.perf_counter() - began)
 
     return solved
 

@@ -24,11 +24,11 @@ from satsym.symbolic.dimension_algebra import (
     product,
     written,
 )
-from satsym.symbolic.linear import dimensions as linear_dimensions
+from satsym.symbolic.linear import notation as linear_dimensions
 from satsym.symbolic.model import Problem, Requirement, symbols_of, variables_of
 from satsym.symbolic.principle import control_sets
 from satsym.symbolic.principle import notation as pn
-from satsym.symbolic.switching import dimensions as switching_dimensions
+from satsym.symbolic.switching import notation as switching_dimensions
 
 AGREEMENT = "dimensions agree"
 """The claim of the check that every step gets."""

@@ -13,14 +13,14 @@ from satsym.symbolic.declared import refuse_foreign_symbols, refuse_misfits
 from satsym.symbolic.derivation import Derivation, DerivationError, resolved
 from satsym.symbolic.linear import regulator, stability, structure
 from satsym.symbolic.model import MaybeStep, Model, Problem
-from satsym.symbolic.motion import outputs
+from satsym.symbolic.motion import steps
 from satsym.symbolic.notation import begin
 from satsym.symbolic.principle import effort, pontryagin, transversality
 from satsym.symbolic.switching import curve as switching_curve
 from satsym.symbolic.switching import functions as switching
 from satsym.symbolic.switching import singular
 
-OUTPUTS: tuple[MaybeStep, ...] = (outputs.output_matrix, outputs.output_equations)
+OUTPUTS: tuple[MaybeStep, ...] = (steps.output_matrix, steps.output_equations)
 
 MINIMUM_PRINCIPLE: tuple[MaybeStep, ...] = (
     pontryagin.hamiltonian,

@@ -13,12 +13,10 @@ from scipy.optimize import minimize_scalar
 
 from satsym import instance, kernels
 from satsym.analysis.orbits.elements import Elements, elements
-from satsym.analysis.orbits.floquet import FASTER, VERDICT, floquet
+from satsym.analysis.orbits.floquet import FASTER, NEARLY_CIRCULAR, VERDICT, floquet, turning_axes
 from satsym.analysis.orbits.kepler import propagate
-from satsym.analysis.orbits.monodromy import SYMPLECTIC, Monodromy, monodromy
-from satsym.analysis.orbits.rotating import NEARLY_CIRCULAR, turning_axes
+from satsym.analysis.orbits.monodromy import SYMPLECTIC, Monodromy, monodromy, transition
 from satsym.analysis.orbits.survey import survey
-from satsym.analysis.orbits.variational import transition
 from tests.analysis.test_orbit_analysis import started, turned
 
 

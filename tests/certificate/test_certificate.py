@@ -15,7 +15,7 @@ from satsym.kernels import from_text
 from satsym.solution import Solution
 from satsym.solvers import solve
 from satsym.solvers.certificate import certify
-from satsym.solvers.certificate.conjugate import conjugate
+from satsym.solvers.certificate.jacobi import conjugate
 from satsym.solvers.certificate.segments import segments
 from satsym.solvers.simulation.extrapolation import NotFinite, integrate
 from satsym.status import Status

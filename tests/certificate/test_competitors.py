@@ -18,7 +18,7 @@ from satsym.solvers import two_point as two_point_method
 from satsym.solvers.certificate import certify
 from satsym.solvers.certificate.competitors import none_conceivable
 from satsym.solvers.cold_start import paths
-from satsym.solvers.cold_start.path_of_turns import along_turns, fading
+from satsym.solvers.cold_start.path_of_problems import along_turns, fading
 from satsym.solvers.collocation.curve import Curve
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point

@@ -252,12 +252,12 @@ def broken(values: float, first: int) -> np.ndarray:
     ids=["nan", "inf", "1e300", "1e99", "constant", "tiny"],
 )
 def test_what_a_failed_run_left_behind_is_drawn_as_far_as_it_goes(x: np.ndarray) -> None:
-    from satsym.report.plots import overview, style
+    from satsym.report.plots import pages, style
 
     given = case(model(2, 1, position=2, reference=True))
     left = solution(given, x=x, status=Status.NON_FINITE, objective=math.nan, u=np.full((1, NODES), np.nan))
     with style.applied():
-        page = overview.overview(Scene.of(left))
+        page = pages.overview(Scene.of(left))
         assert page is not None
         assert "non-finite" in dict(page_texts(page))
         assert style.rendered(page, "png").startswith(b"\x89PNG")
@@ -307,10 +307,10 @@ assert not sys.modules.keys() & {"matplotlib.pyplot", "scipy", "sympy", "tkinter
     + [("ball", name) for name in ("overview", "orbit", "controls")],
 )
 def test_no_text_leaves_the_page_or_covers_another(which: str, name: str, request: pytest.FixtureRequest) -> None:
-    from satsym.report.plots import convergence, overview, pages, style
+    from satsym.report.plots import convergence, pages, style
 
     found = request.getfixturevalue(which)
-    draw = {"overview": overview.overview, "convergence": convergence.convergence}.get(name) or getattr(pages, name)
+    draw = {"overview": pages.overview, "convergence": convergence.convergence}.get(name) or getattr(pages, name)
     with style.applied():
         page = draw(Scene.of(found))
         style.rendered(page, "png")

@@ -13,8 +13,7 @@ import pytest
 from satsym import instance
 from satsym.analysis.regulator.feedback import simulate
 from satsym.instance import Instance
-from satsym.instance.memory import MOST_BYTES, estimated
-from satsym.instance.options import solver
+from satsym.instance.options import MOST_BYTES, estimated, solver
 from satsym.solvers import iteration, solve
 from satsym.solvers.iteration import BLOCK, Limits, TimeUp
 from satsym.solvers.simulation import blocks

@@ -10,8 +10,8 @@ import pytest
 
 from satsym.solvers import two_point
 from satsym.solvers.certificate import certify, conditions
-from satsym.solvers.certificate.conjugate import conjugate
 from satsym.solvers.certificate.flow import flow
+from satsym.solvers.certificate.jacobi import conjugate
 from satsym.solvers.certificate.segments import segments
 from satsym.solvers.cold_start.path_of_ends import along_ends, ending
 from satsym.solvers.cold_start.ways import cold_start

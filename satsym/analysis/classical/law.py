@@ -19,7 +19,7 @@ from satsym.arrays import Array
 from satsym.grid import Grid
 from satsym.instance import Instance
 from satsym.solution import Flight
-from satsym.solvers import out_of_time
+from satsym.solvers import iteration
 from satsym.solvers.iteration import Limits, TimeUp, watched
 from satsym.solvers.simulation.balances import balances
 from satsym.status import BadInput, Status
@@ -157,7 +157,7 @@ def simulate(instance: Instance) -> Flight:
     try:
         return _simulated(instance, found, limits)
     except TimeUp:
-        return out_of_time.flight(instance, "classical")
+        return iteration.flight(instance, "classical")
 
 
 def _simulated(instance: Instance, found: Loop, limits: Limits) -> Flight:

@@ -11,11 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from satsym import kernels
+from satsym.analysis.linear.equilibrium import jacobians
+from satsym.analysis.linear.spectrum import Eigenvalue, spectrum
+from satsym.analysis.linear.system import LinearSystem, system
 from satsym.analysis.orbits.conic import Conic
 from satsym.analysis.orbits.elements import Elements
 from satsym.analysis.orbits.monodromy import Monodromy, monodromy
 from satsym.analysis.orbits.point import Complex
-from satsym.analysis.orbits.rotating import TurningAxes, turning_axes
 from satsym.solvers.simulation.extrapolation import NotFinite
 
 COMPUTED, NO_PERIOD, COLLISION, NOT_RESOLVED = "computed", "no period", "collision", "not resolved"
@@ -144,3 +147,30 @@ def _in_order(values: Complex) -> Complex:
 
 def _called(orbit: Elements) -> str:
     return f"A {orbit.conic.value} orbit" if orbit.conic is Conic.RECTILINEAR else f"A {orbit.conic.value}"
+
+
+MODEL = "hill"
+NEARLY_CIRCULAR = 0.1
+"""Up to this eccentricity Hill's equations say something of an orbit: they leave out what is of its order."""
+
+
+@dataclass(frozen=True, eq=False)
+class TurningAxes:
+    """Hill's equations about the circle of an orbit's semi-major axis, with its eigenvalues and Jordan blocks.
+
+    In axes that rotate with it a circle is an equilibrium, where eigenvalues do decide; over one revolution exp(A T) is
+    the monodromy matrix in these axes.
+    """
+
+    system: LinearSystem
+    eigenvalues: tuple[Eigenvalue, ...]
+
+
+def turning_axes(orbit: Elements) -> TurningAxes | None:
+    """The linearisation in turning axes; ``None`` unless the orbit is nearly circular."""
+    if orbit.mean_motion is None or orbit.semi_major_axis is None or orbit.eccentricity > NEARLY_CIRCULAR:
+        return None
+    model = kernels.load(MODEL)
+    A, B = jacobians(model, (orbit.semi_major_axis, orbit.mean_motion), 0.0, np.zeros(len(model.spec.states)))
+    found = system(A, B, states=model.spec.state_names, inputs=model.spec.control_names, name=MODEL)
+    return TurningAxes(found, spectrum(A))

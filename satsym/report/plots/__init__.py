@@ -53,11 +53,11 @@ def figures(result: Solution | Flight) -> dict[str, Figure]:
 def _pages(result: Solution | Flight) -> Iterator[tuple[str, Figure]]:
     from satsym.report.plots import pages
     from satsym.report.plots.convergence import convergence
-    from satsym.report.plots.overview import overview
     from satsym.report.plots.scene import Scene
 
     scene = Scene.of(result)
-    for picture in (overview, pages.orbit, pages.states, pages.controls, pages.costates, pages.invariants, convergence):
+    motion = (pages.orbit, pages.states, pages.controls, pages.costates, pages.invariants)
+    for picture in (pages.overview, *motion, convergence):
         page = picture(scene)
         if page is not None:
             yield picture.__name__, page

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 from satsym.analysis.orbits.conic import TOLERANCE
 from satsym.report.display import length_unit, time_unit
-from satsym.report.results.exact import exact
 from satsym.report.results.linear import analysis_object, complex_object, eigenvalue_object, numbers, rows
 from satsym.report.results.objects import head_about, number
 from satsym.status import Status
@@ -121,3 +120,33 @@ def _floquet(found: Floquet) -> dict[str, Any]:
         if turning is None
         else {"model": turning.system.name, "eigenvalues": [eigenvalue_object(each) for each in turning.eigenvalues]},
     }
+
+
+def exact(model: Kernels, derivation: Derivation | None = None) -> dict[str, Any] | None:
+    """What sympy finds about a linear model, as ``satsym analyse --json`` prints it.
+
+    Parameters
+    ----------
+    derivation
+        Of the model; by default that of a shipped one.
+
+    Returns
+    -------
+    dict or None
+        ``None`` for a model whose derivation is not at hand, because it was loaded by path, that is not linear with
+        constant coefficients, or whose entries are beyond exact linear algebra.
+    """
+    shipped = model.origin is not None and model.origin[1] is None
+    if not model.spec.linear or not (shipped or derivation):
+        return None
+    from satsym.status import BadInput
+    from satsym.symbolic import DerivationError
+    from satsym.symbolic.analysis import NotExact, analyse
+    from satsym.symbolic.analysis.listing import exact_object
+    from satsym.symbolic.linear.matrices import system_of
+    from satsym.symbolic.lookup import library
+
+    try:
+        return exact_object(analyse(system_of(derivation or library.derivation(model.spec.name))))
+    except (BadInput, DerivationError, NotExact):
+        return None

@@ -224,7 +224,7 @@ def _from_path(problem: TwoPoint, path: Callable[[Any], Any], softness: float, c
 
 def _from_spiral(problem: TwoPoint, spiral: Spiral, cost: float) -> Search:
     """The minimum within the bounds with a number of turns."""
-    from satsym.solvers.cold_start.path_of_turns import along_turns
+    from satsym.solvers.cold_start.path_of_problems import along_turns
 
     return lambda limits: _bounded(problem, along_turns(problem.relaxed(float("inf")), spiral, limits), cost, limits)
 

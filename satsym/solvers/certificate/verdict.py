@@ -11,9 +11,9 @@ from satsym.solution import Certificate, Check, Solution
 from satsym.solvers import revolutions
 from satsym.solvers.certificate import competitors, conditions
 from satsym.solvers.certificate.competitors import Compared, Comparison, Competitor
-from satsym.solvers.certificate.conjugate import Conjugate, conjugate
+from satsym.solvers.certificate.conditions import correction, node_by_node
 from satsym.solvers.certificate.flow import TOLERANCE, Flow, flow
-from satsym.solvers.certificate.junctions import correction, node_by_node
+from satsym.solvers.certificate.jacobi import Conjugate, conjugate
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
 from satsym.solvers.certificate.neighbours import Neighbours, neighbours
 from satsym.solvers.certificate.segments import Segments, segments

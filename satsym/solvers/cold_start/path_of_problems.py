@@ -14,12 +14,12 @@ from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.arclength import Point
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import Curve, Step
-from satsym.solvers.collocation.descent import descended
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.problem import TwoPoint
-from satsym.solvers.collocation.sqp import minimise
+from satsym.solvers.collocation.sqp import descended, minimise
 from satsym.solvers.collocation.system import System
 from satsym.solvers.iteration import Limits
+from satsym.solvers.symmetry import Spiral
 
 Between = Callable[[Array, Array, float], Array]
 """A state between two others, by its share of the way."""
@@ -126,3 +126,37 @@ def _tangent(point: Point) -> Step | None:
         return point.response()
     except np.linalg.LinAlgError:
         return None
+
+
+STEP = 1e-5
+"""Share of the duration by which a path is differenced."""
+
+
+def along_turns(problem: TwoPoint, spiral: Spiral, limits: Limits) -> Attempt:
+    """The minimum with a number of turns, from the spiral that makes them, driven by a force that fades.
+
+    A spiral is no motion: it lacks some rates. With these added to the model it becomes one, and costs no control, so
+    it is where a path of problems begins; the controls take over what the force leaves. Minimising from the spiral
+    itself gets stuck where there are many turns, as a small defect early on asks for a large change of phase later.
+
+    Parameters
+    ----------
+    problem
+        Without bounds, or with soft ones; its duration is given.
+    spiral
+        That makes them.
+    limits
+        When to stop.
+    """
+    return followed(problem, fading(problem, spiral), paths.curve(problem, spiral.path), limits)
+
+
+def fading(problem: TwoPoint, spiral: Spiral) -> Callable[[float], TwoPoint]:
+    """Problems by their share of the way: from the one that the spiral solves without costates, to the given one."""
+
+    def lacking(tau: Array) -> Array:
+        its = (spiral.path(tau + STEP) - spiral.path(tau - STEP)) / (2.0 * STEP * problem.duration)
+        z = np.concatenate([spiral.path(tau), np.zeros((problem.states, len(tau)))])
+        return its - problem.rates(tau, z, problem.theta)[: problem.states]
+
+    return lambda share: problem.forced(lacking, 1.0 - share)

@@ -16,12 +16,12 @@ import numpy as np
 from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import SMALL, Curve, Step
-from satsym.solvers.collocation.descent import descended
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.linearised import Linearised, linearise
 from satsym.solvers.collocation.newton import within_domain
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.second_variation import negative_directions
+from satsym.solvers.collocation.sqp import descended
 from satsym.solvers.collocation.system import Residual, System
 from satsym.solvers.iteration import Limits
 

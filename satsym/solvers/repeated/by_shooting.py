@@ -22,7 +22,7 @@ Shot = tuple[Arcs, float, int]
 
 
 class ByShooting:
-    """See :class:`satsym.solvers.repeated.means.Means`; for instances whose model is compiled."""
+    """See :class:`satsym.solvers.repeated.repeated.Means`; for instances whose model is compiled."""
 
     name = "shooting"
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.solvers.collocation.matching import Matching
+from satsym.solvers.collocation.elimination import Matching
 from satsym.solvers.iteration import Limits
 from satsym.solvers.shooting.arcs import Arcs
 from satsym.solvers.shooting.runge_kutta import ORDER

@@ -10,7 +10,7 @@ from satsym.arrays import Array
 from satsym.grid import Grid
 from satsym.instance import Instance
 from satsym.solution import Flight, Invariant
-from satsym.solvers import out_of_time
+from satsym.solvers import iteration
 from satsym.solvers.iteration import Limits, TimeUp, watched
 from satsym.solvers.simulation import blocks, closed_loop
 from satsym.solvers.simulation.balances import balances
@@ -74,7 +74,7 @@ def simulate(instance: Instance, law: Law | None = None) -> Flight:
     try:
         return _simulated(instance, law, limits)
     except TimeUp:
-        return out_of_time.flight(instance, law.name if law else "none")
+        return iteration.flight(instance, law.name if law else "none")
 
 
 def _simulated(instance: Instance, law: Law | None, limits: Limits) -> Flight:

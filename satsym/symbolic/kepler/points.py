@@ -18,7 +18,7 @@ from satsym.symbolic.checks import Check, Point, compare, identity, numeric
 from satsym.symbolic.derivation import Conclusion, Derivation, Equation, Step
 from satsym.symbolic.kepler.attraction import inertial_accelerations, jacobian_blocks, strength_of
 from satsym.symbolic.linear import notation as ln
-from satsym.symbolic.linear.numeric_matrices import numeric_matrix, numeric_rank
+from satsym.symbolic.linear.matrices import numeric_matrix, numeric_rank
 from satsym.symbolic.model import Particle, symbols_of, variables_of
 
 

@@ -23,7 +23,7 @@ from satsym.symbolic.kinds import stated_as
 from satsym.symbolic.kinds.derived import Derived, original_equations, there_and_back
 from satsym.symbolic.linear.notation import results
 from satsym.symbolic.model import Line, MaybeStep, Paragraph, Problem, Requirement, symbols_of, t
-from satsym.symbolic.motion.jacobians import jacobians
+from satsym.symbolic.motion.steps import jacobians
 
 
 @dataclass(frozen=True, kw_only=True)

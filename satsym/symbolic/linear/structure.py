@@ -15,8 +15,7 @@ from satsym.symbolic.analysis.structure import observability as observability_of
 from satsym.symbolic.checks import Point, compare
 from satsym.symbolic.derivation import Check, Conclusion, Derivation, Equation, Step
 from satsym.symbolic.linear import notation as ln
-from satsym.symbolic.linear.matrices import analysable, system_of
-from satsym.symbolic.linear.numeric_matrices import entries, numeric_matrix, numeric_rank
+from satsym.symbolic.linear.matrices import analysable, entries, numeric_matrix, numeric_rank, system_of
 from satsym.symbolic.model import symbols_of
 
 Kind = Literal["controllability", "observability"]

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import sympy as sp
 
 from satsym.spec import Variable
+from satsym.symbolic.dimension_algebra import PLAIN, Dimension, over
 from satsym.symbolic.model import Model, Problem, symbols_of
 
 UNSWITCHED = sp.Symbol("H_0", real=True)
@@ -153,3 +154,29 @@ def _dotted(sigma: str, order: int, mark: str = "") -> str:
     if order <= 2:
         return rf"\{'d' * order}ot{head}{index}" + (f"^{mark}" if mark else "")
     return rf"{head}{index}^{{{mark}({order})}}"
+
+
+def declare(known: dict[str, Dimension | None], problem: Problem, running: Dimension | None) -> None:
+    """Enter the dimensions of switching functions, weights and smoothed or singular controls.
+
+    Parameters
+    ----------
+    known
+        Dimensions of declared variables, which are added to.
+    problem
+        Anything is entered only where its running cost is affine in the controls.
+    running
+        Dimension of the running cost.
+    """
+    if not names(problem):
+        return
+    controls = symbols_of(problem.model.controls)
+    known[SHARE.name] = PLAIN
+    known[UNSWITCHED.name] = known[SMOOTHED.name] = running
+    for u in controls:
+        known[switching_of(u).name] = known[weight_of(u).name] = over(running, known[u.name])
+        known[smoothed(u).name] = known[u.name]
+        known.update({singular(u, branch).name: known[u.name] for branch in BRANCHES})
+    efforts = [over(over(running, known[u.name]), known[u.name]) for u in controls]
+    # one number smooths all controls: where their units differ it has none that would suit them all
+    known[SMOOTHING.name] = efforts[0] if all(e == efforts[0] for e in efforts) else None
