@@ -37,8 +37,6 @@ def build(
 
     Parameters
     ----------
-    outputs
-        What is computed.
     definitions
         Named constants that the outputs may use; those they do not use are left out.
     layers

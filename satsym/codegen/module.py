@@ -28,8 +28,6 @@ def render(derivation: Derivation, source: str) -> str:
 
     Parameters
     ----------
-    derivation
-        What was derived.
     source
         Name of the derivation file, for the header.
 

@@ -92,15 +92,6 @@ _ACTIVE: ContextVar[Account | None] = ContextVar("account", default=None)
 def within(limit: Limit, work: Callable[[], T], spent: Callable[[int], None] = lambda _: None) -> T:
     """Do some work, and give up once it takes more than a limit; inside other such work that one's limit holds.
 
-    Parameters
-    ----------
-    limit
-        What it may take.
-    work
-        What to do.
-    spent
-        Told how many calls were made.
-
     Raises
     ------
     OverBudget

@@ -208,8 +208,6 @@ def vanishes(tree: Node, seed: str, positive: Collection[str] = (), points: int 
     ----------
     tree
         The formula; usually a difference.
-    seed
-        Decides the points.
     positive
         Names of symbols that are positive.
     points

@@ -59,8 +59,6 @@ def worst(kernels: Kernels, at: Mapping[str, Any], seed: int = SEED) -> Contradi
 
     Parameters
     ----------
-    kernels
-        To be examined.
     at
         Arguments by name, as :func:`random_places` gives them.
     seed

@@ -77,8 +77,6 @@ def from_text(text: str, name: str, folder: Path | None = None) -> Kernels:
     ----------
     text
         What a generated file would hold.
-    name
-        How messages call it.
     folder
         Where it would be, or was.
 

@@ -29,8 +29,6 @@ def improved(solver: Solver, instance: Instance, progress: Progress | None) -> S
 
     Parameters
     ----------
-    solver
-        Of a method.
     instance
         What to solve.
     progress

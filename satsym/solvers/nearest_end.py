@@ -64,8 +64,6 @@ def nearest(problem: TwoPoint, path: Path, limits: Limits) -> Nearest | None:
         With its bounds, and a given final time.
     path
         States and costates whose control law, cut to the bounds, is one of the starts.
-    limits
-        When to stop.
 
     Returns
     -------

@@ -47,10 +47,6 @@ def cheapest(
 
     Parameters
     ----------
-    instance
-        Names the angles.
-    limits
-        When to stop.
     solve, cost
         From an instance to an answer, with great effort or not, and its cost: infinite where there is none. The
         first number of turns is worth the effort, its neighbours are not.

@@ -115,8 +115,6 @@ def spirals(problem: TwoPoint, most: int, around: Rotation | None = None) -> lis
 
     Parameters
     ----------
-    problem
-        What is solved.
     most
         How many at most.
     around

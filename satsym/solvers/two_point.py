@@ -73,14 +73,10 @@ def from_cold_start(instance: Instance, limits: Limits, effort: bool, accurate: 
 
     Parameters
     ----------
-    instance
-        What is solved.
     limits
         When to stop, and who is told the cost of what was found.
     effort
         Whether free durations are looked for with great effort.
-    accurate
-        What is done from there.
     """
     if instance.tf is not None:
         problem = two_point(instance, instance.tf - instance.t0)
@@ -147,8 +143,6 @@ def inside(problem: TwoPoint, start: Start, free: Curve, limits: Limits) -> Atte
         How the extremal was found.
     free
         The extremal, perhaps more accurate.
-    limits
-        When to stop.
     """
     if start.bounded:
         return replace(start.found, iterations=1)

@@ -153,8 +153,6 @@ def equilibrium(model: Kernels, p: Sequence[float], start: Array, t: float = 0.0
 
     Parameters
     ----------
-    p
-        Parameters.
     start
         Where to look from, shape (n,).
     t

@@ -23,8 +23,6 @@ def render(ledgers: Sequence[Ledger], judged: Mapping[str, Sequence[Judged]]) ->
 
     Parameters
     ----------
-    ledgers
-        What the documents print.
     judged
         Key of a document -> its rows with their verdicts.
 

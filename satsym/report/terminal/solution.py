@@ -32,15 +32,7 @@ _BOUNDARY = {
 
 
 def solution_text(solution: Solution, colour: bool = False) -> str:
-    """Summary of a solution.
-
-    Parameters
-    ----------
-    solution
-        Whatever its status.
-    colour
-        Whether the status is coloured.
-    """
+    """Summary of a solution."""
     instance = solution.instance
     unit = time_unit(instance.model.spec)
     facts = [

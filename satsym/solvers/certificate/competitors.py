@@ -112,8 +112,6 @@ def compared(solution: Solution, deadline: float, seed: int = 0) -> Comparison:
 
     Parameters
     ----------
-    solution
-        With an answer.
     deadline
         On the clock of ``time.perf_counter``.
     seed

@@ -120,8 +120,6 @@ def first_passage(times: Array, phases: Phases, between: Callable[[int, Array], 
     ----------
     times
         Of the stations, shape (K,).
-    phases
-        There.
     between
         Transitions from a station to given times until the next, shape (M, 2n, 2n).
     """
@@ -247,8 +245,6 @@ def conjugate(solution: Solution, along: Segments | None) -> Conjugate:
 
     Parameters
     ----------
-    solution
-        An extremal.
     along
         Its linearisation, or ``None`` where there is none.
     """

@@ -44,8 +44,6 @@ def examined(solution: Solution, deadline: float, seed: int = 0) -> tuple[Certif
 
     Parameters
     ----------
-    solution
-        Whatever its status.
     deadline
         On the clock of ``time.perf_counter``; what is not compared by then is said.
     seed

@@ -21,8 +21,6 @@ def along_ends(problem: TwoPoint, limits: Limits, solve: Callable[[TwoPoint], At
     ----------
     problem
         Without bounds, with a given final time.
-    limits
-        When to stop.
     solve
         How the problem with free angles is minimised from nothing.
     """
@@ -52,8 +50,6 @@ def ending(problem: TwoPoint, ends: dict[str, float | None]) -> TwoPoint:
 
     Parameters
     ----------
-    problem
-        The problem.
     ends
         New final values by name; ``None``: free.
     """
@@ -79,10 +75,6 @@ def along_durations(
     ----------
     problem
         With a given final time.
-    stages
-        Of the scheme.
-    limits
-        When to stop.
     solve
         How the shorter problem is minimised from nothing.
     """

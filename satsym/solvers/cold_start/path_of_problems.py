@@ -39,8 +39,6 @@ def along_problems(problem: TwoPoint, between: Between, limits: Limits) -> Attem
         Without bounds.
     between
         The initial states on the way.
-    limits
-        When to stop.
     """
     coasting = paths.coasting_to_the_end(problem)
     if coasting is None:
@@ -64,8 +62,6 @@ def followed(problem: TwoPoint, path: Callable[[float], TwoPoint], curve: Curve,
         The problem at a share of the way, in the units of the last.
     curve
         A guess of the first one's minimum.
-    limits
-        When to stop.
     """
     at, move, steps = 0.0, FIRST_MOVE, 0
     tangent: Step | None = None
@@ -145,8 +141,6 @@ def along_turns(problem: TwoPoint, spiral: Spiral, limits: Limits) -> Attempt:
         Without bounds, or with soft ones; its duration is given.
     spiral
         That makes them.
-    limits
-        When to stop.
     """
     return followed(problem, fading(problem, spiral), paths.curve(problem, spiral.path), limits)
 

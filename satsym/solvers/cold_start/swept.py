@@ -40,8 +40,6 @@ def swept(problem: TwoPoint, limits: Limits) -> Iterator[Curve | None]:
     ----------
     problem
         With its bounds, a given duration, and an end of which nothing is asked.
-    limits
-        When to stop; counts work.
     """
     instance = problem.instance
     finite = np.isfinite(instance.lower).all() and np.isfinite(instance.upper).all()

@@ -49,8 +49,6 @@ def cold_start(problem: TwoPoint, limits: Limits, quick: bool = False) -> Start:
     ----------
     problem
         Bounds are ignored.
-    limits
-        When to stop.
     quick
         Try the first way only.
     """

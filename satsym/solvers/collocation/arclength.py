@@ -66,12 +66,8 @@ def followed(at: Problems, start: Curve, limits: Limits, path: str) -> Attempt:
 
     Parameters
     ----------
-    at
-        The path.
     start
         A minimum at its beginning.
-    limits
-        When to stop.
     path
         What it is called where it leads nowhere.
     """

@@ -48,12 +48,6 @@ def tighten(problem: TwoPoint, free: Curve, order: int, limits: Limits) -> Attem
     ----------
     problem
         With its bounds.
-    free
-        An extremal of the same problem without them.
-    order
-        Stages.
-    limits
-        When to stop.
     """
     worst = _violation(problem, free)
     if worst <= 0.0:
@@ -141,14 +135,10 @@ def settled(problem: TwoPoint, curve: Curve, order: int, count: int, limits: Lim
     ----------
     problem
         With its bounds.
-    curve
-        Where to begin.
     order
         Stages; two more are taken.
     count
         Intervals, about.
-    limits
-        Count work.
     """
     before: Array | None = None
     now, total = kinks(problem, curve), 0

@@ -57,8 +57,6 @@ def sharpen(curve: Curve, linearised: Linearised, tolerance: float) -> Sharpened
 
     Parameters
     ----------
-    curve
-        The solution.
     linearised
         The linearised equations there or nearby, on the same mesh with the same stages.
     tolerance

@@ -45,8 +45,6 @@ def refine(
 
     Parameters
     ----------
-    problem
-        What is solved.
     curve
         A solution of collocation equations on some mesh.
     tolerance

@@ -61,8 +61,6 @@ def minimise(
     start
         A curve on the system's mesh: a guess of the states without costates, or an extremal of a neighbouring
         problem.
-    limits
-        When to stop, and who watches.
     tolerance
         Size of the last step.
     most
@@ -143,8 +141,6 @@ def _searched(at: _Merit, share: float, whole: bool) -> tuple[Curve, Residual, f
 
     Parameters
     ----------
-    at
-        From where.
     share
         To begin with.
     whole

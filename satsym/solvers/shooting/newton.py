@@ -79,15 +79,7 @@ def linearised(arcs: Arcs) -> tuple[Matching, Residual]:
 
 
 def newton(arcs: Arcs, limits: Limits) -> Outcome:
-    """Newton from arcs with enough steps.
-
-    Parameters
-    ----------
-    arcs
-        Where to start.
-    limits
-        When to stop.
-    """
+    """Newton from arcs with enough steps."""
     before = float("inf")
     for iteration in range(1, MOST + 1):
         try:

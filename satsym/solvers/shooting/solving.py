@@ -76,10 +76,6 @@ def extremal(problem: TwoPoint, start: Path, limits: Limits) -> Extremal:
 
     Parameters
     ----------
-    problem
-        What is solved.
-    start
-        Where to start.
     limits
         When to stop, and who is told the cost of what was found.
     """

@@ -48,8 +48,6 @@ def fly(
         Starts, shape (n, N).
     p
         Parameters, in the model's order; each a number or an array of shape (N,).
-    steps
-        Number of steps between two times.
     u
         Constant controls, shape (m,) or (m, N); none by default.
     method

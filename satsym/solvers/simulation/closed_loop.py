@@ -66,8 +66,6 @@ def fly(
         Of each step, relative to the size of each state.
     dynamics
         Rates of change of the states, if not those of the model: a function of t, x, u and p on floats.
-    limits
-        Of the time, if it has any.
 
     Raises
     ------

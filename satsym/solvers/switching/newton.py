@@ -224,10 +224,6 @@ def solve(equations: Equations, start: Unknowns, watch: Callable[[float, float],
 
     Parameters
     ----------
-    equations
-        What is to vanish.
-    start
-        Where to begin.
     watch
         Told the size of each correction, and NaN for the cost, which is not known on the way.
     """

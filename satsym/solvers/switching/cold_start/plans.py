@@ -47,8 +47,6 @@ def seeded(
         Most of each control.
     durations
         Shape (M,).
-    rng
-        Where chance comes from.
     opposite
         Whether first levels are taken in the other order.
     """
