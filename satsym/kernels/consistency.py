@@ -22,7 +22,9 @@ from satsym.kernels import plain
 from satsym.kernels.contract import CURVE, GROUPS, TUPLES, pointwise, sizes
 from satsym.kernels.core import Kernels
 from satsym.kernels.evaluation import COPIES, Evaluation, size, with_copies
-from satsym.kernels.relations import Relation, deviations, relations
+from satsym.kernels.motion import of_motion
+from satsym.kernels.optimality import of_the_cost
+from satsym.kernels.relations import Relation, deviations
 from satsym.spec import Variable
 
 LIMIT = 1e-9
@@ -72,7 +74,8 @@ def worst(kernels: Kernels, at: Mapping[str, Any], seed: int = SEED) -> Contradi
             evaluation = Evaluation(kernels, with_copies(at, seed))
         if not finite.any():
             return None
-        groups: list[tuple[list[Relation], Callable[[Array], Array]]] = [(list(relations(evaluation)), size)]
+        together = [*of_motion(evaluation), *(of_the_cost(evaluation) if kernels.spec.has_cost else ())]
+        groups: list[tuple[list[Relation], Callable[[Array], Array]]] = [(together, size)]
         groups += [([each], _largest) for source in (_both_forms(evaluation), _loops(kernels, at)) for each in source]
         found = [
             Contradiction(each.function, each.claim, deviation)

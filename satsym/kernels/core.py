@@ -60,11 +60,6 @@ class Kernels(Functions):
         def __getattr__(self, name: str) -> Function:
             raise AttributeError(f"model {self.spec.name} has no function {name}" if "spec" in vars(self) else name)
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        if self.origin is None:
-            return Kernels, (self.spec, self.functions, self.backend)
-        return _restore, (*self.origin, self.text, self.backend)
-
     def forward(
         self, times: ArrayLike, x0: Sequence[float], u: ArrayLike, u_mid: ArrayLike, p: Sequence[float]
     ) -> tuple[Array, Array, float]:
@@ -247,13 +242,6 @@ class Kernels(Functions):
         except _ARITHMETIC:
             result = nan
         return nan if isinstance(result, complex) else result, _real(node_lists), _real(midpoint_lists)
-
-
-def _restore(model: str, folder: Path | None, text: str | None, backend: Backend) -> Kernels:
-    from satsym.kernels.loading import from_text, load
-
-    kernels = load(model, folder) if text is None else from_text(text, model, folder)
-    return kernels.compiled() if backend == "numba" else kernels
 
 
 def _nodes(times: ArrayLike) -> tuple[Array, int]:
