@@ -15,11 +15,11 @@ import sympy as sp
 from satsym.spec import names
 from satsym.symbolic import notation as n
 from satsym.symbolic.derivation import Derivation
+from satsym.symbolic.minimisers import Side
 from satsym.symbolic.model import symbols_of
 from satsym.symbolic.principle.pontryagin import costates
 from satsym.symbolic.switching import curve as switching_curve
 from satsym.symbolic.switching.functions import parts, written_out
-from satsym.symbolic.switching.minimisers import Side
 from satsym.symbolic.switching.notation import BEYOND, ON_CURVE, SIDE, TRANSITION
 
 STEP = "switching_function"

@@ -12,7 +12,7 @@ import mpmath as mp
 import sympy as sp
 
 from satsym.symbolic.derivation import Check, DerivationError
-from satsym.symbolic.principle.control_sets import MPMATH_FUNCTIONS
+from satsym.symbolic.minimisers import MPMATH_FUNCTIONS
 
 DIGITS = 30
 LIMIT = 1e-15

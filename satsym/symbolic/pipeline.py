@@ -9,12 +9,11 @@ from typing import Literal
 import sympy as sp
 
 from satsym.symbolic import dimensions
-from satsym.symbolic.declared import refuse_foreign_symbols, refuse_misfits
+from satsym.symbolic.declared import begin, refuse_foreign_symbols, refuse_misfits
 from satsym.symbolic.derivation import Derivation, DerivationError, resolved
 from satsym.symbolic.linear import regulator, stability, structure
 from satsym.symbolic.model import MaybeStep, Model, Problem
 from satsym.symbolic.motion import steps
-from satsym.symbolic.notation import begin
 from satsym.symbolic.principle import effort, pontryagin, transversality
 from satsym.symbolic.switching import curve as switching_curve
 from satsym.symbolic.switching import functions as switching

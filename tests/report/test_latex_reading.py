@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 
 from satsym.symbolic import Derivation, FirstOrder, Problem, Variable, derive, loader, symbols_of
 from satsym.symbolic.latex.typeset import Typesetter
+from satsym.symbolic.minimisers import by_signs
 from satsym.symbolic.principle import control_sets
-from satsym.symbolic.switching.minimisers import by_signs
 
 FUNCTIONS = {r"\cos": math.cos, r"\sin": math.sin, r"\tan": math.tan, r"\ln": math.log}
 LAYOUT = re.compile(r"\\(?:[bB]igg?[lr]|left|right|,|;)(?![A-Za-z])|\s+|&|\{\}(?=[+-])")

@@ -30,7 +30,7 @@ from satsym.symbolic import (
     t,
 )
 from satsym.symbolic.checks import numeric
-from satsym.symbolic.principle.control_sets import Clip, Shorten
+from satsym.symbolic.minimisers import Clip, Shorten
 
 POLAR, *_ = loader.load(Path(__file__).resolve().parents[2] / "derivations" / "polar_orbit.py")
 BY_NAME = {v.symbol: v for v in (*POLAR.model.states, *POLAR.model.controls, *POLAR.model.parameters)}

@@ -13,9 +13,9 @@ import sympy as sp
 from satsym.symbolic import Derivation, DerivationError, Problem, Step, derive, pipeline
 from satsym.symbolic.checks import deviation, numeric, points
 from satsym.symbolic.lookup.formulas import plain, to_tree
+from satsym.symbolic.minimisers import Shrink, Side, Switch
 from satsym.symbolic.switching import functions as steps
 from satsym.symbolic.switching import singular, singular_search
-from satsym.symbolic.switching.minimisers import Shrink, Side, Switch
 from tests.support.switching_models import (
     CATALYST,
     FULLER,

@@ -20,12 +20,12 @@ from satsym.formula.values import Matrix, Relation, Value
 from satsym.status import BadInput
 from satsym.symbolic import dimensions, loader
 from satsym.symbolic.algebra import definitions_of
+from satsym.symbolic.declared import begin
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation
 from satsym.symbolic.dimensions import Known
 from satsym.symbolic.lookup import addresses
 from satsym.symbolic.lookup.formulas import NotAFormula, from_tree, in_symbols, plain, to_tree
 from satsym.symbolic.model import variables_of
-from satsym.symbolic.notation import begin
 from satsym.symbolic.pipeline import derive
 from satsym.wording import shown, suggestion
 

@@ -12,12 +12,12 @@ import sympy as sp
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import definitions_of
 from satsym.symbolic.derivation import Derivation, Equation, Step
+from satsym.symbolic.minimisers import Switch
 from satsym.symbolic.model import symbols_of
 from satsym.symbolic.principle import control_sets
 from satsym.symbolic.switching import curve_checks
 from satsym.symbolic.switching import notation as s
 from satsym.symbolic.switching.curve_checks import Chain
-from satsym.symbolic.switching.minimisers import Switch
 
 STEP = "switching_curve"
 _CLOCK = sp.Dummy("time", real=True)

@@ -22,12 +22,11 @@ from satsym.symbolic.algebra import tidy
 from satsym.symbolic.checks import DIGITS, Point, compare, never_below, numeric
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
+from satsym.symbolic.minimisers import Clip, Shrink, Switch
 from satsym.symbolic.model import Problem, symbols_of, t
 from satsym.symbolic.principle import control_sets
-from satsym.symbolic.principle.control_sets import Clip
 from satsym.symbolic.principle.pontryagin import COMPETITORS, costates
 from satsym.symbolic.switching import notation as s
-from satsym.symbolic.switching.minimisers import Shrink, Switch
 
 SCALES = (0.1, 1.0, 10.0)
 """Factors on the costates at each random point, so that switching functions lie on all sides of their thresholds."""
