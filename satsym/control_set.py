@@ -34,7 +34,7 @@ class ControlSet:
     smoothing: float = 0.0
     """What half the squared controls is weighed with in the cost of a regularised problem, in the unit of the running
     cost over that of the squared control; zero where controls do not enter the Hamiltonian affinely."""
-    share: float = 1.0
+    fraction: float = 1.0
     """Of the weight of |u| that counts there, 0 to 1."""
 
     @classmethod
@@ -56,7 +56,7 @@ class ControlSet:
     def arguments(self) -> Row:
         """The argument ``bounds`` of generated functions: bounds or radius, then what regularises."""
         if self.kind == "box":
-            return self.lower + self.upper + ((self.smoothing, self.share) if self.smoothing else ())
+            return self.lower + self.upper + ((self.smoothing, self.fraction) if self.smoothing else ())
         return (self.radius,) if self.kind == "ball" else ()
 
     @property
@@ -76,9 +76,9 @@ class ControlSet:
         """The same for an unlimited control."""
         return self.relaxed(math.inf)
 
-    def regularised(self, smoothing: float, share: float) -> ControlSet:
+    def regularised(self, smoothing: float, fraction: float) -> ControlSet:
         """The same of a regularised problem."""
-        return replace(self, smoothing=smoothing, share=share)
+        return replace(self, smoothing=smoothing, fraction=fraction)
 
     def saturated(self, u: Row) -> ControlSet:
         """That in which only this control is admissible."""

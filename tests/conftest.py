@@ -22,7 +22,7 @@ hypothesis.settings.register_profile("satsym", deadline=None, derandomize=True)
 hypothesis.settings.load_profile("satsym")
 
 
-FEW, SHARE = 4, 3
+FEW, MAGNITUDE_FACTOR = 4, 3
 """Of a slow test with more than that many cases every third runs, unless all are asked for."""
 
 
@@ -45,7 +45,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     for item in items:
         if item.get_closest_marker("slow"):
             cases.setdefault(item.nodeid.partition("[")[0], []).append(item)
-    spared = {item for own in cases.values() if len(own) > FEW for k, item in enumerate(own) if k % SHARE}
+    spared = {item for own in cases.values() if len(own) > FEW for k, item in enumerate(own) if k % MAGNITUDE_FACTOR}
     config.hook.pytest_deselected(items=[item for item in items if item in spared])
     items[:] = [item for item in items if item not in spared]
 

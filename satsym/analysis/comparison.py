@@ -87,12 +87,23 @@ def compare(instances: Sequence[Instance], progress: Callable[[str], None] = lam
 
 
 def _flown(instance: Instance) -> Case:
-    flight = classical.simulate(instance)
-    metrics = flight.metrics
-    if flight.status.answered:
+    simulation = classical.simulate(instance)
+    metrics = simulation.metrics
+    if simulation.status.answered:
         metrics = {"transition_time": metrics.get("settling_time", math.nan)} | metrics
-    answered, none = flight.status.answered, ()
-    return Case(instance, "classical", answered, None, flight.message, flight.times, flight.x, flight.u, none, metrics)
+    answered, none = simulation.status.answered, ()
+    return Case(
+        instance,
+        "classical",
+        answered,
+        None,
+        simulation.message,
+        simulation.times,
+        simulation.x,
+        simulation.u,
+        none,
+        metrics,
+    )
 
 
 def _solved(instance: Instance) -> Case:

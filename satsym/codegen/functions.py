@@ -9,12 +9,12 @@ import sympy as sp
 from satsym.codegen import switching
 from satsym.spec import Variable, names
 from satsym.symbolic.derivation import Derivation, resolved
-from satsym.symbolic.kepler.attraction import inertial_state, strength_of
+from satsym.symbolic.kepler.central_force import inertial_state, strength_of
 from satsym.symbolic.linear.notation import matrix_symbols
 from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.notation import costate_of, given, multipliers, on_reference, target
 from satsym.symbolic.principle.control_sets import bounds
-from satsym.symbolic.switching.notation import COMPANION
+from satsym.symbolic.switching.notation import REGULARISED
 
 ARGUMENTS = tuple("t x original u lam nu gain riccati state_weight control_weight p bounds final".split())
 """Names of arguments, in the order in which every function takes those it has."""
@@ -127,7 +127,7 @@ def _bounds(derivation: Derivation) -> tuple[Variable, ...]:
     """What the argument ``bounds`` holds."""
     problem = derivation.problem
     found = bounds(problem.control_set, derivation.model.controls) if problem else ()
-    return found + (COMPANION if switching.switches(derivation) else ())
+    return found + (REGULARISED if switching.switches(derivation) else ())
 
 
 def _cost_functions(derivation: Derivation) -> list[Function]:

@@ -18,7 +18,7 @@ from satsym.kernels.contract import TUPLES
 from satsym.kernels.digest import sealed
 from satsym.spec import ProblemSpec, Variable
 from satsym.symbolic.derivation import Derivation, Equation
-from satsym.symbolic.kepler.attraction import strength_of
+from satsym.symbolic.kepler.central_force import strength_of
 from satsym.symbolic.model import t, variables_of
 from satsym.symbolic.switching.curve import states_of
 

@@ -101,14 +101,14 @@ def extremal_jacobian(derivation: Derivation) -> sp.Matrix:
 
 
 @dataclass(frozen=True)
-class Companion:
+class Regularised:
     """The smoothed companion with its law put in: rates of states and costates, and its Hamiltonian."""
 
     rates: sp.Matrix
     hamiltonian: sp.Expr
 
 
-def companion(derivation: Derivation) -> Companion:
+def regularised(derivation: Derivation) -> Regularised:
     """The companion of a switching problem."""
     controls = symbols_of(derivation.model.controls)
     stated = {e.name: e.rhs for e in derivation.step("smoothed_law").equations}
@@ -117,7 +117,7 @@ def companion(derivation: Derivation) -> Companion:
     law = dict(zip(controls, laws, strict=True))
     costate_rates = [-sp.diff(h, x) for x in symbols_of(derivation.model.states)]
     rates = sp.Matrix([*derivation.rhs("first_order"), *costate_rates])
-    return Companion(rates.xreplace(law), h.xreplace(law))
+    return Regularised(rates.xreplace(law), h.xreplace(law))
 
 
 def printable(matrix: sp.Matrix) -> sp.Matrix:

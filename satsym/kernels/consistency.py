@@ -33,7 +33,7 @@ LIMIT = 1e-9
 PLACES = 24
 """Of random ones."""
 
-STEPS, SHARE = 3, 0.1
+STEPS, FRACTION = 3, 0.1
 """Nodes over which loops are followed, and by which share of themselves states change in a step."""
 
 FAR = 1e9
@@ -207,7 +207,7 @@ def _short(kernels: Kernels, at: Mapping[str, Any]) -> float:
     try:
         rates = np.abs(kernels.dynamics(at["t"], at["x"], at["u"], at["p"]))
     except _FAILED:
-        return SHARE
+        return FRACTION
     x = np.abs(at["x"])
     pace = float((rates / np.where(x > 0.0, x, np.inf)).max(initial=0.0))
-    return SHARE / pace if np.isfinite(pace) and pace > 0.0 else SHARE
+    return FRACTION / pace if np.isfinite(pace) and pace > 0.0 else FRACTION

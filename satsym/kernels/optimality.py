@@ -22,7 +22,7 @@ def of_the_cost(of: Evaluation) -> Iterator[Relation]:
     yield from _of_hamiltonian(of)
     if of.kernels.spec.switching:
         yield from of_switching(of)
-        control, surplus = companion_law(of)
+        control, surplus = regularised_law(of)
     else:
         yield from _of_regular_law(of)
         control, surplus = of("control_law"), np.zeros_like(of.at["x"])
@@ -168,7 +168,7 @@ def _limits(of: Evaluation) -> tuple[Array, Array, Array, Array]:
     u = of.at["u"]
     bounds = [np.broadcast_to(value, u.shape[-1:]) for value in of.at["bounds"]]
     limits = ControlSet.from_arguments(of.kernels.spec, bounds)
-    return np.array(limits.lower), np.array(limits.upper), np.asarray(limits.smoothing), np.asarray(limits.share)
+    return np.array(limits.lower), np.array(limits.upper), np.asarray(limits.smoothing), np.asarray(limits.fraction)
 
 
 def _law(of: Evaluation, sigma: Array, weight: Array) -> Array:
@@ -178,20 +178,20 @@ def _law(of: Evaluation, sigma: Array, weight: Array) -> Array:
     return np.asarray(np.where(sigma > weight, low, np.where(sigma < -weight, high, rest)))
 
 
-def companion_law(of: Evaluation) -> tuple[Array, Array]:
+def regularised_law(of: Evaluation) -> tuple[Array, Array]:
     """Controls of the companion, and what its costates change by besides."""
-    low, high, smoothing, share = _limits(of)
-    sigma, width = of("switching_function"), share * _weights(of)
+    low, high, smoothing, fraction = _limits(of)
+    sigma, width = of("switching_function"), fraction * _weights(of)
     shrunk = np.maximum(sigma - width, 0.0) + np.minimum(sigma + width, 0.0)
     control = np.minimum(np.maximum(-shrunk / smoothing, low), high)
     by_state = _slope(of, "magnitude_weight", "x")
-    return control, (1.0 - share) * np.einsum("mnk,mk->nk", by_state, np.abs(control))
+    return control, (1.0 - fraction) * np.einsum("mnk,mk->nk", by_state, np.abs(control))
 
 
 def extra_cost(of: Evaluation, control: Array) -> Array:
     """What the companion's Hamiltonian has besides."""
-    *_, smoothing, share = _limits(of)
-    return np.asarray((0.5 * smoothing * control**2 - (1.0 - share) * _weights(of) * np.abs(control)).sum(axis=0))
+    *_, smoothing, fraction = _limits(of)
+    return np.asarray((0.5 * smoothing * control**2 - (1.0 - fraction) * _weights(of) * np.abs(control)).sum(axis=0))
 
 
 def _weights(of: Evaluation) -> Array:

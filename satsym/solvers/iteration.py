@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.solution import Flight, Iteration, Progress, Solution
+from satsym.solution import Iteration, Progress, Simulation, Solution
 from satsym.status import Status
 from satsym.wording import counted
 
@@ -159,7 +159,7 @@ def iterate(method: Method[State], limits: Limits, progress: Progress | None) ->
 MESSAGE = "time was up while {steps} steps were computed"
 
 
-def solution(instance: Instance, method: str, wall_s: float) -> Solution:
+def unsolved(instance: Instance, method: str, wall_s: float) -> Solution:
     """No answer, and no trajectory."""
     n, m = len(instance.initial), len(instance.lower)
     return Solution(
@@ -179,9 +179,9 @@ def solution(instance: Instance, method: str, wall_s: float) -> Solution:
     )
 
 
-def flight(instance: Instance, feedback: str) -> Flight:
+def unsimulated(instance: Instance, feedback: str) -> Simulation:
     """No motion."""
-    return Flight(
+    return Simulation(
         instance=instance,
         feedback=feedback,
         status=Status.TIME_LIMIT,

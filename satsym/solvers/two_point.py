@@ -11,10 +11,10 @@ from satsym.instance import Instance
 from satsym.solution import Progress, Solution
 from satsym.solvers.cold_start import paths
 from satsym.solvers.cold_start.durations import free_duration
+from satsym.solvers.cold_start.first_minimum import cold_start
 from satsym.solvers.cold_start.origin import Origin, Start
 from satsym.solvers.cold_start.soft_bounds import within_bounds, within_found
 from satsym.solvers.cold_start.swept import from_control, loose, swept
-from satsym.solvers.cold_start.ways import cold_start
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.continuation import settled, tighten
 from satsym.solvers.collocation.curve import Curve, Path
@@ -33,7 +33,7 @@ from satsym.status import Status
 ROUNDING = 1e-12
 """An estimated error below this can hardly be made smaller."""
 
-LEAST = 10
+FEWEST_INTERVALS = 10
 """Intervals of a mesh on which a guess is followed."""
 
 GUESSED = 1e-2
@@ -118,7 +118,7 @@ def guessed(problem: TwoPoint, limits: Limits) -> Start | None:
     if guess.control and loose(problem):
         curve = from_control(problem, guess.control, limits)
     elif guess.costate:
-        bounded = settled(problem, begun, STAGES, max(len(begun.mesh) - 1, LEAST), limits)
+        bounded = settled(problem, begun, STAGES, max(len(begun.mesh) - 1, FEWEST_INTERVALS), limits)
         curve = bounded.curve if bounded.solved else None
     if curve is None:
         softened = within_bounds(problem, paths.first(problem), limits, GUESSED)

@@ -127,7 +127,7 @@ def _enter_cost(known: dict[str, Dimension | None], problem: Problem, require: R
     for multiplier, constraint in zip(n.multipliers(problem), problem.terminal_constraints, strict=True):
         known[multiplier.name] = over(total, require("a terminal constraint", constraint))
     known[pn.REDUCED_COST.name] = running
-    known.update({s.name: total for s in (pn.POTENTIAL, pn.LEAST_COST, pn.COST_FROM_REST)})
+    known.update({s.name: total for s in (pn.POTENTIAL, pn.MINIMUM_COST, pn.COST_FROM_REST)})
     for state in symbols_of(problem.model.states):
         known[pn.reduced_costate_of(state).name] = known[n.costate_of(state).name]
     for control in symbols_of(problem.model.controls):

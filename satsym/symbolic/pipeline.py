@@ -32,7 +32,7 @@ MINIMUM_PRINCIPLE: tuple[MaybeStep, ...] = (
     pontryagin.boundary_conditions,
     transversality.boundary_residual,
     effort.exact_differential,
-    effort.least_effort,
+    effort.minimum_effort,
 )
 
 SWITCHING_PRINCIPLE: tuple[MaybeStep, ...] = (

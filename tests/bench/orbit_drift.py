@@ -53,7 +53,7 @@ def by_dop853(start: Instance, duration: float, evaluations: int) -> Array:
 
     pieces = ceil(evaluations / (0.5 * closed_loop.MOST_EVALUATIONS))
     for _ in range(pieces):
-        run = closed_loop.fly(start, coast, np.array([0.0, duration / pieces]), TOLERANCE, dynamics)
+        run = closed_loop.simulate(start, coast, np.array([0.0, duration / pieces]), TOLERANCE, dynamics)
         start = replace(start, initial=tuple(run.x[:, -1].tolist()))
     return np.array(start.initial)
 

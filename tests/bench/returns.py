@@ -41,7 +41,7 @@ POPULATIONS = {"easy": EASY, "hard": HARD, "eight": HARD}
 WORKERS = min(2, os.cpu_count() or 1)
 STEPS, SECONDS = 100, 30.0
 CHUNK = 5
-DEARER = 1e-4
+COST_MARGIN = 1e-4
 """Relative difference of costs that counts: those of the eight starts are as rough as their meshes."""
 
 
@@ -141,7 +141,7 @@ def run(what: str, count: int) -> None:
     ratios = np.array([o.ratio for o in outcomes])
     if not np.isnan(ratios).all():
         known = ratios[~np.isnan(ratios)]
-        good, better = (known < 1.0 + DEARER).mean(), (known < 1.0 - DEARER).mean()
+        good, better = (known < 1.0 + COST_MARGIN).mean(), (known < 1.0 - COST_MARGIN).mean()
         print(f"  no dearer than the best of eight starts: {good:.2%} (cheaper: {better:.2%})")
 
 

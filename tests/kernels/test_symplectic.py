@@ -99,9 +99,9 @@ def test_they_fail_those_of_seventh_order_so_the_conditions_can_fail():
 def test_the_weights_are_symmetric_and_make_up_a_whole_step():
     kicks, drifts = weights()
     assert (len(kicks), len(drifts)) == (12, 11)
-    for shares in (kicks, drifts):
-        assert shares == shares[::-1]
-        assert sum(shares) == pytest.approx(1.0, abs=1e-15)
+    for fractions in (kicks, drifts):
+        assert fractions == fractions[::-1]
+        assert sum(fractions) == pytest.approx(1.0, abs=1e-15)
 
 
 def test_on_an_orbit_the_error_falls_with_the_sixth_power(orbit: Kernels):

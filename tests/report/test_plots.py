@@ -24,7 +24,7 @@ from satsym.report.plots.panels import _of_pi
 from satsym.report.plots.reading import read
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.series import Series
-from satsym.solution import Flight, Iteration, Solution
+from satsym.solution import Iteration, Simulation, Solution
 from satsym.solvers import simulate, solve
 from satsym.spec import ProblemSpec, Variable
 from satsym.status import Status
@@ -132,9 +132,9 @@ def solution(given: Instance, **changes: Any) -> Solution:
     return dataclasses.replace(made, **changes)
 
 
-def fed_back(given: Instance) -> Flight:
+def fed_back(given: Instance) -> Simulation:
     made = solution(given)
-    return Flight(given, "lqr", Status.CONVERGED, "", made.times, made.x, made.u, {}, {})
+    return Simulation(given, "lqr", Status.CONVERGED, "", made.times, made.x, made.u, {}, {})
 
 
 def page_texts(page: Any) -> list[tuple[str, Any]]:
@@ -158,7 +158,7 @@ def stems(written: Sequence[Path]) -> list[str]:
     return [path.stem for path in written]
 
 
-def save(result: Solution | Flight, folder: Path, formats: Sequence[str] = ("png",)) -> list[Path]:
+def save(result: Solution | Simulation, folder: Path, formats: Sequence[str] = ("png",)) -> list[Path]:
     """Its pictures as files."""
     drawn = pictures(result, formats)
     folder.mkdir(parents=True, exist_ok=True)

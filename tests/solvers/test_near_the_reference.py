@@ -161,7 +161,7 @@ def test_a_cost_off_by_more_than_rounding_fails(near: tuple[Solution, float], si
 
 def test_a_competitor_cheaper_by_more_than_rounding_is_noticed(near: tuple[Solution, float]) -> None:
     solution, size = near
-    share = 1e-11 / size
-    dearer = replace(solution, objective=(1.0 + share) * solution.objective)
+    fraction = 1e-11 / size
+    dearer = replace(solution, objective=(1.0 + fraction) * solution.objective)
     (starts,) = (kind for kind in compared(dearer, float("inf")).kinds if kind.summary.kind is Kind.STARTS)
-    assert starts.margin == pytest.approx(-share / (1.0 + share), rel=0.1)
+    assert starts.margin == pytest.approx(-fraction / (1.0 + fraction), rel=0.1)

@@ -13,8 +13,8 @@ from satsym.solvers.certificate import certify, conditions
 from satsym.solvers.certificate.flow import flow
 from satsym.solvers.certificate.jacobi import conjugate
 from satsym.solvers.certificate.segments import segments
+from satsym.solvers.cold_start.first_minimum import cold_start
 from satsym.solvers.cold_start.path_of_ends import along_ends, ending
-from satsym.solvers.cold_start.ways import cold_start
 from satsym.solvers.collocation.arclength import extremals
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
@@ -88,18 +88,18 @@ def test_extremals_are_followed_round_a_fold() -> None:
     angle = wanted.instance.final["theta"]
     assert isinstance(angle, float)
 
-    def at(share: float) -> TwoPoint:
-        return ending(wanted, {"theta": angle + 0.5 * (1.0 - share)})
+    def at(fraction: float) -> TwoPoint:
+        return ending(wanted, {"theta": angle + 0.5 * (1.0 - fraction)})
 
     found = cold_start(at(0.0), Limits(500, time.perf_counter() + SECONDS)).found
     assert found.minimum
     points = list(islice(extremals(at, found.curve), 12))
-    shares = np.array([point.share for point in points])
-    fold = int(shares.argmax())
+    fractions = np.array([point.fraction for point in points])
+    fold = int(fractions.argmax())
     assert 0 < fold < len(points) - 1
-    assert shares[fold] < 1.0
-    assert (np.diff(shares[: fold + 1]) > 0.0).all()
-    assert (np.diff(shares[fold:]) < 0.0).all()
+    assert fractions[fold] < 1.0
+    assert (np.diff(fractions[: fold + 1]) > 0.0).all()
+    assert (np.diff(fractions[fold:]) < 0.0).all()
     directions = [negative_directions(p.problem, p.curve, p.linearised.matching) for p in points]
     assert set(directions[:fold]) == {0}
     assert set(directions[fold + 1 :]) == {1}

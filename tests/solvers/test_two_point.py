@@ -225,8 +225,8 @@ def test_each_kind_of_end_is_transversal(name):
 @pytest.mark.parametrize("name", ["ends-2-given-state", "ends-4-rendezvous", "ends-5-free"])
 def test_the_free_final_time_is_the_cheapest(name):
     found = two_point.solve(instance.load(name))
-    for share in (0.5, 0.7, 0.97, 1.03, 1.4, 2.0):
-        there = replace(found.instance, tf=float(found.times[-1]) * share)
+    for fraction in (0.5, 0.7, 0.97, 1.03, 1.4, 2.0):
+        there = replace(found.instance, tf=float(found.times[-1]) * fraction)
         other = two_point.solve(there)
         assert other.status is not Status.CONVERGED or other.objective > found.objective
 

@@ -35,7 +35,7 @@ def switching(rates: Mapping[sp.Symbol, Any], cost: Any, **changes: Any) -> Prob
 
 
 CHAIN = {x1: x2, x2: u1}
-LEAST_TIME = switching(CHAIN, 1)
+MINIMUM_TIME = switching(CHAIN, 1)
 LEAST_FUEL = switching(CHAIN, sp.Abs(u1))
 FULLER = switching(CHAIN, x1**2 / 2)
 REGULATOR = switching({x1: u1}, x1**2 / 2)

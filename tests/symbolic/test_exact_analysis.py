@@ -444,7 +444,7 @@ def test_radial_thrust_alone_leaves_the_angular_momentum_as_it_is():
     assert {name: reach.rank for name, reach in found.by_output.items()} == {"y1": 3, "y2": 4}
     (mode,) = found.by_output["y1"].lost
     assert list(mode.vector) == [0, 0, 1, 0]
-    assert list(found.companion) == ["u2"]
+    assert list(found.companion_forms) == ["u2"]
 
 
 def test_the_free_motion_is_that_of_clohessy_and_wiltshire():

@@ -18,7 +18,7 @@ from satsym.analysis.classical.signals import Span, excesses, totals
 from satsym.arrays import Array
 from satsym.grid import Grid
 from satsym.instance import Instance
-from satsym.solution import Flight
+from satsym.solution import Simulation
 from satsym.solvers import iteration
 from satsym.solvers.iteration import Limits, TimeUp, watched
 from satsym.solvers.simulation.balances import balances
@@ -132,7 +132,7 @@ def loop(instance: Instance) -> Loop:
 
 
 @np.errstate(all="ignore")  # numbers out of range are a status
-def simulate(instance: Instance) -> Flight:
+def simulate(instance: Instance) -> Simulation:
     """Fly an instance under its classical law.
 
     Returns
@@ -157,10 +157,10 @@ def simulate(instance: Instance) -> Flight:
     try:
         return _simulated(instance, found, limits)
     except TimeUp:
-        return iteration.flight(instance, "classical")
+        return iteration.unsimulated(instance, "classical")
 
 
-def _simulated(instance: Instance, found: Loop, limits: Limits) -> Flight:
+def _simulated(instance: Instance, found: Loop, limits: Limits) -> Simulation:
     assert instance.tf is not None
     n = len(instance.model.spec.states)
     times = Grid.uniform(instance.t0, instance.tf, instance.solver.steps).nodes
@@ -178,7 +178,7 @@ def _simulated(instance: Instance, found: Loop, limits: Limits) -> Flight:
         span = Span(np.union1d(times, dense.ts), lambda t: seen(t)[:n], lambda t: found.control(seen(t))[None])
         metrics |= performance(span.times, span.x, found.follows, float(initial[found.follows]), found.command)
         metrics |= totals(instance, [span], found.impulse)
-    return Flight(
+    return Simulation(
         instance=instance,
         feedback="classical",
         status=status,

@@ -117,8 +117,8 @@ def _controls(times: Array, u: Array) -> Callable[[Array], Array]:
 
     def at(t: Array) -> Array:
         k = np.clip(np.searchsorted(times, t) - 1, 0, len(times) - 2)
-        share = (t - times[k]) / (times[k + 1] - times[k])
-        found: Array = u[:, k] + share * (u[:, k + 1] - u[:, k])
+        fraction = (t - times[k]) / (times[k + 1] - times[k])
+        found: Array = u[:, k] + fraction * (u[:, k + 1] - u[:, k])
         return found
 
     return at

@@ -18,7 +18,7 @@ from itertools import pairwise
 from numbers import Rational
 from typing import Any, TypeAlias
 
-from satsym.analysis.linear.polynomials import companion
+from satsym.analysis.linear.polynomials import companion_matrix
 from satsym.analysis.linear.spectrum import spectrum
 from satsym.status import BadInput
 
@@ -91,7 +91,7 @@ def _roots(coefficients: Sequence[float]) -> list[complex]:
     monic = [value / coefficients[0] for value in coefficients]
     if len(monic) == 1:
         return []
-    return [each.value for each in spectrum(companion(monic)) for _ in range(each.algebraic)]
+    return [each.value for each in spectrum(companion_matrix(monic)) for _ in range(each.algebraic)]
 
 
 def _with_roots(leading: float, roots: Sequence[complex]) -> list[Fraction]:

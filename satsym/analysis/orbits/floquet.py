@@ -48,7 +48,7 @@ class Floquet:
     """``None`` unless computed, as are all other numbers here."""
     multipliers: Complex | None
     """Its eigenvalues, shape (6,)."""
-    turning: TurningAxes | None
+    turning: HillEquations | None
     """Hill's equations, where the orbit is nearly circular."""
 
     @property
@@ -99,7 +99,7 @@ class Floquet:
     def _resolved(self) -> str:
         if self.scatter is None or self.expected_scatter is None or self.monodromy is None:
             return (
-                f"The orbit passes the centre so closely (at {self._share:.3g} of its semi-major axis) that an "
+                f"The orbit passes the centre so closely (at {self._fraction:.3g} of its semi-major axis) that an "
                 "integrated M is lost in rounding: none is shown."
             )
         return (
@@ -110,7 +110,7 @@ class Floquet:
         )
 
     @property
-    def _share(self) -> float:
+    def _fraction(self) -> float:
         assert self.orbit.semi_major_axis is not None
         return self.orbit.periapsis / self.orbit.semi_major_axis
 
@@ -129,7 +129,7 @@ def floquet(orbit: Elements) -> Floquet:
     if orbit.period is None:
         falls = orbit.conic is Conic.RECTILINEAR and (orbit.bound or float(orbit.position @ orbit.velocity) < 0.0)
         return Floquet(COLLISION if falls else NO_PERIOD, orbit, None, None, None)
-    turning = turning_axes(orbit)
+    turning = hill_equations(orbit)
     try:
         found = monodromy(orbit)
     except NotFinite:
@@ -155,7 +155,7 @@ NEARLY_CIRCULAR = 0.1
 
 
 @dataclass(frozen=True, eq=False)
-class TurningAxes:
+class HillEquations:
     """Hill's equations about the circle of an orbit's semi-major axis, with its eigenvalues and Jordan blocks.
 
     In axes that rotate with it a circle is an equilibrium, where eigenvalues do decide; over one revolution exp(A T) is
@@ -166,11 +166,11 @@ class TurningAxes:
     eigenvalues: tuple[Eigenvalue, ...]
 
 
-def turning_axes(orbit: Elements) -> TurningAxes | None:
+def hill_equations(orbit: Elements) -> HillEquations | None:
     """The linearisation in turning axes; ``None`` unless the orbit is nearly circular."""
     if orbit.mean_motion is None or orbit.semi_major_axis is None or orbit.eccentricity > NEARLY_CIRCULAR:
         return None
     model = kernels.load(MODEL)
     A, B = jacobians(model, (orbit.semi_major_axis, orbit.mean_motion), 0.0, np.zeros(len(model.spec.states)))
     found = system(A, B, states=model.spec.state_names, inputs=model.spec.control_names, name=MODEL)
-    return TurningAxes(found, spectrum(A))
+    return HillEquations(found, spectrum(A))

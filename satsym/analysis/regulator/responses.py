@@ -94,7 +94,7 @@ def _exact(design: Design, case: Instance, times: Array, steered: bool) -> Respo
     """The exact motion; by the same law with or without its effect."""
     acting = law(design.about, design.regulator)
     nothing = [0.0] * len(case.model.spec.controls)
-    flown = acting if steered else replace(acting, control=lambda t, x: nothing)
-    run = closed_loop.fly(case, flown, times, TOLERANCE, design.about.rates)
+    driven = acting if steered else replace(acting, control=lambda t, x: nothing)
+    run = closed_loop.simulate(case, driven, times, TOLERANCE, design.about.rates)
     places = [design.about.system.inputs.index(name) for name in design.regulator.system.inputs]
     return Response(run.x - np.array([design.about.at(t) for t in times]).T, run.u[places])

@@ -180,7 +180,7 @@ def poles_go_anywhere(sign: str) -> Finding:
 @predicate
 def companion_of(row: Question, coefficients: tuple[str, ...]) -> Finding:
     """Whether a printed matrix is the companion of the monic polynomial with these further coefficients."""
-    from satsym.symbolic.analysis.companion import companion
+    from satsym.symbolic.analysis.companion_form import companion_matrix as companion
 
     found = companion([exact.expression(text) for text in ("1", *coefficients)])
     rows = [[found[i, j] for j in range(found.cols)] for i in range(found.rows)]
@@ -206,7 +206,7 @@ def input_of_companion(row: Question, size: int) -> Finding:
 @predicate
 def placing_gain(row: Question, given: tuple[str, ...], wanted: tuple[str, ...]) -> Finding:
     """Whether a printed gain K carries one companion matrix into another, A + B K with B the last unit vector."""
-    from satsym.symbolic.analysis.companion import companion
+    from satsym.symbolic.analysis.companion_form import companion_matrix as companion
 
     first, last = (companion([exact.expression(t) for t in ("1", *names)]) for names in (given, wanted))
     needed = [[last[last.rows - 1, j] - first[first.rows - 1, j] for j in range(last.cols)]]

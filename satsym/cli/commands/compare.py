@@ -23,7 +23,7 @@ Examples:
   satsym compare lapan-classical lapan-minimum-time lapan-minimum-time-100s --plot
   satsym compare lapan-classical lapan-minimum-time --range    for other dampings and commands"""
 
-SHARES = (0.25, 0.5, 1.0, 2.0, 4.0)
+FACTORS = (0.25, 0.5, 1.0, 2.0, 4.0)
 """Of the instance's damping and command, in a range."""
 
 
@@ -73,4 +73,4 @@ def _range(case: Instance) -> Range:
 
     options = case.classical
     damping, command = (options.damping or 0.0, options.command) if options else (0.0, 0.0)
-    return ranged(case, [share * damping for share in SHARES], [share * command for share in SHARES])
+    return ranged(case, [factor * damping for factor in FACTORS], [factor * command for factor in FACTORS])

@@ -44,20 +44,20 @@ def simulate(subject: str, feedback: str | None, as_json: bool, out: Path | None
     """
     from satsym import instance
     from satsym.analysis.regulator.feedback import simulate as simulated
-    from satsym.report.results.objects import flight_object
-    from satsym.report.terminal.solution import flight_text, with_files
+    from satsym.report.results.objects import simulation_object
+    from satsym.report.terminal.solution import simulation_text, with_files
 
     case = instance.load(subject)
     folder = folder_for(case.name, "simulate", out, plot)
-    flight = simulated(case, feedback)
-    result = flight_object(flight)
-    saved = save(folder, result, trajectory_files(folder, flight, plot))
+    simulation = simulated(case, feedback)
+    result = simulation_object(simulation)
+    saved = save(folder, result, trajectory_files(folder, simulation, plot))
     if as_json:
         emit_json(result)
     else:
-        emit(with_files(flight_text(flight, in_colour()), saved))
-    if flight.status.answered:
+        emit(with_files(simulation_text(simulation, in_colour()), saved))
+    if simulation.status.answered:
         return ExitCode.DONE
     if as_json:  # its object has no key for the reason
-        complain(f"{flight.status.value}: {flight.message}")
+        complain(f"{simulation.status.value}: {simulation.message}")
     return ExitCode.NO_ANSWER

@@ -10,7 +10,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.report import display
 from satsym.report.plots import curves
-from satsym.solution import Flight, Iteration, Solution
+from satsym.solution import Iteration, Simulation, Solution
 from satsym.spec import ProblemSpec
 
 
@@ -18,7 +18,7 @@ from satsym.spec import ProblemSpec
 class Scene:
     """A solution or a flight, and what is drawn beside it."""
 
-    result: Solution | Flight
+    result: Solution | Simulation
     """What was solved or simulated."""
     name: str
     """What its motion is called in a legend."""
@@ -37,7 +37,7 @@ class Scene:
     for the latter, where it is the motion itself."""
 
     @classmethod
-    def of(cls, result: Solution | Flight) -> Scene:
+    def of(cls, result: Solution | Simulation) -> Scene:
         """Gather what the pictures of a result show."""
         instance, nodes = result.instance, np.asarray(result.times, dtype=float)
         spec, p = instance.model.spec, instance.parameters
@@ -89,7 +89,7 @@ class Scene:
         return self.result.history if isinstance(self.result, Solution) else ()
 
 
-def _name(result: Solution | Flight) -> str:
+def _name(result: Solution | Simulation) -> str:
     if isinstance(result, Solution):
         return "solution" if result.status.answered else "last iterate"
     if result.feedback != "none":
@@ -97,5 +97,5 @@ def _name(result: Solution | Flight) -> str:
     return "uncontrolled" if _coasts(result) else "trajectory"
 
 
-def _coasts(result: Solution | Flight) -> bool:
+def _coasts(result: Solution | Simulation) -> bool:
     return len(result.times) < 2 or not bool((np.nan_to_num(result.u) != 0.0).any())

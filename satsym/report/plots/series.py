@@ -13,7 +13,7 @@ from satsym.report.display import formula, plain
 from satsym.report.plots import curves
 from satsym.report.plots.scene import Scene
 from satsym.report.results.unit_names import cost_per, time_unit
-from satsym.solution import Flight
+from satsym.solution import Simulation
 
 ON_BOUND = 1e-7
 """How near to a bound a control is on it, relative to the width of its range."""
@@ -76,7 +76,7 @@ def states(scene: Scene) -> list[Series]:
 def controls(scene: Scene) -> list[Series]:
     """The controls with their bounds, for a ball also their norm; none of a flight without control."""
     instance, spec = scene.instance, scene.spec
-    if isinstance(scene.result, Flight) and scene.coasting:
+    if isinstance(scene.result, Simulation) and scene.coasting:
         return []
     switching = getattr(scene.result, "switching_times", ()) or ((),) * len(spec.controls)
     box = spec.control_set == "box"

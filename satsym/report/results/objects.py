@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from satsym.arrays import Array
     from satsym.instance import Instance
     from satsym.kernels import Kernels
-    from satsym.solution import Flight, Solution
+    from satsym.solution import Simulation, Solution
 
 
 SCHEMA = 1
@@ -75,17 +75,17 @@ def solution_object(solution: Solution) -> dict[str, Any]:
     }
 
 
-def flight_object(flight: Flight) -> dict[str, Any]:
+def simulation_object(simulation: Simulation) -> dict[str, Any]:
     """What ``satsym simulate --json`` prints; see :func:`solution_object`."""
-    return head("simulate", flight.instance.model.spec, flight.instance.name, flight.status) | {
-        "feedback": flight.feedback,
-        "t_final": _last(flight.times),
-        "x_final": _named(flight.instance.model.spec.state_names, map(_last, flight.x)),
+    return head("simulate", simulation.instance.model.spec, simulation.instance.name, simulation.status) | {
+        "feedback": simulation.feedback,
+        "t_final": _last(simulation.times),
+        "x_final": _named(simulation.instance.model.spec.state_names, map(_last, simulation.x)),
         "invariants": {
             name: {"initial": number(kept.initial), "drift": number(kept.drift)}
-            for name, kept in flight.invariants.items()
+            for name, kept in simulation.invariants.items()
         },
-        "metrics": {name: number(value) for name, value in flight.metrics.items()},
+        "metrics": {name: number(value) for name, value in simulation.metrics.items()},
     }
 
 

@@ -200,11 +200,11 @@ def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Search
     if around:
         yield Kind.REVOLUTIONS, around
     if instance.tf is None:
-        beside = [_lasting(instance, share * lasting, cost) for share in SHORTER_AND_LONGER]
+        beside = [_lasting(instance, fraction * lasting, cost) for fraction in SHORTER_AND_LONGER]
         yield Kind.DURATIONS, [*beside, *_at_once(two_point(instance, lasting))]
     if instance.tf is not None and _on_reference(solution):
         final: dict[str, float | Literal["reference"]] = dict.fromkeys(instance.model.spec.state_names, "reference")
-        sooner = [share * lasting for share in EARLIER]
+        sooner = [fraction * lasting for fraction in EARLIER]
         early = [two_point(replace(fixed, tf=instance.t0 + t, final=final), t) for t in sooner]
         yield Kind.EARLIER, [_cold(one, cost) for one in early]
 
@@ -253,9 +253,9 @@ def _lasting(instance: Instance, duration: float, cost: float) -> Search:
         rough = trials.cold(duration, quick=True)
         if rough is None:
             return None
-        least = trials.freed(rough)
-        if least is not None and kept(least.problem.relaxed(0.0), least.start.found.curve):
-            return _accurate(least.problem.relaxed(0.0), least.start.found.curve, cost)
+        smallest = trials.freed(rough)
+        if smallest is not None and kept(smallest.problem.relaxed(0.0), smallest.start.found.curve):
+            return _accurate(smallest.problem.relaxed(0.0), smallest.start.found.curve, cost)
         given = replace(rough.problem, relaxation=0.0)
         return _bounded(given, rough.start.found, cost, limits)
 
@@ -270,7 +270,7 @@ def _at_once(problem: TwoPoint) -> list[Search]:
 
 def _cold(problem: TwoPoint, cost: float) -> Search:
     """The minimum within the bounds to which the first ways of the cold start lead."""
-    from satsym.solvers.cold_start.ways import cold_start
+    from satsym.solvers.cold_start.first_minimum import cold_start
 
     def attempt(limits: Limits) -> Competitor | None:
         start = cold_start(problem, limits, quick=True)
@@ -341,8 +341,8 @@ def none_conceivable(solution: Solution) -> bool:
     u = instance.control_set.project(drawn)
     slopes = model.costate_rate_batch(t, x, u, solution.lam, p)
     ends = [model.terminal_gradient(float(t[-1]), tuple(row), p) for row in x.T[:20]]
-    least = model.running_cost_batch(t, x, solution.u, p) <= model.running_cost_batch(t, x, u, p)
-    return not np.any(slopes) and not np.any(ends) and bool(np.all(least))
+    smallest = model.running_cost_batch(t, x, solution.u, p) <= model.running_cost_batch(t, x, u, p)
+    return not np.any(slopes) and not np.any(ends) and bool(np.all(smallest))
 
 
 def hidden(solution: Solution) -> float:

@@ -56,8 +56,10 @@ def boundary_residual(solution: Solution, flow: Flow) -> float:
         model.boundary_jacobian(tf, x, lam, nu, instance.parameters, instance.control_set.arguments, final)
     )
     gradient = np.abs(slopes.reshape(len(residual), -1)[:-1, :n]) @ state
-    least = np.minimum(state, NEGLIGIBLE * unit_sizes(solution)[:n])
-    rows = np.where(fixed, np.maximum(state * _moved(solution, flow, state), least), np.maximum(costate, gradient[:n]))
+    smallest = np.minimum(state, NEGLIGIBLE * unit_sizes(solution)[:n])
+    rows = np.where(
+        fixed, np.maximum(state * _moved(solution, flow, state), smallest), np.maximum(costate, gradient[:n])
+    )
     found = np.abs(residual[:n]) / rows
     constraints = np.abs(residual[n:-1]) / np.maximum(gradient[n:], 1e-300)
     parts = [*found, *constraints]

@@ -144,7 +144,7 @@ def _passed(values: Array) -> NDArray[np.intp]:
     return found
 
 
-def end_curvature(frame: Array, end: EndForm) -> float:
+def second_order_at_end(frame: Array, end: EndForm) -> float:
     """The least curvature of the cost in what is free at the end, relative; infinite where nothing is.
 
     In the directions of the eigenvectors of W, the cost to come is curved by the cotangent of half a phase, if no
@@ -183,7 +183,7 @@ def _eigen(frame: Array) -> tuple[Array, Array]:
     plane = -np.linalg.solve((upper - 1j * lower).T, (upper + 1j * lower).T).T
     plane = (plane + plane.T) / 2.0
     # Real and imaginary part commute: a mixture of both has the eigenvectors of both, if it keeps phases apart.
-    mixed = [np.linalg.eigh(plane.real * np.cos(share) + plane.imag * np.sin(share))[1] for share in MIXTURES]
+    mixed = [np.linalg.eigh(plane.real * np.cos(fraction) + plane.imag * np.sin(fraction))[1] for fraction in MIXTURES]
     turned = [axes.T @ plane @ axes for axes in mixed]
     best = int(np.argmin([np.abs(one - np.diag(np.diag(one))).max() for one in turned]))
     phases = np.angle(np.diag(turned[best])) % TURN
@@ -252,6 +252,6 @@ def conjugate(solution: Solution, along: Segments | None) -> Conjugate:
     if along is None or phases is None:
         return Conjugate(resolved=False)
     time = first_passage(along.times, phases, lambda station, t: between(solution, along, station, t))
-    curvature = end_curvature(phases.frames[-1], end_form(solution, along.scale))
+    curvature = second_order_at_end(phases.frames[-1], end_form(solution, along.scale))
     passed = int(phases.passed[-1])
     return Conjugate(curvature == curvature, passed, time, phases.touching, curvature)

@@ -28,7 +28,7 @@ AMPLITUDES = (0.05, 0.01)
 SADDLE = 1e-4
 """Curvature below zero by more than this is no error of the grid's."""
 
-DEARER = 1e-9
+COST_MARGIN = 1e-9
 """Relative margin by which a neighbour may seem cheaper: its own error."""
 
 CORRECTIONS = 12
@@ -57,7 +57,7 @@ class Neighbours:
         if math.isfinite(self.curvature):
             found.append(Check("second variation on pieces of the control", float(self.curvature < -SADDLE), 0.0))
         if math.isfinite(self.margin):
-            found.append(Check(f"cheaper by: {Kind.NEIGHBOURS.value}", max(0.0, -self.margin), DEARER))
+            found.append(Check(f"cheaper by: {Kind.NEIGHBOURS.value}", max(0.0, -self.margin), COST_MARGIN))
         return found
 
 
@@ -111,7 +111,7 @@ def neighbours(solution: Solution) -> Neighbours:
     second = accessory(solution, grid)
     if second is None:
         return nothing
-    curvature, direction = second.least
+    curvature, direction = second.smallest
     if not np.isfinite(curvature):
         return Neighbours(float("inf"), curvature, Competitors(Kind.NEIGHBOURS, 0, 0, float("nan")))
     simulations, u = replace(simulations, scale=second.sizes), stated_control(solution, grid)

@@ -23,7 +23,7 @@ TURN = np.pi / 2.0
 """Largest turn within a step of the sum of all phases, see :mod:`satsym.solvers.certificate.jacobi`; less than pi, so
 that it is known from where it begins and ends."""
 
-SHARE = 0.75
+FRACTION = 0.75
 """Of the largest turn, that segments between nodes are to have."""
 
 COLUMNS = 5
@@ -122,14 +122,14 @@ def balanced(scale: Array, slopes: Array, duration: float) -> Array:
         return scale
     costates = 1.0 / (response * duration)  # so that the response is one over the duration
     unit = np.repeat([1.0, costates], n)
-    square, least = (size * unit / unit[:, None]) ** 2, 1.0 / duration**2
+    square, smallest = (size * unit / unit[:, None]) ** 2, 1.0 / duration**2
     change = np.ones(2 * n)
     for _ in range(SWEEPS):
         for move in np.concatenate([np.append(np.eye(n), -np.eye(n), axis=1), np.repeat([[0.0, 1.0]], n, axis=1)]):
             rates, power = square * (change / change[:, None]) ** 2, move - move[:, None]
             rising, falling = (float((rates * np.maximum(sign * power, 0.0)).sum()) for sign in (1.0, -1.0))
             moved = float(change[np.argmax(move)] ** 2)
-            change = change * ((falling + least / moved) / (rising + least * moved)) ** (move / 8.0)
+            change = change * ((falling + smallest / moved) / (rising + smallest * moved)) ** (move / 8.0)
     return scale * unit * change
 
 
@@ -150,7 +150,7 @@ def _nodes(solution: Solution, turned: Array) -> NDArray[np.intp]:
     times, last = solution.times, len(solution.times) - 1
     lasting = float(times[-1] - times[0])
     even = np.searchsorted(times, np.linspace(times[0], times[-1], FEWEST + 1)[1:-1])
-    dense = np.searchsorted(turned, np.arange(SHARE * TURN, turned[-1], SHARE * TURN)) - 1
+    dense = np.searchsorted(turned, np.arange(FRACTION * TURN, turned[-1], FRACTION * TURN)) - 1
     switches = np.array([t for own in solution.switching_times for t in own])
     met = [int(k) for t in switches if np.abs(times[k := int(np.abs(times - t).argmin())] - t) <= SAME * lasting]
     return np.unique(np.clip(np.concatenate([[0, last], even, dense, met]), 0, last).astype(np.intp))

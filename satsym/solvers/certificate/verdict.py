@@ -22,7 +22,7 @@ from satsym.status import Verdict
 RESIDUAL, DEFECT, STATIONARY, DRIFT, COST = 1e-9, 1e-7, 1e-8, 1e-9, 1e-8
 """Largest boundary residual, defect, violation of stationarity, change of H and error of the stated cost."""
 
-DEARER = 1e-9
+COST_MARGIN = 1e-9
 """Relative margin by which a competitor may seem cheaper: its own error."""
 
 
@@ -95,7 +95,7 @@ def _judged(solution: Solution, deadline: float, seed: int) -> tuple[Certificate
 
 def _cheaper(found: Compared) -> Check:
     """That no competitor of a kind is cheaper."""
-    return Check(f"cheaper by: {found.summary.kind.value}", max(0.0, -found.margin), DEARER)
+    return Check(f"cheaper by: {found.summary.kind.value}", max(0.0, -found.margin), COST_MARGIN)
 
 
 def _first_order(solution: Solution, along: Segments | None) -> list[Check]:

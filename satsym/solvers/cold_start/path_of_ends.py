@@ -35,10 +35,10 @@ def along_ends(problem: TwoPoint, limits: Limits, solve: Callable[[TwoPoint], At
     ends = free.curve.nodes[angles, -1] * problem.scale.state[angles]
     wanted = straight(problem)[angles, 1] * problem.scale.state[angles]
 
-    def at(share: float) -> TwoPoint:
-        if share == 1.0:
+    def at(fraction: float) -> TwoPoint:
+        if fraction == 1.0:
             return problem
-        between = ends + (wanted - ends) * share
+        between = ends + (wanted - ends) * fraction
         return ending(problem, dict(zip(names, between.tolist(), strict=True)))
 
     found = followed(at, free.curve, limits, Origin.ENDS.value)

@@ -45,8 +45,8 @@ def along_problems(problem: TwoPoint, between: Between, limits: Limits) -> Attem
         return None
     away, home = coasting(np.zeros(1))[:, 0], problem.initial
 
-    def path(share: float) -> TwoPoint:
-        return problem.starting_at(between(away, home, share))
+    def path(fraction: float) -> TwoPoint:
+        return problem.starting_at(between(away, home, fraction))
 
     return followed(problem, path, paths.curve(problem, coasting), limits)
 
@@ -96,17 +96,17 @@ def followed(problem: TwoPoint, path: Callable[[float], TwoPoint], curve: Curve,
     return Attempt(curve, Reason.PATH_ENDS, steps + below.iterations, float("inf"), facts=facts)
 
 
-def geometric(a: Array, b: Array, share: float) -> Array:
+def geometric(a: Array, b: Array, fraction: float) -> Array:
     """From one state to another: geometrically where both have the same sign, else straight."""
     same = a * b > 0.0
     ratio = np.where(same, b, 1.0) / np.where(same, a, 1.0)
-    found: Array = np.where(same, a * np.abs(ratio) ** share, a + (b - a) * share)
+    found: Array = np.where(same, a * np.abs(ratio) ** fraction, a + (b - a) * fraction)
     return found
 
 
-def straight(a: Array, b: Array, share: float) -> Array:
+def straight(a: Array, b: Array, fraction: float) -> Array:
     """From one state to another on the straight line."""
-    return a + (b - a) * share
+    return a + (b - a) * fraction
 
 
 def _predicted(problem: TwoPoint, curve: Curve, tangent: Step | None, move: float) -> Curve:
@@ -153,4 +153,4 @@ def fading(problem: TwoPoint, spiral: Spiral) -> Callable[[float], TwoPoint]:
         z = np.concatenate([spiral.path(tau), np.zeros((problem.states, len(tau)))])
         return its - problem.rates(tau, z, problem.theta)[: problem.states]
 
-    return lambda share: problem.forced(lacking, 1.0 - share)
+    return lambda fraction: problem.forced(lacking, 1.0 - fraction)

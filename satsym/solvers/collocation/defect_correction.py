@@ -40,7 +40,7 @@ FAINTEST = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Sharpened:
+class Corrected:
     """A curve after its defect corrections."""
 
     curve: Curve
@@ -52,7 +52,7 @@ class Sharpened:
     """The latter interval by interval, shape (N,)."""
 
 
-def sharpen(curve: Curve, linearised: Linearised, tolerance: float) -> Sharpened | None:
+def correct_defects(curve: Curve, linearised: Linearised, tolerance: float) -> Corrected | None:
     """Correct a solution of collocation equations until its error is below a tolerance, as far as that goes.
 
     Parameters
@@ -90,7 +90,7 @@ def sharpen(curve: Curve, linearised: Linearised, tolerance: float) -> Sharpened
         if size < max(CONTRACTION * tolerance, ROUNDING):
             break
     omitted = _omitted(fine, small)
-    return Sharpened(_without_rounding(system, fine), max(size, float(omitted.max())), omitted)
+    return Corrected(_without_rounding(system, fine), max(size, float(omitted.max())), omitted)
 
 
 def _faint(linearised: Linearised) -> float:

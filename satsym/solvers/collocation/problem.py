@@ -118,9 +118,9 @@ class TwoPoint:
         """The same problem with bounds of another softness."""
         return replace(self, softness=softness)
 
-    def forced(self, forcing: Callable[[Array], Array], share: float) -> TwoPoint:
+    def forced(self, forcing: Callable[[Array], Array], fraction: float) -> TwoPoint:
         """The same problem with a share of a forcing."""
-        return replace(self, forcing=(lambda tau: share * forcing(tau)) if share else None)
+        return replace(self, forcing=(lambda tau: fraction * forcing(tau)) if fraction else None)
 
     def elapsed(self, theta: Array) -> float:
         """The duration."""

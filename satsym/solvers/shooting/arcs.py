@@ -138,12 +138,12 @@ class Arcs:
 
     def _flight(self) -> Any:
         """What compiled functions say: ends, cost and transition in the model's units."""
-        from satsym.solvers.shooting.compiled import flight
+        from satsym.solvers.shooting.compiled import integrator
 
         problem, instance = self.problem, self.problem.instance
         times = instance.t0 + problem.elapsed(self.theta) * self.mesh
         nodes = np.ascontiguousarray((self.nodes * problem.scale.both).T)
-        return flight(instance.model)(times, nodes, self.steps, instance.parameters, problem.control_set.arguments)
+        return integrator(instance.model)(times, nodes, self.steps, instance.parameters, problem.control_set.arguments)
 
     def _slope(self, tau: Array, values: Array) -> Array:
         """Rates by tau, shape (2n, M)."""

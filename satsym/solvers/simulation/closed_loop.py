@@ -1,4 +1,4 @@
-"""The motion under a control law, which may have kinks: SciPy's DOP853, by small tolerances."""
+"""The motion under a control law, which may have corners: SciPy's DOP853, by small tolerances."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Run:
     """Whether a state that must be positive vanished and so ended it."""
 
 
-def fly(
+def simulate(
     instance: Instance,
     law: Law,
     nodes: Array,

@@ -55,7 +55,7 @@ class Relaxation:
     problem: SweepProblem
     start: Forward
     tolerance: float
-    share: float
+    fraction: float
 
     def init(self) -> Relaxed:
         """Sweep the starting control."""
@@ -68,7 +68,7 @@ class Relaxation:
 
     def step(self, state: Relaxed) -> Relaxed:
         """Move a share of the way to the control law."""
-        motion = forward(self.problem, state.sweep.u + self.share * state.sweep.step)
+        motion = forward(self.problem, state.sweep.u + self.fraction * state.sweep.step)
         if not motion.usable:
             return replace(state, broken=True)
         sweep = backward(self.problem, motion)
@@ -81,9 +81,9 @@ class Relaxation:
         if state.sweep.residual <= self.tolerance:
             return Status.CONVERGED, "control and control law agree"
         if state.broken or _distance(state.sweep) > GROWTH * state.closest:
-            return Status.NOT_CONVERGED, f"relaxation {self.share:g} diverges; {self._advice()}"
+            return Status.NOT_CONVERGED, f"relaxation {self.fraction:g} diverges; {self._advice()}"
         if state.since >= PATIENCE:
-            return Status.NOT_CONVERGED, f"relaxation {self.share:g} goes round in circles; {self._advice()}"
+            return Status.NOT_CONVERGED, f"relaxation {self.fraction:g} goes round in circles; {self._advice()}"
         return None
 
     def _advice(self) -> str:

@@ -46,6 +46,6 @@ def answered(instance: Instance, exact: Exact, history: tuple[Iteration, ...], b
 
 def without(instance: Instance, stopped: Stopped, history: tuple[Iteration, ...], began: float) -> Solution:
     """Why there is no answer."""
-    nothing = iteration.solution(instance, "bang-bang", time.perf_counter() - began)
+    nothing = iteration.unsolved(instance, "bang-bang", time.perf_counter() - began)
     message, done = stopped.message, len(history)
     return replace(nothing, status=stopped.status, message=message, iterations=done, history=history)

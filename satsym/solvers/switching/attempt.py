@@ -45,7 +45,7 @@ class Origin(Enum):
     EFFORT = "the signs of minimum effort"
     DRAWN = "switching times that were drawn"
     SMOOTHED = "the regularised problem, smoothed by {:.1e}"
-    LEAST_TIME = "the structure of the minimum time"
+    MINIMUM_TIME = "the structure of the minimum time"
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from satsym.symbolic.analysis.companion import CompanionForm, companion, companion_form
+from satsym.symbolic.analysis.companion_form import CompanionForm, companion_form, companion_matrix
 from satsym.symbolic.analysis.exponential import matrix_exponential
 from satsym.symbolic.analysis.field import NotExact
 from satsym.symbolic.analysis.jordan import JordanBlock, JordanForm, jordan_form
@@ -35,8 +35,8 @@ __all__ = [
     "Spectrum",
     "Stability",
     "analyse",
-    "companion",
     "companion_form",
+    "companion_matrix",
     "controllability",
     "jordan_form",
     "linear_system",
@@ -71,7 +71,7 @@ class Analysis:
     observability: Reach | None
     by_output: Mapping[str, Reach]
     """Likewise for outputs."""
-    companion: Mapping[str, CompanionForm]
+    companion_forms: Mapping[str, CompanionForm]
     """For each input that reaches everything alone: the companion form."""
     assumed: tuple[sp.Expr, ...]
     """What is taken not to vanish, where that is not certain."""

@@ -14,7 +14,7 @@ from satsym.symbolic.algebra import constants_of, tidy, total_derivative
 from satsym.symbolic.checks import Point, compare, identity, numeric
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
 from satsym.symbolic.dimension_algebra import PLAIN, Dimension, over, product
-from satsym.symbolic.kepler import attraction, conic
+from satsym.symbolic.kepler import central_force, conic
 from satsym.symbolic.kepler import points as point_steps
 from satsym.symbolic.kinds import stated_as
 from satsym.symbolic.model import Line, MaybeStep, Paragraph, Particle, Problem, Requirement, symbols_of
@@ -40,12 +40,12 @@ class Newton(Particle):
         """The motion, what it keeps, and what is special where a centre attracts."""
         return (
             *self.motion_steps(),
-            attraction.central_attraction,
+            central_force.central_force,
             motion.reference,
             motion.conserved,
             conic.conic,
             motion.linearisation,
-            attraction.gravity_gradient,
+            central_force.gravity_gradient,
             point_steps.no_equilibrium,
             point_steps.point_spectrum,
         )

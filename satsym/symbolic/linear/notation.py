@@ -29,7 +29,7 @@ ALGEBRAIC, GEOMETRIC = sp.Symbol("algebraic_multiplicities"), sp.Symbol("geometr
 JORDAN, JORDAN_BASIS = sp.Symbol("jordan_form"), sp.Symbol("jordan_basis")
 TRANSITION = sp.Symbol("transition_matrix")
 ROUTH, SIGN_CHANGES = sp.Symbol("routh_array"), sp.Symbol("sign_changes")
-COMPANION = sp.Symbol("companion_matrix")
+COMPANION_FORM = sp.Symbol("companion_matrix")
 COUPLING = sp.Symbol("control_coupling")
 GAIN = sp.Symbol("feedback_gain")
 HAMILTONIAN_MATRIX = sp.Symbol("hamiltonian_matrix")
@@ -43,7 +43,7 @@ FIXED = {
     TRANSITION: "e^{At}",
     ROUTH: r"\mathcal{R}",
     SIGN_CHANGES: r"n_{+}",
-    COMPANION: "A_c",
+    COMPANION_FORM: "A_c",
     COUPLING: r"S = B R^{-1} B^{\mathsf{T}}",
     GAIN: r"K = R^{-1} B^{\mathsf{T}} P",
     HAMILTONIAN_MATRIX: "M",

@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 import sympy as sp
 
-from satsym.symbolic.analysis.companion import companion_form as companion_of
+from satsym.symbolic.analysis.companion_form import companion_form as companion_of
 from satsym.symbolic.analysis.spectrum import Spectrum, spectrum
 from satsym.symbolic.analysis.structure import KalmanForm, Reach
 from satsym.symbolic.analysis.structure import controllability as controllability_of
@@ -42,7 +42,7 @@ def companion_form(so_far: Derivation) -> Step | None:
     if not found:
         return None
     matrix = next(iter(found.values())).matrix
-    equations = [Equation("matrix", ln.COMPANION, matrix)]
+    equations = [Equation("matrix", ln.COMPANION_FORM, matrix)]
     equations += [
         Equation(f"basis_{name}", sp.Symbol(f"controllability_companion_basis_{name}"), form.basis)
         for name, form in found.items()

@@ -11,7 +11,7 @@ from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import definitions_of, tidy, total_derivative
 from satsym.symbolic.checks import Point, compare, first_order_at_zero, identity, numeric, partial
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
-from satsym.symbolic.kepler.attraction import inertial_velocity, uncontrolled_force
+from satsym.symbolic.kepler.central_force import inertial_velocity, uncontrolled_force
 from satsym.symbolic.model import Particle, symbols_of, t
 from satsym.symbolic.motion.potential import potential
 

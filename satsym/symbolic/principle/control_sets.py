@@ -97,9 +97,9 @@ def admissible(
     found = []
     for _ in range(count):
         if control_set == "box":
-            share = [rng.choice((0.0, 1.0, rng.random())) for _ in range(m)]
+            fraction = [rng.choice((0.0, 1.0, rng.random())) for _ in range(m)]
             found.append(
-                [point[limits[i]] + s * (point[limits[m + i]] - point[limits[i]]) for i, s in enumerate(share)]
+                [point[limits[i]] + s * (point[limits[m + i]] - point[limits[i]]) for i, s in enumerate(fraction)]
             )
         else:
             direction = [mp.mpf(rng.gauss(0, 1)) for _ in range(m)]

@@ -16,12 +16,12 @@ UNSWITCHED = sp.Symbol("H_0", real=True)
 SMOOTHING = sp.Symbol("smoothing", positive=True)
 """The weight of u^2 / 2 in the regularised problem."""
 
-SHARE = sp.Symbol("magnitude_share", real=True)
+MAGNITUDE_FACTOR = sp.Symbol("magnitude_share", real=True)
 """What multiplies the weights of magnitudes in the regularised problem."""
 
-COMPANION = (
+REGULARISED = (
     Variable(SMOOTHING.name, r"\varepsilon", meaning="weight of u^2 / 2 in the regularised problem", positive=True),
-    Variable(SHARE.name, r"\kappa", meaning="factor of the weights of magnitudes in it"),
+    Variable(MAGNITUDE_FACTOR.name, r"\kappa", meaning="factor of the weights of magnitudes in it"),
 )
 """What follows the bounds of the box in the ``bounds`` argument of the kernels of a switching problem."""
 
@@ -107,7 +107,7 @@ def is_affine(expressions: Sequence[sp.Expr], controls: Sequence[sp.Symbol]) -> 
 
 def constants(model: Model) -> list[str]:
     """Names of what stands in front of costates and controls."""
-    return [SMOOTHING.name, SHARE.name, *(weight_of(u).name for u in symbols_of(model.controls))]
+    return [SMOOTHING.name, MAGNITUDE_FACTOR.name, *(weight_of(u).name for u in symbols_of(model.controls))]
 
 
 BRANCHES = ("", "_positive", "_negative")
@@ -126,7 +126,7 @@ def names(problem: Problem) -> dict[str, str]:
     latex = {u: v.latex for u, v in zip(controls, model.controls, strict=True)}
     sigma = {u: rf"\sigma_{{{tex}}}" if len(controls) > 1 else r"\sigma" for u, tex in latex.items()}
     weight = {u: rf"w_{{{tex}}}" if len(controls) > 1 else "w" for u, tex in latex.items()}
-    found = {UNSWITCHED.name: "H_0", SMOOTHED.name: r"H_\varepsilon"} | {v.symbol: v.latex for v in COMPANION}
+    found = {UNSWITCHED.name: "H_0", SMOOTHED.name: r"H_\varepsilon"} | {v.symbol: v.latex for v in REGULARISED}
     found |= {ON_CURVE.name: r"x_{\mathrm{c}}", BEYOND.name: r"\Delta", SIDE.name: "s"}
     found |= {TRANSITION.name: "T", FIRST_ARC.name: "T_1"}
     marks = dict(zip(BRANCHES, ("", "+", "-"), strict=True))
@@ -171,7 +171,7 @@ def declare(known: dict[str, Dimension | None], problem: Problem, running: Dimen
     if not names(problem):
         return
     controls = symbols_of(problem.model.controls)
-    known[SHARE.name] = PLAIN
+    known[MAGNITUDE_FACTOR.name] = PLAIN
     known[UNSWITCHED.name] = known[SMOOTHED.name] = running
     for u in controls:
         known[switching_of(u).name] = known[weight_of(u).name] = over(running, known[u.name])

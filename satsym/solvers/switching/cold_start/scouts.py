@@ -20,7 +20,7 @@ from satsym.solvers.simulation.extrapolation import integrate
 from satsym.solvers.switching.cold_start.plans import Plans, Scout
 from satsym.solvers.switching.structure import LOWER, UPPER
 
-LEAST, MOST, QUICK = 6, 24, 2.5
+FEWEST, MOST, QUICK = 6, 24, 2.5
 """Runge-Kutta steps of an arc, and how many for each unit of the motion's quickest rate times its length."""
 
 ROUNDS, LAST = 24, 7
@@ -179,16 +179,16 @@ class _Steps:
             return self._fixed(rates, t, y, length)
         size = np.maximum(np.abs(y).max(axis=1, keepdims=True), 1e-300) + 0.0 * y
 
-        def within(share: float, flat: Array) -> Array:
+        def within(fraction: float, flat: Array) -> Array:
             self.limits.spend(len(t))
-            return np.asarray((length * rates(t + share * length, flat.reshape(y.shape))).ravel())
+            return np.asarray((length * rates(t + fraction * length, flat.reshape(y.shape))).ravel())
 
         end = integrate(within, np.array([0.0, 1.0]), y.ravel(), TOLERANCE, size.ravel(), 1.0)[0].end
         return end.reshape(y.shape)
 
     def _fixed(self, rates: Callable[[Array, Array], Array], t: Array, y: Array, length: Array) -> Array:
         longest = float(np.max(length, initial=0.0, where=np.isfinite(length)))
-        count = int(min(max(LEAST, np.ceil(QUICK * self.quickest * longest)), MOST))
+        count = int(min(max(FEWEST, np.ceil(QUICK * self.quickest * longest)), MOST))
         self.limits.spend(count * len(length))
         h = length / count
         for _ in range(count):

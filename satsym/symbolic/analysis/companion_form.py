@@ -22,7 +22,7 @@ class CompanionForm:
     """T."""
 
 
-def companion(coefficients: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
+def companion_matrix(coefficients: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
     """The companion matrix of a monic polynomial, given highest power first: ones above the diagonal, then -a_k."""
     size = len(coefficients) - 1
     last = [-c for c in reversed(list(coefficients)[1:])]
@@ -47,4 +47,4 @@ def companion_form(of: Spectrum, b: sp.MatrixBase) -> CompanionForm | None:
     basis = DomainMatrix.hstack(*reversed(columns))
     if basis.rank() < a.rows:
         return None
-    return CompanionForm(companion(of.coefficients), field.matrix(basis))
+    return CompanionForm(companion_matrix(of.coefficients), field.matrix(basis))

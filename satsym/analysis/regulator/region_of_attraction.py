@@ -31,7 +31,7 @@ MOST_STEPS = 20000
 
 
 @dataclass(frozen=True)
-class Basin:
+class RegionOfAttraction:
     """Deviations from which the motion returns."""
 
     extents: Mapping[str, tuple[float, float]]
@@ -43,7 +43,7 @@ class Basin:
     """How long each had to do so."""
 
 
-def basin(about: Linearisation, found: Regulator, case: Instance | None = None) -> Basin:
+def region_of_attraction(about: Linearisation, found: Regulator, case: Instance | None = None) -> RegionOfAttraction:
     """Estimate the basin of attraction of a linear law.
 
     Parameters
@@ -63,7 +63,7 @@ def basin(about: Linearisation, found: Regulator, case: Instance | None = None) 
     n, names = len(about.point), about.system.states
     time = PATIENCE / float(-found.eigenvalues.real.max())
     if not about.nonlinear and (case is None or not _bounded(case)):
-        return Basin(dict.fromkeys(names, (-np.inf, np.inf)), np.inf, time)
+        return RegionOfAttraction(dict.fromkeys(names, (-np.inf, np.inf)), np.inf, time)
     directions = _directions(found.P, n)
     size = np.sqrt(found.cost(np.abs(about.point) + scaled(about.system).states))
     safe, unsafe = np.zeros(directions.shape[1]), np.full(directions.shape[1], np.inf)
@@ -74,12 +74,12 @@ def basin(about: Linearisation, found: Regulator, case: Instance | None = None) 
         column = np.arange(len(first))
         safe = np.where(first > 0, tried[first - 1, column], safe)
         unsafe = np.where(first < len(tried), tried[np.minimum(first, len(tried) - 1), column], unsafe)
-        share = np.arange(1, REFINED + 1)[:, None] / (REFINED + 1)
-        tried = safe + share * np.where(np.isfinite(unsafe), unsafe - safe, 0.0)
+        fraction = np.arange(1, REFINED + 1)[:, None] / (REFINED + 1)
+        tried = safe + fraction * np.where(np.isfinite(unsafe), unsafe - safe, 0.0)
     reach = np.where(np.isfinite(unsafe), safe, np.inf)
     alone = reach[: 2 * n] / np.sqrt(np.repeat(np.diag(found.P), 2))
     extents = {name: (-float(alone[2 * i + 1]), float(alone[2 * i])) for i, name in enumerate(names)}
-    return Basin(extents, float(reach.min() ** 2), time)
+    return RegionOfAttraction(extents, float(reach.min() ** 2), time)
 
 
 def _directions(P: Array, n: int) -> Array:
