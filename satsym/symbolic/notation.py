@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import sympy as sp
 
 from satsym.symbolic.model import Problem
@@ -22,6 +24,11 @@ ENERGY, ANGULAR_MOMENTUM = sp.Symbol("energy", real=True), sp.Symbol("angular_mo
 JACOBI_INTEGRAL = sp.Symbol("jacobi_integral", real=True)
 AXES = ("x", "y", "z")
 """Names of inertial components, in the order of the position vector."""
+
+
+def named(pattern: str) -> Callable[[sp.Symbol], sp.Symbol]:
+    """A family of symbols, one for each other symbol, by a pattern of names."""
+    return lambda of: sp.Symbol(pattern.format(of.name), real=True)
 
 
 def component_of_angular_momentum(axis: str) -> sp.Symbol:
@@ -66,44 +73,22 @@ def symbol(name: str, latex: str, notation: dict[str, str]) -> sp.Symbol:
     return sp.Symbol(name, real=True)
 
 
-def rate_of(state: sp.Symbol) -> sp.Symbol:
-    """The symbol for dx/dt."""
-    return sp.Symbol(f"d_{state.name}", real=True)
-
-
-def costate_of(state: sp.Symbol) -> sp.Symbol:
-    """The symbol for the costate of a state."""
-    return sp.Symbol(f"lambda_{state.name}", real=True)
-
-
-def acceleration_of(coordinate: sp.Symbol) -> sp.Symbol:
-    """The symbol for the second time derivative of a coordinate."""
-    return sp.Symbol(f"{coordinate.name}_ddot", real=True)
-
-
-def optimal(control: sp.Symbol) -> sp.Symbol:
-    """The symbol for the value of a control that minimises H."""
-    return sp.Symbol(f"{control.name}_star", real=True)
-
-
-def unconstrained(control: sp.Symbol) -> sp.Symbol:
-    """The symbol for the value of a control at which H_u vanishes."""
-    return sp.Symbol(f"{control.name}_hat", real=True)
-
-
-def given(state: sp.Symbol) -> sp.Symbol:
-    """One where the final value of a state is given, else zero."""
-    return sp.Symbol(f"given_{state.name}", real=True)
-
-
-def on_reference(state: sp.Symbol) -> sp.Symbol:
-    """One where a state ends on its reference, else zero."""
-    return sp.Symbol(f"on_reference_{state.name}", real=True)
-
-
-def target(state: sp.Symbol) -> sp.Symbol:
-    """The given final value of a state."""
-    return sp.Symbol(f"target_{state.name}", real=True)
+rate_of = named("d_{}")
+"""The symbol for dx/dt."""
+costate_of = named("lambda_{}")
+"""The symbol for the costate of a state."""
+acceleration_of = named("{}_ddot")
+"""The symbol for the second time derivative of a coordinate."""
+optimal = named("{}_star")
+"""The symbol for the value of a control that minimises H."""
+unconstrained = named("{}_hat")
+"""The symbol for the value of a control at which H_u vanishes."""
+given = named("given_{}")
+"""One where the final value of a state is given, else zero."""
+on_reference = named("on_reference_{}")
+"""One where a state ends on its reference, else zero."""
+target = named("target_{}")
+"""The given final value of a state."""
 
 
 def multipliers(problem: Problem) -> tuple[sp.Symbol, ...]:
@@ -111,16 +96,9 @@ def multipliers(problem: Problem) -> tuple[sp.Symbol, ...]:
     return tuple(sp.Symbol(f"nu_{k}", real=True) for k in range(1, len(problem.terminal_constraints) + 1))
 
 
-def residual_of(symbol: sp.Symbol) -> sp.Symbol:
-    """The symbol for the boundary residual of a state, a terminal constraint or the final time."""
-    return sp.Symbol(f"residual_{symbol.name}", real=True)
-
-
-def initial(state: sp.Symbol) -> sp.Symbol:
-    """The symbol for the given initial value of a state."""
-    return sp.Symbol(f"{state.name}_0", real=True)
-
-
-def answer_of(variable: sp.Symbol) -> sp.Symbol:
-    """The symbol for a state or a control as a function of time."""
-    return sp.Symbol(f"{variable.name}_answer", real=True)
+residual_of = named("residual_{}")
+"""The symbol for the boundary residual of a state, a terminal constraint or the final time."""
+initial = named("{}_0")
+"""The symbol for the given initial value of a state."""
+answer_of = named("{}_answer")
+"""The symbol for a state or a control as a function of time."""

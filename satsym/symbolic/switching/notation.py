@@ -9,6 +9,7 @@ import sympy as sp
 from satsym.spec import Variable
 from satsym.symbolic.dimension_algebra import PLAIN, Dimension, over
 from satsym.symbolic.model import Model, Problem, symbols_of
+from satsym.symbolic.notation import named
 
 UNSWITCHED = sp.Symbol("H_0", real=True)
 """The part of H without controls."""
@@ -39,11 +40,8 @@ SIDE = sp.Symbol("side_of_switching_curve", real=True)
 
 TRANSITION, FIRST_ARC = sp.Symbol("transition_time", positive=True), sp.Symbol("first_arc_time", positive=True)
 """Durations of a change of position from rest to rest in least time, and of its first arc."""
-
-
-def switching_of(control: sp.Symbol) -> sp.Symbol:
-    """The switching function of a control: what multiplies it in H."""
-    return sp.Symbol(f"switching_{control.name}", real=True)
+switching_of = named("switching_{}")
+"""The switching function of a control: what multiplies it in H."""
 
 
 def derivative_of(control: sp.Symbol, order: int, suffix: str = "") -> sp.Symbol:
@@ -51,14 +49,10 @@ def derivative_of(control: sp.Symbol, order: int, suffix: str = "") -> sp.Symbol
     return sp.Symbol(f"switching_{control.name}{suffix}_{order}", real=True)
 
 
-def weight_of(control: sp.Symbol) -> sp.Symbol:
-    """The weight of a control's magnitude in the cost."""
-    return sp.Symbol(f"magnitude_weight_{control.name}", real=True)
-
-
-def smoothed(control: sp.Symbol) -> sp.Symbol:
-    """The control of the smoothed companion."""
-    return sp.Symbol(f"{control.name}_smoothed", real=True)
+weight_of = named("magnitude_weight_{}")
+"""The weight of a control's magnitude in the cost."""
+smoothed = named("{}_smoothed")
+"""The control of the smoothed companion."""
 
 
 def singular(control: sp.Symbol, suffix: str = "") -> sp.Symbol:
@@ -71,9 +65,8 @@ def kelley(control: sp.Symbol, suffix: str = "") -> sp.Symbol:
     return sp.Symbol(f"kelley_{control.name}{suffix}", real=True)
 
 
-def drift_bracket(control: sp.Symbol) -> sp.Symbol:
-    """The Poisson bracket of H_0 and the switching function."""
-    return sp.Symbol(f"bracket_H_0_{control.name}", real=True)
+drift_bracket = named("bracket_H_0_{}")
+"""The Poisson bracket of H_0 and the switching function."""
 
 
 def bracket(by: sp.Symbol, control: sp.Symbol) -> sp.Symbol:
