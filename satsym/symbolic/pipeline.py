@@ -143,6 +143,6 @@ def _taken(
     for step_function in steps:
         step = step_function(derivation)
         if step is not None:
-            derivation = derivation.extended(replace(step, checks=(*step.checks, dimensions.agreement(known, step))))
+            derivation = derivation.extended(step, dimensions.agreement(known, step))
             known = dimensions.extended(known, step)
     return derivation, known

@@ -212,7 +212,7 @@ def test_files_and_pictures_go_where_they_are_asked_for(run: Run, tmp_path: Path
     assert code == 0
     assert sorted(path.name for path in (tmp_path / "results/saddle/analyse").iterdir()) == [
         "eigenvalues.png",
-        "systems.png",
+        "phase.png",
         "result.json",
     ]
 
