@@ -62,7 +62,7 @@ def region_of_attraction(about: Linearisation, found: Regulator, case: Instance 
         raise BadInput("a region of attraction needs an infinite horizon; leave out [lqr] horizon")
     n, names = len(about.point), about.system.states
     time = PATIENCE / float(-found.eigenvalues.real.max())
-    if not about.nonlinear and (case is None or not _bounded(case)):
+    if not about.nonlinear and (case is None or not case.control_set.bounded):
         return RegionOfAttraction(dict.fromkeys(names, (-np.inf, np.inf)), np.inf, time)
     directions = _directions(found.P, n)
     size = np.sqrt(found.cost(np.abs(about.point) + scaled(about.system).states))
@@ -90,10 +90,6 @@ def _directions(P: Array, n: int) -> Array:
     evenly = np.linalg.solve(np.linalg.cholesky(P * np.outer(unit, unit)).T, drawn) * unit[:, None]
     found = np.hstack([alone, evenly])
     return np.asarray(found / np.sqrt(np.einsum("im,ij,jm->m", found, P, found)))
-
-
-def _bounded(case: Instance) -> bool:
-    return case.control_set.bounded
 
 
 def _returns(

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from satsym.cli.options import json_option, place_option
-from satsym.cli.output import emit, emit_json, live
+from satsym.cli.output import answer, emit, emit_json, live
 from satsym.status import ExitCode
 
 EXAMPLES = """\b
@@ -54,8 +54,9 @@ def audit(
         from satsym.report.results.files import write_text
 
         write_text(latex, render(read, judged))
-    if as_json:
-        emit_json(reporting.audit_object([row for rows in judged.values() for row in rows]))
-    else:
-        emit(reporting.audit_text(read, judged))
+    answer(
+        as_json,
+        reporting.audit_object([row for rows in judged.values() for row in rows]),
+        lambda: reporting.audit_text(read, judged),
+    )
     return ExitCode.DONE

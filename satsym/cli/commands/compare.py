@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from satsym.cli.options import json_option, out_option, plot_option
-from satsym.cli.output import complain, emit, emit_json
+from satsym.cli.output import answer, complain
 from satsym.cli.saving import folder_for, save
 from satsym.status import ExitCode
 
@@ -55,10 +55,7 @@ def compare(subjects: tuple[str, ...], as_json: bool, ranged: bool, out: Path | 
 
         pages = plots.pictures(cases)
     saved = save(folder, result, pages)
-    if as_json:
-        emit_json(result)
-    else:
-        emit(with_files(comparison_text(cases, over), saved))
+    answer(as_json, result, lambda: with_files(comparison_text(cases, over), saved))
     for case in cases:
         if not case.answered:
             complain(f"{case.instance.name}: {case.message}")

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from satsym.cli.options import json_option, plot_option, subject_argument, trajectory_option
-from satsym.cli.output import complain, emit, emit_json, in_colour
+from satsym.cli.output import answer, complain, in_colour
 from satsym.cli.saving import folder_for, save, trajectory_files
 from satsym.status import ExitCode
 
@@ -52,10 +52,7 @@ def simulate(subject: str, feedback: str | None, as_json: bool, out: Path | None
     simulation = simulated(case, feedback)
     result = simulation_object(simulation)
     saved = save(folder, result, trajectory_files(folder, simulation, plot))
-    if as_json:
-        emit_json(result)
-    else:
-        emit(with_files(simulation_text(simulation, in_colour()), saved))
+    answer(as_json, result, lambda: with_files(simulation_text(simulation, in_colour()), saved))
     if simulation.status.answered:
         return ExitCode.DONE
     if as_json:  # its object has no key for the reason

@@ -52,12 +52,11 @@ def figures(result: Solution | Simulation) -> dict[str, Figure]:
 
 def _pages(result: Solution | Simulation) -> Iterator[tuple[str, Figure]]:
     from satsym.report.plots import pages
-    from satsym.report.plots.convergence import convergence
     from satsym.report.plots.scene import Scene
 
     scene = Scene.of(result)
     motion = (pages.orbit, pages.states, pages.controls, pages.costates, pages.invariants)
-    for picture in (pages.overview, *motion, convergence):
+    for picture in (pages.overview, *motion, pages.convergence):
         page = picture(scene)
         if page is not None:
             yield picture.__name__, page
