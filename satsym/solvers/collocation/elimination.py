@@ -162,7 +162,9 @@ def _band(half: int, count: int) -> tuple[Any, ...]:
 
 
 class Matching:
-    """The system, factored.
+    """Newton's linear system for the nodes: a given start, intervals that must meet, residuals at the end; factored.
+
+    Extra unknowns, such as a free duration, are bordered: one more right-hand side each.
 
     Attributes
     ----------

@@ -183,7 +183,11 @@ ON_SPHERE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Tangent:
-    """The free directions."""
+    """In which directions the controls of a sweep are free, seen from where they are and where the law wants them.
+
+    Within a box a control is free or saturated. On a ball a control that is saturated can still turn: it moves on a
+    sphere, so gradients count only as far as they are tangential, and the curvature of the sphere adds to the Hessian.
+    """
 
     moves: NDArray[np.bool_]
     """Where a control moves along them; elsewhere a bound holds it. Shape (m, M)."""

@@ -130,7 +130,13 @@ ROUNDING = 1e-12
 
 
 def convex(solution: Solution) -> bool:
-    """Whether all states that were drawn show convexity; only asked where the final time is given."""
+    """Whether all states that were drawn show that the problem is convex along an extremal, a global minimum then.
+
+    With the Hamiltonian convex in states and controls, a convex terminal cost and given or free final states, no
+    admissible motion is cheaper. With singular arcs that satisfy the strict generalised Legendre-Clebsch condition and
+    strict bounds elsewhere, none costs the same either (Mangasarian, Sufficient conditions for the optimal control of
+    nonlinear systems, SIAM Journal on Control 4, 1966). It is only asked where the final time is given.
+    """
     instance, model = solution.instance, solution.instance.model
     if instance.tf is None or model.spec.multipliers or "reference" in instance.final.values():
         return False
