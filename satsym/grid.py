@@ -24,13 +24,6 @@ CLOSEST = 0.25
 class Grid:
     """Nodes t0 < t1 < ... < tN = tf. Every array it hands out is read-only.
 
-    Parameters
-    ----------
-    nodes
-        Shape (N+1,), strictly increasing, in the model's unit of time.
-    corners
-        Those nodes, by their times, that stand for a corner and therefore must not move.
-
     Raises
     ------
     ValueError
@@ -38,7 +31,9 @@ class Grid:
     """
 
     nodes: Array
+    """Shape (N+1,), strictly increasing, in the model's unit of time."""
     corners: tuple[float, ...] = ()
+    """Those nodes, by their times, that stand for a corner and therefore must not move."""
 
     def __post_init__(self) -> None:
         nodes = np.array(self.nodes, dtype=float)

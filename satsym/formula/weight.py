@@ -57,15 +57,10 @@ class Weight:
 
 @dataclass
 class Scales:
-    """Weighs trees, each part once.
-
-    Parameters
-    ----------
-    max_terms
-        Terms that a tree may have once multiplied out.
-    """
+    """Weighs trees, each part once."""
 
     max_terms: int = MAX_COMBINED_TERMS
+    """Terms that a tree may have once multiplied out."""
     _known: dict[int, tuple[Node, Weight]] = field(default_factory=dict)
 
     def checked(self, tree: Node | Equality) -> None:
