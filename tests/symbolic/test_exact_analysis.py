@@ -23,8 +23,8 @@ from satsym.symbolic import Derivation, DerivationError, FirstOrder, Variable, d
 from satsym.symbolic.analysis import (
     NotExact,
     analyse,
-    companion,
     companion_form,
+    companion_matrix,
     controllability,
     jordan_form,
     linear_system,
@@ -321,7 +321,7 @@ def test_a_companion_form_is_one_and_has_the_same_polynomial():
     assert (form.basis * sp.eye(4)[:, 3] - THRUST[:, 1]).is_zero_matrix
     assert spectrum(form.matrix).coefficients == of.coefficients
     assert companion_form(of, THRUST[:, 0]) is None
-    assert companion([1, 5, 6]).tolist() == [[0, 1], [-6, -5]]
+    assert companion_matrix([1, 5, 6]).tolist() == [[0, 1], [-6, -5]]
 
 
 # Parameters.
@@ -376,7 +376,7 @@ def test_coupled_oscillators_have_four_frequencies_in_closed_form():
 
 @pytest.mark.parametrize("p", [-3, -1, 0, 1, 5])
 def test_biquadratic_polynomials_have_closed_forms(p: int):
-    matrix = companion([sp.Integer(1), sp.Integer(0), sp.Integer(p), sp.Integer(0), sp.Integer(1)])
+    matrix = companion_matrix([sp.Integer(1), sp.Integer(0), sp.Integer(p), sp.Integer(0), sp.Integer(1)])
     of = spectrum(matrix)
     assert of.closed_form
     found = matrix_exponential(of)
@@ -386,11 +386,11 @@ def test_biquadratic_polynomials_have_closed_forms(p: int):
 
 
 def test_a_cubic_without_radicals_is_decided_without_them():
-    of = spectrum(companion([sp.Integer(1), sp.Integer(5), sp.Integer(2), sp.Integer(1)]))
+    of = spectrum(companion_matrix([sp.Integer(1), sp.Integer(5), sp.Integer(2), sp.Integer(1)]))
     assert not of.closed_form
     assert jordan_form(of) is matrix_exponential(of) is None
     assert stability(of).verdict == "asymptotically stable"
-    unknown = spectrum(companion([sp.Integer(1), c, k, omega]))
+    unknown = spectrum(companion_matrix([sp.Integer(1), c, k, omega]))
     assert unknown.eigenvalues == ()
     assert stability(unknown).verdict == "depends on the parameters"
 
