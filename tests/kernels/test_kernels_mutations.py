@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from satsym.kernels.bodies import Unexpected
 from satsym.kernels.checking import check
+from tests.support.derived import derived
 
 
 @pytest.fixture(scope="module")
@@ -21,7 +22,7 @@ def legal() -> str:
     from sympy import sin
 
     from satsym.codegen.module import render
-    from satsym.symbolic import FirstOrder, Problem, Variable, derive, symbols_of
+    from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 
     states, controls, parameters = (
         (Variable("y", "y"), Variable("v", "v")),
@@ -38,7 +39,7 @@ def legal() -> str:
         rates={y: v, v: a - k * sin(y)},
     )
     problem = Problem(name="problem", title="A problem", model=model, running_cost=a**2 / 2, control_set="box")
-    return render(derive(problem), "mine.py")
+    return render(derived(problem), "mine.py")
 
 
 # Whatever passes the check holds nothing but these. This list is written independently of the checker.

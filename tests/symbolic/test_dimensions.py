@@ -31,6 +31,7 @@ from satsym.symbolic import (
 )
 from satsym.symbolic.checks import numeric
 from satsym.symbolic.principle.control_sets import Clip, Shorten
+from tests.support.derived import derived
 
 POLAR, *_ = loader.load(Path(__file__).resolve().parents[2] / "derivations" / "polar_orbit.py")
 BY_NAME = {v.symbol: v for v in (*POLAR.model.states, *POLAR.model.controls, *POLAR.model.parameters)}
@@ -42,7 +43,7 @@ def dim(length: Any = 0, time: Any = 0) -> dict[str, sp.Expr]:
 
 @pytest.fixture(scope="module")
 def polar() -> Derivation:
-    return derive(POLAR)
+    return derived(POLAR)
 
 
 @pytest.fixture(scope="module")
