@@ -15,13 +15,14 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 from satsym.report.plots import style
 from satsym.symbolic.lookup import library
 from tests.support.derived import derived
+from tests.support.examples import WHOLE
 from tests.support.faults import EveryFault, found, ledger, verdicts
 
 __all__ = ["found", "ledger", "verdicts"]
 
 # The same examples on every run, and no deadline: two busy cores make any single example slow.
-hypothesis.settings.register_profile("satsym", deadline=None, derandomize=True)
-hypothesis.settings.load_profile("satsym")
+hypothesis.settings.register_profile(WHOLE, deadline=None, derandomize=True)
+hypothesis.settings.register_profile("sample", hypothesis.settings.get_profile(WHOLE), max_examples=40)
 
 
 FEW, SHARE = 4, 3
@@ -35,6 +36,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Only where reports of all processes come together is it known what none of the tests reached."""
+    hypothesis.settings.load_profile(WHOLE if config.getoption("--whole") else "sample")
     if not hasattr(config, "workerinput"):
         config.pluginmanager.register(EveryFault())
 

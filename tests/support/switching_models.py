@@ -42,6 +42,7 @@ FULLER = switching(CHAIN, x1**2 / 2)
 REGULATOR = switching({x1: u1}, x1**2 / 2)
 WORST = switching({x1: u1}, -(x1**2) / 2)
 OSCILLATOR = switching({x1: x2, x2: -x1 + x2 * (1 - x1**2) + u1}, (x1**2 + x2**2) / 2)
+DAMPER = switching(CHAIN, (x1**2 + x2**2) / 2)
 CATALYST = switching(
     # mixing of two catalysts: Jackson, Optimal use of mixed catalysts for two successive reactions, 1968
     {x1: u1 * (10 * x2 - x1), x2: u1 * (x1 - 10 * x2) - (1 - u1) * x2},
