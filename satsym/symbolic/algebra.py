@@ -31,6 +31,25 @@ def gradient(expression: sp.Expr, symbols: Iterable[sp.Symbol]) -> list[sp.Expr]
     return [sp.diff(expression, s) for s in symbols]
 
 
+@lru_cache(maxsize=4096)  # problems of one model ask alike
+def simplified(expression: sp.Expr) -> sp.Expr:
+    """As by sympy, which is asked only where sines and cosines do not go away with their squares, or roots are left."""
+    expanded = _expand(expression)
+    squares = {
+        p: (1 - sp.sin(p.base.args[0]) ** 2) ** (p.exp // 2) * p.base ** (p.exp % 2)
+        for p in expanded.atoms(sp.Pow)
+        if isinstance(p.base, sp.cos) and p.exp.is_Integer and p.exp > 1
+    }
+    plain = _expand(expanded.xreplace(squares))
+    rational = not plain.atoms(sp.Function) and all(p.exp.is_Integer for p in plain.atoms(sp.Pow))
+    return plain if rational else sp.simplify(expression)
+
+
+def vanishes(expression: sp.Expr) -> bool:
+    """Whether an expression is identically zero, as far as simplifying shows it."""
+    return simplified(expression) == 0 or sp.simplify(expression) == 0
+
+
 def tidy(expression: sp.Expr, by: Sequence[sp.Symbol] = ()) -> sp.Expr:
     """The expression as a sum over the symbols it is linear in, each with its shortest coefficient."""
     expanded = _expand(sp.sympify(expression))

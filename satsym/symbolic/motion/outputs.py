@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from satsym.symbolic.algebra import definitions_of, tidy
+from satsym.symbolic.algebra import definitions_of, simplified, tidy
 from satsym.symbolic.checks import first_order_at_zero
 from satsym.symbolic.derivation import Derivation, Equation, Step
 from satsym.symbolic.model import symbols_of
@@ -21,7 +21,7 @@ def output_matrix(so_far: Derivation) -> Step | None:
     rest = dict.fromkeys((*states, *controls), sp.Integer(0)) if linear else {}
     values = [g.xreplace(constants) if linear else g for g in _outputs(so_far)]
     names = symbols_of(o.variable for o in model.outputs)
-    equations, check = jacobians(values, names, {"C": states, "D": controls}, lambda e: tidy(sp.simplify(e)), rest)
+    equations, check = jacobians(values, names, {"C": states, "D": controls}, lambda e: tidy(simplified(e)), rest)
     rule = "differentiate outputs at zero" if linear else "differentiate outputs"
     sources = ("outputs", "original_states") if linear else ("outputs",)
     return Step("output_matrix", rule, equations, sources, (check,))
