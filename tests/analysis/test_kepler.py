@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from satsym.instance import Instance
@@ -15,6 +15,7 @@ from satsym.solution import Simulation
 from satsym.solvers import simulate
 from satsym.status import Status
 from tests.support.cases import shipped, with_parameters
+from tests.support.examples import examples
 from tests.support.kepler import State, angular_momentum, eccentricity, energy, propagate
 
 EARTH = 398600.4418
@@ -63,21 +64,21 @@ anomalies = st.floats(-3.1, 3.1)
 sizes = st.floats(0.5, 2.0)
 
 
-@settings(max_examples=25)
+@examples(25)
 @given(st.floats(0.001, 0.7), sizes, anomalies, st.floats(0.1, 2.5), st.floats(0.3, 3.0), st.booleans())
 def test_on_any_ellipse_the_flight_is_the_closed_form(e, p, anomaly, turns, mu, backwards):
     period = 2.0 * math.pi * math.sqrt((p / (1.0 - e**2)) ** 3 / mu)
     assert_kepler(conic(mu, p, e, anomaly, backwards), turns * period, mu)
 
 
-@settings(max_examples=15)
+@examples(15)
 @given(sizes, st.floats(-2.2, 2.2), st.floats(0.5, 40.0), st.booleans())
 def test_on_any_parabola_the_flight_is_the_closed_form(p, anomaly, duration, backwards):
     flight = assert_kepler(conic(1.0, p, 1.0, anomaly, backwards), duration)
     assert abs(flight.invariants["energy"].initial) <= 1e-14 / flight.x[0, 0]
 
 
-@settings(max_examples=15)
+@examples(15)
 @given(st.floats(1.05, 5.0), sizes, st.floats(-0.85, 0.85), st.floats(0.5, 40.0), st.floats(0.3, 3.0), st.booleans())
 def test_on_any_hyperbola_the_flight_is_the_closed_form(e, p, fraction, duration, mu, backwards):
     assert_kepler(conic(mu, p, e, fraction * math.acos(-1.0 / e), backwards), duration, mu)
@@ -116,7 +117,7 @@ def test_the_start_of_the_thesis_is_parabolic_and_after_60_it_is_25_away():
     assert np.allclose(flight.x[:, -1], end, rtol=1e-11, atol=0.0)
 
 
-@settings(max_examples=50)
+@examples(50)
 @given(st.floats(0.0, 3.0), sizes, st.floats(-0.85, 0.85), st.floats(-20.0, 20.0), st.booleans())
 def test_the_closed_form_obeys_newtons_law(e, p, fraction, time, backwards):
     anomaly = fraction * math.acos(max(-1.0, -1.0 / e)) if e > 0.0 else 3.0 * fraction
@@ -128,7 +129,7 @@ def test_the_closed_form_obeys_newtons_law(e, p, fraction, time, backwards):
     assert np.abs((after - before) / 2e-4 - rates).max() <= 3e-6 * scale**2
 
 
-@settings(max_examples=50)
+@examples(50)
 @given(st.floats(0.0, 3.0), sizes, st.floats(-0.85, 0.85), st.floats(-20.0, 20.0), st.floats(-20.0, 20.0))
 def test_the_closed_form_flown_in_two_parts_is_the_whole(e, p, fraction, first, second):
     start = conic(1.0, p, e, fraction * math.acos(max(-1.0, -1.0 / e)) if e > 0.0 else 3.0 * fraction, False)

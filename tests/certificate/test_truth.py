@@ -16,7 +16,7 @@ from tests.bench.truth.answer import Answer, Truth
 from tests.bench.truth.case import Case
 from tests.bench.truth.judge import Outcome, Wrong
 
-PARTS = 4
+PARTS = 12
 LEAST = Answer(Truth.MINIMUM, 1.0, "by hand")
 ANSWER = {"status": "converged", "cost": 1.0, "verdict": "certified", "kinds": ["seeded starts 4/4"]}
 ANSWER |= {"missed": 0.0, "off cost": 0.0, "out": 0.0}
@@ -33,14 +33,14 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def derived(folder: Path, name: str) -> None:
     """Derive one of the bench's own models, if it is one."""
     from satsym.codegen import module
-    from satsym.symbolic import derive
     from satsym.symbolic.loader import load
+    from tests.support import derived as shared
 
     target = folder / "models" / f"{name}.py"
     if not name.startswith(classes.OWN) or target.exists():
         return
     found = next(p for path in (record.HERE / "models").glob("*.py") for p in load(path) if p.name == name)
-    target.write_text(module.render(derive(found), "a test"), encoding="utf-8")
+    target.write_text(module.render(shared.derived(found), "a test"), encoding="utf-8")
 
 
 def answered(case: Case, folder: Path) -> dict[str, Any]:

@@ -19,7 +19,7 @@ from satsym import instance as instances
 from satsym.instance import Guess, Instance, SolverOptions
 from satsym.kernels import Kernels
 from satsym.report import display
-from satsym.report.plots import curves, pictures, series
+from satsym.report.plots import curves, pictures, series, style
 from satsym.report.plots.panels import _of_pi
 from satsym.report.plots.reading import read
 from satsym.report.plots.scene import Scene
@@ -226,11 +226,10 @@ def test_a_flight_with_feedback_shows_its_controls(tmp_path: Path) -> None:
     ],
     ids=["one state", "box", "ball in space", "many, with bad LaTeX", "any title"],
 )
-@pytest.mark.usefixtures("full_resolution")
 def test_any_model_can_be_drawn(given: Instance, pictures: str, tmp_path: Path) -> None:
     written = save(solution(given), tmp_path)
     assert " ".join(stems(written)) == pictures
-    assert all(max(png_size(path)) < 3000 for path in written)
+    assert all(max(png_size(path)) * style.DPI / style._RC["figure.dpi"] < 3000 for path in written)
 
 
 def broken(values: float, first: int) -> np.ndarray:

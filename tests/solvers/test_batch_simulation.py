@@ -11,7 +11,8 @@ from satsym.codegen import module
 from satsym.kernels import Kernels, from_text, load
 from satsym.solvers.simulation import batch
 from satsym.status import BadInput
-from satsym.symbolic import FirstOrder, Variable, derive, symbols_of
+from satsym.symbolic import FirstOrder, Variable, symbols_of
+from tests.support.derived import derived
 
 q, v = symbols_of((Variable("q", "q"), Variable("v", "v")))
 
@@ -101,7 +102,7 @@ def test_models_without_controls_and_parameters_fly_too():
         parameters=(),
         rates={q: v, v: -sin(q)},
     )
-    pendulum = from_text(module.render(derive(motion), "a test"), "motion")
+    pendulum = from_text(module.render(derived(motion), "a test"), "motion")
     x0, times = np.array([[0.5, 1.0], [0.0, 0.1]]), [0.0, 3.0, 1.0]
     flights = [batch.simulate(pendulum, times, x0, (), 60, method=m)[:, 2] for m in batch.METHODS]
     tail = pendulum.forward(np.linspace(0.0, 1.0, 201), (1.0, 0.1), np.zeros((0, 201)), np.zeros((0, 200)), ())[0][

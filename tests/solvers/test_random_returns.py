@@ -25,8 +25,8 @@ from satsym.solvers.iteration import Limits
 from satsym.status import Status
 from tests.support.samples import EASY, HARD, Population
 
-EACH, STUDY = 17, 204
-"""Cases of a test, and of all of them: every third test runs, unless all are asked for.
+EACH, STUDY, SHARE = 6, 204, 9
+"""Cases of a test, and of all of them; every so many tests one that always runs.
 
 One case of a test has a whole certificate: competitors take longer than solving.
 """
@@ -41,7 +41,13 @@ def scaled(number: int) -> TwoPoint:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("first", range(0, STUDY, EACH))
+@pytest.mark.parametrize(
+    "first",
+    [
+        pytest.param(first, marks=[pytest.mark.study] if number % SHARE else [])
+        for number, first in enumerate(range(0, STUDY, EACH))
+    ],
+)
 def test_hard_returns_are_solved_from_nothing(first: int) -> None:
     check(HARD, range(first, first + EACH))
 

@@ -17,6 +17,7 @@ from satsym.symbolic import Derivation, DerivationError, Problem, derive, loader
 from satsym.symbolic.checks import deviation, numeric, points
 from satsym.symbolic.model import Convention
 from satsym.symbolic.switching import functions as steps
+from tests.support import derived as shared
 from tests.support.switching_models import (
     CATALYST,
     FULLER,
@@ -120,4 +121,4 @@ SHIPPED = [p for path in loader.shipped() for p in loader.load(path) if isinstan
 @pytest.mark.parametrize("problem", SHIPPED, ids=lambda p: p.name)
 def test_every_shipped_problem_can_be_told_in_the_other_convention(problem: Problem) -> None:
     (other,) = set(get_args(Convention)) - {problem.convention}
-    assert latex.render(derive(replace(problem, convention=other)))
+    assert latex.render(shared.derived(replace(problem, convention=other)))

@@ -41,6 +41,7 @@ from satsym.symbolic.linear import stability as stability_steps
 from satsym.symbolic.linear import structure as structure_steps
 from satsym.symbolic.linear.matrices import system_of
 from tests.support.deviations import satellite, small
+from tests.support.examples import examples
 
 s = sp.Symbol("s")
 omega, k, c = sp.symbols("omega k c", positive=True)
@@ -88,7 +89,7 @@ def structured(draw: Callable[..., Any]) -> tuple[sp.Matrix, Counter]:
     return basis * sp.diag(*blocks) * basis.inv(), known
 
 
-@settings(max_examples=25)
+@examples(25)
 @given(structured())
 def test_jordan_blocks_are_those_that_the_matrix_was_built_from(built: tuple[sp.Matrix, Counter]):
     matrix, known = built
@@ -107,7 +108,7 @@ def test_jordan_blocks_are_those_that_the_matrix_was_built_from(built: tuple[sp.
     )
 
 
-@settings(max_examples=25)
+@examples(25)
 @given(structured())
 def test_the_exponential_is_that_of_scipy_and_real(built: tuple[sp.Matrix, Counter]):
     matrix, _ = built
@@ -122,7 +123,7 @@ def test_the_exponential_is_that_of_scipy_and_real(built: tuple[sp.Matrix, Count
         )
 
 
-@settings(max_examples=25)
+@examples(25)
 @given(structured())
 def test_the_verdict_is_that_of_the_blocks(built: tuple[sp.Matrix, Counter]):
     matrix, known = built
@@ -167,7 +168,7 @@ def polynomials(draw: Callable[..., Any]) -> tuple[list[sp.Expr], int, int]:
     return sp.Poly(found, s).all_coeffs(), right, axis
 
 
-@settings(max_examples=60)
+@examples(60)
 @given(polynomials())
 def test_routh_counts_right_half_plane_and_axis_whatever_special_cases_occur(built: tuple[list[sp.Expr], int, int]):
     coefficients, right, axis = built
@@ -177,7 +178,7 @@ def test_routh_counts_right_half_plane_and_axis_whatever_special_cases_occur(bui
     assert len(found.rows) == len(coefficients)
 
 
-@settings(max_examples=40)
+@examples(40)
 @given(st.lists(st.integers(-4, 4), min_size=2, max_size=7).filter(lambda row: row[0] != 0))
 def test_routh_counts_the_roots_of_any_polynomial(row: list[int]):
     """Against the eigenvalues of its companion matrix, with many digits; multiple roots are known to 1e-10."""

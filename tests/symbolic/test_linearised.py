@@ -35,7 +35,7 @@ from tests.support.deviations import satellite, small, stated
 
 KNOWN = [[0, 1, 0, 0], [3, 0, 0, 2], [0, 0, 0, 1], [0, -2, 0, 0]]
 """A for omega = sigma = 1: Clohessy and Wiltshire (1960), in the variables of Olsder and van der Woude (2004)."""
-STEPS = {f.__name__: f for f in (*satellite().model.steps(), *pipeline.OUTPUTS)}
+STEPS = {f.__name__: f for f in (*stated("clohessy_wiltshire", "clohessy_wiltshire").steps(), *pipeline.OUTPUTS)}
 P = (1.3, 0.7)
 """Other values of sigma and omega."""
 

@@ -21,6 +21,7 @@ from satsym.symbolic.derivation import Step
 from satsym.symbolic.kepler import central_force, conic
 from satsym.symbolic.kepler import points as point_steps
 from satsym.symbolic.lookup import library
+from tests.support.derived import derived
 
 (TWO_BODY,) = loader.load(loader.find("two_body"))
 POLAR = loader.load(loader.find("polar_orbit"))[0].model
@@ -44,7 +45,7 @@ def model() -> Kernels:
 
 @pytest.fixture(scope="module")
 def polar_derivation() -> Derivation:
-    return derive(POLAR)
+    return derived(POLAR)
 
 
 @pytest.fixture(scope="module")

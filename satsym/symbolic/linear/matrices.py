@@ -116,7 +116,8 @@ def numeric_rank(matrix: Any) -> int:
     if not any(entries([matrix])):
         return 0
     wide = matrix if matrix.rows >= matrix.cols else matrix.T
-    values = list(mp.svd_c(mp.matrix(wide) * mp.mpc(1), compute_uv=False))
+    decomposed = mp.svd_c if any(mp.im(entry) for entry in entries([wide])) else mp.svd_r
+    values = list(decomposed(mp.matrix(wide), compute_uv=False))
     return sum(value > RANK_TOLERANCE * max(values) for value in values)
 
 
@@ -137,8 +138,14 @@ def right_half_plane(coefficients: Sequence[Any]) -> tuple[int, int]:
     """Number of roots with positive and with zero real parts of a numeric polynomial, highest power first."""
     trailing = next(k for k, c in enumerate(reversed(coefficients)) if c != 0)
     kept = list(coefficients)[: len(coefficients) - trailing]
-    with mp.workdps(4 * mp.mp.dps):
-        roots = mp.polyroots(kept, maxsteps=500, extraprec=400) if len(kept) > 1 else []
+    degree = len(kept) - 1
+    with mp.workdps(4 * mp.mp.dps):  # multiple roots have but a share of the digits
+        companion = mp.matrix(degree, degree)
+        for k in range(degree):
+            companion[0, k] = -kept[k + 1] / kept[0]
+            if k:
+                companion[k, k - 1] = mp.mpf(1)
+        roots = mp.eig(companion, left=False, right=False) if degree else []
     reals = [mp.re(root) for root in roots]
     tolerance = mp.mpf(10) ** (-mp.mp.dps // 2)
     return sum(x > tolerance for x in reals), trailing + sum(abs(x) <= tolerance for x in reals)

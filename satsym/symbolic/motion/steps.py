@@ -8,7 +8,7 @@ from typing import Any
 import sympy as sp
 
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import definitions_of, tidy, total_derivative
+from satsym.symbolic.algebra import definitions_of, simplified, tidy, total_derivative, vanishes
 from satsym.symbolic.checks import Point, compare, first_order_at_zero, identity, numeric, partial
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
 from satsym.symbolic.kepler.central_force import inertial_velocity, uncontrolled_force
@@ -54,7 +54,7 @@ def conserved(so_far: Derivation) -> Step | None:
     if height is None:
         return None
     speed = inertial_velocity(model)
-    kinetic = tidy(sp.simplify(speed.dot(speed) / 2))
+    kinetic = tidy(simplified(speed.dot(speed) / 2))
     lagrangian = kinetic - height
     momenta = {q: sp.diff(lagrangian, q_dot) for q, q_dot in coordinates.items()}
     found = []
@@ -63,12 +63,12 @@ def conserved(so_far: Derivation) -> Step | None:
     elif not lagrangian.has(t):
         # in a moving frame, what the symmetry in time keeps is not the energy
         kept = sum((p * coordinates[q] for q, p in momenta.items()), -lagrangian)
-        found.append(("jacobi_integral", tidy(sp.simplify(kept - height)) + height))
+        found.append(("jacobi_integral", tidy(simplified(kept - height)) + height))
     about_axes = _angular_momenta(model, uncontrolled_force(model), speed)
     angles = {v.symbol for v in model.states if v.kind == "angle"}
     cyclic = [q for q in coordinates if not lagrangian.has(q)]
     for q in cyclic:
-        if any(sp.simplify(momenta[q] - component) == 0 for component in about_axes.values()):
+        if any(vanishes(momenta[q] - component) for component in about_axes.values()):
             continue  # the turn of that coordinate is one about an axis
         rotation = q.name in angles and len([c for c in cyclic if c.name in angles]) == 1
         found.append(("angular_momentum" if rotation else f"momentum_{q.name}", momenta[q]))
@@ -86,9 +86,9 @@ def _angular_momenta(model: Particle, force: sp.Matrix, velocity: sp.Matrix) -> 
     place = model.position
     planes = _PLANES.get(len(place), {})
     return {
-        name: tidy(sp.simplify(place[i] * velocity[j] - place[j] * velocity[i]))
+        name: tidy(simplified(place[i] * velocity[j] - place[j] * velocity[i]))
         for name, (i, j) in planes.items()
-        if sp.simplify(place[i] * force[j] - place[j] * force[i]) == 0
+        if vanishes(place[i] * force[j] - place[j] * force[i])
     }
 
 
@@ -139,7 +139,7 @@ def output_matrix(so_far: Derivation) -> Step | None:
     rest = dict.fromkeys((*states, *controls), sp.Integer(0)) if linear else {}
     values = [g.xreplace(constants) if linear else g for g in _outputs(so_far)]
     names = symbols_of(o.variable for o in model.outputs)
-    equations, check = jacobians(values, names, {"C": states, "D": controls}, lambda e: tidy(sp.simplify(e)), rest)
+    equations, check = jacobians(values, names, {"C": states, "D": controls}, lambda e: tidy(simplified(e)), rest)
     rule = "differentiate outputs at zero" if linear else "differentiate outputs"
     sources = ("outputs", "original_states") if linear else ("outputs",)
     return Step("output_matrix", rule, equations, sources, (check,))
