@@ -5,6 +5,8 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip install -qq --disable-pip-version-check
 # Many containers tell Python not to write bytecode; then every start would compile satsym anew.
 COMPILE := $(BIN)/python -m compileall -q satsym generated
+# Nor would pytest keep the tests as it rewrites them, which takes it longer than to collect them.
+PYTEST := env -u PYTHONDONTWRITEBYTECODE $(BIN)/python -m pytest -n 2 --dist worksteal
 
 # Each recipe says itself what the user needs to know; errors of the tools come through (pip -qq: errors only).
 .SILENT:
@@ -22,10 +24,10 @@ demo: $(VENV)/installed  ## solve two shipped problems, with pictures, into resu
 	echo; echo "Results and pictures:"; ls -1 results/soft-return/solve/* results/its-thesis/solve/* | sed 's/^/  /'
 
 test: lint check-derive  ## lint, check generated/, run the tests, of the slowest ones a sample
-	$(BIN)/python -m pytest -n 2 --dist worksteal
+	$(PYTEST)
 
 test-whole: lint check-derive  ## the same with every case of the slow tests
-	$(BIN)/python -m pytest -n 2 --dist worksteal --whole
+	$(PYTEST) --whole
 
 test-versions:  ## try the oldest and the newest versions that pyproject.toml allows, in environments of their own
 	$(PYTHON) .ci/versions.py oldest newest

@@ -22,29 +22,20 @@ UNSMOOTHED = 1e-100
 
 @dataclass(frozen=True)
 class ControlSet:
-    """Which controls are admissible, and how much of a regularisation there is.
-
-    Attributes
-    ----------
-    kind
-        Which of the following count; ``None`` for a model without a cost, whose controls are free.
-    lower, upper
-        Of a box: bounds in the model's order, infinite where there is none.
-    radius
-        Of a ball: the largest norm, infinite where there is none.
-    smoothing
-        What half the squared controls is weighed with in the cost of a regularised problem, in the unit of the running
-        cost over that of the squared control; zero where controls do not enter the Hamiltonian affinely.
-    share
-        Of the weight of |u| that counts there, 0 to 1.
-    """
+    """Which controls are admissible, and how much of a regularisation there is."""
 
     kind: ControlSetKind | None
+    """Which of the following count; ``None`` for a model without a cost, whose controls are free."""
     lower: Row = ()
     upper: Row = ()
+    """Of a box: bounds in the model's order, infinite where there is none."""
     radius: float = math.inf
+    """Of a ball: the largest norm, infinite where there is none."""
     smoothing: float = 0.0
-    share: float = 1.0
+    """What half the squared controls is weighed with in the cost of a regularised problem, in the unit of the running
+    cost over that of the squared control; zero where controls do not enter the Hamiltonian affinely."""
+    fraction: float = 1.0
+    """Of the weight of |u| that counts there, 0 to 1."""
 
     @classmethod
     def of(cls, spec: ProblemSpec, lower: Row, upper: Row, radius: float) -> ControlSet:
@@ -65,7 +56,7 @@ class ControlSet:
     def arguments(self) -> Row:
         """The argument ``bounds`` of generated functions: bounds or radius, then what regularises."""
         if self.kind == "box":
-            return self.lower + self.upper + ((self.smoothing, self.share) if self.smoothing else ())
+            return self.lower + self.upper + ((self.smoothing, self.fraction) if self.smoothing else ())
         return (self.radius,) if self.kind == "ball" else ()
 
     @property
@@ -85,9 +76,9 @@ class ControlSet:
         """The same for an unlimited control."""
         return self.relaxed(math.inf)
 
-    def regularised(self, smoothing: float, share: float) -> ControlSet:
+    def regularised(self, smoothing: float, fraction: float) -> ControlSet:
         """The same of a regularised problem."""
-        return replace(self, smoothing=smoothing, share=share)
+        return replace(self, smoothing=smoothing, fraction=fraction)
 
     def saturated(self, u: Row) -> ControlSet:
         """That in which only this control is admissible."""

@@ -1,7 +1,7 @@
 """The time grid that sweeps, quadrature and trajectories share: nodes of [t0, tf] and the midpoints between them.
 
 Simulation and quadrature are fourth order only where the control is smooth within each step. A control that
-meets a bound has kinks, so a grid can take given points as nodes; a node that is too close to such a point
+meets a bound has corners, so a grid can take given points as nodes; a node that is too close to such a point
 moves there, because a tiny step would cost as much as a full one and spoil the conditioning.
 """
 
@@ -24,27 +24,22 @@ CLOSEST = 0.25
 class Grid:
     """Nodes t0 < t1 < ... < tN = tf. Every array it hands out is read-only.
 
-    Parameters
-    ----------
-    nodes
-        Shape (N+1,), strictly increasing, in the model's unit of time.
-    kinks
-        Those nodes, by their times, that stand for a kink and therefore must not move.
-
     Raises
     ------
     ValueError
-        If there are fewer than two nodes, if they do not increase, or if a kink is not a node.
+        If there are fewer than two nodes, if they do not increase, or if a corner is not a node.
     """
 
     nodes: Array
-    kinks: tuple[float, ...] = ()
+    """Shape (N+1,), strictly increasing, in the model's unit of time."""
+    corners: tuple[float, ...] = ()
+    """Those nodes, by their times, that stand for a corner and therefore must not move."""
 
     def __post_init__(self) -> None:
         nodes = np.array(self.nodes, dtype=float)
         if nodes.ndim != 1 or len(nodes) < 2 or not np.isfinite(nodes).all() or not (np.diff(nodes) > 0.0).all():
             raise ValueError("the nodes of a grid are at least two finite numbers that strictly increase")
-        if not np.isin(self.kinks, nodes).all():
+        if not np.isin(self.corners, nodes).all():
             raise ValueError("every corner of a grid is one of its nodes")
         object.__setattr__(self, "nodes", _sealed(nodes))
 
@@ -105,18 +100,18 @@ class Grid:
         """
         return np.asarray(at_nodes @ self.node_weights + at_midpoints @ self.midpoint_weights)
 
-    def with_kinks(self, points: Iterable[float], closest: float = CLOSEST) -> Grid:
+    def with_corners(self, points: Iterable[float], closest: float = CLOSEST) -> Grid:
         """The grid in which each of the points is a node, as far as the spacing allows.
 
         A point becomes a new node, unless it is nearer to a node than ``closest`` times the step it falls
-        into. Then that node moves to the point, except that ends and kinks stay where they are: the point is
+        into. Then that node moves to the point, except that ends and corners stay where they are: the point is
         left out. Points outside (t0, tf) are left out too. No step becomes shorter than ``closest`` times
         the shortest step before; steps next to a moved node grow by at most that fraction of a neighbour.
 
         Parameters
         ----------
         points
-            Times of kinks, in any order.
+            Times of corners, in any order.
         closest
             Between 0 and 1/3.
         """
@@ -124,8 +119,8 @@ class Grid:
             raise ValueError(f"closest is a fraction between 0 and 1/3, not {closest}")
         before = self.nodes.tolist()
         nodes = self.nodes.tolist()
-        kinks = set(self.kinks)
-        fixed = {self.t0, self.tf} | kinks
+        corners = set(self.corners)
+        fixed = {self.t0, self.tf} | corners
         for point in sorted(p for p in map(float, points) if self.t0 < p < self.tf):
             step = bisect_left(before, point)
             reach = closest * (before[step] - before[step - 1])
@@ -138,13 +133,13 @@ class Grid:
                     nodes[nodes.index(near[0])] = point
                 else:
                     nodes.insert(place, point)
-            kinks.add(point)
+            corners.add(point)
             fixed.add(point)
-        return Grid(np.array(nodes), tuple(sorted(kinks)))
+        return Grid(np.array(nodes), tuple(sorted(corners)))
 
     def refine(self) -> Grid:
         """The grid with every step halved: its even nodes are the nodes of this one."""
-        return Grid(interleave(self.nodes, self.midpoints), self.kinks)
+        return Grid(interleave(self.nodes, self.midpoints), self.corners)
 
 
 def interleave(at_nodes: Array, at_midpoints: Array) -> Array:

@@ -180,7 +180,7 @@ class Invariant:
 
 
 @dataclass(frozen=True, eq=False)
-class Flight:
+class Simulation:
     """A simulated motion.
 
     Attributes

@@ -13,13 +13,16 @@ import pytest
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from satsym.report.plots import style
+from satsym.symbolic.lookup import library
+from tests.support.derived import derived
+from tests.support.examples import WHOLE
 from tests.support.faults import EveryFault, found, ledger, verdicts
 
 __all__ = ["found", "ledger", "verdicts"]
 
 # The same examples on every run, and no deadline: two busy cores make any single example slow.
-hypothesis.settings.register_profile("satsym", deadline=None, derandomize=True)
-hypothesis.settings.load_profile("satsym")
+hypothesis.settings.register_profile(WHOLE, deadline=None, derandomize=True)
+hypothesis.settings.register_profile("sample", hypothesis.settings.get_profile(WHOLE), max_examples=40)
 
 
 FEW, SHARE = 4, 3
@@ -27,25 +30,27 @@ FEW, SHARE = 4, 3
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """``--whole``: every case of every slow test (`make test-whole`)."""
-    parser.addoption("--whole", action="store_true", help="run all cases of slow tests, not a sample")
+    """``--whole``: every case of every test (`make test-whole`)."""
+    parser.addoption("--whole", action="store_true", help="run all cases of slow tests, not a sample, and studies")
 
 
 def pytest_configure(config: pytest.Config) -> None:
     """Only where reports of all processes come together is it known what none of the tests reached."""
+    hypothesis.settings.load_profile(WHOLE if config.getoption("--whole") else "sample")
     if not hasattr(config, "workerinput"):
         config.pluginmanager.register(EveryFault())
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave a sample of slow tests that have many cases: long studies are for those who have the time."""
+    """Leave a sample of slow tests that have many cases, and no studies: those are for who has the time."""
     if config.getoption("--whole"):
         return
+    spared = {item for item in items if item.get_closest_marker("study")}
     cases: dict[str, list[pytest.Item]] = {}
     for item in items:
-        if item.get_closest_marker("slow"):
+        if item.get_closest_marker("slow") and item not in spared:
             cases.setdefault(item.nodeid.partition("[")[0], []).append(item)
-    spared = {item for own in cases.values() if len(own) > FEW for k, item in enumerate(own) if k % SHARE}
+    spared |= {item for own in cases.values() if len(own) > FEW for k, item in enumerate(own) if k % SHARE}
     config.hook.pytest_deselected(items=[item for item in items if item in spared])
     items[:] = [item for item in items if item not in spared]
 
@@ -69,6 +74,14 @@ def _coarse_pictures() -> Iterator[None]:
     """Pictures drawn in the process of the tests are coarse, which takes less time; see ``full_resolution``."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(style._RC, "figure.dpi", 40)
+        yield
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _derivations_are_shared() -> Iterator[None]:
+    """Shipped models that an audit looks into are derived once for all processes."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(library, "derive", derived)
         yield
 
 

@@ -24,33 +24,24 @@ LONG = 16.0
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """One of them.
-
-    Attributes
-    ----------
-    instance, how
-        What it was, and the law or the solver.
-    answered, verdict, message
-        Whether there is an answer, what its certificate says (``None`` for a flight), and a sentence on both and on
-        limits that were passed.
-    times, x, u
-        Nodes (N+1,), states (n, N+1) and controls (m, N+1).
-    switching_times
-        Times at which controls jump.
-    metrics
-        By name; empty where there is no answer.
-    """
+    """One of them."""
 
     instance: Instance
     how: str
+    """What it was, and the law or the solver."""
     answered: bool
     verdict: str | None
     message: str
+    """Whether there is an answer, what its certificate says (``None`` for a flight), and a sentence on both and on
+    limits that were passed."""
     times: Array
     x: Array
     u: Array
+    """Nodes (N+1,), states (n, N+1) and controls (m, N+1)."""
     switching_times: tuple[float, ...]
+    """Times at which controls jump."""
     metrics: dict[str, float]
+    """By name; empty where there is no answer."""
 
     def signal(self, name: str) -> Array:
         """A state, a control or a derived quantity over the nodes, by name."""
@@ -96,12 +87,23 @@ def compare(instances: Sequence[Instance], progress: Callable[[str], None] = lam
 
 
 def _flown(instance: Instance) -> Case:
-    flight = classical.simulate(instance)
-    metrics = flight.metrics
-    if flight.status.answered:
+    simulation = classical.simulate(instance)
+    metrics = simulation.metrics
+    if simulation.status.answered:
         metrics = {"transition_time": metrics.get("settling_time", math.nan)} | metrics
-    answered, none = flight.status.answered, ()
-    return Case(instance, "classical", answered, None, flight.message, flight.times, flight.x, flight.u, none, metrics)
+    answered, none = simulation.status.answered, ()
+    return Case(
+        instance,
+        "classical",
+        answered,
+        None,
+        simulation.message,
+        simulation.times,
+        simulation.x,
+        simulation.u,
+        none,
+        metrics,
+    )
 
 
 def _solved(instance: Instance) -> Case:
@@ -141,23 +143,16 @@ def limits_noted(solution: Solution) -> Solution:
 
 @dataclass(frozen=True, eq=False)
 class Range:
-    """How the classical law does for other dampings and commands.
-
-    Attributes
-    ----------
-    dampings, commands
-        Shapes (K,) and (L,).
-    control_peak, impulse
-        Of the control: largest magnitude after the step, and integral at the step; shape (K, L).
-    peaks
-        Name of a state -> its largest magnitude, shape (K, L).
-    """
+    """How the classical law does for other dampings and commands."""
 
     dampings: Array
     commands: Array
+    """Shapes (K,) and (L,)."""
     control_peak: Array
     impulse: Array
+    """Of the control: largest magnitude after the step, and integral at the step; shape (K, L)."""
     peaks: Mapping[str, Array]
+    """Name of a state -> its largest magnitude, shape (K, L)."""
 
 
 def ranged(instance: Instance, dampings: Sequence[float], commands: Sequence[float]) -> Range:

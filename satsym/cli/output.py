@@ -6,7 +6,7 @@ import os
 import shutil
 import sys
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from typing import Any, TextIO, cast
 
@@ -30,6 +30,14 @@ def emit_json(value: Mapping[str, Any]) -> None:
     from satsym.report.results.files import to_json
 
     emit(to_json(value))
+
+
+def answer(as_json: bool, value: Mapping[str, Any], text: Callable[[], str]) -> None:
+    """Write what a command found, for programs or for people."""
+    if as_json:
+        emit_json(value)
+    else:
+        emit(text())
 
 
 def complain(message: str) -> None:

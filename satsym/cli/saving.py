@@ -11,7 +11,7 @@ from satsym.wording import printable
 
 if TYPE_CHECKING:
     from satsym.report.results.files import Content
-    from satsym.solution import Flight, Solution
+    from satsym.solution import Simulation, Solution
 
 RESULTS = "results"
 DRAWN = ("solve", "simulate")
@@ -43,7 +43,7 @@ def save(folder: Path | None, result: Mapping[str, Any], files: Mapping[str, Con
     return sets.write(folder, result, files)
 
 
-def trajectory_files(folder: Path | None, found: Solution | Flight, plot: bool) -> dict[str, Content]:
+def trajectory_files(folder: Path | None, found: Solution | Simulation, plot: bool) -> dict[str, Content]:
     """Trajectory and, where asked for, pictures: name -> content; none where nothing is to be written."""
     if folder is None:
         return {}

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from satsym.codegen.printers import LARGEST_PRODUCT
-from satsym.symbolic.principle.control_sets import PROJECTIONS
+from satsym.symbolic.minimisers import MINIMISERS
 
 Assignment = tuple[sp.Symbol, sp.Expr]
 
@@ -37,8 +37,6 @@ def build(
 
     Parameters
     ----------
-    outputs
-        What is computed.
     definitions
         Named constants that the outputs may use; those they do not use are left out.
     layers
@@ -114,7 +112,7 @@ class _Cheapened:
         args = [self.apply(a) for a in expression.args]
         if isinstance(expression, sp.Abs):
             return self._take(sp.Abs(self._of_either_sign(args[0])))
-        if isinstance(expression, PROJECTIONS):
+        if isinstance(expression, MINIMISERS):
             return self._take(expression.func(*(a if a.is_Symbol else self._take(a) for a in args)))
         if not expression.is_Pow:
             return expression.func(*args)

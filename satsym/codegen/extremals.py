@@ -70,8 +70,8 @@ def extremal_functions(derivation: Derivation, s: Symbols) -> list[Function]:
 def _under_the_law(derivation: Derivation, s: Symbols) -> tuple[sp.Matrix, sp.Expr]:
     """Rates of states and costates, and H; those of the smoothed companion where the law itself jumps."""
     if switching.switches(derivation):
-        companion = switching.companion(derivation)
-        return companion.rates, companion.hamiltonian
+        regularised = switching.regularised(derivation)
+        return regularised.rates, regularised.hamiltonian
     law = dict(zip(s.u, derivation.rhs("control_law"), strict=True))
     rates = sp.Matrix([*derivation.rhs("first_order"), *derivation.rhs("costate_equations")])
     return rates.xreplace(law), derivation.equation("hamiltonian.H").rhs.xreplace(law)

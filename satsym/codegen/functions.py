@@ -9,12 +9,12 @@ import sympy as sp
 from satsym.codegen import switching
 from satsym.spec import Variable, names
 from satsym.symbolic.derivation import Derivation, resolved
-from satsym.symbolic.kepler.attraction import inertial_state, strength_of
+from satsym.symbolic.kepler.central_force import inertial_state, strength_of
 from satsym.symbolic.linear.notation import matrix_symbols
 from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.notation import costate_of, given, multipliers, on_reference, target
 from satsym.symbolic.principle.control_sets import bounds
-from satsym.symbolic.switching.notation import COMPANION
+from satsym.symbolic.switching.notation import REGULARISED
 
 ARGUMENTS = tuple("t x original u lam nu gain riccati state_weight control_weight p bounds final".split())
 """Names of arguments, in the order in which every function takes those it has."""
@@ -22,31 +22,21 @@ ARGUMENTS = tuple("t x original u lam nu gain riccati state_weight control_weigh
 
 @dataclass(frozen=True)
 class Function:
-    """One function of a generated module.
-
-    Attributes
-    ----------
-    name, summary
-        Its name, and the first line of its docstring.
-    arguments
-        Those of :data:`ARGUMENTS` it takes, in that order.
-    value
-        The expression it returns, or the matrix; a column is returned as a vector.
-    kind
-        ``"scalar"``, ``"vector"`` or ``"matrix"``.
-    hints
-        Names for the outputs, where they have any.
-    over_parameters
-        Whether each parameter may be an array in the batch form.
-    """
+    """One function of a generated module."""
 
     name: str
     summary: str
+    """Its name, and the first line of its docstring."""
     arguments: tuple[str, ...]
+    """Those of :data:`ARGUMENTS` it takes, in that order."""
     value: sp.Matrix
+    """The expression it returns, or the matrix; a column is returned as a vector."""
     kind: str
+    """``"scalar"``, ``"vector"`` or ``"matrix"``."""
     hints: tuple[str, ...] = ()
+    """Names for the outputs, where they have any."""
     over_parameters: bool = False
+    """Whether each parameter may be an array in the batch form."""
 
     @property
     def outputs(self) -> list[sp.Expr]:
@@ -137,7 +127,7 @@ def _bounds(derivation: Derivation) -> tuple[Variable, ...]:
     """What the argument ``bounds`` holds."""
     problem = derivation.problem
     found = bounds(problem.control_set, derivation.model.controls) if problem else ()
-    return found + (COMPANION if switching.switches(derivation) else ())
+    return found + (REGULARISED if switching.switches(derivation) else ())
 
 
 def _cost_functions(derivation: Derivation) -> list[Function]:

@@ -17,8 +17,8 @@ from satsym.codegen.switching import switches
 from satsym.kernels.contract import TUPLES
 from satsym.kernels.digest import sealed
 from satsym.spec import ProblemSpec, Variable
-from satsym.symbolic.derivation import Derivation, Equation
-from satsym.symbolic.kepler.attraction import strength_of
+from satsym.symbolic.derivation import Derivation
+from satsym.symbolic.kepler.central_force import strength_of
 from satsym.symbolic.model import t, variables_of
 from satsym.symbolic.switching.curve import states_of
 
@@ -28,8 +28,6 @@ def render(derivation: Derivation, source: str) -> str:
 
     Parameters
     ----------
-    derivation
-        What was derived.
     source
         Name of the derivation file, for the header.
 
@@ -81,7 +79,10 @@ def spec(derivation: Derivation, source: str) -> ProblemSpec:
         coordinates=tuple(q.name for q in parts.coordinates) if (parts := symplectic.split(derivation)) else (),
         velocities=tuple(v.name for v in parts.velocities) if parts else (),
         quantities=_quantities(derivation),
-        balances=tuple(Variable(e.name, derivation.notation[e.name]) for e in _balances(derivation)),
+        balances=tuple(
+            Variable(e.name, derivation.notation[e.name])
+            for e in (derivation.step("balance").equations if "balance" in derivation else ())
+        ),
     )
 
 
@@ -91,10 +92,6 @@ def _quantities(derivation: Derivation) -> tuple[Variable, ...]:
         return ()
     declared = {v.symbol: v for v in variables_of(derivation.model)}
     return tuple(declared[e.name] for e in derivation.step("quantities").equations)
-
-
-def _balances(derivation: Derivation) -> Sequence[Equation]:
-    return derivation.step("balance").equations if "balance" in derivation else ()
 
 
 def _header(derivation: Derivation, source: str) -> str:

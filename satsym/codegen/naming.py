@@ -30,24 +30,16 @@ Expression = TypeVar("Expression", sp.Expr, sp.Matrix)
 
 @dataclass(frozen=True)
 class Code:
-    """What a module is written from, under the names it has there.
-
-    Attributes
-    ----------
-    symbols
-        Behind each argument.
-    functions
-        Of the module, in its order.
-    constants
-        Defined constants and their values.
-    names
-        Symbol of the derivation -> symbol of the code, where they differ.
-    """
+    """What a module is written from, under the names it has there."""
 
     symbols: Symbols
+    """Behind each argument."""
     functions: tuple[Function, ...]
+    """Of the module, in its order."""
     constants: Mapping[sp.Symbol, sp.Expr]
+    """Defined constants and their values."""
     names: Mapping[sp.Symbol, sp.Symbol]
+    """Symbol of the derivation -> symbol of the code, where they differ."""
 
     def renamed(self, expression: Expression) -> Expression:
         """An expression of the derivation as the code has it."""

@@ -22,42 +22,30 @@ HALF, SIXTH, EIGHTH = sp.Rational(1, 2), sp.Rational(1, 6), sp.Rational(1, 8)
 
 @dataclass(frozen=True)
 class Loop:
-    """What an RK4 loop integrates.
-
-    Attributes
-    ----------
-    name, summary, signature
-        Of the generated function.
-    backward
-        Whether it runs from the last node to the first.
-    time, parameters
-        Their symbols.
-    integrated
-        Symbols of what is integrated, under the names of the arguments that give its start, its nodes and
-        its midpoints.
-    start, nodes, mids
-        Names of those three arguments.
-    given
-        (argument of nodes, argument of midpoints, symbols) of each group that is known beforehand.
-    rates
-        Block from time, integrated and given symbols to the rates; with ``sums``, one output more.
-    sums
-        Whether the last output of the block is integrated to a number, which the function returns.
-    """
+    """What an RK4 loop integrates."""
 
     name: str
     summary: str
     signature: str
+    """Of the generated function."""
     backward: bool
+    """Whether it runs from the last node to the first."""
     time: sp.Symbol
     parameters: tuple[sp.Symbol, ...]
+    """Their symbols."""
     integrated: tuple[sp.Symbol, ...]
+    """Symbols of what is integrated, under the names of the arguments that give its start, its nodes and its
+    midpoints."""
     start: str
     nodes: str
     mids: str
+    """Names of those three arguments."""
     given: tuple[tuple[str, str, tuple[sp.Symbol, ...]], ...]
+    """(argument of nodes, argument of midpoints, symbols) of each group that is known beforehand."""
     rates: Block
+    """Block from time, integrated and given symbols to the rates; with ``sums``, one output more."""
     sums: bool
+    """Whether the last output of the block is integrated to a number, which the function returns."""
 
 
 def source(loop: Loop) -> str:

@@ -15,11 +15,11 @@ import sympy as sp
 from satsym.spec import names
 from satsym.symbolic import notation as n
 from satsym.symbolic.derivation import Derivation
+from satsym.symbolic.minimisers import Side
 from satsym.symbolic.model import symbols_of
 from satsym.symbolic.principle.pontryagin import costates
 from satsym.symbolic.switching import curve as switching_curve
 from satsym.symbolic.switching.functions import parts, written_out
-from satsym.symbolic.switching.minimisers import Side
 from satsym.symbolic.switching.notation import BEYOND, ON_CURVE, SIDE, TRANSITION
 
 STEP = "switching_function"
@@ -101,14 +101,14 @@ def extremal_jacobian(derivation: Derivation) -> sp.Matrix:
 
 
 @dataclass(frozen=True)
-class Companion:
+class Regularised:
     """The smoothed companion with its law put in: rates of states and costates, and its Hamiltonian."""
 
     rates: sp.Matrix
     hamiltonian: sp.Expr
 
 
-def companion(derivation: Derivation) -> Companion:
+def regularised(derivation: Derivation) -> Regularised:
     """The companion of a switching problem."""
     controls = symbols_of(derivation.model.controls)
     stated = {e.name: e.rhs for e in derivation.step("smoothed_law").equations}
@@ -117,7 +117,7 @@ def companion(derivation: Derivation) -> Companion:
     law = dict(zip(controls, laws, strict=True))
     costate_rates = [-sp.diff(h, x) for x in symbols_of(derivation.model.states)]
     rates = sp.Matrix([*derivation.rhs("first_order"), *costate_rates])
-    return Companion(rates.xreplace(law), h.xreplace(law))
+    return Regularised(rates.xreplace(law), h.xreplace(law))
 
 
 def printable(matrix: sp.Matrix) -> sp.Matrix:

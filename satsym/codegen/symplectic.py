@@ -24,19 +24,13 @@ from satsym.symbolic.model import symbols_of, t
 
 @dataclass(frozen=True)
 class Split:
-    """A motion q' = v, v' = a(q) without control.
-
-    Attributes
-    ----------
-    coordinates, velocities
-        The states q, and v in the same order.
-    accelerations
-        a, as the derivation has it.
-    """
+    """A motion q' = v, v' = a(q) without control."""
 
     coordinates: tuple[sp.Symbol, ...]
     velocities: tuple[sp.Symbol, ...]
+    """The states q, and v in the same order."""
     accelerations: tuple[sp.Expr, ...]
+    """a, as the derivation has it."""
 
 
 def split(derivation: Derivation) -> Split | None:
@@ -84,11 +78,11 @@ def source(code: Code, of: Split, constants: Sequence[Assignment]) -> str:
     place, pace, pull = [*q], [*v], [*slopes]
     kicks, drifts = weights()
     for k, kick in enumerate(kicks, start=1):
-        share = emit.assign(sp.Float(kick) * h, f"kick_{k}")
-        pace = [emit.assign(b + share * a, f"{y}_{k}") for y, b, a in zip(v, pace, pull, strict=True)]
+        fraction = emit.assign(sp.Float(kick) * h, f"kick_{k}")
+        pace = [emit.assign(b + fraction * a, f"{y}_{k}") for y, b, a in zip(v, pace, pull, strict=True)]
         if k <= len(drifts):
-            share = emit.assign(sp.Float(drifts[k - 1]) * h, f"drift_{k}")
-            place = [emit.assign(b + share * a, f"{y}_{k}") for y, b, a in zip(q, place, pace, strict=True)]
+            fraction = emit.assign(sp.Float(drifts[k - 1]) * h, f"drift_{k}")
+            place = [emit.assign(b + fraction * a, f"{y}_{k}") for y, b, a in zip(q, place, pace, strict=True)]
             pulls = emit.inline(force, dict(zip(q, place, strict=True)))
             pull = [emit.assign(a, f"a{k}_{y}") for y, a in zip(v, pulls, strict=True)]
     arrival = dict(zip((*q, *v), (*place, *pace), strict=True))

@@ -80,8 +80,8 @@ def _arguments(known: Symbols, derivation: Derivation, rng: random.Random) -> Ar
     place: Arguments = {a: tuple(map(draw, known.of(a))) for a in ARGUMENTS if a != "t"}
     if derivation.problem and derivation.problem.control_set == "box":
         m = len(known.u)
-        lower, upper, companion = (place["bounds"][i:k] for i, k in ((0, m), (m, 2 * m), (2 * m, None)))
-        place["bounds"] = (*(-abs(b) for b in lower), *map(abs, (*upper, *companion)))
+        lower, upper, regularised = (place["bounds"][i:k] for i, k in ((0, m), (m, 2 * m), (2 * m, None)))
+        place["bounds"] = (*(-abs(b) for b in lower), *map(abs, (*upper, *regularised)))
     return place | {"t": draw(known.t)}
 
 

@@ -26,18 +26,12 @@ Profile: TypeAlias = Callable[[FrameType, str, Any], object]
 
 @dataclass(frozen=True)
 class Limit:
-    """What something may take.
-
-    Attributes
-    ----------
-    calls
-        Calls and returns of functions; a million takes about half a second.
-    numbers
-        Entries of arrays, characters of texts and the like, all of them together, kept or not.
-    """
+    """What something may take."""
 
     calls: int
+    """Calls and returns of functions; a million takes about half a second."""
     numbers: int = 20_000_000
+    """Entries of arrays, characters of texts and the like, all of them together, kept or not."""
 
 
 READING = Limit(50_000_000)
@@ -98,15 +92,6 @@ _ACTIVE: ContextVar[Account | None] = ContextVar("account", default=None)
 def within(limit: Limit, work: Callable[[], T], spent: Callable[[int], None] = lambda _: None) -> T:
     """Do some work, and give up once it takes more than a limit; inside other such work that one's limit holds.
 
-    Parameters
-    ----------
-    limit
-        What it may take.
-    work
-        What to do.
-    spent
-        Told how many calls were made.
-
     Raises
     ------
     OverBudget
@@ -157,19 +142,13 @@ def charge(calls: int = 0, numbers: int = 0) -> None:
 
 @dataclass
 class Allowance:
-    """What all rows of a ledger may take together.
-
-    Attributes
-    ----------
-    counted
-        Whether it is counted at all. Counting makes the interpreter half as fast; of a ledger that comes with satsym
-        it is known what it takes.
-    left
-        Calls that are left.
-    """
+    """What all rows of a ledger may take together."""
 
     counted: bool = True
+    """Whether it is counted at all. Counting makes the interpreter half as fast; of a ledger that comes with satsym it
+    is known what it takes."""
     left: int = LEDGER
+    """Calls that are left."""
 
     def within(self, limit: Limit, work: Callable[[], T]) -> T:
         """As :func:`within`, of what is left."""

@@ -181,13 +181,13 @@ class Point:
                     raise NoValue("an angle that is no multiple of a right one")
                 product = product * pow(IMAGINARY, int(2 * imaginary), PRIME) % PRIME
                 continue
-            for kind, share in (("grows", real * PARTS), ("turns", imaginary * PARTS)):
-                if share.denominator != 1:
+            for kind, fraction in (("grows", real * PARTS), ("turns", imaginary * PARTS)):
+                if fraction.denominator != 1:
                     raise NoValue("an odd part of an angle")
-                if share:
+                if fraction:
                     # what grows is positive, as the exponential of a real number is
                     base = pow(self._random(f"{kind} {key}"), _TO_POSITIVE if kind == "grows" else 1, PRIME)
-                    product = product * pow(base, int(share), PRIME) % PRIME
+                    product = product * pow(base, int(fraction), PRIME) % PRIME
         return product
 
 
@@ -208,8 +208,6 @@ def vanishes(tree: Node, seed: str, positive: Collection[str] = (), points: int 
     ----------
     tree
         The formula; usually a difference.
-    seed
-        Decides the points.
     positive
         Names of symbols that are positive.
     points

@@ -40,39 +40,27 @@ _NEAR_ZERO = 1e-3
 
 @dataclass(frozen=True, slots=True)
 class Weight:
-    """What a tree takes.
-
-    Attributes
-    ----------
-    nodes, depth, terms, digits, degree
-        See the limits.
-    most, least
-        About how large it is at points whose coordinates are of size one, and how near to zero it comes.
-    number
-        Whether no symbol is in it.
-    """
+    """What a tree takes."""
 
     nodes: int = 1
     depth: int = 1
     terms: int = 1
     digits: int = 1
     degree: int = 0
-    most: float = 2.0
-    least: float = 0.5
+    """See the limits."""
+    largest: float = 2.0
+    smallest: float = 0.5
+    """About how large it is at points whose coordinates are of size one, and how near to zero it comes."""
     number: bool = False
+    """Whether no symbol is in it."""
 
 
 @dataclass
 class Scales:
-    """Weighs trees, each part once.
-
-    Parameters
-    ----------
-    max_terms
-        Terms that a tree may have once multiplied out.
-    """
+    """Weighs trees, each part once."""
 
     max_terms: int = MAX_COMBINED_TERMS
+    """Terms that a tree may have once multiplied out."""
     _known: dict[int, tuple[Node, Weight]] = field(default_factory=dict)
 
     def checked(self, tree: Node | Equality) -> None:
@@ -109,10 +97,10 @@ def _weight(node: Node, parts: Sequence[Weight], max_terms: int) -> Weight:
     if isinstance(node, Num):
         size = abs(_float(node.value))
         digits = len(str(node.value.numerator)) + len(str(node.value.denominator))
-        return Weight(digits=digits, most=size, least=size, number=True)
+        return Weight(digits=digits, largest=size, smallest=size, number=True)
     if not parts:
-        return Weight(degree=1, most=4.0) if isinstance(node, Sym) else Weight()
-    most, least = _sizes(node, parts)
+        return Weight(degree=1, largest=4.0) if isinstance(node, Sym) else Weight()
+    largest, smallest = _sizes(node, parts)
     number = all(part.number for part in parts)
     if isinstance(node, Call):
         _refuse_argument(node.function, parts, number)
@@ -123,8 +111,8 @@ def _weight(node: Node, parts: Sequence[Weight], max_terms: int) -> Weight:
         terms=terms,
         digits=digits,
         degree=degree,
-        most=most,
-        least=least,
+        largest=largest,
+        smallest=smallest,
         number=number,
     )
 
@@ -155,29 +143,29 @@ def _sizes(node: Node, parts: Sequence[Weight]) -> tuple[float, float]:
     """How large a tree is, and how near to zero it comes, at points of size one."""
     first = parts[0]
     if isinstance(node, Neg):
-        return first.most, first.least
+        return first.largest, first.smallest
     if isinstance(node, Add):
-        most = sum(part.most for part in parts)
+        largest = sum(part.largest for part in parts)
         value = constant(node) if all(part.number for part in parts) else None
-        return (abs(_float(value)),) * 2 if value else (most, min(_NEAR_ZERO, most))
+        return (abs(_float(value)),) * 2 if value else (largest, min(_NEAR_ZERO, largest))
     if isinstance(node, Mul):
-        return math.prod(part.most for part in parts), math.prod(part.least for part in parts)
+        return math.prod(part.largest for part in parts), math.prod(part.smallest for part in parts)
     if isinstance(node, Div):
-        return _over(first.most, parts[1].least), _over(first.least, parts[1].most)
+        return _over(first.largest, parts[1].smallest), _over(first.smallest, parts[1].largest)
     if isinstance(node, Pow):
         exponent = float(constant(node.exponent) or 0)
-        sizes = _power(first.most, exponent), _power(first.least, exponent)
+        sizes = _power(first.largest, exponent), _power(first.smallest, exponent)
         return max(sizes), min(sizes)
     if isinstance(node, Call) and node.function in _SIZES:
-        return _SIZES[node.function](max(part.most for part in parts)), _NEAR_ZERO
-    return max(part.most for part in parts), _NEAR_ZERO
+        return _SIZES[node.function](max(part.largest for part in parts)), _NEAR_ZERO
+    return max(part.largest for part in parts), _NEAR_ZERO
 
 
 def _refuse_argument(function: str, parts: Sequence[Weight], number: bool) -> None:
     if function not in _GROWING | _TURNING:
         return
     limit = MAX_CONSTANT_ARGUMENT if number and function in _GROWING else MAX_ARGUMENT
-    if not parts[0].most <= limit:
+    if not parts[0].largest <= limit:
         raise OverBudget(f"takes {function}(...) of numbers larger than {limit:.0e}; write it with smaller ones")
 
 

@@ -22,7 +22,7 @@ from satsym.instance import Instance
 Rates: TypeAlias = Callable[[Array, Array, NDArray[np.intp]], Array]
 """Of values (k, M) at times (M,), each in the interval behind the node of that number."""
 
-SHARE = 0.1
+FRACTION = 0.1
 """Of the instance's tolerance: what the integration between nodes may add."""
 MOST = 64
 """Steps between two nodes."""
@@ -62,8 +62,8 @@ class Motion:
         """Values at times (M,) within the nodes, shape (k, M)."""
         left = self.behind(t)
         a, b = self.times[left], self.times[left + 1]
-        share = np.where(b > a, (t - a) / np.where(b > a, b - a, 1.0), 1.0)
-        weight = share**2 * (3.0 - 2.0 * share)
+        fraction = np.where(b > a, (t - a) / np.where(b > a, b - a, 1.0), 1.0)
+        weight = fraction**2 * (3.0 - 2.0 * fraction)
         place = np.searchsorted(self.corners, a, side="right")
         corner = np.append(self.corners, np.inf)[place]
         weight = np.where(corner < b, t >= corner, weight)
@@ -73,7 +73,7 @@ class Motion:
 
     def _from(self, node: NDArray[np.intp], interval: NDArray[np.intp], t: Array) -> Array:
         """Values at times by integration from nodes, in more and more steps until two runs agree."""
-        steps, found, enough = 1, self._run(node, interval, t, 1), SHARE * self.tolerance
+        steps, found, enough = 1, self._run(node, interval, t, 1), FRACTION * self.tolerance
         size = np.abs(self.values).max(axis=1, keepdims=True)
         before = np.inf
         while steps < MOST:

@@ -17,7 +17,7 @@ from satsym.wording import shown, suggestion
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from satsym.solution import Flight, Solution
+    from satsym.solution import Simulation, Solution
 
 FORMATS = ("png", "pdf")
 
@@ -31,7 +31,7 @@ class Pictures(Mapping[str, "Figure"]):
         The result that they show.
     """
 
-    def __init__(self, found: Solution | Flight) -> None:
+    def __init__(self, found: Solution | Simulation) -> None:
         self._found = found
 
     @cached_property

@@ -16,11 +16,11 @@ from satsym.front.curves import Curve
 from satsym.front.instance import Instance
 from satsym.front.pictures import Pictures
 from satsym.report.results.files import to_json
-from satsym.solution import Flight, Solution
+from satsym.solution import Simulation, Solution
 from satsym.status import BadInput, Status
 from satsym.wording import printable
 
-Found = TypeVar("Found", Solution, Flight)
+Found = TypeVar("Found", Solution, Simulation)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

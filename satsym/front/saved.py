@@ -14,7 +14,7 @@ from satsym.instance import shipped
 from satsym.report.results import sets, trajectory
 from satsym.report.results.files import Content, check_writable, text
 from satsym.report.results.set_list import LIST, may_hold, unusable
-from satsym.solution import Flight, Solution
+from satsym.solution import Simulation, Solution
 from satsym.wording import printable
 
 ASKED = (
@@ -26,7 +26,7 @@ ASKED = (
 
 def save(
     instance: Instance,
-    found: Solution | Flight,
+    found: Solution | Simulation,
     result: Mapping[str, Any],
     folder: Path,
     pictures: Mapping[str, Content],
@@ -56,7 +56,7 @@ def _origin(instance: Instance) -> dict[str, Content]:
     return {place: text(tables.toml(tree)), f"{model.spec.name}.py": text(model.text)}
 
 
-def read(folder: Path, instance: Instance | str | Path | None) -> tuple[Instance, Solution | Flight]:
+def read(folder: Path, instance: Instance | str | Path | None) -> tuple[Instance, Solution | Simulation]:
     """What was saved in a folder, and its instance: the one given, the one saved with it, or the shipped one.
 
     Raises

@@ -8,12 +8,12 @@ from typing import Any, ClassVar
 from satsym.front import html
 from satsym.front.instance import Instance, as_case
 from satsym.front.result import Result
-from satsym.report.results.objects import flight_object
-from satsym.report.terminal.solution import flight_text
-from satsym.solution import Flight, Invariant
+from satsym.report.results.objects import simulation_object
+from satsym.report.terminal.solution import simulation_text
+from satsym.solution import Invariant, Simulation
 
 
-class Trajectory(Result[Flight]):
+class Trajectory(Result[Simulation]):
     """A simulated motion.
 
     A law is not kept with what it did. Between nodes its controls are interpolated, unless they are constant: splines
@@ -39,10 +39,10 @@ class Trajectory(Result[Flight]):
 
     def to_dict(self) -> dict[str, Any]:
         """What ``satsym simulate --json`` prints."""
-        return flight_object(self.found)
+        return simulation_object(self.found)
 
     def __repr__(self) -> str:
-        return flight_text(self.found)
+        return simulation_text(self.found)
 
     def _repr_html_(self) -> str:
         said = self.to_dict()

@@ -23,27 +23,18 @@ MAX_TITLE = 200
 
 @dataclass(frozen=True, eq=False)
 class Written:
-    """An instance as it was written, in a file or in Python.
-
-    Parameters
-    ----------
-    tree
-        Tables as TOML has them.
-    name
-        Of the instance.
-    path
-        Its file; models are looked for beside it.
-    given
-        What messages call it; by default its name.
-    model
-        Kernels, where they are at hand and need not be looked for.
-    """
+    """An instance as it was written, in a file or in Python."""
 
     tree: Mapping[str, Any]
+    """Tables as TOML has them."""
     name: str
+    """Of the instance."""
     path: Path
+    """Its file; models are looked for beside it."""
     given: str = ""
+    """What messages call it; by default its name."""
     model: Kernels | None = None
+    """Kernels, where they are at hand and need not be looked for."""
 
     def instance(self) -> Instance:
         """What it says, checked against its model.

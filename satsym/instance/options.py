@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from satsym.instance import memory, weights
+from satsym.instance import weights
 from satsym.instance.resolve import known, quantity, time, value_of
 from satsym.instance.schema import GuessTable, LqrTable, SolverOptions
 from satsym.instance.types import Guess, LqrOptions
@@ -27,7 +27,7 @@ def solver(options: SolverOptions, spec: ProblemSpec) -> SolverOptions:
             have = ", ".join(v.symbol for v in angles) or "none"
             raise BadInput(f"[solver] free_angles: {shown(name)} is no angle among the states; angles here: {have}")
     _no_repetition(options.free_angles, "[solver] free_angles")
-    memory.check(options, spec)
+    refuse_too_many_steps(options, spec)
     return options
 
 
@@ -97,3 +97,49 @@ def _no_repetition(names: Sequence[str], key: str) -> None:
     for name in names:
         if names.count(name) > 1:
             raise BadInput(f"{key}: {shown(name)} stands there twice; name each once")
+
+
+MOST_BYTES = 2**31
+
+_BYTES = 8
+"""Of a number."""
+
+
+def needed_memory(options: SolverOptions, spec: ProblemSpec) -> int:
+    """Bytes that are taken at most, by the number of steps.
+
+    The estimate depends on nothing but the instance, so that what one machine refuses no other accepts. It is what
+    solving, certifying, simulating and writing were measured to take at most, by all methods, rounded up.
+    """
+    return options.steps * _each(options, spec)
+
+
+def refuse_too_many_steps(options: SolverOptions, spec: ProblemSpec) -> None:
+    """Refuse steps that need more memory than there may be.
+
+    Raises
+    ------
+    BadInput
+        With the steps, the estimate and the limit.
+    """
+    needed = needed_memory(options, spec)
+    if needed > MOST_BYTES:
+        most = MOST_BYTES // _each(options, spec)
+        raise BadInput(
+            f"[solver] steps: {options.steps} steps of {spec.name} need about {_shown(needed)} of memory, above the "
+            f"limit of {_shown(MOST_BYTES)}; use at most {most}"
+        )
+
+
+def _each(options: SolverOptions, spec: ProblemSpec) -> int:
+    """Bytes for each step: flows of the canonical equations and what belongs to nodes, or what a method remembers."""
+    n, m = len(spec.states), len(spec.controls)
+    numbers = 10 * n * n + 10 * (n + m)
+    if spec.has_cost:
+        remembered = [method.remembers for method in possible(options.method)]
+        numbers = max([numbers, *(by_state * n + by_control * m for by_state, by_control in remembered)])
+    return _BYTES * numbers
+
+
+def _shown(size: int) -> str:
+    return f"{size / 1e9:.3g} GB"

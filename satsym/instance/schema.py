@@ -91,34 +91,23 @@ class GuessTable(_Table, frozen=True):
 
 
 class SolverOptions(_Table, frozen=True):
-    """What the solvers are told.
-
-    Parameters
-    ----------
-    method
-        Which solver, ``"auto"`` for the one that fits.
-    tolerance
-        Largest residual of an answer.
-    steps
-        Steps of the grid, from 2.
-    max_seconds, max_iterations
-        When to give up; the latter counts sweeps, other methods know by themselves how many steps make sense.
-    free_angles
-        States whose final value counts modulo a turn.
-    relaxation
-        Share of the new control in each sweep, in (0, 1]; chooses plain relaxation.
-    backend
-        Whether kernels are compiled.
-    """
+    """What the solvers are told."""
 
     method: Method = methods.AUTO
+    """Which solver, ``"auto"`` for the one that fits."""
     tolerance: Positive = 1e-9
+    """Largest residual of an answer."""
     steps: Annotated[int, Meta(ge=2, le=10**7, description="a whole number from 2 to 10000000")] = 1000
+    """Steps of the grid, from 2."""
     max_seconds: Positive = 60.0
     max_iterations: Count | None = None
+    """When to give up; the latter counts sweeps, other methods know by themselves how many steps make sense."""
     free_angles: Names = ()
+    """States whose final value counts modulo a turn."""
     relaxation: Annotated[float, Meta(gt=0, le=1, description="a number above 0, at most 1")] | None = None
+    """Share of the new control in each sweep, in (0, 1]; chooses plain relaxation."""
     backend: Annotated[Backend, Meta(description="one of " + ", ".join(f'"{b}"' for b in get_args(Backend)))] = "auto"
+    """Whether kernels are compiled."""
 
 
 class InstanceFile(_Table, frozen=True):

@@ -22,7 +22,9 @@ from satsym.kernels import plain
 from satsym.kernels.contract import CURVE, GROUPS, TUPLES, pointwise, sizes
 from satsym.kernels.core import Kernels
 from satsym.kernels.evaluation import COPIES, Evaluation, size, with_copies
-from satsym.kernels.relations import Relation, deviations, relations
+from satsym.kernels.motion import of_motion
+from satsym.kernels.optimality import of_the_cost
+from satsym.kernels.relations import Relation, deviations
 from satsym.spec import Variable
 
 LIMIT = 1e-9
@@ -31,7 +33,7 @@ LIMIT = 1e-9
 PLACES = 24
 """Of random ones."""
 
-STEPS, SHARE = 3, 0.1
+STEPS, FRACTION = 3, 0.1
 """Nodes over which loops are followed, and by which share of themselves states change in a step."""
 
 FAR = 1e9
@@ -45,19 +47,13 @@ _FAILED = (ArithmeticError, ValueError, TypeError)
 
 @dataclass(frozen=True)
 class Contradiction:
-    """The worst disagreement of a function with others.
-
-    Attributes
-    ----------
-    function, claim
-        Which, and what it must be.
-    deviation
-        Relative, see :data:`LIMIT`; infinite where only one of two numbers is finite.
-    """
+    """The worst disagreement of a function with others."""
 
     function: str
     claim: str
+    """Which, and what it must be."""
     deviation: float
+    """Relative, see :data:`LIMIT`; infinite where only one of two numbers is finite."""
 
 
 def worst(kernels: Kernels, at: Mapping[str, Any], seed: int = SEED) -> Contradiction | None:
@@ -65,8 +61,6 @@ def worst(kernels: Kernels, at: Mapping[str, Any], seed: int = SEED) -> Contradi
 
     Parameters
     ----------
-    kernels
-        To be examined.
     at
         Arguments by name, as :func:`random_places` gives them.
     seed
@@ -80,7 +74,8 @@ def worst(kernels: Kernels, at: Mapping[str, Any], seed: int = SEED) -> Contradi
             evaluation = Evaluation(kernels, with_copies(at, seed))
         if not finite.any():
             return None
-        groups: list[tuple[list[Relation], Callable[[Array], Array]]] = [(list(relations(evaluation)), size)]
+        together = [*of_motion(evaluation), *(of_the_cost(evaluation) if kernels.spec.has_cost else ())]
+        groups: list[tuple[list[Relation], Callable[[Array], Array]]] = [(together, size)]
         groups += [([each], _largest) for source in (_both_forms(evaluation), _loops(kernels, at)) for each in source]
         found = [
             Contradiction(each.function, each.claim, deviation)
@@ -212,7 +207,7 @@ def _short(kernels: Kernels, at: Mapping[str, Any]) -> float:
     try:
         rates = np.abs(kernels.dynamics(at["t"], at["x"], at["u"], at["p"]))
     except _FAILED:
-        return SHARE
+        return FRACTION
     x = np.abs(at["x"])
     pace = float((rates / np.where(x > 0.0, x, np.inf)).max(initial=0.0))
-    return SHARE / pace if np.isfinite(pace) and pace > 0.0 else SHARE
+    return FRACTION / pace if np.isfinite(pace) and pace > 0.0 else FRACTION

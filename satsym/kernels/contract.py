@@ -20,22 +20,14 @@ GROUPS |= {"gain": "mn", "riccati": "nn", "state_weight": "nn", "control_weight"
 
 @dataclass(frozen=True)
 class Signature:
-    """Arguments of a function, and the shape of its result.
-
-    Attributes
-    ----------
-    arguments
-        Names, in order.
-    shape
-        A letter for each axis, see :func:`sizes`: ``""`` for a number, ``"n"`` for a vector, ``"nm"`` for a
-        matrix.
-    over_parameters
-        Whether parameters count for the shape of a batch, so that each of them may be an array.
-    """
+    """Arguments of a function, and the shape of its result."""
 
     arguments: tuple[str, ...]
+    """Names, in order."""
     shape: str = ""
+    """A letter for each axis, see :func:`sizes`: ``""`` for a number, ``"n"`` for a vector, ``"nm"`` for a matrix."""
     over_parameters: bool = False
+    """Whether parameters count for the shape of a batch, so that each of them may be an array."""
 
 
 def _signature(arguments: str, shape: str = "") -> Signature:

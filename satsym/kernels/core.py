@@ -38,26 +38,18 @@ class Kernels(Functions):
 
     Every generated function is an attribute (``kernels.dynamics(t, x, u, p)``), with the loops ``forward``,
     ``backward`` and ``symplectic`` wrapped for arrays; ``functions`` holds the loops as they were generated.
-
-    Attributes
-    ----------
-    spec
-        Names, units and kinds.
-    functions
-        The generated functions by name.
-    backend
-        ``"python"`` (floats; nothing to wait for) or ``"numba"`` (compiled at the first call of each).
-    origin
-        What :func:`satsym.kernels.load` was given, so that another process can load it again.
-    text
-        Of a module that is not a shipped one: from it another process makes the same, wherever it was read.
     """
 
     spec: ProblemSpec
+    """Names, units and kinds."""
     functions: Mapping[str, Function]
+    """The generated functions by name."""
     backend: Backend = "python"
+    """``"python"`` (floats; nothing to wait for) or ``"numba"`` (compiled at the first call of each)."""
     origin: tuple[str, Path | None] | None = None
+    """What :func:`satsym.kernels.load` was given, so that another process can load it again."""
     text: str | None = None
+    """Of a module that is not a shipped one: from it another process makes the same, wherever it was read."""
 
     def __post_init__(self) -> None:
         # Instance attributes, not __getattr__: solvers call these in inner loops.
@@ -67,11 +59,6 @@ class Kernels(Functions):
 
         def __getattr__(self, name: str) -> Function:
             raise AttributeError(f"model {self.spec.name} has no function {name}" if "spec" in vars(self) else name)
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        if self.origin is None:
-            return Kernels, (self.spec, self.functions, self.backend)
-        return _restore, (*self.origin, self.text, self.backend)
 
     def forward(
         self, times: ArrayLike, x0: Sequence[float], u: ArrayLike, u_mid: ArrayLike, p: Sequence[float]
@@ -255,13 +242,6 @@ class Kernels(Functions):
         except _ARITHMETIC:
             result = nan
         return nan if isinstance(result, complex) else result, _real(node_lists), _real(midpoint_lists)
-
-
-def _restore(model: str, folder: Path | None, text: str | None, backend: Backend) -> Kernels:
-    from satsym.kernels.loading import from_text, load
-
-    kernels = load(model, folder) if text is None else from_text(text, model, folder)
-    return kernels.compiled() if backend == "numba" else kernels
 
 
 def _nodes(times: ArrayLike) -> tuple[Array, int]:

@@ -24,19 +24,13 @@ FAINT = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class Evaluation:
-    """The functions of a model at places, and at copies a little aside of them.
-
-    Parameters
-    ----------
-    kernels
-        Whose.
-    at
-        By name of the argument: times (K,), tables of K columns; for those in :data:`TUPLES` tuples of numbers or of
-        arrays (K,). The first K/(1 + COPIES) columns are the places, then come the copies.
-    """
+    """The functions of a model at places, and at copies a little aside of them."""
 
     kernels: Kernels
+    """Whose."""
     at: Mapping[str, Any]
+    """By name of the argument: times (K,), tables of K columns; for those in :data:`TUPLES` tuples of numbers or of
+    arrays (K,). The first K/(1 + COPIES) columns are the places, then come the copies."""
 
     @cached_property
     def signatures(self) -> dict[str, Signature]:

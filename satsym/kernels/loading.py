@@ -8,10 +8,11 @@ its functions against one another.
 from __future__ import annotations
 
 import ast
+import copyreg
 import importlib
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cache, lru_cache
 from importlib.abc import InspectLoader
 from pathlib import Path
@@ -20,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from satsym.kernels.core import Function, Kernels
+from satsym.kernels.core import Backend, Function, Kernels
 from satsym.kernels.digest import intact
 from satsym.spec import ProblemSpec
 from satsym.status import BadInput
@@ -77,8 +78,6 @@ def from_text(text: str, name: str, folder: Path | None = None) -> Kernels:
     ----------
     text
         What a generated file would hold.
-    name
-        How messages call it.
     folder
         Where it would be, or was.
 
@@ -192,3 +191,18 @@ def _load_text(model: str, root: Path, path: Path, text: str) -> Kernels:
 
 def _defined(namespace: Mapping[str, Any]) -> dict[str, Function]:
     return {name: value for name, value in namespace.items() if isinstance(value, FunctionType)}
+
+
+def _parts(kernels: Kernels) -> tuple[Callable[..., Kernels], tuple[Any, ...]]:
+    """How kernels travel between processes: by where they come from, to be loaded there again."""
+    if kernels.origin is None:
+        return Kernels, (kernels.spec, kernels.functions, kernels.backend)
+    return _restored, (*kernels.origin, kernels.text, kernels.backend)
+
+
+def _restored(model: str, folder: Path | None, text: str | None, backend: Backend) -> Kernels:
+    kernels = load(model, folder) if text is None else from_text(text, model, folder)
+    return kernels.compiled() if backend == "numba" else kernels
+
+
+copyreg.pickle(Kernels, _parts)

@@ -14,30 +14,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.kernels.evaluation import FAINT, Evaluation
+from satsym.kernels.evaluation import Evaluation
 
 
 @dataclass(frozen=True, eq=False)
 class Relation:
-    """Two sides that must be equal but for rounding.
-
-    Attributes
-    ----------
-    function
-        The one that is held against the others.
-    claim
-        What it must be.
-    left, right
-        Of one shape, the last axis for columns.
-    terms
-        Sizes of what the sides are sums of, where these may cancel; broadcast against the sides.
-    """
+    """Two sides that must be equal but for rounding."""
 
     function: str
+    """The one that is held against the others."""
     claim: str
+    """What it must be."""
     left: Array
     right: Array
+    """Of one shape, the last axis for columns."""
     terms: Array | float = 0.0
+    """Sizes of what the sides are sums of, where these may cancel; broadcast against the sides."""
 
 
 def deviations(found: Sequence[Relation], scale: Callable[[Array], Array]) -> list[float]:
@@ -67,15 +59,6 @@ def _sides(of: Relation) -> tuple[Array, Array, Array]:
     return of.left, of.right, np.broadcast_to(of.terms, of.left.shape)
 
 
-def relations(of: Evaluation) -> Iterator[Relation]:
-    """All relations between the functions that a model has."""
-    yield from _of_motion(of)
-    if of.kernels.spec.has_cost:
-        from satsym.kernels.optimality import of_the_cost
-
-        yield from of_the_cost(of)
-
-
 def derivative(
     of: Evaluation, name: str, function: str, by: tuple[str, ...], factor: float = 1.0
 ) -> Iterator[Relation]:
@@ -94,43 +77,3 @@ def along(of: Evaluation, name: str, rates: Array, **instead: Array) -> tuple[Ar
     by_time = of.slope(name, "t", **instead)[..., 0, :]
     parts = of.slope(name, "x", **instead) * rates
     return by_time + parts.sum(axis=-2), np.abs(by_time) + np.abs(parts).sum(axis=-2)
-
-
-def _of_motion(of: Evaluation) -> Iterator[Relation]:
-    x = ("x",)
-    yield from derivative(of, "jacobian_x", "dynamics", x)
-    yield from derivative(of, "jacobian_u", "dynamics", ("u",))
-    rest = np.zeros_like(of.at["u"])
-    drift = of("dynamics", u=rest)
-    if of.has("reference"):
-        curve = of("reference")
-        rates, pace = of("dynamics", x=curve, u=rest), of.slope("reference", "t")[..., 0, :]
-        terms = np.abs(of.slope("dynamics", "x", x=curve, u=rest) * curve).sum(axis=-2)
-        yield Relation("reference", "uncontrolled motion", pace, rates, FAINT * terms)
-    if of.has("invariants"):
-        left, terms = along(of, "invariants", drift)
-        yield Relation("invariants", "constant along the uncontrolled motion", left, np.zeros_like(left), terms)
-    if of.has("balances"):
-        rates, terms = along(of, "balances", of("dynamics"))
-        stated = of("balances")[1::2]
-        yield Relation("balances", "each followed by its rate of change", stated, rates[::2], terms[::2])
-    if of.has("inertial_state"):
-        yield from _of_attraction(of, drift)
-    if of.kernels.spec.linear:
-        from satsym.kernels.linearity import of_linear_models
-
-        yield from of_linear_models(of)
-
-
-def _of_attraction(of: Evaluation, drift: Array) -> Iterator[Relation]:
-    """Velocity and acceleration in space, and the law of attraction."""
-    name = "inertial_state"
-    state = of(name)
-    rates, terms = along(of, name, drift)
-    place, mu = state[:3], state[6]
-    distance = np.sqrt((place * place).sum(axis=0))
-    yield Relation(name, "velocity is the rate of change of place", state[3:6], rates[:3], terms[:3])
-    yield Relation(name, "acceleration is that of Kepler motion", rates[3:6], -mu * place / distance**3, terms[3:6])
-    if of.has("position"):
-        found = of("position")
-        yield Relation("position", "place in space", found, place[: len(found)], distance * FAINT)

@@ -31,8 +31,6 @@ def render(paths: Iterable[Path], announce: Callable[[str], None] = lambda name:
 
     Parameters
     ----------
-    paths
-        Derivation files.
     announce
         Told the name of each problem once it is derived.
 
@@ -60,8 +58,6 @@ def renew(
     ----------
     paths, announce
         As there.
-    folder
-        Where the files belong.
     fresh
         Derive everything, and keep stamps of it.
 
@@ -167,8 +163,6 @@ def differences(rendered: Mapping[str, str], folder: Path, whole: bool) -> list[
     ----------
     rendered
         File name -> text.
-    folder
-        Where the files should be.
     whole
         Whether the folder should hold nothing else, so that a leftover file is a difference.
     """

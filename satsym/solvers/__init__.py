@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from satsym import methods
 from satsym.instance import Instance
 from satsym.methods import Method
-from satsym.solution import Flight, Progress, Solution
+from satsym.solution import Progress, Simulation, Solution
 from satsym.solvers.iteration import TimeUp
 from satsym.status import BadInput, Status
 
@@ -88,15 +88,15 @@ def _in_time(method: Method) -> Solver:
         try:
             return solver(instance, progress)
         except TimeUp:
-            from satsym.solvers import out_of_time
+            from satsym.solvers import iteration
 
-            return out_of_time.solution(instance, method.name, time.perf_counter() - began)
+            return iteration.unsolved(instance, method.name, time.perf_counter() - began)
 
     return solved
 
 
-def simulate(instance: Instance, law: Law | None = None) -> Flight:
+def simulate(instance: Instance, law: Law | None = None) -> Simulation:
     """Simulate an instance under a control law; see :func:`satsym.solvers.simulation.simulating.simulate`."""
-    from satsym.solvers.simulation import simulating as flight
+    from satsym.solvers.simulation import simulating
 
-    return flight.simulate(instance, law)
+    return simulating.simulate(instance, law)

@@ -43,8 +43,6 @@ def solved(instance: Instance, progress: Progress | None, name: str, method: Met
         With final states given, on the reference or free, and a final time that is given or free.
     progress
         Called after each step of the method, and each phase.
-    name
-        Of the method.
     method
         Finds an extremal; warnings about arithmetic are off while it does.
     """

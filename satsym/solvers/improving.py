@@ -11,7 +11,7 @@ import numpy as np
 
 from satsym.instance import Guess, Instance
 from satsym.solution import Progress, Solution
-from satsym.solvers.certificate.competitors import SAMPLES, Competitor, guess
+from satsym.solvers.certificate.competitors import SAMPLES, guess
 from satsym.solvers.certificate.saddle import departures, fall
 from satsym.solvers.certificate.verdict import examined
 from satsym.status import Status, Verdict
@@ -29,8 +29,6 @@ def improved(solver: Solver, instance: Instance, progress: Progress | None) -> S
 
     Parameters
     ----------
-    solver
-        Of a method.
     instance
         What to solve.
     progress
@@ -44,7 +42,7 @@ def improved(solver: Solver, instance: Instance, progress: Progress | None) -> S
         message = f"{solution.message}; another extremal costs less, {better.cost:.10g}: leave out [guess] to have it"
         solution, better = replace(solution, message=message), None
     for seed in range(1, ROUNDS + 1):
-        again = None if better is None else _from(better, solver, solution, progress, deadline)
+        again = None if better is None else _again(guess(better, solution), solver, solution, progress, deadline)
         if again is None:
             break
         certificate, better = examined(again, deadline, seed)
@@ -97,13 +95,6 @@ def _departed(solver: Solver, solution: Solution, progress: Progress | None, dea
         if found is not None:
             return found
     return None
-
-
-def _from(
-    better: Competitor, solver: Solver, solution: Solution, progress: Progress | None, deadline: float
-) -> Solution | None:
-    """The solution to which a competitor leads; ``None`` where that is not cheaper, or time is up."""
-    return _again(guess(better, solution), solver, solution, progress, deadline)
 
 
 def _again(

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.solution import Iteration, Progress
+from satsym.solution import Iteration, Progress, Simulation, Solution
 from satsym.status import Status
 from satsym.wording import counted
 
@@ -58,26 +58,18 @@ class Limits:
     """When to give up, and who watches until then.
 
     What a verdict depends on is limited by work, which is the same on every machine; the clock is there for people.
-
-    Attributes
-    ----------
-    iterations
-        Of the method.
-    deadline
-        On the clock of ``time.perf_counter``.
-    watch
-        Told cost and residual after inner steps, for a solver whose phases take long.
-    work
-        Columns that may be linearised, see :class:`Meter`.
-    meter
-        Shared by all limits that are derived from these.
     """
 
     iterations: int
+    """Of the method."""
     deadline: float
+    """On the clock of ``time.perf_counter``."""
     watch: Callable[[float, float], None] | None = None
+    """Told cost and residual after inner steps, for a solver whose phases take long."""
     work: float = float("inf")
+    """Columns that may be linearised, see :class:`Meter`."""
     meter: Meter = field(default_factory=Meter)
+    """Shared by all limits that are derived from these."""
 
     def tell(self, cost: float, residual: float) -> None:
         """Tell who watches, if anyone does."""
@@ -162,3 +154,41 @@ def iterate(method: Method[State], limits: Limits, progress: Progress | None) ->
         except TimeUp:
             continue  # with the last state that is whole; the clock is looked at there
         history.append(method.measure(state, len(history)))
+
+
+MESSAGE = "time was up while {steps} steps were computed"
+
+
+def unsolved(instance: Instance, method: str, wall_s: float) -> Solution:
+    """No answer, and no trajectory."""
+    n, m = len(instance.initial), len(instance.lower)
+    return Solution(
+        instance=instance,
+        method=method,
+        status=Status.TIME_LIMIT,
+        message=MESSAGE.format(steps=instance.solver.steps),
+        objective=float("nan"),
+        times=np.array([instance.t0, instance.t0 + 1.0 if instance.tf is None else instance.tf]),
+        x=np.full((n, 2), np.nan),
+        u=np.full((m, 2), np.nan),
+        lam=np.full((n, 2), np.nan),
+        switching_times=((),) * m,
+        iterations=0,
+        history=(),
+        wall_s=wall_s,
+    )
+
+
+def unsimulated(instance: Instance, feedback: str) -> Simulation:
+    """No motion."""
+    return Simulation(
+        instance=instance,
+        feedback=feedback,
+        status=Status.TIME_LIMIT,
+        message=Status.TIME_LIMIT.explain(MESSAGE.format(steps=instance.solver.steps)),
+        times=np.array([instance.t0, instance.t0 + 1.0 if instance.tf is None else instance.tf]),
+        x=np.full((len(instance.initial), 2), np.nan),
+        u=np.full((len(instance.lower), 2), np.nan),
+        invariants={},
+        metrics={},
+    )

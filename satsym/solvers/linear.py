@@ -53,8 +53,6 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     ----------
     instance
         With a given final time, final states given, on the reference or free, and bounds that are not met.
-    progress
-        Called once.
 
     Raises
     ------

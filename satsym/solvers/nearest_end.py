@@ -30,22 +30,15 @@ ARRIVED = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class Nearest:
-    """The nearest end that was found.
-
-    Attributes
-    ----------
-    missed
-        By how much each given final state is missed, in the model's units, by its name, and each terminal constraint,
-        by its multiplier's.
-    distance
-        The largest of them, relative to the size of its state along the way.
-    starts
-        Controls from which the miss was minimised.
-    """
+    """The nearest end that was found."""
 
     missed: dict[str, float]
+    """By how much each given final state is missed, in the model's units, by its name, and each terminal constraint, by
+    its multiplier's."""
     distance: float
+    """The largest of them, relative to the size of its state along the way."""
     starts: int
+    """Controls from which the miss was minimised."""
 
     @property
     def arrives(self) -> bool:
@@ -71,8 +64,6 @@ def nearest(problem: TwoPoint, path: Path, limits: Limits) -> Nearest | None:
         With its bounds, and a given final time.
     path
         States and costates whose control law, cut to the bounds, is one of the starts.
-    limits
-        When to stop.
 
     Returns
     -------

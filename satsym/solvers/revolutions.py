@@ -27,25 +27,17 @@ MOST_MOVES = 6
 
 @dataclass(frozen=True, eq=False)
 class Best(Generic[Answer]):
-    """The cheapest number of turns.
-
-    Attributes
-    ----------
-    answer
-        What solving with it gave.
-    turns
-        Turns added to the final value of each angle.
-    message
-        Which number won, and what its neighbours cost; empty where no angle counts modulo a turn.
-    endless
-        Costs of the last numbers of turns where they fall without end in sight: after all moves, or up to a
-        neighbour that has no answer.
-    """
+    """The cheapest number of turns."""
 
     answer: Answer
+    """What solving with it gave."""
     turns: dict[str, int]
+    """Turns added to the final value of each angle."""
     message: str
+    """Which number won, and what its neighbours cost; empty where no angle counts modulo a turn."""
     endless: tuple[float, ...] = ()
+    """Costs of the last numbers of turns where they fall without end in sight: after all moves, or up to a neighbour
+    that has no answer."""
 
 
 def cheapest(
@@ -55,10 +47,6 @@ def cheapest(
 
     Parameters
     ----------
-    instance
-        Names the angles.
-    limits
-        When to stop.
     solve, cost
         From an instance to an answer, with great effort or not, and its cost: infinite where there is none. The
         first number of turns is worth the effort, its neighbours are not.

@@ -39,19 +39,13 @@ ANGLES = 720
 
 @dataclass(frozen=True, eq=False)
 class Rotation:
-    """A rotation exp(phi G) that leaves the free motion as it is, by the angle phi in the sense of the motion.
-
-    Attributes
-    ----------
-    axes, angular
-        Eigenvectors of G in columns, and their eigenvalues: i times 0, 1 or more.
-    inverse
-        Of the former.
-    """
+    """A rotation exp(phi G) that leaves the free motion as it is, by the angle phi in the sense of the motion."""
 
     axes: NDArray[np.complexfloating[Any, Any]]
     angular: NDArray[np.complexfloating[Any, Any]]
+    """Eigenvectors of G in columns, and their eigenvalues: i times 0, 1 or more."""
     inverse: NDArray[np.complexfloating[Any, Any]]
+    """Of the former."""
 
     def turned(self, states: Array, angle: Array | float) -> Array:
         """States (n, M), each by its angle (M,)."""
@@ -106,18 +100,12 @@ def turns(around: Rotation, states: Array) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Spiral:
-    """A path that turns with the motion to the given end.
-
-    Attributes
-    ----------
-    turns
-        How often it goes round.
-    path
-        Of scaled states.
-    """
+    """A path that turns with the motion to the given end."""
 
     turns: float
+    """How often it goes round."""
     path: States
+    """Of scaled states."""
 
 
 def spirals(problem: TwoPoint, most: int, around: Rotation | None = None) -> list[Spiral]:
@@ -127,8 +115,6 @@ def spirals(problem: TwoPoint, most: int, around: Rotation | None = None) -> lis
 
     Parameters
     ----------
-    problem
-        What is solved.
     most
         How many at most.
     around

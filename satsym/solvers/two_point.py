@@ -11,10 +11,10 @@ from satsym.instance import Instance
 from satsym.solution import Progress, Solution
 from satsym.solvers.cold_start import paths
 from satsym.solvers.cold_start.durations import free_duration
+from satsym.solvers.cold_start.first_minimum import cold_start
 from satsym.solvers.cold_start.origin import Origin, Start
 from satsym.solvers.cold_start.soft_bounds import within_bounds, within_found
 from satsym.solvers.cold_start.swept import from_control, loose, swept
-from satsym.solvers.cold_start.ways import cold_start
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.continuation import settled, tighten
 from satsym.solvers.collocation.curve import Curve, Path
@@ -33,7 +33,7 @@ from satsym.status import Status
 ROUNDING = 1e-12
 """An estimated error below this can hardly be made smaller."""
 
-LEAST = 10
+FEWEST_INTERVALS = 10
 """Intervals of a mesh on which a guess is followed."""
 
 GUESSED = 1e-2
@@ -73,14 +73,10 @@ def from_cold_start(instance: Instance, limits: Limits, effort: bool, accurate: 
 
     Parameters
     ----------
-    instance
-        What is solved.
     limits
         When to stop, and who is told the cost of what was found.
     effort
         Whether free durations are looked for with great effort.
-    accurate
-        What is done from there.
     """
     if instance.tf is not None:
         problem = two_point(instance, instance.tf - instance.t0)
@@ -122,7 +118,7 @@ def guessed(problem: TwoPoint, limits: Limits) -> Start | None:
     if guess.control and loose(problem):
         curve = from_control(problem, guess.control, limits)
     elif guess.costate:
-        bounded = settled(problem, begun, STAGES, max(len(begun.mesh) - 1, LEAST), limits)
+        bounded = settled(problem, begun, STAGES, max(len(begun.mesh) - 1, FEWEST_INTERVALS), limits)
         curve = bounded.curve if bounded.solved else None
     if curve is None:
         softened = within_bounds(problem, paths.first(problem), limits, GUESSED)
@@ -147,8 +143,6 @@ def inside(problem: TwoPoint, start: Start, free: Curve, limits: Limits) -> Atte
         How the extremal was found.
     free
         The extremal, perhaps more accurate.
-    limits
-        When to stop.
     """
     if start.bounded:
         return replace(start.found, iterations=1)

@@ -31,6 +31,28 @@ def gradient(expression: sp.Expr, symbols: Iterable[sp.Symbol]) -> list[sp.Expr]
     return [sp.diff(expression, s) for s in symbols]
 
 
+@lru_cache(maxsize=4096)  # problems of one model ask alike
+def simplified(expression: sp.Expr) -> sp.Expr:
+    """As by sympy, which need not be asked where only sums of products of symbols and their powers are left.
+
+    Of those there is but one way to write them; squares of cosines are put in terms of sines to get there.
+    """
+    expanded = _expand(expression)
+    squares = {
+        p: (1 - sp.sin(p.base.args[0]) ** 2) ** (p.exp // 2) * p.base ** (p.exp % 2)
+        for p in expanded.atoms(sp.Pow)
+        if isinstance(p.base, sp.cos) and p.exp.is_Integer and p.exp > 1
+    }
+    plain = _expand(expanded.xreplace(squares))
+    unique = not plain.atoms(sp.Function) and all(p.base.is_Symbol and p.exp.is_Integer for p in plain.atoms(sp.Pow))
+    return plain if unique else sp.simplify(expression)
+
+
+def vanishes(expression: sp.Expr) -> bool:
+    """Whether an expression is identically zero, as far as simplifying shows it."""
+    return bool(simplified(expression) == 0)
+
+
 def tidy(expression: sp.Expr, by: Sequence[sp.Symbol] = ()) -> sp.Expr:
     """The expression as a sum over the symbols it is linear in, each with its shortest coefficient."""
     expanded = _expand(sp.sympify(expression))

@@ -11,8 +11,9 @@ from typing import Any, TypeAlias
 import mpmath as mp
 import sympy as sp
 
+from satsym.symbolic.algebra import vanishes
 from satsym.symbolic.derivation import Check, DerivationError
-from satsym.symbolic.principle.control_sets import MPMATH_FUNCTIONS
+from satsym.symbolic.minimisers import MPMATH_FUNCTIONS
 
 DIGITS = 30
 LIMIT = 1e-15
@@ -122,7 +123,7 @@ def _largest(values: Iterable[Any]) -> float:
 
 def identity(claim: str, expressions: Iterable[sp.Expr]) -> Check:
     """Check that expressions are identically zero, by simplification where multiplying out does not show it."""
-    remainders = [e for e in expressions if sp.expand(e) != 0 and sp.simplify(e) != 0]
+    remainders = [e for e in expressions if sp.expand(e) != 0 and not vanishes(e)]
     return Check(claim, float(len(remainders)), 0.0)
 
 

@@ -1,16 +1,21 @@
-"""What a derivation file may state: misfits, undeclared and misplaced symbols are refused before any step."""
+"""What a derivation file may state: misfits, foreign symbols and clashes of names are refused before any step."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from typing import Any, get_args
 
 import sympy as sp
 
-from satsym.spec import ControlSetKind
+from satsym.spec import ControlSetKind, Variable
+from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import constants_of
 from satsym.symbolic.derivation import Derivation, DerivationError
-from satsym.symbolic.model import Model, Problem, symbols_of
+from satsym.symbolic.linear import notation as linear_notation
+from satsym.symbolic.model import Model, Problem, symbols_of, variables_of
+from satsym.symbolic.principle import control_sets
+from satsym.symbolic.principle import notation as principle_notation
+from satsym.symbolic.switching import notation as switching_notation
 from satsym.wording import shown
 
 
@@ -79,3 +84,58 @@ def _complaint(foreign: set[sp.Symbol], everything: set[sp.Symbol]) -> str:
         written = (f'symbols("{s.name}", {"positive" if s.is_positive else "real"}=True)' for s in meant)
         return f"uses other symbols than the declared ones; take those from symbols_of, or write {', '.join(written)}"
     return f"cannot depend on {', '.join(sorted(s.name for s in foreign))}"
+
+
+def begin(model: Model, problem: Problem | None) -> Derivation:
+    """An empty derivation with its notation.
+
+    Raises
+    ------
+    DerivationError
+        If two things have the same name.
+    """
+    variables = list(variables_of(model))
+    if problem:
+        variables += control_sets.bounds(problem.control_set, model.controls)
+    notation = {s.name: latex for s, latex in n.FIXED.items()}
+    results = {} if problem else linear_notation.results(model)
+    for state, own in zip(symbols_of(model.states), (v.latex for v in model.states), strict=True):
+        notation[n.rate_of(state).name] = rf"\frac{{d {own}}}{{dt}}"
+        notation[n.initial(state).name] = rf"{{{own}}}_0"
+        if problem:
+            notation[n.costate_of(state).name] = rf"\lambda_{{{own}}}"
+            notation[n.rate_of(n.costate_of(state)).name] = rf"\dot\lambda_{{{own}}}"
+            notation[n.given(state).name] = rf"g_{{{own}}}"
+            notation[n.on_reference(state).name] = rf"\rho_{{{own}}}"
+            notation[n.target(state).name] = rf"\bar{{{own}}}"
+            notation[n.residual_of(state).name] = rf"B_{{{own}}}"
+            notation[n.residual_of(n.costate_of(state)).name] = rf"B_{{\lambda_{{{own}}}}}"
+    for k, multiplier in enumerate(n.multipliers(problem) if problem else (), start=1):
+        notation[multiplier.name] = rf"\nu_{{{k}}}"
+        notation[n.residual_of(multiplier).name] = rf"B_{{\psi_{{{k}}}}}"
+    notation |= switching_notation.names(problem) if problem else {}
+    for control in model.controls:
+        notation[f"{control.symbol}_star"] = rf"{control.latex}^*"
+        notation[f"{control.symbol}_hat"] = rf"\hat {control.latex}"
+    notation |= model.names(problem) | (principle_notation.names(model) if problem else {})
+    _refuse_clashes(variables, {*notation, *_entries(model)})
+    return Derivation(model, problem, results | notation | {v.symbol: v.latex for v in variables})
+
+
+def _entries(model: Model) -> Iterable[str]:
+    """Names of matrix entries: A = f_x, B = f_u, C = g_x, D = g_u, H_uu."""
+    states, controls = ([v.symbol for v in group] for group in (model.states, model.controls))
+    outputs = [o.variable.symbol for o in model.outputs]
+    dynamic = (("A", states, states), ("B", states, controls), ("H", controls, controls))
+    for letter, rows, columns in (*dynamic, ("C", outputs, states), ("D", outputs, controls)):
+        yield from (f"{letter}_{row}_{column}" for row in rows for column in columns)
+
+
+def _refuse_clashes(variables: Iterable[Variable], derived: Collection[str]) -> None:
+    seen: set[str] = set()
+    for name in (v.symbol for v in variables):
+        if name in seen:
+            raise DerivationError(f"the name {name!r} is used twice; choose another for one of the two")
+        if name in derived:
+            raise DerivationError(f"the name {name!r} is given to something that is derived; choose another")
+        seen.add(name)

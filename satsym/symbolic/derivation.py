@@ -153,8 +153,8 @@ class Derivation:
         """Right-hand sides of a step's equations, stacked as a column."""
         return sp.Matrix([e.rhs for e in self.step(step).equations])
 
-    def extended(self, step: Step) -> Derivation:
-        """This derivation with one more step.
+    def extended(self, step: Step, *besides: Check) -> Derivation:
+        """This derivation with one more step, and checks that are made of any; those are not all that it has.
 
         Raises
         ------
@@ -163,6 +163,7 @@ class Derivation:
         """
         if not step.checks:
             raise DerivationError(f"{self.name}:{step.name} carries no machine check")
+        step = replace(step, checks=(*step.checks, *besides))
         for check in step.checks:
             if not check.passed:
                 raise DerivationError(

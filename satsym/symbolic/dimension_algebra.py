@@ -7,8 +7,7 @@ from typing import Any, TypeAlias
 
 import sympy as sp
 
-from satsym.symbolic.principle import control_sets
-from satsym.symbolic.switching import minimisers as switches
+from satsym.symbolic import minimisers
 
 Dimension: TypeAlias = Mapping[str, sp.Expr]
 """Exact exponents of base dimensions, without zeros; empty for plain numbers."""
@@ -17,7 +16,7 @@ Known: TypeAlias = Mapping[str, Dimension | None]
 """Name of a symbol -> its dimension; ``None`` for zero, which has every dimension."""
 
 PLAIN: Dimension = {}
-_SAME = (sp.Add, sp.Max, sp.Min, control_sets.Clip, switches.Shrink)
+_SAME = (sp.Add, sp.Max, sp.Min, minimisers.Clip, minimisers.Shrink)
 """What needs arguments of one dimension and returns it."""
 
 
@@ -61,7 +60,7 @@ def dimension_of(expression: Any, known: Known) -> Dimension | None:
         return power_of(dimension_of(e.base, known), e.exp)
     if isinstance(e, sp.Abs):
         return dimension_of(e.args[0], known)
-    if isinstance(e, switches.Switch):
+    if isinstance(e, minimisers.Switch):
         slope, weight, *limits = e.args
         _common((slope, weight), known)
         return _common(limits, known)
@@ -69,7 +68,7 @@ def dimension_of(expression: Any, known: Known) -> Dimension | None:
         for comparison in e.atoms(sp.core.relational.Relational):
             _common(comparison.args, known)
         return _common([branch for branch, _ in e.args], known)
-    if isinstance(e, control_sets.Shorten):
+    if isinstance(e, minimisers.Shorten):
         norm_squared, limit = e.args
         _common((norm_squared, limit**2), known)
     elif isinstance(e, sp.atan2):

@@ -24,11 +24,11 @@ from satsym.symbolic.dimension_algebra import (
     product,
     written,
 )
-from satsym.symbolic.linear import dimensions as linear_dimensions
+from satsym.symbolic.linear import notation as linear_dimensions
 from satsym.symbolic.model import Problem, Requirement, symbols_of, variables_of
 from satsym.symbolic.principle import control_sets
 from satsym.symbolic.principle import notation as pn
-from satsym.symbolic.switching import dimensions as switching_dimensions
+from satsym.symbolic.switching import notation as switching_dimensions
 
 AGREEMENT = "dimensions agree"
 """The claim of the check that every step gets."""
@@ -127,7 +127,7 @@ def _enter_cost(known: dict[str, Dimension | None], problem: Problem, require: R
     for multiplier, constraint in zip(n.multipliers(problem), problem.terminal_constraints, strict=True):
         known[multiplier.name] = over(total, require("a terminal constraint", constraint))
     known[pn.REDUCED_COST.name] = running
-    known.update({s.name: total for s in (pn.POTENTIAL, pn.LEAST_COST, pn.COST_FROM_REST)})
+    known.update({s.name: total for s in (pn.POTENTIAL, pn.MINIMUM_COST, pn.COST_FROM_REST)})
     for state in symbols_of(problem.model.states):
         known[pn.reduced_costate_of(state).name] = known[n.costate_of(state).name]
     for control in symbols_of(problem.model.controls):

@@ -1,18 +1,12 @@
-"""Which symbols a derivation uses and how each is typeset; clashes of names are refused here."""
+"""Which symbols a derivation uses, and how those are typeset that every derivation has."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Callable
 
 import sympy as sp
 
-from satsym.spec import Variable
-from satsym.symbolic.derivation import Derivation, DerivationError
-from satsym.symbolic.linear import notation as linear_notation
-from satsym.symbolic.model import Model, Problem, symbols_of, variables_of
-from satsym.symbolic.principle import control_sets
-from satsym.symbolic.principle import notation as principle_notation
-from satsym.symbolic.switching import notation as switching_notation
+from satsym.symbolic.model import Problem
 
 TIME, FINAL_TIME = sp.Symbol("t", real=True), sp.Symbol("t_f", real=True)
 HAMILTONIAN, MINIMISED = sp.Symbol("H", real=True), sp.Symbol("H_star", real=True)
@@ -30,6 +24,11 @@ ENERGY, ANGULAR_MOMENTUM = sp.Symbol("energy", real=True), sp.Symbol("angular_mo
 JACOBI_INTEGRAL = sp.Symbol("jacobi_integral", real=True)
 AXES = ("x", "y", "z")
 """Names of inertial components, in the order of the position vector."""
+
+
+def named(pattern: str) -> Callable[[sp.Symbol], sp.Symbol]:
+    """A family of symbols, one for each other symbol, by a pattern of names."""
+    return lambda of: sp.Symbol(pattern.format(of.name), real=True)
 
 
 def component_of_angular_momentum(axis: str) -> sp.Symbol:
@@ -74,44 +73,22 @@ def symbol(name: str, latex: str, notation: dict[str, str]) -> sp.Symbol:
     return sp.Symbol(name, real=True)
 
 
-def rate_of(state: sp.Symbol) -> sp.Symbol:
-    """The symbol for dx/dt."""
-    return sp.Symbol(f"d_{state.name}", real=True)
-
-
-def costate_of(state: sp.Symbol) -> sp.Symbol:
-    """The symbol for the costate of a state."""
-    return sp.Symbol(f"lambda_{state.name}", real=True)
-
-
-def acceleration_of(coordinate: sp.Symbol) -> sp.Symbol:
-    """The symbol for the second time derivative of a coordinate."""
-    return sp.Symbol(f"{coordinate.name}_ddot", real=True)
-
-
-def optimal(control: sp.Symbol) -> sp.Symbol:
-    """The symbol for the value of a control that minimises H."""
-    return sp.Symbol(f"{control.name}_star", real=True)
-
-
-def unconstrained(control: sp.Symbol) -> sp.Symbol:
-    """The symbol for the value of a control at which H_u vanishes."""
-    return sp.Symbol(f"{control.name}_hat", real=True)
-
-
-def given(state: sp.Symbol) -> sp.Symbol:
-    """One where the final value of a state is given, else zero."""
-    return sp.Symbol(f"given_{state.name}", real=True)
-
-
-def on_reference(state: sp.Symbol) -> sp.Symbol:
-    """One where a state ends on its reference, else zero."""
-    return sp.Symbol(f"on_reference_{state.name}", real=True)
-
-
-def target(state: sp.Symbol) -> sp.Symbol:
-    """The given final value of a state."""
-    return sp.Symbol(f"target_{state.name}", real=True)
+rate_of = named("d_{}")
+"""The symbol for dx/dt."""
+costate_of = named("lambda_{}")
+"""The symbol for the costate of a state."""
+acceleration_of = named("{}_ddot")
+"""The symbol for the second time derivative of a coordinate."""
+optimal = named("{}_star")
+"""The symbol for the value of a control that minimises H."""
+unconstrained = named("{}_hat")
+"""The symbol for the value of a control at which H_u vanishes."""
+given = named("given_{}")
+"""One where the final value of a state is given, else zero."""
+on_reference = named("on_reference_{}")
+"""One where a state ends on its reference, else zero."""
+target = named("target_{}")
+"""The given final value of a state."""
 
 
 def multipliers(problem: Problem) -> tuple[sp.Symbol, ...]:
@@ -119,71 +96,9 @@ def multipliers(problem: Problem) -> tuple[sp.Symbol, ...]:
     return tuple(sp.Symbol(f"nu_{k}", real=True) for k in range(1, len(problem.terminal_constraints) + 1))
 
 
-def residual_of(symbol: sp.Symbol) -> sp.Symbol:
-    """The symbol for the boundary residual of a state, a terminal constraint or the final time."""
-    return sp.Symbol(f"residual_{symbol.name}", real=True)
-
-
-def initial(state: sp.Symbol) -> sp.Symbol:
-    """The symbol for the given initial value of a state."""
-    return sp.Symbol(f"{state.name}_0", real=True)
-
-
-def answer_of(variable: sp.Symbol) -> sp.Symbol:
-    """The symbol for a state or a control as a function of time."""
-    return sp.Symbol(f"{variable.name}_answer", real=True)
-
-
-def begin(model: Model, problem: Problem | None) -> Derivation:
-    """An empty derivation with its notation.
-
-    Raises
-    ------
-    DerivationError
-        If two things have the same name.
-    """
-    variables = list(variables_of(model))
-    if problem:
-        variables += control_sets.bounds(problem.control_set, model.controls)
-    notation = {s.name: latex for s, latex in FIXED.items()}
-    results = {} if problem else linear_notation.results(model)
-    for state, own in zip(symbols_of(model.states), (v.latex for v in model.states), strict=True):
-        notation[rate_of(state).name] = rf"\frac{{d {own}}}{{dt}}"
-        notation[initial(state).name] = rf"{{{own}}}_0"
-        if problem:
-            notation[costate_of(state).name] = rf"\lambda_{{{own}}}"
-            notation[rate_of(costate_of(state)).name] = rf"\dot\lambda_{{{own}}}"
-            notation[given(state).name] = rf"g_{{{own}}}"
-            notation[on_reference(state).name] = rf"\rho_{{{own}}}"
-            notation[target(state).name] = rf"\bar{{{own}}}"
-            notation[residual_of(state).name] = rf"B_{{{own}}}"
-            notation[residual_of(costate_of(state)).name] = rf"B_{{\lambda_{{{own}}}}}"
-    for k, multiplier in enumerate(multipliers(problem) if problem else (), start=1):
-        notation[multiplier.name] = rf"\nu_{{{k}}}"
-        notation[residual_of(multiplier).name] = rf"B_{{\psi_{{{k}}}}}"
-    notation |= switching_notation.names(problem) if problem else {}
-    for control in model.controls:
-        notation[f"{control.symbol}_star"] = rf"{control.latex}^*"
-        notation[f"{control.symbol}_hat"] = rf"\hat {control.latex}"
-    notation |= model.names(problem) | (principle_notation.names(model) if problem else {})
-    _refuse_clashes(variables, {*notation, *_entries(model)})
-    return Derivation(model, problem, results | notation | {v.symbol: v.latex for v in variables})
-
-
-def _entries(model: Model) -> Iterable[str]:
-    """Names of matrix entries: A = f_x, B = f_u, C = g_x, D = g_u, H_uu."""
-    states, controls = ([v.symbol for v in group] for group in (model.states, model.controls))
-    outputs = [o.variable.symbol for o in model.outputs]
-    dynamic = (("A", states, states), ("B", states, controls), ("H", controls, controls))
-    for letter, rows, columns in (*dynamic, ("C", outputs, states), ("D", outputs, controls)):
-        yield from (f"{letter}_{row}_{column}" for row in rows for column in columns)
-
-
-def _refuse_clashes(variables: Iterable[Variable], derived: Collection[str]) -> None:
-    seen: set[str] = set()
-    for name in (v.symbol for v in variables):
-        if name in seen:
-            raise DerivationError(f"the name {name!r} is used twice; choose another for one of the two")
-        if name in derived:
-            raise DerivationError(f"the name {name!r} is given to something that is derived; choose another")
-        seen.add(name)
+residual_of = named("residual_{}")
+"""The symbol for the boundary residual of a state, a terminal constraint or the final time."""
+initial = named("{}_0")
+"""The symbol for the given initial value of a state."""
+answer_of = named("{}_answer")
+"""The symbol for a state or a control as a function of time."""

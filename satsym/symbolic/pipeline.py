@@ -9,18 +9,17 @@ from typing import Literal
 import sympy as sp
 
 from satsym.symbolic import dimensions
-from satsym.symbolic.declared import refuse_foreign_symbols, refuse_misfits
+from satsym.symbolic.declared import begin, refuse_foreign_symbols, refuse_misfits
 from satsym.symbolic.derivation import Derivation, DerivationError, resolved
 from satsym.symbolic.linear import regulator, stability, structure
 from satsym.symbolic.model import MaybeStep, Model, Problem
-from satsym.symbolic.motion import outputs
-from satsym.symbolic.notation import begin
+from satsym.symbolic.motion import steps
 from satsym.symbolic.principle import effort, pontryagin, transversality
 from satsym.symbolic.switching import curve as switching_curve
 from satsym.symbolic.switching import functions as switching
 from satsym.symbolic.switching import singular
 
-OUTPUTS: tuple[MaybeStep, ...] = (outputs.output_matrix, outputs.output_equations)
+OUTPUTS: tuple[MaybeStep, ...] = (steps.output_matrix, steps.output_equations)
 
 MINIMUM_PRINCIPLE: tuple[MaybeStep, ...] = (
     pontryagin.hamiltonian,
@@ -33,7 +32,7 @@ MINIMUM_PRINCIPLE: tuple[MaybeStep, ...] = (
     pontryagin.boundary_conditions,
     transversality.boundary_residual,
     effort.exact_differential,
-    effort.least_effort,
+    effort.minimum_effort,
 )
 
 SWITCHING_PRINCIPLE: tuple[MaybeStep, ...] = (
@@ -144,6 +143,6 @@ def _taken(
     for step_function in steps:
         step = step_function(derivation)
         if step is not None:
-            derivation = derivation.extended(replace(step, checks=(*step.checks, dimensions.agreement(known, step))))
+            derivation = derivation.extended(step, dimensions.agreement(known, step))
             known = dimensions.extended(known, step)
     return derivation, known

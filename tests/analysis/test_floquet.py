@@ -13,12 +13,10 @@ from scipy.optimize import minimize_scalar
 
 from satsym import instance, kernels
 from satsym.analysis.orbits.elements import Elements, elements
-from satsym.analysis.orbits.floquet import FASTER, VERDICT, floquet
+from satsym.analysis.orbits.floquet import FASTER, NEARLY_CIRCULAR, VERDICT, floquet, hill_equations
 from satsym.analysis.orbits.kepler import propagate
-from satsym.analysis.orbits.monodromy import SYMPLECTIC, Monodromy, monodromy
-from satsym.analysis.orbits.rotating import NEARLY_CIRCULAR, turning_axes
+from satsym.analysis.orbits.monodromy import SYMPLECTIC, Monodromy, monodromy, transition
 from satsym.analysis.orbits.survey import survey
-from satsym.analysis.orbits.variational import transition
 from tests.analysis.test_orbit_analysis import started, turned
 
 
@@ -128,7 +126,7 @@ def test_in_turning_axes_the_matrix_is_the_exponential_of_hills_equations() -> N
     length, mu = 7000.0, 398600.4418
     rate = math.sqrt(mu / length**3)
     orbit = elements((length, 0.0, 0.0), (0.0, math.sqrt(mu / length), 0.0), mu)
-    found, turning = monodromy(orbit), turning_axes(orbit)
+    found, turning = monodromy(orbit), hill_equations(orbit)
     assert turning is not None
     spin = rate * np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
     change = np.block([[np.eye(3), np.zeros((3, 3))], [-spin, np.eye(3)]])
@@ -142,9 +140,9 @@ def test_in_turning_axes_the_matrix_is_the_exponential_of_hills_equations() -> N
 
 
 def test_hills_equations_are_left_out_far_from_circles() -> None:
-    assert turning_axes(started(0.9 * NEARLY_CIRCULAR, 0.3)) is not None
-    assert turning_axes(started(1.1 * NEARLY_CIRCULAR, 0.3)) is None
-    assert turning_axes(started(1.5, 0.3)) is None
+    assert hill_equations(started(0.9 * NEARLY_CIRCULAR, 0.3)) is not None
+    assert hill_equations(started(1.1 * NEARLY_CIRCULAR, 0.3)) is None
+    assert hill_equations(started(1.5, 0.3)) is None
 
 
 @pytest.mark.parametrize("size", [1e-6, 1e-8, 1e-10])

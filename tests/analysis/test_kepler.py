@@ -7,14 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from satsym.instance import Instance
-from satsym.solution import Flight
+from satsym.solution import Simulation
 from satsym.solvers import simulate
 from satsym.status import Status
 from tests.support.cases import shipped, with_parameters
+from tests.support.examples import examples
 from tests.support.kepler import State, angular_momentum, eccentricity, energy, propagate
 
 EARTH = 398600.4418
@@ -34,18 +35,18 @@ def of_orbit(start: State, tf: float, mu: float = 1.0, t0: float = 0.0, steps: i
     return replace(base, initial=start, t0=t0, tf=tf)
 
 
-def exact(flight: Flight, mu: float) -> np.ndarray:
+def exact(flight: Simulation, mu: float) -> np.ndarray:
     start, t0 = flight.instance.initial, flight.instance.t0
     return np.transpose([propagate(mu, start, t - t0) for t in flight.times])
 
 
-def error(flight: Flight, mu: float) -> float:
+def error(flight: Simulation, mu: float) -> float:
     """Largest error of each state, relative to its size."""
     known = exact(flight, mu)
     return float((np.abs(flight.x - known).max(axis=1) / np.abs(known).max(axis=1)).max())
 
 
-def assert_kepler(start: State, tf: float, mu: float = 1.0, t0: float = 0.0) -> Flight:
+def assert_kepler(start: State, tf: float, mu: float = 1.0, t0: float = 0.0) -> Simulation:
     flight = simulate(of_orbit(start, tf, mu, t0))
     assert flight.status is Status.CONVERGED
     assert error(flight, mu) <= 1e-9
@@ -63,24 +64,24 @@ anomalies = st.floats(-3.1, 3.1)
 sizes = st.floats(0.5, 2.0)
 
 
-@settings(max_examples=25)
+@examples(25)
 @given(st.floats(0.001, 0.7), sizes, anomalies, st.floats(0.1, 2.5), st.floats(0.3, 3.0), st.booleans())
 def test_on_any_ellipse_the_flight_is_the_closed_form(e, p, anomaly, turns, mu, backwards):
     period = 2.0 * math.pi * math.sqrt((p / (1.0 - e**2)) ** 3 / mu)
     assert_kepler(conic(mu, p, e, anomaly, backwards), turns * period, mu)
 
 
-@settings(max_examples=15)
+@examples(15)
 @given(sizes, st.floats(-2.2, 2.2), st.floats(0.5, 40.0), st.booleans())
 def test_on_any_parabola_the_flight_is_the_closed_form(p, anomaly, duration, backwards):
     flight = assert_kepler(conic(1.0, p, 1.0, anomaly, backwards), duration)
     assert abs(flight.invariants["energy"].initial) <= 1e-14 / flight.x[0, 0]
 
 
-@settings(max_examples=15)
+@examples(15)
 @given(st.floats(1.05, 5.0), sizes, st.floats(-0.85, 0.85), st.floats(0.5, 40.0), st.floats(0.3, 3.0), st.booleans())
-def test_on_any_hyperbola_the_flight_is_the_closed_form(e, p, share, duration, mu, backwards):
-    assert_kepler(conic(mu, p, e, share * math.acos(-1.0 / e), backwards), duration, mu)
+def test_on_any_hyperbola_the_flight_is_the_closed_form(e, p, fraction, duration, mu, backwards):
+    assert_kepler(conic(mu, p, e, fraction * math.acos(-1.0 / e), backwards), duration, mu)
 
 
 @pytest.mark.parametrize(
@@ -116,10 +117,10 @@ def test_the_start_of_the_thesis_is_parabolic_and_after_60_it_is_25_away():
     assert np.allclose(flight.x[:, -1], end, rtol=1e-11, atol=0.0)
 
 
-@settings(max_examples=50)
+@examples(50)
 @given(st.floats(0.0, 3.0), sizes, st.floats(-0.85, 0.85), st.floats(-20.0, 20.0), st.booleans())
-def test_the_closed_form_obeys_newtons_law(e, p, share, time, backwards):
-    anomaly = share * math.acos(max(-1.0, -1.0 / e)) if e > 0.0 else 3.0 * share
+def test_the_closed_form_obeys_newtons_law(e, p, fraction, time, backwards):
+    anomaly = fraction * math.acos(max(-1.0, -1.0 / e)) if e > 0.0 else 3.0 * fraction
     start = conic(1.0, p, e, anomaly, backwards)
     before, now, after = (np.array(propagate(1.0, start, time + h)) for h in (-1e-4, 0.0, 1e-4))
     r, r_dot, _, theta_dot = now
@@ -128,10 +129,10 @@ def test_the_closed_form_obeys_newtons_law(e, p, share, time, backwards):
     assert np.abs((after - before) / 2e-4 - rates).max() <= 3e-6 * scale**2
 
 
-@settings(max_examples=50)
+@examples(50)
 @given(st.floats(0.0, 3.0), sizes, st.floats(-0.85, 0.85), st.floats(-20.0, 20.0), st.floats(-20.0, 20.0))
-def test_the_closed_form_flown_in_two_parts_is_the_whole(e, p, share, first, second):
-    start = conic(1.0, p, e, share * math.acos(max(-1.0, -1.0 / e)) if e > 0.0 else 3.0 * share, False)
+def test_the_closed_form_flown_in_two_parts_is_the_whole(e, p, fraction, first, second):
+    start = conic(1.0, p, e, fraction * math.acos(max(-1.0, -1.0 / e)) if e > 0.0 else 3.0 * fraction, False)
     halfway = propagate(1.0, start, first)
     both, whole = propagate(1.0, halfway, second), propagate(1.0, start, first + second)
     assert np.allclose(both, whole, rtol=1e-9, atol=1e-10)

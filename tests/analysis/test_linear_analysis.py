@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from satsym import instance, kernels
 from satsym.analysis.linear.equilibrium import equilibrium, linearise
-from satsym.analysis.linear.polynomials import characteristic, companion, companion_form, place
+from satsym.analysis.linear.polynomials import characteristic, companion_form, companion_matrix, place
 from satsym.analysis.linear.ranks import controllability, hautus, kalman, observability, staircase
 from satsym.analysis.linear.spectrum import spectrum
 from satsym.analysis.linear.stability import stability
@@ -167,7 +167,7 @@ def test_characteristic_polynomials_are_monic_with_exact_zeros():
 
 @given(st.lists(st.integers(-6, 6).map(lambda half: half / 2), min_size=1, max_size=5))
 def test_companion_matrices_have_the_polynomial_they_are_made_of(rest):
-    assert np.allclose(characteristic(companion([1.0, *rest])), [1.0, *rest], atol=1e-11)
+    assert np.allclose(characteristic(companion_matrix([1.0, *rest])), [1.0, *rest], atol=1e-11)
 
 
 @pytest.mark.parametrize("omega", [1.0, OMEGA])

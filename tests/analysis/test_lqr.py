@@ -17,10 +17,10 @@ from satsym import instance
 from satsym.analysis.linear.equilibrium import linearise
 from satsym.analysis.linear.system import LinearSystem, system
 from satsym.analysis.regulator import batch, riccati
-from satsym.analysis.regulator.basin import basin
 from satsym.analysis.regulator.doubling import flow
 from satsym.analysis.regulator.feedback import designed, simulate
 from satsym.analysis.regulator.lqr import lqr, regulator
+from satsym.analysis.regulator.region_of_attraction import region_of_attraction
 from satsym.analysis.regulator.responses import responses
 from satsym.solvers import simulate as fly
 from satsym.solvers.simulation.closed_loop import Law
@@ -354,7 +354,7 @@ def test_the_basin_holds_what_it_promises(tmp_path: Path):
     """Just inside its extents the nonlinear motion returns, just outside it does not."""
     given_case = case(tmp_path, tf=45.0)
     design = designed(given_case)
-    found = basin(design.about, design.regulator, given_case)
+    found = region_of_attraction(design.about, design.regulator, given_case)
     low, high = found.extents["r"]
     K = design.regulator.K[0]
 
@@ -366,8 +366,8 @@ def test_the_basin_holds_what_it_promises(tmp_path: Path):
         return x[0] - 0.01
 
     collision.terminal = True
-    for share, returns in ((0.97 * low, True), (0.97 * high, True), (1.03 * high, False)):
-        start = [1.0 + share, 0.0, 0.0, 1.0]
+    for fraction, returns in ((0.97 * low, True), (0.97 * high, True), (1.03 * high, False)):
+        start = [1.0 + fraction, 0.0, 0.0, 1.0]
         end = solve_ivp(rates, (0.0, 45.0), start, rtol=1e-6, events=collision).y[:, -1]
         assert (np.abs(end[[0, 3]] - 1.0).max() < 1e-2) == returns
     assert 0.0 < found.level <= design.regulator.cost([high, 0.0, 0.0, 0.0])
@@ -382,7 +382,7 @@ def test_a_linear_motion_returns_from_everywhere():
     )
     about = linearise(linear)
     assert not about.nonlinear
-    assert basin(about, regulator(about)).extents == {"q": (-np.inf, np.inf), "w": (-np.inf, np.inf)}
+    assert region_of_attraction(about, regulator(about)).extents == {"q": (-np.inf, np.inf), "w": (-np.inf, np.inf)}
 
 
 def test_a_standing_pendulum_is_held_up_from_nearby_only():
@@ -391,7 +391,7 @@ def test_a_standing_pendulum_is_held_up_from_nearby_only():
     about = replace(
         about, system=system([[0.0, 1.0], [1.0, -0.5]], [[0.0], [1.0]], states=("q", "w"), inputs=("torque",))
     )
-    found = basin(about, regulator(about))
+    found = region_of_attraction(about, regulator(about))
     low, high = found.extents["q"]
     assert -low == pytest.approx(high, rel=1e-6)  # the pendulum is the same to both sides
     assert high > 1.0

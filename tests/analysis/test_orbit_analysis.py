@@ -68,12 +68,12 @@ def test_elements_agree_with_50_digits_on_random_conics() -> None:
             energy = sum(x * x for x in v) / 2 - mu / radius
             across = [v[1] * h[2] - v[2] * h[1], v[2] * h[0] - v[0] * h[2], v[0] * h[1] - v[1] * h[0]]
             e = mp.sqrt(sum((a / mu - b / radius) ** 2 for a, b in zip(across, r, strict=True)))
-            share = float(abs(energy) / (mu / radius))
+            fraction = float(abs(energy) / (mu / radius))
             assert abs(found.eccentricity - e) <= 1e-15 * (1 + e)
             assert abs(found.energy - energy) <= 1e-14 * abs(energy)  # also where it is a small difference
             assert abs(found.parameter - momentum**2 / mu) <= 1e-14 * momentum**2 / mu
             assert abs(found.periapsis - momentum**2 / mu / (1 + e)) <= 1e-14 * found.periapsis
-            kind = "parabola" if share <= TOLERANCE else "ellipse" if energy < 0 else "hyperbola"
+            kind = "parabola" if fraction <= TOLERANCE else "ellipse" if energy < 0 else "hyperbola"
             assert found.conic.value == ("circle" if kind == "ellipse" and e <= TOLERANCE else kind)
             assert (found.semi_major_axis is None) == (kind == "parabola")
             if found.semi_major_axis is not None:

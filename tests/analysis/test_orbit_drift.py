@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from satsym import instance
-from satsym.analysis.orbits import drift as drifts
-from satsym.analysis.orbits.drift import CLOSED_FORM, INTEGRATORS, Drift, drift
 from satsym.status import BadInput
+from tests.bench import orbit_drift as drifts
+from tests.bench.orbit_drift import CLOSED_FORM, INTEGRATORS, Drift, drift
 from tests.support.cases import shipped
 
 REVOLUTIONS = 100.0

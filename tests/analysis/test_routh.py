@@ -9,7 +9,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from satsym.analysis.linear.polynomials import characteristic, companion
+from satsym.analysis.linear.polynomials import characteristic, companion_matrix
 from satsym.analysis.linear.routh import ZERO_ELEMENT, ZERO_ROW, routh
 from satsym.analysis.linear.spectrum import spectrum
 from satsym.status import BadInput
@@ -51,7 +51,7 @@ def test_whole_polynomials_have_as_many_roots_on_the_right_as_numpy_finds(rest):
 @given(st.integers(1, 6), st.integers(0, 2**32 - 1))
 def test_floats_count_as_the_eigenvalues_of_their_companion_matrix(n, seed):
     coefficients = np.random.default_rng(seed).normal(size=n)
-    matrix = companion([1.0, *coefficients])
+    matrix = companion_matrix([1.0, *coefficients])
     assert np.allclose(characteristic(matrix)[1:], coefficients, atol=1e-12)
     right = sum(each.algebraic for each in spectrum(matrix) if each.value.real > 0.0)
     assert routh([1.0, *coefficients.tolist()]).sign_changes == right

@@ -40,7 +40,7 @@ def refused(folder: Path, capsys: pytest.CaptureFixture[str], rows: list[Row], h
         ("x1", "subs(exp(r), r=exp(exp(20)))", "holds: takes exp(...) of numbers larger"),
         ("x1", "subs(exp(exp(r)), r=exp(exp(r)))", "takes exp(...) of numbers larger"),
         ("x1", "subs((r+theta)**12, r=(r-theta)**12)", "too large once multiplied out"),
-        pytest.param("x1", TWICE, "parts once abbreviations are put in", marks=pytest.mark.slow),
+        pytest.param("x1", TWICE, "parts once abbreviations are put in", marks=pytest.mark.study),
         ("sin(1000000*x1)", "2*sin(500000*r)*cos(500000*r)", "takes more than 25,000,000 operations"),
     ],
 )
@@ -172,7 +172,7 @@ def test_what_people_print_is_light_enough(text: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "seed", [*range(22), *(pytest.param(n, marks=pytest.mark.slow) for n in (105, 140, 153, 394, 475))]
+    "seed", [*range(22), *(pytest.param(n, marks=pytest.mark.study) for n in (105, 140, 153, 394, 475))]
 )
 def test_a_ledger_that_nobody_would_write_ends_in_verdicts_or_in_one_line(seed: int, tmp_path: Path) -> None:
     assert not audited(seed, tmp_path).fault

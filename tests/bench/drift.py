@@ -10,8 +10,9 @@ import sys
 from dataclasses import replace
 from time import process_time
 
+from orbit_drift import CLOSED_FORM, INTEGRATORS, TOLERANCE, WORK, Drift, drift
+
 from satsym import instance
-from satsym.analysis.orbits.drift import CLOSED_FORM, INTEGRATORS, TOLERANCE, WORK, Drift, drift
 
 REVOLUTIONS = 10_000.0
 INSTANCES = ("itb-earth", "molniya")

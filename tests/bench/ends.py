@@ -119,8 +119,8 @@ def casadi() -> Solver:
     nlp = {"x": w, "f": cost, "g": ca.vertcat(*equations)}
     quiet = {"ipopt.print_level": 0, "print_time": 0, "ipopt.sb": "yes", "ipopt.tol": 1e-10}
     solver = ca.nlpsol("solver", "ipopt", nlp, quiet)
-    share = np.linspace(0, 1, intervals + 1)
-    line = START + (END - START) * share[:, None]
+    fraction = np.linspace(0, 1, intervals + 1)
+    line = START + (END - START) * fraction[:, None]
     inner = [
         START + (END - START) * ((k + t) / intervals)
         for k in range(intervals)

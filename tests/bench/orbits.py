@@ -153,7 +153,7 @@ def _steps(backend: str, method: str) -> Method:
             raise Missing("numba is not installed (the fast extra has it)") from None
 
     def end(of: Orbits, steps: float) -> np.ndarray:
-        return batch.fly(kernels, [0.0, of.duration], of.start, (1.0,), int(steps), method=method)[:, 1]
+        return batch.simulate(kernels, [0.0, of.duration], of.start, (1.0,), int(steps), method=method)[:, 1]
 
     return end
 

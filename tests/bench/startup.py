@@ -22,6 +22,9 @@ IMPORTS = (
     "casadi",
 )
 
+COMPILED = (("trajectory", "forward"), ("sweep", "forward and backward"))
+"""Functions of generated code that are compiled, and what they do."""
+
 _IMPORT = """
 from time import process_time
 start = process_time()
@@ -46,7 +49,7 @@ def startup(rounds: int = 3) -> Table:
     """Import times, and numba's first call with and without what it cached."""
     rows = [_row(f"import {module}", _IMPORT.format(module=module), rounds) for module in IMPORTS]
     here = str(Path(__file__).resolve().parent)
-    for function, what in (("trajectory", "forward"), ("sweep", "forward and backward")):
+    for function, what in COMPILED:
         code = _COMPILE.format(here=here, function=function)
         with tempfile.TemporaryDirectory() as cache:
             first = _row(f"numba compiles {what}", code, 1, NUMBA_CACHE_DIR=cache)

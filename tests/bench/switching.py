@@ -16,7 +16,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 
 import numpy as np
 from machine import described
-from switching_closed_forms import least_time
+from switching_closed_forms import minimum_time
 
 from satsym import instance
 from satsym.solvers.certificate import certify
@@ -32,7 +32,7 @@ def main(count: int, certified: bool) -> None:
         begun = time.process_time()
         found = solving.solve(replace(base, initial=(q, v)))
         seconds.append(time.process_time() - begun)
-        known = least_time(q, v)
+        known = minimum_time(q, v)
         if not found.status.answered or len(found.switching_times[0]) != 1:
             unsolved += 1
             continue

@@ -15,11 +15,12 @@ from satsym.kernels import from_text
 from satsym.solution import Solution
 from satsym.solvers import solve
 from satsym.solvers.certificate import certify
-from satsym.solvers.certificate.conjugate import conjugate
+from satsym.solvers.certificate.jacobi import conjugate
 from satsym.solvers.certificate.segments import segments
 from satsym.solvers.simulation.extrapolation import NotFinite, integrate
 from satsym.status import Status
-from satsym.symbolic import FirstOrder, Problem, Variable, derive, symbols_of
+from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
+from tests.support.derived import derived
 
 STATE, CONTROL = Variable("y", "y"), Variable("v", "v")
 (y,), (v,) = symbols_of((STATE,)), symbols_of((CONTROL,))
@@ -29,7 +30,7 @@ def oscillator(tf: float, final: dict[str, float], path: Path) -> Instance:
     """Minimise the integral of (v^2 - y^2)/2 with y' = v from y = 1: extremals y'' = -y, conjugate times k pi."""
     model = FirstOrder(name="line", title="Line", states=(STATE,), controls=(CONTROL,), parameters=(), rates={y: v})
     problem = Problem(name="oscillator", title="Oscillator", model=model, running_cost=(v**2 - y**2) / 2)
-    kernels = from_text(module.render(derive(problem), "oscillator.py"), "oscillator.py")
+    kernels = from_text(module.render(derived(problem), "oscillator.py"), "oscillator.py")
     case = instance.load("soft-return")
     return replace(
         case,

@@ -18,7 +18,7 @@ from satsym.solvers import two_point as two_point_method
 from satsym.solvers.certificate import certify
 from satsym.solvers.certificate.competitors import none_conceivable
 from satsym.solvers.cold_start import paths
-from satsym.solvers.cold_start.path_of_turns import along_turns, fading
+from satsym.solvers.cold_start.path_of_problems import along_turns, fading
 from satsym.solvers.collocation.curve import Curve
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
@@ -141,7 +141,7 @@ def test_a_force_that_fades_leads_from_each_spiral_to_the_minimum_with_its_turns
     problem = two_point(build(tmp_path, cartesian, text + "[time]\nt0 = 2.0\ntf = 12.0\n"), 10.0).relaxed(np.inf)
     for spiral in spirals(problem, 3):
         curve = paths.curve(problem, spiral.path)
-        forced, free = (fading(problem, spiral)(share) for share in (0.0, 1.0))
+        forced, free = (fading(problem, spiral)(fraction) for fraction in (0.0, 1.0))
         assert 1e3 * defect(forced, curve) < defect(free, curve) == defect(problem, curve)
         found = along_turns(problem, spiral, Limits(1, np.inf))
         end = {"r": 1.2, "r_dot": 0.0, "theta": spiral.turns * 2.0 * np.pi, "theta_dot": 0.75}

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.linalg import block_diag, expm
 
 from satsym.solvers.certificate.end_form import EndForm
-from satsym.solvers.certificate.jacobi import Phases, end_curvature, followed
+from satsym.solvers.certificate.jacobi import Phases, followed, second_order_at_end
 from satsym.solvers.certificate.segments import balanced
 
 Array = NDArray[np.floating[Any]]
@@ -115,7 +115,7 @@ def judged(problem: Problem, unit: Array) -> tuple[Phases, float]:
     into = np.diag(scale[:n] / unit)
     form, ties = into @ problem.s @ into / (scale[0] * scale[n]), problem.c @ into
     sizes = np.abs(ties).max(axis=1, initial=0.0)
-    return phases, end_curvature(phases.frames[-1], EndForm(form, ties / sizes[:, None], sizes))
+    return phases, second_order_at_end(phases.frames[-1], EndForm(form, ties / sizes[:, None], sizes))
 
 
 @pytest.mark.parametrize("first", range(0, 40, 10))

@@ -14,7 +14,7 @@ from satsym.solvers import certificate
 from satsym.solvers.certificate.switching.replay import replay
 from satsym.solvers.certificate.switching.variation import variation
 from satsym.solvers.switching import solving
-from tests.support.switching_closed_forms import FUEL, TIME, Known, case, least_fuel, least_time, starts
+from tests.support.switching_closed_forms import FUEL, TIME, Known, case, least_fuel, minimum_time, starts
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +29,7 @@ def test_least_times_are_certified(start: tuple[float, float]) -> None:
     assert found.certificate is not None
     assert found.certificate.verdict == "certified", found.certificate.checks
     printed = solution_object(found)
-    assert printed["switching_times"] == pytest.approx(least_time(*start).switches, abs=1e-10)
+    assert printed["switching_times"] == pytest.approx(minimum_time(*start).switches, abs=1e-10)
     assert printed["certificate"]["legendre_clebsch"] is None
 
 

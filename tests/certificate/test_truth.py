@@ -16,7 +16,7 @@ from tests.bench.truth.answer import Answer, Truth
 from tests.bench.truth.case import Case
 from tests.bench.truth.judge import Outcome, Wrong
 
-PARTS = 4
+PARTS = 12
 LEAST = Answer(Truth.MINIMUM, 1.0, "by hand")
 ANSWER = {"status": "converged", "cost": 1.0, "verdict": "certified", "kinds": ["seeded starts 4/4"]}
 ANSWER |= {"missed": 0.0, "off cost": 0.0, "out": 0.0}
@@ -33,14 +33,14 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def derived(folder: Path, name: str) -> None:
     """Derive one of the bench's own models, if it is one."""
     from satsym.codegen import module
-    from satsym.symbolic import derive
     from satsym.symbolic.loader import load
+    from tests.support import derived as shared
 
     target = folder / "models" / f"{name}.py"
     if not name.startswith(classes.OWN) or target.exists():
         return
     found = next(p for path in (record.HERE / "models").glob("*.py") for p in load(path) if p.name == name)
-    target.write_text(module.render(derive(found), "a test"), encoding="utf-8")
+    target.write_text(module.render(shared.derived(found), "a test"), encoding="utf-8")
 
 
 def answered(case: Case, folder: Path) -> dict[str, Any]:
@@ -125,7 +125,7 @@ def test_classes_take_turns_in_proportion_to_their_sizes():
 
 def test_least_times_by_algebra_and_by_linear_programs_agree():
     case = classes.drawn("line, time", 1)
-    assert programs.least_time(case).cost == pytest.approx(closed.line_time(case).cost, rel=3e-6)
+    assert programs.minimum_time(case).cost == pytest.approx(closed.line_time(case).cost, rel=3e-6)
 
 
 def test_least_fuel_by_algebra_and_by_linear_programs_agree():
@@ -150,11 +150,11 @@ def test_least_energy_by_the_dual_problem_agrees_with_arcs_at_the_bound():
     assert duality.least_energy(bounded).cost == pytest.approx(half - middle + middle / 3.0, rel=1e-6)
 
 
-@pytest.mark.parametrize(("share", "truth"), [(0.995, Truth.INFEASIBLE), (1.005, Truth.MINIMUM)])
-def test_bounds_that_forbid_to_arrive_by_a_hair_are_told_from_those_that_allow_it(share: float, truth: Truth):
+@pytest.mark.parametrize(("fraction", "truth"), [(0.995, Truth.INFEASIBLE), (1.005, Truth.MINIMUM)])
+def test_bounds_that_forbid_to_arrive_by_a_hair_are_told_from_those_that_allow_it(fraction: float, truth: Truth):
     # The least time is 2, so that in that time a thrust of 1 is just enough.
     case = Case("", 0, "double_integrator_energy", {"q": 1.0, "q_dot": 0.0}, {"q": 0.0, "q_dot": 0.0}, 2.0)
-    case = replace(case, bounds={"u1": (-share, share)})
+    case = replace(case, bounds={"u1": (-fraction, fraction)})
     assert duality.least_energy(case).truth is truth
     fuel = programs.least_fuel(replace(case, model="double_integrator_fuel"))
     assert (fuel.truth is Truth.INFEASIBLE) == (truth is Truth.INFEASIBLE)

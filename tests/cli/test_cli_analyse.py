@@ -15,10 +15,10 @@ from satsym import instance, kernels
 from satsym.analysis.linear.structure import analyse
 from satsym.analysis.regulator.feedback import designed
 from satsym.cli import main
-from satsym.report.plots import phase, responses, style
+from satsym.report.plots import responses, style, systems
 from satsym.report.plots.orbits import plane
-from satsym.report.results.exact import exact
 from satsym.report.results.linear import analysis_object, regulator_object
+from satsym.report.results.orbit import exact
 from satsym.report.terminal.linear import analysis_text, regulator_text
 from tests.house.test_floors import run_satsym
 
@@ -241,7 +241,7 @@ def test_eigenvalues_are_drawn_where_they_are() -> None:
         drawn = axes.get_lines()[-1]
         assert np.allclose(drawn.get_xdata(), design.regulator.eigenvalues.real * 3600.0)
         assert np.allclose(drawn.get_ydata(), design.regulator.eigenvalues.imag * 3600.0)
-        assert phase.portrait(analyse(kernels.load("three_modes"))) is None
+        assert systems.portrait(analyse(kernels.load("three_modes"))) is None
 
 
 def test_a_regulator_needs_neither_sympy_nor_matplotlib(tmp_path: Path) -> None:

@@ -212,11 +212,11 @@ def test_the_orbit_is_drawn_to_scale_in_the_unit_on_its_axes(name: str, unit: st
 def test_an_escape_is_drawn_with_what_is_flown_of_it() -> None:
     found = survey(instance.load("itb-earth-escape"))
     drawn = conics.Drawn.of(found)
-    assert drawn.flown is not None
+    assert drawn.travelled is not None
     assert (drawn.farthest, drawn.empty) == (None, None)
-    assert drawn.flown[:, 0] == pytest.approx(found.elements.position)
+    assert drawn.travelled[:, 0] == pytest.approx(found.elements.position)
     # every point is on the conic: r (1 + e cos) = p
-    for curve in (drawn.curve, drawn.flown):
+    for curve in (drawn.curve, drawn.travelled):
         radius, along = np.linalg.norm(curve, axis=0), found.elements.towards @ curve
         assert radius + found.elements.eccentricity * along == pytest.approx(found.elements.parameter, rel=1e-9)
 

@@ -17,18 +17,21 @@ from satsym.front.between import Motion
 from satsym.front.trajectory import Trajectory
 from satsym.status import BadInput
 from tests.support.front import PUSH, pushed
-from tests.support.switching_models import OSCILLATOR
+from tests.support.switching_models import DAMPER, OSCILLATOR
 
 
 @cache
 def solved(name: str, **options: Any) -> satsym.Solution:
     case = {
         "sled": pushed,
-        "singular": lambda: satsym.Instance.of(
-            OSCILLATOR, initial={"x1": 0, "x2": 1}, tf=4, control={"u1": [-1, 1]}, name="singular"
-        ),
+        "singular": lambda: ending_in_a_singular_arc(OSCILLATOR, {"x1": 0, "x2": 1}),
+        "damper": lambda: ending_in_a_singular_arc(DAMPER, {"x1": 1, "x2": 0.5}),
     }.get(name, lambda: satsym.load(name))()
     return satsym.solve(case, **options)
+
+
+def ending_in_a_singular_arc(problem: satsym.Problem, initial: dict[str, float]) -> satsym.Instance:
+    return satsym.Instance.of(problem, initial=initial, tf=4, control={"u1": [-1, 1]}, name="singular")
 
 
 @pytest.mark.parametrize(
@@ -40,7 +43,8 @@ def solved(name: str, **options: Any) -> satsym.Solution:
         ("lapan-minimum-time", 37, 1e-12),
         ("double-integrator-fuel", 37, 1e-12),
         ("ends-4-rendezvous", 37, 1e-10),
-        ("singular", 100, 1e-9),
+        ("damper", 100, 1e-9),
+        pytest.param("singular", 100, 1e-9, marks=pytest.mark.study),
     ],
 )
 def test_between_few_nodes_it_is_what_it_is_at_many(name: str, steps: int, limit: float) -> None:

@@ -150,7 +150,11 @@ def test_the_machine_and_the_versions_are_named(bench):
 
 
 @pytest.mark.slow
-def test_paid_once_and_commands_are_timed_in_fresh_interpreters(bench):
+@pytest.mark.parametrize("imports", [1, pytest.param(None, marks=pytest.mark.study)])
+def test_paid_once_and_commands_are_timed_in_fresh_interpreters(bench, imports: int | None, monkeypatch):
+    if imports is not None:  # compiling takes longest
+        monkeypatch.setattr(bench["startup"], "IMPORTS", bench["startup"].IMPORTS[:imports])
+        monkeypatch.setattr(bench["startup"], "COMPILED", ())
     startup, commands = bench["startup"].startup(rounds=1), bench["commands"].commands(rounds=1, long=False)
     for table in (startup, commands):
         assert all(row.least or row.note.startswith("not timed") for row in table.rows)

@@ -52,8 +52,10 @@ def test_imports_are_read_however_they_are_written() -> None:
         ),
         (
             WRITING,
-            "from satsym.report import artefacts; from satsym.symbolic import loader\n"
-            "artefacts.render([loader.find('double_integrator')])",
+            "import pathlib; from satsym.report import artefacts; from satsym.symbolic import loader\n"
+            "stated = loader.find('small_systems').read_text().partition('PROBLEMS = ')[0]\n"
+            "path = pathlib.Path('one.py'); path.write_text(f'{stated}PROBLEMS = (van_der_pol,)\\n')\n"
+            "artefacts.render([path])",
         ),
     ],
     ids=["judging", "writing"],

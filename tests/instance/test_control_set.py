@@ -37,7 +37,7 @@ def test_the_tuple_is_read_as_it_is_written(name: str) -> None:
     of = ControlSet.of(spec, tuple(map(float, range(-m, 0))), tuple(map(float, range(1, m + 1))), 7.0)
     again = ControlSet.from_arguments(spec, of.arguments)
     assert again.arguments == of.arguments
-    assert (again.kind, again.smoothing, again.share) == (of.kind, UNSMOOTHED if spec.switching else 0.0, 1.0)
+    assert (again.kind, again.smoothing, again.fraction) == (of.kind, UNSMOOTHED if spec.switching else 0.0, 1.0)
 
 
 def test_an_instance_knows_its_set() -> None:
@@ -54,7 +54,7 @@ def test_relaxed_bounds_lie_outside_by_as_much_and_nothing_else_changes(name: st
     there = of.relaxed(0.25)
     u = drawn(of)
     assert there.violation(u) == (pytest.approx(of.violation(u) - 0.25) if of.arguments else -math.inf)
-    assert (there.kind, there.smoothing, there.share) == (of.kind, of.smoothing, of.share)
+    assert (there.kind, there.smoothing, there.fraction) == (of.kind, of.smoothing, of.fraction)
     assert of.relaxed(math.inf) == of.without_bounds
     assert (of.without_bounds.project(u) == u).all()
     assert not of.without_bounds.bounded

@@ -33,7 +33,7 @@ def test_other_impossible_grids_are_refused():
     with pytest.raises(ValueError, match="one of its nodes"):
         Grid(np.array([0.0, 1.0]), (0.5,))
     with pytest.raises(ValueError, match="fraction"):
-        Grid.uniform(0.0, 1.0, 2).with_kinks([0.3], closest=0.4)
+        Grid.uniform(0.0, 1.0, 2).with_corners([0.3], closest=0.4)
 
 
 def test_a_grid_cannot_be_changed_through_its_arrays():
@@ -48,7 +48,7 @@ def test_a_grid_cannot_be_changed_through_its_arrays():
 
 @given(points_inside)
 def test_simpson_weights_integrate_cubics_exactly_on_any_grid(points):
-    grid = Grid.uniform(0.0, 3.0, 5).with_kinks(points)
+    grid = Grid.uniform(0.0, 3.0, 5).with_corners(points)
     cubic = np.polynomial.Polynomial([1.0, -2.0, 0.5, 3.0])
     exact = cubic.integ()(3.0)
     assert abs(grid.integrate(cubic(grid.nodes), cubic(grid.midpoints)) - exact) < 1e-12 * abs(exact)
@@ -69,33 +69,33 @@ def test_simpson_quadrature_is_fourth_order_and_acts_on_the_last_axis():
 
 
 def test_a_kink_in_the_middle_of_a_step_becomes_a_node():
-    grid = Grid.uniform(0.0, 4.0, 4).with_kinks([1.5])
+    grid = Grid.uniform(0.0, 4.0, 4).with_corners([1.5])
     assert grid.nodes.tolist() == [0.0, 1.0, 1.5, 2.0, 3.0, 4.0]
-    assert grid.kinks == (1.5,)
+    assert grid.corners == (1.5,)
 
 
 def test_a_node_near_a_kink_moves_there():
-    grid = Grid.uniform(0.0, 4.0, 4).with_kinks([1.1, 2.9])
+    grid = Grid.uniform(0.0, 4.0, 4).with_corners([1.1, 2.9])
     assert grid.nodes.tolist() == [0.0, 1.1, 2.0, 2.9, 4.0]
-    assert grid.kinks == (1.1, 2.9)
+    assert grid.corners == (1.1, 2.9)
 
 
 def test_ends_stay_and_a_kink_too_close_to_what_cannot_move_is_left_out():
-    grid = Grid.uniform(0.0, 4.0, 4).with_kinks([0.1, 3.9, -1.0, 5.0, 0.0, 4.0, 1.5, 1.6])
+    grid = Grid.uniform(0.0, 4.0, 4).with_corners([0.1, 3.9, -1.0, 5.0, 0.0, 4.0, 1.5, 1.6])
     assert grid.nodes.tolist() == [0.0, 1.0, 1.5, 2.0, 3.0, 4.0]
-    assert grid.kinks == (1.5,)
+    assert grid.corners == (1.5,)
 
 
 def test_an_earlier_kink_stays_when_later_ones_are_inserted():
-    grid = Grid.uniform(0.0, 4.0, 4).with_kinks([1.1]).with_kinks([1.2, 1.6])
+    grid = Grid.uniform(0.0, 4.0, 4).with_corners([1.1]).with_corners([1.2, 1.6])
     assert 1.1 in grid.nodes
-    assert grid.kinks == (1.1, 1.6)
+    assert grid.corners == (1.1, 1.6)
 
 
 @given(points_inside)
 def test_inserting_kinks_keeps_the_spacing_and_accounts_for_every_point(points):
     before = Grid.uniform(0.0, 3.0, 6)
-    after = before.with_kinks(points)
+    after = before.with_corners(points)
     rounding = 1e-12
     assert (after.t0, after.tf) == (before.t0, before.tf)
     assert after.widths.min() >= CLOSEST * before.widths.min() - rounding
@@ -103,18 +103,18 @@ def test_inserting_kinks_keeps_the_spacing_and_accounts_for_every_point(points):
     reach = CLOSEST * before.widths.max() + rounding
     for point in points:
         if before.t0 < point < before.tf:
-            anchors = np.array([before.t0, before.tf, *after.kinks])
+            anchors = np.array([before.t0, before.tf, *after.corners])
             assert np.abs(anchors - point).min() <= reach
 
 
 @given(points_inside)
 def test_refining_halves_every_step_and_keeps_kinks(points):
-    coarse = Grid.uniform(0.0, 3.0, 4).with_kinks(points)
+    coarse = Grid.uniform(0.0, 3.0, 4).with_corners(points)
     fine = coarse.refine()
     assert fine.steps == 2 * coarse.steps
     assert (fine.nodes[::2] == coarse.nodes).all()
     assert (fine.nodes[1::2] == coarse.midpoints).all()
-    assert fine.kinks == coarse.kinks
+    assert fine.corners == coarse.corners
 
 
 def test_interleaving_puts_midpoint_values_between_node_values():

@@ -9,12 +9,13 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from satsym import instance, kernels
 from satsym.spec import ProblemSpec
 from satsym.status import BadInput
+from tests.support.examples import examples
 
 GOOD = {
     "model": '"polar_orbit"',
@@ -299,7 +300,7 @@ values = st.recursive(
 )
 
 
-@settings(max_examples=300)
+@examples(300)
 @given(lines=st.lists(st.tuples(keys, values), max_size=4), whole=st.booleans())
 def test_any_text_loads_or_is_refused_in_one_line(
     tmp_path_factory: pytest.TempPathFactory, lines: list[tuple[str, str]], whole: bool

@@ -15,6 +15,7 @@ from satsym.grid import Grid
 from satsym.kernels import Kernels, load, shipped
 from satsym.kernels.digest import sealed
 from satsym.status import BadInput
+from tests.support.derived import derived
 
 GRID = Grid.uniform(0.0, 6.0, 300)
 X0 = (1.1, 0.02, -0.1, 0.9)
@@ -112,7 +113,7 @@ def test_what_the_generator_writes_for_other_models_passes_the_check(control_set
     from sympy import Rational, atan2, cos, exp, pi, sqrt, tanh
 
     from satsym.codegen.module import render
-    from satsym.symbolic import FirstOrder, Problem, Variable, derive, symbols_of, t
+    from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of, t
 
     states = (Variable("y", "y", positive=True), Variable("v", "v"))
     controls, parameters = (Variable("a", "a"),), (Variable("k", "k", default=2.0, positive=True),)
@@ -131,7 +132,7 @@ def test_what_the_generator_writes_for_other_models_passes_the_check(control_set
         if control_set
         else model
     )
-    (tmp_path / "mine.py").write_text(render(derive(subject), "mine.py"), encoding="utf-8")
+    (tmp_path / "mine.py").write_text(render(derived(subject), "mine.py"), encoding="utf-8")
     mine = load("mine", tmp_path)
     x, _, cost = mine.forward([0.0, 0.1, 0.2], (1.0, 0.0), np.ones((1, 3)), np.ones((1, 2)), (2.0,))
     assert cost == pytest.approx(0.1 if control_set else 0.0)
@@ -168,7 +169,7 @@ def test_both_backends_agree_on_trajectories(orbit: Kernels, compiled: Kernels):
 
 
 def test_both_backends_agree_on_a_grid_with_kinks(orbit: Kernels, compiled: Kernels):
-    grid = GRID.with_kinks([0.0333, 2.7071, 5.99])
+    grid = GRID.with_corners([0.0333, 2.7071, 5.99])
     for plain, fast in zip(sweep(orbit, grid), sweep(compiled, grid), strict=True):
         assert np.abs(plain - fast).max() <= 1e-12
 

@@ -8,11 +8,13 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 
 from satsym.kernels.bodies import Unexpected
 from satsym.kernels.checking import check
+from tests.support.derived import derived
+from tests.support.examples import examples
 
 
 @pytest.fixture(scope="module")
@@ -21,7 +23,7 @@ def legal() -> str:
     from sympy import sin
 
     from satsym.codegen.module import render
-    from satsym.symbolic import FirstOrder, Problem, Variable, derive, symbols_of
+    from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 
     states, controls, parameters = (
         (Variable("y", "y"), Variable("v", "v")),
@@ -38,7 +40,7 @@ def legal() -> str:
         rates={y: v, v: a - k * sin(y)},
     )
     problem = Problem(name="problem", title="A problem", model=model, running_cost=a**2 / 2, control_set="box")
-    return render(derive(problem), "mine.py")
+    return render(derived(problem), "mine.py")
 
 
 # Whatever passes the check holds nothing but these. This list is written independently of the checker.
@@ -85,7 +87,7 @@ def test_the_legal_module_is_harmless(legal: str):
     assert_harmless(ast.parse(legal))
 
 
-@settings(max_examples=80, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@examples(80, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_whatever_mutation_passes_the_check_is_harmless(legal: str, data: st.DataObject):
     definitions = [node for node in ast.parse(legal).body if isinstance(node, ast.FunctionDef)]
@@ -152,7 +154,7 @@ def mutate(function: ast.FunctionDef, data: st.DataObject) -> None:
 
 
 @pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::SyntaxWarning")  # escapes in docstrings
-@settings(max_examples=80, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@examples(80, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     place=st.floats(0, 1),
     length=st.integers(0, 12),

@@ -13,7 +13,7 @@ from satsym.codegen import module
 from satsym.codegen.verify import verify
 from satsym.spec import Variable
 from satsym.symbolic import FirstOrder, Problem, symbols_of
-from satsym.symbolic.pipeline import derive
+from tests.support.derived import derived
 
 CLASHING = ("x u lam p h i nu bounds final out shape times x0 lam_f x_mid u_mid math np float len range "
             "gain original lambda for t_end x_value").split()  # fmt: skip
@@ -43,7 +43,7 @@ def problem(first: str, second: str, control: str, parameter: str) -> Problem:
 
 
 def generated(case: Problem, folder: Path) -> kernels.Kernels:
-    derivation = derive(case)
+    derivation = derived(case)
     (folder / "swing.py").write_text(module.render(derivation, "swing.py"))
     found = kernels.load("./swing", folder)
     verify(derivation, found)

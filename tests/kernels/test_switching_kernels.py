@@ -16,9 +16,9 @@ from satsym.kernels import Kernels
 from satsym.kernels.bodies import Unexpected
 from satsym.kernels.checking import check
 from satsym.symbolic import DerivationError, Problem
-from tests.support.switching_models import LEAST_FUEL, LEAST_TIME, OSCILLATOR, TWO_ENGINES, derived
+from tests.support.switching_models import LEAST_FUEL, MINIMUM_TIME, OSCILLATOR, TWO_ENGINES, derived
 
-PROBLEMS = {"time": LEAST_TIME, "fuel": LEAST_FUEL, "two engines": TWO_ENGINES}
+PROBLEMS = {"time": MINIMUM_TIME, "fuel": LEAST_FUEL, "two engines": TWO_ENGINES}
 SHIPPED = ("double_integrator_time", "double_integrator_fuel", "singular_regulator", "van_der_pol")
 numbers = st.floats(-3.0, 3.0)
 widths = st.floats(0.0, 2.0)
@@ -112,16 +112,16 @@ def test_the_smoothed_law_minimises_the_companions_hamiltonian(
     built: dict[str, Kernels], name: str, data: st.DataObject
 ) -> None:
     """Read off the state rates: held against fine grids over the box, and against the exact law at no smoothing."""
-    model, p, (smoothing, share) = built[name], (0.8,), (data.draw(st.floats(0.05, 2.0)), data.draw(st.floats(0, 1)))
+    model, p, (smoothing, fraction) = built[name], (0.8,), (data.draw(st.floats(0.05, 2.0)), data.draw(st.floats(0, 1)))
     x, lam, box = places(model, data)
     m, n = len(model.spec.controls), len(model.spec.states)
 
     def companion(u: tuple[float, ...]) -> float:
         weights = np.array(model.magnitude_weight(0.0, x, p))
         effort = 0.5 * smoothing * sum(v * v for v in u)
-        return float(model.hamiltonian(0.0, x, u, lam, p) + effort - (1 - share) * weights @ np.abs(u))
+        return float(model.hamiltonian(0.0, x, u, lam, p) + effort - (1 - fraction) * weights @ np.abs(u))
 
-    found = model.boundary(0.0, x, lam, (), p, (*box, smoothing, share), (0.0,) * 3 * n)[-1]
+    found = model.boundary(0.0, x, lam, (), p, (*box, smoothing, fraction), (0.0,) * 3 * n)[-1]
     grids = [np.linspace(low, high, 31) for low, high in zip(box[:m], box[m:], strict=True)]
     least = min(companion(u) for u in itertools.product(*grids))
     spacing = max((high - low) / 30 for low, high in zip(box[:m], box[m:], strict=True))
@@ -177,7 +177,7 @@ def test_a_fault_in_generated_text_is_found() -> None:
 
 
 def test_a_module_must_have_what_its_description_promises() -> None:
-    text = module.render(derived(LEAST_TIME), "mine.py")
+    text = module.render(derived(MINIMUM_TIME), "mine.py")
     spec, functions = check(text)
     assert spec.switching
     assert {"switching_function", "switching_rate_batch", "extremal_jacobian"} <= {f.name for f in functions}

@@ -13,7 +13,8 @@ from satsym.codegen import module
 from satsym.kernels import Kernels, from_text, load
 from satsym.kernels.composition import weights
 from satsym.status import BadInput
-from satsym.symbolic import FirstOrder, Variable, derive, symbols_of, t
+from satsym.symbolic import FirstOrder, Variable, symbols_of, t
+from tests.support.derived import derived
 
 START = (1.0, 0.0, 0.0, 0.0, 1.0, 0.5)
 ORDER = 6
@@ -35,7 +36,7 @@ def motion(rates: dict, parameters: tuple[str, ...] = ("k",), controls: tuple[st
         parameters=tuple(Variable(p, p, default=1.0) for p in parameters),
         rates=rates,
     )
-    return module.render(derive(model), "a test")
+    return module.render(derived(model), "a test")
 
 
 q1, q2, v1, v2, k, force = symbols_of(Variable(name, name) for name in ("q1", "q2", "v1", "v2", "k", "force"))
@@ -99,9 +100,9 @@ def test_they_fail_those_of_seventh_order_so_the_conditions_can_fail():
 def test_the_weights_are_symmetric_and_make_up_a_whole_step():
     kicks, drifts = weights()
     assert (len(kicks), len(drifts)) == (12, 11)
-    for shares in (kicks, drifts):
-        assert shares == shares[::-1]
-        assert sum(shares) == pytest.approx(1.0, abs=1e-15)
+    for fractions in (kicks, drifts):
+        assert fractions == fractions[::-1]
+        assert sum(fractions) == pytest.approx(1.0, abs=1e-15)
 
 
 def test_on_an_orbit_the_error_falls_with_the_sixth_power(orbit: Kernels):

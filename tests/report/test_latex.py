@@ -8,7 +8,6 @@ import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -24,8 +23,9 @@ from satsym.report.latex.width import width
 from satsym.report.texts import MissingText, languages, load
 from satsym.spec import ControlSetKind
 from satsym.status import BadInput
-from satsym.symbolic import Derivation, FirstOrder, Newton, Problem, Variable, derive, loader, symbols_of, t
+from satsym.symbolic import Derivation, FirstOrder, Newton, Problem, Variable, loader, symbols_of, t
 from satsym.symbolic.latex.typeset import Typesetter
+from tests.support import derived as shared
 
 NASTY = r"100 % of a_b & {c} #1 $x$ ~ ^ \input{x} <“q”> -- 'é' α Ω 日 € 10⁻³"
 needs_tex = pytest.mark.skipif(shutil.which("pdflatex") is None, reason="no pdflatex to compile with")
@@ -112,9 +112,9 @@ SAMPLED = 3
 @cache
 def derived(name: str) -> Derivation:
     if name == "cart":
-        return derive(double_integrator().model)
+        return shared.derived(double_integrator().model)
     made = {f.__name__: f for f in MADE}
-    return derive(made[name]() if name in made else next(p for p in shipped() if p.name == name))
+    return shared.derived(made[name]()) if name in made else shared.shipped(name)
 
 
 def compiled(text: str, folder: Path) -> str:
@@ -142,13 +142,22 @@ def assert_clean(log: str) -> None:
 
 @needs_tex
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("name", "language"),
-    [(name, language) for language in languages() for name in (NAMES if language == "en" else NAMES[::SAMPLED])],
-)
-def test_document_compiles_within_its_margins_and_every_reference_leads_somewhere(
-    name: str, language: str, tmp_path: Path
+@pytest.mark.parametrize("language", languages())
+def test_what_is_typeset_compiles_within_its_margins_and_every_reference_leads_somewhere(
+    language: str, tmp_path: Path
 ) -> None:
+    names = NAMES if language == "en" else NAMES[::SAMPLED]
+    preamble, _, _ = render(derived(names[0]), language).partition("\\begin{document}")
+    bodies = [f"\\typeout{{{name}}}\n{render(derived(name), language, standalone=False)}" for name in names]
+    text = f"{preamble}\\begin{{document}}\n" + "\n\\clearpage\n".join(bodies) + "\\end{document}\n"
+    assert_clean(compiled(text, tmp_path))
+
+
+@needs_tex
+@pytest.mark.slow
+@pytest.mark.parametrize("language", languages())
+@pytest.mark.parametrize("name", [NAMES[0], *(pytest.param(name, marks=pytest.mark.study) for name in NAMES[1:])])
+def test_document_compiles_by_itself(name: str, language: str, tmp_path: Path) -> None:
     assert_clean(compiled(render(derived(name), language), tmp_path))
 
 
@@ -195,10 +204,11 @@ def test_every_equation_has_one_label_and_every_reference_a_label(name: str, lan
 
 
 @pytest.mark.slow
-def test_rendering_is_byte_identical_for_every_hash_seed() -> None:
+@pytest.mark.parametrize("file", ["double_integrator", pytest.param("polar_orbit", marks=pytest.mark.study)])
+def test_rendering_is_byte_identical_for_every_hash_seed(file: str) -> None:
     code = (
         "import sys; from satsym.symbolic import derive, loader; from satsym.report.latex.document import render\n"
-        "sys.stdout.reconfigure(encoding='utf-8'); (problem, *_) = loader.load(loader.find('polar_orbit'))\n"
+        f"sys.stdout.reconfigure(encoding='utf-8'); (problem, *_) = loader.load(loader.find('{file}'))\n"
         "print(render(derive(problem)))"
     )
     texts = set()
@@ -254,12 +264,17 @@ def test_languages_have_the_same_keys_and_places_to_fill_in() -> None:
                 assert set(re.findall(r"<\w+>", text)) == set(re.findall(r"<\w+>", english.tables[table][key]))
 
 
-def calls(function: str) -> Iterator[ast.Call]:
-    """Calls of a function in the derivation engine."""
-    for path in sorted(Path(satsym.symbolic.__file__).parent.rglob("*.py")):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == function:
-                yield node
+@cache
+def all_calls() -> tuple[ast.Call, ...]:
+    """Calls of functions by their names in the derivation engine."""
+    files = sorted(Path(satsym.symbolic.__file__).parent.rglob("*.py"))
+    nodes = (node for path in files for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+    return tuple(node for node in nodes if isinstance(node, ast.Call) and isinstance(node.func, ast.Name))
+
+
+def calls(function: str) -> list[ast.Call]:
+    """Those of one function."""
+    return [call for call in all_calls() if call.func.id == function]
 
 
 def written(node: ast.expr) -> list[str]:

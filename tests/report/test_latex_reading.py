@@ -10,13 +10,15 @@ from collections.abc import Mapping
 
 import pytest
 import sympy as sp
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 
 from satsym.symbolic import Derivation, FirstOrder, Problem, Variable, derive, loader, symbols_of
 from satsym.symbolic.latex.typeset import Typesetter
+from satsym.symbolic.minimisers import by_signs
 from satsym.symbolic.principle import control_sets
-from satsym.symbolic.switching.minimisers import by_signs
+from tests.support.derived import derived
+from tests.support.examples import examples
 
 FUNCTIONS = {r"\cos": math.cos, r"\sin": math.sin, r"\tan": math.tan, r"\ln": math.log}
 LAYOUT = re.compile(r"\\(?:[bB]igg?[lr]|left|right|,|;)(?![A-Za-z])|\s+|&|\{\}(?=[+-])")
@@ -200,7 +202,7 @@ def shipped() -> list[object]:
 @pytest.mark.slow
 @pytest.mark.parametrize("subject", shipped(), ids=lambda subject: subject.name)
 def test_every_shipped_equation_reads_back_as_what_was_derived(subject: Problem) -> None:
-    derivation = derive(subject)
+    derivation = derived(subject)
     for step in derivation.steps:
         for equation in step.equations:
             assert_reads_back(derivation, equation.lhs)
@@ -280,7 +282,7 @@ def test_awkward_expressions_read_back(toy: Derivation, expression: sp.Expr) -> 
     assert_reads_back(toy, expression)
 
 
-@settings(max_examples=300, suppress_health_check=[HealthCheck.too_slow])
+@examples(300, suppress_health_check=[HealthCheck.too_slow])
 @given(expressions())
 def test_any_expression_reads_back(toy: Derivation, expression: sp.Expr) -> None:
     assert_reads_back(toy, expression)

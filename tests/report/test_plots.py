@@ -19,12 +19,12 @@ from satsym import instance as instances
 from satsym.instance import Guess, Instance, SolverOptions
 from satsym.kernels import Kernels
 from satsym.report import display
-from satsym.report.plots import curves, pictures, series
+from satsym.report.plots import curves, pictures, series, style
 from satsym.report.plots.panels import _of_pi
 from satsym.report.plots.reading import read
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.series import Series
-from satsym.solution import Flight, Iteration, Solution
+from satsym.solution import Iteration, Simulation, Solution
 from satsym.solvers import simulate, solve
 from satsym.spec import ProblemSpec, Variable
 from satsym.status import Status
@@ -132,9 +132,9 @@ def solution(given: Instance, **changes: Any) -> Solution:
     return dataclasses.replace(made, **changes)
 
 
-def fed_back(given: Instance) -> Flight:
+def fed_back(given: Instance) -> Simulation:
     made = solution(given)
-    return Flight(given, "lqr", Status.CONVERGED, "", made.times, made.x, made.u, {}, {})
+    return Simulation(given, "lqr", Status.CONVERGED, "", made.times, made.x, made.u, {}, {})
 
 
 def page_texts(page: Any) -> list[tuple[str, Any]]:
@@ -158,7 +158,7 @@ def stems(written: Sequence[Path]) -> list[str]:
     return [path.stem for path in written]
 
 
-def save(result: Solution | Flight, folder: Path, formats: Sequence[str] = ("png",)) -> list[Path]:
+def save(result: Solution | Simulation, folder: Path, formats: Sequence[str] = ("png",)) -> list[Path]:
     """Its pictures as files."""
     drawn = pictures(result, formats)
     folder.mkdir(parents=True, exist_ok=True)
@@ -226,11 +226,10 @@ def test_a_flight_with_feedback_shows_its_controls(tmp_path: Path) -> None:
     ],
     ids=["one state", "box", "ball in space", "many, with bad LaTeX", "any title"],
 )
-@pytest.mark.usefixtures("full_resolution")
 def test_any_model_can_be_drawn(given: Instance, pictures: str, tmp_path: Path) -> None:
     written = save(solution(given), tmp_path)
     assert " ".join(stems(written)) == pictures
-    assert all(max(png_size(path)) < 3000 for path in written)
+    assert all(max(png_size(path)) * style.DPI / style._RC["figure.dpi"] < 3000 for path in written)
 
 
 def broken(values: float, first: int) -> np.ndarray:
@@ -252,12 +251,12 @@ def broken(values: float, first: int) -> np.ndarray:
     ids=["nan", "inf", "1e300", "1e99", "constant", "tiny"],
 )
 def test_what_a_failed_run_left_behind_is_drawn_as_far_as_it_goes(x: np.ndarray) -> None:
-    from satsym.report.plots import overview, style
+    from satsym.report.plots import pages, style
 
     given = case(model(2, 1, position=2, reference=True))
     left = solution(given, x=x, status=Status.NON_FINITE, objective=math.nan, u=np.full((1, NODES), np.nan))
     with style.applied():
-        page = overview.overview(Scene.of(left))
+        page = pages.overview(Scene.of(left))
         assert page is not None
         assert "non-finite" in dict(page_texts(page))
         assert style.rendered(page, "png").startswith(b"\x89PNG")
@@ -307,10 +306,10 @@ assert not sys.modules.keys() & {"matplotlib.pyplot", "scipy", "sympy", "tkinter
     + [("ball", name) for name in ("overview", "orbit", "controls")],
 )
 def test_no_text_leaves_the_page_or_covers_another(which: str, name: str, request: pytest.FixtureRequest) -> None:
-    from satsym.report.plots import convergence, overview, pages, style
+    from satsym.report.plots import pages, style
 
     found = request.getfixturevalue(which)
-    draw = {"overview": overview.overview, "convergence": convergence.convergence}.get(name) or getattr(pages, name)
+    draw = {"overview": pages.overview, "convergence": pages.convergence}.get(name) or getattr(pages, name)
     with style.applied():
         page = draw(Scene.of(found))
         style.rendered(page, "png")

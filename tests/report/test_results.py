@@ -15,10 +15,10 @@ import pytest
 from satsym import instance
 from satsym.instance import Instance
 from satsym.report.results import files, sets, trajectory
-from satsym.report.results.objects import flight_object, model_object, solution_object
-from satsym.report.terminal.solution import flight_text, solution_text, with_files
+from satsym.report.results.objects import model_object, simulation_object, solution_object
+from satsym.report.terminal.solution import simulation_text, solution_text, with_files
 from satsym.report.terminal.table import figure, table
-from satsym.solution import Flight, Invariant, Solution
+from satsym.solution import Invariant, Simulation, Solution
 from satsym.status import BadInput, Status
 
 SOLUTION_KEYS = (
@@ -61,8 +61,8 @@ def failed(solution: Solution) -> Solution:
 
 
 @pytest.fixture
-def flight(case: Instance) -> Flight:
-    return Flight(
+def flight(case: Instance) -> Simulation:
+    return Simulation(
         instance=case,
         feedback="none",
         status=Status.CONVERGED,
@@ -97,12 +97,12 @@ def test_switching_times_of_all_controls_are_one_sorted_list(solution: Solution)
     assert solution_object(solution)["switching_times"] == [15.25, 30.5]
 
 
-def test_numbers_that_are_not_finite_are_null(failed: Solution, flight: Flight) -> None:
+def test_numbers_that_are_not_finite_are_null(failed: Solution, flight: Simulation) -> None:
     found = solution_object(failed)
     assert found["objective"] is None
     assert set(found["x_final"].values()) == set(found["costate_initial"].values()) == {None}
-    assert flight_object(flight)["metrics"] == {"r_min": 1.0, "odd": None}
-    json.dumps([found, flight_object(flight)], allow_nan=False)
+    assert simulation_object(flight)["metrics"] == {"r_min": 1.0, "odd": None}
+    json.dumps([found, simulation_object(flight)], allow_nan=False)
 
 
 def test_zero_has_no_sign(solution: Solution) -> None:
@@ -130,8 +130,8 @@ def test_every_status_is_spelt_as_the_contract_has_it(solution: Solution) -> Non
     ]
 
 
-def test_flight_has_the_keys_of_the_contract_in_their_order(flight: Flight) -> None:
-    found = flight_object(flight)
+def test_flight_has_the_keys_of_the_contract_in_their_order(flight: Simulation) -> None:
+    found = simulation_object(flight)
     assert list(found) == FLIGHT_KEYS
     assert list(found["x_final"]) == STATES
     assert found["invariants"] == {"energy": {"initial": -0.5, "drift": 1e-15}}
@@ -179,7 +179,7 @@ def test_trajectory_files_give_back_every_number(solution: Solution, tmp_path: P
     np.testing.assert_array_equal(columns, np.vstack([solution.times, solution.x, solution.u, solution.lam]))
 
 
-def test_trajectory_of_a_flight_has_no_costates(flight: Flight, tmp_path: Path) -> None:
+def test_trajectory_of_a_flight_has_no_costates(flight: Simulation, tmp_path: Path) -> None:
     sets.write(tmp_path, {}, trajectory.contents(flight))
     assert "lambda" not in (tmp_path / "trajectory.csv").read_text(encoding="utf-8")
     with np.load(tmp_path / "trajectory.npz") as stored:
@@ -249,8 +249,8 @@ def test_status_is_coloured_on_request(solution: Solution, failed: Solution) -> 
     assert "\x1b[31mnon-finite\x1b[0m" in solution_text(failed, colour=True)
 
 
-def test_summary_of_a_flight_tells_what_is_conserved(flight: Flight) -> None:
-    told = flight_text(flight)
+def test_summary_of_a_flight_tells_what_is_conserved(flight: Simulation) -> None:
+    told = simulation_text(flight)
     assert "energy" in told
     assert "1e-15" in told
     assert "costate" not in told

@@ -15,8 +15,8 @@ from satsym import instance
 from satsym.cli.app import program
 from satsym.cli.saving import save, trajectory_files
 from satsym.report.results import trajectory
-from satsym.report.results.objects import flight_object, solution_object
-from satsym.solution import Flight, Solution
+from satsym.report.results.objects import simulation_object, solution_object
+from satsym.solution import Simulation, Solution
 from satsym.solvers import simulate, solve
 from satsym.status import BadInput
 from tests.support.damage import signed
@@ -31,7 +31,7 @@ def solution() -> Solution:
 
 
 @pytest.fixture(scope="module")
-def flight() -> Flight:
+def flight() -> Simulation:
     return simulate(instance.load("its-thesis"))
 
 
@@ -41,9 +41,9 @@ def folder(solution: Solution, tmp_path: Path) -> Path:
     return tmp_path
 
 
-def kept(found: Solution | Flight) -> dict[str, Any]:
+def kept(found: Solution | Simulation) -> dict[str, Any]:
     """The fields of a result that are saved, arrays as lists; of a flight, why it failed is not."""
-    left_out = {"instance", "certificate"} | ({"message"} if isinstance(found, Flight) else set())
+    left_out = {"instance", "certificate"} | ({"message"} if isinstance(found, Simulation) else set())
     fields = {name: value for name, value in vars(found).items() if name not in left_out}
     return {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in fields.items()}
 
@@ -56,10 +56,10 @@ def test_a_solution_comes_back_with_every_number(solution: Solution, folder: Pat
     assert kept(found) == kept(solution)
 
 
-def test_a_flight_comes_back_with_every_number(flight: Flight, tmp_path: Path) -> None:
-    save(tmp_path, flight_object(flight), trajectory_files(tmp_path, flight, plot=False))
+def test_a_flight_comes_back_with_every_number(flight: Simulation, tmp_path: Path) -> None:
+    save(tmp_path, simulation_object(flight), trajectory_files(tmp_path, flight, plot=False))
     found, _ = trajectory.read(flight.instance, tmp_path)
-    assert isinstance(found, Flight)
+    assert isinstance(found, Simulation)
     assert kept(found) == kept(flight)
 
 

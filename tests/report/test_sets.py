@@ -15,7 +15,7 @@ from typing import IO, Any
 
 import pytest
 
-from satsym.report.results import files, locking, set_list, sets
+from satsym.report.results import files, set_list, sets
 from satsym.status import BadInput
 from tests.support.damage import signed
 
@@ -232,13 +232,13 @@ def test_nothing_is_added_to_a_set_that_was_replaced_meanwhile(tmp_path: Path) -
 
 def test_who_finds_a_folder_in_use_waits_and_then_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     write(tmp_path, OLD)
-    monkeypatch.setattr(locking, "PATIENCE", 0.1)
-    with locking.locked(tmp_path):
+    monkeypatch.setattr(sets, "PATIENCE", 0.1)
+    with sets.locked(tmp_path):
         with pytest.raises(BadInput, match="in use by another process"):
             write(tmp_path, NEW)
         with pytest.raises(BadInput, match="in use by another process"):
             seen(tmp_path)
-    with locking.locked(tmp_path, shared=True):
+    with sets.locked(tmp_path, shared=True):
         assert seen(tmp_path) == OLD
 
 

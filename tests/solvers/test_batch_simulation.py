@@ -11,7 +11,8 @@ from satsym.codegen import module
 from satsym.kernels import Kernels, from_text, load
 from satsym.solvers.simulation import batch
 from satsym.status import BadInput
-from satsym.symbolic import FirstOrder, Variable, derive, symbols_of
+from satsym.symbolic import FirstOrder, Variable, symbols_of
+from tests.support.derived import derived
 
 q, v = symbols_of((Variable("q", "q"), Variable("v", "v")))
 
@@ -45,7 +46,7 @@ def test_each_is_what_the_generated_loop_makes_of_it_alone(orbit: Kernels):
     x0, mu = starts(7), np.linspace(0.9, 1.1, 7)
     u = np.linspace(-0.01, 0.01, 21).reshape(3, 7)
     for kernels in backends(orbit):
-        x = batch.fly(kernels, TIMES, x0, (mu,), STEPS, u)
+        x = batch.simulate(kernels, TIMES, x0, (mu,), STEPS, u)
         assert x.shape == (6, 3, 7)
         for k in range(7):
             here = tuple(x0[:, k])
@@ -61,7 +62,9 @@ def test_the_error_falls_with_the_fourth_power(orbit: Kernels):
     x0 = starts(50)
     exact = np.vstack(kepler.propagate(x0[:3], x0[3:], 1.0, 2.0))
     for kernels in backends(orbit):
-        coarse, fine = (np.abs(batch.fly(kernels, [0.0, 2.0], x0, (1.0,), n)[:, 1] - exact).max() for n in (200, 400))
+        coarse, fine = (
+            np.abs(batch.simulate(kernels, [0.0, 2.0], x0, (1.0,), n)[:, 1] - exact).max() for n in (200, 400)
+        )
         assert coarse <= 1e-4
         assert 12.0 <= coarse / fine <= 20.0
 
@@ -70,11 +73,11 @@ def test_the_symplectic_method_is_the_generated_loop_for_each_and_of_sixth_order
     x0, mu = starts(7), np.linspace(0.9, 1.1, 7)
     exact = np.vstack(kepler.propagate(x0[:3], x0[3:], mu, TIMES[-1]))
     for kernels in backends(orbit):
-        x = batch.fly(kernels, TIMES[[0, 2]], x0, (mu,), STEPS, method="symplectic")[:, 1]
+        x = batch.simulate(kernels, TIMES[[0, 2]], x0, (mu,), STEPS, method="symplectic")[:, 1]
         nodes = np.linspace(TIMES[0], TIMES[2], STEPS + 1)
         alone = [orbit.symplectic(nodes, tuple(x0[:, k]), (mu[k],))[:, -1] for k in range(7)]
         assert np.abs(x - np.transpose(alone)).max() <= 1e-13
-        finer = batch.fly(kernels, TIMES[[0, 2]], x0, (mu,), 2 * STEPS, method="symplectic")[:, 1]
+        finer = batch.simulate(kernels, TIMES[[0, 2]], x0, (mu,), 2 * STEPS, method="symplectic")[:, 1]
         assert 45.0 <= np.abs(x - exact).max() / np.abs(finer - exact).max() <= 90.0
 
 
@@ -86,7 +89,7 @@ def test_models_with_explicit_time_see_it(orbit: Kernels):
     table = np.repeat(u[:, None], STEPS + 1, axis=1)
     alone, _, _ = model.forward(nodes, (1.0,) * n, table, table[:, 1:], p)
     for kernels in backends(model):
-        x = batch.fly(kernels, nodes[[0, -1]], np.ones((n, 3)), p, STEPS, u)
+        x = batch.simulate(kernels, nodes[[0, -1]], np.ones((n, 3)), p, STEPS, u)
         assert np.abs(x[:, 1] - alone[:, -1:]).max() <= 1e-12
 
 
@@ -99,9 +102,9 @@ def test_models_without_controls_and_parameters_fly_too():
         parameters=(),
         rates={q: v, v: -sin(q)},
     )
-    pendulum = from_text(module.render(derive(motion), "a test"), "motion")
+    pendulum = from_text(module.render(derived(motion), "a test"), "motion")
     x0, times = np.array([[0.5, 1.0], [0.0, 0.1]]), [0.0, 3.0, 1.0]
-    flights = [batch.fly(pendulum, times, x0, (), 60, method=m)[:, 2] for m in batch.METHODS]
+    flights = [batch.simulate(pendulum, times, x0, (), 60, method=m)[:, 2] for m in batch.METHODS]
     tail = pendulum.forward(np.linspace(0.0, 1.0, 201), (1.0, 0.1), np.zeros((0, 201)), np.zeros((0, 200)), ())[0][
         :, -1
     ]
@@ -113,11 +116,11 @@ def test_more_columns_than_a_block_holds_are_all_there_and_the_starts_untouched(
     x0 = starts(2 * batch.BLOCK + 5)
     given = x0.copy()
     for kernels in backends(orbit):
-        x = batch.fly(kernels, [0.0, 0.1], x0, (1.0,), 2)
+        x = batch.simulate(kernels, [0.0, 0.1], x0, (1.0,), 2)
         assert np.array_equal(x0, given)
         assert np.array_equal(x[:, 0], x0)
         for k in (0, batch.BLOCK - 1, batch.BLOCK, 2 * batch.BLOCK + 4):
-            alone = batch.fly(kernels, [0.0, 0.1], x0[:, k : k + 1], (1.0,), 2)
+            alone = batch.simulate(kernels, [0.0, 0.1], x0[:, k : k + 1], (1.0,), 2)
             assert np.abs(x[:, 1, k] - alone[:, 1, 0]).max() <= 1e-14
 
 
@@ -125,7 +128,7 @@ def test_beyond_the_centre_is_nan_and_the_others_go_on(orbit: Kernels):
     x0 = starts(3)
     x0[:, 1] = 0.0
     for kernels in backends(orbit):
-        x = batch.fly(kernels, [0.0, 0.1], x0, (1.0,), 2)
+        x = batch.simulate(kernels, [0.0, 0.1], x0, (1.0,), 2)
         assert np.isnan(x[:, 1, 1]).any()
         assert np.isfinite(x[:, 1, [0, 2]]).all()
 
@@ -148,12 +151,12 @@ def test_beyond_the_centre_is_nan_and_the_others_go_on(orbit: Kernels):
 def test_bad_input_is_refused(orbit: Kernels, given: dict, message: str):
     sound = {"times": [0.0, 1.0], "x0": np.ones((6, 2)), "p": (1.0,), "steps": 3}
     with pytest.raises(BadInput, match=f"^{message}"):
-        batch.fly(orbit, **sound | given)
+        batch.simulate(orbit, **sound | given)
 
 
 def test_a_model_that_is_not_separable_has_no_symplectic_method():
     with pytest.raises(BadInput, match=r"^polar_orbit: no symplectic integrator"):
-        batch.fly(load("polar_orbit"), [0.0, 1.0], np.ones((4, 2)), (1.0,) * 8, 3, method="symplectic")
+        batch.simulate(load("polar_orbit"), [0.0, 1.0], np.ones((4, 2)), (1.0,) * 8, 3, method="symplectic")
 
 
 def test_one_not_compiled_has_no_compiled_step(orbit: Kernels):

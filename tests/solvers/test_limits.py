@@ -13,8 +13,7 @@ import pytest
 from satsym import instance
 from satsym.analysis.regulator.feedback import simulate
 from satsym.instance import Instance
-from satsym.instance.memory import MOST_BYTES, estimated
-from satsym.instance.options import solver
+from satsym.instance.options import MOST_BYTES, needed_memory, solver
 from satsym.solvers import iteration, solve
 from satsym.solvers.iteration import BLOCK, Limits, TimeUp
 from satsym.solvers.simulation import blocks
@@ -42,7 +41,7 @@ def test_as_many_steps_as_the_refusal_says_are_taken(name: str) -> None:
     most = int(str(refused.value).rpartition(" ")[2])
     options = msgspec.structs.replace(case.solver, steps=most)
     assert solver(options, case.model.spec) is options
-    assert MOST_BYTES * 0.99 < estimated(options, case.model.spec) <= MOST_BYTES
+    assert MOST_BYTES * 0.99 < needed_memory(options, case.model.spec) <= MOST_BYTES
     with pytest.raises(BadInput):
         solver(msgspec.structs.replace(case.solver, steps=most + 1), case.model.spec)
 

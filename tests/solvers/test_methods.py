@@ -18,6 +18,7 @@ from satsym.instance.schema import check
 from satsym.methods import Method
 from satsym.solvers import solve
 from satsym.status import BadInput, Status
+from tests.support.contributing import example
 
 SOLVER = '''
 import numpy as np
@@ -38,15 +39,7 @@ def solve(instance, progress=None):
     )
 '''
 
-RECORD = """
-Method(
-    "coasting",
-    "no control at all, whatever that costs",
-    "coasting:solve",
-    certified=False,
-    refusal=lambda asked: 'time.tf: coasting never ends; use method "collocation"' if asked.tf is None else "",
-)
-"""
+RECORD = example("A method that solves", "python").replace("satsym.solvers.", "")
 
 
 @pytest.fixture

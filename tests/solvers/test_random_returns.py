@@ -10,11 +10,11 @@ import pytest
 
 from satsym.solvers import two_point
 from satsym.solvers.certificate import certify, conditions
-from satsym.solvers.certificate.conjugate import conjugate
 from satsym.solvers.certificate.flow import flow
+from satsym.solvers.certificate.jacobi import conjugate
 from satsym.solvers.certificate.segments import segments
+from satsym.solvers.cold_start.first_minimum import cold_start
 from satsym.solvers.cold_start.path_of_ends import along_ends, ending
-from satsym.solvers.cold_start.ways import cold_start
 from satsym.solvers.collocation.arclength import extremals
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
@@ -25,8 +25,8 @@ from satsym.solvers.iteration import Limits
 from satsym.status import Status
 from tests.support.samples import EASY, HARD, Population
 
-EACH, STUDY = 17, 204
-"""Cases of a test, and of all of them: every third test runs, unless all are asked for.
+EACH, STUDY, SHARE = 6, 204, 9
+"""Cases of a test, and of all of them; every so many tests one that always runs.
 
 One case of a test has a whole certificate: competitors take longer than solving.
 """
@@ -41,7 +41,13 @@ def scaled(number: int) -> TwoPoint:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("first", range(0, STUDY, EACH))
+@pytest.mark.parametrize(
+    "first",
+    [
+        pytest.param(first, marks=[pytest.mark.study] if number % SHARE else [])
+        for number, first in enumerate(range(0, STUDY, EACH))
+    ],
+)
 def test_hard_returns_are_solved_from_nothing(first: int) -> None:
     check(HARD, range(first, first + EACH))
 
@@ -88,18 +94,18 @@ def test_extremals_are_followed_round_a_fold() -> None:
     angle = wanted.instance.final["theta"]
     assert isinstance(angle, float)
 
-    def at(share: float) -> TwoPoint:
-        return ending(wanted, {"theta": angle + 0.5 * (1.0 - share)})
+    def at(fraction: float) -> TwoPoint:
+        return ending(wanted, {"theta": angle + 0.5 * (1.0 - fraction)})
 
     found = cold_start(at(0.0), Limits(500, time.perf_counter() + SECONDS)).found
     assert found.minimum
     points = list(islice(extremals(at, found.curve), 12))
-    shares = np.array([point.share for point in points])
-    fold = int(shares.argmax())
+    fractions = np.array([point.fraction for point in points])
+    fold = int(fractions.argmax())
     assert 0 < fold < len(points) - 1
-    assert shares[fold] < 1.0
-    assert (np.diff(shares[: fold + 1]) > 0.0).all()
-    assert (np.diff(shares[fold:]) < 0.0).all()
+    assert fractions[fold] < 1.0
+    assert (np.diff(fractions[: fold + 1]) > 0.0).all()
+    assert (np.diff(fractions[fold:]) < 0.0).all()
     directions = [negative_directions(p.problem, p.curve, p.linearised.matching) for p in points]
     assert set(directions[:fold]) == {0}
     assert set(directions[fold + 1 :]) == {1}

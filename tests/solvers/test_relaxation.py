@@ -50,15 +50,15 @@ def test_half_the_new_control_diverges_over_a_revolution_and_is_told_why():
 @pytest.mark.parametrize("tf", [1.0, 2.0, 3.0])
 def test_the_limit_is_sharp(tf):
     limit = advised(tf)
-    below, above = (solve(short(tf, relaxation=share * limit)) for share in (0.9, 1.1))
+    below, above = (solve(short(tf, relaxation=fraction * limit)) for fraction in (0.9, 1.1))
     assert below.status is Status.CONVERGED
     assert above.status is Status.NOT_CONVERGED
     assert re.search("diverges|circles", above.message)
 
 
-@pytest.mark.parametrize(("tf", "share"), [(0.5, 0.8), (1.0, 0.4), (2.0, 0.07)])
-def test_both_methods_find_the_same_optimum(tf, share):
-    relaxed, best = (solve(short(tf, relaxation=share, tolerance=1e-10)) for share in (share, None))
+@pytest.mark.parametrize(("tf", "fraction"), [(0.5, 0.8), (1.0, 0.4), (2.0, 0.07)])
+def test_both_methods_find_the_same_optimum(tf, fraction):
+    relaxed, best = (solve(short(tf, relaxation=fraction, tolerance=1e-10)) for fraction in (fraction, None))
     assert relaxed.status is best.status is Status.CONVERGED
     assert relaxed.method == best.method == "sweep"
     assert relaxed.objective == pytest.approx(best.objective, rel=1e-12)
@@ -69,7 +69,7 @@ def test_both_methods_find_the_same_optimum(tf, share):
 
 def test_both_methods_find_the_same_optimum_with_bounds():
     bounds = {"lower": (-0.04, -0.05), "upper": (0.01, 0.05)}
-    relaxed, best = (solve(replace(short(1.5, relaxation=share), **bounds)) for share in (0.1, None))
+    relaxed, best = (solve(replace(short(1.5, relaxation=fraction), **bounds)) for fraction in (0.1, None))
     assert relaxed.status is best.status is Status.CONVERGED
     assert any(best.switching_times)
     for ours, theirs in zip(relaxed.switching_times, best.switching_times, strict=True):

@@ -23,7 +23,7 @@ from satsym.solvers.collocation.scaling import two_point as scaled
 from satsym.solvers.iteration import Limits
 from satsym.solvers.shooting.arcs import Arcs
 from satsym.solvers.shooting.newton import doubled, newton
-from satsym.solvers.shooting.solving import from_nothing
+from satsym.solvers.shooting.solving import without_guess
 from satsym.status import Status
 from tests.house.test_floors import run_satsym
 from tests.solvers.test_two_point import missed
@@ -106,7 +106,7 @@ def test_newton_comes_from_a_straight_line():
 def held(compiled: bool) -> Arcs:
     """Solved arcs along which the second control is at its bound for a while, which a node ends."""
     problem = straight("return-to-orbit-005", 6, 3, compiled).problem
-    found = from_nothing(instance.load("return-to-orbit-005"), LIMITS, True).path
+    found = without_guess(instance.load("return-to-orbit-005"), LIMITS, True).path
     assert isinstance(found, Arcs)
     return replace(found, problem=replace(found.problem, instance=problem.instance), steps=3)
 

@@ -126,7 +126,7 @@ class Rendezvous:
     def velocity_costate(self, costate: np.ndarray, times: np.ndarray) -> np.ndarray:
         return costate[2:, None] + costate[:2, None] * (self.tf - times)
 
-    def kinks(self, costate: np.ndarray) -> list[float]:
+    def corners(self, costate: np.ndarray) -> list[float]:
         """Where its norm is the limit: the zeros of a quadratic."""
         slope, end = costate[:2], costate[2:]
         roots = np.roots([slope @ slope, 2.0 * slope @ end, end @ end - self.limit**2]) if slope @ slope else []
@@ -141,13 +141,13 @@ class Rendezvous:
         end = self.start.copy()
         end[:2] += end[2:] * self.tf
         effort = 0.0
-        edges = sorted({*np.linspace(0.0, self.tf, 101).tolist(), *self.kinks(costate)})
+        edges = sorted({*np.linspace(0.0, self.tf, 101).tolist(), *self.corners(costate)})
         for low, high in pairwise(edges):
-            times, share = low + (high - low) * (nodes + 1.0) / 2.0, weights * (high - low) / 2.0
+            times, fraction = low + (high - low) * (nodes + 1.0) / 2.0, weights * (high - low) / 2.0
             u = self.control(costate, times)
-            end[:2] += (u * (self.tf - times)) @ share
-            end[2:] += u @ share
-            effort += float(0.5 * (u**2).sum(axis=0) @ share)
+            end[:2] += (u * (self.tf - times)) @ fraction
+            end[2:] += u @ fraction
+            effort += float(0.5 * (u**2).sum(axis=0) @ fraction)
         return end, effort
 
     def _miss(self, costate: np.ndarray) -> np.ndarray:
@@ -173,9 +173,9 @@ def test_a_control_in_a_ball_is_shortened_where_it_would_leave_it(tmp_path, star
     values = "".join(f"{name} = {value}\n" for name, value in zip(PLANE, start, strict=True))
     text = f"[parameters]\nk = 10.0\n[initial]\n{values}[time]\ntf = 3.0\n[control]\nmax_norm = {limit}\n"
     solution, right = swept(build(tmp_path, rendezvous(), text), tolerance=1e-11), Rendezvous(start, 3.0, 10.0, limit)
-    assert len(right.kinks(right.final_costate)) == switches
+    assert len(right.corners(right.final_costate)) == switches
     assert solution.switching_times[0] == solution.switching_times[1]
-    assert solution.switching_times[0] == pytest.approx(right.kinks(right.final_costate), abs=1e-7)
+    assert solution.switching_times[0] == pytest.approx(right.corners(right.final_costate), abs=1e-7)
     assert np.linalg.norm(solution.u, axis=0).max() <= limit * (1.0 + 1e-15)
     assert solution.objective == pytest.approx(right.cost, rel=1e-9)
     assert np.abs(solution.lam[:, -1] - right.final_costate).max() <= 1e-8 * np.abs(right.final_costate).max()

@@ -95,9 +95,13 @@ INFINITE = float("inf")
 @pytest.mark.parametrize(
     ("initial", "tf", "lower", "upper"),
     [
-        ((0.8491, -0.1921, 0.3358, 0.7491), 9.091, (0.0, -INFINITE), (0.2, INFINITE)),
+        pytest.param(
+            (0.8491, -0.1921, 0.3358, 0.7491), 9.091, (0.0, -INFINITE), (0.2, INFINITE), marks=pytest.mark.study
+        ),
         ((0.9082, -0.2891, -0.2995, 0.7092), 6.316, (-0.05, -0.1), (0.05, 0.1)),
-        ((1.1855, 0.2077, -0.3183, 1.1539), 6.882, (-INFINITE, -0.3), (INFINITE, 0.0)),
+        pytest.param(
+            (1.1855, 0.2077, -0.3183, 1.1539), 6.882, (-INFINITE, -0.3), (INFINITE, 0.0), marks=pytest.mark.study
+        ),
     ],
 )
 def test_bounds_met_at_many_times_leave_no_error_that_is_not_told(

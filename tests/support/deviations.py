@@ -1,11 +1,11 @@
-"""Derivations of the shipped linear models, made once for all tests that look into them."""
+"""Derivations of the shipped linear models."""
 
 from __future__ import annotations
 
-from functools import cache
 from pathlib import Path
 
-from satsym.symbolic import Derivation, Model, Problem, derive, loader
+from satsym.symbolic import Derivation, Model, Problem, loader
+from tests.support import derived as shared
 
 FOLDER = Path(__file__).resolve().parents[2] / "derivations"
 
@@ -15,10 +15,9 @@ def stated(file: str, name: str) -> Problem | Model:
     return next(p for p in loader.load(FOLDER / f"{file}.py") if p.name == name)
 
 
-@cache
 def derived(file: str, name: str) -> Derivation:
     """Everything derived from it."""
-    return derive(stated(file, name))
+    return shared.derived(stated(file, name))
 
 
 def satellite() -> Derivation:

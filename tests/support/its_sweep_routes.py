@@ -38,10 +38,10 @@ def inconsistent(document: Rows, key: str) -> str:
     y, h = sp.symbols("y h")
     printed = {int(n): "h" in row["printed"].split("y_n")[-1] for n, row in _stages(document).items()}
     chosen = [int(n) for n, row in _stages(document).items() if row is document[key]] or [1, 2, 3, 4]
-    shares, slopes = {1: 0, 2: sp.Rational(1, 2), 3: sp.Rational(1, 2), 4: 1}, [y]
+    fractions, slopes = {1: 0, 2: sp.Rational(1, 2), 3: sp.Rational(1, 2), 4: 1}, [y]
     for n in (2, 3, 4):
         step = h if n not in chosen or printed[n] else 1
-        slopes.append(y + step * shares[n] * slopes[-1])
+        slopes.append(y + step * fractions[n] * slopes[-1])
     total = (slopes[0] + 2 * slopes[1] + 2 * slopes[2] + slopes[3]) / 6
     return "confirmed" if sp.simplify(total.subs(h, 0) - y) == 0 else "wrong"
 
@@ -185,14 +185,14 @@ def textbook(loop: str, name: str, known: dict) -> float:
             if name != stage_name(k, v):
                 continue
             here, there, sign = (1, 0, -1) if loop == "costate" else (0, 1, 1)
-            share = HALF[k]
+            fraction = HALF[k]
             before = stage_name(str(int(k) - 1), "{}") if k != "1" else ""
             y = [
-                known[a][here] + sign * (share * known[before.format(w)] if before else 0)
+                known[a][here] + sign * (fraction * known[before.format(w)] if before else 0)
                 for a, w in zip(arrays, names, strict=True)
             ]
-            x = [(1 - share) * known[f"x{n}s"][here] + share * known[f"x{n}s"][there] for n in range(1, 5)]
-            u = [(1 - share) * known[f"u{n}"][here] + share * known[f"u{n}"][there] for n in (1, 2)]
+            x = [(1 - fraction) * known[f"x{n}s"][here] + fraction * known[f"x{n}s"][there] for n in range(1, 5)]
+            u = [(1 - fraction) * known[f"u{n}"][here] + fraction * known[f"u{n}"][there] for n in (1, 2)]
             if loop == "initial":
                 rate = [y[1], 3 * om**2 * y[0] + 2 * om * y[3] + known["u1_0"], y[3], -2 * om * y[1] + known["u2_0"]]
             elif loop == "state":

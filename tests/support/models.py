@@ -10,7 +10,8 @@ from satsym import instance
 from satsym.codegen import module
 from satsym.instance import Instance
 from satsym.spec import ControlSetKind
-from satsym.symbolic import FirstOrder, Problem, Variable, derive, symbols_of
+from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
+from tests.support.derived import derived
 
 q, w, k = symbols_of(Variable(name, name) for name in "qwk")
 
@@ -24,12 +25,12 @@ def build(folder: Path, problem: Problem, instance_text: str) -> Instance:
 
 
 _RENDERED: dict[int, tuple[Problem, str]] = {}
-"""Generated text by the identity of its problem, which is kept so that no other gets it: deriving takes a while."""
+"""Generated text by the identity of its problem, which is kept so that no other gets it."""
 
 
 def _rendered(problem: Problem) -> str:
     if id(problem) not in _RENDERED:
-        _RENDERED[id(problem)] = problem, module.render(derive(problem), "a test")
+        _RENDERED[id(problem)] = problem, module.render(derived(problem), "a test")
     return _RENDERED[id(problem)][1]
 
 

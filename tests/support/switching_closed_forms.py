@@ -45,7 +45,7 @@ class Known:
     levels: tuple[float, ...]
 
 
-def least_time(q: float, v: float) -> Known:
+def minimum_time(q: float, v: float) -> Known:
     """To rest at the origin with |u| <= 1.
 
     Above the curve q = -v|v|/2, on which one arc leads to the origin, the control is -1 until the curve is met.

@@ -8,8 +8,9 @@ from typing import Any
 
 import sympy as sp
 
-from satsym.symbolic import Derivation, FirstOrder, Problem, Variable, derive, symbols_of
+from satsym.symbolic import Derivation, FirstOrder, Problem, Variable, symbols_of
 from satsym.symbolic.model import Convention
+from tests.support import derived as shared
 
 STATES = tuple(Variable(f"x{k}", f"x_{k}") for k in (1, 2, 3))
 CONTROLS = tuple(Variable(f"u{k}", f"u_{k}") for k in (1, 2))
@@ -35,12 +36,13 @@ def switching(rates: Mapping[sp.Symbol, Any], cost: Any, **changes: Any) -> Prob
 
 
 CHAIN = {x1: x2, x2: u1}
-LEAST_TIME = switching(CHAIN, 1)
+MINIMUM_TIME = switching(CHAIN, 1)
 LEAST_FUEL = switching(CHAIN, sp.Abs(u1))
 FULLER = switching(CHAIN, x1**2 / 2)
 REGULATOR = switching({x1: u1}, x1**2 / 2)
 WORST = switching({x1: u1}, -(x1**2) / 2)
 OSCILLATOR = switching({x1: x2, x2: -x1 + x2 * (1 - x1**2) + u1}, (x1**2 + x2**2) / 2)
+DAMPER = switching(CHAIN, (x1**2 + x2**2) / 2)
 CATALYST = switching(
     # mixing of two catalysts: Jackson, Optimal use of mixed catalysts for two successive reactions, 1968
     {x1: u1 * (10 * x2 - x1), x2: u1 * (x1 - 10 * x2) - (1 - u1) * x2},
@@ -53,12 +55,7 @@ ROCKET = switching({x1: x2, x2: u1 / x3 - 1 - x2**2, x3: -u1}, -x2)
 TWO_ENGINES = switching({x1: x2 * u1 + u2, x2: u1 - x1}, a * sp.Abs(u1) + sp.Abs(u2) * (1 + x1**2) + x1**2)
 """Weights of magnitudes, one of which varies along the motion; the two switching functions do not commute."""
 
-_DONE: dict[tuple[int, str], Derivation] = {}
-
 
 def derived(problem: Problem, convention: Convention = "minimum") -> Derivation:
-    """A derivation, made once."""
-    key = (id(problem), convention)
-    if key not in _DONE:
-        _DONE[key] = derive(replace(problem, convention=convention))
-    return _DONE[key]
+    """Its derivation in a convention."""
+    return shared.derived(replace(problem, convention=convention))

@@ -23,7 +23,7 @@ from satsym.solvers.switching import solving
 from satsym.status import BadInput, Status
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 from tests.support.models import build
-from tests.support.switching_closed_forms import FUEL, TIME, Known, case, least_fuel, least_time, starts
+from tests.support.switching_closed_forms import FUEL, TIME, Known, case, least_fuel, minimum_time, starts
 
 SAMPLED = 24
 """Of the 1,000 random starts that the bench solves."""
@@ -48,12 +48,12 @@ def assert_known(found: Solution, known: Known) -> None:
 
 def test_least_times_from_random_starts_are_those_of_the_closed_form() -> None:
     for start in starts(SAMPLED):
-        assert_known(solving.solve(case(TIME, initial=start)), least_time(*start))
+        assert_known(solving.solve(case(TIME, initial=start)), minimum_time(*start))
 
 
 def test_costates_of_the_least_time_are_those_of_the_closed_form() -> None:
     start = (2.0, 1.0)
-    known, found = least_time(*start), solving.solve(case(TIME, initial=start))
+    known, found = minimum_time(*start), solving.solve(case(TIME, initial=start))
     # The switching function is linear, vanishes at the switch and is -1 where the motion rests: H = 1 + sigma u = 0.
     slope = -1.0 / (known.duration - known.switches[0])
     assert found.lam[0] == pytest.approx(np.full(len(found.times), -slope), abs=1e-9)
@@ -64,7 +64,7 @@ def test_costates_of_the_least_time_are_those_of_the_closed_form() -> None:
 @given(speed=st.floats(0.05, 4.0), side=st.sampled_from([-1.0, 1.0]), off=st.sampled_from([0.0, 1e-12, 1e-7, -1e-5]))
 def test_on_the_switching_curve_and_next_to_it_the_least_time_is_found(speed: float, side: float, off: float) -> None:
     start = (side * speed * speed / 2.0 * (1.0 + off), -side * speed)
-    known, found = least_time(*start), solving.solve(case(TIME, initial=start))
+    known, found = minimum_time(*start), solving.solve(case(TIME, initial=start))
     assert found.status is Status.CONVERGED, found.message
     assert found.objective == pytest.approx(known.cost, rel=1e-5 if abs(off) < 1e-7 else 1e-9)
     assert np.abs(found.x[:, -1]).max() < 1e-9
@@ -75,7 +75,7 @@ def test_least_fuel_is_that_of_the_closed_form(number: int) -> None:
     rng = np.random.default_rng(number)
     while True:
         q, v = rng.uniform(-3.0, 3.0, 2).tolist()
-        duration = least_time(q, v).duration * float(rng.uniform(1.02, 2.5))
+        duration = minimum_time(q, v).duration * float(rng.uniform(1.02, 2.5))
         known = least_fuel(q, v, duration)
         if known is not None:
             break
@@ -111,10 +111,10 @@ def test_a_control_that_only_pushes_away_is_infeasible_and_the_nearest_end_is_to
     assert not np.isfinite(found.x).any()
 
 
-@pytest.mark.parametrize("share", [0.5, 0.99])
-def test_a_given_time_below_the_least_is_infeasible_and_the_least_is_told(share: float) -> None:
-    least = least_time(3.0, -1.0).duration
-    found = solve.solve(case(FUEL, initial=(3.0, -1.0), tf=share * least))
+@pytest.mark.parametrize("fraction", [0.5, 0.99])
+def test_a_given_time_below_the_least_is_infeasible_and_the_least_is_told(fraction: float) -> None:
+    least = minimum_time(3.0, -1.0).duration
+    found = solve.solve(case(FUEL, initial=(3.0, -1.0), tf=fraction * least))
     assert found.status is Status.INFEASIBLE
     assert f"the minimum time to the given end is {least:.9g}"[:-1] in found.message
     assert found.certificate is None
@@ -212,7 +212,7 @@ def test_the_machinery_does_not_know_the_problem_by_its_name_or_its_states(tmp_p
         f"[initial]\nalpha = {2 * start[0] + start[1]}\nbeta = {start[1] - 3 * start[0]}\n"
         '[final]\nalpha = 0.0\nbeta = 0.0\n[time]\ntf = "free"\n[control]\nforce = [-10.0, 10.0]\n'
     )
-    found, known = solving.solve(build(tmp_path, turned, text)), least_time(*start)
+    found, known = solving.solve(build(tmp_path, turned, text)), minimum_time(*start)
     assert found.objective == pytest.approx(known.cost, abs=1e-9)
     assert found.switching_times[0] == pytest.approx(known.switches, abs=1e-10)
 

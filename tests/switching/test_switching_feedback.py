@@ -17,7 +17,7 @@ from satsym import solvers as solve
 from satsym.analysis.regulator.feedback import simulate
 from satsym.cli import main
 from satsym.instance import Instance
-from satsym.solution import Flight
+from satsym.solution import Simulation
 from satsym.status import BadInput, Status
 from tests.support.body_on_a_line import BOUNDS, LINE, SPEED, case, generated, least
 
@@ -200,6 +200,6 @@ def test_the_command_prints_the_flight(capsys: pytest.CaptureFixture[str]) -> No
 
 
 def test_a_flight_is_sampled_within_its_bounds() -> None:
-    flight: Flight = simulate(case(bounds=(-0.3, 0.7)), "switching")
+    flight: Simulation = simulate(case(bounds=(-0.3, 0.7)), "switching")
     assert {*flight.u[0].tolist()} == {-0.3, 0.7}
     assert flight.x.shape == (2, LINE.solver.steps + 1)

@@ -236,8 +236,8 @@ def test_an_extremal_is_found_again_from_any_of_its_points(tmp_path: Path) -> No
     base = case(tmp_path, PENDULUM, (2.0, 1.0), (0.0, 0.0), FREE)
     whole = solving.solve(base)
     assert whole.status is Status.CONVERGED, whole.message
-    for share in (0.2, 0.5, 0.9):
-        k = int(share * len(whole.times))
+    for fraction in (0.2, 0.5, 0.9):
+        k = int(fraction * len(whole.times))
         rest = solving.solve(replace(base, initial=tuple(whole.x[:, k].tolist())))
         assert rest.objective == pytest.approx(whole.objective - whole.times[k], abs=1e-9)
 

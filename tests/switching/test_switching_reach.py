@@ -275,8 +275,8 @@ def test_time_is_weighed_against_fuel_where_every_control_brakes_as_well() -> No
     found = solve.solve(case(FUEL, initial=(2.0, 1.0), tf=None, parameters=(0.2,)))
     assert found.status is Status.CONVERGED, found.message
     assert_certified(found)
-    for share in (0.9, 1.1):
-        fixed = solving.solve(case(FUEL, initial=(2.0, 1.0), tf=share * float(found.times[-1])))
+    for fraction in (0.9, 1.1):
+        fixed = solving.solve(case(FUEL, initial=(2.0, 1.0), tf=fraction * float(found.times[-1])))
         assert fixed.objective + 0.2 * fixed.times[-1] > found.objective
 
 
@@ -292,7 +292,7 @@ def test_the_nearest_point_of_a_box_is_found(centre: tuple[float, float, float])
     middle = np.array(centre)
     near = nearest_point(lambda d: middle - np.sign(d), middle + 1.0, 1e-12, 1e-9)
     expected = np.clip(0.0, middle - 1.0, middle + 1.0)
-    assert near.shares @ near.corners == pytest.approx(expected, abs=1e-8)
+    assert near.fractions @ near.corners == pytest.approx(expected, abs=1e-8)
     assert max(near.distance, 0.0) == pytest.approx(np.linalg.norm(expected), abs=1e-6)
 
 

@@ -6,7 +6,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from satsym.analysis.linear.polynomials import characteristic, companion
+from satsym.analysis.linear.polynomials import characteristic, companion_matrix
 from satsym.analysis.linear.routh import routh
 from satsym.analysis.linear.spectrum import spectrum
 from satsym.analysis.linear.stability import ASYMPTOTIC, MARGINAL, UNSTABLE, stability
@@ -57,7 +57,7 @@ def test_the_routh_array_and_the_spectrum_both_count_what_was_constructed(kind: 
         assert (array.sign_changes, array.on_axis) == (right, on_axis), seed
         assert len(array.rows) == len(coefficients)
         assert np.isfinite(np.array(array.rows)).all()
-        values = spectrum(companion(coefficients))
+        values = spectrum(companion_matrix(coefficients))
         assert sum(e.algebraic for e in values if e.value.real > 0.0) == right, seed
         assert sum(e.algebraic for e in values if e.value.real == 0.0) == on_axis, seed
 
@@ -68,7 +68,7 @@ def test_verdict_spectrum_and_routh_array_of_a_matrix_never_contradict_each_othe
     for seed in range(60):
         coefficients = np.poly(constructed(kind, seed)).real
         turned = np.linalg.qr(np.random.default_rng(seed).normal(size=2 * (len(coefficients) - 1,)))[0]
-        matrix = turned @ companion(coefficients) @ turned.T * rate(seed)
+        matrix = turned @ companion_matrix(coefficients) @ turned.T * rate(seed)
         values = spectrum(matrix)
         listed = [e.value for e in values for _ in range(e.algebraic)]
         array, verdict = routh(characteristic(matrix).tolist(), listed), stability(values).verdict

@@ -17,11 +17,12 @@ from satsym.symbolic import Derivation, DerivationError, Problem, derive, loader
 from satsym.symbolic.checks import deviation, numeric, points
 from satsym.symbolic.model import Convention
 from satsym.symbolic.switching import functions as steps
+from tests.support import derived as shared
 from tests.support.switching_models import (
     CATALYST,
     FULLER,
     LEAST_FUEL,
-    LEAST_TIME,
+    MINIMUM_TIME,
     OSCILLATOR,
     REGULATOR,
     ROCKET,
@@ -37,7 +38,7 @@ from tests.support.switching_models import (
 LAMBDA = sp.symbols("lambda_x1:4", real=True)
 l1, l2, l3 = LAMBDA
 PROBLEMS = {
-    "time": LEAST_TIME,
+    "time": MINIMUM_TIME,
     "fuel": LEAST_FUEL,
     "Fuller": FULLER,
     "regulator": REGULATOR,
@@ -101,12 +102,12 @@ def test_kernels_are_those_of_the_minimum_form(tmp_path: Path) -> None:
     assert least["van_der_pol.py"].replace("/a/", "/b/") == greatest["van_der_pol.py"]
     assert least["van_der_pol.tex"] != greatest["van_der_pol.tex"]
     with pytest.raises(ValueError, match="generated from the minimum form"):
-        module.render(derived(LEAST_TIME, "maximum"), "mine.py")
+        module.render(derived(MINIMUM_TIME, "maximum"), "mine.py")
 
 
 @pytest.mark.parametrize("convention", ["minimum", "maximum"])
 @pytest.mark.parametrize("language", ["en", "id"])
-@pytest.mark.parametrize("problem", [LEAST_TIME, LEAST_FUEL, OSCILLATOR, ROCKET, WORST, CATALYST])
+@pytest.mark.parametrize("problem", [MINIMUM_TIME, LEAST_FUEL, OSCILLATOR, ROCKET, WORST, CATALYST])
 def test_every_step_has_its_texts(problem: Problem, language: str, convention: Convention) -> None:
     text = latex.render(derived(problem, convention), language)
     assert r"\begin{cases}" in text
@@ -120,4 +121,4 @@ SHIPPED = [p for path in loader.shipped() for p in loader.load(path) if isinstan
 @pytest.mark.parametrize("problem", SHIPPED, ids=lambda p: p.name)
 def test_every_shipped_problem_can_be_told_in_the_other_convention(problem: Problem) -> None:
     (other,) = set(get_args(Convention)) - {problem.convention}
-    assert latex.render(derive(replace(problem, convention=other)))
+    assert latex.render(shared.derived(replace(problem, convention=other)))

@@ -28,6 +28,7 @@ from satsym.symbolic import (
     symbols_of,
     t,
 )
+from tests.support import derived as shared
 
 POLAR, *_ = loader.load(Path(__file__).resolve().parents[2] / "derivations" / "polar_orbit.py")
 NUMERIC = [
@@ -183,14 +184,11 @@ NEWTON_MODELS = {
     "driven, stretched line": on_a_line(-k * v1 + cos(t), place=q1 + k * q1**3 / 3 + sin(t)),
 }
 SUBJECTS: dict[str, Problem | Newton] = {POLAR.name: POLAR, **NEWTON_MODELS}
-DERIVED: dict[str, Derivation] = {}
 
 
 def derived(name: str) -> Derivation:
-    """The derivation of one of the models, made once."""
-    if name not in DERIVED:
-        DERIVED[name] = derive(SUBJECTS[name])
-    return DERIVED[name]
+    """The derivation of one of the models."""
+    return shared.derived(SUBJECTS[name])
 
 
 # Equations of motion.

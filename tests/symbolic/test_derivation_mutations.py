@@ -28,6 +28,7 @@ from satsym.symbolic import (
 from satsym.symbolic.kinds import newton as mechanics
 from satsym.symbolic.motion import steps as motion
 from satsym.symbolic.principle import control_sets, pontryagin
+from tests.support.derived import derived
 
 POLAR, *_ = loader.load(Path(__file__).resolve().parents[2] / "derivations" / "polar_orbit.py")
 STEPS = {f.__name__: f for f in (*POLAR.model.steps(), *pipeline.MINIMUM_PRINCIPLE)}
@@ -35,7 +36,7 @@ STEPS = {f.__name__: f for f in (*POLAR.model.steps(), *pipeline.MINIMUM_PRINCIP
 
 @pytest.fixture(scope="module")
 def polar() -> Derivation:
-    return derive(POLAR)
+    return derived(POLAR)
 
 
 @pytest.fixture(scope="module")

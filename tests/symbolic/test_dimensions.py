@@ -30,7 +30,9 @@ from satsym.symbolic import (
     t,
 )
 from satsym.symbolic.checks import numeric
-from satsym.symbolic.principle.control_sets import Clip, Shorten
+from satsym.symbolic.minimisers import Clip, Shorten
+from tests.support.derived import derived
+from tests.support.examples import examples
 
 POLAR, *_ = loader.load(Path(__file__).resolve().parents[2] / "derivations" / "polar_orbit.py")
 BY_NAME = {v.symbol: v for v in (*POLAR.model.states, *POLAR.model.controls, *POLAR.model.parameters)}
@@ -42,7 +44,7 @@ def dim(length: Any = 0, time: Any = 0) -> dict[str, sp.Expr]:
 
 @pytest.fixture(scope="module")
 def polar() -> Derivation:
-    return derive(POLAR)
+    return derived(POLAR)
 
 
 @pytest.fixture(scope="module")
@@ -401,7 +403,7 @@ exponents = some.integers(-4, 4)
 
 
 @hypothesis.given(some.lists(some.tuples(some.sampled_from("abm"), exponents, exponents), min_size=1, max_size=6))
-@hypothesis.settings(max_examples=50)
+@examples(50)
 def test_dimensions_of_products_add_up(factors: list[tuple[str, int, int]]) -> None:
     """Against plain integer arithmetic."""
     product, length, time = sp.Integer(1), 0, 0

@@ -23,8 +23,8 @@ from satsym.symbolic import Derivation, DerivationError, FirstOrder, Variable, d
 from satsym.symbolic.analysis import (
     NotExact,
     analyse,
-    companion,
     companion_form,
+    companion_matrix,
     controllability,
     jordan_form,
     linear_system,
@@ -41,6 +41,7 @@ from satsym.symbolic.linear import stability as stability_steps
 from satsym.symbolic.linear import structure as structure_steps
 from satsym.symbolic.linear.matrices import system_of
 from tests.support.deviations import satellite, small
+from tests.support.examples import examples
 
 s = sp.Symbol("s")
 omega, k, c = sp.symbols("omega k c", positive=True)
@@ -88,7 +89,7 @@ def structured(draw: Callable[..., Any]) -> tuple[sp.Matrix, Counter]:
     return basis * sp.diag(*blocks) * basis.inv(), known
 
 
-@settings(max_examples=25)
+@examples(25)
 @given(structured())
 def test_jordan_blocks_are_those_that_the_matrix_was_built_from(built: tuple[sp.Matrix, Counter]):
     matrix, known = built
@@ -107,7 +108,7 @@ def test_jordan_blocks_are_those_that_the_matrix_was_built_from(built: tuple[sp.
     )
 
 
-@settings(max_examples=25)
+@examples(25)
 @given(structured())
 def test_the_exponential_is_that_of_scipy_and_real(built: tuple[sp.Matrix, Counter]):
     matrix, _ = built
@@ -122,7 +123,7 @@ def test_the_exponential_is_that_of_scipy_and_real(built: tuple[sp.Matrix, Count
         )
 
 
-@settings(max_examples=25)
+@examples(25)
 @given(structured())
 def test_the_verdict_is_that_of_the_blocks(built: tuple[sp.Matrix, Counter]):
     matrix, known = built
@@ -167,7 +168,7 @@ def polynomials(draw: Callable[..., Any]) -> tuple[list[sp.Expr], int, int]:
     return sp.Poly(found, s).all_coeffs(), right, axis
 
 
-@settings(max_examples=60)
+@examples(60)
 @given(polynomials())
 def test_routh_counts_right_half_plane_and_axis_whatever_special_cases_occur(built: tuple[list[sp.Expr], int, int]):
     coefficients, right, axis = built
@@ -177,7 +178,7 @@ def test_routh_counts_right_half_plane_and_axis_whatever_special_cases_occur(bui
     assert len(found.rows) == len(coefficients)
 
 
-@settings(max_examples=40)
+@examples(40)
 @given(st.lists(st.integers(-4, 4), min_size=2, max_size=7).filter(lambda row: row[0] != 0))
 def test_routh_counts_the_roots_of_any_polynomial(row: list[int]):
     """Against the eigenvalues of its companion matrix, with many digits; multiple roots are known to 1e-10."""
@@ -321,7 +322,7 @@ def test_a_companion_form_is_one_and_has_the_same_polynomial():
     assert (form.basis * sp.eye(4)[:, 3] - THRUST[:, 1]).is_zero_matrix
     assert spectrum(form.matrix).coefficients == of.coefficients
     assert companion_form(of, THRUST[:, 0]) is None
-    assert companion([1, 5, 6]).tolist() == [[0, 1], [-6, -5]]
+    assert companion_matrix([1, 5, 6]).tolist() == [[0, 1], [-6, -5]]
 
 
 # Parameters.
@@ -376,7 +377,7 @@ def test_coupled_oscillators_have_four_frequencies_in_closed_form():
 
 @pytest.mark.parametrize("p", [-3, -1, 0, 1, 5])
 def test_biquadratic_polynomials_have_closed_forms(p: int):
-    matrix = companion([sp.Integer(1), sp.Integer(0), sp.Integer(p), sp.Integer(0), sp.Integer(1)])
+    matrix = companion_matrix([sp.Integer(1), sp.Integer(0), sp.Integer(p), sp.Integer(0), sp.Integer(1)])
     of = spectrum(matrix)
     assert of.closed_form
     found = matrix_exponential(of)
@@ -386,11 +387,11 @@ def test_biquadratic_polynomials_have_closed_forms(p: int):
 
 
 def test_a_cubic_without_radicals_is_decided_without_them():
-    of = spectrum(companion([sp.Integer(1), sp.Integer(5), sp.Integer(2), sp.Integer(1)]))
+    of = spectrum(companion_matrix([sp.Integer(1), sp.Integer(5), sp.Integer(2), sp.Integer(1)]))
     assert not of.closed_form
     assert jordan_form(of) is matrix_exponential(of) is None
     assert stability(of).verdict == "asymptotically stable"
-    unknown = spectrum(companion([sp.Integer(1), c, k, omega]))
+    unknown = spectrum(companion_matrix([sp.Integer(1), c, k, omega]))
     assert unknown.eigenvalues == ()
     assert stability(unknown).verdict == "depends on the parameters"
 
@@ -444,7 +445,7 @@ def test_radial_thrust_alone_leaves_the_angular_momentum_as_it_is():
     assert {name: reach.rank for name, reach in found.by_output.items()} == {"y1": 3, "y2": 4}
     (mode,) = found.by_output["y1"].lost
     assert list(mode.vector) == [0, 0, 1, 0]
-    assert list(found.companion) == ["u2"]
+    assert list(found.companion_forms) == ["u2"]
 
 
 def test_the_free_motion_is_that_of_clohessy_and_wiltshire():

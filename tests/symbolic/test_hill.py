@@ -11,7 +11,7 @@ from satsym import kernels
 from satsym.symbolic import Derivation, loader, symbols_of, t
 from satsym.symbolic.algebra import definitions_of
 from satsym.symbolic.analysis import analyse
-from satsym.symbolic.kepler import attraction
+from satsym.symbolic.kepler import central_force
 from satsym.symbolic.linear.matrices import system_of
 from satsym.symbolic.lookup import library
 
@@ -142,9 +142,9 @@ def test_transition_matrix_is_symplectic_in_turning_axes() -> None:
 def test_attraction_by_a_centre_is_recognised_from_turning_axes() -> None:
     """The inertial state is that of the textbook, although position and axes depend on time."""
     turning = HILL.of
-    found = attraction.recognised(turning)
+    found = central_force.recognised(turning)
     assert found is not None
-    column = attraction.inertial_state(turning, found.strength).xreplace(definitions_of(turning))
+    column = central_force.inertial_state(turning, found.strength).xreplace(definitions_of(turning))
     function = sp.lambdify([t, *symbols_of(turning.states), sigma, omega], list(column), "numpy")
     deviation, radius, rate, time = np.array([0.1, -0.2, 0.3, 0.4, -0.5, 0.6]), 1.3, 0.7, 2.1
     at = np.add(deviation, [radius, 0.0, 0.0, 0.0, 0.0, 0.0])

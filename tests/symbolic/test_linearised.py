@@ -30,12 +30,12 @@ from satsym.symbolic import (
     t,
 )
 from satsym.symbolic.kinds import linearised
-from satsym.symbolic.motion import outputs
+from satsym.symbolic.motion import steps
 from tests.support.deviations import satellite, small, stated
 
 KNOWN = [[0, 1, 0, 0], [3, 0, 0, 2], [0, 0, 0, 1], [0, -2, 0, 0]]
 """A for omega = sigma = 1: Clohessy and Wiltshire (1960), in the variables of Olsder and van der Woude (2004)."""
-STEPS = {f.__name__: f for f in (*satellite().model.steps(), *pipeline.OUTPUTS)}
+STEPS = {f.__name__: f for f in (*stated("clohessy_wiltshire", "clohessy_wiltshire").steps(), *pipeline.OUTPUTS)}
 P = (1.3, 0.7)
 """Other values of sigma and omega."""
 
@@ -388,7 +388,7 @@ def test_outputs_of_a_nonlinear_model_are_linearised_along_any_motion():
     model = replace(pendulum, outputs=(Output(Variable("h1", "h_1"), q2**2 / 2 - sp.cos(q1)),))
     found = {e.name: e.rhs for e in derive(model).step("output_matrix").equations}
     assert found == {"C_h1_q1": sp.sin(q1), "C_h1_q2": q2, "D_h1_f1": 0}
-    assert outputs.output_equations(derive(model)) is None
+    assert steps.output_equations(derive(model)) is None
 
 
 def test_a_control_may_be_counted_from_one_that_depends_on_the_states():

@@ -16,7 +16,7 @@ from satsym.symbolic.switching import curve as step
 from satsym.symbolic.switching import curve_checks
 from satsym.symbolic.switching.notation import ON_CURVE, SIDE
 from tests.support.body_on_a_line import BOUNDS, SPEED, case, generated, least
-from tests.support.switching_models import CHAIN, LEAST_TIME, derived, switching, u1, x1, x2
+from tests.support.switching_models import CHAIN, MINIMUM_TIME, derived, switching, u1, x1, x2
 
 GAIN = Variable("c", "c", default=1.0)
 (c,) = symbols_of((GAIN,))
@@ -25,7 +25,7 @@ GAIN = Variable("c", "c", default=1.0)
 
 
 def test_the_curve_is_the_known_parabola_for_symmetric_bounds_and_rest() -> None:
-    found = derived(LEAST_TIME)
+    found = derived(MINIMUM_TIME)
     low, high, target = *sp.symbols("u1_min u1_max", real=True), sp.Symbol("target_x2", real=True)
     special = {low: -1, high: 1, target: 0, sp.Symbol("target_x1", real=True): 0}
     on_curve = found.equation("switching_curve.curve").rhs.xreplace(special)
@@ -45,12 +45,12 @@ def test_the_pulses_of_the_pitch_axis_last_as_the_paper_has_them() -> None:
 
 
 def test_both_conventions_have_the_same_curve_and_law() -> None:
-    one, other = (derived(LEAST_TIME, convention).step("switching_curve") for convention in ("minimum", "maximum"))
+    one, other = (derived(MINIMUM_TIME, convention).step("switching_curve") for convention in ("minimum", "maximum"))
     assert one.equations == other.equations
 
 
 def test_a_control_that_pushes_the_other_way_swaps_the_bounds() -> None:
-    pushes, pulls = derived(LEAST_TIME), derive(switching({x1: x2, x2: -u1}, 1))
+    pushes, pulls = derived(MINIMUM_TIME), derive(switching({x1: x2, x2: -u1}, 1))
     laws = [found.equation("switching_curve.u1").rhs for found in (pushes, pulls)]
     assert [law.args[0] for law in laws] == [SIDE, SIDE]
     assert laws[0].args[2:] == laws[1].args[:1:-1]
@@ -65,7 +65,7 @@ def test_a_control_that_pushes_the_other_way_swaps_the_bounds() -> None:
         switching(CHAIN, x1**2),
         switching(CHAIN, 1, terminal_cost=x1**2),
         switching(CHAIN, 1, terminal_constraints=(x1 - 1,)),
-        replace(LEAST_TIME, model=replace(LEAST_TIME.model, parameters=(GAIN,), rates={x1: x2, x2: u1 * c})),
+        replace(MINIMUM_TIME, model=replace(MINIMUM_TIME.model, parameters=(GAIN,), rates={x1: x2, x2: u1 * c})),
     ],
     ids=["fuel", "drag", "nonlinear", "cost of states", "terminal cost", "terminal constraint", "sign not known"],
 )
@@ -74,7 +74,7 @@ def test_other_problems_have_no_such_step(problem: Problem) -> None:
 
 
 def test_the_checks_catch_a_wrong_curve_law_and_duration() -> None:
-    found = derived(LEAST_TIME)
+    found = derived(MINIMUM_TIME)
     chain = step._chain(found)
     assert chain is not None
     stated = {e.name: e.rhs for e in found.step("switching_curve").equations}

@@ -13,14 +13,14 @@ import sympy as sp
 from satsym.symbolic import Derivation, DerivationError, Problem, Step, derive, pipeline
 from satsym.symbolic.checks import deviation, numeric, points
 from satsym.symbolic.lookup.formulas import plain, to_tree
+from satsym.symbolic.minimisers import Shrink, Side, Switch
 from satsym.symbolic.switching import functions as steps
 from satsym.symbolic.switching import singular, singular_search
-from satsym.symbolic.switching.minimisers import Shrink, Side, Switch
 from tests.support.switching_models import (
     CATALYST,
     FULLER,
     LEAST_FUEL,
-    LEAST_TIME,
+    MINIMUM_TIME,
     OSCILLATOR,
     REGULATOR,
     ROCKET,
@@ -46,7 +46,7 @@ def said(step: Step) -> dict[str, Any]:
 
 
 def test_what_multiplies_the_control_is_its_switching_function() -> None:
-    time, engines = derived(LEAST_TIME), derived(TWO_ENGINES)
+    time, engines = derived(MINIMUM_TIME), derived(TWO_ENGINES)
     assert time.equation("switching_function.u1").rhs == l2
     assert time.equation("switching_function.H_0").rhs == 1 + l1 * x2
     assert [e.name for e in time.step("switching_function").equations] == ["H_0", "u1"]
@@ -69,11 +69,11 @@ def test_brackets_of_switching_functions_that_do_not_commute_are_in_the_rates() 
 
 
 def test_an_arc_without_costates_is_excluded_where_time_is_free_and_costs() -> None:
-    found = said(derived(LEAST_TIME).step("singular_arcs"))
+    found = said(derived(MINIMUM_TIME).step("singular_arcs"))
     surface = found["singular arc without the control"]["surface"]
     assert {(e.lhs, e.rhs) for e in surface} == {(l1, 0), (l2, 0)}
     assert found["singular arc excluded by H"]["value"] == 1
-    assert "generalised_legendre_clebsch" not in derived(LEAST_TIME)
+    assert "generalised_legendre_clebsch" not in derived(MINIMUM_TIME)
 
 
 def test_fuel_alone_leaves_the_control_undetermined_at_either_threshold() -> None:
@@ -112,12 +112,12 @@ def test_two_catalysts_are_mixed_as_jackson_found() -> None:
     found = derived(CATALYST)
     (ratio,) = [e.lhs for e in said(found.step("singular_arcs"))["singular arc"]["surface"] if not e.lhs.is_Symbol]
     alpha = 1 / math.sqrt(10)
-    share = alpha * (1 + alpha) / (0.1 + (1 + alpha) ** 2)
+    fraction = alpha * (1 + alpha) / (0.1 + (1 + alpha) ** 2)
     mixes = [
         float(found.equation("singular_arcs.u1").rhs.subs({x1: root, x2: 1}))
         for root in sp.solve(ratio.subs(x2, 1), x1)
     ]
-    assert min(abs(mix - share) for mix in mixes) < 1e-14
+    assert min(abs(mix - fraction) for mix in mixes) < 1e-14
 
 
 def test_a_derivative_that_cannot_vanish_excludes_the_arc() -> None:
@@ -255,7 +255,7 @@ def test_derivatives_of_the_functions_of_switches() -> None:
 def test_laws_can_be_written_as_people_print_them() -> None:
     """With signs, minima and maxima, which ledgers of printed claims can be held against; the values are the same."""
     law, smoothed = (derived(LEAST_FUEL).equation(f"{step}.u1").rhs for step in ("control_law", "smoothed_law"))
-    bang = derived(LEAST_TIME).equation("control_law.u1").rhs
+    bang = derived(MINIMUM_TIME).equation("control_law.u1").rhs
     low, high = bang.args[2:]
     unit = {low: -1, high: 1}
     assert sp.simplify(plain(bang).xreplace(unit) + sp.sign(sp.Symbol("switching_u1", real=True))) == 0

@@ -18,9 +18,10 @@ from satsym.spec import names
 from satsym.symbolic import Derivation, DerivationError, Newton, derive, loader, symbols_of, t
 from satsym.symbolic.analysis.spectrum import LAMBDA
 from satsym.symbolic.derivation import Step
-from satsym.symbolic.kepler import attraction, conic
+from satsym.symbolic.kepler import central_force, conic
 from satsym.symbolic.kepler import points as point_steps
 from satsym.symbolic.lookup import library
+from tests.support.derived import derived
 
 (TWO_BODY,) = loader.load(loader.find("two_body"))
 POLAR = loader.load(loader.find("polar_orbit"))[0].model
@@ -44,7 +45,7 @@ def model() -> Kernels:
 
 @pytest.fixture(scope="module")
 def polar_derivation() -> Derivation:
-    return derive(POLAR)
+    return derived(POLAR)
 
 
 @pytest.fixture(scope="module")
@@ -199,7 +200,7 @@ def test_attraction_by_a_centre_is_recognised_in_the_polar_model(polar_derivatio
     ids=["spring", "power", "repulsion", "growth", "drag", "elsewhere", "oblate", "nothing"],
 )
 def test_other_forces_are_not_taken_for_kepler(force: sp.Matrix) -> None:
-    assert attraction.recognised(with_force(force)) is None
+    assert central_force.recognised(with_force(force)) is None
 
 
 def test_a_model_that_is_not_keplers_has_none_of_the_steps() -> None:
@@ -211,7 +212,7 @@ def test_a_model_that_is_not_keplers_has_none_of_the_steps() -> None:
     }
     found = derive(replace(with_force(flattened), **plain))
     assert not {"central_attraction", "gravity_gradient", "conic", "point_spectrum"} & {s.name for s in found.steps}
-    assert attraction.strength_of(found) is None
+    assert central_force.strength_of(found) is None
     assert not module.spec(found, "a test").keplerian
     assert {e.name for e in found.step("conserved").equations} == {"energy", "angular_momentum_z"}
 
@@ -229,7 +230,7 @@ def test_gravity_gradient_is_recognised(derivation: Derivation) -> None:
 def test_a_wrong_entry_of_the_jacobian_is_noticed(derivation: Derivation, entry: str) -> None:
     """With one entry changed, the blocks that are read off the others must fail their check."""
     before = without(derivation, "gravity_gradient", "no_equilibrium", "point_spectrum")
-    _refused(before, attraction.gravity_gradient, tampered(before, "linearisation", entry, sp.Rational(101, 100)))
+    _refused(before, central_force.gravity_gradient, tampered(before, "linearisation", entry, sp.Rational(101, 100)))
 
 
 @pytest.mark.parametrize("take", [point_steps.no_equilibrium, conic.conic], ids=lambda f: f.__name__)
@@ -247,10 +248,10 @@ def test_a_wrong_energy_is_noticed_by_the_conic(derivation: Derivation) -> None:
 
 def test_a_wrong_strength_is_noticed(derivation: Derivation, monkeypatch: pytest.MonkeyPatch) -> None:
     before = without(derivation, "central_attraction")
-    right = attraction.recognised(TWO_BODY)
+    right = central_force.recognised(TWO_BODY)
     assert right is not None
-    monkeypatch.setattr(attraction, "recognised", lambda _: replace(right, strength=2 * right.strength))
-    _refused(before, attraction.central_attraction, before)
+    monkeypatch.setattr(central_force, "recognised", lambda _: replace(right, strength=2 * right.strength))
+    _refused(before, central_force.central_force, before)
 
 
 def test_wrong_eigenvalues_are_noticed(derivation: Derivation, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -264,7 +265,7 @@ def test_a_jacobian_with_other_blocks_is_not_called_one_of_gravity(derivation: D
     linear = derivation.step("linearisation")
     damped = tuple(replace(e, rhs=-mu) if e.name == "A_v_x_v_x" else e for e in linear.equations)
     steps = tuple(replace(s, equations=damped) if s is linear else s for s in derivation.steps)
-    assert attraction.gravity_gradient(replace(derivation, steps=steps)) is None
+    assert central_force.gravity_gradient(replace(derivation, steps=steps)) is None
 
 
 def test_units_that_do_not_fit_are_refused() -> None:

@@ -11,7 +11,7 @@ import numpy as np
 from satsym.analysis.classical.signals import Span, excesses, totals
 from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.solution import Flight
+from satsym.solution import Simulation
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.simulation.balances import balances
 from satsym.status import BadInput, Status
@@ -27,25 +27,17 @@ Event = Callable[[Array], float]
 
 @dataclass(frozen=True, eq=False)
 class Arc:
-    """A part of a motion under a constant control.
-
-    Attributes
-    ----------
-    start, end
-        Times.
-    control
-        What is held.
-    states
-        States (n, K) at times within, shape (K,).
-    event
-        Place of the event that ended it; ``None`` where its time was over.
-    """
+    """A part of a motion under a constant control."""
 
     start: float
     end: float
+    """Times."""
     control: float
+    """What is held."""
     states: Callable[[Array], Array]
+    """States (n, K) at times within, shape (K,)."""
     event: int | None
+    """Place of the event that ended it; ``None`` where its time was over."""
 
     @property
     def last(self) -> Array:
@@ -56,31 +48,21 @@ class Arc:
 
 @dataclass(frozen=True, eq=False)
 class Plant:
-    """What a switching feedback acts on.
-
-    Attributes
-    ----------
-    instance
-        Whose model has a switching curve.
-    position, rate
-        Places of these states.
-    target
-        Where they are to go.
-    deadband
-        Error of the position that is allowed.
-    final
-        The target as generated functions take it.
-    scale
-        A time within which the motion is over, for steps and to give up.
-    """
+    """What a switching feedback acts on."""
 
     instance: Instance
+    """Whose model has a switching curve."""
     position: int
     rate: int
+    """Places of these states."""
     target: tuple[float, float]
+    """Where they are to go."""
     deadband: float
+    """Error of the position that is allowed."""
     final: tuple[float, ...]
+    """The target as generated functions take it."""
     scale: float
+    """A time within which the motion is over, for steps and to give up."""
 
     def error(self, x: Array) -> float:
         """By how much the position is past its target."""
@@ -94,7 +76,7 @@ class Plant:
         """The control of least time."""
         return float(self._of(self.instance.model.feedback_law, x)[0])
 
-    def way(self, x: Array) -> tuple[float, float]:
+    def durations(self, x: Array) -> tuple[float, float]:
         """Durations of the change of position from rest to rest, and of its first arc."""
         model = self.instance.model
         return float(self._of(model.transition_time, x)), float(self._of(model.first_arc_time, x))
@@ -165,9 +147,9 @@ def plant(instance: Instance, feedback: str) -> Plant:
     return Plant(instance, position, rate, target, instance.deadband, final, _scale(instance, position, rate, final))
 
 
-def flown(
+def simulation_of(
     plant: Plant, feedback: str, arcs: Sequence[Arc], metrics: dict[str, float], message: str, answered: bool
-) -> Flight:
+) -> Simulation:
     """The flight that arcs make, with its totals; `answered` tells whether the feedback did what it is for."""
     case, spec = plant.instance, plant.instance.model.spec
     begins = np.array([arc.start for arc in arcs])
@@ -185,7 +167,7 @@ def flown(
     status = Status.CONVERGED if answered else Status.NOT_CONVERGED
     if not np.isfinite(x).all():
         status, message = Status.NON_FINITE, f"the motion is not finite: {Status.NON_FINITE.advice}"
-    return Flight(
+    return Simulation(
         instance=case,
         feedback=feedback,
         status=status,

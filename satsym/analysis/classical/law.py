@@ -18,8 +18,8 @@ from satsym.analysis.classical.signals import Span, excesses, totals
 from satsym.arrays import Array
 from satsym.grid import Grid
 from satsym.instance import Instance
-from satsym.solution import Flight
-from satsym.solvers import out_of_time
+from satsym.solution import Simulation
+from satsym.solvers import iteration
 from satsym.solvers.iteration import Limits, TimeUp, watched
 from satsym.solvers.simulation.balances import balances
 from satsym.status import BadInput, Status
@@ -35,37 +35,26 @@ MOST_STEPS = 10_000
 
 @dataclass(frozen=True, eq=False)
 class Loop:
-    """The law, and the linear motion under it.
-
-    Attributes
-    ----------
-    follows, rate
-        Places of the state that follows the command and of its rate of change.
-    gains
-        Of the rate and of the state.
-    compensation
-        Control for each unit of the state that follows.
-    command, differentiator
-        As in the instance.
-    jump
-        How the states change at once when the command steps, shape (n,).
-    impulse
-        The integral of the control over that moment.
-    matrix, offset
-        The linear motion under the law, z' = M z + c; the last entry of z is the measured error where the
-        differentiator lags behind.
-    """
+    """The law, and the linear motion under it."""
 
     follows: int
     rate: int
+    """Places of the state that follows the command and of its rate of change."""
     gains: tuple[float, float]
+    """Of the rate and of the state."""
     compensation: float
+    """Control for each unit of the state that follows."""
     command: float
     differentiator: float
+    """As in the instance."""
     jump: Array
+    """How the states change at once when the command steps, shape (n,)."""
     impulse: float
+    """The integral of the control over that moment."""
     matrix: Array
     offset: Array
+    """The linear motion under the law, z' = M z + c; the last entry of z is the measured error where the differentiator
+    lags behind."""
 
     @property
     def fastest(self) -> float:
@@ -143,7 +132,7 @@ def loop(instance: Instance) -> Loop:
 
 
 @np.errstate(all="ignore")  # numbers out of range are a status
-def simulate(instance: Instance) -> Flight:
+def simulate(instance: Instance) -> Simulation:
     """Fly an instance under its classical law.
 
     Returns
@@ -168,10 +157,10 @@ def simulate(instance: Instance) -> Flight:
     try:
         return _simulated(instance, found, limits)
     except TimeUp:
-        return out_of_time.flight(instance, "classical")
+        return iteration.unsimulated(instance, "classical")
 
 
-def _simulated(instance: Instance, found: Loop, limits: Limits) -> Flight:
+def _simulated(instance: Instance, found: Loop, limits: Limits) -> Simulation:
     assert instance.tf is not None
     n = len(instance.model.spec.states)
     times = Grid.uniform(instance.t0, instance.tf, instance.solver.steps).nodes
@@ -189,7 +178,7 @@ def _simulated(instance: Instance, found: Loop, limits: Limits) -> Flight:
         span = Span(np.union1d(times, dense.ts), lambda t: seen(t)[:n], lambda t: found.control(seen(t))[None])
         metrics |= performance(span.times, span.x, found.follows, float(initial[found.follows]), found.command)
         metrics |= totals(instance, [span], found.impulse)
-    return Flight(
+    return Simulation(
         instance=instance,
         feedback="classical",
         status=status,

@@ -35,14 +35,14 @@ def performance(
     if not step:
         return {}
 
-    def share(t: Array) -> Array:
+    def fraction(t: Array) -> Array:
         found: Array = (x(t)[follows] - before) / step
         return found
 
     def at_time(t: float) -> float:
-        return float(share(np.array([t]))[0])
+        return float(fraction(np.array([t]))[0])
 
-    at = share(times)
+    at = fraction(times)
     reached, off = np.flatnonzero(at >= 1.0), np.flatnonzero(np.abs(at - 1.0) > SETTLED)
     top, after = int(at.argmax()), int(off[-1]) + 1 if len(off) else 0
     highest = float(at.max())

@@ -9,14 +9,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from satsym.analysis.classical.arcs import MOST_ARCS, Arc, Plant, flown, plant, within_already
+from satsym.analysis.classical.arcs import MOST_ARCS, Arc, Plant, plant, simulation_of, within_already
 from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.solution import Flight
+from satsym.solution import Simulation
 from satsym.status import BadInput
 
 
-def simulate(instance: Instance) -> Flight:
+def simulate(instance: Instance) -> Simulation:
     """Fly an instance with pairs of pulses: one pair, or until its final time.
 
     Returns
@@ -41,7 +41,7 @@ def simulate(instance: Instance) -> Flight:
     ends = [arc.end for arc in arcs if arc.control]
     if ends:
         metrics = {"arrival_time": ends[-1] - instance.t0} | metrics
-    return flown(found, "pulses", arcs, metrics, _message(found, arcs), len(arcs) < MOST_ARCS)
+    return simulation_of(found, "pulses", arcs, metrics, _message(found, arcs), len(arcs) < MOST_ARCS)
 
 
 def _flown(found: Plant) -> tuple[list[Arc], int]:
@@ -70,7 +70,7 @@ def _pair(found: Plant, x: Array) -> list[tuple[float, float]]:
     """Controls and durations of the two pulses that take the error away from rest; the rate is not looked at."""
     seen = x.copy()
     seen[found.rate] = 0.0
-    whole, first = found.way(seen)
+    whole, first = found.durations(seen)
     control, bounds = found.law(seen), (found.instance.lower[0], found.instance.upper[0])
     return [(control, first), (bounds[control == bounds[0]], whole - first)]
 

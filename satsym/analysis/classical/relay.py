@@ -10,15 +10,15 @@ from itertools import pairwise
 
 import numpy as np
 
-from satsym.analysis.classical.arcs import MOST_ARCS, Arc, Plant, flown, plant, within_already
+from satsym.analysis.classical.arcs import MOST_ARCS, Arc, Plant, plant, simulation_of, within_already
 from satsym.instance import Instance
-from satsym.solution import Flight
+from satsym.solution import Simulation
 
 SLACK = 1e-6
 """Share of the deadband for the rounding of what was switched at its edge."""
 
 
-def simulate(instance: Instance) -> Flight:
+def simulate(instance: Instance) -> Simulation:
     """Fly an instance by its switching curve until it is within the deadband, or at its final time.
 
     Returns
@@ -43,7 +43,7 @@ def simulate(instance: Instance) -> Flight:
     if not arcs:
         raise within_already(found)
     answered = arrived or instance.tf is not None
-    return flown(found, "switching", arcs, metrics, _message(found, arrived), answered)
+    return simulation_of(found, "switching", arcs, metrics, _message(found, arrived), answered)
 
 
 def _approach(found: Plant) -> tuple[list[Arc], bool]:

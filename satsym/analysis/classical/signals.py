@@ -19,19 +19,13 @@ POINTS = 6
 
 @dataclass(frozen=True, eq=False)
 class Span:
-    """A part of a motion over which its controls are smooth.
-
-    Attributes
-    ----------
-    times
-        Nodes between which to integrate, shape (M,).
-    x, u
-        States (n, K) and controls (m, K) at times, shape (K,), within.
-    """
+    """A part of a motion over which its controls are smooth."""
 
     times: Array
+    """Nodes between which to integrate, shape (M,)."""
     x: Callable[[Array], Array]
     u: Callable[[Array], Array]
+    """States (n, K) and controls (m, K) at times, shape (K,), within."""
 
 
 @np.errstate(over="ignore", invalid="ignore")  # numbers out of range are reported as such
@@ -123,8 +117,8 @@ def _controls(times: Array, u: Array) -> Callable[[Array], Array]:
 
     def at(t: Array) -> Array:
         k = np.clip(np.searchsorted(times, t) - 1, 0, len(times) - 2)
-        share = (t - times[k]) / (times[k + 1] - times[k])
-        found: Array = u[:, k] + share * (u[:, k + 1] - u[:, k])
+        fraction = (t - times[k]) / (times[k + 1] - times[k])
+        found: Array = u[:, k] + fraction * (u[:, k + 1] - u[:, k])
         return found
 
     return at

@@ -33,33 +33,23 @@ SHIFTS = (-0.3, 0.1, 0.7)
 
 @dataclass(frozen=True, eq=False)
 class Linearisation:
-    """A model near a motion without control that it is known to have.
-
-    Attributes
-    ----------
-    model, parameters, t0
-        Which, and from when on.
-    point
-        The reference at t0, or the equilibrium; shape (n,).
-    on_reference
-        Which of the two.
-    system
-        Coefficients at t0; their states, inputs and outputs are deviations.
-    constant
-        Whether they do not depend on time.
-    nonlinear
-        Whether the motion is known exactly too, and is not linear: that of a nonlinear model, or, in the same
-        deviations, that which a model is the linearisation of.
-    """
+    """A model near a motion without control that it is known to have."""
 
     model: Kernels
     parameters: tuple[float, ...]
     t0: float
+    """Which, and from when on."""
     point: Array
+    """The reference at t0, or the equilibrium; shape (n,)."""
     on_reference: bool
+    """Which of the two."""
     system: LinearSystem
+    """Coefficients at t0; their states, inputs and outputs are deviations."""
     constant: bool
+    """Whether they do not depend on time."""
     nonlinear: bool
+    """Whether the motion is known exactly too, and is not linear: that of a nonlinear model, or, in the same
+    deviations, that which a model is the linearisation of."""
 
     def at(self, t: float) -> Array:
         """The motion at a time, shape (n,)."""
@@ -163,8 +153,6 @@ def equilibrium(model: Kernels, p: Sequence[float], start: Array, t: float = 0.0
 
     Parameters
     ----------
-    p
-        Parameters.
     start
         Where to look from, shape (n,).
     t

@@ -29,7 +29,7 @@ def characteristic(A: Array) -> Array:
     return coefficients * fitted.rate ** np.arange(n + 1)
 
 
-def companion(coefficients: Sequence[float] | Array) -> Array:
+def companion_matrix(coefficients: Sequence[float] | Array) -> Array:
     """The matrix with this monic characteristic polynomial, its coefficients negated in the last row, lowest first."""
     n = len(coefficients) - 1
     found = np.eye(n, k=1)
@@ -68,7 +68,7 @@ def companion_form(given: LinearSystem) -> tuple[Array, LinearSystem]:
     names = tuple(f"z{i + 1}" for i in range(len(given.states)))
     last = np.eye(len(names))[:, -1:]
     return T, LinearSystem(
-        companion(polynomial), last, given.C @ T, given.D, names, given.inputs, given.outputs, given.name
+        companion_matrix(polynomial), last, given.C @ T, given.D, names, given.inputs, given.outputs, given.name
     )
 
 

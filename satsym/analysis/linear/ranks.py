@@ -27,24 +27,16 @@ TOLERANCE = 1e-10
 
 @dataclass(frozen=True, eq=False)
 class Reach:
-    """How much of a system its inputs move, or how much of it its outputs show.
-
-    Attributes
-    ----------
-    matrix
-        Kalman's matrix, in the system's units: (B, AB, ...), shape (n, n m), or C over CA over ..., shape (n k, n).
-    rank
-        Dimension of what is moved or shown.
-    lost
-        The modes that are not moved, or do not show.
-    alone
-        The same for each input or output by itself, by name; empty in these.
-    """
+    """How much of a system its inputs move, or how much of it its outputs show."""
 
     matrix: Array
+    """Kalman's matrix, in the system's units: (B, AB, ...), shape (n, n m), or C over CA over ..., shape (n k, n)."""
     rank: int
+    """Dimension of what is moved or shown."""
     lost: tuple[Eigenvalue, ...]
+    """The modes that are not moved, or do not show."""
     alone: Mapping[str, Reach]
+    """The same for each input or output by itself, by name; empty in these."""
 
     @property
     def complete(self) -> bool:
@@ -136,23 +128,16 @@ def hautus(given: LinearSystem) -> tuple[tuple[complex, int], ...]:
 
 @dataclass(frozen=True, eq=False)
 class KalmanForm:
-    """Kalman's decomposition: coordinates in four groups, by whether inputs move and outputs show them.
-
-    Attributes
-    ----------
-    T
-        Old coordinates from new ones, x = T z, shape (n, n).
-    sizes
-        Dimensions: moved and hidden; moved and shown; neither; shown only.
-    A, B, C
-        The system in the new coordinates; what couples a group to one that it cannot act on is zero up to rounding.
-    """
+    """Kalman's decomposition: coordinates in four groups, by whether inputs move and outputs show them."""
 
     T: Array
+    """Old coordinates from new ones, x = T z, shape (n, n)."""
     sizes: tuple[int, int, int, int]
+    """Dimensions: moved and hidden; moved and shown; neither; shown only."""
     A: Array
     B: Array
     C: Array
+    """The system in the new coordinates; what couples a group to one that it cannot act on is zero up to rounding."""
 
 
 def kalman(given: LinearSystem) -> KalmanForm:

@@ -18,7 +18,7 @@ from itertools import pairwise
 from numbers import Rational
 from typing import Any, TypeAlias
 
-from satsym.analysis.linear.polynomials import companion
+from satsym.analysis.linear.polynomials import companion_matrix
 from satsym.analysis.linear.spectrum import spectrum
 from satsym.status import BadInput
 
@@ -31,24 +31,16 @@ Row: TypeAlias = tuple[Any, ...]
 
 @dataclass(frozen=True)
 class Routh:
-    """A Routh array.
-
-    Attributes
-    ----------
-    rows
-        One for each power of s from the highest down, all of the same length; after what special cases ask for.
-    special_cases
-        What was met, in order: ``"zero in the first column"``, ``"row of zeros"``.
-    sign_changes
-        Along the first column: the number of roots with positive real parts.
-    on_axis
-        Number of roots on the imaginary axis, counted with multiplicity.
-    """
+    """A Routh array."""
 
     rows: tuple[Row, ...]
+    """One for each power of s from the highest down, all of the same length; after what special cases ask for."""
     special_cases: tuple[str, ...]
+    """What was met, in order: ``"zero in the first column"``, ``"row of zeros"``."""
     sign_changes: int
+    """Along the first column: the number of roots with positive real parts."""
     on_axis: int
+    """Number of roots on the imaginary axis, counted with multiplicity."""
 
     @property
     def column(self) -> Row:
@@ -99,7 +91,7 @@ def _roots(coefficients: Sequence[float]) -> list[complex]:
     monic = [value / coefficients[0] for value in coefficients]
     if len(monic) == 1:
         return []
-    return [each.value for each in spectrum(companion(monic)) for _ in range(each.algebraic)]
+    return [each.value for each in spectrum(companion_matrix(monic)) for _ in range(each.algebraic)]
 
 
 def _with_roots(leading: float, roots: Sequence[complex]) -> list[Fraction]:

@@ -24,25 +24,18 @@ MOST_ROUNDS, SETTLED = 50, 0.05
 
 @dataclass(frozen=True, eq=False)
 class Scaled:
-    """A system in units that suit it: x = states * x', u = inputs * u', y = outputs * y', d/dt = rate * d/dt'.
-
-    Attributes
-    ----------
-    A, B, C
-        In these units.
-    states, inputs, outputs
-        The units, powers of two, so that scaling adds no rounding error.
-    rate
-        Likewise, the inverse of the unit of time.
-    """
+    """A system in units that suit it: x = states * x', u = inputs * u', y = outputs * y', d/dt = rate * d/dt'."""
 
     A: Array
     B: Array
     C: Array
+    """In these units."""
     states: Array
     inputs: Array
     outputs: Array
+    """The units, powers of two, so that scaling adds no rounding error."""
     rate: float
+    """Likewise, the inverse of the unit of time."""
 
     @property
     def size(self) -> float:

@@ -31,18 +31,12 @@ AXIS = 1e-11
 
 @dataclass(frozen=True)
 class Eigenvalue:
-    """An eigenvalue of a matrix.
-
-    Attributes
-    ----------
-    value
-        Exactly real, or exactly on the imaginary axis, where it is so within the tolerance.
-    blocks
-        Sizes of its Jordan blocks, the largest first.
-    """
+    """An eigenvalue of a matrix."""
 
     value: complex
+    """Exactly real, or exactly on the imaginary axis, where it is so within the tolerance."""
     blocks: tuple[int, ...]
+    """Sizes of its Jordan blocks, the largest first."""
 
     @property
     def algebraic(self) -> int:
@@ -67,7 +61,7 @@ def spectrum(A: Array) -> tuple[Eigenvalue, ...]:
     size = float(np.exp2(np.rint(np.log2(np.linalg.norm(fitted.A, 2) or 1.0))))  # a power of two adds no error
     numbers = np.linalg.eigvals(fitted.A / size).astype(complex)
     found = [
-        Eigenvalue(_clean(value) * size * fitted.rate, _blocks(weyr))
+        Eigenvalue(_clean(value) * size * fitted.rate, tuple(sum(added > i for added in weyr) for i in range(weyr[0])))
         for value, weyr in _told_apart(fitted.A / size, numbers, _tree(numbers))
     ]
     return tuple(sorted(found, key=lambda each: (-each.value.real, abs(each.value.imag), -each.value.imag)))
@@ -109,11 +103,6 @@ def _weyr(A: Array, value: complex) -> list[int]:
         kept = right[:rank]
         rest = kept @ rest @ kept.conj().T
     return found
-
-
-def _blocks(weyr: list[int]) -> tuple[int, ...]:
-    """Sizes of Jordan blocks: as many of size k or more as the k-th power adds dimensions."""
-    return tuple(sum(added > i for added in weyr) for i in range(weyr[0]))
 
 
 def _clean(value: complex) -> complex:

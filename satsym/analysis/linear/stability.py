@@ -12,22 +12,15 @@ ASYMPTOTIC, MARGINAL, UNSTABLE = "asymptotically stable", "marginally stable", "
 
 @dataclass(frozen=True)
 class Stability:
-    """A verdict on x' = A x.
-
-    Attributes
-    ----------
-    verdict
-        ``"asymptotically stable"``, ``"marginally stable"`` or ``"unstable"``; ``None`` where nothing decides.
-    reason
-        In a sentence: the eigenvalue that decides, and why.
-    decides
-        Whether the same holds for small deviations from the equilibrium of a nonlinear system that this is the
-        linearisation of (Lyapunov's indirect method): not where eigenvalues on the imaginary axis had to decide.
-    """
+    """A verdict on x' = A x."""
 
     verdict: str | None
+    """``"asymptotically stable"``, ``"marginally stable"`` or ``"unstable"``; ``None`` where nothing decides."""
     reason: str
+    """In a sentence: the eigenvalue that decides, and why."""
     decides: bool
+    """Whether the same holds for small deviations from the equilibrium of a nonlinear system that this is the
+    linearisation of (Lyapunov's indirect method): not where eigenvalues on the imaginary axis had to decide."""
 
 
 def stability(eigenvalues: Sequence[Eigenvalue]) -> Stability:

@@ -17,25 +17,18 @@ from satsym.kernels import Kernels
 
 @dataclass(frozen=True, eq=False)
 class Analysis:
-    """The structure of a linear system.
-
-    Attributes
-    ----------
-    about
-        The system, and what it is the linearisation of.
-    eigenvalues, polynomial, routh, stability
-        Of A; the polynomial is monic, highest power first.
-    controllability, observability
-        ``None`` where there are no inputs, or no outputs.
-    """
+    """The structure of a linear system."""
 
     about: Linearisation
+    """The system, and what it is the linearisation of."""
     eigenvalues: tuple[Eigenvalue, ...]
     polynomial: Array
     routh: Routh
     stability: Stability
+    """Of A; the polynomial is monic, highest power first."""
     controllability: Reach | None
     observability: Reach | None
+    """``None`` where there are no inputs, or no outputs."""
 
 
 def analyse(subject: Kernels | Instance) -> Analysis:

@@ -20,26 +20,19 @@ from satsym.arrays import Array
 
 @dataclass(frozen=True, eq=False)
 class LinearSystem:
-    """A linear system with constant coefficients; its variables are deviations.
-
-    Attributes
-    ----------
-    A, B, C, D
-        Shapes (n, n), (n, m), (k, n) and (k, m).
-    states, inputs, outputs
-        Their names, n, m and k of them.
-    name
-        What it is the linearisation of.
-    """
+    """A linear system with constant coefficients; its variables are deviations."""
 
     A: Array
     B: Array
     C: Array
     D: Array
+    """Shapes (n, n), (n, m), (k, n) and (k, m)."""
     states: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
+    """Their names, n, m and k of them."""
     name: str = ""
+    """What it is the linearisation of."""
 
     def with_inputs(self, names: Sequence[str]) -> LinearSystem:
         """The system with these inputs alone, in this order.

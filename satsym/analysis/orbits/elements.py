@@ -124,8 +124,8 @@ def elements(position: ArrayLike, velocity: ArrayLike, mu: float) -> Elements:
         raise BadInput("position, velocity, mu: beyond the range of floats; check the units")
     binding, momentum, radius, gravity = (scalars[name] for name in ("binding", "momentum", "radius", "mu"))
     along = momentum * scalars["rate"] / (gravity * radius)  # e sin(true anomaly)
-    share = scalars["parameter"] / radius - 1.0  # e cos(true anomaly)
-    eccentricity = float(np.hypot(along, share))
+    fraction = scalars["parameter"] / radius - 1.0  # e cos(true anomaly)
+    eccentricity = float(np.hypot(along, fraction))
     conic = classify(eccentricity, 0.5 * binding * radius / gravity, scalars["sine"])
     parabolic = abs(0.5 * binding * radius / gravity) <= TOLERANCE
     if conic is Conic.RECTILINEAR:
@@ -133,7 +133,7 @@ def elements(position: ArrayLike, velocity: ArrayLike, mu: float) -> Elements:
     axis = None if parabolic else gravity / binding * length
     bound = axis is not None and axis > 0.0
     closed = conic in (Conic.CIRCLE, Conic.ELLIPSE)
-    angles = _Attitude.of(states, conic, float(np.arctan2(along, share)))
+    angles = _Attitude.of(states, conic, float(np.arctan2(along, fraction)))
     return Elements(
         position=given.position[:, 0],
         velocity=given.velocity[:, 0],

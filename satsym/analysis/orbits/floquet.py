@@ -11,11 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from satsym import kernels
+from satsym.analysis.linear.equilibrium import jacobians
+from satsym.analysis.linear.spectrum import Eigenvalue, spectrum
+from satsym.analysis.linear.system import LinearSystem, system
 from satsym.analysis.orbits.conic import Conic
 from satsym.analysis.orbits.elements import Elements
 from satsym.analysis.orbits.monodromy import Monodromy, monodromy
 from satsym.analysis.orbits.point import Complex
-from satsym.analysis.orbits.rotating import TurningAxes, turning_axes
 from satsym.solvers.simulation.extrapolation import NotFinite
 
 COMPUTED, NO_PERIOD, COLLISION, NOT_RESOLVED = "computed", "no period", "collision", "not resolved"
@@ -35,27 +38,18 @@ _ON_THE_BORDER = (
 
 @dataclass(frozen=True, eq=False)
 class Floquet:
-    """What one revolution makes of neighbouring motions.
-
-    Attributes
-    ----------
-    status
-        ``"computed"``; or why there is nothing: ``"no period"``, ``"collision"``, ``"not resolved"``.
-    orbit
-        Whose neighbours they are.
-    monodromy
-        ``None`` unless computed, as are all other numbers here.
-    multipliers
-        Its eigenvalues, shape (6,).
-    turning
-        Hill's equations, where the orbit is nearly circular.
-    """
+    """What one revolution makes of neighbouring motions."""
 
     status: str
+    """``"computed"``; or why there is nothing: ``"no period"``, ``"collision"``, ``"not resolved"``."""
     orbit: Elements
+    """Whose neighbours they are."""
     monodromy: Monodromy | None
+    """``None`` unless computed, as are all other numbers here."""
     multipliers: Complex | None
-    turning: TurningAxes | None
+    """Its eigenvalues, shape (6,)."""
+    turning: HillEquations | None
+    """Hill's equations, where the orbit is nearly circular."""
 
     @property
     def verdict(self) -> str | None:
@@ -105,7 +99,7 @@ class Floquet:
     def _resolved(self) -> str:
         if self.scatter is None or self.expected_scatter is None or self.monodromy is None:
             return (
-                f"The orbit passes the centre so closely (at {self._share:.3g} of its semi-major axis) that an "
+                f"The orbit passes the centre so closely (at {self._fraction:.3g} of its semi-major axis) that an "
                 "integrated M is lost in rounding: none is shown."
             )
         return (
@@ -116,7 +110,7 @@ class Floquet:
         )
 
     @property
-    def _share(self) -> float:
+    def _fraction(self) -> float:
         assert self.orbit.semi_major_axis is not None
         return self.orbit.periapsis / self.orbit.semi_major_axis
 
@@ -135,7 +129,7 @@ def floquet(orbit: Elements) -> Floquet:
     if orbit.period is None:
         falls = orbit.conic is Conic.RECTILINEAR and (orbit.bound or float(orbit.position @ orbit.velocity) < 0.0)
         return Floquet(COLLISION if falls else NO_PERIOD, orbit, None, None, None)
-    turning = turning_axes(orbit)
+    turning = hill_equations(orbit)
     try:
         found = monodromy(orbit)
     except NotFinite:
@@ -153,3 +147,30 @@ def _in_order(values: Complex) -> Complex:
 
 def _called(orbit: Elements) -> str:
     return f"A {orbit.conic.value} orbit" if orbit.conic is Conic.RECTILINEAR else f"A {orbit.conic.value}"
+
+
+MODEL = "hill"
+NEARLY_CIRCULAR = 0.1
+"""Up to this eccentricity Hill's equations say something of an orbit: they leave out what is of its order."""
+
+
+@dataclass(frozen=True, eq=False)
+class HillEquations:
+    """Hill's equations about the circle of an orbit's semi-major axis, with its eigenvalues and Jordan blocks.
+
+    In axes that rotate with it a circle is an equilibrium, where eigenvalues do decide; over one revolution exp(A T) is
+    the monodromy matrix in these axes.
+    """
+
+    system: LinearSystem
+    eigenvalues: tuple[Eigenvalue, ...]
+
+
+def hill_equations(orbit: Elements) -> HillEquations | None:
+    """The linearisation in turning axes; ``None`` unless the orbit is nearly circular."""
+    if orbit.mean_motion is None or orbit.semi_major_axis is None or orbit.eccentricity > NEARLY_CIRCULAR:
+        return None
+    model = kernels.load(MODEL)
+    A, B = jacobians(model, (orbit.semi_major_axis, orbit.mean_motion), 0.0, np.zeros(len(model.spec.states)))
+    found = system(A, B, states=model.spec.state_names, inputs=model.spec.control_names, name=MODEL)
+    return HillEquations(found, spectrum(A))

@@ -90,22 +90,15 @@ def propagate(position: ArrayLike, velocity: ArrayLike, mu: ArrayLike, duration:
 
 @dataclass(frozen=True, eq=False)
 class _Motion:
-    """Scalars of the start, shape (N,), and the time from there.
-
-    Attributes
-    ----------
-    radius, rate
-        r, and r r_dot: the scalar product of position and velocity.
-    momentum
-        Size of the angular momentum.
-    binding
-        2 mu/r - v^2: minus twice the energy.
-    """
+    """Scalars of the start, shape (N,), and the time from there."""
 
     radius: Array
     rate: Array
+    """r, and r r_dot: the scalar product of position and velocity."""
     momentum: Array
+    """Size of the angular momentum."""
     binding: Array
+    """2 mu/r - v^2: minus twice the energy."""
     mu: Array
     duration: Array
 

@@ -11,6 +11,7 @@ tells its error.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,8 +20,9 @@ from satsym import kernels
 from satsym.analysis.orbits.conic import Conic
 from satsym.analysis.orbits.elements import Elements
 from satsym.analysis.orbits.point import CARTESIAN
-from satsym.analysis.orbits.variational import transition
 from satsym.arrays import Array
+from satsym.kernels import Kernels
+from satsym.solvers.simulation.extrapolation import integrate
 
 SYMPLECTIC = np.block([[np.zeros((3, 3)), np.eye(3)], [-np.eye(3), np.zeros((3, 3))]])
 """J: positions and velocities per unit mass are canonical."""
@@ -28,24 +30,16 @@ SYMPLECTIC = np.block([[np.zeros((3, 3)), np.eye(3)], [-np.eye(3), np.zeros((3, 
 
 @dataclass(frozen=True, eq=False)
 class Monodromy:
-    """An integrated monodromy matrix, in units of length and speed in which the orbit is of size one.
-
-    Attributes
-    ----------
-    start
-        State that the revolution starts from and comes back to, shape (6,).
-    matrix
-        Shape (6, 6).
-    exact
-        What the formula gives for it.
-    units
-        Of the three positions and the three velocities, powers of two, shape (6,).
-    """
+    """An integrated monodromy matrix, in units of length and speed in which the orbit is of size one."""
 
     start: Array
+    """State that the revolution starts from and comes back to, shape (6,)."""
     matrix: Array
+    """Shape (6, 6)."""
     exact: Array
+    """What the formula gives for it."""
     units: Array
+    """Of the three positions and the three velocities, powers of two, shape (6,)."""
 
     @property
     def original(self) -> Array:
@@ -130,3 +124,56 @@ def _at_apoapsis(orbit: Elements) -> Array:
 
 def _norm(matrix: Array) -> float:
     return float(np.linalg.norm(matrix, 2))
+
+
+ACCURACY = 1e-14
+"""Largest error of a step, relative to the size of the states: what is below is lost in rounding."""
+
+
+def transition(
+    model: Kernels, p: Sequence[float], start: Array, duration: float, t0: float = 0.0, size: Array | None = None
+) -> tuple[Array, Array]:
+    """The state after a time without control, and its derivative by the state before.
+
+    Both are integrated together with the generated ``dynamics`` and ``jacobian_x``, to the last digits.
+
+    Parameters
+    ----------
+    model, p
+        Which, and its parameters.
+    start
+        State at t0, shape (n,).
+    duration
+        Positive or negative.
+    t0
+        Where the model knows the time.
+    size
+        Typical sizes of the states, shape (n,); 1 by default. Errors are counted in them.
+
+    Returns
+    -------
+    end : array of shape (n,)
+    Phi : array of shape (n, n)
+        d(end)/d(start).
+
+    Raises
+    ------
+    satsym.solvers.simulation.extrapolation.NotFinite
+        If the motion does not last as long.
+    """
+    n, rest = len(start), (0.0,) * len(model.spec.controls)
+    unit = np.ones(n) if size is None else np.asarray(size, dtype=float)
+
+    def rates(t: float, y: Array) -> Array:
+        x = (y[:n] * unit).tolist()
+        try:
+            slope, A = model.dynamics(t, x, rest, p), model.jacobian_x(t, x, rest, p)
+        except ArithmeticError:
+            return np.full_like(y, np.nan)
+        # the matrix is carried in the units as well, and so of size one
+        scaled = np.array(A).reshape(n, n) * unit / unit[:, None]
+        return np.concatenate([slope / unit, (scaled @ y[n:].reshape(n, n)).ravel()])
+
+    begin = np.concatenate([np.asarray(start, dtype=float) / unit, np.eye(n).ravel()])
+    (piece,) = integrate(rates, np.array([t0, t0 + duration]), begin, ACCURACY, np.ones(n + n * n))
+    return piece.end[:n] * unit, piece.end[n:].reshape(n, n) * unit[:, None] / unit

@@ -28,24 +28,16 @@ CARTESIAN = "two_body"
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """What the Jacobian at a point of an orbit has for eigenvalues, and what is made of them.
-
-    Attributes
-    ----------
-    distance
-        From the centre.
-    eigenvalues
-        Of the generated Jacobian in Cartesian coordinates, computed, shape (6,).
-    closed_form
-        The same exactly, up to rounding: sqrt(2 mu/r^3), minus that, and sqrt(-mu/r^3) of either sign, twice.
-    own
-        Eigenvalues of the model's Jacobian in its own coordinates, where they are not Cartesian; else ``None``.
-    """
+    """What the Jacobian at a point of an orbit has for eigenvalues, and what is made of them."""
 
     distance: float
+    """From the centre."""
     eigenvalues: Complex
+    """Of the generated Jacobian in Cartesian coordinates, computed, shape (6,)."""
     closed_form: Complex
+    """The same exactly, up to rounding: sqrt(2 mu/r^3), minus that, and sqrt(-mu/r^3) of either sign, twice."""
     own: Complex | None
+    """Eigenvalues of the model's Jacobian in its own coordinates, where they are not Cartesian; else ``None``."""
 
     @property
     def deviation(self) -> float:

@@ -14,23 +14,16 @@ from satsym.status import BadInput
 
 @dataclass(frozen=True, eq=False)
 class States:
-    """Starts and durations of N motions, flat.
-
-    Attributes
-    ----------
-    position, velocity
-        Shape (3, N).
-    mu, duration
-        Shape (N,).
-    shape
-        That the caller's arrays have behind their first axis, once broadcast.
-    """
+    """Starts and durations of N motions, flat."""
 
     position: Array
     velocity: Array
+    """Shape (3, N)."""
     mu: Array
     duration: Array
+    """Shape (N,)."""
     shape: tuple[int, ...]
+    """That the caller's arrays have behind their first axis, once broadcast."""
 
     def part(self, chosen: Any) -> States:
         """Some of the columns."""

@@ -12,8 +12,8 @@ from satsym.analysis.regulator.lqr import Regulator, regulator, required
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.kernels import Kernels
-from satsym.solution import Flight
-from satsym.solvers import simulate as fly
+from satsym.solution import Simulation
+from satsym.solvers import simulate as simulated
 from satsym.solvers.simulation.closed_loop import Law
 from satsym.status import BadInput, Status
 
@@ -27,21 +27,14 @@ MOST_GAINS = 20000
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """A regulator, and what it was designed for.
-
-    Attributes
-    ----------
-    about
-        The linearisation.
-    regulator
-        Of it.
-    instance
-        ``None`` for the design of a model as such.
-    """
+    """A regulator, and what it was designed for."""
 
     about: Linearisation
+    """The linearisation."""
     regulator: Regulator
+    """Of it."""
     instance: Instance | None
+    """``None`` for the design of a model as such."""
 
     @property
     def title(self) -> str:
@@ -75,7 +68,7 @@ def designed(subject: Kernels | Instance) -> Design:
 
 
 @np.errstate(all="ignore")  # numbers out of range are a status
-def simulate(instance: Instance, feedback: str | None = None) -> Flight:
+def simulate(instance: Instance, feedback: str | None = None) -> Simulation:
     """Simulate an instance under a feedback.
 
     Parameters
@@ -102,7 +95,7 @@ def simulate(instance: Instance, feedback: str | None = None) -> Flight:
     if feedback not in FEEDBACKS:
         raise BadInput(f"--feedback {feedback}: unknown; this model has {', '.join(FEEDBACKS)}")
     if feedback == "none":
-        return fly(instance)
+        return simulated(instance)
     if feedback == "classical":
         from satsym.analysis.classical import law as classical
 
@@ -117,13 +110,13 @@ def simulate(instance: Instance, feedback: str | None = None) -> Flight:
         return pulses.simulate(instance)
     design = designed(instance)
     about, found = design.about, design.regulator
-    flight = fly(instance, law(about, found))
-    if flight.status is Status.TIME_LIMIT:
-        return flight
-    x = flight.x - about.along(flight.times)
-    u = flight.u[[about.system.inputs.index(name) for name in found.system.inputs]]
-    paid = {"lqr_cost": _integral(flight.times, running_cost(found, x, u)), "lqr_cost_linear": found.cost(x[:, 0])}
-    return replace(flight, metrics=flight.metrics | paid)
+    simulation = simulated(instance, law(about, found))
+    if simulation.status is Status.TIME_LIMIT:
+        return simulation
+    x = simulation.x - about.along(simulation.times)
+    u = simulation.u[[about.system.inputs.index(name) for name in found.system.inputs]]
+    paid = {"lqr_cost": _integral(simulation.times, running_cost(found, x, u)), "lqr_cost_linear": found.cost(x[:, 0])}
+    return replace(simulation, metrics=simulation.metrics | paid)
 
 
 def law(about: Linearisation, found: Regulator) -> Law:

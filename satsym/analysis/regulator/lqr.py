@@ -27,37 +27,26 @@ DOUBTFUL = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Regulator:
-    """An optimal gain, and what it does.
-
-    Attributes
-    ----------
-    system
-        What it is for, with the active inputs alone.
-    Q, R
-        Weights, shapes (n, n) and (m, m).
-    horizon
-        Length of time over which the cost is counted; ``None`` where it is infinite. If it is finite, K and P are
-        those at its beginning.
-    K, P
-        Shapes (m, n) and (n, n); x'Px is the cost to go.
-    eigenvalues
-        Of A - B K, the largest real part first, shape (n,).
-    residual
-        Of the Riccati equation, relative to its terms; of the differential one where the horizon is finite.
-    error
-        Estimated, of P, relative to P in units in which its diagonal elements are 1: what Newton's method would still
-        change, with residuals in twice the precision. ``None`` where the horizon is finite.
-    """
+    """An optimal gain, and what it does."""
 
     system: LinearSystem
+    """What it is for, with the active inputs alone."""
     Q: Array
     R: Array
+    """Weights, shapes (n, n) and (m, m)."""
     horizon: float | None
+    """Length of time over which the cost is counted; ``None`` where it is infinite. If it is finite, K and P are those
+    at its beginning."""
     K: Array
     P: Array
+    """Shapes (m, n) and (n, n); x'Px is the cost to go."""
     eigenvalues: NDArray[np.complexfloating]
+    """Of A - B K, the largest real part first, shape (n,)."""
     residual: float
+    """Of the Riccati equation, relative to its terms; of the differential one where the horizon is finite."""
     error: float | None = None
+    """Estimated, of P, relative to P in units in which its diagonal elements are 1: what Newton's method would still
+    change, with residuals in twice the precision. ``None`` where the horizon is finite."""
 
     @cached_property
     def closed_loop(self) -> LinearSystem:

@@ -35,23 +35,16 @@ class Response:
 
 @dataclass(frozen=True, eq=False)
 class Responses:
-    """The same disturbance, four times.
-
-    Attributes
-    ----------
-    times
-        Shape (N+1,).
-    free, steered
-        By the linear system, without control and with the gain.
-    exact_free, exact_steered
-        By the exact motion, within the instance's bounds; ``None`` where none is known but the linear one.
-    """
+    """The same disturbance, four times."""
 
     times: Array
+    """Shape (N+1,)."""
     free: Response
     steered: Response
+    """By the linear system, without control and with the gain."""
     exact_free: Response | None
     exact_steered: Response | None
+    """By the exact motion, within the instance's bounds; ``None`` where none is known but the linear one."""
 
 
 def responses(design: Design, case: Instance) -> Responses:
@@ -101,7 +94,7 @@ def _exact(design: Design, case: Instance, times: Array, steered: bool) -> Respo
     """The exact motion; by the same law with or without its effect."""
     acting = law(design.about, design.regulator)
     nothing = [0.0] * len(case.model.spec.controls)
-    flown = acting if steered else replace(acting, control=lambda t, x: nothing)
-    run = closed_loop.fly(case, flown, times, TOLERANCE, design.about.rates)
+    driven = acting if steered else replace(acting, control=lambda t, x: nothing)
+    run = closed_loop.simulate(case, driven, times, TOLERANCE, design.about.rates)
     places = [design.about.system.inputs.index(name) for name in design.regulator.system.inputs]
     return Response(run.x - np.array([design.about.at(t) for t in times]).T, run.u[places])

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from satsym.cli.options import json_option, language_option, place_option
-from satsym.cli.output import emit, emit_json, live
+from satsym.cli.output import answer, emit, emit_json, live
 from satsym.status import ExitCode
 
 EXAMPLES = """\b
@@ -72,8 +72,9 @@ def audit(
         from satsym.report.results.files import write_text
 
         write_text(latex, render(read, judged, language))
-    if as_json:
-        emit_json(objects.audit_object([row for rows in judged.values() for row in rows]))
-    else:
-        emit(reporting.audit_text(read, judged, rows=rows or bool(items), language=language))
+    answer(
+        as_json,
+        objects.audit_object([row for found in judged.values() for row in found]),
+        lambda: reporting.audit_text(read, judged, rows=rows or bool(items), language=language),
+    )
     return ExitCode.DONE

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from satsym.cli.options import json_option, out_option, plot_option
-from satsym.cli.output import complain, emit, emit_json
+from satsym.cli.output import answer, complain
 from satsym.cli.saving import folder_for, save
 from satsym.status import ExitCode
 
@@ -23,7 +23,7 @@ Examples:
   satsym compare lapan-classical lapan-minimum-time lapan-minimum-time-100s --plot
   satsym compare lapan-classical lapan-minimum-time --range    for other dampings and commands"""
 
-SHARES = (0.25, 0.5, 1.0, 2.0, 4.0)
+FACTORS = (0.25, 0.5, 1.0, 2.0, 4.0)
 """Of the instance's damping and command, in a range."""
 
 
@@ -55,10 +55,7 @@ def compare(subjects: tuple[str, ...], as_json: bool, ranged: bool, out: Path | 
 
         pages = plots.pictures(cases)
     saved = save(folder, result, pages)
-    if as_json:
-        emit_json(result)
-    else:
-        emit(with_files(comparison_text(cases, over), saved))
+    answer(as_json, result, lambda: with_files(comparison_text(cases, over), saved))
     for case in cases:
         if not case.answered:
             complain(f"{case.instance.name}: {case.message}")
@@ -73,4 +70,4 @@ def _range(case: Instance) -> Range:
 
     options = case.classical
     damping, command = (options.damping or 0.0, options.command) if options else (0.0, 0.0)
-    return ranged(case, [share * damping for share in SHARES], [share * command for share in SHARES])
+    return ranged(case, [factor * damping for factor in FACTORS], [factor * command for factor in FACTORS])

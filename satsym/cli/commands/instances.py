@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from satsym.cli.options import json_option
-from satsym.cli.output import emit, emit_json
+from satsym.cli.output import answer
 from satsym.status import ExitCode
 
 EXAMPLES = """\b
@@ -25,8 +25,5 @@ def instances(as_json: bool) -> ExitCode:
     from satsym.report.terminal.listing import instances_text
 
     loaded = [instance.load(name) for name in instance.shipped()]
-    if as_json:
-        emit_json({"instances": [instance_object(each) for each in loaded]})
-    else:
-        emit(instances_text(loaded))
+    answer(as_json, {"instances": [instance_object(each) for each in loaded]}, lambda: instances_text(loaded))
     return ExitCode.DONE

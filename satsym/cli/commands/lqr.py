@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from satsym.cli.options import json_option, out_option, plot_option
-from satsym.cli.output import emit, emit_json
+from satsym.cli.output import answer
 from satsym.cli.saving import folder_for, save
 from satsym.status import ExitCode, Status
 
@@ -50,8 +50,5 @@ def lqr(subject: str, as_json: bool, out: Path | None, plot: bool) -> ExitCode:
 
         pictures = of_design(design)
     saved = save(folder, result, pictures)
-    if as_json:
-        emit_json(result)
-    else:
-        emit(with_files(regulator_text(design), saved))
+    answer(as_json, result, lambda: with_files(regulator_text(design), saved))
     return ExitCode.DONE

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from satsym.cli.options import json_option
-from satsym.cli.output import emit, emit_json
+from satsym.cli.output import answer
 from satsym.status import ExitCode
 
 EXAMPLES = """\b
@@ -30,8 +30,9 @@ def models(model: str | None, as_json: bool) -> ExitCode:
     from satsym.report.terminal.listing import model_text, models_text
 
     specs = [kernels.load(name, Path()).spec for name in ([model] if model else kernels.shipped())]
-    if as_json:
-        emit_json({"models": [model_object(spec) for spec in specs]})
-    else:
-        emit(model_text(specs[0]) if model else models_text(specs))
+    answer(
+        as_json,
+        {"models": [model_object(spec) for spec in specs]},
+        lambda: model_text(specs[0]) if model else models_text(specs),
+    )
     return ExitCode.DONE

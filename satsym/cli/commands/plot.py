@@ -17,7 +17,7 @@ from satsym.wording import printable
 if TYPE_CHECKING:
     from satsym.report.results.files import Content
     from satsym.report.results.sets import Found
-    from satsym.solution import Flight, Solution
+    from satsym.solution import Simulation, Solution
 
 KINDS = ("png", "pdf")
 
@@ -78,7 +78,7 @@ def plot(subject: str, source: Path | None, out: Path | None, kinds: tuple[str, 
     return ExitCode.DONE
 
 
-def _save(folder: Path, found: Found, result: Solution | Flight, pictures: Mapping[str, Content]) -> list[Path]:
+def _save(folder: Path, found: Found, result: Solution | Simulation, pictures: Mapping[str, Content]) -> list[Path]:
     """Add pictures to the set they are of; or make them a set of their own, which replaces none but of pictures."""
     from satsym.report.results import sets
     from satsym.report.results.objects import head

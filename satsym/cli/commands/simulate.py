@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from satsym.cli.options import json_option, plot_option, subject_argument, trajectory_option
-from satsym.cli.output import complain, emit, emit_json, in_colour
+from satsym.cli.output import answer, complain, in_colour
 from satsym.cli.saving import folder_for, save, trajectory_files
 from satsym.status import ExitCode
 
@@ -44,20 +44,17 @@ def simulate(subject: str, feedback: str | None, as_json: bool, out: Path | None
     """
     from satsym import instance
     from satsym.analysis.regulator.feedback import simulate as simulated
-    from satsym.report.results.objects import flight_object
-    from satsym.report.terminal.solution import flight_text, with_files
+    from satsym.report.results.objects import simulation_object
+    from satsym.report.terminal.solution import simulation_text, with_files
 
     case = instance.load(subject)
     folder = folder_for(case.name, "simulate", out, plot)
-    flight = simulated(case, feedback)
-    result = flight_object(flight)
-    saved = save(folder, result, trajectory_files(folder, flight, plot))
-    if as_json:
-        emit_json(result)
-    else:
-        emit(with_files(flight_text(flight, in_colour()), saved))
-    if flight.status.answered:
+    simulation = simulated(case, feedback)
+    result = simulation_object(simulation)
+    saved = save(folder, result, trajectory_files(folder, simulation, plot))
+    answer(as_json, result, lambda: with_files(simulation_text(simulation, in_colour()), saved))
+    if simulation.status.answered:
         return ExitCode.DONE
     if as_json:  # its object has no key for the reason
-        complain(f"{flight.status.value}: {flight.message}")
+        complain(f"{simulation.status.value}: {simulation.message}")
     return ExitCode.NO_ANSWER

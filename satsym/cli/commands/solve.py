@@ -11,7 +11,7 @@ import click
 
 from satsym import methods
 from satsym.cli.options import json_option, plot_option, subject_argument, trajectory_option
-from satsym.cli.output import emit, emit_json, in_colour, live
+from satsym.cli.output import answer, in_colour, live
 from satsym.cli.saving import folder_for, save, trajectory_files
 from satsym.status import ExitCode, Verdict
 
@@ -81,10 +81,7 @@ def solve(
         solution = limits_noted(solution)
     result = solution_object(solution)
     saved = save(folder, result, trajectory_files(folder, solution, plot))
-    if as_json:
-        emit_json(result)
-    else:
-        emit(with_files(solution_text(solution, in_colour()), saved))
+    answer(as_json, result, lambda: with_files(solution_text(solution, in_colour()), saved))
     if not solution.status.answered:
         return ExitCode.NO_ANSWER
     failed = solution.certificate is not None and solution.certificate.verdict is Verdict.FAILED

@@ -43,8 +43,6 @@ def render(ledgers: Sequence[Ledger], judged: Mapping[str, Sequence[Judged]], la
 
     Parameters
     ----------
-    ledgers
-        What the documents print.
     judged
         Key of a document -> its rows with their verdicts.
     language

@@ -23,25 +23,17 @@ TOGETHER = 8
 
 @dataclass(frozen=True)
 class Row:
-    """One numbered equation.
-
-    Attributes
-    ----------
-    address
-        Its label.
-    left, right
-        Terms of both sides.
-    also
-        Something the left side also equals, written between both sides.
-    end
-        Something both sides also equal, written at the end.
-    """
+    """One numbered equation."""
 
     address: str
+    """Its label."""
     left: tuple[Term, ...]
     right: tuple[Term, ...]
+    """Terms of both sides."""
     also: str = ""
+    """Something the left side also equals, written between both sides."""
     end: str = ""
+    """Something both sides also equal, written at the end."""
 
     @property
     def left_tex(self) -> str:

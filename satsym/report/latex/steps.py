@@ -47,7 +47,7 @@ def shown(context: Context, step: Step) -> Shown:
     if found:
         body, addresses = found
         return Shown(body, addresses[0], addresses[-1])
-    return WAYS.get(step.name, _as_they_stand)(context, step)
+    return LAYOUTS.get(step.name, _as_they_stand)(context, step)
 
 
 def _as_they_stand(context: Context, step: Step) -> Shown:
@@ -174,7 +174,7 @@ def quantities(context: Context, step: Step) -> str:
     return context.texts.listed(found)
 
 
-WAYS: dict[str, Callable[[Context, Step], Shown]] = {
+LAYOUTS: dict[str, Callable[[Context, Step], Shown]] = {
     "stationarity": _stationarity,
     "state_equations": _state_equations,
     "costate_equations": _costate_equations,

@@ -9,13 +9,13 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from satsym.report.results import files
-from satsym.solution import Flight, Solution
+from satsym.solution import Simulation, Solution
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def pictures(result: Solution | Flight, formats: Sequence[str] = ("png",)) -> dict[str, files.Content]:
+def pictures(result: Solution | Simulation, formats: Sequence[str] = ("png",)) -> dict[str, files.Content]:
     """Draw a result.
 
     Parameters
@@ -42,7 +42,7 @@ def pictures(result: Solution | Flight, formats: Sequence[str] = ("png",)) -> di
     return drawn
 
 
-def figures(result: Solution | Flight) -> dict[str, Figure]:
+def figures(result: Solution | Simulation) -> dict[str, Figure]:
     """The same as figures of matplotlib, by name, for people who go on drawing."""
     from satsym.report.plots import style
 
@@ -50,14 +50,13 @@ def figures(result: Solution | Flight) -> dict[str, Figure]:
         return dict(_pages(result))
 
 
-def _pages(result: Solution | Flight) -> Iterator[tuple[str, Figure]]:
+def _pages(result: Solution | Simulation) -> Iterator[tuple[str, Figure]]:
     from satsym.report.plots import pages
-    from satsym.report.plots.convergence import convergence
-    from satsym.report.plots.overview import overview
     from satsym.report.plots.scene import Scene
 
     scene = Scene.of(result)
-    for picture in (overview, pages.orbit, pages.states, pages.controls, pages.costates, pages.invariants, convergence):
+    motion = (pages.orbit, pages.states, pages.controls, pages.costates, pages.invariants)
+    for picture in (pages.overview, *motion, pages.convergence):
         page = picture(scene)
         if page is not None:
             yield picture.__name__, page

@@ -154,7 +154,7 @@ def _range(figure: Figure, grid: Any, row: int, case: Case) -> None:
     assert options is not None
     assert options.damping is not None
     dampings = options.damping * np.geomspace(*DAMPINGS, 25)
-    commands = [share * options.command for share in COMMANDS]
+    commands = [fraction * options.command for fraction in COMMANDS]
     over = ranged(case.instance, dampings.tolist(), commands)
     control = spec.controls[0]
     name = next((n for n in case.instance.limits if n in over.peaks), spec.state_names[-1])

@@ -84,18 +84,12 @@ def thrust(model: Kernels, times: Array, x: Array, u: Array, p: Sequence[float])
 
 @dataclass(frozen=True, eq=False)
 class Relative:
-    """Motion relative to a moving reference point, in the curved coordinates of orbit work; arrays of shape (N+1,).
-
-    Attributes
-    ----------
-    along
-        Distance ahead, along the circle through the reference point about the origin.
-    radial
-        Distance above that circle.
-    """
+    """Motion relative to a moving reference point, in the curved coordinates of orbit work; arrays of shape (N+1,)."""
 
     along: Array
+    """Distance ahead, along the circle through the reference point about the origin."""
     radial: Array
+    """Distance above that circle."""
 
 
 def relative(positions: Array, reference: Array) -> Relative | None:

@@ -1,18 +1,26 @@
-"""The pages after the overview: each takes a scene and gives a figure, or nothing where there is nothing to show."""
+"""Pages of pictures: each takes a scene and gives a figure, or nothing where there is nothing to show."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from satsym.report.display import number, shortened, unit_text
 from satsym.report.plots import legend, series, style
+from satsym.report.plots.curves import clean
 from satsym.report.plots.orbits import scenes as space
 from satsym.report.plots.panels import small_multiples
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.series import Series
+from satsym.solution import Solution
+from satsym.wording import counted
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure, SubFigure
 
 
 def orbit(scene: Scene) -> Figure | None:
@@ -70,3 +78,112 @@ def _multiples(scene: Scene, quantities: Sequence[Series], colour: str, columns:
     entries = legend.motion(scene, colour) if beside else []
     legend.below(page, entries + legend.on_axes(quantities, colour))
     return page
+
+
+MOST = 8
+"""States, and controls, that have a panel here; all of them are on pages of their own."""
+
+
+def overview(scene: Scene) -> Figure | None:
+    """Path, states and controls on one page under a line of facts; nothing without a trajectory."""
+    if not scene.drawable:
+        return None
+    shown = space.Orbit.of(scene)
+    states, controls = series.states(scene)[:MOST], series.controls(scene)[:MOST]
+    columns = 1 if len(states) == 1 else 2
+    rows = -(-len(states) // columns) + -(-len(controls) // columns)
+    height = max(1.0 + 1.55 * rows, 4.2 if shown is None else 6.2)
+    page = style.figure(style.WIDTH, height)
+    head, right = _split(page, (2, 1), height_ratios=[0.75, height - 0.75])
+    _heading(head, scene)
+    if shown is not None:
+        left, right = _split(right, (1, 2), width_ratios=[1.0, 1.12])
+        _space(left, shown)
+    small_multiples(right, scene, [(q, style.STATE) for q in states] + [(q, style.CONTROL) for q in controls], columns)
+    entries = legend.motion(scene, style.STATE) + ([] if shown is None else space.entries(shown))
+    legend.below(page, entries + legend.on_axes([*states, *controls], style.CONTROL))
+    return page
+
+
+def _split(part: Figure | SubFigure, shape: tuple[int, int], **ratios: Any) -> tuple[SubFigure, SubFigure]:
+    parts: Any = part.subfigures(*shape, **ratios)
+    return parts[0], parts[1]
+
+
+def _space(part: SubFigure, shown: space.Orbit) -> None:
+    if shown.relative is None:
+        space.in_space(part.subplots(), shown, shown.views[0])
+        return
+    above, below = part.subplots(2, 1, height_ratios=[1.75, 1.0])
+    space.in_space(above, shown, shown.views[0])
+    space.from_reference(below, shown)
+
+
+def _heading(part: SubFigure, scene: Scene) -> None:
+    """Title of the instance, and the facts of the result below it."""
+    result = scene.result
+    name = shortened(scene.title, 80)
+    look: dict[str, Any] = {"ha": "left", "va": "center", "x": 0.012}
+    part.text(y=0.7, s=name, fontsize=14.0, fontweight="bold", parse_math=False, **look)
+    part.text(y=0.24, s="     ".join(_facts(scene)), fontsize=10.5, color=style.SOFT, **look)
+    if not result.status.answered:
+        part.text(x=0.988, y=0.7, s=result.status.value, ha="right", va="center", color=style.ALARM, fontweight="bold")
+
+
+def _facts(scene: Scene) -> list[str]:
+    result = scene.result
+    found = [f"model {scene.spec.name}"]
+    if isinstance(result, Solution):
+        found.append(f"by {result.method}, {counted(result.iterations, 'iteration')}")
+        if math.isfinite(result.objective):
+            found.append(f"$J$ = {number(result.objective, 7)}")
+    elif scene.spec.controls:
+        found.append(scene.name)
+    if np.isfinite(scene.times[-1]):
+        found.append(f"$t_f$ = {number(float(scene.times[-1]))} {unit_text(scene.time_unit)}".rstrip())
+    return found
+
+
+ANEW = 100.0
+"""A residual this many times the one before begins another phase."""
+
+
+def convergence(scene: Scene) -> Figure | None:
+    """Distance of the cost from its last value, and the residual, over the iterations; nothing for fewer than three."""
+    history = scene.history
+    if len(history) < 3:
+        return None
+    page = style.titled(scene.title, style.WIDTH, 4.1)
+    left, right = page.subplots(1, 2)
+    at = np.array([entry.number for entry in history], dtype=float)
+    costs = clean(np.array([entry.objective for entry in history]))
+    residuals = clean(np.array([entry.residual for entry in history]))
+    known = costs[np.isfinite(costs)]
+    last = float(known[-1]) if known.size else 0.0
+    _decades(left, at, np.abs(costs - last), style.PURPLE)
+    left.set_ylabel(r"$|J - J_{\mathrm{last}}|$")
+    left.set_title(f"final cost {number(last, 10)}" if known.size else "cost")
+    _decades(right, at, np.abs(residuals), style.GREEN)
+    right.set_ylabel("residual")
+    # Solved without bounds first, then within them, say: each phase begins with a residual of its own.
+    begun = (residuals[1:] > ANEW * residuals[:-1]).any()
+    right.set_title("residual of the optimality conditions" + (", phase by phase" if begun else ""))
+    return page
+
+
+def _decades(axes: Axes, at: np.ndarray, values: np.ndarray, colour: str) -> None:
+    """Positive values on a logarithmic axis; zeros and what is not finite are left out."""
+    from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
+
+    positive = np.where(values > 0.0, values, np.nan)
+    if np.isfinite(positive).any():
+        low, high = np.nanmin(positive), np.nanmax(positive)
+        axes.set_yscale("log")
+        axes.set_ylim(low / 3.0, high * 3.0)
+        axes.yaxis.set_major_locator(LogLocator(numticks=6))
+        axes.yaxis.set_minor_locator(NullLocator())
+    axes.set_xlim(at[0] - 0.3, at[-1] + 0.3)
+    axes.xaxis.set_major_locator(MaxNLocator(8, integer=True))
+    drawn = np.isfinite(positive)
+    axes.plot(at[drawn], positive[drawn], color=colour, marker="o", markersize=4.5, linewidth=1.4)
+    axes.set_xlabel("iteration")

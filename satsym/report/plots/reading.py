@@ -25,36 +25,26 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Reading:
-    """A quantity as it is shown.
-
-    Attributes
-    ----------
-    label
-        Symbol with unit and power of ten.
-    exponent
-        Of that power, by which all numbers are divided.
-    values, reference, free, target, lower, upper
-        As in :class:`~satsym.report.plots.series.Series`, in that unit and counted from the datum.
-    low, high
-        Ends of the axis.
-    deviation
-        Whether it is the deviation from the reference.
-    turns
-        Whether to mark multiples of pi.
-    """
+    """A quantity as it is shown."""
 
     label: str
+    """Symbol with unit and power of ten."""
     exponent: int
+    """Of that power, by which all numbers are divided."""
     values: Array
     reference: Array | None
     free: Array | None
     target: float | None
     lower: float
     upper: float
+    """As in :class:`~satsym.report.plots.series.Series`, in that unit and counted from the datum."""
     low: float
     high: float
+    """Ends of the axis."""
     deviation: bool
+    """Whether it is the deviation from the reference."""
     turns: bool
+    """Whether to mark multiples of pi."""
 
 
 def read(series: Series) -> Reading:

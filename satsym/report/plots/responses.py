@@ -96,11 +96,11 @@ def _curve(
 
 def reach(design: Design, case: Instance) -> Figure | None:
     """How far each state alone may be off for the exact motion to return; nothing where only a linear one is known."""
-    from satsym.analysis.regulator.basin import basin
+    from satsym.analysis.regulator.region_of_attraction import region_of_attraction
 
     if not design.about.nonlinear or design.regulator.horizon is not None:
         return None
-    found, start = basin(design.about, design.regulator, case), design.deviation
+    found, start = region_of_attraction(design.about, design.regulator, case), design.deviation
     assert start is not None
     states = design.about.model.spec.states
     figure = style.titled(design.title, 0.8 * style.WIDTH, 1.2 + 0.85 * len(states))

@@ -10,44 +10,34 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.report import display
 from satsym.report.plots import curves
-from satsym.solution import Flight, Iteration, Solution
+from satsym.solution import Iteration, Simulation, Solution
 from satsym.spec import ProblemSpec
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """A solution or a flight, and what is drawn beside it.
+    """A solution or a flight, and what is drawn beside it."""
 
-    Attributes
-    ----------
-    result
-        What was solved or simulated.
-    name
-        What its motion is called in a legend.
-    times, time_unit
-        Nodes in a readable unit, ``"1"`` where the model counts time in none.
-    time_factor
-        Model units of time in that unit.
-    x, u, lam
-        As in the result, NaN for what cannot be drawn or has left its domain; ``lam`` is ``None`` for a flight.
-    reference, free
-        States of the reference curve and of the motion without control at the nodes; ``None`` where there is none
-        or, for the latter, where it is the motion itself.
-    """
-
-    result: Solution | Flight
+    result: Solution | Simulation
+    """What was solved or simulated."""
     name: str
+    """What its motion is called in a legend."""
     times: Array
     time_unit: str
+    """Nodes in a readable unit, ``"1"`` where the model counts time in none."""
     time_factor: float
+    """Model units of time in that unit."""
     x: Array
     u: Array
     lam: Array | None
+    """As in the result, NaN for what cannot be drawn or has left its domain; ``lam`` is ``None`` for a flight."""
     reference: Array | None
     free: Array | None
+    """States of the reference curve and of the motion without control at the nodes; ``None`` where there is none or,
+    for the latter, where it is the motion itself."""
 
     @classmethod
-    def of(cls, result: Solution | Flight) -> Scene:
+    def of(cls, result: Solution | Simulation) -> Scene:
         """Gather what the pictures of a result show."""
         instance, nodes = result.instance, np.asarray(result.times, dtype=float)
         spec, p = instance.model.spec, instance.parameters
@@ -99,7 +89,7 @@ class Scene:
         return self.result.history if isinstance(self.result, Solution) else ()
 
 
-def _name(result: Solution | Flight) -> str:
+def _name(result: Solution | Simulation) -> str:
     if isinstance(result, Solution):
         return "solution" if result.status.answered else "last iterate"
     if result.feedback != "none":
@@ -107,5 +97,5 @@ def _name(result: Solution | Flight) -> str:
     return "uncontrolled" if _coasts(result) else "trajectory"
 
 
-def _coasts(result: Solution | Flight) -> bool:
+def _coasts(result: Solution | Simulation) -> bool:
     return len(result.times) < 2 or not bool((np.nan_to_num(result.u) != 0.0).any())

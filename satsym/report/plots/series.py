@@ -13,7 +13,7 @@ from satsym.report.display import formula, plain
 from satsym.report.plots import curves
 from satsym.report.plots.scene import Scene
 from satsym.report.results.unit_names import cost_per, time_unit
-from satsym.solution import Flight
+from satsym.solution import Simulation
 
 ON_BOUND = 1e-7
 """How near to a bound a control is on it, relative to the width of its range."""
@@ -21,49 +21,34 @@ ON_BOUND = 1e-7
 
 @dataclass(frozen=True, eq=False)
 class Series:
-    """One quantity against time.
-
-    Attributes
-    ----------
-    latex, name
-        As a formula, and in letters where that cannot be set.
-    unit, meaning
-        As in :class:`~satsym.spec.Variable`.
-    values
-        At the nodes, NaN where there is nothing to draw.
-    reference, free
-        The same quantity on the reference curve, and in the motion without control.
-    target
-        The value that is required at the end.
-    angle
-        Whether it is an angle.
-    lower, upper
-        Bounds, infinite where there are none.
-    active
-        Nodes at which it is on a bound.
-    switching
-        Times at which it meets or leaves a bound, as in the scene.
-    size
-        What counts as large for it, where its values may be nothing but rounding errors.
-    from_zero
-        Whether its axis must show zero.
-    """
+    """One quantity against time."""
 
     latex: str
     name: str
+    """As a formula, and in letters where that cannot be set."""
     unit: str
     meaning: str
+    """As in :class:`~satsym.spec.Variable`."""
     values: Array
+    """At the nodes, NaN where there is nothing to draw."""
     reference: Array | None = None
     free: Array | None = None
+    """The same quantity on the reference curve, and in the motion without control."""
     target: float | None = None
+    """The value that is required at the end."""
     angle: bool = False
+    """Whether it is an angle."""
     lower: float = -math.inf
     upper: float = math.inf
+    """Bounds, infinite where there are none."""
     active: NDArray[np.bool_] | None = None
+    """Nodes at which it is on a bound."""
     switching: tuple[float, ...] = ()
+    """Times at which it meets or leaves a bound, as in the scene."""
     size: float = 0.0
+    """What counts as large for it, where its values may be nothing but rounding errors."""
     from_zero: bool = False
+    """Whether its axis must show zero."""
 
     @property
     def symbol(self) -> str:
@@ -91,7 +76,7 @@ def states(scene: Scene) -> list[Series]:
 def controls(scene: Scene) -> list[Series]:
     """The controls with their bounds, for a ball also their norm; none of a flight without control."""
     instance, spec = scene.instance, scene.spec
-    if isinstance(scene.result, Flight) and scene.coasting:
+    if isinstance(scene.result, Simulation) and scene.coasting:
         return []
     switching = getattr(scene.result, "switching_times", ()) or ((),) * len(spec.controls)
     box = spec.control_set == "box"

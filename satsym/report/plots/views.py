@@ -17,21 +17,14 @@ ROUND = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """A picture plane.
-
-    Attributes
-    ----------
-    axes
-        Two orthonormal vectors, rightwards and upwards in the picture, shape (2, 2 or 3).
-    labels
-        What they are called.
-    title
-        What the picture shows, where the labels do not say it.
-    """
+    """A picture plane."""
 
     axes: Array
+    """Two orthonormal vectors, rightwards and upwards in the picture, shape (2, 2 or 3)."""
     labels: tuple[str, str]
+    """What they are called."""
     title: str = ""
+    """What the picture shows, where the labels do not say it."""
 
 
 def views(curves: Sequence[Array], labels: Sequence[str]) -> list[View]:

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from enum import Enum
 from typing import Any
 
 import msgspec
+import numpy as np
 
 from satsym.solution import Certificate, Check, Competitors, Kind
 from satsym.status import Verdict
@@ -56,36 +60,31 @@ class Stored(msgspec.Struct):
 
 def certificate_object(certificate: Certificate) -> dict[str, Any]:
     """The certificate of a solution, as JSON has it."""
-    return {
-        "verdict": certificate.verdict.value,
-        "boundary_residual": number(certificate.boundary_residual),
-        "dynamics_defect": number(certificate.dynamics_defect),
-        "stationarity": number(certificate.stationarity),
-        "hamiltonian_drift": number(certificate.hamiltonian_drift),
-        "legendre_clebsch": number(certificate.legendre_clebsch),
-        "conjugate_time": number(certificate.conjugate_time),
-        "checks": [
-            {"name": c.name, "value": number(c.value), "limit": number(c.limit), "passed": c.passed}
-            for c in certificate.checks
-        ],
-        "competitors": [
-            {
-                "kind": c.kind.value,
-                "tried": c.tried,
-                "solved": c.solved,
-                "unanswered": c.unanswered,
-                "cheapest": number(c.cheapest),
-            }
-            for c in certificate.competitors
-        ],
-        "not_checked": [kind.value for kind in certificate.not_checked],
-    }
+    compared = [
+        {"kind": c.kind, "tried": c.tried, "solved": c.solved, "unanswered": c.unanswered, "cheapest": c.cheapest}
+        for c in certificate.competitors
+    ]
+    checks = [plain(c) | {"passed": c.passed} for c in certificate.checks]
+    return {**plain(certificate), "checks": checks, "competitors": plain(compared)}
 
 
-def number(value: float | None) -> float | None:
-    """A finite float, without the sign of a zero; ``None`` for anything else."""
-    value = math.nan if value is None else float(value)
-    return value + 0.0 if math.isfinite(value) else None
+def plain(value: Any) -> Any:
+    """A value as JSON has it: arrays row by row, records by their fields, ``None`` for numbers that are not finite."""
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, complex):
+        return {"re": plain(value.real), "im": plain(value.imag)}
+    if isinstance(value, float):
+        return float(value) + 0.0 if math.isfinite(value) else None  # a zero without its sign
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, Mapping):
+        return {key: plain(each) for key, each in value.items()}
+    if isinstance(value, tuple | list):
+        return [plain(each) for each in value]
+    if is_dataclass(value):
+        return {each.name: plain(getattr(value, each.name)) for each in fields(value)}
+    return value
 
 
 def absent(value: float | None) -> float:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from satsym.report.results.objects import number
+from satsym.report.results.certificate import plain
 
 if TYPE_CHECKING:
     from satsym.analysis.linear.ranks import Reach
@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from satsym.analysis.linear.spectrum import Eigenvalue
     from satsym.analysis.linear.structure import Analysis
     from satsym.analysis.regulator.feedback import Design
-    from satsym.arrays import Array
 
 
 ANALYSIS = (
@@ -36,69 +35,51 @@ def analysis_object(found: Analysis | None, exact: Mapping[str, Any] | None) -> 
     if found is None:
         return dict.fromkeys(ANALYSIS)
     system, about = found.about.system, found.about
-    return {
-        "equilibrium": dict(zip(system.states, map(number, about.point), strict=True)),
-        "A": rows(system.A),
-        "B": rows(system.B),
-        "C": rows(system.C),
-        "eigenvalues": [eigenvalue_object(each) for each in found.eigenvalues],
-        "jordan_blocks": [
-            {"eigenvalue": complex_object(each.value), "size": size}
-            for each in found.eigenvalues
-            for size in each.blocks
-        ],
-        "characteristic_polynomial": numbers(found.polynomial),
-        "routh": routh_object(found.routh),
-        "stability": {"verdict": found.stability.verdict, "reason": found.stability.reason},
-        "controllability": _reach(found.controllability, "by_input"),
-        "observability": _reach(found.observability, "by_output"),
-        "exact": exact,
-    }
+    blocks = [(each.value, size) for each in found.eigenvalues for size in each.blocks]
+    return plain(
+        {
+            "equilibrium": dict(zip(system.states, about.point.tolist(), strict=True)),
+            "A": system.A,
+            "B": system.B,
+            "C": system.C,
+            "eigenvalues": [eigenvalue_object(each) for each in found.eigenvalues],
+            "jordan_blocks": [{"eigenvalue": complex(value), "size": size} for value, size in blocks],
+            "characteristic_polynomial": found.polynomial,
+            "routh": routh_object(found.routh),
+            "stability": {"verdict": found.stability.verdict, "reason": found.stability.reason},
+            "controllability": _reach(found.controllability, "by_input"),
+            "observability": _reach(found.observability, "by_output"),
+            "exact": exact,
+        }
+    )
 
 
 def regulator_object(design: Design) -> dict[str, Any]:
     """What ``satsym lqr --json`` prints; ``cost_from_initial`` is ``None`` for a model as such."""
     found, deviation = design.regulator, design.deviation
-    return {
-        "inputs": list(found.system.inputs),
-        "K": rows(found.K),
-        "P": rows(found.P),
-        "riccati_residual": number(found.residual),
-        "riccati_error": None if found.error is None else number(found.error),
-        "closed_loop_eigenvalues": [complex_object(value) for value in found.eigenvalues],
-        "characteristic_polynomial": numbers(found.polynomial),
-        "routh": routh_object(found.routh),
-        "cost_from_initial": None if deviation is None else number(found.cost(deviation)),
-    }
+    return plain(
+        {
+            "inputs": found.system.inputs,
+            "K": found.K,
+            "P": found.P,
+            "riccati_residual": found.residual,
+            "riccati_error": found.error,
+            "closed_loop_eigenvalues": [complex(value) for value in found.eigenvalues],
+            "characteristic_polynomial": found.polynomial,
+            "routh": routh_object(found.routh),
+            "cost_from_initial": None if deviation is None else found.cost(deviation),
+        }
+    )
 
 
 def routh_object(found: Routh) -> dict[str, Any]:
     """The Routh array."""
-    return {
-        "column": numbers(found.column),
-        "sign_changes": found.sign_changes,
-        "special_case": found.special_case,
-    }
+    return {"column": found.column, "sign_changes": found.sign_changes, "special_case": found.special_case}
 
 
 def eigenvalue_object(found: Eigenvalue) -> dict[str, Any]:
     """An eigenvalue with its multiplicities."""
-    return {"value": complex_object(found.value), "algebraic": found.algebraic, "geometric": found.geometric}
-
-
-def complex_object(value: complex) -> dict[str, float | None]:
-    """A complex number."""
-    return {"re": number(value.real), "im": number(value.imag)}
-
-
-def rows(matrix: Array) -> list[list[float | None]]:
-    """A matrix, row by row."""
-    return [numbers(row) for row in matrix]
-
-
-def numbers(values: Iterable[float]) -> list[float | None]:
-    """Numbers, ``None`` for those that are not finite."""
-    return [number(value) for value in values]
+    return {"value": complex(found.value), "algebraic": found.algebraic, "geometric": found.geometric}
 
 
 def _reach(found: Reach | None, key: str) -> dict[str, Any] | None:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from satsym import __version__
-from satsym.report.results.certificate import certificate_object, number
+from satsym.report.results.certificate import certificate_object, plain
 from satsym.report.results.unit_names import units
 from satsym.spec import ProblemSpec, Variable
 from satsym.status import Status
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from satsym.arrays import Array
     from satsym.instance import Instance
     from satsym.kernels import Kernels
-    from satsym.solution import Flight, Solution
+    from satsym.solution import Simulation, Solution
 
 
 SCHEMA = 1
@@ -64,28 +64,25 @@ def solution_object(solution: Solution) -> dict[str, Any]:
         "method": solution.method,
         "message": solution.status.explain(solution.message),
         "boundary_type": solution.instance.boundary_type,
-        "objective": number(solution.objective),
-        "t_final": _last(solution.times),
-        "x_final": _named(states, map(_last, solution.x)),
-        "costate_initial": _named(states, map(_first, solution.lam)),
+        "objective": plain(solution.objective),
+        "t_final": _at(solution.times, -1),
+        "x_final": _each(states, solution.x, -1),
+        "costate_initial": _each(states, solution.lam, 0),
         "switching_times": sorted(switches),
         "iterations": solution.iterations,
-        "wall_s": number(solution.wall_s),
+        "wall_s": plain(solution.wall_s),
         "certificate": certificate_object(solution.certificate) if solution.certificate else None,
     }
 
 
-def flight_object(flight: Flight) -> dict[str, Any]:
+def simulation_object(simulation: Simulation) -> dict[str, Any]:
     """What ``satsym simulate --json`` prints; see :func:`solution_object`."""
-    return head("simulate", flight.instance.model.spec, flight.instance.name, flight.status) | {
-        "feedback": flight.feedback,
-        "t_final": _last(flight.times),
-        "x_final": _named(flight.instance.model.spec.state_names, map(_last, flight.x)),
-        "invariants": {
-            name: {"initial": number(kept.initial), "drift": number(kept.drift)}
-            for name, kept in flight.invariants.items()
-        },
-        "metrics": {name: number(value) for name, value in flight.metrics.items()},
+    return head("simulate", simulation.instance.model.spec, simulation.instance.name, simulation.status) | {
+        "feedback": simulation.feedback,
+        "t_final": _at(simulation.times, -1),
+        "x_final": _each(simulation.instance.model.spec.state_names, simulation.x, -1),
+        "invariants": plain(simulation.invariants),
+        "metrics": plain(simulation.metrics),
     }
 
 
@@ -128,13 +125,10 @@ def _variable(variable: Variable) -> dict[str, Any]:
     return {"name": variable.symbol, "unit": variable.unit, "meaning": variable.meaning}
 
 
-def _named(names: Sequence[str], values: Iterable[float | None]) -> dict[str, float | None]:
-    return dict(zip(names, values, strict=True))
+def _each(names: Sequence[str], rows: Array, place: int) -> dict[str, float | None]:
+    return {name: _at(row, place) for name, row in zip(names, rows, strict=True)}
 
 
-def _first(row: Array) -> float | None:
-    return number(row[0]) if len(row) else None
-
-
-def _last(row: Array) -> float | None:
-    return number(row[-1]) if len(row) else None
+def _at(row: Array, place: int) -> float | None:
+    found: float | None = plain(row[place]) if len(row) else None
+    return found

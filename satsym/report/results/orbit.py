@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 from satsym.analysis.orbits.conic import TOLERANCE
 from satsym.report.display import length_unit, time_unit
-from satsym.report.results.exact import exact
-from satsym.report.results.linear import analysis_object, complex_object, eigenvalue_object, numbers, rows
-from satsym.report.results.objects import head_about, number
+from satsym.report.results.certificate import plain
+from satsym.report.results.linear import analysis_object, eigenvalue_object
+from satsym.report.results.objects import head_about
 from satsym.status import Status
 
 if TYPE_CHECKING:
@@ -48,11 +48,8 @@ def orbit_object(found: Survey | None) -> dict[str, Any]:
     """
     if found is None:
         return {"orbit": None, "point": None, "floquet": None}
-    return {
-        "orbit": _orbit(found.elements, found.case.model.spec),
-        "point": _point(found.point),
-        "floquet": _floquet(found.floquet),
-    }
+    orbit = _orbit(found.elements, found.case.model.spec)
+    return plain({"orbit": orbit, "point": _point(found.point), "floquet": _floquet(found.floquet)})
 
 
 def units(spec: ProblemSpec) -> tuple[str, str]:
@@ -63,61 +60,68 @@ def units(spec: ProblemSpec) -> tuple[str, str]:
 def _orbit(found: Elements, spec: ProblemSpec) -> dict[str, Any]:
     length, time = units(spec)
     momentum = found.angular_momentum
-    return {
-        "conic": found.conic.value,
-        "eccentricity": number(found.eccentricity),
-        "semi_major_axis": number(found.semi_major_axis),
-        "period": number(found.period),
-        "energy": number(found.energy),
-        "angular_momentum": number(float(momentum @ momentum) ** 0.5),
-        "angular_momentum_vector": numbers(momentum),
-        "semi_latus_rectum": number(found.parameter),
-        "periapsis": number(found.periapsis),
-        "apoapsis": number(found.apoapsis),
-        "excess_speed": number(found.excess_speed),
-        "inclination": number(found.inclination),
-        "node": number(found.node),
-        "periapsis_argument": number(found.periapsis_argument),
-        "true_anomaly": number(found.true_anomaly),
-        "tolerance": TOLERANCE,
-        "units": {"length": length, "time": time},
-    }
+    return (
+        _named(found, "conic", "eccentricity", "semi_major_axis", "period", "energy")
+        | {"angular_momentum": float(momentum @ momentum) ** 0.5, "angular_momentum_vector": momentum}
+        | {"semi_latus_rectum": found.parameter}
+        | _named(found, "periapsis", "apoapsis", "excess_speed", "inclination", "node", "periapsis_argument")
+        | {"true_anomaly": found.true_anomaly, "tolerance": TOLERANCE, "units": {"length": length, "time": time}}
+    )
 
 
 def _point(found: Point) -> dict[str, Any]:
-    own = None
-    if found.own is not None:
-        own = {"eigenvalues": [complex_object(value) for value in found.own], "rule_verdict": found.own_verdict}
-    return {
-        "eigenvalues": [complex_object(value) for value in found.eigenvalues],
-        "closed_form": [complex_object(value) for value in found.closed_form],
-        "deviation": number(found.deviation),
-        "rule_verdict": found.rule_verdict,
-        "conclusion_verdict": found.conclusion_verdict,
-        "own_coordinates": own,
-        "note": found.note,
-    }
+    own = None if found.own is None else {"eigenvalues": found.own, "rule_verdict": found.own_verdict}
+    return (
+        _named(found, "eigenvalues", "closed_form", "deviation", "rule_verdict", "conclusion_verdict")
+        | {"own_coordinates": own}
+        | _named(found, "note")
+    )
 
 
 def _floquet(found: Floquet) -> dict[str, Any]:
-    matrix, turning = found.monodromy, found.turning
-    return {
-        "status": found.status,
-        "multipliers": None if found.multipliers is None else [complex_object(value) for value in found.multipliers],
-        "determinant": None if matrix is None else number(matrix.determinant),
-        "verdict": found.verdict,
-        "note": found.note,
-        "scatter": number(found.scatter),
-        "expected_scatter": number(found.expected_scatter),
-        "lag": number(found.lag),
-        "growth": None if matrix is None else number(matrix.growth),
-        "error": None if matrix is None else number(matrix.error),
-        "symplectic_defect": None if matrix is None else number(matrix.symplectic_defect),
-        "second_singular": None if matrix is None else number(matrix.second_singular),
-        "square": None if matrix is None else number(matrix.square),
-        "start": None if matrix is None else numbers(matrix.start),
-        "matrix": None if matrix is None else rows(matrix.original),
-        "turning_axes": None
-        if turning is None
-        else {"model": turning.system.name, "eigenvalues": [eigenvalue_object(each) for each in turning.eigenvalues]},
-    }
+    matrix, axes = found.monodromy, found.turning
+    turning = None
+    if axes is not None:
+        turning = {"model": axes.system.name, "eigenvalues": [eigenvalue_object(each) for each in axes.eigenvalues]}
+    return (
+        _named(found, "status", "multipliers")
+        | _named(matrix, "determinant")
+        | _named(found, "verdict", "note", "scatter", "expected_scatter", "lag")
+        | _named(matrix, "growth", "error", "symplectic_defect", "second_singular", "square", "start")
+        | {"matrix": None if matrix is None else matrix.original, "turning_axes": turning}
+    )
+
+
+def _named(record: object, *names: str) -> dict[str, Any]:
+    """What a record has under these names; ``None`` for each where there is no record."""
+    return {name: None if record is None else getattr(record, name) for name in names}
+
+
+def exact(model: Kernels, derivation: Derivation | None = None) -> dict[str, Any] | None:
+    """What sympy finds about a linear model, as ``satsym analyse --json`` prints it.
+
+    Parameters
+    ----------
+    derivation
+        Of the model; by default that of a shipped one.
+
+    Returns
+    -------
+    dict or None
+        ``None`` for a model whose derivation is not at hand, because it was loaded by path, that is not linear with
+        constant coefficients, or whose entries are beyond exact linear algebra.
+    """
+    shipped = model.origin is not None and model.origin[1] is None
+    if not model.spec.linear or not (shipped or derivation):
+        return None
+    from satsym.status import BadInput
+    from satsym.symbolic import DerivationError
+    from satsym.symbolic.analysis import NotExact, analyse
+    from satsym.symbolic.analysis.listing import exact_object
+    from satsym.symbolic.linear.matrices import system_of
+    from satsym.symbolic.lookup import library
+
+    try:
+        return exact_object(analyse(system_of(derivation or library.derivation(model.spec.name))))
+    except (BadInput, DerivationError, NotExact):
+        return None

@@ -16,8 +16,9 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Collection, Mapping
-from contextlib import suppress
+import time
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -25,7 +26,6 @@ from typing import Any
 import msgspec
 
 from satsym.report.results.files import Content, store, text, to_json, unwritable
-from satsym.report.results.locking import locked
 from satsym.report.results.set_list import LIST, Listed, content, decoded, is_listed, listed_as, unusable
 from satsym.status import BadInput
 from satsym.wording import printable
@@ -36,27 +36,18 @@ STAGING = ".satsym-new-"
 
 @dataclass(frozen=True)
 class Found:
-    """A set that was read.
-
-    Attributes
-    ----------
-    folder
-        Where it is.
-    command
-        That wrote it.
-    result
-        The text of its result.json.
-    listed
-        Its other files.
-    contents
-        Of those that were wanted, the content.
-    """
+    """A set that was read."""
 
     folder: Path
+    """Where it is."""
     command: str
+    """That wrote it."""
     result: bytes
+    """The text of its result.json."""
     listed: Mapping[str, Listed]
+    """Its other files."""
     contents: Mapping[str, bytes]
+    """Of those that were wanted, the content."""
 
 
 def write(folder: Path, result: Mapping[str, Any], files: Mapping[str, Content]) -> list[Path]:
@@ -239,3 +230,42 @@ def _listed_before(folder: Path) -> dict[str, Listed]:
         return decoded(folder / LIST)[2]
     except BadInput:
         return {}
+
+
+PATIENCE, PAUSE = 30.0, 0.01
+"""Seconds to wait for another process, and between two looks."""
+
+
+@contextmanager
+def locked(folder: Path, *, shared: bool = False) -> Iterator[None]:
+    """Keep other processes from writing into a folder; without effect where the system has no such locks.
+
+    The lock is on the folder itself, so that it leaves no file, and goes with the process. A shared one lets others
+    read.
+    """
+    try:
+        import fcntl
+    except ImportError:
+        yield
+        return
+    kind = (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB
+    handle, until = os.open(folder, os.O_RDONLY), time.monotonic() + PATIENCE
+    try:
+        while not _taken(lambda: fcntl.flock(handle, kind)):
+            if time.monotonic() > until:
+                raise BadInput(f"{printable(str(folder))}: in use by another process; wait for it, or give another")
+            time.sleep(PAUSE)
+        yield
+    finally:
+        os.close(handle)
+
+
+def _taken(lock: Callable[[], None]) -> bool:
+    """Whether a lock was taken, or cannot be had on this file system."""
+    try:
+        lock()
+    except BlockingIOError:
+        return False
+    except OSError:
+        return True
+    return True

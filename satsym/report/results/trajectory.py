@@ -16,7 +16,7 @@ from satsym.report.results.certificate import Stored as StoredCertificate
 from satsym.report.results.certificate import absent
 from satsym.report.results.files import Content
 from satsym.report.results.set_list import LIST, unusable
-from satsym.solution import Flight, Invariant, Iteration, Solution
+from satsym.solution import Invariant, Iteration, Simulation, Solution
 from satsym.status import Status
 from satsym.wording import printable
 
@@ -61,7 +61,7 @@ class _Result(msgspec.Struct):
     metrics: dict[str, float | None] = {}
 
 
-def contents(found: Solution | Flight) -> dict[str, Content]:
+def contents(found: Solution | Simulation) -> dict[str, Content]:
     """``trajectory.npz`` and ``trajectory.csv`` of a solution or a flight.
 
     The first holds ``times`` (N+1), ``x`` (n, N+1), ``u`` (m, N+1), for a solution ``lam`` (n, N+1), the names in
@@ -97,7 +97,7 @@ def contents(found: Solution | Flight) -> dict[str, Content]:
     }
 
 
-def read(instance: Instance, folder: Path) -> tuple[Solution | Flight, sets.Found]:
+def read(instance: Instance, folder: Path) -> tuple[Solution | Simulation, sets.Found]:
     """What ``satsym solve`` or ``satsym simulate`` wrote into a folder.
 
     Parameters
@@ -158,8 +158,8 @@ def _solution(instance: Instance, result: _Result, stored: Stored) -> Solution:
     )
 
 
-def _flight(instance: Instance, result: _Result, stored: Stored) -> Flight:
-    return Flight(
+def _flight(instance: Instance, result: _Result, stored: Stored) -> Simulation:
+    return Simulation(
         instance=instance,
         feedback=result.feedback,
         status=Status(str(stored["status"])),

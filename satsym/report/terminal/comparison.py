@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from satsym.report.results.objects import head, number
+from satsym.report.results.objects import head, plain
 from satsym.report.results.unit_names import units
 from satsym.report.terminal.solution import joined
 from satsym.report.terminal.table import figure, table
@@ -45,21 +45,12 @@ def comparison_object(cases: Sequence[Case], over: Range | None = None) -> dict[
             for case in cases
         ],
         "metrics": {
-            key: {
-                case.instance.name: None if value is None else number(value)
-                for case, value in zip(cases, values, strict=True)
-            }
+            key: dict(zip((case.instance.name for case in cases), plain(values), strict=True))
             for key, values in metrics_of(cases).items()
         },
     }
     if over is not None:
-        found["range"] = {
-            "dampings": over.dampings.tolist(),
-            "commands": over.commands.tolist(),
-            "control_peak": over.control_peak.tolist(),
-            "impulse": over.impulse.tolist(),
-            "peaks": {name: values.tolist() for name, values in over.peaks.items()},
-        }
+        found["range"] = plain(over)
     return found
 
 

@@ -20,15 +20,7 @@ if TYPE_CHECKING:
 
 
 def analysis_text(found: Analysis, colour: bool = False) -> str:
-    """Summary of an analysis.
-
-    Parameters
-    ----------
-    found
-        By numbers.
-    colour
-        Whether the verdict is coloured.
-    """
+    """Summary of an analysis."""
     about, system = found.about, found.about.system
     verdict = found.stability.verdict or "undecided"
     if colour:

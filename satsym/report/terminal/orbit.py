@@ -27,8 +27,6 @@ def orbit_text(found: Survey, colour: bool = False) -> str:
 
     Parameters
     ----------
-    found
-        By numbers.
     colour
         Whether the kind of orbit is coloured: green where it closes.
     """

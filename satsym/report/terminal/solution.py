@@ -13,7 +13,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.report.results.unit_names import cost_per, time_unit
 from satsym.report.terminal.table import figure, table
-from satsym.solution import Certificate, Flight, Iteration, Solution
+from satsym.solution import Certificate, Iteration, Simulation, Solution
 from satsym.status import Status, Verdict
 from satsym.wording import counted
 
@@ -32,15 +32,7 @@ _BOUNDARY = {
 
 
 def solution_text(solution: Solution, colour: bool = False) -> str:
-    """Summary of a solution.
-
-    Parameters
-    ----------
-    solution
-        Whatever its status.
-    colour
-        Whether the status is coloured.
-    """
+    """Summary of a solution."""
     instance = solution.instance
     unit = time_unit(instance.model.spec)
     facts = [
@@ -64,18 +56,18 @@ def solution_text(solution: Solution, colour: bool = False) -> str:
     return joined(blocks)
 
 
-def flight_text(flight: Flight, colour: bool = False) -> str:
+def simulation_text(simulation: Simulation, colour: bool = False) -> str:
     """Summary of a flight; see :func:`solution_text`."""
-    instance = flight.instance
+    instance = simulation.instance
     unit = time_unit(instance.model.spec)
-    facts = [("final time", f"{figure(_last(flight.times), 10)} {unit}".rstrip())]
-    kept = [(name, figure(i.initial, 10), figure(i.drift, 3)) for name, i in flight.invariants.items()]
-    metrics = [(name, figure(value, 10)) for name, value in flight.metrics.items()]
+    facts = [("final time", f"{figure(_last(simulation.times), 10)} {unit}".rstrip())]
+    kept = [(name, figure(i.initial, 10), figure(i.drift, 3)) for name, i in simulation.invariants.items()]
+    metrics = [(name, figure(value, 10)) for name, value in simulation.metrics.items()]
     blocks = [
-        _heading(instance, flight.status, f"feedback {flight.feedback}", colour),
-        _message(flight.status, flight.message),
+        _heading(instance, simulation.status, f"feedback {simulation.feedback}", colour),
+        _message(simulation.status, simulation.message),
         table([("", ""), *facts])[1:],
-        _states(instance, flight.times, flight.x, None),
+        _states(instance, simulation.times, simulation.x, None),
         table([("invariant", "initial", "drift"), *kept], right=(1, 2)) if kept else [],
         table([("metric", "value"), *metrics], right=(1,)) if metrics else [],
     ]
@@ -218,8 +210,8 @@ def _range(times: Array, row: Array, limits: tuple[float, float]) -> tuple[str, 
     lower, upper = (figure(limit) if math.isfinite(limit) else "" for limit in limits)
     words = f"[{lower}, {upper}]" if lower and upper else f"at least {lower}" if lower else f"at most {upper}"
     at_bound = np.logical_or.reduce([np.abs(row - bound) <= _AT_BOUND * max(1.0, abs(bound)) for bound in finite])
-    share = float(np.trapezoid(at_bound.astype(float), times)) / float(times[-1] - times[0])
-    return *extremes, words, f"{100.0 * share:.3g} %"
+    fraction = float(np.trapezoid(at_bound.astype(float), times)) / float(times[-1] - times[0])
+    return *extremes, words, f"{100.0 * fraction:.3g} %"
 
 
 def _switching(solution: Solution, unit: str) -> list[str]:

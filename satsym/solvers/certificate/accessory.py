@@ -34,31 +34,22 @@ DROWNED = 1e-8
 
 @dataclass(frozen=True, eq=False)
 class Accessory:
-    """The second variation on pieces.
-
-    Attributes
-    ----------
-    form
-        In the controls' changes, normed so that these alone would give the unit matrix, and the change of a free final
-        time in units of the duration, shape (P, P).
-    ties
-        Rows that vanish where the end is as given, shape (c, P).
-    sizes
-        Of the boundary residuals that these ties are about, shape (c,).
-    controls
-        Changes of the controls at nodes and midpoints of the grid by the former, shape (m, 2 N + 1, P).
-    duration
-        Change of the final time by the former, shape (P,).
-    """
+    """The second variation on pieces."""
 
     form: Array
+    """In the controls' changes, normed so that these alone would give the unit matrix, and the change of a free final
+    time in units of the duration, shape (P, P)."""
     ties: Array
+    """Rows that vanish where the end is as given, shape (c, P)."""
     sizes: Array
+    """Of the boundary residuals that these ties are about, shape (c,)."""
     controls: Array
+    """Changes of the controls at nodes and midpoints of the grid by the former, shape (m, 2 N + 1, P)."""
     duration: Array
+    """Change of the final time by the former, shape (P,)."""
 
     @property
-    def least(self) -> tuple[float, Array]:
+    def smallest(self) -> tuple[float, Array]:
         """The least eigenvalue where the end is kept, and its direction, shape (P,); infinite without any."""
         free = kernel(self.ties)
         if not free.shape[1]:
@@ -195,14 +186,14 @@ def _shapes(linear: _Linear, grid: Grid, edges: NDArray[np.intp]) -> Array:
     """What the changes are on each piece, shape (pieces, m, P): of what bounds leave there of the controls."""
     m, reach = linear.push.shape[2], linear.effective
     steps = (reach[:-2:2] + 4.0 * reach[1::2] + reach[2::2]) * (grid.widths[:, None, None] / 6.0)
-    shares = np.add.reduceat(steps, edges[:-1], axis=0)
-    values, axes = np.linalg.eigh(shares)
+    fractions = np.add.reduceat(steps, edges[:-1], axis=0)
+    values, axes = np.linalg.eigh(fractions)
     kept = values > LEFT * (grid.nodes[edges[1:]] - grid.nodes[edges[:-1]])[:, None]
     unit = axes / np.sqrt(np.where(kept, values, 1.0))[:, None, :]
-    found = np.zeros((len(shares), m, len(shares), m))
-    every = np.arange(len(shares))
+    found = np.zeros((len(fractions), m, len(fractions), m))
+    every = np.arange(len(fractions))
     found[every, :, every, :] = unit
-    return found.reshape(len(shares), m, -1)[:, :, kept.ravel()]
+    return found.reshape(len(fractions), m, -1)[:, :, kept.ravel()]
 
 
 def _steps(linear: _Linear, grid: Grid) -> Array:

@@ -58,21 +58,14 @@ SAMPLES = 401
 
 @dataclass(frozen=True, eq=False)
 class Competitor:
-    """A competitor that was found.
-
-    Attributes
-    ----------
-    problem
-        Of which it is an extremal.
-    curve
-        Its states and costates, scaled; ``None`` where it ends at once, and has none.
-    cost
-        The cost J.
-    """
+    """A competitor that was found."""
 
     problem: TwoPoint
+    """Of which it is an extremal."""
     curve: Curve | None
+    """Its states and costates, scaled; ``None`` where it ends at once, and has none."""
     cost: float
+    """The cost J."""
 
 
 Search = Callable[[Limits], Competitor | None]
@@ -81,40 +74,26 @@ Search = Callable[[Limits], Competitor | None]
 
 @dataclass(frozen=True, eq=False)
 class Compared:
-    """What competitors of one kind came to.
-
-    Attributes
-    ----------
-    summary
-        As the certificate has it.
-    margin
-        How much dearer the cheapest is, relative to the cost; negative where it is cheaper, infinite without any.
-    cheapest
-        That one.
-    interrupted
-        Whether time was up before all were tried.
-    """
+    """What competitors of one kind came to."""
 
     summary: Competitors
+    """As the certificate has it."""
     margin: float
+    """How much dearer the cheapest is, relative to the cost; negative where it is cheaper, infinite without any."""
     cheapest: Competitor | None
+    """That one."""
     interrupted: bool
+    """Whether time was up before all were tried."""
 
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """All kinds that a problem allows.
-
-    Attributes
-    ----------
-    kinds
-        Those that were compared.
-    not_checked
-        Those that nobody tried, of which nothing was solved, or for which time was up.
-    """
+    """All kinds that a problem allows."""
 
     kinds: tuple[Compared, ...]
+    """Those that were compared."""
     not_checked: tuple[Kind, ...]
+    """Those that nobody tried, of which nothing was solved, or for which time was up."""
 
     @property
     def interrupted(self) -> list[Kind]:
@@ -133,8 +112,6 @@ def compared(solution: Solution, deadline: float, seed: int = 0) -> Comparison:
 
     Parameters
     ----------
-    solution
-        With an answer.
     deadline
         On the clock of ``time.perf_counter``.
     seed
@@ -223,11 +200,11 @@ def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Search
     if around:
         yield Kind.REVOLUTIONS, around
     if instance.tf is None:
-        beside = [_lasting(instance, share * lasting, cost) for share in SHORTER_AND_LONGER]
+        beside = [_lasting(instance, fraction * lasting, cost) for fraction in SHORTER_AND_LONGER]
         yield Kind.DURATIONS, [*beside, *_at_once(two_point(instance, lasting))]
     if instance.tf is not None and _on_reference(solution):
         final: dict[str, float | Literal["reference"]] = dict.fromkeys(instance.model.spec.state_names, "reference")
-        sooner = [share * lasting for share in EARLIER]
+        sooner = [fraction * lasting for fraction in EARLIER]
         early = [two_point(replace(fixed, tf=instance.t0 + t, final=final), t) for t in sooner]
         yield Kind.EARLIER, [_cold(one, cost) for one in early]
 
@@ -245,7 +222,7 @@ def _from_path(problem: TwoPoint, path: Callable[[Any], Any], softness: float, c
 
 def _from_spiral(problem: TwoPoint, spiral: Spiral, cost: float) -> Search:
     """The minimum within the bounds with a number of turns."""
-    from satsym.solvers.cold_start.path_of_turns import along_turns
+    from satsym.solvers.cold_start.path_of_problems import along_turns
 
     return lambda limits: _bounded(problem, along_turns(problem.relaxed(float("inf")), spiral, limits), cost, limits)
 
@@ -276,9 +253,9 @@ def _lasting(instance: Instance, duration: float, cost: float) -> Search:
         rough = trials.cold(duration, quick=True)
         if rough is None:
             return None
-        least = trials.freed(rough)
-        if least is not None and kept(least.problem.relaxed(0.0), least.start.found.curve):
-            return _accurate(least.problem.relaxed(0.0), least.start.found.curve, cost)
+        smallest = trials.freed(rough)
+        if smallest is not None and kept(smallest.problem.relaxed(0.0), smallest.start.found.curve):
+            return _accurate(smallest.problem.relaxed(0.0), smallest.start.found.curve, cost)
         given = replace(rough.problem, relaxation=0.0)
         return _bounded(given, rough.start.found, cost, limits)
 
@@ -293,7 +270,7 @@ def _at_once(problem: TwoPoint) -> list[Search]:
 
 def _cold(problem: TwoPoint, cost: float) -> Search:
     """The minimum within the bounds to which the first ways of the cold start lead."""
-    from satsym.solvers.cold_start.ways import cold_start
+    from satsym.solvers.cold_start.first_minimum import cold_start
 
     def attempt(limits: Limits) -> Competitor | None:
         start = cold_start(problem, limits, quick=True)
@@ -364,8 +341,8 @@ def none_conceivable(solution: Solution) -> bool:
     u = instance.control_set.project(drawn)
     slopes = model.costate_rate_batch(t, x, u, solution.lam, p)
     ends = [model.terminal_gradient(float(t[-1]), tuple(row), p) for row in x.T[:20]]
-    least = model.running_cost_batch(t, x, solution.u, p) <= model.running_cost_batch(t, x, u, p)
-    return not np.any(slopes) and not np.any(ends) and bool(np.all(least))
+    smallest = model.running_cost_batch(t, x, solution.u, p) <= model.running_cost_batch(t, x, u, p)
+    return not np.any(slopes) and not np.any(ends) and bool(np.all(smallest))
 
 
 def hidden(solution: Solution) -> float:

@@ -21,21 +21,14 @@ from satsym.solvers.collocation.scaling import final_argument
 
 @dataclass(frozen=True, eq=False)
 class EndForm:
-    """The form and the ties in the variations (delta x, delta t_f), the former at the final time as it was.
-
-    Attributes
-    ----------
-    form
-        Shape (n + e, n + e), symmetric; e is 1 where the final time is free, else 0.
-    ties
-        Rows that vanish, shape (c, n + e), each of about unit size: of fixed states, then of terminal constraints.
-    sizes
-        What these were divided by, shape (c,).
-    """
+    """The form and the ties in the variations (delta x, delta t_f), the former at the final time as it was."""
 
     form: Array
+    """Shape (n + e, n + e), symmetric; e is 1 where the final time is free, else 0."""
     ties: Array
+    """Rows that vanish, shape (c, n + e), each of about unit size: of fixed states, then of terminal constraints."""
     sizes: Array
+    """What these were divided by, shape (c,)."""
 
 
 def final_values(solution: Solution) -> tuple[float, tuple[float, ...], tuple[float, ...]]:

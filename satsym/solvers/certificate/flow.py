@@ -37,22 +37,15 @@ STATIONS = 64
 
 @dataclass(frozen=True, eq=False)
 class Flow:
-    """States and costates along the canonical equations.
-
-    Attributes
-    ----------
-    times
-        Stations, shape (K,), switching times among them.
-    x, lam
-        States and costates there, shapes (n, K).
-    cost
-        Of the whole motion, the terminal cost included.
-    """
+    """States and costates along the canonical equations."""
 
     times: Array
+    """Stations, shape (K,), switching times among them."""
     x: Array
     lam: Array
+    """States and costates there, shapes (n, K)."""
     cost: float
+    """Of the whole motion, the terminal cost included."""
 
 
 def flow(solution: Solution) -> Flow | None:
@@ -60,8 +53,8 @@ def flow(solution: Solution) -> Flow | None:
     instance, model = solution.instance, solution.instance.model
     n, p, bounds = len(instance.initial), instance.parameters, instance.control_set.arguments
     start, end = float(solution.times[0]), float(solution.times[-1])
-    kinks = [t for times in solution.switching_times for t in times if start < t < end]
-    stations = np.unique(np.concatenate([np.linspace(start, end, STATIONS + 1), kinks]))
+    corners = [t for times in solution.switching_times for t in times if start < t < end]
+    stations = np.unique(np.concatenate([np.linspace(start, end, STATIONS + 1), corners]))
     sizes = np.maximum(np.concatenate(typical(solution, FAINT)), _resolved(solution) / STATIONS)
 
     def rates(t: float, y: Array) -> Array:

@@ -18,7 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.arrays import Array
-from satsym.solvers.certificate.end_form import EndForm
+from satsym.solution import Check, Solution
+from satsym.solvers.certificate.end_form import EndForm, end_form
+from satsym.solvers.certificate.segments import Segments, between
 
 TURN = 2.0 * np.pi
 
@@ -40,18 +42,12 @@ PARTS, ROUNDS = 16, 6
 
 @dataclass(frozen=True, eq=False)
 class Phases:
-    """Eigenphases of the field of neighbouring extremals.
-
-    Attributes
-    ----------
-    values
-        Followed continuously from zero, in ascending order, shape (K, n).
-    frames
-        Orthonormal bases of the planes, shape (K, 2n, n).
-    """
+    """Eigenphases of the field of neighbouring extremals."""
 
     values: Array
+    """Followed continuously from zero, in ascending order, shape (K, n)."""
     frames: Array
+    """Orthonormal bases of the planes, shape (K, 2n, n)."""
 
     @property
     def passed(self) -> NDArray[np.intp]:
@@ -124,8 +120,6 @@ def first_passage(times: Array, phases: Phases, between: Callable[[int, Array], 
     ----------
     times
         Of the stations, shape (K,).
-    phases
-        There.
     between
         Transitions from a station to given times until the next, shape (M, 2n, 2n).
     """
@@ -150,7 +144,7 @@ def _passed(values: Array) -> NDArray[np.intp]:
     return found
 
 
-def end_curvature(frame: Array, end: EndForm) -> float:
+def second_order_at_end(frame: Array, end: EndForm) -> float:
     """The least curvature of the cost in what is free at the end, relative; infinite where nothing is.
 
     In the directions of the eigenvectors of W, the cost to come is curved by the cotangent of half a phase, if no
@@ -189,7 +183,7 @@ def _eigen(frame: Array) -> tuple[Array, Array]:
     plane = -np.linalg.solve((upper - 1j * lower).T, (upper + 1j * lower).T).T
     plane = (plane + plane.T) / 2.0
     # Real and imaginary part commute: a mixture of both has the eigenvectors of both, if it keeps phases apart.
-    mixed = [np.linalg.eigh(plane.real * np.cos(share) + plane.imag * np.sin(share))[1] for share in MIXTURES]
+    mixed = [np.linalg.eigh(plane.real * np.cos(fraction) + plane.imag * np.sin(fraction))[1] for fraction in MIXTURES]
     turned = [axes.T @ plane @ axes for axes in mixed]
     best = int(np.argmin([np.abs(one - np.diag(np.diag(one))).max() for one in turned]))
     phases = np.angle(np.diag(turned[best])) % TURN
@@ -210,3 +204,54 @@ def kernel(ties: Array) -> Array:
     rank = int((values > INDEPENDENT * max(float(values.max(initial=0.0)), 1e-300)).sum())
     found: Array = rows[rank:].T
     return found
+
+
+FLAT = 1e-9
+"""Relative curvature in the free end below which nobody can tell whether there is any."""
+
+NOT_STRICT = "not strict: other controls cost the same"
+
+
+@dataclass(frozen=True)
+class Conjugate:
+    """What neighbouring extremals from the same initial state say."""
+
+    resolved: bool
+    """Whether they could be followed."""
+    passed: int = 0
+    """Conjugate times after the start, with their multiplicity."""
+    time: float | None = None
+    """The first of these, or ``None``."""
+    touching: bool = False
+    """Whether the final time may be one, as far as can be told."""
+    curvature: float = float("inf")
+    """Least one of the cost in what is free at the end, relative; infinite where nothing is."""
+
+    @property
+    def checks(self) -> list[Check]:
+        """Each is a deficit that must not be positive."""
+        if not self.resolved:
+            return [Check("conjugate points not resolved", 1.0, 0.0)]
+        found = [Check("conjugate points: none", float(self.passed), 0.0)]
+        if self.curvature < float("inf"):
+            found.append(Check("second-order condition at the free endpoint", float(not self.curvature > -FLAT), 0.0))
+        if self.passed == 0 and (self.touching or abs(self.curvature) <= FLAT):
+            found.append(Check(NOT_STRICT, 1.0, 0.0))
+        return found
+
+
+def conjugate(solution: Solution, along: Segments | None) -> Conjugate:
+    """Count conjugate times, and measure the curvature in the free end.
+
+    Parameters
+    ----------
+    along
+        Its linearisation, or ``None`` where there is none.
+    """
+    phases = None if along is None else followed(along.transition)
+    if along is None or phases is None:
+        return Conjugate(resolved=False)
+    time = first_passage(along.times, phases, lambda station, t: between(solution, along, station, t))
+    curvature = second_order_at_end(phases.frames[-1], end_form(solution, along.scale))
+    passed = int(phases.passed[-1])
+    return Conjugate(curvature == curvature, passed, time, phases.touching, curvature)

@@ -28,7 +28,7 @@ AMPLITUDES = (0.05, 0.01)
 SADDLE = 1e-4
 """Curvature below zero by more than this is no error of the grid's."""
 
-DEARER = 1e-9
+COST_MARGIN = 1e-9
 """Relative margin by which a neighbour may seem cheaper: its own error."""
 
 CORRECTIONS = 12
@@ -39,23 +39,16 @@ MISSED = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Neighbours:
-    """What neighbours came to.
-
-    Attributes
-    ----------
-    margin
-        How much dearer the cheapest pair of opposite ones is in the mean, relative to the cost; infinite where none
-        could be simulated.
-    curvature
-        The least of the second variation on short pieces of the control, in units of what the change of the control
-        costs; infinite where the end leaves no choice, NaN where it could not be resolved.
-    competitors
-        How many, and the cheapest.
-    """
+    """What neighbours came to."""
 
     margin: float
+    """How much dearer the cheapest pair of opposite ones is in the mean, relative to the cost; infinite where none
+    could be simulated."""
     curvature: float
+    """The least of the second variation on short pieces of the control, in units of what the change of the control
+    costs; infinite where the end leaves no choice, NaN where it could not be resolved."""
     competitors: Competitors
+    """How many, and the cheapest."""
 
     @property
     def checks(self) -> list[Check]:
@@ -64,36 +57,26 @@ class Neighbours:
         if math.isfinite(self.curvature):
             found.append(Check("second variation on pieces of the control", float(self.curvature < -SADDLE), 0.0))
         if math.isfinite(self.margin):
-            found.append(Check(f"cheaper by: {Kind.NEIGHBOURS.value}", max(0.0, -self.margin), DEARER))
+            found.append(Check(f"cheaper by: {Kind.NEIGHBOURS.value}", max(0.0, -self.margin), COST_MARGIN))
         return found
 
 
 @dataclass(frozen=True, eq=False)
 class Simulations:
-    """Simulations of one instance with as many steps.
-
-    Attributes
-    ----------
-    instance
-        What is simulated.
-    rows
-        Indices of the boundary residuals that tie the final state.
-    scale
-        Sizes of these.
-    steps
-        Of each simulation.
-    end
-        The final time.
-    missed
-        Relative distance of the end to which the solution's own control leads from the solution's.
-    """
+    """Simulations of one instance with as many steps."""
 
     instance: Instance
+    """What is simulated."""
     rows: NDArray[np.intp]
+    """Indices of the boundary residuals that tie the final state."""
     scale: Array
+    """Sizes of these."""
     steps: int
+    """Of each simulation."""
     end: float
+    """The final time."""
     missed: float = 0.0
+    """Relative distance of the end to which the solution's own control leads from the solution's."""
 
     def grid(self, longer: float = 0.0) -> Grid:
         """To a final time that much later."""
@@ -128,7 +111,7 @@ def neighbours(solution: Solution) -> Neighbours:
     second = accessory(solution, grid)
     if second is None:
         return nothing
-    curvature, direction = second.least
+    curvature, direction = second.smallest
     if not np.isfinite(curvature):
         return Neighbours(float("inf"), curvature, Competitors(Kind.NEIGHBOURS, 0, 0, float("nan")))
     simulations, u = replace(simulations, scale=second.sizes), stated_control(solution, grid)

@@ -38,18 +38,12 @@ DEPARTED = (0.5, -0.5, 0.1, -0.1)
 
 @dataclass(frozen=True)
 class Fall:
-    """A cost that falls without end.
-
-    Attributes
-    ----------
-    sizes
-        The largest control of each motion.
-    costs
-        What these cost.
-    """
+    """A cost that falls without end."""
 
     sizes: tuple[float, ...]
+    """The largest control of each motion."""
     costs: tuple[float, ...]
+    """What these cost."""
 
     @property
     def message(self) -> str:
@@ -81,8 +75,8 @@ def departures(solution: Solution) -> list[Guess]:
         return []
     simulations, grid, u, change = found
     names, guesses = solution.instance.model.spec.state_names, []
-    for share in DEPARTED:
-        x, _ = simulations.motion(solution.instance.control_set.project(u + share * change), grid)
+    for fraction in DEPARTED:
+        x, _ = simulations.motion(solution.instance.control_set.project(u + fraction * change), grid)
         if np.isfinite(x).all() and solution.instance.model.in_domain(x):
             guesses.append(Guess(state=dict(zip(names, map(tuple, x.tolist()), strict=True))))
     return guesses
@@ -97,7 +91,7 @@ def _downhill(solution: Solution) -> tuple[Simulations, Grid, Array, Array] | No
     second = accessory(solution, grid)
     if second is None:
         return None
-    curvature, direction = second.least
+    curvature, direction = second.smallest
     shape = second.controls @ direction
     largest = float(np.abs(shape).max(initial=0.0))
     if not (curvature < 0.0 and largest > 0.0):

@@ -23,7 +23,7 @@ TURN = np.pi / 2.0
 """Largest turn within a step of the sum of all phases, see :mod:`satsym.solvers.certificate.jacobi`; less than pi, so
 that it is known from where it begins and ends."""
 
-SHARE = 0.75
+FRACTION = 0.75
 """Of the largest turn, that segments between nodes are to have."""
 
 COLUMNS = 5
@@ -41,31 +41,21 @@ SAME = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Segments:
-    """Steps from node to node of a solution, and how their ends follow their beginnings.
-
-    Attributes
-    ----------
-    times
-        Stations: the nodes and what lies between, where steps are shorter than segments, shape (K,).
-    begins
-        States and costates where each step begins, shape (2n, K-1).
-    transition
-        From each station to the next by states and costates in units of ``scale``, shape (K-1, 2n, 2n).
-    scale
-        Units of states and costates, shape (2n,). The products of the two are all the same, so that transitions
-        are symplectic.
-    nodes
-        Indices of the solution's times at which segments begin, and of the last.
-    steps
-        In each segment.
-    """
+    """Steps from node to node of a solution, and how their ends follow their beginnings."""
 
     times: Array
+    """Stations: the nodes and what lies between, where steps are shorter than segments, shape (K,)."""
     begins: Array
+    """States and costates where each step begins, shape (2n, K-1)."""
     transition: Array
+    """From each station to the next by states and costates in units of ``scale``, shape (K-1, 2n, 2n)."""
     scale: Array
+    """Units of states and costates, shape (2n,). The products of the two are all the same, so that transitions are
+    symplectic."""
     nodes: NDArray[np.intp]
+    """Indices of the solution's times at which segments begin, and of the last."""
     steps: int
+    """In each segment."""
 
     @property
     def growth(self) -> float:
@@ -132,14 +122,14 @@ def balanced(scale: Array, slopes: Array, duration: float) -> Array:
         return scale
     costates = 1.0 / (response * duration)  # so that the response is one over the duration
     unit = np.repeat([1.0, costates], n)
-    square, least = (size * unit / unit[:, None]) ** 2, 1.0 / duration**2
+    square, smallest = (size * unit / unit[:, None]) ** 2, 1.0 / duration**2
     change = np.ones(2 * n)
     for _ in range(SWEEPS):
         for move in np.concatenate([np.append(np.eye(n), -np.eye(n), axis=1), np.repeat([[0.0, 1.0]], n, axis=1)]):
             rates, power = square * (change / change[:, None]) ** 2, move - move[:, None]
             rising, falling = (float((rates * np.maximum(sign * power, 0.0)).sum()) for sign in (1.0, -1.0))
             moved = float(change[np.argmax(move)] ** 2)
-            change = change * ((falling + least / moved) / (rising + least * moved)) ** (move / 8.0)
+            change = change * ((falling + smallest / moved) / (rising + smallest * moved)) ** (move / 8.0)
     return scale * unit * change
 
 
@@ -160,7 +150,7 @@ def _nodes(solution: Solution, turned: Array) -> NDArray[np.intp]:
     times, last = solution.times, len(solution.times) - 1
     lasting = float(times[-1] - times[0])
     even = np.searchsorted(times, np.linspace(times[0], times[-1], FEWEST + 1)[1:-1])
-    dense = np.searchsorted(turned, np.arange(SHARE * TURN, turned[-1], SHARE * TURN)) - 1
+    dense = np.searchsorted(turned, np.arange(FRACTION * TURN, turned[-1], FRACTION * TURN)) - 1
     switches = np.array([t for own in solution.switching_times for t in own])
     met = [int(k) for t in switches if np.abs(times[k := int(np.abs(times - t).argmin())] - t) <= SAME * lasting]
     return np.unique(np.clip(np.concatenate([[0, last], even, dense, met]), 0, last).astype(np.intp))

@@ -10,10 +10,10 @@ import numpy as np
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers import revolutions
 from satsym.solvers.certificate import competitors, conditions
-from satsym.solvers.certificate.competitors import Compared, Comparison, Competitor
-from satsym.solvers.certificate.conjugate import Conjugate, conjugate
+from satsym.solvers.certificate.competitors import Comparison, Competitor
+from satsym.solvers.certificate.conditions import correction, node_by_node
 from satsym.solvers.certificate.flow import TOLERANCE, Flow, flow
-from satsym.solvers.certificate.junctions import correction, node_by_node
+from satsym.solvers.certificate.jacobi import Conjugate, conjugate
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
 from satsym.solvers.certificate.neighbours import Neighbours, neighbours
 from satsym.solvers.certificate.segments import Segments, segments
@@ -22,7 +22,7 @@ from satsym.status import Verdict
 RESIDUAL, DEFECT, STATIONARY, DRIFT, COST = 1e-9, 1e-7, 1e-8, 1e-9, 1e-8
 """Largest boundary residual, defect, violation of stationarity, change of H and error of the stated cost."""
 
-DEARER = 1e-9
+COST_MARGIN = 1e-9
 """Relative margin by which a competitor may seem cheaper: its own error."""
 
 
@@ -44,8 +44,6 @@ def examined(solution: Solution, deadline: float, seed: int = 0) -> tuple[Certif
 
     Parameters
     ----------
-    solution
-        Whatever its status.
     deadline
         On the clock of ``time.perf_counter``; what is not compared by then is said.
     seed
@@ -80,7 +78,11 @@ def _judged(solution: Solution, deadline: float, seed: int) -> tuple[Certificate
                 second.append(Check("no cheaper competitor", 0.0, 0.0))
             else:
                 others = competitors.compared(solution, deadline, seed)
-                second += [_cheaper(kind) for kind in others.kinds if math.isfinite(kind.margin)]
+                second += [
+                    Check(f"cheaper by: {kind.summary.kind.value}", max(0.0, -kind.margin), COST_MARGIN)
+                    for kind in others.kinds
+                    if math.isfinite(kind.margin)
+                ]
                 second += [Check(f"time was up before: {kind.value}", 1.0, 0.0) for kind in others.interrupted]
     verdict = Verdict.of(all(c.passed for c in first), all(c.passed for c in second))
     certificate = Certificate(
@@ -93,11 +95,6 @@ def _judged(solution: Solution, deadline: float, seed: int) -> tuple[Certificate
         not_checked=others.not_checked,
     )
     return certificate, others.better
-
-
-def _cheaper(found: Compared) -> Check:
-    """That no competitor of a kind is cheaper."""
-    return Check(f"cheaper by: {found.summary.kind.value}", max(0.0, -found.margin), DEARER)
 
 
 def _first_order(solution: Solution, along: Segments | None) -> list[Check]:

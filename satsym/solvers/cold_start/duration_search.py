@@ -18,7 +18,7 @@ FEWER = (3, 5)
 """Powers of the ratio that are tried at first: around a stated guess, around the motion's own time scale, and of
 that where each one costs great effort."""
 
-MOST_SCALES, LEAST_SCALES = 64.0, 1e-7
+MOST_SCALES, SMALLEST_SCALES = 64.0, 1e-7
 """Durations, in units of the first one, at which a search gives up that has no reason of its own to end."""
 
 LONG = 8.0
@@ -27,7 +27,7 @@ LONG = 8.0
 MOST_INTERVALS = 300
 """Mesh beyond which no longer durations are tried: about fifty revolutions."""
 
-FAR_DEARER, RISES = 3.0, 3
+FAR_ABOVE, RISES = 3.0, 3
 """No longer durations are tried either once the cost has risen that many times running, and so far."""
 
 FAILURES = 3
@@ -139,10 +139,10 @@ class Search:
     def is_cheapest(self, best: Minimum, least: float) -> bool:
         """Whether none of the durations tried costs less than a minimum, but for this much."""
 
-        def dearer(than: Try) -> bool:
+        def above(than: Try) -> bool:
             return best.cost > than.cost * (1.0 + 1e-9) + least
 
-        return not any(dearer(t) and dearer(self.trials.sharpened(t)) for t in self.tries)
+        return not any(above(t) and above(self.trials.accurate(t)) for t in self.tries)
 
     def _upwards(self, around: float, low: int, high: int) -> None:
         """Solve for durations of a fixed ratio, from the shortest on."""
@@ -163,7 +163,7 @@ class Search:
         if len(last.start.found.curve.mesh) > MOST_INTERVALS:
             return False
         rising = len(costs) > RISES and all(a < b for a, b in pairwise(costs[-RISES - 1 :]))
-        if rising and last.cost > FAR_DEARER * min(costs):
+        if rising and last.cost > FAR_ABOVE * min(costs):
             return False
         if last.floor > 0.0:
             return duration < self._dearest()
@@ -193,7 +193,7 @@ class Search:
         return edge.duration / growth if down else min(edge.duration * growth, self._dearest())
 
     def _least(self, edge: Try) -> bool:
-        return edge.duration <= LEAST_SCALES * self.trials.first
+        return edge.duration <= SMALLEST_SCALES * self.trials.first
 
     def _shorter_may_pay(self, edge: Try) -> bool:
         """Whether the cost would become the least so far, if it went on to fall as steeply, or is so at no time at all.

@@ -9,8 +9,8 @@ import numpy as np
 
 from satsym.instance import Instance
 from satsym.solvers.cold_start import paths
+from satsym.solvers.cold_start.first_minimum import cold_start
 from satsym.solvers.cold_start.origin import Start
-from satsym.solvers.cold_start.ways import cold_start
 from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import Curve, stage_times
@@ -26,25 +26,17 @@ from satsym.solvers.iteration import Limits
 
 @dataclass(frozen=True, eq=False)
 class Try:
-    """The problem of a given duration, solved.
-
-    Attributes
-    ----------
-    problem
-        With that duration, without bounds.
-    start
-        Its extremal.
-    cost, slope
-        What it costs, and the derivative of that by the duration.
-    floor
-        What every unit of time costs at least along this motion, without any control.
-    """
+    """The problem of a given duration, solved."""
 
     problem: TwoPoint
+    """With that duration, without bounds."""
     start: Start
+    """Its extremal."""
     cost: float
     slope: float
+    """What it costs, and the derivative of that by the duration."""
     floor: float
+    """What every unit of time costs at least along this motion, without any control."""
 
     @property
     def duration(self) -> float:
@@ -118,7 +110,7 @@ class Trials:
         found = self._settled(problem, curve.on(meshes.laid(problem, curve), STAGES), hard=True)
         return self._tried(problem, replace(near.start, found=found, steps=self.steps)) if found else None
 
-    def sharpened(self, rough: Try) -> Try:
+    def accurate(self, rough: Try) -> Try:
         """The same extremal, on the same mesh, as accurate as Newton's method makes it."""
         found = self._settled(rough.problem, rough.start.found.curve, rough.start.found.hard)
         return self._tried(rough.problem, replace(rough.start, found=found)) if found else rough

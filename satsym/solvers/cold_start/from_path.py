@@ -9,7 +9,6 @@ from satsym.arrays import Array
 from satsym.solvers.cold_start import paths
 from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.attempt import Attempt, Reason
-from satsym.solvers.collocation.curve import Curve
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.sqp import minimise
@@ -43,8 +42,4 @@ def from_path(
             return replace(found, reason=Reason.NO_CONVERGENCE, facts=(steps,))
         if extremal:
             stage = stage + 1 if hard else len(TOLERANCES) - 1
-        curve = found.curve if extremal and not hard else _remeshed(problem, found.curve)
-
-
-def _remeshed(problem: TwoPoint, curve: Curve) -> Curve:
-    return curve.on(meshes.laid(problem, curve), STAGES)
+        curve = found.curve if extremal and not hard else found.curve.on(meshes.laid(problem, found.curve), STAGES)

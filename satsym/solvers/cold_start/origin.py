@@ -26,30 +26,20 @@ class Origin(str, Enum):
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """An extremal of low order from which a method starts.
-
-    Attributes
-    ----------
-    found
-        The cheapest minimum, or the last attempt, and why that is none.
-    origin
-        From where it was found.
-    steps
-        Steps of all attempts.
-    turns
-        Of the spiral.
-    bounded
-        Whether it was looked for within the bounds at once.
-    saddle
-        An extremal that is no minimum, where no minimum was found.
-    """
+    """An extremal of low order from which a method starts."""
 
     found: Attempt
+    """The cheapest minimum, or the last attempt, and why that is none."""
     origin: Origin
+    """From where it was found."""
     steps: int
+    """Steps of all attempts."""
     turns: float = 0.0
+    """Of the spiral."""
     bounded: bool = False
+    """Whether it was looked for within the bounds at once."""
     saddle: Attempt | None = None
+    """An extremal that is no minimum, where no minimum was found."""
 
     @property
     def named(self) -> str:

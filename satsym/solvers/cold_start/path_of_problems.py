@@ -14,12 +14,12 @@ from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.arclength import Point
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import Curve, Step
-from satsym.solvers.collocation.descent import descended
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.problem import TwoPoint
-from satsym.solvers.collocation.sqp import minimise
+from satsym.solvers.collocation.sqp import descended, minimise
 from satsym.solvers.collocation.system import System
 from satsym.solvers.iteration import Limits
+from satsym.solvers.symmetry import Spiral
 
 Between = Callable[[Array, Array, float], Array]
 """A state between two others, by its share of the way."""
@@ -39,16 +39,14 @@ def along_problems(problem: TwoPoint, between: Between, limits: Limits) -> Attem
         Without bounds.
     between
         The initial states on the way.
-    limits
-        When to stop.
     """
     coasting = paths.coasting_to_the_end(problem)
     if coasting is None:
         return None
     away, home = coasting(np.zeros(1))[:, 0], problem.initial
 
-    def path(share: float) -> TwoPoint:
-        return problem.starting_at(between(away, home, share))
+    def path(fraction: float) -> TwoPoint:
+        return problem.starting_at(between(away, home, fraction))
 
     return followed(problem, path, paths.curve(problem, coasting), limits)
 
@@ -64,8 +62,6 @@ def followed(problem: TwoPoint, path: Callable[[float], TwoPoint], curve: Curve,
         The problem at a share of the way, in the units of the last.
     curve
         A guess of the first one's minimum.
-    limits
-        When to stop.
     """
     at, move, steps = 0.0, FIRST_MOVE, 0
     tangent: Step | None = None
@@ -100,17 +96,17 @@ def followed(problem: TwoPoint, path: Callable[[float], TwoPoint], curve: Curve,
     return Attempt(curve, Reason.PATH_ENDS, steps + below.iterations, float("inf"), facts=facts)
 
 
-def geometric(a: Array, b: Array, share: float) -> Array:
+def geometric(a: Array, b: Array, fraction: float) -> Array:
     """From one state to another: geometrically where both have the same sign, else straight."""
     same = a * b > 0.0
     ratio = np.where(same, b, 1.0) / np.where(same, a, 1.0)
-    found: Array = np.where(same, a * np.abs(ratio) ** share, a + (b - a) * share)
+    found: Array = np.where(same, a * np.abs(ratio) ** fraction, a + (b - a) * fraction)
     return found
 
 
-def straight(a: Array, b: Array, share: float) -> Array:
+def straight(a: Array, b: Array, fraction: float) -> Array:
     """From one state to another on the straight line."""
-    return a + (b - a) * share
+    return a + (b - a) * fraction
 
 
 def _predicted(problem: TwoPoint, curve: Curve, tangent: Step | None, move: float) -> Curve:
@@ -126,3 +122,35 @@ def _tangent(point: Point) -> Step | None:
         return point.response()
     except np.linalg.LinAlgError:
         return None
+
+
+STEP = 1e-5
+"""Share of the duration by which a path is differenced."""
+
+
+def along_turns(problem: TwoPoint, spiral: Spiral, limits: Limits) -> Attempt:
+    """The minimum with a number of turns, from the spiral that makes them, driven by a force that fades.
+
+    A spiral is no motion: it lacks some rates. With these added to the model it becomes one, and costs no control, so
+    it is where a path of problems begins; the controls take over what the force leaves. Minimising from the spiral
+    itself gets stuck where there are many turns, as a small defect early on asks for a large change of phase later.
+
+    Parameters
+    ----------
+    problem
+        Without bounds, or with soft ones; its duration is given.
+    spiral
+        That makes them.
+    """
+    return followed(problem, fading(problem, spiral), paths.curve(problem, spiral.path), limits)
+
+
+def fading(problem: TwoPoint, spiral: Spiral) -> Callable[[float], TwoPoint]:
+    """Problems by their share of the way: from the one that the spiral solves without costates, to the given one."""
+
+    def lacking(tau: Array) -> Array:
+        its = (spiral.path(tau + STEP) - spiral.path(tau - STEP)) / (2.0 * STEP * problem.duration)
+        z = np.concatenate([spiral.path(tau), np.zeros((problem.states, len(tau)))])
+        return its - problem.rates(tau, z, problem.theta)[: problem.states]
+
+    return lambda fraction: problem.forced(lacking, 1.0 - fraction)

@@ -44,8 +44,6 @@ def within_bounds(problem: TwoPoint, path: Callable[[Array], Array], limits: Lim
         With its bounds, and a given duration.
     path
         Scaled states, shape (n, M), at M times tau.
-    limits
-        When to stop.
     softness
         Of the first problem: one for that without bounds.
     """

@@ -33,8 +33,6 @@ def straight_through(start: Curve, system: System, limits: Limits) -> Attempt | 
         A guess, mostly without costates.
     system
         Collocation equations of a problem without bounds, on the guess's mesh and with its stages.
-    limits
-        Who watches.
     """
     problem, curve = system.problem, start
     before, steps, cost = float("inf"), 0, 0.0

@@ -16,7 +16,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.instance import Guess, Instance
 from satsym.solvers.collocation import mesh as meshes
-from satsym.solvers.collocation.continuation import kinks, settled, through
+from satsym.solvers.collocation.continuation import corners, settled, through
 from satsym.solvers.collocation.curve import Curve, stage_times
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.problem import TwoPoint
@@ -40,8 +40,6 @@ def swept(problem: TwoPoint, limits: Limits) -> Iterator[Curve | None]:
     ----------
     problem
         With its bounds, a given duration, and an end of which nothing is asked.
-    limits
-        When to stop; counts work.
     """
     instance = problem.instance
     finite = np.isfinite(instance.lower).all() and np.isfinite(instance.upper).all()
@@ -68,7 +66,7 @@ def from_control(problem: TwoPoint, control: Mapping[str, Sequence[float]], limi
     z = np.concatenate([found.x, found.lam]) / problem.scale.both
     tau = (found.times - found.times[0]) / (found.times[-1] - found.times[0])
     curve = _curve(problem, tau, z, meshes.along(problem, tau, z[: problem.states], problem.theta))
-    curve = _curve(problem, tau, z, through(kinks(problem, curve), len(curve.mesh) - 1))
+    curve = _curve(problem, tau, z, through(corners(problem, curve), len(curve.mesh) - 1))
     bounded = settled(problem, curve, STAGES, len(curve.mesh) - 1, limits)
     return bounded.curve if bounded.solved and bounded.curve.in_domain(problem.positive) else None
 

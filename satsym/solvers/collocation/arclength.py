@@ -16,12 +16,12 @@ import numpy as np
 from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import SMALL, Curve, Step
-from satsym.solvers.collocation.descent import descended
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.linearised import Linearised, linearise
 from satsym.solvers.collocation.newton import within_domain
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.second_variation import negative_directions
+from satsym.solvers.collocation.sqp import descended
 from satsym.solvers.collocation.system import Residual, System
 from satsym.solvers.iteration import Limits
 
@@ -52,11 +52,11 @@ class Direction:
     """A change of a curve and of the share of the way."""
 
     step: Step
-    share: float
+    fraction: float
 
     def times(self, factor: float) -> Direction:
         """The same direction, longer or shorter."""
-        return Direction(_combined(self.step, factor, self.step, 0.0), factor * self.share)
+        return Direction(_combined(self.step, factor, self.step, 0.0), factor * self.fraction)
 
 
 def followed(at: Problems, start: Curve, limits: Limits, path: str) -> Attempt:
@@ -66,12 +66,8 @@ def followed(at: Problems, start: Curve, limits: Limits, path: str) -> Attempt:
 
     Parameters
     ----------
-    at
-        The path.
     start
         A minimum at its beginning.
-    limits
-        When to stop.
     path
         What it is called where it leads nowhere.
     """
@@ -79,20 +75,20 @@ def followed(at: Problems, start: Curve, limits: Limits, path: str) -> Attempt:
     last = Point(at, 0.0, start)
     for point in extremals(at, start):
         steps += point.taken
-        if point.share == 1.0:
+        if point.fraction == 1.0:
             found = descended(problem, point.curve, STAGES, 1e-7, limits)
             steps += found.iterations
             if found.minimum:
                 return replace(found, iterations=steps, hard=True)
-        if point.share > last.share and point.minimum:
+        if point.fraction > last.fraction and point.minimum:
             last = point
-        if steps >= MOST or abs(point.share - 0.5) > 0.5 + OUTSIDE or limits.expired:
+        if steps >= MOST or abs(point.fraction - 0.5) > 0.5 + OUTSIDE or limits.expired:
             break
     below = descended(problem, last.curve, STAGES, 1e-7, limits)
     steps += below.iterations
     if below.minimum:
         return replace(below, iterations=steps, hard=True)
-    return Attempt(last.curve, Reason.PATH_ENDS, steps, float("inf"), facts=(path, last.share))
+    return Attempt(last.curve, Reason.PATH_ENDS, steps, float("inf"), facts=(path, last.fraction))
 
 
 def extremals(at: Problems, start: Curve) -> Iterator[Point]:
@@ -120,27 +116,20 @@ def extremals(at: Problems, start: Curve) -> Iterator[Point]:
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """A curve at a share of the way: an extremal there, or near one.
-
-    Attributes
-    ----------
-    at
-        The path.
-    share, curve
-        Where on it, and the curve.
-    taken
-        Linearisations that it took to come here.
-    """
+    """A curve at a share of the way: an extremal there, or near one."""
 
     at: Problems
-    share: float
+    """The path."""
+    fraction: float
     curve: Curve
+    """Where on it, and the curve."""
     taken: int = 0
+    """Linearisations that it took to come here."""
 
     @cached_property
     def problem(self) -> TwoPoint:
         """The problem here."""
-        return self.at(self.share)
+        return self.at(self.fraction)
 
     @cached_property
     def system(self) -> System:
@@ -167,7 +156,7 @@ class Point:
 
     def response(self) -> Step:
         """The change of the extremal by the share of the way."""
-        there = System(self.at(self.share + AHEAD), self.curve.mesh, STAGES).residual(self.curve)
+        there = System(self.at(self.fraction + AHEAD), self.curve.mesh, STAGES).residual(self.curve)
         here = self.residual
         slope = replace(
             here,
@@ -183,7 +172,7 @@ class Point:
         n = self.problem.states
         largest = np.abs(self.curve.nodes).reshape(2, -1).max(axis=1)
         sizes = np.repeat(np.maximum(largest, (1.0, SMALL)), n)[:, None]
-        return float((a.step.nodes * b.step.nodes / sizes**2).mean()) + a.share * b.share
+        return float((a.step.nodes * b.step.nodes / sizes**2).mean()) + a.fraction * b.fraction
 
     def tangent(self, before: Direction | None) -> Direction:
         """The direction of the path, of length one, on from the direction before."""
@@ -191,9 +180,9 @@ class Point:
         back = before is not None and self.product(before, along) < 0.0
         return along.times((-1.0 if back else 1.0) / self.product(along, along) ** 0.5)
 
-    def moved(self, direction: Direction, share: float | None = None) -> Point:
+    def moved(self, direction: Direction, fraction: float | None = None) -> Point:
         """The point after a change."""
-        there = self.share + direction.share if share is None else share
+        there = self.fraction + direction.fraction if fraction is None else fraction
         return Point(self.at, there, self.curve.moved(direction.step, 1.0))
 
 
@@ -202,9 +191,9 @@ def _next(here: Point, tangent: Direction, length: float) -> tuple[Point | None,
     taken = 1
     while length >= SHORTEST:
         step = tangent.times(length)
-        arrives = here.share != 1.0 and (here.share - 1.0) * (here.share + step.share - 1.0) <= 0.0
+        arrives = here.fraction != 1.0 and (here.fraction - 1.0) * (here.fraction + step.fraction - 1.0) <= 0.0
         if arrives:
-            step = tangent.times((1.0 - here.share) / tangent.share)
+            step = tangent.times((1.0 - here.fraction) / tangent.fraction)
         try:
             there, needed = _corrected(here, tangent, step, arrives)
         except np.linalg.LinAlgError:
@@ -226,9 +215,9 @@ def _corrected(here: Point, tangent: Direction, step: Direction, arrives: bool) 
         correction = Direction(there.linearised.step(there.residual), 0.0)
         if not arrives:
             along = Direction(there.response(), 1.0)
-            share = -here.product(tangent, correction) / here.product(tangent, along)
-            correction = Direction(_combined(correction.step, 1.0, along.step, share), share)
-        size = max(correction.step.size(there.curve), abs(correction.share))
+            fraction = -here.product(tangent, correction) / here.product(tangent, along)
+            correction = Direction(_combined(correction.step, 1.0, along.step, fraction), fraction)
+        size = max(correction.step.size(there.curve), abs(correction.fraction))
         if not size < min(TRUSTED, before / 2.0) or within_domain(there.problem, there.curve, correction.step) < 1.0:
             return None, needed
         there, before = there.moved(correction), size
@@ -245,7 +234,7 @@ def _resolved(point: Point, tangent: Direction) -> tuple[Point, Direction]:
         return point, tangent
     change = Curve(curve.mesh, step.nodes, step.stages, step.theta).on(mesh, STAGES)
     moved = Step(change.nodes, change.stages, change.theta)
-    return Point(point.at, point.share, curve.on(mesh, STAGES)), Direction(moved, tangent.share)
+    return Point(point.at, point.fraction, curve.on(mesh, STAGES)), Direction(moved, tangent.fraction)
 
 
 def _combined(a: Step, by: float, b: Step, other: float) -> Step:

@@ -33,37 +33,25 @@ class Reason(Enum):
 
 @dataclass(frozen=True, eq=False)
 class Attempt:
-    """Where an attempt ended.
-
-    Attributes
-    ----------
-    curve
-        The last one.
-    reason
-        Whether that is an extremal, or why not.
-    iterations
-        Linear systems that were solved.
-    cost
-        Scaled cost there; NaN where it was not asked for.
-    hard
-        Whether the way was not straight: a Gauss-Newton step after the first, or a step cut short. Other minima
-        may then be cheaper.
-    linearised
-        The equations there, where they are at hand.
-    error
-        Estimated error, at the nodes and between them, relative as in :meth:`Step.size`; infinite where nobody asked.
-    facts
-        What the words of the reason leave open.
-    """
+    """Where an attempt ended."""
 
     curve: Curve
+    """The last one."""
     reason: Reason
+    """Whether that is an extremal, or why not."""
     iterations: int
+    """Linear systems that were solved."""
     cost: float = float("nan")
+    """Scaled cost there; NaN where it was not asked for."""
     hard: bool = True
+    """Whether the way was not straight: a Gauss-Newton step after the first, or a step cut short. Other minima may then
+    be cheaper."""
     linearised: Linearised | None = None
+    """The equations there, where they are at hand."""
     error: float = float("inf")
+    """Estimated error, at the nodes and between them, relative as in :meth:`Step.size`; infinite where nobody asked."""
     facts: tuple[float | str, ...] = ()
+    """What the words of the reason leave open."""
 
     @property
     def minimum(self) -> bool:

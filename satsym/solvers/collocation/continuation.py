@@ -1,6 +1,6 @@
-"""Bounds on the control: tightened from where they do not bind, then mesh nodes put on the kinks they cause.
+"""Bounds on the control: tightened from where they do not bind, then mesh nodes put on the corners they cause.
 
-With the projected control law the canonical equations stay one system; its solutions have kinks where a bound
+With the projected control law the canonical equations stay one system; its solutions have corners where a bound
 is met or left. Newton converges if it starts near, so the bounds move in as far as they can at a time.
 """
 
@@ -20,7 +20,7 @@ from satsym.solvers.collocation.system import System
 from satsym.solvers.control.corners import zero
 from satsym.solvers.iteration import Limits
 
-FIRST_SHARE = 0.35
+FIRST_FRACTION = 0.35
 """Of the largest violation, by which the bounds move in first."""
 
 FASTER = 1.7
@@ -31,14 +31,14 @@ SHORTEST = 1e-4
 """Share of the largest violation below which a move is given up."""
 
 SAMPLES = 12
-"""Points in each interval between which a kink is looked for."""
+"""Points in each interval between which a corner is looked for."""
 
 STILL = 1e-11
 SETTLING = 12
-"""Times that nodes are moved to the kinks, and the share of the horizon by which these may then still move."""
+"""Times that nodes are moved to the corners, and the share of the horizon by which these may then still move."""
 
 CLOSEST = 1e-7
-"""Smallest distance of two kinks that get nodes of their own, as a share of the horizon."""
+"""Smallest distance of two corners that get nodes of their own, as a share of the horizon."""
 
 
 def tighten(problem: TwoPoint, free: Curve, order: int, limits: Limits) -> Attempt:
@@ -48,23 +48,17 @@ def tighten(problem: TwoPoint, free: Curve, order: int, limits: Limits) -> Attem
     ----------
     problem
         With its bounds.
-    free
-        An extremal of the same problem without them.
-    order
-        Stages.
-    limits
-        When to stop.
     """
     worst = _violation(problem, free)
     if worst <= 0.0:
         return Attempt(free, Reason.EXTREMAL, 0)
     count = max(10, len(free.mesh) - 1)
-    curve, width, move, total = free, worst, FIRST_SHARE * worst, 0
+    curve, width, move, total = free, worst, FIRST_FRACTION * worst, 0
     while width > 0.0:
         narrower = max(width - move, 0.0)
         narrower = 0.0 if narrower < 1e-3 * worst else narrower
         step = problem.relaxed(narrower)
-        mesh = through(kinks(step, curve), count)
+        mesh = through(corners(step, curve), count)
         outcome = newton(System(step, mesh, order), curve.on(mesh, order), tolerance=1e-6, most=15)
         limits.spend((outcome.iterations if outcome else 1) * (len(mesh) - 1) * order)
         if outcome is None or not outcome.solved:
@@ -81,7 +75,7 @@ def tighten(problem: TwoPoint, free: Curve, order: int, limits: Limits) -> Attem
     return replace(found, iterations=total + found.iterations)
 
 
-def kinks(problem: TwoPoint, curve: Path) -> Array:
+def corners(problem: TwoPoint, curve: Path) -> Array:
     """Times in (0, 1) at which the control law of a curve meets or leaves a bound, increasing."""
     return np.unique(np.concatenate([np.zeros(0), *by_bound(problem, curve)]))
 
@@ -135,23 +129,19 @@ def through(points: Array, count: int) -> Array:
 
 
 def settled(problem: TwoPoint, curve: Curve, order: int, count: int, limits: Limits) -> Attempt:
-    """Solve within the bounds, from a curve nearby, with nodes on the kinks until these stand still.
+    """Solve within the bounds, from a curve nearby, with nodes on the corners until these stand still.
 
     Parameters
     ----------
     problem
         With its bounds.
-    curve
-        Where to begin.
     order
         Stages; two more are taken.
     count
         Intervals, about.
-    limits
-        Count work.
     """
     before: Array | None = None
-    now, total = kinks(problem, curve), 0
+    now, total = corners(problem, curve), 0
     for _ in range(SETTLING):
         if before is not None and len(before) == len(now) and np.abs(now - before).max(initial=0.0) < STILL:
             return Attempt(curve, Reason.EXTREMAL, total)
@@ -162,5 +152,5 @@ def settled(problem: TwoPoint, curve: Curve, order: int, count: int, limits: Lim
         limits.spend(outcome.iterations * (len(mesh) - 1) * (order + 2))
         total += outcome.iterations
         curve, before = outcome.curve, now
-        now = kinks(problem, curve)
+        now = corners(problem, curve)
     return Attempt(curve, Reason.UNSETTLED, total)

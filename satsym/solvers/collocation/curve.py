@@ -35,24 +35,16 @@ class Path(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """Values at the nodes of a mesh and at the Gauss points between them.
-
-    Attributes
-    ----------
-    mesh
-        Nodes in [0, 1], shape (N+1,).
-    nodes
-        Values there, shape (2n, N+1).
-    stages
-        Values at the s Gauss points of each interval, shape (2n, N, s).
-    theta
-        Extra unknowns, shape (e,).
-    """
+    """Values at the nodes of a mesh and at the Gauss points between them."""
 
     mesh: Array
+    """Nodes in [0, 1], shape (N+1,)."""
     nodes: Array
+    """Values there, shape (2n, N+1)."""
     stages: Array
+    """Values at the s Gauss points of each interval, shape (2n, N, s)."""
     theta: Array
+    """Extra unknowns, shape (e,)."""
 
     @property
     def order(self) -> int:

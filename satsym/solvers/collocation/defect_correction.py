@@ -40,32 +40,23 @@ FAINTEST = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Sharpened:
-    """A curve after its defect corrections.
-
-    Attributes
-    ----------
-    curve
-        On the same mesh, with more stages.
-    error
-        Estimate of its error, relative as in :meth:`Step.size`: the last correction, or what its polynomials leave
-        out.
-    omitted
-        The latter interval by interval, shape (N,).
-    """
+class Corrected:
+    """A curve after its defect corrections."""
 
     curve: Curve
+    """On the same mesh, with more stages."""
     error: float
+    """Estimate of its error, relative as in :meth:`Step.size`: the last correction, or what its polynomials leave
+    out."""
     omitted: Array
+    """The latter interval by interval, shape (N,)."""
 
 
-def sharpen(curve: Curve, linearised: Linearised, tolerance: float) -> Sharpened | None:
+def correct_defects(curve: Curve, linearised: Linearised, tolerance: float) -> Corrected | None:
     """Correct a solution of collocation equations until its error is below a tolerance, as far as that goes.
 
     Parameters
     ----------
-    curve
-        The solution.
     linearised
         The linearised equations there or nearby, on the same mesh with the same stages.
     tolerance
@@ -99,7 +90,7 @@ def sharpen(curve: Curve, linearised: Linearised, tolerance: float) -> Sharpened
         if size < max(CONTRACTION * tolerance, ROUNDING):
             break
     omitted = _omitted(fine, small)
-    return Sharpened(_without_rounding(system, fine), max(size, float(omitted.max())), omitted)
+    return Corrected(_without_rounding(system, fine), max(size, float(omitted.max())), omitted)
 
 
 def _faint(linearised: Linearised) -> float:

@@ -11,25 +11,16 @@ from satsym.status import Status
 
 @dataclass(frozen=True, eq=False)
 class Extremal:
-    """What solving came to: an extremal, or what was tried last and why it is none.
-
-    Attributes
-    ----------
-    problem
-        The two-point problem, with its bounds.
-    path
-        States, costates and extra unknowns, scaled.
-    cost
-        The cost J; infinite where there is no answer.
-    status, message
-        Outcome.
-    iterations
-        Linear systems that were solved.
-    """
+    """What solving came to: an extremal, or what was tried last and why it is none."""
 
     problem: TwoPoint
+    """The two-point problem, with its bounds."""
     path: Path
+    """States, costates and extra unknowns, scaled."""
     cost: float
+    """The cost J; infinite where there is no answer."""
     status: Status
     message: str
+    """Outcome."""
     iterations: int
+    """Linear systems that were solved."""

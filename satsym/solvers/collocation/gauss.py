@@ -19,29 +19,20 @@ STAGES = 5
 
 @dataclass(frozen=True, eq=False)
 class Scheme:
-    """Tables of a scheme with s stages on [0, 1].
-
-    Attributes
-    ----------
-    nodes, weights
-        Gauss points and weights, shape (s,).
-    matrix, inverse
-        Integrals of the Lagrange polynomials up to each node, shape (s, s), and the inverse of that.
-    end
-        ``weights @ inverse``: from differences at the stages to the difference at the end.
-    coefficients
-        From values at 0 and at the stages to Legendre coefficients on [-1, 1], shape (s + 1, s + 1).
-    barycentric
-        Weights of Lagrange's formula through 0 and the stages, shape (s + 1,).
-    """
+    """Tables of a scheme with s stages on [0, 1]."""
 
     nodes: Array
     weights: Array
+    """Gauss points and weights, shape (s,)."""
     matrix: Array
     inverse: Array
+    """Integrals of the Lagrange polynomials up to each node, shape (s, s), and the inverse of that."""
     end: Array
+    """``weights @ inverse``: from differences at the stages to the difference at the end."""
     coefficients: Array
+    """From values at 0 and at the stages to Legendre coefficients on [-1, 1], shape (s + 1, s + 1)."""
     barycentric: Array
+    """Weights of Lagrange's formula through 0 and the stages, shape (s + 1,)."""
 
     @property
     def stages(self) -> int:

@@ -9,8 +9,7 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.solvers.collocation.curve import Curve, Step
-from satsym.solvers.collocation.elimination import Blocks
-from satsym.solvers.collocation.matching import Matching
+from satsym.solvers.collocation.elimination import Blocks, Matching
 from satsym.solvers.collocation.system import Residual, System
 
 

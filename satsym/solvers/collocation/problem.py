@@ -26,18 +26,12 @@ PLACES, SAME = 8, 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Scale:
-    """Units of the scaled problem.
-
-    Attributes
-    ----------
-    state
-        Of each state, shape (n,).
-    cost
-        Of the cost; a costate has the unit cost over state.
-    """
+    """Units of the scaled problem."""
 
     state: Array
+    """Of each state, shape (n,)."""
     cost: float
+    """Of the cost; a costate has the unit cost over state."""
 
     @cached_property
     def both(self) -> Array:
@@ -56,33 +50,23 @@ class TwoPoint:
 
     Unknowns are z = (states, costates), scaled, over tau in [0, 1], and ``theta``: the multipliers of terminal
     constraints (scaled by the cost), then the duration where it is free.
-
-    Attributes
-    ----------
-    instance
-        What is solved.
-    final
-        The ``final`` argument of the boundary functions: given, on reference, target, state by state.
-    duration
-        tf - t0; where it is free, where to start.
-    scale
-        Units.
-    relaxation
-        By how much every bound of the control is moved outwards; infinite: no bounds.
-    softness
-        Share of what the control law without bounds exceeds them by that is granted: zero where bounds are kept. That
-        is the law where exceeding them costs as its square, so a soft problem is one of optimal control as well.
-    forcing
-        What is added to the rates of the states, scaled, shape (n, N) at times tau (N,); nothing by default.
     """
 
     instance: Instance
+    """What is solved."""
     final: tuple[float, ...]
+    """The ``final`` argument of the boundary functions: given, on reference, target, state by state."""
     duration: float
+    """tf - t0; where it is free, where to start."""
     scale: Scale
+    """Units."""
     relaxation: float = 0.0
+    """By how much every bound of the control is moved outwards; infinite: no bounds."""
     softness: float = 0.0
+    """Share of what the control law without bounds exceeds them by that is granted: zero where bounds are kept. That is
+    the law where exceeding them costs as its square, so a soft problem is one of optimal control as well."""
     forcing: Callable[[Array], Array] | None = None
+    """What is added to the rates of the states, scaled, shape (n, N) at times tau (N,); nothing by default."""
 
     @property
     def states(self) -> int:
@@ -134,9 +118,9 @@ class TwoPoint:
         """The same problem with bounds of another softness."""
         return replace(self, softness=softness)
 
-    def forced(self, forcing: Callable[[Array], Array], share: float) -> TwoPoint:
+    def forced(self, forcing: Callable[[Array], Array], fraction: float) -> TwoPoint:
         """The same problem with a share of a forcing."""
-        return replace(self, forcing=(lambda tau: share * forcing(tau)) if share else None)
+        return replace(self, forcing=(lambda tau: fraction * forcing(tau)) if fraction else None)
 
     def elapsed(self, theta: Array) -> float:
         """The duration."""

@@ -8,9 +8,9 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.solvers.collocation.attempt import Attempt, Reason
-from satsym.solvers.collocation.continuation import kinks
+from satsym.solvers.collocation.continuation import corners
 from satsym.solvers.collocation.curve import SMALL, Curve
-from satsym.solvers.collocation.defect_correction import Sharpened, sharpen
+from satsym.solvers.collocation.defect_correction import Corrected, correct_defects
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.linearised import Linearised
 from satsym.solvers.collocation.newton import newton
@@ -23,7 +23,7 @@ NEAR = 1e-3
 AIM = 1e-3
 """Share of the tolerance that is aimed at: errors of the initial costates grow a thousandfold and more on the way."""
 
-LEAST = 1e-13
+FINEST = 1e-13
 """What rounding allows."""
 
 ROUNDS = 8
@@ -32,7 +32,7 @@ FEWEST, LARGEST_SPLIT = 0.6, 4.0
 """Bounds of the change in the density of the mesh in one round."""
 
 ROOM = 0.25
-"""Share of an interval by which a node may be moved to a kink; one that is farther from all nodes gets its own."""
+"""Share of an interval by which a node may be moved to a corner; one that is farther from all nodes gets its own."""
 
 SPARE = 0.1
 """Share of the error aimed at that the next mesh is laid for."""
@@ -45,52 +45,50 @@ def refine(
 
     Parameters
     ----------
-    problem
-        What is solved.
     curve
         A solution of collocation equations on some mesh.
     tolerance
         Largest error.
     keep_nodes
-        Whether nodes lie on kinks: intervals are only split, and nodes follow the kinks as these become accurate.
+        Whether nodes lie on corners: intervals are only split, and nodes follow the corners as these become accurate.
     known
         The linearised equations at the curve or nearby, if it is a solution with :data:`STAGES` stages already.
     """
-    total, best, aim = 0, Attempt(curve, Reason.INACCURATE, 0), max(AIM * tolerance, LEAST)
+    total, best, aim = 0, Attempt(curve, Reason.INACCURATE, 0), max(AIM * tolerance, FINEST)
     for _ in range(ROUNDS):
         if known is None:
             outcome = newton(System(problem, curve.mesh, STAGES), curve.on(curve.mesh, STAGES), tolerance=NEAR)
             total += outcome.iterations if outcome else 0
             if outcome and outcome.solved:
                 curve, known = outcome.curve, outcome.linearised
-        sharpened = sharpen(curve, known, aim) if known else None
-        met = kinks(problem, sharpened.curve) if sharpened and keep_nodes else np.zeros(0)
-        error = max(sharpened.error, _misplaced(problem, sharpened.curve, met)) if sharpened else float("inf")
+        corrected = correct_defects(curve, known, aim) if known else None
+        met = corners(problem, corrected.curve) if corrected and keep_nodes else np.zeros(0)
+        error = max(corrected.error, _misplaced(problem, corrected.curve, met)) if corrected else float("inf")
         better = error < 0.5 * best.error
-        if sharpened and error < best.error:
+        if corrected and error < best.error:
             reason = Reason.EXTREMAL if error < tolerance else Reason.INACCURATE
-            best = Attempt(sharpened.curve, reason, total, error=error)
+            best = Attempt(corrected.curve, reason, total, error=error)
         if best.error < aim or (best.solved and not better):
             break
-        density = _density(sharpened, aim) if sharpened else np.full(len(curve.mesh) - 1, 2.0)
+        density = _density(corrected, aim) if corrected else np.full(len(curve.mesh) - 1, 2.0)
         if density.sum() > MOST_INTERVALS:
             break
-        curve = sharpened.curve if sharpened else curve
+        curve = corrected.curve if corrected else curve
         mesh = _followed(_split(curve.mesh, density), met) if keep_nodes else _spread(curve.mesh, density)
         curve, known = curve.on(mesh, STAGES), None
     cost = System(problem, best.curve.mesh, best.curve.order).cost(best.curve)
     return replace(best, cost=cost, facts=(best.error, len(best.curve.mesh) - 1))
 
 
-def _density(sharpened: Sharpened, aim: float) -> Array:
+def _density(corrected: Corrected, aim: float) -> Array:
     """Wanted intervals for each present one, from what its polynomials leave out."""
-    ratio = sharpened.omitted / (SPARE * aim)
-    found: Array = np.clip(ratio ** (1.0 / sharpened.curve.order), FEWEST, LARGEST_SPLIT)
+    ratio = corrected.omitted / (SPARE * aim)
+    found: Array = np.clip(ratio ** (1.0 / corrected.curve.order), FEWEST, LARGEST_SPLIT)
     return found
 
 
 def _misplaced(problem: TwoPoint, curve: Curve, met: Array) -> float:
-    """What kinks off the nodes leave out: the rates on one side of a kink, followed up to the node beside it."""
+    """What corners off the nodes leave out: the rates on one side of a corner, followed up to the node beside it."""
     if not len(met):
         return 0.0
     node = curve.mesh[np.abs(met[:, None] - curve.mesh).argmin(axis=1)]
@@ -101,16 +99,16 @@ def _misplaced(problem: TwoPoint, curve: Curve, met: Array) -> float:
 
 
 def _followed(mesh: Array, met: Array) -> Array:
-    """A mesh whose nodes have followed the kinks, the others in proportion; kinks far from all nodes get their own."""
+    """A mesh whose nodes have followed the corners, the others in proportion; far from all nodes they get their own."""
     before, after, own = [0.0], [0.0], []
-    for kink in met:
-        k = int(np.abs(mesh - kink).argmin())
+    for corner in met:
+        k = int(np.abs(mesh - corner).argmin())
         room = ROOM * np.diff(mesh)[max(k - 1, 0) : k + 1].min()
-        if 0 < k < len(mesh) - 1 and abs(mesh[k] - kink) < room and mesh[k] > before[-1]:
+        if 0 < k < len(mesh) - 1 and abs(mesh[k] - corner) < room and mesh[k] > before[-1]:
             before.append(float(mesh[k]))
-            after.append(float(kink))
-        elif abs(mesh[k] - kink) >= room:
-            own.append(float(kink))
+            after.append(float(corner))
+        elif abs(mesh[k] - corner) >= room:
+            own.append(float(corner))
     moved = np.interp(mesh, [*before, 1.0], [*after, 1.0])
     return np.unique(np.concatenate([moved, own]))
 

@@ -24,8 +24,6 @@ def two_point(instance: Instance, duration: float) -> TwoPoint:
 
     Parameters
     ----------
-    instance
-        What is to be solved.
     duration
         tf - t0; where it is free, a first guess.
     """

@@ -12,7 +12,7 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.solvers.collocation.curve import Path
-from satsym.solvers.collocation.matching import Matching
+from satsym.solvers.collocation.elimination import Matching
 from satsym.solvers.collocation.problem import TwoPoint
 
 

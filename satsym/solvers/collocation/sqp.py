@@ -15,10 +15,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.solvers.collocation import mesh as meshes
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import Curve, Step
 from satsym.solvers.collocation.linearised import Linearised, linearise
 from satsym.solvers.collocation.newton import within_domain
+from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.second_variation import negative_directions
 from satsym.solvers.collocation.system import Residual, System
 from satsym.solvers.iteration import Limits
@@ -29,7 +31,7 @@ CLOSE = 1e-3
 CUT = 0.2
 """A Newton step that had to be cut below this share is followed by a Gauss-Newton step."""
 
-SHARES = (1.0, 0.8, 0.5, 0.0)
+FRACTIONS = (1.0, 0.8, 0.5, 0.0)
 """Shares of the costates with which their own rates by the states are evaluated: the first for which the second
 variation is positive is taken. One is Newton, zero Gauss-Newton, whose quadratic programme is always convex."""
 
@@ -59,8 +61,6 @@ def minimise(
     start
         A curve on the system's mesh: a guess of the states without costates, or an extremal of a neighbouring
         problem.
-    limits
-        When to stop, and who watches.
     tolerance
         Size of the last step.
     most
@@ -73,14 +73,14 @@ def minimise(
     residual, cost = system.residual(curve), system.cost(curve)
     violated = system.infeasibility(residual)
     penalty: Array = np.zeros(len(violated))
-    share, hard, newton, close = 1.0, False, False, False
+    fraction, hard, newton, close = 1.0, False, False, False
     for iteration in range(most):
         first = not curve.stages[n:].any()
         jacobian = system.jacobian(curve)
         limits.spend(curve.flat.shape[1])
         if iteration and coarsest < float("inf") and system.largest_turn(curve, jacobian) > coarsest:
             return Attempt(curve, Reason.OUTGROWN, iteration, cost)
-        avoid = newton and share < CUT
+        avoid = newton and fraction < CUT
         linearised, newton = _direction(system, curve, residual, jacobian, avoid, trusted=close)
         if linearised is None:
             return Attempt(curve, Reason.SINGULAR, iteration, cost)
@@ -95,14 +95,14 @@ def minimise(
         if size < tolerance:
             curve = curve.moved(step, 1.0)
             return Attempt(curve, _kind(system, curve), iteration + 1, system.cost(curve), hard)
-        close = newton and size < CLOSE and share == 1.0
+        close = newton and size < CLOSE and fraction == 1.0
         penalty = _raised(penalty, _multipliers(curve, step, n, len(violated)))
         at = _Merit(system, curve, cost, violated, penalty, linearised, step)
         found = _searched(at, within_domain(problem, curve, step), whole=close)
         if found is None:
             return Attempt(curve, Reason.NO_DESCENT, iteration, cost)
-        curve, residual, share, halved = found
-        limits.spend(int(curve.flat.shape[1] * -np.log2(share)) if halved else 0)
+        curve, residual, fraction, halved = found
+        limits.spend(int(curve.flat.shape[1] * -np.log2(fraction)) if halved else 0)
         hard = hard or halved
         cost, violated = system.cost(curve), system.infeasibility(residual)
     return Attempt(curve, Reason.NO_CONVERGENCE, most, cost, facts=(most,))
@@ -136,31 +136,29 @@ class _Merit:
         return float(value) if np.isfinite(value) else float("inf")
 
 
-def _searched(at: _Merit, share: float, whole: bool) -> tuple[Curve, Residual, float, bool] | None:
+def _searched(at: _Merit, fraction: float, whole: bool) -> tuple[Curve, Residual, float, bool] | None:
     """The curve after the largest share of the step that descends, its residual, the share, and whether it was halved.
 
     Parameters
     ----------
-    at
-        From where.
     share
         To begin with.
     whole
         Whether that is taken as it is.
     """
     slope, value, tried = min(at.slope(), 0.0), at.value, 0
-    while share >= SHORTEST:
-        trial = at.curve.moved(at.step, share)
+    while fraction >= SHORTEST:
+        trial = at.curve.moved(at.step, fraction)
         residual = at.system.residual(trial)
-        enough = value + SUFFICIENT * share * slope + 1e-9 * abs(value)
+        enough = value + SUFFICIENT * fraction * slope + 1e-9 * abs(value)
         if whole or at.measured(trial, residual) <= enough:
-            return trial, residual, share, tried > 0
+            return trial, residual, fraction, tried > 0
         corrected = _corrected(at.system, at.curve, trial, residual, at.linearised) if tried < CORRECTED else None
         if corrected is not None:
             residual = at.system.residual(corrected)
             if at.measured(corrected, residual) <= enough:
-                return corrected, residual, share, tried > 0
-        tried, share = tried + 1, share / 2.0
+                return corrected, residual, fraction, tried > 0
+        tried, fraction = tried + 1, fraction / 2.0
     return None
 
 
@@ -176,12 +174,12 @@ def _direction(
         stages[n:], nodes[n:] = 0.0, 0.0
         bare = jacobian.copy()
         bare[n:, :n] = system.jacobian(replace(curve, stages=stages, nodes=nodes))[n:, :n]
-    shares = (0.0,) if without_costates else (1.0, 0.0) if trusted else SHARES[int(avoid) :]
-    for share in shares:
+    fractions = (0.0,) if without_costates else (1.0, 0.0) if trusted else FRACTIONS[int(avoid) :]
+    for fraction in fractions:
         try:
-            linearised = linearise(system, curve, residual, share * jacobian + (1.0 - share) * bare)
-            if trusted or share == 0.0 or negative_directions(system.problem, curve, linearised.matching) == 0:
-                return linearised, share == 1.0
+            linearised = linearise(system, curve, residual, fraction * jacobian + (1.0 - fraction) * bare)
+            if trusted or fraction == 0.0 or negative_directions(system.problem, curve, linearised.matching) == 0:
+                return linearised, fraction == 1.0
         except np.linalg.LinAlgError:
             continue
     return None, False
@@ -223,3 +221,19 @@ def _corrected(system: System, curve: Curve, trial: Curve, residual: Residual, l
         if not (corrected.stages[i] > 0.1 * curve.stages[i]).all():
             return None
     return corrected
+
+
+ROUNDS, STEPS = 6, 60
+"""Minimisations, and steps of each."""
+
+
+def descended(problem: TwoPoint, curve: Curve, stages: int, tolerance: float, limits: Limits) -> Attempt:
+    """Minimise from a neighbour's minimum. Where there is none nearby the way may be long, and need other meshes."""
+    steps = 0
+    for _ in range(ROUNDS):
+        curve = curve.on(meshes.laid(problem, curve), stages)
+        found = minimise(System(problem, curve.mesh, stages), curve, limits, tolerance, STEPS, meshes.COARSEST)
+        steps, curve = steps + found.iterations, found.curve
+        if limits.expired or found.reason not in (Reason.OUTGROWN, Reason.NO_CONVERGENCE):
+            break
+    return replace(found, iterations=steps)

@@ -14,25 +14,17 @@ from satsym.solvers.collocation.problem import TwoPoint
 
 @dataclass(frozen=True, eq=False)
 class Residual:
-    """By how much the equations of a curve fail.
-
-    Attributes
-    ----------
-    stages
-        Z - z_i - h A F(Z), shape (2n, N, s).
-    ends
-        z_{i+1} minus the end of the interval's polynomial, shape (2n, N).
-    start, finish
-        At the boundary, shapes (n,) and (n + e,).
-    rates
-        A F(Z), shape (2n, N, s): the change of the stages by the duration, apart from explicit time.
-    """
+    """By how much the equations of a curve fail."""
 
     stages: Array
+    """Z - z_i - h A F(Z), shape (2n, N, s)."""
     ends: Array
+    """z_{i+1} minus the end of the interval's polynomial, shape (2n, N)."""
     start: Array
     finish: Array
+    """At the boundary, shapes (n,) and (n + e,)."""
     rates: Array
+    """A F(Z), shape (2n, N, s): the change of the stages by the duration, apart from explicit time."""
 
     @property
     def by_interval(self) -> Array:

@@ -23,22 +23,16 @@ TINY = 1e-60
 
 @dataclass(frozen=True)
 class Regularised(Instance):
-    """An instance with ``smoothing``/2 times the squared control added to its running cost.
-
-    Attributes
-    ----------
-    smoothing
-        In the unit of the running cost over that of the squared control.
-    share
-        Of the weight of |u| that counts, 0 to 1.
-    """
+    """An instance with ``smoothing``/2 times the squared control added to its running cost."""
 
     smoothing: float = 1.0
-    share: float = 1.0
+    """In the unit of the running cost over that of the squared control."""
+    fraction: float = 1.0
+    """Of the weight of |u| that counts, 0 to 1."""
 
     @cached_property
     def control_set(self) -> ControlSet:
-        return super().control_set.regularised(self.smoothing, self.share)
+        return super().control_set.regularised(self.smoothing, self.fraction)
 
 
 def sloping(instance: Instance, lam: Array) -> Array:
@@ -49,10 +43,10 @@ def sloping(instance: Instance, lam: Array) -> Array:
     return np.where(lam == 0.0, tiny, lam)
 
 
-def regularised(instance: Instance, smoothing: float, share: float) -> Regularised:
+def regularised(instance: Instance, smoothing: float, fraction: float) -> Regularised:
     """The regularised problem of an instance."""
     stated = {f.name: getattr(instance, f.name) for f in fields(Instance)}
-    return Regularised(**stated, smoothing=smoothing, share=share)
+    return Regularised(**stated, smoothing=smoothing, fraction=fraction)
 
 
 def smoothed_law(instance: Instance, control_set: ControlSet, t: Array, x: Array, lam: Array) -> Array:
@@ -69,14 +63,16 @@ def smoothed_law(instance: Instance, control_set: ControlSet, t: Array, x: Array
     """
     model, p = instance.model, instance.parameters
     sigma = model.switching_function_batch(t, x, lam, p)
-    weight = control_set.share * model.magnitude_weight_batch(t, x, p)
+    weight = control_set.fraction * model.magnitude_weight_batch(t, x, p)
     beyond = sigma - np.minimum(np.maximum(sigma, -weight), weight)
     return control_set.project(-beyond / control_set.smoothing)
 
 
 def smoothed_cost(instance: Instance, control_set: ControlSet, t: Array, x: Array, u: Array) -> Array:
     """The regularised problem's running cost, shape (N,)."""
-    model, p, smoothing, share = instance.model, instance.parameters, control_set.smoothing, control_set.share
+    model, p, smoothing, fraction = instance.model, instance.parameters, control_set.smoothing, control_set.fraction
     weight = model.magnitude_weight_batch(t, x, p)
     exact = model.running_cost_batch(t, x, u, p)
-    return np.asarray(exact + smoothing / 2.0 * (u * u).sum(axis=0) - (1.0 - share) * (weight * np.abs(u)).sum(axis=0))
+    return np.asarray(
+        exact + smoothing / 2.0 * (u * u).sum(axis=0) - (1.0 - fraction) * (weight * np.abs(u)).sum(axis=0)
+    )

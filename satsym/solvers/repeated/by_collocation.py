@@ -25,7 +25,7 @@ from satsym.solvers.iteration import Limits
 
 
 class ByCollocation:
-    """See :class:`satsym.solvers.repeated.means.Means`; nothing is compiled."""
+    """See :class:`satsym.solvers.repeated.repeated.Means`; nothing is compiled."""
 
     name = "collocation"
 

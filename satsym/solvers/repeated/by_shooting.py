@@ -15,14 +15,14 @@ from satsym.solvers.iteration import Limits
 from satsym.solvers.shooting.arcs import Arcs
 from satsym.solvers.shooting.newton import linearised
 from satsym.solvers.shooting.quick import quick_newton
-from satsym.solvers.shooting.solving import ACCURACY, converged, extremal, from_nothing
+from satsym.solvers.shooting.solving import ACCURACY, converged, extremal, without_guess
 
 Shot = tuple[Arcs, float, int]
 """Arcs that meet, with their error and the iterations."""
 
 
 class ByShooting:
-    """See :class:`satsym.solvers.repeated.means.Means`; for instances whose model is compiled."""
+    """See :class:`satsym.solvers.repeated.repeated.Means`; for instances whose model is compiled."""
 
     name = "shooting"
 
@@ -52,7 +52,7 @@ class ByShooting:
 
     def cold(self, case: Instance, limits: Limits) -> Extremal:
         """A cold start, which also decides on arcs and steps."""
-        found = from_nothing(case, limits, True)
+        found = without_guess(case, limits, True)
         if found.status.answered and isinstance(found.path, Arcs):
             self._good, self._steps = found.path, max(found.path.steps // 2, 1)
         return found

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
+from typing import Protocol
 
 import numpy as np
 
@@ -18,37 +19,27 @@ from satsym.solvers.extremal import solved, without_numbers
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.iteration import Limits, watched
 from satsym.solvers.repeated.by_collocation import ByCollocation
-from satsym.solvers.repeated.means import Means
 from satsym.spec import Variable
 from satsym.status import BadInput, Status
 
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """What solving once more came to.
-
-    Attributes
-    ----------
-    status, message
-        Outcome, and one sentence for people.
-    objective
-        The cost J; NaN where there is none.
-    times, x, lam
-        Nodes, shape (N+1,), with states and costates there, shapes (n, N+1), in the model's units.
-    origin
-        From where it was found: the last answer, a straight line, or a cold start.
-    extremal
-        The same in scaled variables.
-    """
+    """What solving once more came to."""
 
     status: Status
     message: str
+    """Outcome, and one sentence for people."""
     objective: float
+    """The cost J; NaN where there is none."""
     times: Array
     x: Array
     lam: Array
+    """Nodes, shape (N+1,), with states and costates there, shapes (n, N+1), in the model's units."""
     origin: Origin
+    """From where it was found: the last answer, a straight line, or a cold start."""
     extremal: Extremal
+    """The same in scaled variables."""
 
 
 class Repeated:
@@ -211,3 +202,21 @@ def _number(value: float, variable: Variable, key: str) -> float:
     if not np.isfinite(value):
         raise BadInput(f"{key}: {value} is not finite; give a number")
     return value_of(variable, value, key)
+
+
+class Means(Protocol):
+    """Finds extremals of instances that differ in initial state and parameters; remembers the last good one."""
+
+    name: str
+
+    def near(self, case: Instance, limits: Limits) -> Extremal | None:
+        """The extremal near the last good one; ``None`` if there is none of either."""
+
+    def straight(self, case: Instance, limits: Limits) -> Extremal | None:
+        """The one to which a straight line leads, if that leads to a minimum without bounds at once."""
+
+    def cold(self, case: Instance, limits: Limits) -> Extremal:
+        """What comes of a cold start."""
+
+    def full(self, found: Extremal, limits: Limits) -> Extremal:
+        """An extremal that was found, with everything an answer in full has."""

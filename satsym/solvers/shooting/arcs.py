@@ -25,28 +25,19 @@ ASYMPTOTIC = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class Arcs:
-    """States and costates at the nodes of a mesh, from where the canonical equations take their course.
-
-    Attributes
-    ----------
-    problem
-        The two-point problem.
-    mesh
-        Nodes in [0, 1], shape (N+1,). Kinks must be among them, or the order is lost; with compiled kernels only the
-        path between the nodes asks for that.
-    nodes
-        Values there, shape (2n, N+1).
-    theta
-        Extra unknowns, shape (e,).
-    steps
-        Number S of integration steps in each arc.
-    """
+    """States and costates at the nodes of a mesh, from where the canonical equations take their course."""
 
     problem: TwoPoint
+    """The two-point problem."""
     mesh: Array
+    """Nodes in [0, 1], shape (N+1,). Kinks must be among them, or the order is lost; with compiled kernels only the
+    path between the nodes asks for that."""
     nodes: Array
+    """Values there, shape (2n, N+1)."""
     theta: Array
+    """Extra unknowns, shape (e,)."""
     steps: int = 1
+    """Number S of integration steps in each arc."""
 
     @cached_property
     def widths(self) -> Array:
@@ -147,12 +138,12 @@ class Arcs:
 
     def _flight(self) -> Any:
         """What compiled functions say: ends, cost and transition in the model's units."""
-        from satsym.solvers.shooting.compiled import flight
+        from satsym.solvers.shooting.compiled import integrator
 
         problem, instance = self.problem, self.problem.instance
         times = instance.t0 + problem.elapsed(self.theta) * self.mesh
         nodes = np.ascontiguousarray((self.nodes * problem.scale.both).T)
-        return flight(instance.model)(times, nodes, self.steps, instance.parameters, problem.control_set.arguments)
+        return integrator(instance.model)(times, nodes, self.steps, instance.parameters, problem.control_set.arguments)
 
     def _slope(self, tau: Array, values: Array) -> Array:
         """Rates by tau, shape (2n, M)."""

@@ -1,4 +1,4 @@
-"""Arcs compiled with numba: integration, variational equations and kinks as machine code, from scalar functions.
+"""Arcs compiled with numba: integration, variational equations and corners as machine code, from scalar functions.
 
 Built once for each model, which takes seconds. Where the control meets or leaves a bound a step ends exactly
 there, so nodes may lie anywhere.
@@ -20,14 +20,14 @@ Numbers = tuple[float, ...]
 Compiled = Callable[..., Any]
 
 LOCATING = 60
-"""Secant steps to a kink, at the most."""
+"""Secant steps to a corner, at the most."""
 
 LAST_DIGITS = 1e-15
 """How closely it is located, as a share of the step it lies in."""
 
 
 @lru_cache(maxsize=16)
-def flight(model: Kernels) -> Compiled:
+def integrator(model: Kernels) -> Compiled:
     """``(times, nodes, steps, p, bounds) -> ends, cost, transition`` for a compiled model, compiled at its first call.
 
     All in the model's units: times and nodes, shapes (N+1,) and (N+1, 2n); where the arcs end, shape (N, 2n); the
@@ -40,7 +40,7 @@ def flight(model: Kernels) -> Compiled:
 
     # In w, states, costates and the integral of the running cost are the first column, variations the others.
     @njit()
-    def flown(start: float, end: float, steps: int, w: Array, p: Numbers, bounds: Numbers) -> Array:
+    def integrated(start: float, end: float, steps: int, w: Array, p: Numbers, bounds: Numbers) -> Array:
         """An arc; a step that meets or leaves a bound ends there, and the rest of it follows."""
         sides, bare = np.empty(bounds_count), np.empty(rows + 1)
         for bound in range(bounds_count):
@@ -72,7 +72,7 @@ def flight(model: Kernels) -> Compiled:
             for j in range(rows):
                 w[j * width] = nodes[i, j]
                 w[j * width + 1 + j] = 1.0
-            w = flown(times[i], times[i + 1], steps, w, p, bounds)
+            w = integrated(times[i], times[i + 1], steps, w, p, bounds)
             for j in range(rows):
                 ends[i, j] = w[j * width]
                 for k in range(rows):

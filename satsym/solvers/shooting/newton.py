@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.solvers.collocation.matching import Matching
+from satsym.solvers.collocation.elimination import Matching
 from satsym.solvers.iteration import Limits
 from satsym.solvers.shooting.arcs import Arcs
 from satsym.solvers.shooting.runge_kutta import ORDER
@@ -36,38 +36,25 @@ MOST = 30
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """Where Newton ended.
-
-    Attributes
-    ----------
-    arcs
-        The last ones.
-    matching
-        The last linear system, ``None`` where it failed.
-    iterations
-        Number of corrections.
-    """
+    """Where Newton ended."""
 
     arcs: Arcs
+    """The last ones."""
     matching: Matching | None
+    """The last linear system, ``None`` where it failed."""
     iterations: int
+    """Number of corrections."""
 
 
 @dataclass(frozen=True, eq=False)
 class Residual:
-    """What is wrong with arcs that end there.
-
-    Attributes
-    ----------
-    defects
-        Where each arc ends, less where the next one begins, shape (N, 2n).
-    start, finish
-        Residuals at the boundary, shapes (n,) and (n + e,).
-    """
+    """What is wrong with arcs that end there."""
 
     defects: Array
+    """Where each arc ends, less where the next one begins, shape (N, 2n)."""
     start: Array
     finish: Array
+    """Residuals at the boundary, shapes (n,) and (n + e,)."""
 
 
 def residual(arcs: Arcs, ends: Array) -> Residual:
@@ -92,15 +79,7 @@ def linearised(arcs: Arcs) -> tuple[Matching, Residual]:
 
 
 def newton(arcs: Arcs, limits: Limits) -> Outcome:
-    """Newton from arcs with enough steps.
-
-    Parameters
-    ----------
-    arcs
-        Where to start.
-    limits
-        When to stop.
-    """
+    """Newton from arcs with enough steps."""
     before = float("inf")
     for iteration in range(1, MOST + 1):
         try:

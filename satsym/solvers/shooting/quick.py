@@ -14,7 +14,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.kernels import Kernels
 from satsym.solvers.shooting.arcs import MOST_STEPS, Arcs
-from satsym.solvers.shooting.compiled import Compiled, Numbers, flight, njit, packed
+from satsym.solvers.shooting.compiled import Compiled, Numbers, integrator, njit, packed
 from satsym.solvers.shooting.newton import within_domain
 from satsym.solvers.shooting.runge_kutta import ORDER
 
@@ -93,7 +93,7 @@ def spread(model: Kernels, free_time: bool) -> Compiled:
     """
     n = len(model.spec.states)
     rows, last = 2 * n, n + free_time
-    arcs, vector, rates = flight(model), packed(n), model.functions["canonical"]
+    arcs, vector, rates = integrator(model), packed(n), model.functions["canonical"]
 
     @njit()
     def field(

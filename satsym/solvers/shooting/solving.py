@@ -1,4 +1,4 @@
-"""Shooting from a cold start: enough arcs and steps, and within bounds nodes on the kinks."""
+"""Shooting from a cold start: enough arcs and steps, and within bounds nodes on the corners."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from satsym.instance import Instance
 from satsym.solution import Progress, Solution
 from satsym.solvers.cold_start.origin import Start
 from satsym.solvers.collocation.attempt import Reason
-from satsym.solvers.collocation.continuation import kinks, through
+from satsym.solvers.collocation.continuation import corners, through
 from satsym.solvers.collocation.curve import Path
 from satsym.solvers.collocation.extremal import Extremal
 from satsym.solvers.collocation.problem import TwoPoint
@@ -30,12 +30,12 @@ ACCURACY = 1e-11
 REFINEMENTS = 3
 """Times that every arc is halved where Newton fails."""
 
-LEAST = 10
+FEWEST_ARCS = 10
 """Arcs of a problem whose bounds are met."""
 
 STILL = 1e-11
 SETTLING = 12
-"""Times that nodes are moved to the kinks, and the share of the horizon by which these may then still move."""
+"""Times that nodes are moved to the corners, and the share of the horizon by which these may then still move."""
 
 
 def solve(instance: Instance, progress: Progress | None = None) -> Solution:
@@ -61,10 +61,10 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     """
     if instance.solver.backend == "numba":
         instance = replace(instance, model=instance.model.compiled())
-    return solved(instance, progress, "shooting", from_nothing)
+    return solved(instance, progress, "shooting", without_guess)
 
 
-def from_nothing(instance: Instance, limits: Limits, effort: bool) -> Extremal:
+def without_guess(instance: Instance, limits: Limits, effort: bool) -> Extremal:
     """The extremal to which a cold start leads; see :func:`satsym.solvers.two_point.from_cold_start`."""
     return from_cold_start(instance, limits, effort, _accurate)
 
@@ -72,20 +72,17 @@ def from_nothing(instance: Instance, limits: Limits, effort: bool) -> Extremal:
 def extremal(problem: TwoPoint, start: Path, limits: Limits) -> Extremal:
     """The extremal within bounds that is near a path of states and costates.
 
-    Nodes are put on the kinks that bounds cause, until these stand still; then the error decides on the steps.
+    Nodes are put on the corners that bounds cause, until these stand still; then the error decides on the steps.
 
     Parameters
     ----------
-    problem
-        What is solved.
-    start
-        Where to start.
     limits
         When to stop, and who is told the cost of what was found.
     """
     tolerance, accuracy = problem.instance.solver.tolerance, ACCURACY
-    met, mesh, total = kinks(problem, start), start.mesh, 0
-    count = max(LEAST, len(mesh) - 2 - len(met))  # with a remainder of an arc between neighbouring kinks, no more arcs
+    met, mesh, total = corners(problem, start), start.mesh, 0
+    # with a remainder of an arc between neighbouring corners, no more arcs
+    count = max(FEWEST_ARCS, len(mesh) - 2 - len(met))
     path, why = start, Reason.UNSETTLED.value
     for _ in range(SETTLING):
         mesh = through(met, count) if len(met) else mesh
@@ -94,7 +91,7 @@ def extremal(problem: TwoPoint, start: Path, limits: Limits) -> Extremal:
         if outcome.matching is None:
             why = f"Newton's method fails on {len(mesh) - 1} arcs"
             break
-        before, met = met, kinks(problem, path)
+        before, met = met, corners(problem, path)
         if len(met) == len(before) and np.abs(met - before).max(initial=0.0) < STILL:
             arcs, error = doubled(outcome.arcs, outcome.matching)
             limits.tell(arcs.cost() * problem.scale.cost, error)

@@ -27,7 +27,7 @@ COMPILED_BLOCK = 512
 """The same for compiled code, to which calls cost nothing."""
 
 
-def fly(
+def simulate(
     kernels: Kernels,
     times: ArrayLike,
     x0: ArrayLike,
@@ -48,8 +48,6 @@ def fly(
         Starts, shape (n, N).
     p
         Parameters, in the model's order; each a number or an array of shape (N,).
-    steps
-        Number of steps between two times.
     u
         Constant controls, shape (m,) or (m, N); none by default.
     method
@@ -127,12 +125,12 @@ class _RungeKutta:
             now = t + i * h
             f(now, y, u, parameters, out=total)
             np.multiply(total, 0.5 * h, out=stage)
-            for share in (0.5, 1.0):  # the second and third slopes; each leads on from the start
+            for fraction in (0.5, 1.0):  # the second and third slopes; each leads on from the start
                 stage += y
                 f(now + 0.5 * h, stage, u, parameters, out=slope)
                 np.multiply(slope, 2.0, out=stage)
                 total += stage
-                np.multiply(slope, share * h, out=stage)
+                np.multiply(slope, fraction * h, out=stage)
             stage += y
             f(now + h, stage, u, parameters, out=slope)
             total += slope

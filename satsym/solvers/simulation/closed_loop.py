@@ -1,4 +1,4 @@
-"""The motion under a control law, which may have kinks: SciPy's DOP853, by small tolerances."""
+"""The motion under a control law, which may have corners: SciPy's DOP853, by small tolerances."""
 
 from __future__ import annotations
 
@@ -27,41 +27,28 @@ EVERY = 256
 
 @dataclass(frozen=True)
 class Law:
-    """A control law.
-
-    Attributes
-    ----------
-    name
-        As results call it.
-    control
-        The controls at a time and state, in the model's order; bounds are not its business.
-    """
+    """A control law."""
 
     name: str
+    """As results call it."""
     control: Control
+    """The controls at a time and state, in the model's order; bounds are not its business."""
 
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A motion under a law.
-
-    Attributes
-    ----------
-    x, u
-        States (n, N+1) and controls (m, N+1) at the nodes, NaN after an early end.
-    steps
-        That the integrator took.
-    left_domain
-        Whether a state that must be positive vanished and so ended it.
-    """
+    """A motion under a law."""
 
     x: Array
     u: Array
+    """States (n, N+1) and controls (m, N+1) at the nodes, NaN after an early end."""
     steps: int
+    """That the integrator took."""
     left_domain: bool
+    """Whether a state that must be positive vanished and so ended it."""
 
 
-def fly(
+def simulate(
     instance: Instance,
     law: Law,
     nodes: Array,
@@ -79,8 +66,6 @@ def fly(
         Of each step, relative to the size of each state.
     dynamics
         Rates of change of the states, if not those of the model: a function of t, x, u and p on floats.
-    limits
-        Of the time, if it has any.
 
     Raises
     ------

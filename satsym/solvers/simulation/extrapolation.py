@@ -21,7 +21,7 @@ Rates = Callable[[float, Array], Array]
 SUBSTEPS = (2, 4, 6, 8, 10, 12, 14, 16)
 """Numbers of midpoint steps in the columns of the extrapolation table; the last has order 16."""
 
-SAFETY, LEAST, MOST = 0.7, 0.1, 4.0
+SAFETY, SMALLEST_CHANGE, MOST = 0.7, 0.1, 4.0
 """Of the next step: share of what the error allows, and bounds of its change."""
 
 MOST_STEPS = 100_000
@@ -33,21 +33,14 @@ class NotFinite(Exception):
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """Values at the ends of the steps that were taken.
-
-    Attributes
-    ----------
-    times
-        Shape (K,), from the start to the end.
-    values
-        Shape (K, d).
-    columns
-        Of the extrapolation table that the steps needed at most.
-    """
+    """Values at the ends of the steps that were taken."""
 
     times: Array
+    """Shape (K,), from the start to the end."""
     values: Array
+    """Shape (K, d)."""
     columns: int = len(SUBSTEPS)
+    """Of the extrapolation table that the steps needed at most."""
 
     @property
     def end(self) -> Array:
@@ -58,7 +51,7 @@ class Trajectory:
 def integrate(
     rates: Rates, times: Array, start: Array, tolerance: float, size: Array, first: float = 0.25
 ) -> list[Trajectory]:
-    """Integrate y' = rates(t, y) through given times; each is met exactly, as a kink must be.
+    """Integrate y' = rates(t, y) through given times; each is met exactly, as a corner must be.
 
     Parameters
     ----------
@@ -141,7 +134,7 @@ def _piece(
             values.append(reached)
             most = max(most, column + 1)
         factor = SAFETY * (1.0 / max(error, 1e-10)) ** (1.0 / (2 * column + 1))
-        grown = h * min(MOST, max(LEAST, factor))
+        grown = h * min(MOST, max(SMALLEST_CHANGE, factor))
         step = grown if not last or error > 1.0 else np.copysign(max(abs(grown), abs(step)), h)
         if abs(step) < 1e-14 * max(abs(at), abs(end - begin)):
             break

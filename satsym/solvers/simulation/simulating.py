@@ -9,8 +9,8 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.grid import Grid
 from satsym.instance import Instance
-from satsym.solution import Flight, Invariant
-from satsym.solvers import out_of_time
+from satsym.solution import Invariant, Simulation
+from satsym.solvers import iteration
 from satsym.solvers.iteration import Limits, TimeUp, watched
 from satsym.solvers.simulation import blocks, closed_loop
 from satsym.solvers.simulation.balances import balances
@@ -22,10 +22,10 @@ RICHARDSON = 2.0**4 - 1.0
 MARGIN = 0.1
 """Share of the tolerance that the estimated error may take: estimates can be low."""
 
-SHARPER, LEAST_TOLERANCE = 0.01, 3e-14
+TIGHTER, SMALLEST_TOLERANCE = 0.01, 3e-14
 """Under a law: the tolerance of a run relative to that before, and the least that is more than rounding."""
 GAINED = 10.0
-"""So many times is such a run better at least; nearly by as much as its tolerance, where the law has no kinks."""
+"""So many times is such a run better at least; nearly by as much as its tolerance, where the law has no corners."""
 
 ROUNDING = 100.0 * float(np.finfo(float).eps)
 """Relative change of the initial state whose effect is taken for that of rounding. More steps do not make the error
@@ -46,7 +46,7 @@ to a singularity would take longest, to no avail.
 
 
 @np.errstate(all="ignore")  # numbers out of range are a status
-def simulate(instance: Instance, law: Law | None = None) -> Flight:
+def simulate(instance: Instance, law: Law | None = None) -> Simulation:
     """Integrate the motion, twice, until the two runs agree: with RK4, or under a law with DOP853.
 
     Parameters
@@ -74,10 +74,10 @@ def simulate(instance: Instance, law: Law | None = None) -> Flight:
     try:
         return _simulated(instance, law, limits)
     except TimeUp:
-        return out_of_time.flight(instance, law.name if law else "none")
+        return iteration.unsimulated(instance, law.name if law else "none")
 
 
-def _simulated(instance: Instance, law: Law | None, limits: Limits) -> Flight:
+def _simulated(instance: Instance, law: Law | None, limits: Limits) -> Simulation:
     assert instance.tf is not None
     times = Grid.uniform(instance.t0, instance.tf, instance.solver.steps).nodes
     if law is None:
@@ -87,7 +87,7 @@ def _simulated(instance: Instance, law: Law | None, limits: Limits) -> Flight:
         run, error = _controlled(instance, law, times, limits)
         x, u, steps, left = run.x, run.u, run.steps, run.left_domain
     status = Status.LEFT_DOMAIN if left else _status(instance, x, error, limits)
-    return Flight(
+    return Simulation(
         instance=instance,
         feedback=law.name if law else "none",
         status=status,
@@ -130,11 +130,13 @@ def _controlled(instance: Instance, law: Law, times: Array, limits: Limits) -> t
     """The motion under a law, with smaller tolerances until two runs agree; and the estimated error."""
     sufficient = MARGIN * instance.solver.tolerance
     tolerance, error = sufficient, float("nan")
-    run = closed_loop.fly(instance, law, times, tolerance, limits=limits)
-    while not error <= sufficient and tolerance > LEAST_TOLERANCE and np.isfinite(run.x).all() and not limits.expired:
-        tolerance, coarse = max(SHARPER * tolerance, LEAST_TOLERANCE), run
+    run = closed_loop.simulate(instance, law, times, tolerance, limits=limits)
+    while (
+        not error <= sufficient and tolerance > SMALLEST_TOLERANCE and np.isfinite(run.x).all() and not limits.expired
+    ):
+        tolerance, coarse = max(TIGHTER * tolerance, SMALLEST_TOLERANCE), run
         try:
-            run = closed_loop.fly(instance, law, times, tolerance, limits=limits)
+            run = closed_loop.simulate(instance, law, times, tolerance, limits=limits)
         except TimeUp:
             break
         error = _difference(coarse.x, run.x) / GAINED

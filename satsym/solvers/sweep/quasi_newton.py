@@ -12,11 +12,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.solution import Iteration
-from satsym.solvers.sweep.sweeps import Forward, Sweep, SweepProblem, backward, forward
-from satsym.solvers.sweep.tangent import Tangent, tangent
+from satsym.solvers.sweep.sweeps import Forward, Sweep, SweepProblem, backward, forward, unbounded_law
 from satsym.status import Status
 
 MEMORY = 20
@@ -47,21 +47,14 @@ SURE = 3.0
 
 @dataclass(frozen=True, eq=False)
 class Descent:
-    """Where the descent is.
-
-    Attributes
-    ----------
-    sweep
-        The current control with all that is known about it.
-    pairs
-        Recent (step, change of gradient) pairs in the scaled control, newest last.
-    stalled
-        Whether no step could be found from here.
-    """
+    """Where the descent is."""
 
     sweep: Sweep
+    """The current control with all that is known about it."""
     pairs: tuple[tuple[Array, Array], ...] = ()
+    """Recent (step, change of gradient) pairs in the scaled control, newest last."""
     stalled: bool = False
+    """Whether no step could be found from here."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,3 +175,48 @@ def _inverse_hessian(pairs: Sequence[tuple[Array, Array]], gradient: Array, free
     for s, y, curvature, weight in reversed(used):
         q += (weight - np.sum(y * q) / curvature) * s
     return q
+
+
+ON_SPHERE = 1e-9
+"""Relative distance from the sphere within which a control is on it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Tangent:
+    """In which directions the controls of a sweep are free, seen from where they are and where the law wants them.
+
+    Within a box a control is free or saturated. On a ball a control that is saturated can still turn: it moves on a
+    sphere, so gradients count only as far as they are tangential, and the curvature of the sphere adds to the Hessian.
+    """
+
+    moves: NDArray[np.bool_]
+    """Where a control moves along them; elsewhere a bound holds it. Shape (m, M)."""
+    normal: Array | None = None
+    """Unit normals of the sphere, zero where a control is not on it, shape (m, M); ``None`` without a ball."""
+    curvature: Array | float = 1.0
+    """The Hessian of H on the sphere, relative to H_uu; 1 elsewhere. Shape (M,), or a number."""
+
+    def along(self, field: Array) -> Array:
+        """A field without its normal components, shape (m, M)."""
+        return field if self.normal is None else field - self.normal * (self.normal * field).sum(axis=0)
+
+    def free(self, field: Array) -> Array:
+        """The same, and zero where controls are held."""
+        return np.where(self.moves, self.along(field), 0.0)
+
+
+def tangent(problem: SweepProblem, sweep: Sweep) -> Tangent:
+    """The free directions at the control of a sweep."""
+    instance = problem.instance
+    wanted = unbounded_law(problem, sweep)
+    free = instance.control_set.active(wanted) == 0
+    if instance.model.spec.control_set != "ball" or free.all():
+        return Tangent(free)
+    norm, excess = np.linalg.norm(sweep.u, axis=0), np.linalg.norm(wanted, axis=0) / instance.max_norm
+    outside = (excess > 1.0) & (norm >= (1.0 - ON_SPHERE) * instance.max_norm)
+    held = outside & ((sweep.u * wanted).sum(axis=0) > 0.0)  # from the far side the way is through the ball
+    return Tangent(
+        moves=free | held,
+        normal=np.where(held, sweep.u / np.where(held, norm, 1.0), 0.0),
+        curvature=np.where(held, excess, 1.0),
+    )

@@ -37,22 +37,15 @@ ASIDE = 100, 5.0
 
 @dataclass(frozen=True, eq=False)
 class Relaxed:
-    """Where the relaxation is.
-
-    Attributes
-    ----------
-    sweep
-        The last sweep that could be completed.
-    closest, since
-        Smallest distance of control and law so far, and the number of sweeps since then.
-    broken
-        Whether the next control led out of the domain or to numbers that are not finite.
-    """
+    """Where the relaxation is."""
 
     sweep: Sweep
+    """The last sweep that could be completed."""
     closest: float
     since: int = 0
+    """Smallest distance of control and law so far, and the number of sweeps since then."""
     broken: bool = False
+    """Whether the next control led out of the domain or to numbers that are not finite."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +55,7 @@ class Relaxation:
     problem: SweepProblem
     start: Forward
     tolerance: float
-    share: float
+    fraction: float
 
     def init(self) -> Relaxed:
         """Sweep the starting control."""
@@ -75,7 +68,7 @@ class Relaxation:
 
     def step(self, state: Relaxed) -> Relaxed:
         """Move a share of the way to the control law."""
-        motion = forward(self.problem, state.sweep.u + self.share * state.sweep.step)
+        motion = forward(self.problem, state.sweep.u + self.fraction * state.sweep.step)
         if not motion.usable:
             return replace(state, broken=True)
         sweep = backward(self.problem, motion)
@@ -88,9 +81,9 @@ class Relaxation:
         if state.sweep.residual <= self.tolerance:
             return Status.CONVERGED, "control and control law agree"
         if state.broken or _distance(state.sweep) > GROWTH * state.closest:
-            return Status.NOT_CONVERGED, f"relaxation {self.share:g} diverges; {self._advice()}"
+            return Status.NOT_CONVERGED, f"relaxation {self.fraction:g} diverges; {self._advice()}"
         if state.since >= PATIENCE:
-            return Status.NOT_CONVERGED, f"relaxation {self.share:g} goes round in circles; {self._advice()}"
+            return Status.NOT_CONVERGED, f"relaxation {self.fraction:g} goes round in circles; {self._advice()}"
         return None
 
     def _advice(self) -> str:

@@ -1,7 +1,7 @@
 """The forward-backward sweep method for a given final time and a free final state (boundary type 3).
 
-Solve on a uniform grid; where the control meets bounds, put nodes at the kinks and solve again from there,
-until the kinks stay where they are: between kinks everything is smooth and the sweep is fourth order.
+Solve on a uniform grid; where the control meets bounds, put nodes at the corners and solve again from there,
+until the corners stay where they are: between corners everything is smooth and the sweep is fourth order.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from satsym.grid import Grid
 from satsym.instance import Instance
 from satsym.kernels import Kernels
 from satsym.solution import Iteration, Progress, Solution
-from satsym.solvers.control import corners as kinks
+from satsym.solvers.control import corners
 from satsym.solvers.iteration import Limits, Run, iterate
 from satsym.solvers.sweep.quasi_newton import Descent, QuasiNewton
 from satsym.solvers.sweep.relaxation import Relaxation, Relaxed
@@ -23,7 +23,7 @@ from satsym.solvers.sweep.sweeps import Forward, Sweep, SweepProblem, forward, u
 from satsym.status import Status
 
 ROUNDS = 6
-"""Times that nodes are moved to the kinks, at the most."""
+"""Times that nodes are moved to the corners, at the most."""
 
 SETTLED = 1e-9
 """Kinks that move by less than this share of the horizon stay."""
@@ -87,7 +87,7 @@ def switching_times(problem: SweepProblem, sweep: Sweep) -> tuple[tuple[float, .
     if instance.model.spec.control_set == "box":
         fixed = np.tile(np.equal(instance.lower, instance.upper), 2)
         distances[fixed] = np.inf
-    found = [kinks.zeros(problem.times, row) if np.isfinite(row).all() else [] for row in distances]
+    found = [corners.zeros(problem.times, row) if np.isfinite(row).all() else [] for row in distances]
     if len(found) == 1:
         found = found * m
     return tuple(tuple(sorted(t for row in found[i::m] for t in row)) for i in range(m))
@@ -126,18 +126,18 @@ def _run(
 
 
 def _improvable(run: Run[Descent] | Run[Relaxed]) -> bool:
-    """Whether nodes at the kinks can help: also a descent that is stuck may be so for the kinks within its steps."""
+    """Whether nodes at the corners can help: also a descent that is stuck may be so for corners within its steps."""
     return run.status is Status.CONVERGED or (isinstance(run.state, Descent) and run.state.stalled)
 
 
 def _with_kinks(problem: SweepProblem, switches: tuple[tuple[float, ...], ...]) -> SweepProblem:
     uniform = Grid.uniform(problem.grid.t0, problem.grid.tf, problem.instance.solver.steps)
     points = sorted({t for times in switches for t in times})
-    return SweepProblem(problem.instance, problem.kernels, uniform.with_kinks(points), problem.limits)
+    return SweepProblem(problem.instance, problem.kernels, uniform.with_corners(points), problem.limits)
 
 
 def _carried_over(problem: SweepProblem, sweep: Sweep, onto: SweepProblem) -> Array:
-    """The control on another grid, interpolated before it is projected so that its kinks stay sharp."""
+    """The control on another grid, interpolated before it is projected so that its corners stay sharp."""
     smooth = unbounded_law(problem, sweep)
     u = np.array([np.interp(onto.times, problem.times, row) for row in smooth])
     return problem.instance.control_set.project(u)

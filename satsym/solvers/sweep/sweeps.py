@@ -42,22 +42,15 @@ class SweepProblem:
 
 @dataclass(frozen=True, eq=False)
 class Forward:
-    """A control and the motion it causes.
-
-    Attributes
-    ----------
-    u, x
-        Controls and states on the fine grid.
-    objective
-        The cost J; NaN where the motion is not finite.
-    in_domain
-        Whether the motion stays where the model has a meaning.
-    """
+    """A control and the motion it causes."""
 
     u: Array
     x: Array
+    """Controls and states on the fine grid."""
     objective: float
+    """The cost J; NaN where the motion is not finite."""
     in_domain: bool
+    """Whether the motion stays where the model has a meaning."""
 
     @property
     def usable(self) -> bool:
@@ -67,24 +60,16 @@ class Forward:
 
 @dataclass(frozen=True, eq=False)
 class Sweep:
-    """A motion with its costates and what they say about the control.
-
-    Attributes
-    ----------
-    forward
-        The motion.
-    lam
-        Costates on the fine grid.
-    law
-        The admissible control that minimises H at these states and costates.
-    gradient
-        H_u: the derivative of J by the control, per unit of time.
-    """
+    """A motion with its costates and what they say about the control."""
 
     forward: Forward
+    """The motion."""
     lam: Array
+    """Costates on the fine grid."""
     law: Array
+    """The admissible control that minimises H at these states and costates."""
     gradient: Array
+    """H_u: the derivative of J by the control, per unit of time."""
 
     @property
     def u(self) -> Array:

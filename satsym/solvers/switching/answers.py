@@ -9,7 +9,7 @@ import numpy as np
 
 from satsym.instance import Instance
 from satsym.solution import Iteration, Solution
-from satsym.solvers import out_of_time
+from satsym.solvers import iteration
 from satsym.solvers.switching.attempt import Exact
 from satsym.solvers.switching.cold_start.homotopy import Stopped
 from satsym.status import Status
@@ -46,6 +46,6 @@ def answered(instance: Instance, exact: Exact, history: tuple[Iteration, ...], b
 
 def without(instance: Instance, stopped: Stopped, history: tuple[Iteration, ...], began: float) -> Solution:
     """Why there is no answer."""
-    nothing = out_of_time.solution(instance, "bang-bang", time.perf_counter() - began)
+    nothing = iteration.unsolved(instance, "bang-bang", time.perf_counter() - began)
     message, done = stopped.message, len(history)
     return replace(nothing, status=stopped.status, message=message, iterations=done, history=history)

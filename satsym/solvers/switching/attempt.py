@@ -45,28 +45,21 @@ class Origin(Enum):
     EFFORT = "the signs of minimum effort"
     DRAWN = "switching times that were drawn"
     SMOOTHED = "the regularised problem, smoothed by {:.1e}"
-    LEAST_TIME = "the structure of the minimum time"
+    MINIMUM_TIME = "the structure of the minimum time"
 
 
 @dataclass(frozen=True, eq=False)
 class Exact:
-    """An extremal of exact arcs that minimises H all along.
-
-    Attributes
-    ----------
-    refined, trajectory
-        Its structure with its times, and the arcs.
-    iterations
-        Corrections of all attempts.
-    origin, smoothing
-        From where it was found, and by how much that was smoothed.
-    """
+    """An extremal of exact arcs that minimises H all along."""
 
     refined: Refined
     trajectory: Trajectory
+    """Its structure with its times, and the arcs."""
     iterations: int
+    """Corrections of all attempts."""
     origin: Origin = Origin.STRUCTURE
     smoothing: float = 0.0
+    """From where it was found, and by how much that was smoothed."""
 
 
 def attempt(instance: Instance, first: Guess, limits: Limits) -> Exact | None:

@@ -33,71 +33,47 @@ become ever smaller."""
 
 @dataclass(frozen=True, eq=False)
 class Unknowns:
-    """What an extremal of a structure is found by.
-
-    Attributes
-    ----------
-    costates
-        At the start, shape (n,).
-    times
-        Switching times, one control after the other.
-    end
-        The final time.
-    multipliers
-        Of terminal constraints.
-    """
+    """What an extremal of a structure is found by."""
 
     costates: Array
+    """At the start, shape (n,)."""
     times: Array
+    """Switching times, one control after the other."""
     end: float
+    """The final time."""
     multipliers: Array
+    """Of terminal constraints."""
 
 
 @dataclass(frozen=True, eq=False)
 class Arc:
-    """A piece between two switches of any control.
-
-    Attributes
-    ----------
-    field
-        Its equations.
-    start, end
-        Times.
-    before, after
-        States and costates there, shape (2n,).
-    event
-        The switch that ends it; ``None`` for the last.
-    slopes
-        Derivatives of ``after`` by the initial costates, the switching times and the final time, the piece's end
-        moving with these: shape (2n, n + K + 1). Meaningless where they were not asked for.
-    """
+    """A piece between two switches of any control."""
 
     field: Field
+    """Its equations."""
     start: float
     end: float
+    """Times."""
     before: Array
     after: Array
+    """States and costates there, shape (2n,)."""
     event: Event | None
+    """The switch that ends it; ``None`` for the last."""
     slopes: Array
+    """Derivatives of ``after`` by the initial costates, the switching times and the final time, the piece's end moving
+    with these: shape (2n, n + K + 1). Meaningless where they were not asked for."""
 
 
 @dataclass(frozen=True, eq=False)
 class Accuracy:
-    """How arcs are integrated.
-
-    Attributes
-    ----------
-    sizes
-        Typical sizes of states and costates, shape (2n,).
-    slopes
-        Whether derivatives are needed.
-    tolerance
-        Error of a step, relative to the size of each component.
-    """
+    """How arcs are integrated."""
 
     sizes: Array
+    """Typical sizes of states and costates, shape (2n,)."""
     slopes: bool = True
+    """Whether derivatives are needed."""
     tolerance: float = TOLERANCE
+    """Error of a step, relative to the size of each component."""
 
 
 def extremal(instance: Instance, structure: Structure, at: Unknowns, accuracy: Accuracy) -> list[Arc]:

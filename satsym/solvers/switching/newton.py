@@ -42,48 +42,32 @@ RANK = 1e-11
 
 @dataclass(frozen=True, eq=False)
 class Refined:
-    """An extremal of a structure.
-
-    Attributes
-    ----------
-    structure, at
-        Levels, and what they lead to.
-    arcs
-        The extremal.
-    residual
-        Largest residual, each relative to the size of what it compares.
-    iterations
-        Corrections.
-    sizes
-        Of states and costates, which residuals are relative to, shape (2n,).
-    """
+    """An extremal of a structure."""
 
     structure: Structure
     at: Unknowns
+    """Levels, and what they lead to."""
     arcs: list[Arc]
+    """The extremal."""
     residual: float
+    """Largest residual, each relative to the size of what it compares."""
     iterations: int
+    """Corrections."""
     sizes: Array
+    """Of states and costates, which residuals are relative to, shape (2n,)."""
 
 
 @dataclass(frozen=True, eq=False)
 class Equations:
-    """What must vanish at the end of an extremal and at its switches, scaled row by row.
-
-    Attributes
-    ----------
-    instance, structure
-        What is solved, and with which levels.
-    sizes
-        Of states and costates, shape (2n,).
-    duration
-        Typical.
-    """
+    """What must vanish at the end of an extremal and at its switches, scaled row by row."""
 
     instance: Instance
     structure: Structure
+    """What is solved, and with which levels."""
     sizes: Array
+    """Of states and costates, shape (2n,)."""
     duration: float
+    """Typical."""
 
     @property
     def free_time(self) -> bool:
@@ -179,24 +163,17 @@ class Equations:
 
 @dataclass(frozen=True, eq=False)
 class _Switch:
-    """Where a control switches, and how that moves with the unknowns.
-
-    Attributes
-    ----------
-    field, t, z
-        The equations of an arc beside it, its time, and states and costates there.
-    slopes
-        Derivatives of these by all unknowns, shape (2n, v).
-    control, column
-        Which control, and the place of the time among the switching times; ``None`` where it is no unknown.
-    """
+    """Where a control switches, and how that moves with the unknowns."""
 
     field: Field
     t: float
     z: list[float]
+    """The equations of an arc beside it, its time, and states and costates there."""
     slopes: Array
+    """Derivatives of these by all unknowns, shape (2n, v)."""
     control: int
     column: int | None
+    """Which control, and the place of the time among the switching times; ``None`` where it is no unknown."""
 
     def row(self, levels: tuple[int, int], sizes: Array) -> tuple[float, Array]:
         """The switching function minus its value at such a switch, by the unknowns; in units of its own size."""
@@ -247,10 +224,6 @@ def solve(equations: Equations, start: Unknowns, watch: Callable[[float, float],
 
     Parameters
     ----------
-    equations
-        What is to vanish.
-    start
-        Where to begin.
     watch
         Told the size of each correction, and NaN for the cost, which is not known on the way.
     """

@@ -18,11 +18,11 @@ from satsym.solvers.iteration import Limits, watched
 from satsym.solvers.nearest_end import nearest
 from satsym.solvers.switching.answers import answered, without
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
-from satsym.solvers.switching.cold_start import by_scouts, homotopy, least_effort
+from satsym.solvers.switching.cold_start import by_scouts, homotopy, minimum_effort
 from satsym.solvers.switching.cold_start import saturated as held
 from satsym.solvers.switching.cold_start.recognition import Sample, guess, inside, sample
-from satsym.solvers.switching.least_time import least_time
 from satsym.solvers.switching.linear import by_reach
+from satsym.solvers.switching.minimum_time import minimum_time
 from satsym.solvers.switching.newton import switching
 from satsym.solvers.switching.refusals import refuse
 from satsym.solvers.switching.structure import REST, Guess, Structure
@@ -85,7 +85,7 @@ def _by_least_time(instance: Instance, stopped: homotopy.Stopped, limits: Limits
 
     The latter where the motion is linear: only there is it known that nothing arrives earlier.
     """
-    hurried = least_time(instance) if instance.tf is not None and instance.final and not limits.expired else None
+    hurried = minimum_time(instance) if instance.tf is not None and instance.final and not limits.expired else None
     found = _found(hurried, limits) if hurried is not None else stopped
     if isinstance(found, homotopy.Stopped) or instance.tf is None or hurried is None:
         return stopped
@@ -95,9 +95,9 @@ def _by_least_time(instance: Instance, stopped: homotopy.Stopped, limits: Limits
             f"the minimum time to the given end is {least:.10g} (structure {name}), and only {given:.10g} is given"
         )
         return replace(stopped, status=Status.INFEASIBLE, message=message)
-    near = attempt(instance, _relaxed(instance, found), limits) if least < given else None
+    near = attempt(instance, _with_coasts(instance, found), limits) if least < given else None
     if near is not None:
-        return replace(near, origin=Origin.LEAST_TIME)
+        return replace(near, origin=Origin.MINIMUM_TIME)
     if stopped.status is Status.INFEASIBLE:
         return stopped
     alone = ", and at that only one control arrives, whatever it costs" if abs(given / least - 1.0) <= ENOUGH else ""
@@ -143,7 +143,7 @@ def _compared(instance: Instance, known: list[Exact], limits: Limits) -> list[Ex
     return known if isinstance(smoothed, homotopy.Stopped) else [*known, smoothed]
 
 
-def _signs(instance: Instance, near: least_effort.Smoothed) -> Guess:
+def _signs(instance: Instance, near: minimum_effort.Smoothed) -> Guess:
     """The structure of a motion of least effort, as its signs show it."""
     seen = sample(near.problem, near.curve)
     first = guess(instance, replace(seen, weight=0.0 * seen.weight))
@@ -178,7 +178,7 @@ def _found(instance: Instance, limits: Limits) -> Exact | homotopy.Stopped:
 def _by_effort(instance: Instance, limits: Limits) -> Exact | homotopy.Stopped:
     """What motions of least effort lead to, the final time being free, or else less and less smoothing."""
     if instance.tf is None:
-        near = chain(least_effort.quick(instance, limits), least_effort.shortening(instance, limits))
+        near = chain(minimum_effort.quick(instance, limits), minimum_effort.shortening(instance, limits))
         for start in unbroken(_signs(instance, one) for one in near):
             exact = _first_of(instance, start, limits, thorough=True)
             if exact:
@@ -188,9 +188,9 @@ def _by_effort(instance: Instance, limits: Limits) -> Exact | homotopy.Stopped:
     return _smoothed(instance, limits)
 
 
-def _beside(instance: Instance, duration: float, shares: Sequence[float], limits: Limits) -> list[Exact]:
+def _beside(instance: Instance, duration: float, fractions: Sequence[float], limits: Limits) -> list[Exact]:
     """Extremals to which the signs of minimum effort lead in shares of a duration."""
-    starts = unbroken(_signs(instance, near) for near in least_effort.beside(instance, duration, shares, limits))
+    starts = unbroken(_signs(instance, near) for near in minimum_effort.beside(instance, duration, fractions, limits))
     found = (_first_of(instance, start, limits, thorough=False) for start in starts)
     return [exact for exact in found if exact]
 
@@ -201,7 +201,7 @@ def _smoothed(instance: Instance, limits: Limits, thorough: bool = True) -> Exac
     Structures with an arc less or more are many, so they are tried once all smoothed extremals show no better one.
     """
     before: Sample | None = None
-    last: least_effort.Smoothed | None = None
+    last: minimum_effort.Smoothed | None = None
     waiting: list[tuple[Guess, float]] = []
     try:
         for level, near in enumerate(homotopy.path(instance, limits)):
@@ -243,8 +243,8 @@ def _resting(instance: Instance) -> Guess | None:
     return Guess(rest, np.zeros(0), np.zeros(len(instance.initial)), instance.tf)
 
 
-def _relaxed(instance: Instance, hurried: Exact) -> Guess:
-    """The structure of the least time with a short rest at each switch, where |u| costs and there is some time left."""
+def _with_coasts(instance: Instance, hurried: Exact) -> Guess:
+    """The structure of the minimum time with a short rest at each switch, where |u| costs and some time is left."""
     at, structure = hurried.refined.at, hurried.refined.structure
     assert instance.tf is not None
     spare = ((instance.tf - at.end) * (instance.tf - instance.t0)) ** 0.5 / max(structure.switches, 1)

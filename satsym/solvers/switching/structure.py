@@ -16,24 +16,16 @@ NAMES = {LOWER: "-", REST: "0", UPPER: "+", SINGULAR: "s"}
 
 @dataclass(frozen=True)
 class Event:
-    """One control's passage from a level to the next.
-
-    Attributes
-    ----------
-    time
-        When.
-    control
-        Which control.
-    number
-        How many of its switches were before.
-    column
-        Place of the time among those of all controls, one control after the other.
-    """
+    """One control's passage from a level to the next."""
 
     time: float
+    """When."""
     control: int
+    """Which control."""
     number: int
+    """How many of its switches were before."""
     column: int
+    """Place of the time among those of all controls, one control after the other."""
 
 
 @dataclass(frozen=True)
@@ -96,19 +88,12 @@ class Structure:
 
 @dataclass(frozen=True, eq=False)
 class Guess:
-    """Where to look for an extremal of exact arcs.
-
-    Attributes
-    ----------
-    structure, times
-        Levels and switching times.
-    costates
-        At the start.
-    end
-        The final time.
-    """
+    """Where to look for an extremal of exact arcs."""
 
     structure: Structure
     times: Array
+    """Levels and switching times."""
     costates: Array
+    """At the start."""
     end: float
+    """The final time."""

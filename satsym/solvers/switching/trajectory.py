@@ -28,21 +28,14 @@ DECIDING = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """An extremal arc by arc.
-
-    Attributes
-    ----------
-    arcs
-        Exact arcs that have a length.
-    stations
-        Of each arc: starts of the integrator's steps, times (S,) and values (2n, S), and the columns they need.
-    points
-        Of each arc: Gauss points, shape (N,), with their weights, values (2n, N) and controls (m, N) there.
-    """
+    """An extremal arc by arc."""
 
     arcs: list[Arc]
+    """Exact arcs that have a length."""
     stations: list[tuple[Array, Array, int]]
+    """Of each arc: starts of the integrator's steps, times (S,) and values (2n, S), and the columns they need."""
     points: list[tuple[Array, Array, Array, Array]]
+    """Of each arc: Gauss points, shape (N,), with their weights, values (2n, N) and controls (m, N) there."""
 
     @classmethod
     def of(cls, arcs: list[Arc], sizes: Array) -> Trajectory:
@@ -98,27 +91,19 @@ class Trajectory:
 
 @dataclass(frozen=True)
 class Violation:
-    """Where a control does not minimise H, or leaves its bounds on a singular arc.
-
-    Attributes
-    ----------
-    control, arc
-        Which control, and which of the arcs between any switches.
-    start, end
-        The times between which another level would be better.
-    level
-        That level.
-    amount
-        How far the switching function is on the wrong side, relative to its largest value; or how far the control is
-        beyond its bounds, relative to the distance between them.
-    """
+    """Where a control does not minimise H, or leaves its bounds on a singular arc."""
 
     control: int
     arc: int
+    """Which control, and which of the arcs between any switches."""
     start: float
     end: float
+    """The times between which another level would be better."""
     level: int
+    """That level."""
     amount: float
+    """How far the switching function is on the wrong side, relative to its largest value; or how far the control is
+    beyond its bounds, relative to the distance between them."""
 
 
 def violations(trajectory: Trajectory, slack: float = 1e-9) -> list[Violation]:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from satsym.symbolic.analysis.companion import CompanionForm, companion, companion_form
+from satsym.symbolic.analysis.companion_form import CompanionForm, companion_form, companion_matrix
 from satsym.symbolic.analysis.exponential import matrix_exponential
 from satsym.symbolic.analysis.field import NotExact
 from satsym.symbolic.analysis.jordan import JordanBlock, JordanForm, jordan_form
@@ -35,8 +35,8 @@ __all__ = [
     "Spectrum",
     "Stability",
     "analyse",
-    "companion",
     "companion_form",
+    "companion_matrix",
     "controllability",
     "jordan_form",
     "linear_system",
@@ -50,45 +50,31 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Analysis:
-    """What the matrices of a linear system say, exactly.
-
-    Attributes
-    ----------
-    system
-        The matrices and names.
-    characteristic_polynomial
-        Coefficients of det(s I - A): monic, highest power first.
-    eigenvalues
-        Each distinct one with its multiplicities and block sizes; only those with a closed form.
-    jordan, exponential
-        Jordan form and e^(At); ``None`` where an eigenvalue has no closed form.
-    stability
-        The verdict and its reason.
-    routh
-        The Routh array of the characteristic polynomial.
-    controllability, by_input
-        For all inputs, and for each alone; ``None`` and empty without inputs.
-    observability, by_output
-        Likewise for outputs.
-    companion
-        For each input that reaches everything alone: the companion form.
-    assumed
-        What is taken not to vanish, where that is not certain.
-    """
+    """What the matrices of a linear system say, exactly."""
 
     system: LinearSystem
+    """The matrices and names."""
     characteristic_polynomial: tuple[sp.Expr, ...]
+    """Coefficients of det(s I - A): monic, highest power first."""
     eigenvalues: tuple[Eigenvalue, ...]
+    """Each distinct one with its multiplicities and block sizes; only those with a closed form."""
     jordan: JordanForm | None
     exponential: sp.ImmutableMatrix | None
+    """Jordan form and e^(At); ``None`` where an eigenvalue has no closed form."""
     stability: Stability
+    """The verdict and its reason."""
     routh: RouthArray
+    """The Routh array of the characteristic polynomial."""
     controllability: Reach | None
     by_input: Mapping[str, Reach]
+    """For all inputs, and for each alone; ``None`` and empty without inputs."""
     observability: Reach | None
     by_output: Mapping[str, Reach]
-    companion: Mapping[str, CompanionForm]
+    """Likewise for outputs."""
+    companion_forms: Mapping[str, CompanionForm]
+    """For each input that reaches everything alone: the companion form."""
     assumed: tuple[sp.Expr, ...]
+    """What is taken not to vanish, where that is not certain."""
 
 
 def analyse(system: LinearSystem) -> Analysis:

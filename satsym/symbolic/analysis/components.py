@@ -19,22 +19,15 @@ from satsym.symbolic.analysis.spectrum import LAMBDA, Factor, Spectrum
 
 @dataclass(frozen=True)
 class Component:
-    """What belongs to one factor; all matrices vanish on the other subspaces.
-
-    Attributes
-    ----------
-    factor
-        The factor.
-    projector
-        The projector onto its subspace.
-    semisimple, nilpotent
-        S and N there; their sum is A times the projector.
-    """
+    """What belongs to one factor; all matrices vanish on the other subspaces."""
 
     factor: Factor
+    """The factor."""
     projector: DomainMatrix
+    """The projector onto its subspace."""
     semisimple: DomainMatrix
     nilpotent: DomainMatrix
+    """S and N there; their sum is A times the projector."""
 
     @property
     def nilpotent_powers(self) -> list[DomainMatrix]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import sympy as sp
@@ -21,18 +22,12 @@ class NotExact(ValueError):
 
 @dataclass(frozen=True)
 class Field:
-    """The field that the entries of some matrices lie in.
-
-    Attributes
-    ----------
-    domain
-        Its elements, as sympy's polynomials know them.
-    restore
-        Symbols that stand for roots of parameters -> what they stand for.
-    """
+    """The field that the entries of some matrices lie in."""
 
     domain: Any
+    """Its elements, as sympy's polynomials know them."""
     restore: dict[sp.Symbol, sp.Expr]
+    """Symbols that stand for roots of parameters -> what they stand for."""
 
     def element(self, expression: sp.Expr) -> Any:
         """An expression over the field as an element of it."""
@@ -93,8 +88,11 @@ def exact(*matrices: sp.MatrixBase) -> tuple[Field, list[DomainMatrix]]:
     return Field(domain, {root: s ** sp.Rational(1, power) for s, (root, power) in roots.items()}), found
 
 
+@lru_cache(maxsize=4096)  # matrices repeat their entries
 def shortest(expression: sp.Expr) -> sp.Expr:
     """The shortest of the usual ways to write an expression."""
+    if expression.is_Atom:
+        return expression
     whole = sp.cancel(expression) if expression.is_rational_function() else expression
     candidates = [whole, sp.expand(whole), sp.factor(whole)]
     return min(candidates, key=lambda e: (sp.count_ops(e), sp.default_sort_key(e)))

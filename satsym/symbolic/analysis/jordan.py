@@ -22,21 +22,14 @@ class JordanBlock:
 
 @dataclass(frozen=True)
 class JordanForm:
-    """A T = T J.
-
-    Attributes
-    ----------
-    blocks
-        In the order in which they stand in J.
-    form
-        J, with ones above the diagonal.
-    basis
-        T: eigenvectors and generalised eigenvectors as columns, those of a block from the eigenvector up.
-    """
+    """A T = T J."""
 
     blocks: tuple[JordanBlock, ...]
+    """In the order in which they stand in J."""
     form: sp.ImmutableMatrix
+    """J, with ones above the diagonal."""
     basis: sp.ImmutableMatrix
+    """T: eigenvectors and generalised eigenvectors as columns, those of a block from the eigenvector up."""
 
 
 def jordan_form(of: Spectrum) -> JordanForm | None:

@@ -33,30 +33,21 @@ def small(k: int) -> sp.Symbol:
 
 @dataclass(frozen=True)
 class RouthArray:
-    """The Routh array of a polynomial.
-
-    Attributes
-    ----------
-    rows
-        One row for each power, the highest first.
-    special_cases
-        :data:`ZERO_ELEMENT` and :data:`ZERO_ROW`, as often as they occur and in this order of occurrence.
-    auxiliary
-        The polynomials (coefficients, highest power first) whose derivatives took the place of rows of zeros.
-    signs
-        Of the first column, as the small numbers tend to zero; ``None`` where the parameters decide.
-    right, axis, left
-        Number of roots with positive, zero and negative real parts, counted with multiplicity; ``None`` where the
-        parameters decide.
-    """
+    """The Routh array of a polynomial."""
 
     rows: tuple[tuple[sp.Expr, ...], ...]
+    """One row for each power, the highest first."""
     special_cases: tuple[str, ...]
+    """:data:`ZERO_ELEMENT` and :data:`ZERO_ROW`, as often as they occur and in this order of occurrence."""
     auxiliary: tuple[tuple[sp.Expr, ...], ...]
+    """The polynomials (coefficients, highest power first) whose derivatives took the place of rows of zeros."""
     signs: tuple[int | None, ...]
+    """Of the first column, as the small numbers tend to zero; ``None`` where the parameters decide."""
     right: int | None
     axis: int | None
     left: int | None
+    """Number of roots with positive, zero and negative real parts, counted with multiplicity; ``None`` where the
+    parameters decide."""
 
     @property
     def column(self) -> tuple[sp.Expr, ...]:

@@ -22,30 +22,21 @@ LAMBDA = sp.Symbol("eigenvalue")
 
 @dataclass(frozen=True)
 class Factor:
-    """An irreducible factor of the characteristic polynomial.
-
-    Attributes
-    ----------
-    polynomial
-        Monic, in :data:`LAMBDA`, over the field of the entries.
-    coefficients
-        The same as expressions, highest power first.
-    blocks
-        Sizes of the Jordan blocks of each of its roots, the largest first.
-    roots
-        Its roots: closed forms, or sympy's numbered roots of a polynomial with known coefficients; empty where
-        there is no closed form.
-    right, axis, left
-        Number of its roots with positive, zero and negative real parts; ``None`` where the parameters decide.
-    """
+    """An irreducible factor of the characteristic polynomial."""
 
     polynomial: sp.Poly
+    """Monic, in :data:`LAMBDA`, over the field of the entries."""
     coefficients: tuple[sp.Expr, ...]
+    """The same as expressions, highest power first."""
     blocks: tuple[int, ...]
+    """Sizes of the Jordan blocks of each of its roots, the largest first."""
     roots: tuple[sp.Expr, ...]
+    """Its roots: closed forms, or sympy's numbered roots of a polynomial with known coefficients; empty where there is
+    no closed form."""
     right: int | None
     axis: int | None
     left: int | None
+    """Number of its roots with positive, zero and negative real parts; ``None`` where the parameters decide."""
 
     @property
     def degree(self) -> int:
@@ -55,46 +46,31 @@ class Factor:
 
 @dataclass(frozen=True)
 class Eigenvalue:
-    """An eigenvalue with its multiplicities.
-
-    Attributes
-    ----------
-    value
-        In closed form.
-    algebraic, geometric
-        Multiplicity as a root of the characteristic polynomial, and number of independent eigenvectors.
-    blocks
-        Sizes of its Jordan blocks, the largest first.
-    """
+    """An eigenvalue with its multiplicities."""
 
     value: sp.Expr
+    """In closed form."""
     algebraic: int
     geometric: int
+    """Multiplicity as a root of the characteristic polynomial, and number of independent eigenvectors."""
     blocks: tuple[int, ...]
+    """Sizes of its Jordan blocks, the largest first."""
 
 
 @dataclass(frozen=True)
 class Spectrum:
-    """What the characteristic polynomial of a square matrix says.
-
-    Attributes
-    ----------
-    field, matrix
-        The matrix, exactly.
-    coefficients
-        Of the characteristic polynomial det(s I - A): monic, highest power first.
-    factors
-        Its irreducible factors, by degree and then by name.
-    assumed
-        What is taken not to vanish, where that is not certain: the parameters at which eigenvalues of different
-        factors meet, or a factor's own roots.
-    """
+    """What the characteristic polynomial of a square matrix says."""
 
     field: Field
     matrix: DomainMatrix
+    """The matrix, exactly."""
     coefficients: tuple[sp.Expr, ...]
+    """Of the characteristic polynomial det(s I - A): monic, highest power first."""
     factors: tuple[Factor, ...]
+    """Its irreducible factors, by degree and then by name."""
     assumed: tuple[sp.Expr, ...]
+    """What is taken not to vanish, where that is not certain: the parameters at which eigenvalues of different factors
+    meet, or a factor's own roots."""
 
     @property
     def polynomial(self) -> sp.Expr:

@@ -19,28 +19,19 @@ _GROWTH = {2: "linearly", 3: "quadratically", 4: "cubically"}
 
 @dataclass(frozen=True)
 class Stability:
-    """A verdict with its reason.
-
-    Attributes
-    ----------
-    verdict, cause
-        What holds, and which argument shows it.
-    eigenvalues
-        Those that the argument is about; empty where they have no closed form.
-    block
-        Size of the largest Jordan block on the imaginary axis; 0 where no eigenvalue lies there.
-    conditions
-        Where the parameters decide: all eigenvalues have negative real parts exactly where all of these are positive.
-    reason
-        One English sentence without its full stop.
-    """
+    """A verdict with its reason."""
 
     verdict: Verdict
     cause: Cause
+    """What holds, and which argument shows it."""
     eigenvalues: tuple[sp.Expr, ...]
+    """Those that the argument is about; empty where they have no closed form."""
     block: int
+    """Size of the largest Jordan block on the imaginary axis; 0 where no eigenvalue lies there."""
     conditions: tuple[sp.Expr, ...]
+    """Where the parameters decide: all eigenvalues have negative real parts exactly where all of these are positive."""
     reason: str
+    """One English sentence without its full stop."""
 
 
 def stability(of: Spectrum) -> Stability:

@@ -17,65 +17,43 @@ from satsym.symbolic.analysis.spectrum import LAMBDA, Factor, Spectrum, polynomi
 
 @dataclass(frozen=True)
 class Mode:
-    """A mode that no input reaches, or no output shows.
-
-    Attributes
-    ----------
-    eigenvalue
-        Its eigenvalue.
-    vector
-        Out of reach: w with w'A = eigenvalue w' and w'B = 0, so that w'x goes its own way. Out of sight: v with
-        A v = eigenvalue v and C v = 0, so that no output shows a motion along v.
-    """
+    """A mode that no input reaches, or no output shows."""
 
     eigenvalue: sp.Expr
+    """Its eigenvalue."""
     vector: sp.ImmutableMatrix
+    """Out of reach: w with w'A = eigenvalue w' and w'B = 0, so that w'x goes its own way. Out of sight: v with A v =
+    eigenvalue v and C v = 0, so that no output shows a motion along v."""
 
 
 @dataclass(frozen=True)
 class KalmanForm:
-    """A change of basis, x = basis z, that separates what is reached, or shown, from what is not.
-
-    Attributes
-    ----------
-    basis
-        T.
-    state, port
-        T^-1 A T, and T^-1 B or C T. The first ``rank`` coordinates are those reached, or shown.
-    """
+    """A change of basis, x = basis z, that separates what is reached, or shown, from what is not."""
 
     basis: sp.ImmutableMatrix
+    """T."""
     state: sp.ImmutableMatrix
     port: sp.ImmutableMatrix
+    """T^-1 A T, and T^-1 B or C T. The first ``rank`` coordinates are those reached, or shown."""
 
 
 @dataclass(frozen=True)
 class Reach:
-    """Controllability by some inputs, or observability by some outputs.
-
-    Attributes
-    ----------
-    matrix
-        [B, AB, A^2 B, ...] or [C; CA; CA^2; ...].
-    rank
-        Its rank.
-    assumed
-        What must not vanish for the rank to be that, where this is not certain.
-    pbh
-        For each distinct eigenvalue (or, where it has no closed form, its irreducible polynomial): the rank of
-        [s I - A, B], or of s I - A above C, there (Popov, Belevitch, Hautus).
-    lost
-        Modes out of reach, or out of sight, as far as their eigenvalues have closed forms.
-    kalman
-        Kalman's form where the rank is not full.
-    """
+    """Controllability by some inputs, or observability by some outputs."""
 
     matrix: sp.ImmutableMatrix
+    """[B, AB, A^2 B, ...] or [C; CA; CA^2; ...]."""
     rank: int
+    """Its rank."""
     assumed: tuple[sp.Expr, ...]
+    """What must not vanish for the rank to be that, where this is not certain."""
     pbh: tuple[tuple[sp.Expr, int], ...]
+    """For each distinct eigenvalue (or, where it has no closed form, its irreducible polynomial): the rank of [s I - A,
+    B], or of s I - A above C, there (Popov, Belevitch, Hautus)."""
     lost: tuple[Mode, ...]
+    """Modes out of reach, or out of sight, as far as their eigenvalues have closed forms."""
     kalman: KalmanForm | None
+    """Kalman's form where the rank is not full."""
 
     @property
     def full(self) -> bool:

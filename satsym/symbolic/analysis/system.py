@@ -9,23 +9,17 @@ import sympy as sp
 
 @dataclass(frozen=True)
 class LinearSystem:
-    """x' = A x + B u, y = C x + D u.
-
-    Attributes
-    ----------
-    a, b, c, d
-        Shapes (n, n), (n, m), (number of outputs, n), (number of outputs, m).
-    states, inputs, outputs
-        Names, in order.
-    """
+    """x' = A x + B u, y = C x + D u."""
 
     a: sp.ImmutableMatrix
     b: sp.ImmutableMatrix
     c: sp.ImmutableMatrix
     d: sp.ImmutableMatrix
+    """Shapes (n, n), (n, m), (number of outputs, n), (number of outputs, m)."""
     states: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
+    """Names, in order."""
 
     def __post_init__(self) -> None:
         n, m, k = len(self.states), len(self.inputs), len(self.outputs)

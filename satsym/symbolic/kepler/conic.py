@@ -11,7 +11,7 @@ from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import total_derivative
 from satsym.symbolic.checks import Point, compare, numeric
 from satsym.symbolic.derivation import Conclusion, Derivation, Equation, Step
-from satsym.symbolic.kepler.attraction import inertial_velocity, strength_of
+from satsym.symbolic.kepler.central_force import inertial_velocity, strength_of
 from satsym.symbolic.model import symbols_of
 
 

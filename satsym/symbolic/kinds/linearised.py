@@ -15,7 +15,7 @@ import sympy as sp
 
 from satsym.spec import Variable
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import constants_of, definitions_of, tidy, total_derivative
+from satsym.symbolic.algebra import constants_of, definitions_of, simplified, tidy, total_derivative, vanishes
 from satsym.symbolic.checks import Point, compare, first_order_at_zero, identity, numeric
 from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
 from satsym.symbolic.dimension_algebra import Dimension
@@ -23,7 +23,7 @@ from satsym.symbolic.kinds import stated_as
 from satsym.symbolic.kinds.derived import Derived, original_equations, there_and_back
 from satsym.symbolic.linear.notation import results
 from satsym.symbolic.model import Line, MaybeStep, Paragraph, Problem, Requirement, symbols_of, t
-from satsym.symbolic.motion.jacobians import jacobians
+from satsym.symbolic.motion.steps import jacobians
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -128,7 +128,7 @@ def reference_condition(so_far: Derivation) -> Step | None:
         names = ", ".join(s.name for s in unknown)
         raise DerivationError(f"{model.name}: the reference does not determine {names}; it may not be a motion at all")
     for symbol, value in found[0].items():
-        if sp.simplify(value - constants[symbol]) != 0:
+        if not vanishes(value - constants[symbol]):
             raise DerivationError(
                 f"{model.name}: the reference solves the equations of motion exactly when {symbol} = {value}, "
                 f"but {symbol} is defined as {constants[symbol]}"
@@ -236,7 +236,7 @@ def linearisation(so_far: Derivation) -> Step:
     constants = definitions_of(model)
     exact = [f.xreplace(constants) for f in so_far.rhs("deviation_equations")]
     rest = dict.fromkeys((*states, *controls), sp.Integer(0))
-    equations, check = jacobians(exact, states, {"A": states, "B": controls}, lambda e: tidy(sp.simplify(e)), rest)
+    equations, check = jacobians(exact, states, {"A": states, "B": controls}, lambda e: tidy(simplified(e)), rest)
     checks = (check, _transformed(so_far, [e.rhs for e in equations]))
     sources = ("deviation_equations", "definitions")
     return Step("linearisation", "differentiate at zero", equations, sources, checks)

@@ -10,11 +10,11 @@ import mpmath as mp
 import sympy as sp
 
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import constants_of, tidy, total_derivative
+from satsym.symbolic.algebra import constants_of, simplified, tidy, total_derivative
 from satsym.symbolic.checks import Point, compare, identity, numeric
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
 from satsym.symbolic.dimension_algebra import PLAIN, Dimension, over, product
-from satsym.symbolic.kepler import attraction, conic
+from satsym.symbolic.kepler import central_force, conic
 from satsym.symbolic.kepler import points as point_steps
 from satsym.symbolic.kinds import stated_as
 from satsym.symbolic.model import Line, MaybeStep, Paragraph, Particle, Problem, Requirement, symbols_of
@@ -40,12 +40,12 @@ class Newton(Particle):
         """The motion, what it keeps, and what is special where a centre attracts."""
         return (
             *self.motion_steps(),
-            attraction.central_attraction,
+            central_force.central_force,
             motion.reference,
             motion.conserved,
             conic.conic,
             motion.linearisation,
-            attraction.gravity_gradient,
+            central_force.gravity_gradient,
             point_steps.no_equilibrium,
             point_steps.point_spectrum,
         )
@@ -225,7 +225,7 @@ def equations_of_motion(so_far: Derivation) -> Step:
     if mass.rows != mass.cols or sp.simplify(mass.det()) == 0:
         raise DerivationError(f"{model.name}: Newton's law does not determine {', '.join(a.name for a in unknown)}")
     controls = symbols_of(model.controls)
-    simple = [sp.simplify(s) for s in mass.LUsolve(load)]
+    simple = [simplified(s) for s in mass.LUsolve(load)]
     solved = [min(tidy(s), tidy(s, controls), key=sp.count_ops) for s in simple]
     equations = tuple(
         Equation(q.name, symbol, s) for q, symbol, s in zip(model.coordinates, unknown, solved, strict=True)
@@ -285,7 +285,7 @@ def _accelerated(so_far: Derivation) -> dict[sp.Symbol, sp.Symbol]:
 def _resolved(model: Newton, *vectors: sp.Matrix) -> sp.Expr:
     """The sum of some vectors, by its components along the directions."""
     components = {
-        name: sp.Add(*(tidy(sp.simplify(vector.dot(e))) for vector in vectors)) for name, e in model.directions.items()
+        name: sp.Add(*(tidy(simplified(vector.dot(e))) for vector in vectors)) for name, e in model.directions.items()
     }
     return sp.Add(*(component * sp.Symbol(name) for name, component in components.items()))
 

@@ -8,12 +8,8 @@ def levels(value: str, threshold: str, low: str, high: str, reverse: bool) -> st
 
     Parameters
     ----------
-    value
-        The switching function.
     threshold
         Weight of the control's magnitude; ``"0"`` where it has none.
-    low, high
-        Lower and upper bound.
     reverse
         Whether the upper bound goes with great values, as where H is maximised.
     """

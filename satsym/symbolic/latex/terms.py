@@ -16,24 +16,16 @@ class Piece:
 
 @dataclass(frozen=True)
 class Term:
-    """One signed term of a sum.
-
-    Attributes
-    ----------
-    negative
-        Whether a minus stands before it.
-    tex
-        The term without its sign.
-    pieces
-        The same in pieces, for a term that is too long for a line.
-    names
-        Names of the symbols in it.
-    """
+    """One signed term of a sum."""
 
     negative: bool
+    """Whether a minus stands before it."""
     tex: str
+    """The term without its sign."""
     pieces: tuple[Piece, ...]
+    """The same in pieces, for a term that is too long for a line."""
     names: frozenset[str] = frozenset()
+    """Names of the symbols in it."""
 
     def signed(self, *, first: bool) -> str:
         """With its sign, as the first term of a sum or a later one."""

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, Literal
 
+import mpmath as mp
 import sympy as sp
 
 from satsym.symbolic.algebra import definitions_of
 from satsym.symbolic.analysis.field import NotExact, exact
 from satsym.symbolic.analysis.system import LinearSystem
+from satsym.symbolic.checks import numeric
 from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.linear.notation import results
 from satsym.symbolic.model import symbols_of, t, variables_of
@@ -81,3 +84,68 @@ def analysable(derivation: Derivation) -> bool:
     except NotExact:
         return False
     return True
+
+
+RANK_TOLERANCE = 1e-20
+"""Singular values below this part of the largest count as zero: rounding leaves 1e-30, a mistake none so small."""
+
+MOST_ITERATIONS = 100
+"""Of Newton's method, which doubles the digits once it is near."""
+
+
+def numeric_matrix(matrix: sp.MatrixBase) -> Callable[[Mapping[sp.Symbol, Any]], Any]:
+    """A function that evaluates a matrix at a point, in the working precision of mpmath."""
+    values, rows, columns = numeric(list(matrix)), matrix.rows, matrix.cols
+
+    def at(point: Mapping[sp.Symbol, Any]) -> Any:
+        found = mp.matrix(rows, columns)
+        for k, value in enumerate(values(point)):
+            found[k // columns, k % columns] = value
+        return found
+
+    return at
+
+
+def entries(matrices: Iterable[Any]) -> list[Any]:
+    """All entries of some numeric matrices."""
+    return [m[i, j] for m in matrices for i in range(m.rows) for j in range(m.cols)]
+
+
+def numeric_rank(matrix: Any) -> int:
+    """The rank of a numeric matrix, by its singular values."""
+    if not any(entries([matrix])):
+        return 0
+    wide = matrix if matrix.rows >= matrix.cols else matrix.T
+    decomposed = mp.svd_c if any(mp.im(entry) for entry in entries([wide])) else mp.svd_r
+    values = list(decomposed(mp.matrix(wide), compute_uv=False))
+    return sum(value > RANK_TOLERANCE * max(values) for value in values)
+
+
+def sign_function(matrix: Any) -> Any:
+    """The sign of a numeric matrix without imaginary eigenvalues, by Newton's method.
+
+    It has the same invariant subspaces, and 1 and -1 for eigenvalues with positive and negative real parts.
+    """
+    sign = matrix
+    for _ in range(MOST_ITERATIONS):
+        last, sign = sign, (sign + mp.inverse(sign)) / 2
+        if mp.mnorm(sign - last, "f") < mp.mpf(10) ** (5 - mp.mp.dps) * mp.mnorm(sign, "f"):
+            break
+    return sign
+
+
+def right_half_plane(coefficients: Sequence[Any]) -> tuple[int, int]:
+    """Number of roots with positive and with zero real parts of a numeric polynomial, highest power first."""
+    trailing = next(k for k, c in enumerate(reversed(coefficients)) if c != 0)
+    kept = list(coefficients)[: len(coefficients) - trailing]
+    degree = len(kept) - 1
+    with mp.workdps(4 * mp.mp.dps):  # multiple roots have but a share of the digits
+        companion = mp.matrix(degree, degree)
+        for k in range(degree):
+            companion[0, k] = -kept[k + 1] / kept[0]
+            if k:
+                companion[k, k - 1] = mp.mpf(1)
+        roots = mp.eig(companion, left=False, right=False) if degree else []
+    reals = [mp.re(root) for root in roots]
+    tolerance = mp.mpf(10) ** (-mp.mp.dps // 2)
+    return sum(x > tolerance for x in reals), trailing + sum(abs(x) <= tolerance for x in reals)

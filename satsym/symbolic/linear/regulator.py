@@ -22,8 +22,7 @@ from satsym.symbolic.analysis.system import LinearSystem
 from satsym.symbolic.checks import DIGITS, LIMIT, Point, compare, numeric, points
 from satsym.symbolic.derivation import Check, Derivation, Equation, Step
 from satsym.symbolic.linear import notation as ln
-from satsym.symbolic.linear.matrices import analysable, system_of
-from satsym.symbolic.linear.numeric_matrices import entries, numeric_matrix, sign_function
+from satsym.symbolic.linear.matrices import analysable, entries, numeric_matrix, sign_function, system_of
 from satsym.symbolic.model import Problem, symbols_of
 from satsym.symbolic.principle import pontryagin
 

@@ -18,8 +18,14 @@ from satsym.symbolic.analysis.stability import stability as stability_of
 from satsym.symbolic.checks import DIGITS, Point, compare, numeric, points
 from satsym.symbolic.derivation import Check, Conclusion, Derivation, Equation, Step
 from satsym.symbolic.linear import notation as ln
-from satsym.symbolic.linear.matrices import analysable, system_of
-from satsym.symbolic.linear.numeric_matrices import entries, numeric_matrix, numeric_rank, right_half_plane
+from satsym.symbolic.linear.matrices import (
+    analysable,
+    entries,
+    numeric_matrix,
+    numeric_rank,
+    right_half_plane,
+    system_of,
+)
 from satsym.symbolic.model import t
 
 EARLY, LATE = 100, 10_000

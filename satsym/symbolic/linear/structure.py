@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 import sympy as sp
 
-from satsym.symbolic.analysis.companion import companion_form as companion_of
+from satsym.symbolic.analysis.companion_form import companion_form as companion_of
 from satsym.symbolic.analysis.spectrum import Spectrum, spectrum
 from satsym.symbolic.analysis.structure import KalmanForm, Reach
 from satsym.symbolic.analysis.structure import controllability as controllability_of
@@ -15,8 +15,7 @@ from satsym.symbolic.analysis.structure import observability as observability_of
 from satsym.symbolic.checks import Point, compare
 from satsym.symbolic.derivation import Check, Conclusion, Derivation, Equation, Step
 from satsym.symbolic.linear import notation as ln
-from satsym.symbolic.linear.matrices import analysable, system_of
-from satsym.symbolic.linear.numeric_matrices import entries, numeric_matrix, numeric_rank
+from satsym.symbolic.linear.matrices import analysable, entries, numeric_matrix, numeric_rank, system_of
 from satsym.symbolic.model import symbols_of
 
 Kind = Literal["controllability", "observability"]
@@ -43,7 +42,7 @@ def companion_form(so_far: Derivation) -> Step | None:
     if not found:
         return None
     matrix = next(iter(found.values())).matrix
-    equations = [Equation("matrix", ln.COMPANION, matrix)]
+    equations = [Equation("matrix", ln.COMPANION_FORM, matrix)]
     equations += [
         Equation(f"basis_{name}", sp.Symbol(f"controllability_companion_basis_{name}"), form.basis)
         for name, form in found.items()

@@ -20,12 +20,12 @@ from satsym.formula.values import Matrix, Relation, Value
 from satsym.status import BadInput
 from satsym.symbolic import dimensions, loader
 from satsym.symbolic.algebra import definitions_of
+from satsym.symbolic.declared import begin
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation
 from satsym.symbolic.dimensions import Known
 from satsym.symbolic.lookup import addresses
 from satsym.symbolic.lookup.formulas import NotAFormula, from_tree, in_symbols, plain, to_tree
 from satsym.symbolic.model import variables_of
-from satsym.symbolic.notation import begin
 from satsym.symbolic.pipeline import derive
 from satsym.wording import shown, suggestion
 
@@ -65,18 +65,12 @@ def known_dimensions(name: str) -> Known:
 
 @dataclass(frozen=True)
 class Names:
-    """The names that some derivations, and a ledger, have.
-
-    Attributes
-    ----------
-    symbols
-        Name -> symbol, with what is assumed of it.
-    definitions
-        Named constants -> their values, which are put in wherever they occur.
-    """
+    """The names that some derivations, and a ledger, have."""
 
     symbols: Mapping[str, sp.Symbol]
+    """Name -> symbol, with what is assumed of it."""
     definitions: Mapping[str, sp.Expr]
+    """Named constants -> their values, which are put in wherever they occur."""
 
     @cached_property
     def positive(self) -> frozenset[str]:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
 import sympy as sp
 
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import definitions_of, tidy, total_derivative
-from satsym.symbolic.checks import identity
-from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
-from satsym.symbolic.kepler.attraction import inertial_velocity, uncontrolled_force
+from satsym.symbolic.algebra import definitions_of, simplified, tidy, total_derivative, vanishes
+from satsym.symbolic.checks import Point, compare, first_order_at_zero, identity, numeric, partial
+from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
+from satsym.symbolic.kepler.central_force import inertial_velocity, uncontrolled_force
 from satsym.symbolic.model import Particle, symbols_of, t
-from satsym.symbolic.motion.jacobians import jacobians
 from satsym.symbolic.motion.potential import potential
 
 _PLANES = {
@@ -52,7 +54,7 @@ def conserved(so_far: Derivation) -> Step | None:
     if height is None:
         return None
     speed = inertial_velocity(model)
-    kinetic = tidy(sp.simplify(speed.dot(speed) / 2))
+    kinetic = tidy(simplified(speed.dot(speed) / 2))
     lagrangian = kinetic - height
     momenta = {q: sp.diff(lagrangian, q_dot) for q, q_dot in coordinates.items()}
     found = []
@@ -61,12 +63,12 @@ def conserved(so_far: Derivation) -> Step | None:
     elif not lagrangian.has(t):
         # in a moving frame, what the symmetry in time keeps is not the energy
         kept = sum((p * coordinates[q] for q, p in momenta.items()), -lagrangian)
-        found.append(("jacobi_integral", tidy(sp.simplify(kept - height)) + height))
+        found.append(("jacobi_integral", tidy(simplified(kept - height)) + height))
     about_axes = _angular_momenta(model, uncontrolled_force(model), speed)
     angles = {v.symbol for v in model.states if v.kind == "angle"}
     cyclic = [q for q in coordinates if not lagrangian.has(q)]
     for q in cyclic:
-        if any(sp.simplify(momenta[q] - component) == 0 for component in about_axes.values()):
+        if any(vanishes(momenta[q] - component) for component in about_axes.values()):
             continue  # the turn of that coordinate is one about an axis
         rotation = q.name in angles and len([c for c in cyclic if c.name in angles]) == 1
         found.append(("angular_momentum" if rotation else f"momentum_{q.name}", momenta[q]))
@@ -84,9 +86,9 @@ def _angular_momenta(model: Particle, force: sp.Matrix, velocity: sp.Matrix) -> 
     place = model.position
     planes = _PLANES.get(len(place), {})
     return {
-        name: tidy(sp.simplify(place[i] * velocity[j] - place[j] * velocity[i]))
+        name: tidy(simplified(place[i] * velocity[j] - place[j] * velocity[i]))
         for name, (i, j) in planes.items()
-        if sp.simplify(place[i] * force[j] - place[j] * force[i]) == 0
+        if vanishes(place[i] * force[j] - place[j] * force[i])
     }
 
 
@@ -96,3 +98,74 @@ def linearisation(so_far: Derivation) -> Step:
     states, rates = symbols_of(model.states), list(so_far.rhs("first_order"))
     equations, check = jacobians(rates, states, {"A": states, "B": symbols_of(model.controls)}, tidy, {})
     return Step("linearisation", "differentiate rates", equations, ("first_order",), (check,))
+
+
+def jacobians(
+    values: Sequence[sp.Expr],
+    rows: Sequence[sp.Symbol],
+    columns: Mapping[str, Sequence[sp.Symbol]],
+    written: Callable[[sp.Expr], sp.Expr],
+    at: Mapping[sp.Symbol, sp.Expr],
+) -> tuple[tuple[Equation, ...], Check]:
+    """Differentiate values, which the rows are named after, by the columns of each letter: ``A_row_column``.
+
+    ``at`` is the point where that is done, as far as it is a special one; ``written`` simplifies an entry.
+    """
+    equations, pairs = [], []
+    for letter, symbols in columns.items():
+        for k, row in enumerate(rows):
+            for column in symbols:
+                name = f"{letter}_{row.name}_{column.name}"
+                entry = written(sp.diff(values[k], column).xreplace(at))
+                equations.append(Equation(name, sp.Symbol(name, real=True), entry))
+                pairs.append((k, column))
+    functions, entries = numeric(list(values)), numeric([e.rhs for e in equations])
+
+    def sides(point: Point) -> tuple[list[Any], list[Any]]:
+        there = {**point, **at}
+        return entries(there), [partial(functions, there, column)[k] for k, column in pairs]
+
+    moving = {column for symbols in columns.values() for column in symbols}
+    return tuple(equations), compare("numeric derivative", moving.union(*(v.free_symbols for v in values)), sides)
+
+
+def output_matrix(so_far: Derivation) -> Step | None:
+    """C and D: the outputs differentiated by states and controls."""
+    model = so_far.model
+    if not model.outputs:
+        return None
+    states, controls = symbols_of(model.states), symbols_of(model.controls)
+    linear, constants = "deviations" in so_far, definitions_of(model)
+    rest = dict.fromkeys((*states, *controls), sp.Integer(0)) if linear else {}
+    values = [g.xreplace(constants) if linear else g for g in _outputs(so_far)]
+    names = symbols_of(o.variable for o in model.outputs)
+    equations, check = jacobians(values, names, {"C": states, "D": controls}, lambda e: tidy(simplified(e)), rest)
+    rule = "differentiate outputs at zero" if linear else "differentiate outputs"
+    sources = ("outputs", "original_states") if linear else ("outputs",)
+    return Step("output_matrix", rule, equations, sources, (check,))
+
+
+def output_equations(so_far: Derivation) -> Step | None:
+    """The linear outputs y = C x + D u of a linear model."""
+    model = so_far.model
+    if "deviations" not in so_far or not model.outputs:
+        return None
+    states, controls = symbols_of(model.states), symbols_of(model.controls)
+    names = symbols_of(o.variable for o in model.outputs)
+    entries = [e.rhs for e in so_far.step("output_matrix").equations]
+    c = sp.Matrix(len(names), len(states), entries[: len(names) * len(states)])
+    d = sp.Matrix(len(names), len(controls), entries[len(names) * len(states) :])
+    found = c * sp.Matrix(states) + (d * sp.Matrix(controls) if controls else sp.zeros(len(names), 1))
+    equations = tuple(Equation(y.name, y, value) for y, value in zip(names, found, strict=True))
+    exact = [g.xreplace(definitions_of(model)) for g in _outputs(so_far)]
+    check = first_order_at_zero("first order of the exact outputs", exact, list(found), (*states, *controls))
+    return Step("output_equations", "drop higher orders of outputs", equations, ("output_matrix",), (check,))
+
+
+def _outputs(so_far: Derivation) -> list[sp.Expr]:
+    """What is measured, as functions of the model's own states and controls."""
+    values = [sp.sympify(o.value) for o in so_far.model.outputs]
+    if "original_states" not in so_far:
+        return values
+    inverse = {e.lhs: e.rhs for e in so_far.step("original_states").equations}
+    return [g.xreplace(inverse) for g in values]

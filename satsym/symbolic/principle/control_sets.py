@@ -15,71 +15,7 @@ import sympy as sp
 
 from satsym.spec import ControlSetKind, Variable
 from satsym.symbolic.derivation import DerivationError
-from satsym.symbolic.switching.minimisers import MPMATH_SWITCHES, SWITCHES
-
-
-class Clip(sp.Function):
-    """``Clip(value, lower, upper)``: the nearest point of an interval."""
-
-    nargs = 3
-    is_real = True
-
-    def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """By the value: one inside, zero outside. The limits are constants."""
-        if argindex != 1:
-            raise sp.ArgumentIndexError(self, argindex)
-        return Inside(*self.args)
-
-
-class Inside(sp.Function):
-    """``Inside(value, lower, upper)``: one in the interval, zero outside; the derivative of :class:`Clip`."""
-
-    nargs = 3
-
-    def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """Zero, except at the ends, where it has no derivative."""
-        return sp.Integer(0)
-
-
-class Shorten(sp.Function):
-    """``Shorten(norm_squared, limit)``: the factor that brings a vector into a ball, at most one."""
-
-    nargs = 2
-
-    def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """By the square of the norm. The limit is a constant."""
-        if argindex != 1:
-            raise sp.ArgumentIndexError(self, argindex)
-        return ShortenSlope(*self.args)
-
-
-class ShortenSlope(sp.Function):
-    """``ShortenSlope(norm_squared, limit)``: the derivative of :class:`Shorten` by its first argument."""
-
-    nargs = 2
-
-
-PROJECTIONS = (Clip, Inside, Shorten, ShortenSlope, *SWITCHES)
-
-
-def _clip(value: Any, lower: Any, upper: Any) -> Any:
-    return max(lower, min(value, upper))
-
-
-def _shorten(norm_squared: Any, limit: Any) -> Any:
-    return mp.mpf(1) if norm_squared <= limit**2 else limit / mp.sqrt(norm_squared)
-
-
-def _inside(value: Any, lower: Any, upper: Any) -> Any:
-    return mp.mpf(lower <= value <= upper)
-
-
-def _shorten_slope(norm_squared: Any, limit: Any) -> Any:
-    return mp.mpf(0) if norm_squared <= limit**2 else -limit / (2 * norm_squared * mp.sqrt(norm_squared))
-
-
-MPMATH_FUNCTIONS = {"Clip": _clip, "Inside": _inside, "Shorten": _shorten, "ShortenSlope": _shorten_slope}
-MPMATH_FUNCTIONS |= MPMATH_SWITCHES
+from satsym.symbolic.minimisers import Clip, Shorten
 
 
 def bounds(control_set: ControlSetKind, controls: Sequence[Variable]) -> tuple[Variable, ...]:
@@ -161,9 +97,9 @@ def admissible(
     found = []
     for _ in range(count):
         if control_set == "box":
-            share = [rng.choice((0.0, 1.0, rng.random())) for _ in range(m)]
+            fraction = [rng.choice((0.0, 1.0, rng.random())) for _ in range(m)]
             found.append(
-                [point[limits[i]] + s * (point[limits[m + i]] - point[limits[i]]) for i, s in enumerate(share)]
+                [point[limits[i]] + s * (point[limits[m + i]] - point[limits[i]]) for i, s in enumerate(fraction)]
             )
         else:
             direction = [mp.mpf(rng.gauss(0, 1)) for _ in range(m)]

@@ -64,7 +64,7 @@ def exact_differential(so_far: Derivation) -> Step | None:
     return Step("exact_differential", rule, equations, sources, checks, said)
 
 
-def least_effort(so_far: Derivation) -> Step | None:
+def minimum_effort(so_far: Derivation) -> Step | None:
     """The control without bounds, to rest at zero in a given time, of a chain of integrators; and what it costs."""
     found = _chain(so_far)
     if found is None:
@@ -89,7 +89,7 @@ def least_effort(so_far: Derivation) -> Step | None:
     equations = [
         Equation(control.name, control, sp.collect(law, t, sp.factor)),
         *(Equation(x.name, x, value) for x, value in zip(states, path, strict=True)),
-        Equation("cost", pn.LEAST_COST, spent),
+        Equation("cost", pn.MINIMUM_COST, spent),
         Equation("from_rest", n.answer_of(control), from_rest),
         Equation("peak", pn.peak_of(control), sp.simplify(peak)),
         Equation("cost_from_rest", pn.COST_FROM_REST, sp.factor(spent.xreplace(rest))),

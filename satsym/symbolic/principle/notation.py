@@ -5,24 +5,21 @@ from __future__ import annotations
 import sympy as sp
 
 from satsym.symbolic.model import Model
+from satsym.symbolic.notation import named
 
 POTENTIAL, REDUCED_COST = sp.Symbol("cost_potential", real=True), sp.Symbol("reduced_cost", real=True)
-LEAST_COST, COST_FROM_REST = sp.Symbol("least_cost", real=True), sp.Symbol("cost_from_rest", real=True)
+MINIMUM_COST, COST_FROM_REST = sp.Symbol("least_cost", real=True), sp.Symbol("cost_from_rest", real=True)
 
 
-def reduced_costate_of(state: sp.Symbol) -> sp.Symbol:
-    """The symbol for the costate of a state when the exact part of the cost is left out."""
-    return sp.Symbol(f"reduced_lambda_{state.name}", real=True)
-
-
-def peak_of(control: sp.Symbol) -> sp.Symbol:
-    """The symbol for the largest magnitude of a control."""
-    return sp.Symbol(f"{control.name}_peak", real=True)
+reduced_costate_of = named("reduced_lambda_{}")
+"""The symbol for the costate of a state when the exact part of the cost is left out."""
+peak_of = named("{}_peak")
+"""The symbol for the largest magnitude of a control."""
 
 
 def names(model: Model) -> dict[str, str]:
     """Name -> LaTeX of all of them."""
-    found = {POTENTIAL.name: "V", REDUCED_COST.name: "L_0", LEAST_COST.name: "J_0", COST_FROM_REST.name: "J_0"}
+    found = {POTENTIAL.name: "V", REDUCED_COST.name: "L_0", MINIMUM_COST.name: "J_0", COST_FROM_REST.name: "J_0"}
     found |= {f"reduced_lambda_{v.symbol}": rf"\mu_{{{v.latex}}}" for v in model.states}
     for v in model.controls:
         found |= {f"{v.symbol}_peak": rf"|{v.latex}|_{{\max}}", f"{v.symbol}_answer": rf"{v.latex}(t)"}

@@ -11,7 +11,7 @@ import sympy as sp
 from sympy.solvers.solveset import NonlinearError
 
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import gradient, tidy
+from satsym.symbolic.algebra import gradient, simplified, tidy
 from satsym.symbolic.checks import DIGITS, Point, compare, identity, never_below, numeric, partial
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
@@ -51,7 +51,7 @@ def stationarity(so_far: Derivation) -> Step:
     h = so_far.equation("hamiltonian.H").rhs
     h_u = [tidy(g, controls) for g in gradient(h, controls)]
     rows, load = _linear_system(so_far, h_u, controls)
-    hats = [tidy(sp.simplify(u)) for u in rows.LUsolve(load)]
+    hats = [tidy(simplified(u)) for u in rows.LUsolve(load)]
     conditions = tuple(Equation(u.name, sp.Integer(0), g) for u, g in zip(controls, h_u, strict=True))
     solved = tuple(Equation(f"{u.name}_hat", n.unconstrained(u), hat) for u, hat in zip(controls, hats, strict=True))
     return Step(

@@ -12,12 +12,12 @@ import sympy as sp
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import definitions_of
 from satsym.symbolic.derivation import Derivation, Equation, Step
+from satsym.symbolic.minimisers import Switch
 from satsym.symbolic.model import symbols_of
 from satsym.symbolic.principle import control_sets
 from satsym.symbolic.switching import curve_checks
 from satsym.symbolic.switching import notation as s
 from satsym.symbolic.switching.curve_checks import Chain
-from satsym.symbolic.switching.minimisers import Switch
 
 STEP = "switching_curve"
 _CLOCK = sp.Dummy("time", real=True)
@@ -115,9 +115,9 @@ def _between_rests(chain: Chain) -> tuple[sp.Expr, sp.Expr]:
     for level, last in ((chain.rising, chain.falling), (chain.falling, chain.rising)):
         middle = _moved(chain, level, first, (sp.Integer(0), sp.Integer(0)))
         end = _moved(chain, last, duration - first, middle)
-        (share,) = sp.solve(end[1], first)
-        found.append((sp.factor(share / duration), sp.factor(end[0].xreplace({first: share}) / duration**2)))
-    (share, reached), (other, _) = found
+        (fraction,) = sp.solve(end[1], first)
+        found.append((sp.factor(fraction / duration), sp.factor(end[0].xreplace({first: fraction}) / duration**2)))
+    (fraction, reached), (other, _) = found
     side = sp.sign(way)
     total = sp.sqrt(sp.Abs(way) * sp.expand(1 / reached))
-    return total, s.TRANSITION * (sp.factor(share + other) / 2 + sp.factor(share - other) / 2 * side)
+    return total, s.TRANSITION * (sp.factor(fraction + other) / 2 + sp.factor(fraction - other) / 2 * side)

@@ -22,12 +22,11 @@ from satsym.symbolic.algebra import tidy
 from satsym.symbolic.checks import DIGITS, Point, compare, never_below, numeric
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
+from satsym.symbolic.minimisers import Clip, Shrink, Switch
 from satsym.symbolic.model import Problem, symbols_of, t
 from satsym.symbolic.principle import control_sets
-from satsym.symbolic.principle.control_sets import Clip
 from satsym.symbolic.principle.pontryagin import COMPETITORS, costates
 from satsym.symbolic.switching import notation as s
-from satsym.symbolic.switching.minimisers import Shrink, Switch
 
 SCALES = (0.1, 1.0, 10.0)
 """Factors on the costates at each random point, so that switching functions lie on all sides of their thresholds."""
@@ -123,13 +122,15 @@ def smoothed_law(so_far: Derivation) -> Step:
     controls, lower, upper = _box(so_far)
     weights = _weight_symbols(found, controls)
     effort = s.SMOOTHING / 2 * sum((u**2 for u in controls), sp.Integer(0))
-    saved = sum(((1 - s.SHARE) * w * sp.Abs(u) for u, w in zip(controls, weights, strict=True)), sp.Integer(0))
+    saved = sum(
+        ((1 - s.MAGNITUDE_FACTOR) * w * sp.Abs(u) for u, w in zip(controls, weights, strict=True)), sp.Integer(0)
+    )
     companion = Equation("H", s.SMOOTHED, n.HAMILTONIAN + sign(problem) * effort - sign(problem) * saved)
     laws = tuple(
         Equation(
             u.name,
             s.smoothed(u),
-            Clip(-sign(problem) * Shrink(s.switching_of(u), s.SHARE * w) / s.SMOOTHING, low, high),
+            Clip(-sign(problem) * Shrink(s.switching_of(u), s.MAGNITUDE_FACTOR * w) / s.SMOOTHING, low, high),
         )
         for u, w, low, high in zip(controls, weights, lower, upper, strict=True)
     )
@@ -221,8 +222,8 @@ def _cheapest(so_far: Derivation, claim: str, h: sp.Expr, laws: Sequence[sp.Expr
         found = []
         for scale in SCALES:
             scaled = {c: scale * point[c] for c in costates(so_far)}
-            share = {s.SHARE: abs(point[s.SHARE]) % 1} if s.SHARE in point else {}
-            here = control_sets.ordered("box", {**point, **scaled, **share}, limits)
+            fraction = {s.MAGNITUDE_FACTOR: abs(point[s.MAGNITUDE_FACTOR]) % 1} if s.MAGNITUDE_FACTOR in point else {}
+            here = control_sets.ordered("box", {**point, **scaled, **fraction}, limits)
             law = chosen(here)
             best = value({**here, **dict(zip(controls, law, strict=True))})[0]
             found += control_sets.slacks("box", here, limits, law)

@@ -7,7 +7,9 @@ from collections.abc import Sequence
 import sympy as sp
 
 from satsym.spec import Variable
+from satsym.symbolic.dimension_algebra import PLAIN, Dimension, over
 from satsym.symbolic.model import Model, Problem, symbols_of
+from satsym.symbolic.notation import named
 
 UNSWITCHED = sp.Symbol("H_0", real=True)
 """The part of H without controls."""
@@ -15,12 +17,12 @@ UNSWITCHED = sp.Symbol("H_0", real=True)
 SMOOTHING = sp.Symbol("smoothing", positive=True)
 """The weight of u^2 / 2 in the regularised problem."""
 
-SHARE = sp.Symbol("magnitude_share", real=True)
+MAGNITUDE_FACTOR = sp.Symbol("magnitude_share", real=True)
 """What multiplies the weights of magnitudes in the regularised problem."""
 
-COMPANION = (
+REGULARISED = (
     Variable(SMOOTHING.name, r"\varepsilon", meaning="weight of u^2 / 2 in the regularised problem", positive=True),
-    Variable(SHARE.name, r"\kappa", meaning="factor of the weights of magnitudes in it"),
+    Variable(MAGNITUDE_FACTOR.name, r"\kappa", meaning="factor of the weights of magnitudes in it"),
 )
 """What follows the bounds of the box in the ``bounds`` argument of the kernels of a switching problem."""
 
@@ -38,11 +40,8 @@ SIDE = sp.Symbol("side_of_switching_curve", real=True)
 
 TRANSITION, FIRST_ARC = sp.Symbol("transition_time", positive=True), sp.Symbol("first_arc_time", positive=True)
 """Durations of a change of position from rest to rest in least time, and of its first arc."""
-
-
-def switching_of(control: sp.Symbol) -> sp.Symbol:
-    """The switching function of a control: what multiplies it in H."""
-    return sp.Symbol(f"switching_{control.name}", real=True)
+switching_of = named("switching_{}")
+"""The switching function of a control: what multiplies it in H."""
 
 
 def derivative_of(control: sp.Symbol, order: int, suffix: str = "") -> sp.Symbol:
@@ -50,14 +49,10 @@ def derivative_of(control: sp.Symbol, order: int, suffix: str = "") -> sp.Symbol
     return sp.Symbol(f"switching_{control.name}{suffix}_{order}", real=True)
 
 
-def weight_of(control: sp.Symbol) -> sp.Symbol:
-    """The weight of a control's magnitude in the cost."""
-    return sp.Symbol(f"magnitude_weight_{control.name}", real=True)
-
-
-def smoothed(control: sp.Symbol) -> sp.Symbol:
-    """The control of the smoothed companion."""
-    return sp.Symbol(f"{control.name}_smoothed", real=True)
+weight_of = named("magnitude_weight_{}")
+"""The weight of a control's magnitude in the cost."""
+smoothed = named("{}_smoothed")
+"""The control of the smoothed companion."""
 
 
 def singular(control: sp.Symbol, suffix: str = "") -> sp.Symbol:
@@ -70,9 +65,8 @@ def kelley(control: sp.Symbol, suffix: str = "") -> sp.Symbol:
     return sp.Symbol(f"kelley_{control.name}{suffix}", real=True)
 
 
-def drift_bracket(control: sp.Symbol) -> sp.Symbol:
-    """The Poisson bracket of H_0 and the switching function."""
-    return sp.Symbol(f"bracket_H_0_{control.name}", real=True)
+drift_bracket = named("bracket_H_0_{}")
+"""The Poisson bracket of H_0 and the switching function."""
 
 
 def bracket(by: sp.Symbol, control: sp.Symbol) -> sp.Symbol:
@@ -106,7 +100,7 @@ def is_affine(expressions: Sequence[sp.Expr], controls: Sequence[sp.Symbol]) -> 
 
 def constants(model: Model) -> list[str]:
     """Names of what stands in front of costates and controls."""
-    return [SMOOTHING.name, SHARE.name, *(weight_of(u).name for u in symbols_of(model.controls))]
+    return [SMOOTHING.name, MAGNITUDE_FACTOR.name, *(weight_of(u).name for u in symbols_of(model.controls))]
 
 
 BRANCHES = ("", "_positive", "_negative")
@@ -125,7 +119,7 @@ def names(problem: Problem) -> dict[str, str]:
     latex = {u: v.latex for u, v in zip(controls, model.controls, strict=True)}
     sigma = {u: rf"\sigma_{{{tex}}}" if len(controls) > 1 else r"\sigma" for u, tex in latex.items()}
     weight = {u: rf"w_{{{tex}}}" if len(controls) > 1 else "w" for u, tex in latex.items()}
-    found = {UNSWITCHED.name: "H_0", SMOOTHED.name: r"H_\varepsilon"} | {v.symbol: v.latex for v in COMPANION}
+    found = {UNSWITCHED.name: "H_0", SMOOTHED.name: r"H_\varepsilon"} | {v.symbol: v.latex for v in REGULARISED}
     found |= {ON_CURVE.name: r"x_{\mathrm{c}}", BEYOND.name: r"\Delta", SIDE.name: "s"}
     found |= {TRANSITION.name: "T", FIRST_ARC.name: "T_1"}
     marks = dict(zip(BRANCHES, ("", "+", "-"), strict=True))
@@ -153,3 +147,29 @@ def _dotted(sigma: str, order: int, mark: str = "") -> str:
     if order <= 2:
         return rf"\{'d' * order}ot{head}{index}" + (f"^{mark}" if mark else "")
     return rf"{head}{index}^{{{mark}({order})}}"
+
+
+def declare(known: dict[str, Dimension | None], problem: Problem, running: Dimension | None) -> None:
+    """Enter the dimensions of switching functions, weights and smoothed or singular controls.
+
+    Parameters
+    ----------
+    known
+        Dimensions of declared variables, which are added to.
+    problem
+        Anything is entered only where its running cost is affine in the controls.
+    running
+        Dimension of the running cost.
+    """
+    if not names(problem):
+        return
+    controls = symbols_of(problem.model.controls)
+    known[MAGNITUDE_FACTOR.name] = PLAIN
+    known[UNSWITCHED.name] = known[SMOOTHED.name] = running
+    for u in controls:
+        known[switching_of(u).name] = known[weight_of(u).name] = over(running, known[u.name])
+        known[smoothed(u).name] = known[u.name]
+        known.update({singular(u, branch).name: known[u.name] for branch in BRANCHES})
+    efforts = [over(over(running, known[u.name]), known[u.name]) for u in controls]
+    # one number smooths all controls: where their units differ it has none that would suit them all
+    known[SMOOTHING.name] = efforts[0] if all(e == efforts[0] for e in efforts) else None

@@ -59,36 +59,25 @@ class Surface:
 
 @dataclass(frozen=True)
 class Search:
-    """What the derivatives of one switching function at one threshold lead to.
-
-    Attributes
-    ----------
-    control, branch
-        Which control, and which of :data:`satsym.symbolic.switching.notation.BRANCHES`.
-    magnitude
-        Replacement of |u| there.
-    threshold
-        The switching function less its threshold.
-    derivatives
-        Its total time derivatives, from the first.
-    outcome
-        ``"order"`` (the last derivative has the control), ``"closed"`` (the last one follows from those before),
-        ``"impossible"`` (the last one cannot vanish) or ``"open"``.
-    surface
-        Where the derivatives before the last vanish, and the last one if it is without the control.
-    slope, singular
-        Of the order found: what multiplies the control, and the control, both on the surface.
-    """
+    """What the derivatives of one switching function at one threshold lead to."""
 
     control: sp.Symbol
     branch: str
+    """Which control, and which of :data:`satsym.symbolic.switching.notation.BRANCHES`."""
     magnitude: Mapping[sp.Expr, sp.Expr]
+    """Replacement of |u| there."""
     threshold: sp.Expr
+    """The switching function less its threshold."""
     derivatives: tuple[sp.Expr, ...]
+    """Its total time derivatives, from the first."""
     outcome: str
+    """``"order"`` (the last derivative has the control), ``"closed"`` (the last one follows from those before),
+    ``"impossible"`` (the last one cannot vanish) or ``"open"``."""
     surface: Surface
+    """Where the derivatives before the last vanish, and the last one if it is without the control."""
     slope: sp.Expr = sp.Integer(0)
     singular: sp.Expr = sp.Integer(0)
+    """Of the order found: what multiplies the control, and the control, both on the surface."""
 
     @property
     def order(self) -> int:

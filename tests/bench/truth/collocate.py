@@ -74,10 +74,10 @@ class Found:
     goal: np.ndarray
     slope: np.ndarray
 
-    def path(self, shares: np.ndarray) -> np.ndarray:
+    def path(self, fractions: np.ndarray) -> np.ndarray:
         """States between the ends of intervals, on straight lines."""
         at = np.linspace(0.0, 1.0, self.states.shape[1])
-        return np.array([np.interp(shares, at, row) for row in self.states])
+        return np.array([np.interp(fractions, at, row) for row in self.states])
 
 
 def solved(case: Case, start: Start, intervals: int) -> Found | None:
@@ -146,8 +146,8 @@ class _Program:
     def guess(self, case: Case, start: Start) -> np.ndarray:
         """The start on the grid; the controls in the middle of their bounds, as near to zero as these allow."""
         physics = MODELS[self.model]
-        shares = (np.arange(self.intervals)[:, None] + np.append(NODES, 1.0)) / self.intervals
-        states = start.path(shares.ravel()).T.reshape(self.intervals, POINTS + 1, -1)
+        fractions = (np.arange(self.intervals)[:, None] + np.append(NODES, 1.0)) / self.intervals
+        states = start.path(fractions.ravel()).T.reshape(self.intervals, POINTS + 1, -1)
         middle = [np.clip(0.0, *case.bounds.get(name, (-np.inf, np.inf))) for name in physics.controls]
         rows = [np.concatenate([block[:POINTS].ravel(), np.tile(middle, POINTS), block[POINTS]]) for block in states]
         return np.concatenate([[start.duration], [case.initial[name] for name in physics.states], *rows])

@@ -223,8 +223,8 @@ def _conjugate(rng: Rng, family: str, number: int, count: int) -> Case:
         math.pi / math.sqrt(a) / (1.0 if name in final else 2.0)
         for name, a in zip(names, rewards.values(), strict=True)
     )
-    share = float(rng.choice([0.5, 0.8, 0.95, 0.995, 1.005, 1.05, 1.3, 2.2, 3.0]))
-    return Case(family, number, f"conjugate_{count}", initial, final, limit * share, parameters=rewards)
+    fraction = float(rng.choice([0.5, 0.8, 0.95, 0.995, 1.005, 1.05, 1.3, 2.2, 3.0]))
+    return Case(family, number, f"conjugate_{count}", initial, final, limit * fraction, parameters=rewards)
 
 
 def ellipse(rng: Rng, family: str, number: int) -> Case:

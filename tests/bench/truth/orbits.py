@@ -140,8 +140,8 @@ def one_sided(rng: Rng, family: str, number: int) -> Case:
 def tight(rng: Rng, family: str, number: int) -> Case:
     """Bounds so narrow that they bind from the start, nearly or fully forbid to arrive."""
     case, peak = _return(rng, family, number)
-    share = float(rng.uniform(0.22, 0.6))
-    return _with(case, bounds={f"u{k}": (-share * peak, share * peak) for k in (1, 2)})
+    fraction = float(rng.uniform(0.22, 0.6))
+    return _with(case, bounds={f"u{k}": (-fraction * peak, fraction * peak) for k in (1, 2)})
 
 
 def ball(rng: Rng, family: str, number: int) -> Case:

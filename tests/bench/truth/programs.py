@@ -42,7 +42,7 @@ def least_fuel(case: Case) -> Answer:
     return Answer(Truth.REACHED, costs[-1], how, duration)
 
 
-def least_time(case: Case) -> Answer:
+def minimum_time(case: Case) -> Answer:
     """The first time at which controls arrive: looked for on a grid, and then by halving."""
     motion = linear(case)
     before = 0.0

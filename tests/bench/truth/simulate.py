@@ -69,10 +69,10 @@ def _through(
     bounds = [case.bounds.get(name, (-math.inf, math.inf)) for name in physics.controls]
     polynomials = np.polyfit(NODES, values, POINTS - 1).T.tolist()
 
-    def control(share: float) -> list[float]:
+    def control(fraction: float) -> list[float]:
         u = []
         for (a, b, c, d), (low, high) in zip(polynomials, bounds, strict=True):
-            u.append(min(max(((a * share + b) * share + c) * share + d, low), high))
+            u.append(min(max(((a * fraction + b) * fraction + c) * fraction + d, low), high))
         if case.max_norm is not None:
             size = math.hypot(*u)
             if size > case.max_norm:

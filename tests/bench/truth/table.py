@@ -60,10 +60,10 @@ def rates(entries: list[Entry]) -> tuple[float, float]:
     answered = [e for e in solved if e.judgement.outcome is not Outcome.NONE]
     converged = [e for e in answered if e.ours["status"] == "converged" and e.truth.truth is not Truth.UNBOUNDED]
     certified = [e for e in converged if e.ours.get("verdict") == "certified"]
-    return _share(len(answered), len(solved)), _share(len(certified), len(converged))
+    return _fraction(len(answered), len(solved)), _fraction(len(certified), len(converged))
 
 
-def _share(part: int, whole: int) -> float:
+def _fraction(part: int, whole: int) -> float:
     return part / whole if whole else float("nan")
 
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 POINTS = 2000
 APART = 0.02
 """Eccentricity from which the foci can be told apart in the picture."""
-LEAST_REACH, MOST_REACH = 5.0, 40.0
+SMALLEST_REACH, MOST_REACH = 5.0, 40.0
 """How far from the centre an open orbit is drawn, in units of the nearest distance or that of the start."""
 CENTRE: dict[str, Any] = {"marker": "o", "markersize": 9.0, "color": "#E0A800", "linestyle": "none", "zorder": 3.9}
 EMPTY: dict[str, Any] = {"marker": "x", "markersize": 7.0, "color": style.GREY, "linestyle": "none", "zorder": 3.8}
@@ -45,46 +45,38 @@ SIDE = 5.4
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """What is drawn of an orbit, in the model's unit of length; curves have shape (3, N), points (3,).
-
-    Attributes
-    ----------
-    curve
-        The whole conic, of an open one as much as has room.
-    flown
-        The motion of the instance, once round at most; ``None`` where its time is free, or it meets the centre.
-    start, nearest, farthest, empty
-        The last is the focus that nothing is in; ``None`` where there is none.
-    asymptotes
-        Two rays from their common point, shape (3, 2) each; empty but for a hyperbola.
-    """
+    """What is drawn of an orbit, in the model's unit of length; curves have shape (3, N), points (3,)."""
 
     curve: Array
-    flown: Array | None
+    """The whole conic, of an open one as much as has room."""
+    travelled: Array | None
+    """The motion of the instance, once round at most; ``None`` where its time is free, or it meets the centre."""
     start: Array
     nearest: Array | None
     farthest: Array | None
     empty: Array | None
+    """The last is the focus that nothing is in; ``None`` where there is none."""
     asymptotes: tuple[Array, ...]
+    """Two rays from their common point, shape (3, 2) each; empty but for a hyperbola."""
 
     @classmethod
     def of(cls, found: Survey) -> Drawn:
         """Sample the curves of an orbit."""
-        orbit, flown = found.elements, _flown(found)
+        orbit, travelled = found.elements, _travelled(found)
         axis, e = orbit.semi_major_axis, orbit.eccentricity
         start = orbit.position
         if orbit.parameter == 0.0 or orbit.inclination is None:
-            end = orbit.towards * (orbit.apoapsis or LEAST_REACH * orbit.distance)
-            return cls(np.vstack([np.zeros(3), end]).T, flown, start, None, None, None, ())
-        reach = max(LEAST_REACH * orbit.periapsis, orbit.distance)
-        if flown is not None:
-            reach = max(reach, float(np.linalg.norm(flown, axis=0).max()))
+            end = orbit.towards * (orbit.apoapsis or SMALLEST_REACH * orbit.distance)
+            return cls(np.vstack([np.zeros(3), end]).T, travelled, start, None, None, None, ())
+        reach = max(SMALLEST_REACH * orbit.periapsis, orbit.distance)
+        if travelled is not None:
+            reach = max(reach, float(np.linalg.norm(travelled, axis=0).max()))
         reach = min(reach, MOST_REACH * max(orbit.periapsis, orbit.distance))
         nearest = orbit.periapsis * orbit.towards
         closed = orbit.period is not None and axis is not None
         return cls(
             curve=_ellipse(orbit) if closed else _open(orbit, reach),
-            flown=flown,
+            travelled=travelled,
             start=start,
             nearest=None if orbit.periapsis_argument is None else nearest,
             farthest=-orbit.apoapsis * orbit.towards
@@ -116,7 +108,7 @@ def page(found: Survey) -> Figure:
 
 def _panel(axes: Axes, drawn: Drawn, view: View, unit: str) -> tuple[float, str]:
     """Draw a panel, and give the unit of its axes in that of the model, and its name."""
-    curves = [c for c in (drawn.curve, drawn.flown) if c is not None]
+    curves = [c for c in (drawn.curve, drawn.travelled) if c is not None]
     seen = np.hstack([view.axes @ curve for curve in curves] + [np.zeros((2, 1))])
     low, high = seen.min(axis=1), seen.max(axis=1)
     centre, half = 0.5 * (low + high), 0.54 * float((high - low).max())
@@ -130,8 +122,8 @@ def _panel(axes: Axes, drawn: Drawn, view: View, unit: str) -> tuple[float, str]
     for ray in drawn.asymptotes:
         axes.plot(*(view.axes @ ray * scale), **ASYMPTOTE)
     axes.plot(*(view.axes @ drawn.curve * scale), **CONIC)
-    if drawn.flown is not None:
-        axes.plot(*(view.axes @ drawn.flown * scale), color=style.STATE, **style.MAIN)
+    if drawn.travelled is not None:
+        axes.plot(*(view.axes @ drawn.travelled * scale), color=style.STATE, **style.MAIN)
     marks = (
         (np.zeros(3), CENTRE),
         (drawn.empty, EMPTY),
@@ -159,7 +151,7 @@ def _entries(found: Survey, drawn: Drawn) -> list[legend.Entry]:
     orbit = found.elements
     once_round = found.case.tf is not None and found.case.tf - found.case.t0 >= (orbit.period or np.inf)
     entries: list[legend.Entry] = [] if once_round else [(legend.line(**CONIC), orbit.conic.value)]
-    if drawn.flown is not None:
+    if drawn.travelled is not None:
         entries.append((legend.line(color=style.STATE, **style.MAIN), _flight(found)))
     start = {"color": style.STATE, "markerfacecolor": "none", **style.START, "markersize": 11.0}
     entries += [(legend.line(**start), "start"), (legend.line(**CENTRE), "centre, a focus")]
@@ -182,7 +174,7 @@ def _flight(found: Survey) -> str:
     return f"trajectory, {figure(span / factor, 4)} {unit}".removesuffix(" 1")
 
 
-def _flown(found: Survey) -> Array | None:
+def _travelled(found: Survey) -> Array | None:
     """The motion without control from the start to the final time, at most once round."""
     orbit, case = found.elements, found.case
     if case.tf is None:

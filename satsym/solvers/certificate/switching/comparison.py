@@ -14,11 +14,11 @@ from satsym.solvers.certificate.switching import competitors as switching_compet
 from satsym.solvers.certificate.switching.needles import needles
 from satsym.solvers.iteration import Limits
 
-DEARER = 1e-9
+COST_MARGIN = 1e-9
 """Relative margin by which a competitor may seem cheaper: its own error."""
 
 COARSE = {Kind.NEIGHBOURS: 1e-11, Kind.DURATIONS: 1e-6}
-"""Relative difference of costs that is none: where it is not ``DEARER``."""
+"""Relative difference of costs that is none: where it is not ``COST_MARGIN``."""
 
 WORK = 400_000
 """Columns that smoothing may take."""
@@ -26,19 +26,14 @@ WORK = 400_000
 
 @dataclass(frozen=True)
 class Comparison:
-    """What competitors came to.
-
-    Attributes
-    ----------
-    checks
-        One for each kind, by how much the cheapest undercuts the solution; and one for each kind for which time was up.
-    competitors, not_checked
-        As in :class:`satsym.solution.Certificate`.
-    """
+    """What competitors came to."""
 
     checks: tuple[Check, ...] = ()
+    """One for each kind, by how much the cheapest undercuts the solution; and one for each kind for which time was
+    up."""
     competitors: tuple[Competitors, ...] = ()
     not_checked: tuple[Kind, ...] = ()
+    """As in :class:`satsym.solution.Certificate`."""
 
 
 def allowed(instance: Instance) -> list[Kind]:
@@ -69,8 +64,8 @@ def compared(solution: Solution, limits: Limits) -> Comparison:
 
 
 def _check(solution: Solution, one: Competitors) -> Check:
-    dearer = margin(one.cheapest, solution.objective, coarse=COARSE.get(one.kind, DEARER)) if one.solved else 0.0
-    return Check(f"cheaper by: {one.kind.value}", max(0.0, -dearer), DEARER)
+    dearer = margin(one.cheapest, solution.objective, coarse=COARSE.get(one.kind, COST_MARGIN)) if one.solved else 0.0
+    return Check(f"cheaper by: {one.kind.value}", max(0.0, -dearer), COST_MARGIN)
 
 
 def _both(one: Competitors, other: Competitors) -> Competitors:

@@ -67,8 +67,8 @@ def _drawn(solution: Solution, limits: Limits) -> list[Competitors]:
     instance, rng = solution.instance, np.random.default_rng(SEED)
     lasting = float(solution.times[-1]) - instance.t0
     switches = [len(own) + MORE for own in solution.switching_times]
-    share = min(1.0, WORK / _work(switches))
-    counts = [max(2, int(share * most)) for most in (STRUCTURES, ARRIVALS if instance.tf is None else 0, STARTS)]
+    fraction = min(1.0, WORK / _work(switches))
+    counts = [max(2, int(fraction * most)) for most in (STRUCTURES, ARRIVALS if instance.tf is None else 0, STARTS)]
     parts: list[tuple[Kind, Plans, Array]] = []
     free = instance.tf is None
     for kind, count, low, high in zip(
@@ -93,7 +93,7 @@ def _drawn(solution: Solution, limits: Limits) -> list[Competitors]:
 def _work(switches: list[int]) -> float:
     """Columns that all plans take, roughly."""
     arcs = sum(switches) + 1
-    return float((STRUCTURES + ARRIVALS + STARTS) * arcs * (arcs + 1) * scouts.LEAST * ROUNDS)
+    return float((STRUCTURES + ARRIVALS + STARTS) * arcs * (arcs + 1) * scouts.FEWEST * ROUNDS)
 
 
 def _exact(cost: float, found: Iterable[list[Scout]], target: Target, limits: Limits) -> dict[int, float]:
@@ -121,13 +121,13 @@ def _shorter(solution: Solution, motion: LinearMotion, limits: Limits) -> Compet
     instance, rng = solution.instance, np.random.default_rng(SEED + 1)
     lasting = float(solution.times[-1]) - instance.t0
     edges = np.linspace(0.0, 1.0, SHORTER + 1)
-    shares = np.append(rng.uniform(edges[:-1], edges[1:])[:-1], 1.0 - 10.0 ** rng.uniform(-3.0, -2.0))
+    fractions = np.append(rng.uniform(edges[:-1], edges[1:])[:-1], 1.0 - 10.0 ** rng.uniform(-3.0, -2.0))
     costs = []
-    for share in shares.tolist():
-        reach = Reach(instance, motion, share * lasting)
+    for fraction in fractions.tolist():
+        reach = Reach(instance, motion, fraction * lasting)
         limits.spend(reach.count)
         if reach.separation()[0] > THERE:
             continue
-        priced = reach.least_cost() if motion.weight.any() or motion.slope.any() else None
+        priced = reach.minimum_cost() if motion.weight.any() or motion.slope.any() else None
         costs.append(motion.rate * reach.duration + (priced.cost if priced is not None else 0.0))
-    return Competitors(Kind.DURATIONS, len(shares), len(costs), min(costs, default=float("nan")))
+    return Competitors(Kind.DURATIONS, len(fractions), len(costs), min(costs, default=float("nan")))

@@ -12,12 +12,11 @@ from satsym.solution import Certificate, Check, Kind, Solution
 from satsym.solvers.certificate import conditions
 from satsym.solvers.certificate.flow import Flow
 from satsym.solvers.certificate.switching.comparison import Comparison, allowed, compared
-from satsym.solvers.certificate.switching.convexity import convex
 from satsym.solvers.certificate.switching.end_switches import with_end_switches
 from satsym.solvers.certificate.switching.integration import OutOfTime, TooMuchWork
 from satsym.solvers.certificate.switching.replay import EVALUATIONS, Replay, replay
 from satsym.solvers.certificate.switching.stated_arcs import decided_by_none
-from satsym.solvers.certificate.switching.variation import variation
+from satsym.solvers.certificate.switching.variation import convex, variation
 from satsym.solvers.iteration import MOST, Limits
 from satsym.solvers.switching.linear.linear_motion import linear_motion
 from satsym.solvers.switching.newton import switching

@@ -25,8 +25,6 @@ def with_end_switches(again: Replay, sizes: list[float]) -> Replay:
 
     Parameters
     ----------
-    again
-        The replay.
     sizes
         Of the switching functions.
     """

@@ -25,22 +25,15 @@ class TooMuchWork(Exception):
 
 @dataclass(frozen=True, eq=False)
 class Span:
-    """Some time in which no control switches, from where the motion is at its start.
-
-    Attributes
-    ----------
-    field
-        Its equations, with the levels of the controls.
-    start, end
-        Times.
-    z
-        States and costates at the start, shape (2n,).
-    """
+    """Some time in which no control switches, from where the motion is at its start."""
 
     field: Field
+    """Its equations, with the levels of the controls."""
     start: float
     end: float
+    """Times."""
     z: Array
+    """States and costates at the start, shape (2n,)."""
 
     @property
     def lasting(self) -> float:
@@ -53,18 +46,12 @@ class Span:
 
 @dataclass(frozen=True, eq=False)
 class Integration:
-    """With as many digits as SciPy can.
-
-    Attributes
-    ----------
-    sizes
-        Typical ones of states and costates, shape (2n,).
-    limits
-        Spent by the evaluations.
-    """
+    """With as many digits as SciPy can."""
 
     sizes: Array
+    """Typical ones of states and costates, shape (2n,)."""
     limits: Limits
+    """Spent by the evaluations."""
 
     def end(self, span: Span) -> Array:
         """States and costates at the end of a span."""

@@ -75,28 +75,19 @@ def needles(solution: Solution, within: Limits) -> Competitors | None:
 
 @dataclass(frozen=True, eq=False)
 class _Near:
-    """The neighbourhood of a bang-bang solution.
-
-    Attributes
-    ----------
-    solution, base
-        What is compared, and its control.
-    switches
-        Its switching times, shape (K,).
-    sizes
-        Of states, shape (n,).
-    wanted
-        The states whose end is to be that of the solution.
-    limits
-        Spent by evaluations.
-    """
+    """The neighbourhood of a bang-bang solution."""
 
     solution: Solution
     base: Plan
+    """What is compared, and its control."""
     switches: Array
+    """Its switching times, shape (K,)."""
     sizes: Array
+    """Of states, shape (n,)."""
     wanted: NDArray[np.intp]
+    """The states whose end is to be that of the solution."""
     limits: Limits
+    """Spent by evaluations."""
 
     @classmethod
     def of(cls, solution: Solution, limits: Limits) -> _Near:

@@ -36,50 +36,34 @@ TOUCHING = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """An arc of the replay.
-
-    Attributes
-    ----------
-    field
-        Its equations, with the levels of the controls.
-    start, end
-        Times.
-    before, after
-        States and costates there, shape (2n,).
-    switched
-        The control whose switch ends it; ``None`` at the final time.
-    transition
-        Derivatives of ``after`` by ``before``, shape (2n, 2n).
-    """
+    """An arc of the replay."""
 
     field: Field
+    """Its equations, with the levels of the controls."""
     start: float
     end: float
+    """Times."""
     before: Array
     after: Array
+    """States and costates there, shape (2n,)."""
     switched: int | None
+    """The control whose switch ends it; ``None`` at the final time."""
     transition: Array
+    """Derivatives of ``after`` by ``before``, shape (2n, 2n)."""
 
 
 @dataclass(frozen=True, eq=False)
 class Replay:
-    """The extremal again.
-
-    Attributes
-    ----------
-    pieces
-        Its arcs.
-    times, z, u
-        The solver's nodes, and the ends of the arcs: shapes (K,), (2n, K), (m, K).
-    cost
-        Of the motion, the terminal cost included.
-    """
+    """The extremal again."""
 
     pieces: list[Piece]
+    """Its arcs."""
     times: Array
     z: Array
     u: Array
+    """The solver's nodes, and the ends of the arcs: shapes (K,), (2n, K), (m, K)."""
     cost: float
+    """Of the motion, the terminal cost included."""
 
     def switching_times(self, control: int) -> list[float]:
         """Of one control."""
@@ -111,24 +95,16 @@ def replay(solution: Solution, within: Limits | None = None) -> Replay | None:
 
 @dataclass(frozen=True, eq=False)
 class _Again:
-    """What is needed to integrate a solution again.
-
-    Attributes
-    ----------
-    solution
-        Of which the initial costates are taken, and the nodes.
-    stated
-        Arcs of each control as it states them.
-    settled
-        Of each control whether these stand, for no sign shows its switches.
-    by
-        The integration.
-    """
+    """What is needed to integrate a solution again."""
 
     solution: Solution
+    """Of which the initial costates are taken, and the nodes."""
     stated: Stated
+    """Arcs of each control as it states them."""
     settled: list[bool]
+    """Of each control whether these stand, for no sign shows its switches."""
     by: Integration
+    """The integration."""
 
     @property
     def instance(self) -> Instance:

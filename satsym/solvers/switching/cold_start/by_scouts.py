@@ -11,7 +11,7 @@ from satsym.instance import Instance
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.attempt import Exact, attempt, given
-from satsym.solvers.switching.cold_start.least_effort import first_duration
+from satsym.solvers.switching.cold_start.minimum_effort import first_duration
 from satsym.solvers.switching.cold_start.plans import Scout, seeded
 from satsym.solvers.switching.cold_start.scouts import ROUNDS, Target, scouted
 from satsym.solvers.switching.newton import Equations

@@ -13,7 +13,7 @@ import numpy as np
 
 from satsym.instance import Instance
 from satsym.solvers.cold_start.durations import free_duration
-from satsym.solvers.cold_start.ways import cold_start
+from satsym.solvers.cold_start.first_minimum import cold_start
 from satsym.solvers.collocation.attempt import Reason
 from satsym.solvers.collocation.curve import Curve, Path
 from satsym.solvers.collocation.extremal import Extremal
@@ -23,7 +23,7 @@ from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.system import System
 from satsym.solvers.control.regularised import regularised
 from satsym.solvers.iteration import Limits
-from satsym.solvers.switching.cold_start.least_effort import (
+from satsym.solvers.switching.cold_start.minimum_effort import (
     NEAR_FULL,
     WITHIN,
     Smoothed,
@@ -34,26 +34,20 @@ from satsym.solvers.switching.cold_start.least_effort import (
 from satsym.status import Status
 
 LEVELS = 12
-SHARPER = 4.0
+TIGHTER = 4.0
 """By so much less is smoothed at each level."""
 
 
 @dataclass(frozen=True)
 class Stopped(Exception):
-    """The way from nothing to the problem ends early.
-
-    Attributes
-    ----------
-    status, message
-        What came of it.
-    problem, curve
-        The last regularised problem that was solved, if any.
-    """
+    """The way from nothing to the problem ends early."""
 
     status: Status
     message: str
+    """What came of it."""
     problem: TwoPoint | None = None
     curve: Path | None = None
+    """The last regularised problem that was solved, if any."""
 
 
 def path(instance: Instance, limits: Limits) -> Iterator[Smoothed]:
@@ -67,8 +61,8 @@ def path(instance: Instance, limits: Limits) -> Iterator[Smoothed]:
     problem, curve = (instance.tf is None and _long(instance, limits)) or _bounded(instance, limits)
     smoothing = problem.control_set.smoothing
 
-    def weighed(share: float) -> TwoPoint:
-        return replace(problem, instance=regularised(instance, smoothing, share))
+    def weighed(fraction: float) -> TwoPoint:
+        return replace(problem, instance=regularised(instance, smoothing, fraction))
 
     curve, reached = follow(weighed, curve, limits)
     if reached < 1.0:
@@ -78,15 +72,15 @@ def path(instance: Instance, limits: Limits) -> Iterator[Smoothed]:
     for _ in range(LEVELS):
         before = smoothing
 
-        def sharper(share: float, before: float = before, problem: TwoPoint = problem) -> TwoPoint:
-            return replace(problem, instance=regularised(instance, before * SHARPER**-share, 1.0))
+        def sharper(fraction: float, before: float = before, problem: TwoPoint = problem) -> TwoPoint:
+            return replace(problem, instance=regularised(instance, before * TIGHTER**-fraction, 1.0))
 
         curve, reached = follow(sharper, curve, limits)
         if reached == 0.0:
             raise Stopped(
                 Status.NOT_CONVERGED, f"a regularisation below {smoothing:.1e} was not reached", problem, curve
             )
-        smoothing *= SHARPER**-reached
+        smoothing *= TIGHTER**-reached
         problem = replace(problem, instance=regularised(instance, smoothing, 1.0))
         yield Smoothed(problem, curve)
 
@@ -127,8 +121,8 @@ def _bounded(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve]:
     problem, curve = _unbounded(regularised(instance, first_smoothing(instance), 0.0), limits)
     worst = max(_violation(problem, curve), 0.0)
 
-    def bounded(share: float) -> TwoPoint:
-        return problem.relaxed((1.0 - share) * worst)
+    def bounded(fraction: float) -> TwoPoint:
+        return problem.relaxed((1.0 - fraction) * worst)
 
     if worst > 0.0:
         curve, reached = follow(bounded, curve, limits)

@@ -15,38 +15,25 @@ from satsym.solvers.switching.structure import LOWER, REST, UPPER
 
 @dataclass(frozen=True, eq=False)
 class Plans:
-    """Controls that are constant on arcs.
-
-    Attributes
-    ----------
-    levels
-        Of each control on each arc, shape (K, m, M).
-    lengths
-        Of the arcs, shape (K, M).
-    """
+    """Controls that are constant on arcs."""
 
     levels: NDArray[np.int64]
+    """Of each control on each arc, shape (K, m, M)."""
     lengths: Array
+    """Of the arcs, shape (K, M)."""
 
 
 @dataclass(frozen=True, eq=False)
 class Scout:
-    """A motion that arrives, roughly.
-
-    Attributes
-    ----------
-    number
-        Of its plan.
-    levels, lengths
-        Of each control on each arc, shape (K, m), and of the arcs, (K,).
-    cost
-        Of the motion, as far as fixed steps tell.
-    """
+    """A motion that arrives, roughly."""
 
     number: int
+    """Of its plan."""
     levels: NDArray[np.int64]
     lengths: Array
+    """Of each control on each arc, shape (K, m), and of the arcs, (K,)."""
     cost: float
+    """Of the motion, as far as fixed steps tell."""
 
 
 def seeded(
@@ -60,8 +47,6 @@ def seeded(
         Most of each control.
     durations
         Shape (M,).
-    rng
-        Where chance comes from.
     opposite
         Whether first levels are taken in the other order.
     """

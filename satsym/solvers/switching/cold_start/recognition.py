@@ -25,27 +25,21 @@ LONG = 0.02
 
 @dataclass(frozen=True, eq=False)
 class Sample:
-    """A smoothed extremal at many times.
-
-    Attributes
-    ----------
-    times, z, u
-        Shapes (N,), (2n, N), (m, N), in the model's units.
-    sigma, weight
-        Switching functions and weights of |u|, shapes (m, N).
-    """
+    """A smoothed extremal at many times."""
 
     times: Array
     z: Array
     u: Array
+    """Shapes (N,), (2n, N), (m, N), in the model's units."""
     sigma: Array
     weight: Array
+    """Switching functions and weights of |u|, shapes (m, N)."""
 
 
 def sample(problem: TwoPoint, path: Path) -> Sample:
     """A smoothed extremal as it is."""
-    shares = np.linspace(0.0, 1.0, SAMPLES, endpoint=False)
-    tau = np.append((path.mesh[:-1, None] + np.diff(path.mesh)[:, None] * shares).ravel(), 1.0)
+    fractions = np.linspace(0.0, 1.0, SAMPLES, endpoint=False)
+    tau = np.append((path.mesh[:-1, None] + np.diff(path.mesh)[:, None] * fractions).ravel(), 1.0)
     scaled = path(tau)
     z, n, instance = scaled * problem.scale.both, problem.states, problem.instance
     times = instance.t0 + problem.elapsed(path.theta) * tau
@@ -120,7 +114,7 @@ def _passages(
         for level in through:
             target = float(weight[k]) * -np.sign(row[-1] + level) if weight[k] > 0.0 else 0.0
             a, b = float(sigma[k]) - target, float(sigma[k + 1]) - target
-            share = min(max(a / (a - b), 0.0), 1.0) if a != b else 0.5
-            switches.append(float(times[k] + share * (times[k + 1] - times[k])))
+            fraction = min(max(a / (a - b), 0.0), 1.0) if a != b else 0.5
+            switches.append(float(times[k] + fraction * (times[k + 1] - times[k])))
             row.append(level)
     return tuple(row), switches

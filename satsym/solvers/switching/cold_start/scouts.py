@@ -20,7 +20,7 @@ from satsym.solvers.simulation.extrapolation import integrate
 from satsym.solvers.switching.cold_start.plans import Plans, Scout
 from satsym.solvers.switching.structure import LOWER, UPPER
 
-LEAST, MOST, QUICK = 6, 24, 2.5
+FEWEST, MOST, QUICK = 6, 24, 2.5
 """Runge-Kutta steps of an arc, and how many for each unit of the motion's quickest rate times its length."""
 
 ROUNDS, LAST = 24, 7
@@ -56,21 +56,14 @@ NOISE = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class Target:
-    """Where motions are to arrive.
-
-    Attributes
-    ----------
-    instance
-        Of a switching problem.
-    sizes
-        Of states, shape (n,).
-    ends
-        The final time of each plan, where it is given or to be kept, NaN where it is free; shape (M,).
-    """
+    """Where motions are to arrive."""
 
     instance: Instance
+    """Of a switching problem."""
     sizes: Array
+    """Of states, shape (n,)."""
     ends: Array
+    """The final time of each plan, where it is given or to be kept, NaN where it is free; shape (M,)."""
 
     @cached_property
     def _final(self) -> Array:
@@ -166,16 +159,11 @@ def _arrived(target: Target, plans: Plans, steps: _Steps, closely: float) -> lis
 
 @dataclass(frozen=True)
 class _Steps:
-    """How arcs are integrated, and who counts what that takes.
-
-    Attributes
-    ----------
-    quickest
-        Rate of the motion, by which the number of steps of fixed length is chosen; NaN for steps as long as errors
-        allow.
-    """
+    """How arcs are integrated, and who counts what that takes."""
 
     quickest: float
+    """Rate of the motion, by which the number of steps of fixed length is chosen; NaN for steps as long as errors
+    allow."""
     limits: Limits
 
     @classmethod
@@ -191,16 +179,16 @@ class _Steps:
             return self._fixed(rates, t, y, length)
         size = np.maximum(np.abs(y).max(axis=1, keepdims=True), 1e-300) + 0.0 * y
 
-        def within(share: float, flat: Array) -> Array:
+        def within(fraction: float, flat: Array) -> Array:
             self.limits.spend(len(t))
-            return np.asarray((length * rates(t + share * length, flat.reshape(y.shape))).ravel())
+            return np.asarray((length * rates(t + fraction * length, flat.reshape(y.shape))).ravel())
 
         end = integrate(within, np.array([0.0, 1.0]), y.ravel(), TOLERANCE, size.ravel(), 1.0)[0].end
         return end.reshape(y.shape)
 
     def _fixed(self, rates: Callable[[Array, Array], Array], t: Array, y: Array, length: Array) -> Array:
         longest = float(np.max(length, initial=0.0, where=np.isfinite(length)))
-        count = int(min(max(LEAST, np.ceil(QUICK * self.quickest * longest)), MOST))
+        count = int(min(max(FEWEST, np.ceil(QUICK * self.quickest * longest)), MOST))
         self.limits.spend(count * len(length))
         h = length / count
         for _ in range(count):
@@ -214,19 +202,13 @@ class _Steps:
 
 @dataclass(frozen=True, eq=False)
 class _Linearised:
-    """How plans miss the end, and how that and their costs change with the lengths of arcs.
-
-    Attributes
-    ----------
-    miss
-        Shape (c, M).
-    slopes, gradient
-        Of misses and costs, shapes (M, c, K) and (M, K).
-    """
+    """How plans miss the end, and how that and their costs change with the lengths of arcs."""
 
     miss: Array
+    """Shape (c, M)."""
     slopes: Array
     gradient: Array
+    """Of misses and costs, shapes (M, c, K) and (M, K)."""
 
     @property
     def worst(self) -> Array:

@@ -110,7 +110,7 @@ def _durations(instance: Instance, motion: LinearMotion, limits: Limits) -> list
     while motion.rate * duration < cheapest and len(found) < MOST and not limits.expired:
         reach = Reach(instance, motion, duration)
         limits.spend(reach.count)
-        priced = reach.least_cost() if reach.separation()[0] <= THERE else None
+        priced = reach.minimum_cost() if reach.separation()[0] <= THERE else None
         cost = float("inf") if priced is None else priced.cost + motion.rate * duration
         found.append((cost, reach, priced))
         cheapest, duration = min(cheapest, cost), duration * STEP
@@ -135,7 +135,7 @@ def _between(
     low, high = (shorter, reach.duration) if known[0][2] > 0.0 else (reach.duration, reach.duration * STEP)
     for _ in range(HALVINGS):
         middle = Reach(instance, motion, (low + high) / 2.0)
-        found = middle.least_cost() if middle.separation()[0] <= THERE else None
+        found = middle.minimum_cost() if middle.separation()[0] <= THERE else None
         if found is not None:
             known.append((middle, found, middle.rate(found.costate)))
         low, high = (middle.duration, high) if found is None or known[-1][2] < 0.0 else (low, middle.duration)
@@ -143,8 +143,8 @@ def _between(
     if not falling or not rising:
         return known[-1][:2]
     before, after = max(falling, key=lambda one: one[0].duration), min(rising, key=lambda one: one[0].duration)
-    share = before[2] / (before[2] - after[2])
-    costate = before[1].costate + share * (after[1].costate - before[1].costate)
+    fraction = before[2] / (before[2] - after[2])
+    costate = before[1].costate + fraction * (after[1].costate - before[1].costate)
     return after[0], replace(after[1], costate=costate)
 
 
@@ -166,6 +166,6 @@ def _cheapest(instance: Instance, limits: Limits, tried: list[tuple[Reach, Price
 def _guesses(instance: Instance, limits: Limits, tried: list[tuple[Reach, Priced | None]]) -> Iterator[Guess]:
     for reach, known in tried:
         limits.spend(reach.count)
-        priced = known or (reach.least_cost() if reach.separation()[0] <= THERE else None)
+        priced = known or (reach.minimum_cost() if reach.separation()[0] <= THERE else None)
         if priced is not None:
             yield guessed(instance, reach, priced.costate)

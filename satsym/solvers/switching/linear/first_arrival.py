@@ -43,18 +43,12 @@ TIRED = 16
 
 @dataclass(frozen=True)
 class Arrival:
-    """A time in which the end may be reached first, and costates there that say how.
-
-    Attributes
-    ----------
-    duration
-        From the start; nothing arrives in less than the first of them.
-    costates
-        Of all states at the end, shape (n,), without a scale, one for each way to look for them.
-    """
+    """A time in which the end may be reached first, and costates there that say how."""
 
     duration: float
+    """From the start; nothing arrives in less than the first of them."""
     costates: tuple[Array, ...]
+    """Of all states at the end, shape (n,), without a scale, one for each way to look for them."""
 
 
 def arrivals(instance: Instance, motion: LinearMotion, limits: Limits) -> Iterator[Arrival]:
@@ -77,7 +71,7 @@ def arrivals(instance: Instance, motion: LinearMotion, limits: Limits) -> Iterat
         distance, costate = reach.separation()
         later = _beyond(instance, motion, costate, duration, duration) if distance > THERE else duration
         if later is not None and later <= duration * (1.0 + THERE):
-            before = (Reach(instance, motion, duration * (1.0 - share)).separation(PRECISE) for share in BEFORE)
+            before = (Reach(instance, motion, duration * (1.0 - fraction)).separation(PRECISE) for fraction in BEFORE)
             yield Arrival(duration, tuple(costate for distance, costate in before if distance > 0.0))
             later, further, tired = duration * (1.0 + further), further * FARTHER, tired + 1
         duration = later
@@ -119,8 +113,8 @@ def _beyond(instance: Instance, motion: LinearMotion, costate: Array, after: flo
                 return None
             if k == first:
                 return after
-            share = values[k - 1] / (values[k - 1] - values[k])
-            found = length * (k - 1 + float(share))
+            fraction = values[k - 1] / (values[k - 1] - values[k])
+            found = length * (k - 1 + float(fraction))
             if k < 20 and after == 0.0 and found < scale:
                 return _beyond(instance, motion, costate, 0.0, found)
             return found

@@ -24,24 +24,17 @@ TERMS = 18
 
 @dataclass(frozen=True, eq=False)
 class LinearMotion:
-    """Coefficients of a motion, and of a running cost ``rate + slope'u + weight'|u|``.
-
-    Attributes
-    ----------
-    states, controls, drift
-        A, B and c: shapes (n, n), (n, m) and (n,).
-    rate
-        Of the cost with time; NaN where the cost is of another form.
-    slope, weight
-        Of the cost with controls and with their magnitudes, shape (m,).
-    """
+    """Coefficients of a motion, and of a running cost ``rate + slope'u + weight'|u|``."""
 
     states: Array
     controls: Array
     drift: Array
+    """A, B and c: shapes (n, n), (n, m) and (n,)."""
     rate: float
+    """Of the cost with time; NaN where the cost is of another form."""
     slope: Array
     weight: Array
+    """Of the cost with controls and with their magnitudes, shape (m,)."""
 
     @property
     def priced(self) -> bool:

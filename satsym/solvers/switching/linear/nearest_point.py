@@ -22,22 +22,15 @@ NO_GAIN = 1e-13
 
 @dataclass(frozen=True, eq=False)
 class Near:
-    """A point next to the nearest.
-
-    Attributes
-    ----------
-    point
-        Of the set, shape (d,): also the direction of a hyperplane between the set and the origin, if there is one.
-    distance
-        Of that hyperplane from the origin, a lower bound of the set's; not positive where there is none.
-    corners, shares
-        Support points, shape (k, d), whose mean with these weights the point is.
-    """
+    """A point next to the nearest."""
 
     point: Array
+    """Of the set, shape (d,): also the direction of a hyperplane between the set and the origin, if there is one."""
     distance: float
+    """Of that hyperplane from the origin, a lower bound of the set's; not positive where there is none."""
     corners: Array
-    shares: Array
+    fractions: Array
+    """Support points, shape (k, d), whose mean with these weights the point is."""
 
 
 def nearest_point(support: Callable[[Array], Array], first: Array, close: float, tight: float) -> Near:
@@ -55,7 +48,7 @@ def nearest_point(support: Callable[[Array], Array], first: Array, close: float,
         Share of its distance by which a hyperplane may be nearer to the origin than the point.
     """
     corners: Array = first[None]
-    shares: Array = np.ones(1)
+    fractions: Array = np.ones(1)
     point, direction, best = first, first, -np.inf
     for _ in range(ROUNDS):
         length = float(np.linalg.norm(point))
@@ -67,27 +60,27 @@ def nearest_point(support: Callable[[Array], Array], first: Array, close: float,
             best, direction = distance, point
         if best >= (1.0 - tight) * length or float(point @ (point - found)) <= NO_GAIN * length * length:
             break
-        corners, shares = _with(corners, shares, found)
-        point = shares @ corners
-    return Near(direction if best > 0.0 else point, best, corners, shares)
+        corners, fractions = _with(corners, fractions, found)
+        point = fractions @ corners
+    return Near(direction if best > 0.0 else point, best, corners, fractions)
 
 
-def _with(corners: Array, shares: Array, new: Array) -> tuple[Array, Array]:
+def _with(corners: Array, fractions: Array, new: Array) -> tuple[Array, Array]:
     """The nearest point of the hull with one corner more, and without those that it does not need."""
-    corners, shares = np.concatenate([corners, new[None]]), np.append(shares, 0.0)
+    corners, fractions = np.concatenate([corners, new[None]]), np.append(fractions, 0.0)
     for _ in range(2 * len(corners)):
         wanted = _affine(corners)
         if (wanted > 0.0).all():
             return corners, wanted
         falling = wanted <= 0.0
-        steps = shares[falling] / np.maximum(shares[falling] - wanted[falling], 1e-300)
-        shares = shares + min(float(steps.min()), 1.0) * (wanted - shares)
-        kept = shares > 1e-14
-        kept[int(np.argmax(shares))] = True
+        steps = fractions[falling] / np.maximum(fractions[falling] - wanted[falling], 1e-300)
+        fractions = fractions + min(float(steps.min()), 1.0) * (wanted - fractions)
+        kept = fractions > 1e-14
+        kept[int(np.argmax(fractions))] = True
         if kept.all():
             kept[np.flatnonzero(falling)[int(np.argmin(steps))]] = False
-        corners, shares = corners[kept], shares[kept] / shares[kept].sum()
-    return corners, shares
+        corners, fractions = corners[kept], fractions[kept] / fractions[kept].sum()
+    return corners, fractions
 
 
 def _affine(corners: Array) -> Array:

@@ -14,7 +14,7 @@ from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.switching.linear.linear_motion import LinearMotion
 from satsym.solvers.switching.linear.nearest_point import nearest_point
 
-LEAST, MOST, PER_RADIAN = 160, 1600, 16.0
+FEWEST, MOST, PER_RADIAN = 160, 1600, 16.0
 """Steps of a duration, and how many for each unit of the motion's quickest rate times the duration."""
 
 FLAT = 1e-9
@@ -35,38 +35,25 @@ SEARCHES = 60
 
 @dataclass(frozen=True)
 class Priced:
-    """The least cost of an end, as far as steps of equal length tell.
-
-    Attributes
-    ----------
-    cost
-        A bound from below that is met up to the accuracy of the search.
-    costate
-        Of all states at the end, shape (n,); the optimum minimises H with it.
-    """
+    """The least cost of an end, as far as steps of equal length tell."""
 
     cost: float
+    """A bound from below that is met up to the accuracy of the search."""
     costate: Array
+    """Of all states at the end, shape (n,); the optimum minimises H with it."""
 
 
 @dataclass(frozen=True, eq=False)
 class Reach:
-    """All ends that are reached in a given time.
-
-    Attributes
-    ----------
-    instance, motion
-        Whose.
-    duration
-        From the start.
-    finer
-        So many times more steps are taken than usual: short arcs do not show in fewer.
-    """
+    """All ends that are reached in a given time."""
 
     instance: Instance
     motion: LinearMotion
+    """Whose."""
     duration: float
+    """From the start."""
     finer: int = 1
+    """So many times more steps are taken than usual: short arcs do not show in fewer."""
 
     @cached_property
     def rows(self) -> NDArray[np.intp]:
@@ -157,7 +144,7 @@ class Reach:
         low, high = np.array(self.instance.lower), np.array(self.instance.upper)
         return np.repeat([low, np.clip(0.0, low, high), high], self.count, axis=1)
 
-    def least_cost(self) -> Priced | None:
+    def minimum_cost(self) -> Priced | None:
         """The least cost of the end, which must be in the set; ``None`` where no costate shows it."""
         towards, effects, base = self.round
         length = self.duration / self.count
@@ -181,7 +168,7 @@ class Reach:
             return np.asarray(from_goal + flat @ np.where(direction @ flat > 0.0, low, high))
 
         near = nearest_point(support, support(from_goal), 0.0, 1e-9)
-        return np.asarray(near.shares @ near.corners * sizes)
+        return np.asarray(near.fractions @ near.corners * sizes)
 
     def in_full(self, costate: Array) -> Array:
         """Costates of all states from those of given ones."""
@@ -227,7 +214,7 @@ def cheapest(effects: Array, base: Array, levels: Array, prices: Array) -> tuple
         found = near.point[:-1] * (unit / outwards)
         gain = near.distance * float(np.linalg.norm(near.point)) / outwards
         bound += gain
-        first = near.shares @ near.corners - np.append(np.zeros(len(base)), gain)
+        first = near.fractions @ near.corners - np.append(np.zeros(len(base)), gain)
         if gain <= CHEAPER:
             break
     return None if found is None else (lowest + bound * unit, found)
@@ -236,7 +223,7 @@ def cheapest(effects: Array, base: Array, levels: Array, prices: Array) -> tuple
 def steps(motion: LinearMotion, duration: float) -> int:
     """How many steps show a duration well."""
     quickest = float(np.abs(np.linalg.eigvals(motion.states)).max(initial=0.0))
-    return int(min(max(LEAST, np.ceil(PER_RADIAN * quickest * duration)), MOST))
+    return int(min(max(FEWEST, np.ceil(PER_RADIAN * quickest * duration)), MOST))
 
 
 def given_rows(instance: Instance) -> NDArray[np.intp]:

@@ -57,7 +57,7 @@ class ClosedLoop(Derived):
         """Small motions, the law, transfer functions, and the answer to a step."""
         return (
             original_equations,
-            steps.small_motions,
+            steps.linearised_about_rest,
             steps.control_law,
             steps.transfer_functions,
             steps.poles_and_zeros,

@@ -8,7 +8,7 @@ import sympy as sp
 
 from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.model import symbols_of
-from satsym.symbolic.notation import answer_of, initial
+from satsym.symbolic.notation import answer_of, initial, named
 
 if TYPE_CHECKING:
     from satsym.symbolic.kinds.closed_loop.model import ClosedLoop
@@ -35,19 +35,12 @@ _FIXED = {
 }
 
 
-def transfer_to(variable: sp.Symbol) -> sp.Symbol:
-    """The symbol for the transfer function from the command to a state or the control."""
-    return sp.Symbol(f"transfer_{variable.name}", real=True)
-
-
-def impulse_of(control: sp.Symbol) -> sp.Symbol:
-    """The symbol for the time integral of a control at the very moment of the step."""
-    return sp.Symbol(f"{control.name}_impulse", real=True)
-
-
-def final_of(state: sp.Symbol) -> sp.Symbol:
-    """The symbol for what a state tends to."""
-    return sp.Symbol(f"{state.name}_final", real=True)
+transfer_to = named("transfer_{}")
+"""The symbol for the transfer function from the command to a state or the control."""
+impulse_of = named("{}_impulse")
+"""The symbol for the time integral of a control at the very moment of the step."""
+final_of = named("{}_final")
+"""The symbol for what a state tends to."""
 
 
 def pole(k: int) -> sp.Symbol:

@@ -16,7 +16,7 @@ from satsym.symbolic.kinds.closed_loop.names import COMMAND, SECONDS, control_of
 from satsym.symbolic.model import symbols_of
 
 
-def small_motions(so_far: Derivation) -> Step:
+def linearised_about_rest(so_far: Derivation) -> Step:
     """The equations of motion, to first order about rest."""
     model = loop_of(so_far)
     states, control = symbols_of(model.states), control_of(model)

@@ -1,4 +1,4 @@
-"""What minimises a Hamiltonian that is linear in a control, and in its magnitude, over an interval.
+"""What minimises a Hamiltonian over a control set, as functions that can be differentiated, typeset and evaluated.
 
 Of ``slope * u + weight * |u|`` on ``lower <= u <= upper`` the minimiser jumps where the slope passes ``weight`` or
 ``-weight``. With ``smoothing / 2 * u**2`` added it is the clipped ``-Shrink(slope, weight) / smoothing``.
@@ -10,6 +10,47 @@ from typing import Any
 
 import mpmath as mp
 import sympy as sp
+
+
+class Clip(sp.Function):
+    """``Clip(value, lower, upper)``: the nearest point of an interval."""
+
+    nargs = 3
+    is_real = True
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """By the value: one inside, zero outside. The limits are constants."""
+        if argindex != 1:
+            raise sp.ArgumentIndexError(self, argindex)
+        return Inside(*self.args)
+
+
+class Inside(sp.Function):
+    """``Inside(value, lower, upper)``: one in the interval, zero outside; the derivative of :class:`Clip`."""
+
+    nargs = 3
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """Zero, except at the ends, where it has no derivative."""
+        return sp.Integer(0)
+
+
+class Shorten(sp.Function):
+    """``Shorten(norm_squared, limit)``: the factor that brings a vector into a ball, at most one."""
+
+    nargs = 2
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """By the square of the norm. The limit is a constant."""
+        if argindex != 1:
+            raise sp.ArgumentIndexError(self, argindex)
+        return ShortenSlope(*self.args)
+
+
+class ShortenSlope(sp.Function):
+    """``ShortenSlope(norm_squared, limit)``: the derivative of :class:`Shorten` by its first argument."""
+
+    nargs = 2
 
 
 class Switch(sp.Function):
@@ -56,7 +97,7 @@ class Side(sp.Function):
         return sp.Integer(0)
 
 
-SWITCHES = (Switch, Shrink, Side)
+MINIMISERS = (Clip, Inside, Shorten, ShortenSlope, Switch, Shrink, Side)
 
 
 def by_signs(expression: sp.Expr) -> sp.Expr:
@@ -76,6 +117,22 @@ def by_signs(expression: sp.Expr) -> sp.Expr:
     return expression.replace(Switch, switch).replace(Shrink, shrink)
 
 
+def _clip(value: Any, lower: Any, upper: Any) -> Any:
+    return max(lower, min(value, upper))
+
+
+def _shorten(norm_squared: Any, limit: Any) -> Any:
+    return mp.mpf(1) if norm_squared <= limit**2 else limit / mp.sqrt(norm_squared)
+
+
+def _inside(value: Any, lower: Any, upper: Any) -> Any:
+    return mp.mpf(lower <= value <= upper)
+
+
+def _shorten_slope(norm_squared: Any, limit: Any) -> Any:
+    return mp.mpf(0) if norm_squared <= limit**2 else -limit / (2 * norm_squared * mp.sqrt(norm_squared))
+
+
 def _switch(slope: Any, weight: Any, lower: Any, upper: Any) -> Any:
     if slope > weight:
         return lower
@@ -93,4 +150,12 @@ def _shrink(value: Any, width: Any) -> Any:
     return side * side * value - side * width
 
 
-MPMATH_SWITCHES = {"Switch": _switch, "Shrink": _shrink, "Side": _side}
+MPMATH_FUNCTIONS = {
+    "Clip": _clip,
+    "Inside": _inside,
+    "Shorten": _shorten,
+    "ShortenSlope": _shorten_slope,
+    "Switch": _switch,
+    "Shrink": _shrink,
+    "Side": _side,
+}

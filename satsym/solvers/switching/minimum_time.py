@@ -24,7 +24,7 @@ STEP = 1e-6
 """Of the central difference that gives the rate of the reference, relative to the time."""
 
 
-def least_time(instance: Instance) -> Instance | None:
+def minimum_time(instance: Instance) -> Instance | None:
     """The problem of least time with the same motion, bounds and ends; ``None`` where constraints tie the end."""
     if instance.model.spec.multipliers:
         return None

@@ -1,4 +1,4 @@
-"""Relations of the functions that linear models have; see :mod:`satsym.kernels.relations`."""
+"""What the functions of a motion must have to do with each other, and those of linear models besides."""
 
 from __future__ import annotations
 
@@ -8,13 +8,52 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.kernels.evaluation import FAINT, Evaluation, size
-from satsym.kernels.relations import Relation
+from satsym.kernels.relations import Relation, along, derivative
 
 PROBES = (-1.7, -0.4, 0.9, 2.3)
 """Where polynomials are compared with determinants, in units of the matrix."""
 
 
-def of_linear_models(of: Evaluation) -> Iterator[Relation]:
+def of_motion(of: Evaluation) -> Iterator[Relation]:
+    """Relations of the dynamics, its Jacobians, the reference, what is conserved, and of linear models."""
+    x = ("x",)
+    yield from derivative(of, "jacobian_x", "dynamics", x)
+    yield from derivative(of, "jacobian_u", "dynamics", ("u",))
+    rest = np.zeros_like(of.at["u"])
+    drift = of("dynamics", u=rest)
+    if of.has("reference"):
+        curve = of("reference")
+        rates, pace = of("dynamics", x=curve, u=rest), of.slope("reference", "t")[..., 0, :]
+        terms = np.abs(of.slope("dynamics", "x", x=curve, u=rest) * curve).sum(axis=-2)
+        yield Relation("reference", "uncontrolled motion", pace, rates, FAINT * terms)
+    if of.has("invariants"):
+        left, terms = along(of, "invariants", drift)
+        yield Relation("invariants", "constant along the uncontrolled motion", left, np.zeros_like(left), terms)
+    if of.has("balances"):
+        rates, terms = along(of, "balances", of("dynamics"))
+        stated = of("balances")[1::2]
+        yield Relation("balances", "each followed by its rate of change", stated, rates[::2], terms[::2])
+    if of.has("inertial_state"):
+        yield from _of_attraction(of, drift)
+    if of.kernels.spec.linear:
+        yield from _of_linear_models(of)
+
+
+def _of_attraction(of: Evaluation, drift: Array) -> Iterator[Relation]:
+    """Velocity and acceleration in space, and the law of attraction."""
+    name = "inertial_state"
+    state = of(name)
+    rates, terms = along(of, name, drift)
+    place, mu = state[:3], state[6]
+    distance = np.sqrt((place * place).sum(axis=0))
+    yield Relation(name, "velocity is the rate of change of place", state[3:6], rates[:3], terms[:3])
+    yield Relation(name, "acceleration is that of Kepler motion", rates[3:6], -mu * place / distance**3, terms[3:6])
+    if of.has("position"):
+        found = of("position")
+        yield Relation("position", "place in space", found, place[: len(found)], distance * FAINT)
+
+
+def _of_linear_models(of: Evaluation) -> Iterator[Relation]:
     """Matrices, changes of variables, polynomials, closed forms and Riccati's equation."""
     columns = of.at["t"].shape[-1]
     a, at_rest = of("state_matrix"), {"x": np.zeros_like(of.at["x"]), "u": np.zeros_like(of.at["u"])}

@@ -20,10 +20,8 @@ import numpy as np
 from satsym.solvers.cold_start import paths
 from satsym.solvers.cold_start.from_path import STRAIGHT_THROUGH, from_path
 from satsym.solvers.cold_start.origin import Origin, Start
-from satsym.solvers.cold_start.path_of_durations import along_durations
-from satsym.solvers.cold_start.path_of_ends import along_ends
-from satsym.solvers.cold_start.path_of_problems import along_problems, geometric, straight
-from satsym.solvers.cold_start.path_of_turns import along_turns
+from satsym.solvers.cold_start.path_of_ends import along_durations, along_ends
+from satsym.solvers.cold_start.path_of_problems import along_problems, along_turns, geometric, straight
 from satsym.solvers.cold_start.straight_through import straight_through
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.curve import Curve
@@ -51,8 +49,6 @@ def cold_start(problem: TwoPoint, limits: Limits, quick: bool = False) -> Start:
     ----------
     problem
         Bounds are ignored.
-    limits
-        When to stop.
     quick
         Try the first way only.
     """

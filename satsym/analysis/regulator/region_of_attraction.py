@@ -31,26 +31,19 @@ MOST_STEPS = 20000
 
 
 @dataclass(frozen=True)
-class Basin:
-    """Deviations from which the motion returns.
-
-    Attributes
-    ----------
-    extents
-        By state: the most negative and the most positive deviation of this state alone, in the model's unit, up to
-        which every one that was tried returns; infinite where all did.
-    level
-        The largest x'Px up to which every deviation returns that was tried in any direction.
-    time
-        How long each had to do so.
-    """
+class RegionOfAttraction:
+    """Deviations from which the motion returns."""
 
     extents: Mapping[str, tuple[float, float]]
+    """By state: the most negative and the most positive deviation of this state alone, in the model's unit, up to which
+    every one that was tried returns; infinite where all did."""
     level: float
+    """The largest x'Px up to which every deviation returns that was tried in any direction."""
     time: float
+    """How long each had to do so."""
 
 
-def basin(about: Linearisation, found: Regulator, case: Instance | None = None) -> Basin:
+def region_of_attraction(about: Linearisation, found: Regulator, case: Instance | None = None) -> RegionOfAttraction:
     """Estimate the basin of attraction of a linear law.
 
     Parameters
@@ -69,8 +62,8 @@ def basin(about: Linearisation, found: Regulator, case: Instance | None = None) 
         raise BadInput("a region of attraction needs an infinite horizon; leave out [lqr] horizon")
     n, names = len(about.point), about.system.states
     time = PATIENCE / float(-found.eigenvalues.real.max())
-    if not about.nonlinear and (case is None or not _bounded(case)):
-        return Basin(dict.fromkeys(names, (-np.inf, np.inf)), np.inf, time)
+    if not about.nonlinear and (case is None or not case.control_set.bounded):
+        return RegionOfAttraction(dict.fromkeys(names, (-np.inf, np.inf)), np.inf, time)
     directions = _directions(found.P, n)
     size = np.sqrt(found.cost(np.abs(about.point) + scaled(about.system).states))
     safe, unsafe = np.zeros(directions.shape[1]), np.full(directions.shape[1], np.inf)
@@ -81,12 +74,12 @@ def basin(about: Linearisation, found: Regulator, case: Instance | None = None) 
         column = np.arange(len(first))
         safe = np.where(first > 0, tried[first - 1, column], safe)
         unsafe = np.where(first < len(tried), tried[np.minimum(first, len(tried) - 1), column], unsafe)
-        share = np.arange(1, REFINED + 1)[:, None] / (REFINED + 1)
-        tried = safe + share * np.where(np.isfinite(unsafe), unsafe - safe, 0.0)
+        fraction = np.arange(1, REFINED + 1)[:, None] / (REFINED + 1)
+        tried = safe + fraction * np.where(np.isfinite(unsafe), unsafe - safe, 0.0)
     reach = np.where(np.isfinite(unsafe), safe, np.inf)
     alone = reach[: 2 * n] / np.sqrt(np.repeat(np.diag(found.P), 2))
     extents = {name: (-float(alone[2 * i + 1]), float(alone[2 * i])) for i, name in enumerate(names)}
-    return Basin(extents, float(reach.min() ** 2), time)
+    return RegionOfAttraction(extents, float(reach.min() ** 2), time)
 
 
 def _directions(P: Array, n: int) -> Array:
@@ -97,10 +90,6 @@ def _directions(P: Array, n: int) -> Array:
     evenly = np.linalg.solve(np.linalg.cholesky(P * np.outer(unit, unit)).T, drawn) * unit[:, None]
     found = np.hstack([alone, evenly])
     return np.asarray(found / np.sqrt(np.einsum("im,ij,jm->m", found, P, found)))
-
-
-def _bounded(case: Instance) -> bool:
-    return case.control_set.bounded
 
 
 def _returns(

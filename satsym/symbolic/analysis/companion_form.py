@@ -14,21 +14,15 @@ from satsym.symbolic.analysis.spectrum import Spectrum
 
 @dataclass(frozen=True)
 class CompanionForm:
-    """A basis in which one input drives a chain of integrators: T^-1 A T = matrix, T^-1 b = the last unit vector.
-
-    Attributes
-    ----------
-    matrix
-        The companion matrix of the characteristic polynomial.
-    basis
-        T.
-    """
+    """A basis in which one input drives a chain of integrators: T^-1 A T = matrix, T^-1 b = the last unit vector."""
 
     matrix: sp.ImmutableMatrix
+    """The companion matrix of the characteristic polynomial."""
     basis: sp.ImmutableMatrix
+    """T."""
 
 
-def companion(coefficients: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
+def companion_matrix(coefficients: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
     """The companion matrix of a monic polynomial, given highest power first: ones above the diagonal, then -a_k."""
     size = len(coefficients) - 1
     last = [-c for c in reversed(list(coefficients)[1:])]
@@ -53,4 +47,4 @@ def companion_form(of: Spectrum, b: sp.MatrixBase) -> CompanionForm | None:
     basis = DomainMatrix.hstack(*reversed(columns))
     if basis.rank() < a.rows:
         return None
-    return CompanionForm(companion(of.coefficients), field.matrix(basis))
+    return CompanionForm(companion_matrix(of.coefficients), field.matrix(basis))

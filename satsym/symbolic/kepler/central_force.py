@@ -19,19 +19,13 @@ from satsym.symbolic.model import Particle, symbols_of
 
 
 @dataclass(frozen=True)
-class Attraction:
-    """An uncontrolled acceleration -k r / |r|^3.
-
-    Attributes
-    ----------
-    strength
-        k: a positive function of parameters and named constants.
-    distance
-        |r|, by the coordinates.
-    """
+class CentralForce:
+    """An uncontrolled acceleration -k r / |r|^3."""
 
     strength: sp.Expr
+    """k: a positive function of parameters and named constants."""
     distance: sp.Expr
+    """|r|, by the coordinates."""
 
 
 def uncontrolled_force(model: Particle) -> sp.Matrix:
@@ -45,7 +39,7 @@ def inertial_velocity(model: Particle) -> sp.Matrix:
     return model.position.applyfunc(lambda c: total_derivative(c, model.coordinates))
 
 
-def central_attraction(so_far: Derivation) -> Step | None:
+def central_force(so_far: Derivation) -> Step | None:
     """That the motion without control is Kepler's: acceleration -k r / |r|^3 with a constant k."""
     model = so_far.model.particle()
     if model is None or (found := recognised(model)) is None:
@@ -141,7 +135,7 @@ def inertial_state(model: Particle, strength: sp.Expr) -> sp.Matrix:
     return sp.Matrix.vstack(model.position, missing, inertial_velocity(model), missing, sp.Matrix([strength]))
 
 
-def recognised(model: Particle) -> Attraction | None:
+def recognised(model: Particle) -> CentralForce | None:
     """The attraction, if the force is one; that it is so identically is for the step to prove."""
     place, force = model.position, uncontrolled_force(model)
     distance = sp.sqrt(sp.simplify(place.dot(place)))
@@ -150,7 +144,7 @@ def recognised(model: Particle) -> Attraction | None:
     if strength.free_symbols & moving or not strength.xreplace(definitions_of(model)).is_positive:
         return None
     across = [sp.simplify(f * distance**3 + strength * c) for f, c in zip(force, place, strict=True)]
-    return None if any(across) else Attraction(strength, distance)
+    return None if any(across) else CentralForce(strength, distance)
 
 
 def inertial_accelerations(so_far: Derivation) -> list[sp.Expr]:

@@ -53,7 +53,7 @@ def by_dop853(start: Instance, duration: float, evaluations: int) -> Array:
 
     pieces = ceil(evaluations / (0.5 * closed_loop.MOST_EVALUATIONS))
     for _ in range(pieces):
-        run = closed_loop.fly(start, coast, np.array([0.0, duration / pieces]), TOLERANCE, dynamics)
+        run = closed_loop.simulate(start, coast, np.array([0.0, duration / pieces]), TOLERANCE, dynamics)
         start = replace(start, initial=tuple(run.x[:, -1].tolist()))
     return np.array(start.initial)
 
@@ -64,22 +64,15 @@ CLOSED_FORM = "closed form"
 
 @dataclass(frozen=True, eq=False)
 class Drift:
-    """What one integrator did to an orbit.
-
-    Attributes
-    ----------
-    revolutions
-        When it was looked at, shape (S+1,); the first is the start.
-    energy, momentum
-        Change since the start, relative to the size of the energy and of the angular momentum (the vector's change).
-    position
-        Distance from the closed form, relative to that from the centre.
-    """
+    """What one integrator did to an orbit."""
 
     revolutions: Array
+    """When it was looked at, shape (S+1,); the first is the start."""
     energy: Array
     momentum: Array
+    """Change since the start, relative to the size of the energy and of the angular momentum (the vector's change)."""
     position: Array
+    """Distance from the closed form, relative to that from the centre."""
 
     @property
     def trend(self) -> float:

@@ -16,7 +16,7 @@ from satsym.solvers.cold_start.durations import time_scale
 from satsym.solvers.cold_start.paths import curve as as_curve
 from satsym.solvers.cold_start.paths import first
 from satsym.solvers.cold_start.straight_through import straight_through
-from satsym.solvers.collocation.continuation import kinks, through
+from satsym.solvers.collocation.continuation import corners, through
 from satsym.solvers.collocation.curve import Curve
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.newton import newton
@@ -41,7 +41,7 @@ DURATIONS = 8
 OTHERS = (1.4, 2.0)
 """Durations that are tried besides, relative to that."""
 
-SHORTER, LEAST_SHORTER = 0.12, 0.002
+SHORTER, SMALLEST_SHORTENING = 0.12, 0.002
 """By this share durations are shortened, and by no less."""
 
 FOLLOWED = 5
@@ -56,19 +56,13 @@ SHORTEST = 1.0 / 256.0
 
 @dataclass(frozen=True, eq=False)
 class Smoothed:
-    """A smoothed extremal.
-
-    Attributes
-    ----------
-    problem, curve
-        The regularised problem, and its solution.
-    scaled
-        Factor of the costates by which those of the regularised problem are those of the problem.
-    """
+    """A smoothed extremal."""
 
     problem: TwoPoint
     curve: Curve
+    """The regularised problem, and its solution."""
     scaled: float = 1.0
+    """Factor of the costates by which those of the regularised problem are those of the problem."""
 
 
 def quick(instance: Instance, limits: Limits) -> Iterator[Smoothed]:
@@ -86,10 +80,10 @@ def quick(instance: Instance, limits: Limits) -> Iterator[Smoothed]:
             yield other
 
 
-def beside(instance: Instance, duration: float, shares: Sequence[float], limits: Limits) -> Iterator[Smoothed]:
+def beside(instance: Instance, duration: float, fractions: Sequence[float], limits: Limits) -> Iterator[Smoothed]:
     """Motions of least effort in shares of a duration: reachable durations need not be an interval."""
-    for share in shares:
-        found = _least_effort(instance, share * duration, limits)
+    for fraction in fractions:
+        found = _least_effort(instance, fraction * duration, limits)
         if found is not None:
             yield found
 
@@ -154,11 +148,11 @@ def shortening(instance: Instance, limits: Limits) -> Iterator[Smoothed]:
             longest, duration=duration, instance=replace(longest.instance, tf=instance.t0 + duration, tf_guess=None)
         )
 
-    while ratio > LEAST_SHORTER and not limits.expired:
+    while ratio > SMALLEST_SHORTENING and not limits.expired:
         start, end = duration, duration / (1.0 + ratio)
 
-        def between(share: float, start: float = start, end: float = end) -> TwoPoint:
-            return lasting(start + share * (end - start))
+        def between(fraction: float, start: float = start, end: float = end) -> TwoPoint:
+            return lasting(start + fraction * (end - start))
 
         curve, reached = follow(between, curve, limits, shortest=0.25)
         duration = start + reached * (end - start)
@@ -204,7 +198,7 @@ def follow(
     at, move, count = 0.0, 1.0, max(8, min(len(curve.mesh) - 1, 60))
     while at < 1.0 and move >= shortest and not limits.expired:
         there = problem(min(at + move, 1.0))
-        mesh = through(kinks(there, curve), count)
+        mesh = through(corners(there, curve), count)
         limits.spend(FOLLOWED * STAGES * len(mesh))
         outcome = newton(System(there, mesh, STAGES), curve.on(mesh, STAGES), tolerance=ROUGHLY, most=10)
         if outcome is None or not outcome.solved or not outcome.curve.in_domain(there.positive):

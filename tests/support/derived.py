@@ -1,0 +1,87 @@
+"""Derivations made once for all tests that look into them: in all processes, and until the engine changes.
+
+What is kept comes back equal in every part, or is not kept. Tests of the act of deriving call ``derive`` themselves.
+"""
+
+from __future__ import annotations
+
+import io
+import pickle
+import shutil
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import sympy as sp
+
+from satsym import kept
+from satsym.report import stamps
+from satsym.symbolic import Derivation, Model, Problem, derive, loader
+from satsym.symbolic.identity import identity
+
+_HOME = Path(__file__).resolve().parents[2] / ".pytest_cache" / "derivations"
+
+_KNOWN: dict[str, Derivation] = {}
+"""Derivations by the identity of what was stated."""
+
+
+def derived(subject: Problem | Model) -> Derivation:
+    """The derivation of a problem or model; anew where it holds code of its own."""
+    key = identity(subject)
+    if not key:
+        return derive(subject)
+    if key not in _KNOWN:
+        _KNOWN[key] = _kept(key) or _keep(key, derive(subject))
+    return _KNOWN[key]
+
+
+def shipped(name: str) -> Derivation:
+    """The derivation of a shipped problem or model."""
+    return derived(stated(name))
+
+
+@cache
+def stated(name: str) -> Problem | Model:
+    """What a shipped derivation file states under a name."""
+    return next(one for path in loader.shipped() for one in loader.load(path) if one.name == name)
+
+
+@cache
+def _folder() -> Path:
+    """The folder of this engine; those of others, now useless, go."""
+    found = _HOME / stamps.engine()
+    if not found.is_dir():
+        shutil.rmtree(_HOME, ignore_errors=True)
+    return found
+
+
+def _kept(key: str) -> Derivation | None:
+    content = kept.read(_folder() / key)
+    return pickle.loads(content) if content else None
+
+
+def _keep(key: str, found: Derivation) -> Derivation:
+    stream = io.BytesIO()
+    _Exact(stream).dump(found)
+    if pickle.loads(stream.getvalue()) == found:
+        kept.write(_folder() / key, stream.getvalue())
+    return found
+
+
+class _Exact(pickle.Pickler):
+    """Writes expressions so that they come back as they stand: sympy's own way multiplies some of them out."""
+
+    def reducer_override(self, value: Any) -> Any:
+        if isinstance(value, sp.Add | sp.Mul):
+            return _as_it_stood, (type(value), value.args)
+        if type(value) is sp.Pow:
+            return _power, value.args
+        return NotImplemented
+
+
+def _as_it_stood(kind: type[sp.Add | sp.Mul], terms: tuple[sp.Expr, ...]) -> sp.Expr:
+    return kind._from_args(terms)
+
+
+def _power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
+    return sp.Pow(base, exponent, evaluate=False)
