@@ -108,10 +108,10 @@ def _alone(text: str) -> Answer:
     from satsym.auditing.propositions.reading import proposition
 
     words = measurements.words()
-    return Evaluation(words, _Nowhere()).answer(proposition(text, words))
+    return Evaluation(words, Nowhere()).answer(proposition(text, words))
 
 
-class _Nowhere:
+class Nowhere:
     """No document: for propositions that look nothing up."""
 
     def row(self, key: str) -> Any:
