@@ -5,10 +5,10 @@ from __future__ import annotations
 import mpmath as mp
 import pytest
 import sympy as sp
-from satsym.symbolic.linear.numeric_matrices import right_half_plane
 from sympy import cos, sin, sqrt
 
 from satsym.symbolic.algebra import simplified, tidy, vanishes
+from satsym.symbolic.linear.matrices import right_half_plane
 
 x, y = sp.symbols("x y", positive=True)
 q = sp.Symbol("q", real=True)
