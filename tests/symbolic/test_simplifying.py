@@ -5,10 +5,10 @@ from __future__ import annotations
 import mpmath as mp
 import pytest
 import sympy as sp
-from satsym.symbolic.linear.numeric_matrices import right_half_plane
 from sympy import cos, sin, sqrt
 
 from satsym.symbolic.algebra import simplified, tidy, vanishes
+from satsym.symbolic.linear.matrices import right_half_plane
 
 x, y = sp.symbols("x y", positive=True)
 q = sp.Symbol("q", real=True)
@@ -44,6 +44,8 @@ def test_what_vanishes_is_told_from_what_does_not() -> None:
         ([2, 2, 2, -1], (3, 0)),
         ([1e-9, -1e-9, 3j, -3j], (1, 2)),
         ([0], (0, 1)),
+        ([2], (1, 0)),
+        ([-2], (0, 0)),
         ([-1e6, 1e-6], (1, 0)),
     ],
 )

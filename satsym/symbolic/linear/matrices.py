@@ -145,7 +145,8 @@ def right_half_plane(coefficients: Sequence[Any]) -> tuple[int, int]:
             companion[0, k] = -kept[k + 1] / kept[0]
             if k:
                 companion[k, k - 1] = mp.mpf(1)
-        roots = mp.eig(companion, left=False, right=False) if degree else []
+        # mpmath wraps the eigenvalue of a matrix with one entry once more
+        roots = mp.eig(companion, left=False, right=False) if degree > 1 else list(companion)
     reals = [mp.re(root) for root in roots]
     tolerance = mp.mpf(10) ** (-mp.mp.dps // 2)
     return sum(x > tolerance for x in reals), trailing + sum(abs(x) <= tolerance for x in reals)
