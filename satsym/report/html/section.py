@@ -10,9 +10,7 @@ from satsym.auditing.causes import Finding, Weight
 from satsym.report.findings.review import (
     IN_FULL,
     Review,
-    brief,
     correction,
-    fact,
     flat,
     is_mathematical,
     measured,
@@ -61,7 +59,12 @@ class Section:
         row = found.places[0]
         heading = tag("h4", f"{number}. ", self._review.places(found.places))
         summary = tag(
-            "summary", heading, " ", self._verdict(row), " ", tag("span", *_formulas(brief(found)), ".", class_="brief")
+            "summary",
+            heading,
+            " ",
+            self._verdict(row),
+            " ",
+            tag("span", *_formulas(self._review.brief(found)), ".", class_="brief"),
         )
         facts = {**self._facts(row), "item": self._links(r.key for r in found.places) if len(found.places) > 1 else ""}
         facts |= {"spoils": self._links(r.key for r in found.spoiled), **self._sources(row.key)}
@@ -86,7 +89,7 @@ class Section:
             "says": self._original(row),
             "about": "" if row.original else row.says,
             "claims" if row.kind == "claim" else "printed": self._printed(row),
-            "in_fact": joined(*_formulas(fact(row))),
+            "in_fact": joined(*_formulas(self._review.fact(row))),
             "measured": measured(row),
             "right": _formula(formula_tex.read(right) if is_mathematical(row) else None, right) if right else "",
         }
