@@ -42,7 +42,7 @@ class Section:
         review = self._review
         title = tag("h2", review.ledger.document.title, lang=self._language)
         byline = [tag("p", self._word("by"), " ", review.byline, class_="byline")] if review.byline else []
-        summary = tag("p", *(joined(self._sentence(text), " ") for text in review.summary), class_="summary")
+        summary = tag("div", *(tag("p", self._sentence(text)) for text in review.summary), class_="summary")
         parts = [self._of_weight(weight, group) for weight, group in review.by_weight]
         nothing = [] if parts else [tag("p", self._word("nothing"))]
         return tag("section", title, *byline, summary, *parts, *nothing, self._all_rows(), id=review.key)
@@ -66,7 +66,10 @@ class Section:
             " ",
             tag("span", *_formulas(self._review.brief(found)), ".", class_="brief"),
         )
-        facts = {**self._facts(row), "item": self._links(r.key for r in found.places) if len(found.places) > 1 else ""}
+        facts = {
+            **self._facts(row),
+            "places": self._links(r.key for r in found.places) if len(found.places) > 1 else "",
+        }
         facts |= {"spoils": self._links(r.key for r in found.spoiled), **self._sources(row.key)}
         evidence, command = recompute(row)
         facts |= {"evidence": "" if measured(row) else evidence, "recompute": tag("code", command)}

@@ -68,7 +68,8 @@ def _document(review: Review, rows: bool) -> Iterator[str]:
     by = f" ({review.byline})" if review.byline else ""
     yield from _wrapped(f"{review.key}: {review.ledger.document.title}{by}", hanging=1)
     yield ""
-    yield from _wrapped(" ".join(review.summary), 1)
+    for said in review.summary:
+        yield from _wrapped(said, 1)
     if not review.findings:
         yield from ("", f"{_INDENT}{texts.get('audit', 'nothing')}")
     for weight, group in review.by_weight:
