@@ -38,8 +38,8 @@ class Judged:
         Verbatim.
     derived
         What is right.
-    diagnosis
-        A referee's sentences; empty for what is confirmed.
+    diagnosis, diagnosis_id
+        A referee's sentences, in English and Indonesian; empty for what is confirmed.
     evidence
         Measured numbers, and the command that recomputes them.
     why
@@ -66,6 +66,7 @@ class Judged:
     role: str = ""
     original: str = ""
     why: str = ""
+    diagnosis_id: str = ""
     form: str = ""
     spoiled_by: tuple[str, ...] = ()
     cause: str = ""

@@ -54,7 +54,8 @@ class _Context:
         self._known: dict[tuple[str, tuple[str, ...]], bool] = {}
 
     def judged(self, outcome: Outcome) -> Judged:
-        verdict, said = self._verdict(outcome)
+        verdict, sayings = self._verdict(outcome)
+        said = sentences.joined(sayings if verdict != "confirmed" else ())
         row, document = outcome.row, self._bench.ledger.document.key
         command = outcome.command or recompute(self._bench.ledger.name, row.key)
         numbers = "; ".join(f"{name} = {_shown(value)}" for name, value in outcome.evidence.items())
@@ -68,7 +69,8 @@ class _Context:
             printed=row.table.printed,
             derived=shown(outcome.plan, None) if outcome.plan and self._takes_over(outcome) else outcome.derived,
             verdict=verdict,
-            diagnosis=" ".join(filter(None, said)) if verdict != "confirmed" else "",
+            diagnosis=str(said),
+            diagnosis_id=said.indonesian,
             evidence=f"{numbers}; {command}" if numbers else command,
             role=row.table.role,
             original=row.table.original,

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from satsym.auditing import VERDICTS, Judged, Ledger
+from satsym.auditing import VERDICTS, Judged, Ledger, sentences
 from satsym.auditing.causes import Weight
 from satsym.auditing.sentences import sentence
 from satsym.report.findings.objects import audit_object
@@ -30,6 +30,7 @@ from tests.support.ledgers import ledger, row
 NASTY = (
     """</script><script>alert(1)</script><img src=x onerror=alert(1)> "q" 'p' & &lt;b&gt; `<i>` $x$ \\input{x} % # _"""
 )
+KELIRU = "Tanda `x` terbalik."
 RATE = "saddle:first_order.x1"
 HEAD = f"""
 format = 1
@@ -77,7 +78,15 @@ def judged(document: Ledger) -> dict[str, list[Judged]]:
     slip = "The sign of `x` is reversed. `<script>` is none."
     rows = [
         verdict(document, "1", "confirmed"),
-        verdict(document, "2", "misprint", diagnosis=slip, derived="d_x = x", form="SIGN x"),
+        verdict(
+            document,
+            "2",
+            "misprint",
+            diagnosis=slip,
+            derived="d_x = x",
+            form="SIGN x",
+            diagnosis_id="Tanda `x` terbalik.",
+        ),
         verdict(
             document, "3", "wrong", diagnosis="It does not hold: 1.", why=f"It runs away. {NASTY}", spoiled_by=("2",)
         ),
@@ -207,7 +216,7 @@ def test_the_summary_says_what_falls_and_stands_and_why(
     assert "7" in checked
     assert "titik ini stabil" in falls
     assert "It runs away" not in falls  # that is the consequence, not the cause
-    assert "The sign of `x` is reversed" in falls
+    assert ("The sign of `x` is reversed" if language == "en" else "Tanda `x` terbalik") in falls
     assert "titik ini pelana" in stands
     assert "titik ini stabil" not in stands
 
@@ -277,6 +286,14 @@ def test_each_finding_is_told_once_and_those_of_weight_in_full(
 )
 def test_symbols_keep_their_case(clause: str, said: str) -> None:
     assert sentence(clause) == said
+
+
+def test_diagnoses_are_said_in_both_languages() -> None:
+    fault = sentences.joined([sentences.carried_on(["1", "2"]), "", sentences.same_slip(["3"])])
+    assert fault == "The error is carried on into 1 and 2. The same slip is in 3."
+    assert fault.indonesian == "Kekeliruan ini terbawa ke 1 dan 2. Kekeliruan yang sama ada di 3."
+    assert sentences.false_claim("{x}").indonesian == "Tidak benar demikian: {x}."
+    assert sentence("x is measured") == sentences.in_indonesian("x is measured.")
 
 
 # LaTeX and JSON

@@ -31,7 +31,7 @@ def judge(bench: Bench, row: Row) -> Outcome:
     why = compared.why if isinstance(compared, Never) else ""
     remark = sentences.wrong_formula(compared.labels, found, "" if found else compared.difference(), why, derived)
     if fault:
-        remark += sentences.also_inhomogeneous(fault)
+        remark = sentences.joined([remark, sentences.also_inhomogeneous(fault)])
     return Outcome(row, False, derived, compared, found, remark=remark)
 
 

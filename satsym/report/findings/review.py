@@ -10,6 +10,7 @@ from typing import Any
 
 from satsym.auditing import VERDICTS, Judged, Ledger
 from satsym.auditing.causes import Finding, Weight, findings
+from satsym.auditing.sentences import DENIED, in_indonesian
 from satsym.report.texts import Texts
 
 IN_FULL = (Weight.OVERTURNS, Weight.RESULT)
@@ -19,7 +20,6 @@ OPEN = ("undecided", "illegible")
 _PLACES, _ITEMS = 3, 6
 """Rows, and items, that are named before the rest is counted."""
 _END = re.compile(r"[.](?=\s+[^\W_])")
-_DENIED = "It does not hold: "
 
 
 @dataclass(frozen=True)
@@ -105,6 +105,19 @@ class Review:
         first = ", ".join(names[: most - 1])
         return self.texts.counted("audit", "more", len(names) - most + 1, listed=first)
 
+    def fact(self, row: Judged) -> str:
+        """What is so instead: the sentence for people where there is one, else the diagnosis."""
+        if row.why:
+            return row.why
+        if self.texts.language == "id" and row.diagnosis_id:
+            return row.diagnosis_id.removeprefix(f"{in_indonesian(DENIED)}: ")
+        return row.diagnosis.removeprefix(f"{DENIED}: ")
+
+    def brief(self, found: Finding) -> str:
+        """The first sentence of what is wrong, without its end."""
+        said = next((row.why for row in found.places if row.why), self.fact(found.places[0])).strip()
+        return _END.split(said, maxsplit=1)[0].rstrip(".")
+
     @cached_property
     def summary(self) -> list[str]:
         """Which conclusions fall, which stand, and why: at most six sentences."""
@@ -114,7 +127,7 @@ class Review:
         overturns = any(found.weight is Weight.OVERTURNS for found in self.findings)
         if self.findings and not overturns:
             first = self.findings[0]
-            heaviest = self._say("heaviest", 1, place=self.places(first.places), statement=brief(first))
+            heaviest = self._say("heaviest", 1, place=self.places(first.places), statement=self.brief(first))
             sentences.append(heaviest)
         listed = [
             self.texts.counted("weights_counted", weight.value, len(group))
@@ -137,7 +150,7 @@ class Review:
         if causes:
             reasons = "; ".join(
                 f"({number}) {_quoted(found.overturned[0])} ({'; '.join(row.key for row in found.overturned)}): "
-                f"{brief(found)}"
+                f"{self.brief(found)}"
                 for number, found in causes
             )
             falls = self._say("falls", len(falling))
@@ -182,11 +195,6 @@ def items(judged: Sequence[Judged]) -> list[str]:
     return [f"{item} ({number})" if number > 1 else item for item, number in numbers.items()]
 
 
-def fact(row: Judged) -> str:
-    """What is so instead: the sentence for people where there is one, else the diagnosis."""
-    return row.why or row.diagnosis.removeprefix(_DENIED)
-
-
 def measured(row: Judged) -> str:
     """What was measured, where the sentence for people does not say it."""
     return row.derived if row.why and row.derived not in row.why else ""
@@ -211,12 +219,6 @@ def recompute(row: Judged) -> tuple[str, str]:
     """What was measured in numbers, and the command that does it again."""
     numbers, _, command = row.evidence.rpartition("; satsym ")
     return (numbers, f"satsym {command}") if numbers else ("", row.evidence)
-
-
-def brief(found: Finding) -> str:
-    """The first sentence of what is wrong, without its end."""
-    said = next((row.why for row in found.places if row.why), fact(found.places[0])).strip()
-    return _END.split(said, maxsplit=1)[0].rstrip(".")
 
 
 def flat(printed: Any) -> str:

@@ -52,9 +52,9 @@ def render(
             tag("p", texts.get("audit", "made"), class_="made"),
             _contents(texts, reviews),
         ),
-        tag("aside", _overview(texts, reviews), aria_label=texts.get("audit", "legend")),
         _filters(texts, reviews),
         tag("main", *(part.render() for part in parts), _equations(texts, equations, parts), id="all-findings"),
+        tag("aside", _overview(texts, reviews), id="all-verdicts", aria_label=texts.get("audit", "legend")),
     ]
     head = [
         tag("meta", charset="utf-8"),
@@ -73,7 +73,10 @@ def _file(name: str) -> Markup:
 
 def _contents(texts: Texts, reviews: Sequence[Review]) -> Markup:
     """Links to the sections."""
-    links = [(review.key, review.key) for review in reviews] + [("derived-equations", texts.get("audit", "derived"))]
+    links = [(review.key, review.key) for review in reviews] + [
+        ("derived-equations", texts.get("audit", "derived")),
+        ("all-verdicts", texts.get("audit", "legend")),
+    ]
     entries = [tag("li", tag("a", name, href=f"#{anchor}")) for anchor, name in links]
     return tag("nav", tag("ul", *entries), aria_label=texts.get("audit", "contents"))
 

@@ -10,9 +10,7 @@ from satsym.auditing.causes import Finding, Weight
 from satsym.report.findings.review import (
     IN_FULL,
     Review,
-    brief,
     correction,
-    fact,
     flat,
     is_mathematical,
     measured,
@@ -44,7 +42,7 @@ class Section:
         review = self._review
         title = tag("h2", review.ledger.document.title, lang=self._language)
         byline = [tag("p", self._word("by"), " ", review.byline, class_="byline")] if review.byline else []
-        summary = tag("p", *(joined(self._sentence(text), " ") for text in review.summary), class_="summary")
+        summary = tag("div", *(tag("p", self._sentence(text)) for text in review.summary), class_="summary")
         parts = [self._of_weight(weight, group) for weight, group in review.by_weight]
         nothing = [] if parts else [tag("p", self._word("nothing"))]
         return tag("section", title, *byline, summary, *parts, *nothing, self._all_rows(), id=review.key)
@@ -61,9 +59,17 @@ class Section:
         row = found.places[0]
         heading = tag("h4", f"{number}. ", self._review.places(found.places))
         summary = tag(
-            "summary", heading, " ", self._verdict(row), " ", tag("span", *_formulas(brief(found)), ".", class_="brief")
+            "summary",
+            heading,
+            " ",
+            self._verdict(row),
+            " ",
+            tag("span", *_formulas(self._review.brief(found)), ".", class_="brief"),
         )
-        facts = {**self._facts(row), "item": self._links(r.key for r in found.places) if len(found.places) > 1 else ""}
+        facts = {
+            **self._facts(row),
+            "places": self._links(r.key for r in found.places) if len(found.places) > 1 else "",
+        }
         facts |= {"spoils": self._links(r.key for r in found.spoiled), **self._sources(row.key)}
         evidence, command = recompute(row)
         facts |= {"evidence": "" if measured(row) else evidence, "recompute": tag("code", command)}
@@ -86,7 +92,7 @@ class Section:
             "says": self._original(row),
             "about": "" if row.original else row.says,
             "claims" if row.kind == "claim" else "printed": self._printed(row),
-            "in_fact": joined(*_formulas(fact(row))),
+            "in_fact": joined(*_formulas(self._review.fact(row))),
             "measured": measured(row),
             "right": _formula(formula_tex.read(right) if is_mathematical(row) else None, right) if right else "",
         }

@@ -10,9 +10,7 @@ from satsym.auditing.causes import Finding, Weight
 from satsym.report.findings.review import (
     IN_FULL,
     Review,
-    brief,
     correction,
-    fact,
     flat,
     is_mathematical,
     items,
@@ -104,7 +102,9 @@ def _section(review: Review) -> Iterator[str]:
 
 
 def _in_brief(review: Review, number: int, finding: Finding) -> Iterator[str]:
-    said = rf"\noindent\textbf{{{number}.~{escape(review.places(finding.places))}}}: {_sentence(brief(finding))}."
+    said = (
+        rf"\noindent\textbf{{{number}.~{escape(review.places(finding.places))}}}: {_sentence(review.brief(finding))}."
+    )
     formula = review.formulas.get(finding.places[0].key)
     yield f"{said}\n{_fact(review.texts, 'printed', _printed(formula, ''))}" if formula is not None else said
 
@@ -125,7 +125,7 @@ def _in_full(review: Review, number: int, finding: Finding) -> Iterator[str]:
         "says": "" if beside else original,
         "about": "" if original else _breakable(row.says),
         "printed": "" if beside else _printed(review.formulas.get(row.key), flat(row.printed)),
-        "in_fact": _sentence(fact(row)),
+        "in_fact": _sentence(review.fact(row)),
         "measured": _breakable(measured(row)),
         "right": _printed(right, correction(row)),
         "spoils": spoiled,

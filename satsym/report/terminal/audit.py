@@ -11,9 +11,7 @@ from satsym.auditing.causes import SILENT, Finding
 from satsym.report.findings.review import (
     IN_FULL,
     Review,
-    brief,
     correction,
-    fact,
     flat,
     is_put_in_words,
     items,
@@ -70,7 +68,8 @@ def _document(review: Review, rows: bool) -> Iterator[str]:
     by = f" ({review.byline})" if review.byline else ""
     yield from _wrapped(f"{review.key}: {review.ledger.document.title}{by}", hanging=1)
     yield ""
-    yield from _wrapped(" ".join(review.summary), 1)
+    for said in review.summary:
+        yield from _wrapped(said, 1)
     if not review.findings:
         yield from ("", f"{_INDENT}{texts.get('audit', 'nothing')}")
     for weight, group in review.by_weight:
@@ -82,7 +81,7 @@ def _document(review: Review, rows: bool) -> Iterator[str]:
         yield from ("", f"{_INDENT}{texts.get('audit', 'not_judged')}", *_wrapped(f"{listed}.", 2))
     if rows:
         for row in review.rows:
-            yield from _row(texts, row) if row.verdict not in SILENT else ()
+            yield from _row(review, row) if row.verdict not in SILENT else ()
     elif review.findings:
         command = f"satsym audit {review.ledger.name} --rows"
         yield from ("", *_wrapped(texts.get("audit", "every_row", command=command), 1))
@@ -91,21 +90,21 @@ def _document(review: Review, rows: bool) -> Iterator[str]:
 def _in_full(review: Review, number: int, finding: Finding) -> Iterator[str]:
     """A finding with what is printed, what is true, and what it spoils."""
     row, texts = finding.places[0], review.texts
-    yield from _heading(texts, row, f"{number}. {review.places(finding.places)}", "", 2)
-    yield from _facts(texts, row, short=True)
+    yield from _heading(review.texts, row, f"{number}. {review.places(finding.places)}", "", 2)
+    yield from _facts(review, row, short=True)
     if finding.spoiled:
         yield from _labelled(texts.get("audit", "spoils"), review.spoiled(finding))
 
 
 def _in_brief(review: Review, number: int, finding: Finding) -> list[str]:
-    return _wrapped(f"{number}. {review.places(finding.places)}: {brief(finding)}.", 1, hanging=2)
+    return _wrapped(f"{number}. {review.places(finding.places)}: {review.brief(finding)}.", 1, hanging=2)
 
 
-def _row(texts: Texts, row: Judged) -> Iterator[str]:
+def _row(review: Review, row: Judged) -> Iterator[str]:
     """A row in full."""
     yield ""
-    yield from _heading(texts, row, row.key, f" ({where(row)})" if where(row) else "", 1)
-    yield from _facts(texts, row)
+    yield from _heading(review.texts, row, row.key, f" ({where(row)})" if where(row) else "", 1)
+    yield from _facts(review, row)
     yield from _wrapped(row.evidence, 3)
 
 
@@ -116,21 +115,21 @@ def _heading(texts: Texts, row: Judged, named: str, stands: str, hanging: int) -
     return _wrapped(heading + printed, 1, hanging)
 
 
-def _facts(texts: Texts, row: Judged, *, short: bool = False) -> Iterator[str]:
+def _facts(review: Review, row: Judged, *, short: bool = False) -> Iterator[str]:
     """What is printed and what is so instead, each once; if short, without what only a reader of code can follow."""
     said, found, command = row.original or row.says, measured(row), recompute(row)[1]
     long = short and len(found) > _width() - 2 * len(_INDENT) * 3 - _LABEL
     facts = {
         "says": said if row.kind == "claim" or not row.printed else "",
         "claims" if row.kind == "claim" else "printed": "" if _is_short(row) else flat(row.printed),
-        "in_fact": fact(row),
+        "in_fact": review.fact(row),
         "measured": "" if long else found,
         "recompute": command if long else "",
         "right": "" if short and is_put_in_words(row) else correction(row),
     }
     for key, text in facts.items():
         if text:
-            yield from _labelled(texts.get("audit", key), text)
+            yield from _labelled(review.texts.get("audit", key), text)
 
 
 def _is_short(row: Judged) -> bool:
