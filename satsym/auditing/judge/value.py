@@ -57,9 +57,9 @@ def _measured(bench: Bench, row: Row, printed: quantities.PrintedNumber, tree: N
         cgs = _CGS_NAMES.sub(lambda name: _CGS[name[0]], printed.unit)
         if not custom and cgs != printed.unit and _comes_out_in(cgs, printed, tree, inputs):
             return Outcome(row, False, derived, unit=True, remark=sentences.number_of(cgs, derived), evidence=evidence)
-    remark: str = "" if how is Fit.INSIDE else sentences.wrong_number(derived, custom)
+    said = "" if how is Fit.INSIDE else sentences.wrong_number(derived, custom)
     near = how is Fit.NEAR or bool(custom)
-    return Outcome(row, how is Fit.INSIDE, derived, near=near, remark=remark, evidence=evidence)
+    return Outcome(row, how is Fit.INSIDE, derived, near=near, remark=said, evidence=evidence)
 
 
 def _customary(printed: quantities.PrintedNumber, tree: Node, inputs: Mapping[str, str], scale: float) -> str:
