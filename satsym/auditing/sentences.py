@@ -54,6 +54,10 @@ _EDITS = {
     ),
     Change.MISSING_TERM: ("the term `{term}` is missing", "suku `{term}` tidak ada"),
     Change.TERM: ("the term `{old}` should be `{new}`", "suku `{old}` seharusnya `{new}`"),
+    Change.MEAN: (
+        "`{old}` should be `{new}`, the value at that end",
+        "`{old}` seharusnya `{new}`, nilai di ujung itu",
+    ),
     Change.ENTRY: _SHOULD,
 }
 _WORD = re.compile(r"(?:a|[a-z]{2,})(?=[,:;]? (?![=<>+*/]))")
@@ -63,6 +67,10 @@ _MANY = {
     Change.DROPPED_FACTOR: (
         "`{old}` is a factor too many at {times} places",
         "`{old}` kelebihan sebagai faktor di {times} tempat",
+    ),
+    Change.MEAN: (
+        "`{old}` should be `{new}`, the value at that end, and so at {times} places",
+        "`{old}` seharusnya `{new}`, nilai di ujung itu, demikian pula di {times} tempat",
     ),
 }
 DENIED = Said("It does not hold", "Tidak benar demikian")

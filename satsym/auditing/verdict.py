@@ -239,6 +239,8 @@ def _change(edit: Edit) -> str:
     if edit.change in (Change.DROPPED_FACTOR, Change.MISSING_FACTOR):
         old, new = (Counter(written(f) for f in _factors(part) if f != ONE) for part in (edit.old, edit.new))
         return f"{edit.change.name} {' * '.join((old - new) | (new - old))}"
+    if edit.change is Change.MEAN:
+        return edit.change.name
     return f"{edit.change.name} {written(edit.old)} -> {written(edit.new)}"
 
 

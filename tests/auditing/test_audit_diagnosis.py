@@ -11,7 +11,7 @@ from fractions import Fraction
 import pytest
 
 from satsym import auditing
-from satsym.auditing.diagnosis.edits import Change, in_exponent
+from satsym.auditing.diagnosis.edits import Change, in_exponent, mean_edits
 from satsym.auditing.diagnosis.rewriting import times
 from satsym.auditing.diagnosis.smallest_edit import Remedy, remedy
 from satsym.auditing.judge.bench import Bench, Both, Formula
@@ -19,6 +19,7 @@ from satsym.auditing.judge.compare import plans
 from satsym.auditing.judge.plan import Plan
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.ledger.scopes import Scope
+from satsym.formula import reading
 from satsym.formula.tree import (
     Add,
     Call,
@@ -39,6 +40,7 @@ from satsym.formula.tree import (
 )
 from satsym.formula.tree import Path as Place
 from satsym.formula.values import Relation
+from satsym.formula.writing import written
 from tests.support.ledgers import HAMILTONIAN, TANGENTIAL, judged, ledger, row
 
 RADIAL = "polar_orbit:first_order.r_dot"
@@ -336,3 +338,10 @@ def test_a_hundred_random_slips_are_caught_and_named(subjects: list[Subject], se
     caught, exact, rest = census(subjects, 100, seed)
     assert caught >= 99, rest
     assert exact >= 90, rest
+
+
+def test_means_give_way_to_one_end_wherever_they_stand():
+    formula = reading.expression("a*(0.5*(p + q))**2 + b*0.5*(r + s)*c - 0.5*(p + 2*q)")
+    found = [written(edit.result) for edit in mean_edits(formula)]
+    assert found == [written(reading.expression(f"a*{x}**2 + b*{y}*c - 0.5*(p + 2*q)")) for x, y in ("pr", "qs")]
+    assert not list(mean_edits(reading.expression("2*(p + q)")))

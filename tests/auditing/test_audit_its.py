@@ -52,6 +52,7 @@ ROUTES: dict[str, dict[str, Route]] = {
         "4.27": by_hand.angular_rate,
         "section 4.2 weights": units("newton*s*s/m", "joule/(m/s**2)**2/s"),
         "section 4.2 bounds": claims.unreachable,
+        "section 4.2 reference": claims.beyond_the_last,
         "4.28": by_hand.thesis_hamiltonian,
         "4.35": by_hand.state_equation,
         "section 4.4 truncation error": sweeps.fifth_power,
@@ -79,6 +80,7 @@ ROUTES: dict[str, dict[str, Route]] = {
         "section 5.1 1, unstable": by_hand.defective,
         "section 5.1 3, returns": returned,
         "section 5.1 3, cost": claims.halved_guess,
+        "section 5.1 3, effort": claims.effort,
         "appendix A g": units("km**5/s**2", "km**3/s**2"),
         "appendix A G": units("newton*m/kg**2", "m**3/s**2/kg"),
         "appendix A x3 as in section 4.1": units("degree", "km"),
@@ -110,6 +112,7 @@ ROUTES: dict[str, dict[str, Route]] = {
         "III (14)": by_hand.paper_hamiltonian,
         "III (18)": by_hand.state_equation,
         "section III.E step 2, length": claims.one_too_few,
+        "section III.E reference, states": claims.one_too_early,
         "section III.E step 4, before the states": sweeps.zero_over_zero,
         "section III.F x1(0)": by_hand.no_displacement,
         "section III.F x4(0)": by_hand.no_displacement,
@@ -121,6 +124,7 @@ ROUTES: dict[str, dict[str, Route]] = {
         "section IV 1, unstable": by_hand.defective,
         "section IV 3, returns": returned,
         "section IV 3, cost": claims.halved_guess,
+        "section IV 3, effort": claims.effort,
     },
 }
 """Document -> row -> the route that judges it a second time."""

@@ -9,6 +9,7 @@ from functools import cache
 import numpy as np
 import pint
 from scipy.integrate import solve_ivp
+from scipy.linalg import expm
 from scipy.optimize import brentq
 
 from tests.support.its_routes import START, STATES, Route, Rows
@@ -97,6 +98,31 @@ def unreachable(document: Rows, key: str) -> str:
         assert (energy > -1e-6).all()
         worst = min(worst, x[0, -1])
     return "wrong" if worst > 2.0 else "confirmed"
+
+
+def effort(document: Rows, key: str) -> str:
+    """The costs of a thrust in each of many intervals: no combination that leads to zero has less, by least squares."""
+    linear, n = np.array([[0, 1, 0, 0], [3, 0, 0, 2], [0, 0, 0, 1], [0, -2, 0, 0]], dtype=float), 1200
+    h, push = 60.0 / n, np.array([[0, 0], [1, 0], [0, 0], [0, 1.0]])
+    once, half = expm(h * linear), expm(0.5 * h * linear)
+    columns, step = [], h * half @ push
+    for _ in range(n):
+        columns.append(step)
+        step = once @ step
+    thrusts = np.linalg.lstsq(np.hstack(columns), -expm(60.0 * linear) @ np.ones(4), rcond=None)[0]
+    return "wrong" if 0.5 * 10.0 * h * (thrusts**2).sum() > 3.0 else "confirmed"
+
+
+def beyond_the_last(document: Rows, key: str) -> str:
+    """Chapter 2 numbers its equations up to (2.19)."""
+    last = max(int(item.split(".")[1].split()[0]) for item in document if re.fullmatch(r"2\.\d+( .*)?", item))
+    return "misprint" if last < 24 else "confirmed"
+
+
+def one_too_early(document: Rows, key: str) -> str:
+    """The first of the state equations is the one whose left-hand side is the rate of x1."""
+    first = [item for item, row in document.items() if str(row.get("printed")).startswith("d_x1") and "III" in item]
+    return "misprint" if "III (14)" not in first and "III (15)" in first else "confirmed"
 
 
 def gravity(document: Rows, key: str) -> str:

@@ -49,7 +49,8 @@ class Change(IntEnum):
     MISSING_FACTOR = 11
     MISSING_TERM = 12
     TERM = 13
-    ENTRY = 14
+    MEAN = 14
+    ENTRY = 15
 
 
 @dataclass(frozen=True)
@@ -135,6 +136,33 @@ def repeated_edits(formula: Node, letters: Letters, usable: Callable[[str], bool
         places = [path for path, node in walk(formula) if isinstance(node, Mul) and factor in node.factors]
         for chosen in _choices(places):
             yield _everywhere(Change.DROPPED_FACTOR, formula, chosen, factor, lambda node: without_factor(node, factor))  # noqa: B023
+
+
+def mean_edits(formula: Node) -> Iterator[Edit]:
+    """One end in the place of the mean of two symbols, wherever such a mean stands."""
+    places = [path for path, node in walk(formula) if _ends(node)]
+    for end in (0, 1) if places else ():
+        result = formula
+        for path in sorted(places, key=lambda path: (len(path), path), reverse=True):  # the inner places first
+            result = replaced(result, path, _without_mean(at(result, path), end))
+        old = at(formula, places[-1])
+        yield Edit(Change.MEAN, (), old, _without_mean(old, end), result, len(places))
+
+
+def _ends(node: Node) -> tuple[Node, ...]:
+    """The two symbols of a product with half of their sum; empty for what is none."""
+    if not isinstance(node, Mul) or Num(Fraction(1, 2)) not in node.factors:
+        return ()
+    sums = (f.terms for f in node.factors if isinstance(f, Add))
+    return next((t for t in sums if len(t) == 2 and all(isinstance(end, Sym) for end in t)), ())
+
+
+def _without_mean(node: Node, end: int) -> Node:
+    assert isinstance(node, Mul)
+    ends = _ends(node)
+    kept = [ends[end] if factor == Add(ends) else factor for factor in node.factors]
+    kept.remove(Num(Fraction(1, 2)))
+    return Mul(tuple(kept)) if len(kept) > 1 else kept[0]
 
 
 def _everywhere(change: Change, formula: Node, places: Sequence[Path], old: Node, rule: Callable[[Node], Node]) -> Edit:

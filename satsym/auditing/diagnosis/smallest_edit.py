@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from satsym.auditing.diagnosis.edits import Change, Edit, repeated_edits, single_edits
+from satsym.auditing.diagnosis.edits import Change, Edit, mean_edits, repeated_edits, single_edits
 from satsym.auditing.diagnosis.lacking import mended_terms
 from satsym.auditing.diagnosis.rewriting import over_symbol, times_symbol
 from satsym.auditing.judge.equations import Equal
@@ -70,6 +70,7 @@ def _remedy(plan: Plan) -> Remedy | None:
         or _repeated(plan, cells)
         or _pair(plan, cells)
         or _edit_and_factor(plan, cells)
+        or _means(plan, cells)
     )
 
 
@@ -170,6 +171,20 @@ def _effect(
         )
     except field.NoValue:
         return None
+
+
+def _means(plan: Plan, indices: Sequence[int]) -> Remedy | None:
+    """Means in the place of one end, wherever they stand; alone, or beside a factor too many."""
+    for i in indices:
+        for end in mean_edits(plan.printed[i]):
+            if found := _first(plan, [(i, end)]):
+                return found
+        for dropped in (*repeated_edits(plan.printed[i], plan.bench.scope(plan.row)), *_edits(plan, i)):
+            if dropped.change is Change.DROPPED_FACTOR:
+                for end in mean_edits(dropped.result):
+                    if found := _first(plan, [(i, end)]):
+                        return Remedy(((i, dropped), *found.edits), found.cells)
+    return None
 
 
 def _edit_and_factor(plan: Plan, indices: Sequence[int]) -> Remedy | None:

@@ -112,6 +112,13 @@ def driven(of: Any, t: float) -> Array:
 
 
 @measurement
+def least_energy(of: Any, start: Any, t: float) -> float:
+    """The least integral of the inputs squared that brings a state to zero within a time, however large they are."""
+    x = dense(start)
+    return float(x @ np.linalg.solve(gramian(of, t), x))
+
+
+@measurement
 def steered_to(of: Any, start: Any, aim: Any) -> Array:
     """The state after 1, under the input of least energy that comes as near to an aim as any does: by integration."""
     a, b = (linear.numbers(linear.system_of(of).part(name)) for name in "AB")
