@@ -340,11 +340,10 @@ def test_predicates_are_checked_before_anything_runs(tmp_path: Path, call: str, 
 
 
 def test_a_letter_with_two_meanings_is_found(tmp_path: Path) -> None:
-    rows = [row("x1", "x1 is one thing", "one_meaning(symbol='x1')", "claim")]
-    rows.append(row("x2", "x2 is one thing", "one_meaning(symbol='x2')", "claim"))
+    rows = [row(x, f"len(meanings['{x}']) == 1", "", "claim", role="notation") for x in ("x1", "x2")]
     found = judged(tmp_path, rows)
-    assert [entry.verdict for entry in found.values()] == ["wrong", "confirmed"]
-    assert "`r - sigma` (deviations)" in found["x1"].diagnosis
+    assert [entry.verdict for entry in found.values()] == ["notation", "confirmed"]
+    assert "len(meanings['x1']) = 2" in found["x1"].diagnosis
 
 
 @pytest.mark.parametrize(
