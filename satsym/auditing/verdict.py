@@ -74,7 +74,7 @@ class _Context:
             evidence=f"{numbers}; {command}" if numbers else command,
             role=row.table.role,
             original=row.table.original,
-            why=sentences.sentence(outcome.remark) if row.claims is not None else "",
+            why=str(sentences.sentence(outcome.remark)) if row.claims is not None else "",
             form=_form(outcome),
             spoiled_by=tuple(self._spoiled_by(outcome)) if verdict not in SILENT else (),
         )
