@@ -291,6 +291,20 @@ def test_riccatis_equation_and_definite_matrices(found):
     found("wrong", "definition 2.18")
 
 
+def test_the_gain_for_a_final_time_is_not_that_of_an_endless_integral(found):
+    # x' = u with weights 1: P is tanh of the time that is left, and 1 where that has no end
+    end = scipy.integrate.solve_ivp(lambda s, p: 1 - p * p, (0, 1), [0.0], rtol=1e-9).y[0, -1]
+    assert end == pytest.approx(math.tanh(1.0), rel=1e-6)
+    assert end < 0.8
+    found("wrong", "2.66 final time")
+
+
+def test_the_reference_for_a_linear_system_leads_to_an_output(found, ledger):
+    (row,) = (row for row in ledger["row"] if row["item"] == "2.27")
+    assert row["printed"].split(" = ")[0] == "y"
+    found("misprint", "3.16 (2.27)")
+
+
 def test_weights(found):
     def least(share):
         P = scipy.linalg.solve_continuous_are(A1, B2, share * np.eye(4), share * np.eye(1))
