@@ -269,6 +269,8 @@ def test_lines_fit_the_terminal_and_lose_nothing(
     monkeypatch.setenv("COLUMNS", str(width))
     narrow = audit_text([document], {"small": long}, rows=True, language=language)
     assert max(map(len, narrow.splitlines())) <= width
+    labels = ("says", "claims", "printed", "in_fact", "measured", "recompute", "right", "spoils")
+    assert max(len(load(language).get("audit", label)) for label in labels) < 10  # columns of a label
     assert "".join(long[2].why.split()) in "".join(narrow.split())
     monkeypatch.setenv("COLUMNS", "100")
     assert "".join(audit_text([document], judged, rows=True).split()) != "".join(narrow.split())

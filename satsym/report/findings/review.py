@@ -166,10 +166,9 @@ class Review:
         """The first conclusion that a finding overturns, where it and the others stand, and why they fall."""
         first = found.overturned[0]
         places = "; ".join(row.key for row in found.overturned)
-        if first.why or first in found.places:
-            why = _first_sentence(self.fact(first))
-        else:
-            why = self._say("because", 1, place=found.places[0].key, statement=self.brief(found))
+        why = _first_sentence(self.fact(first)) if first.why else self.brief(found)
+        if not first.why and first not in found.places and not any(row.why for row in found.places):
+            why = self._say("because", 1, place=found.places[0].key, statement=why)
         return f"{_quoted(first)} ({places}): {why}"
 
     def _say(self, key: str, number: int, **fill: str) -> str:
