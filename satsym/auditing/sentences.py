@@ -23,7 +23,7 @@ class Said(str):
     def __new__(cls, english: str, indonesian: str = "") -> Said:
         """In English alone where there is nothing else."""
         found = super().__new__(cls, english)
-        found.indonesian = indonesian or english
+        found.indonesian = str(indonesian or english)
         return found
 
 

@@ -90,6 +90,8 @@ def test_other_objects_are_those_of_the_command_line(
 def test_an_audit_is_that_of_the_command_line(capsys: pytest.CaptureFixture[str]) -> None:
     found = satsym.audit("its_thesis", items=["4.27"])
     assert found.to_dict() == printed(capsys, "audit", "its_thesis", "--item", "4.27")
+    assert found.html("id").startswith('<!doctype html>\n<html lang="id">')
+    assert found.latex("id").startswith("% Written by satsym audit.")
     assert len(found) == sum(found.counts.values()) > 0
     with pytest.raises(BadInput, match="no row"):
         satsym.audit("its_thesis", items=["77.7"])

@@ -215,10 +215,26 @@ def test_the_summary_says_what_falls_and_stands_and_why(
     checked, falls, stands, *_ = review.summary
     assert "7" in checked
     assert "titik ini stabil" in falls
-    assert "It runs away" not in falls  # that is the consequence, not the cause
-    assert ("The sign of `x` is reversed" if language == "en" else "Tanda `x` terbalik") in falls
+    assert "(3): It runs away" in falls
     assert "titik ini pelana" in stands
     assert "titik ini stabil" not in stands
+
+
+def test_a_conclusion_without_a_reason_of_its_own_falls_with_that_of_its_cause(
+    document: Ledger, judged: dict[str, list[Judged]]
+) -> None:
+    rows = [replace(row, why="") for row in judged["small"]]
+    english, indonesian = (Review(document, rows, load(language)).summary[1] for language in ("en", "id"))
+    assert english.endswith("(3): because of 2: The sign of `x` is reversed.")
+    assert indonesian.endswith("(3): karena 2: Tanda `x` terbalik.")
+
+
+def test_many_conclusions_that_stand_are_named_and_not_quoted(
+    document: Ledger, judged: dict[str, list[Judged]]
+) -> None:
+    rows = [*judged["small"], *(replace(judged["small"][3], item=f"9.{k}", verdict="unsound") for k in range(5))]
+    stands = Review(document, rows, load("en")).summary[2]
+    assert stands.startswith("These stand: 4; 9.0, though not for the reason given; 9.1")
 
 
 def test_a_conclusion_that_is_right_for_another_reason_stands_with_a_word_about_it(
@@ -253,6 +269,8 @@ def test_lines_fit_the_terminal_and_lose_nothing(
     monkeypatch.setenv("COLUMNS", str(width))
     narrow = audit_text([document], {"small": long}, rows=True, language=language)
     assert max(map(len, narrow.splitlines())) <= width
+    labels = ("says", "claims", "printed", "in_fact", "measured", "recompute", "right", "spoils")
+    assert max(len(load(language).get("audit", label)) for label in labels) < 10  # columns of a label
     assert "".join(long[2].why.split()) in "".join(narrow.split())
     monkeypatch.setenv("COLUMNS", "100")
     assert "".join(audit_text([document], judged, rows=True).split()) != "".join(narrow.split())

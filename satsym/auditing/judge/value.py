@@ -42,7 +42,7 @@ def _measured(bench: Bench, row: Row, printed: quantities.PrintedNumber, tree: N
     if dict(stated.dimension) != dict(found.dimension):
         wanted = library.written_dimension(found.dimension)
         derived = f"{found.value:.6g} {quantities.base_unit(found.dimension)}"
-        remark = sentences.wrong_unit(library.written_dimension(stated.dimension), wanted)
+        remark: str = sentences.wrong_unit(library.written_dimension(stated.dimension), wanted)
         return Outcome(row, False, derived, unit=True, remark=remark)
     scale = quantities.scale(printed.unit)
     value, (low, high) = found.value / scale, (bound / scale for bound in quantities.bounds(tree, inputs))

@@ -19,7 +19,9 @@ OPEN = ("undecided", "illegible")
 """Verdicts that are none."""
 _PLACES, _ITEMS = 3, 6
 """Rows, and items, that are named before the rest is counted."""
-_END = re.compile(r"[.](?=\s+[^\W_])")
+_QUOTES = 5
+"""Conclusions that stand, if they are more than those, are named without their words."""
+_END = re.compile(r"[.](?=\s+[`A-Z0-9])")
 
 
 @dataclass(frozen=True)
@@ -115,8 +117,7 @@ class Review:
 
     def brief(self, found: Finding) -> str:
         """The first sentence of what is wrong, without its end."""
-        said = next((row.why for row in found.places if row.why), self.fact(found.places[0])).strip()
-        return _END.split(said, maxsplit=1)[0].rstrip(".")
+        return _first_sentence(next((row.why for row in found.places if row.why), self.fact(found.places[0])))
 
     @cached_property
     def summary(self) -> list[str]:
@@ -148,19 +149,27 @@ class Review:
         standing = [row for row in conclusions if row.key not in falling]
         said, total = [], len(conclusions)
         if causes:
-            reasons = "; ".join(
-                f"({number}) {_quoted(found.overturned[0])} ({'; '.join(row.key for row in found.overturned)}): "
-                f"{self.brief(found)}"
-                for number, found in causes
-            )
+            reasons = "; ".join(f"({number}) {self._fallen(found)}" for number, found in causes)
             falls = self._say("falls", len(falling))
             said.append(self._say("fall", total, reasons=reasons, falling=falls))
         if standing:
             reason = f", {self.texts.get('audit', 'other_reason')}"
-            quoted = [f"{_quoted(row)} ({row.key}){reason if row.verdict == 'unsound' else ''}" for row in standing]
+            named = [f"{_quoted(row)} ({row.key})" if len(standing) <= _QUOTES else row.key for row in standing]
+            parts = [
+                f"{name}{reason if row.verdict == 'unsound' else ''}" for name, row in zip(named, standing, strict=True)
+            ]
             key, number = ("stand", len(standing)) if causes else ("all_stand", total)
-            said.append(self._say(key, number, quoted="; ".join(quoted)))
+            said.append(self._say(key, number, quoted="; ".join(parts)))
         return said
+
+    def _fallen(self, found: Finding) -> str:
+        """The first conclusion that a finding overturns, where it and the others stand, and why they fall."""
+        first = found.overturned[0]
+        places = "; ".join(row.key for row in found.overturned)
+        why = _first_sentence(self.fact(first)) if first.why else self.brief(found)
+        if not first.why and first not in found.places and not any(row.why for row in found.places):
+            why = self._say("because", 1, place=found.places[0].key, statement=why)
+        return f"{_quoted(first)} ({places}): {why}"
 
     def _say(self, key: str, number: int, **fill: str) -> str:
         return self.texts.counted("audit", key, number, **fill)
@@ -175,6 +184,10 @@ def title(reviews: Sequence[Review]) -> str:
 def where(row: Judged) -> str:
     """Where it stands, unless its name says so."""
     return "" if row.key.startswith(row.where) else row.where
+
+
+def _first_sentence(text: str) -> str:
+    return _END.split(text.strip(), maxsplit=1)[0].rstrip(".")
 
 
 def _quoted(row: Judged) -> str:
