@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import mpmath as mp
@@ -83,7 +83,7 @@ def kane(so_far: Derivation) -> Step:
     written = list(values.values())
     if sum(map(sp.count_ops, written)) > LONG:
         names = (sp.Symbol(f"part_{k}", real=True) for k in range(1, 10**4))
-        parts, written = sp.cse(written, symbols=names, order="canonical")
+        parts, written = _told(*sp.cse(written, symbols=names, order="canonical"))
     equations = [Equation(s.name, s, value) for s, value in parts]
     equations += [
         Equation(name, sp.Symbol(name, real=True), value)
@@ -92,6 +92,22 @@ def kane(so_far: Derivation) -> Step:
     ]
     check = _newton_euler(model, parts, dict(zip(values, written, strict=True)))
     return Step("kane", "Kane's equations", tuple(equations), ("kinematics", "bodies"), (check,))
+
+
+def _told(
+    parts: Iterable[tuple[sp.Symbol, sp.Expr]], values: Iterable[sp.Expr]
+) -> tuple[list[tuple[sp.Symbol, sp.Expr]], list[sp.Expr]]:
+    """Parts without those that are the negative of another symbol and say nothing, numbered anew."""
+    said: dict[sp.Symbol, sp.Expr] = {}
+    kept: list[tuple[sp.Symbol, sp.Expr]] = []
+    for symbol, value in parts:
+        shown = value.xreplace(said)
+        if (-shown).is_Symbol:
+            said[symbol] = shown
+        else:
+            said[symbol] = sp.Symbol(f"part_{len(kept) + 1}", real=True)
+            kept.append((said[symbol], shown))
+    return kept, [value.xreplace(said) for value in values]
 
 
 def first_order(so_far: Derivation) -> Step:
