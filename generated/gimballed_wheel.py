@@ -2,7 +2,7 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Digest: 25ef7b4ba23d826629068a6ee5ecccfa5282ce4088cfb430cd26194c4f49658d
+Digest: df515f363ceabb045efe7dbffb2659c289ee258986418d8e4ce225463d2316f4
 """
 
 import math
@@ -54,9 +54,9 @@ MODEL = {
         {'symbol': 'J_x', 'latex': 'J_x', 'unit': 'kg*m**2', 'meaning': 'elastic part of I_x', 'default': 200.0, 'positive': True},
         {'symbol': 'J_y', 'latex': 'J_y', 'unit': 'kg*m**2', 'meaning': 'elastic part of I_y', 'default': 200.0, 'positive': True},
         {'symbol': 'J_z', 'latex': 'J_z', 'unit': 'kg*m**2', 'meaning': 'elastic part of I_z', 'default': 200.0, 'positive': True},
-        {'symbol': 'freq_x', 'latex': '\\nu_x', 'unit': 'rad/s', 'meaning': 'frequency of the mode about x, the body held', 'default': 0.6, 'positive': True},
-        {'symbol': 'freq_y', 'latex': '\\nu_y', 'unit': 'rad/s', 'meaning': 'frequency of the mode about y, the body held', 'default': 0.9, 'positive': True},
-        {'symbol': 'freq_z', 'latex': '\\nu_z', 'unit': 'rad/s', 'meaning': 'frequency of the mode about z, the body held', 'default': 0.7, 'positive': True},
+        {'symbol': 'freq_x', 'latex': '\\nu_x', 'unit': 'rad/s', 'meaning': 'frequency of the mode about x, the body fixed', 'default': 0.6, 'positive': True},
+        {'symbol': 'freq_y', 'latex': '\\nu_y', 'unit': 'rad/s', 'meaning': 'frequency of the mode about y, the body fixed', 'default': 0.9, 'positive': True},
+        {'symbol': 'freq_z', 'latex': '\\nu_z', 'unit': 'rad/s', 'meaning': 'frequency of the mode about z, the body fixed', 'default': 0.7, 'positive': True},
         {'symbol': 'zeta_x', 'latex': '\\zeta_x', 'meaning': 'damping ratio of the mode about x', 'default': 0.005},
         {'symbol': 'zeta_y', 'latex': '\\zeta_y', 'meaning': 'damping ratio of the mode about y', 'default': 0.005},
         {'symbol': 'zeta_z', 'latex': '\\zeta_z', 'meaning': 'damping ratio of the mode about z', 'default': 0.005},

@@ -102,8 +102,8 @@ def test_each_is_an_equilibrium_of_the_motion_with_those_eigenvalues():
         a = each.cosines.T  # third * second * first
         phi, psi, theta = np.arcsin(a[1, 2]), np.arctan2(-a[1, 0], a[1, 1]), np.arctan2(-a[0, 2], a[2, 2])
         x = [phi, psi, theta, *(-each.cosines[1])]
-        assert np.abs(model.dynamics(0.0, x, (), p)).max() < 1e-12
-        found = np.linalg.eigvals(np.reshape(model.jacobian_x(0.0, x, (), p), (6, 6)))
+        assert np.abs(model.dynamics(0.0, x, (0.0, 0.0), p)).max() < 1e-12
+        found = np.linalg.eigvals(np.reshape(model.jacobian_x(0.0, x, (0.0, 0.0), p), (6, 6)))
         for value in each.eigenvalues:
             assert np.abs(found - value).min() < 1e-5
         assert (found.real.max() > 1e-4) == (each.kind is Kind.UNSTABLE)

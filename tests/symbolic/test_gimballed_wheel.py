@@ -118,7 +118,7 @@ def test_with_locked_gimbals_roll_yaw_and_pitch_are_as_printed():
     model = kernels.load("gyrostat_linear")
     Ix, Iy, Iz, n, h = p = (11.0, 7.0, 9.0, 0.6, 2.7)
     phi, psi, theta, phi_dot, psi_dot, theta_dot = x = (0.3, -0.4, 0.2, 0.5, 0.7, -0.6)
-    rates = model.dynamics(0.0, x, (), p)
+    rates = model.dynamics(0.0, x, (0.0, 0.0), p)
     coupling = h - n * (Ix - Iy + Iz)
     roll = Ix * rates[3] + (4 * n**2 * (Iy - Iz) + n * h) * phi + coupling * psi_dot
     yaw = Iz * rates[4] + (n**2 * (Iy - Ix) + n * h) * psi - coupling * phi_dot

@@ -45,7 +45,7 @@ class AboutRest(SpecialCase):
 
     def motion_steps(self) -> tuple[MaybeStep, ...]:
         """The same."""
-        return (small_motions, first_order, motion.linearisation)
+        return (second_order, first_order, motion.linearisation)
 
     def misfits(self) -> Iterator[str]:
         """States that are neither coordinates of the bodies nor their rates nor speeds."""
@@ -76,7 +76,7 @@ class AboutRest(SpecialCase):
         return (Paragraph("about_rest", self.of, tuple(about)),)
 
 
-def small_motions(so_far: Derivation) -> Step:
+def second_order(so_far: Derivation) -> Step:
     """Kane's equations to first order in the coordinates and their rates: what the bodies resist, and the loads."""
     model = stated_as(AboutRest, so_far)
     rows = _linear_rows(so_far, model)
