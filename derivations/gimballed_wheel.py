@@ -306,7 +306,7 @@ roll_yaw_locked = about_rest(
 )
 roll_yaw_manoeuvre = Problem(
     name="roll_yaw_manoeuvre",
-    title="Roll and yaw manoeuvre of a gyrostat with the least integral of squared torques",
+    title="Roll and yaw manoeuvre of a gyrostat with the minimum integral of squared torques",
     model=roll_yaw_locked,
     running_cost=sum(torque**2 for torque in symbols_of(TORQUES)) / 2,
     control_set="box",

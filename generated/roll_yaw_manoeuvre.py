@@ -1,8 +1,8 @@
-"""Roll and yaw manoeuvre of a gyrostat with the least integral of squared torques.
+"""Roll and yaw manoeuvre of a gyrostat with the minimum integral of squared torques.
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Digest: a5ef20c4d2e346cd776e94feb5ea91b5a80c91719f38d2e646267ba34c8d28e9
+Digest: 99819ad09f6f512f82c5b342786a7269b9441a9e0c2d6b9c0a539eabaa2fb76b
 """
 
 import math
@@ -13,7 +13,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'roll_yaw_manoeuvre',
-    'title': 'Roll and yaw manoeuvre of a gyrostat with the least integral of squared torques',
+    'title': 'Roll and yaw manoeuvre of a gyrostat with the minimum integral of squared torques',
     'source': 'derivations/gimballed_wheel.py',
     'states': (
         {'symbol': 'phi', 'latex': '\\phi', 'unit': 'rad', 'meaning': 'roll angle, about x, after yaw', 'kind': 'angle'},
