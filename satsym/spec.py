@@ -23,7 +23,7 @@ _OF_VARIABLES = (
 )
 _UNLESS_DEFAULT = (
     *(*_OF_LINEAR_MODELS, "keplerian", "switching", "coordinates", "velocities", "quantities", "balances"),
-    "switching_curve",
+    *("switching_curve", "conditions", "equilibria"),
 )
 
 
@@ -63,6 +63,25 @@ class Variable:
 
 
 @dataclass(frozen=True)
+class Condition:
+    """What parameters must obey together: a weighted sum of them is not negative, or is positive where `strict`.
+
+    Attributes
+    ----------
+    terms
+        Names with their weights.
+    strict
+        Whether zero is excluded.
+    reason
+        Why, in a few words.
+    """
+
+    terms: tuple[tuple[str, float], ...]
+    strict: bool
+    reason: str
+
+
+@dataclass(frozen=True)
 class ProblemSpec:
     """Names, units and kinds of one generated model or optimal control problem.
 
@@ -96,6 +115,10 @@ class ProblemSpec:
     switching_curve
         Names of position and rate where the control of least time follows from the side of a curve on which they lie;
         empty where there is no such curve in closed form.
+    conditions
+        What the parameters must obey besides being positive one by one.
+    equilibria
+        Of a model that is one attitude in orbit: the parameter over which its equilibria are followed; else empty.
     """
 
     name: str
@@ -121,6 +144,8 @@ class ProblemSpec:
     quantities: tuple[Variable, ...] = ()
     balances: tuple[Variable, ...] = ()
     switching_curve: tuple[str, ...] = ()
+    conditions: tuple[Condition, ...] = ()
+    equilibria: str = ""
 
     @property
     def separable(self) -> bool:
@@ -166,6 +191,7 @@ class ProblemSpec:
             for key in _OF_VARIABLES:
                 entries = stated[key] if key not in _UNLESS_DEFAULT else stated.get(key, ())
                 stated[key] = tuple(Variable(**entry) for entry in entries)
+            stated["conditions"] = tuple(Condition(**entry) for entry in stated.get("conditions", ()))
             return cls(**stated)
         except (KeyError, TypeError) as error:
             raise ValueError(f"its MODEL has other fields than this version knows ({error})") from None
@@ -176,8 +202,8 @@ def names(variables: Iterable[Variable]) -> tuple[str, ...]:
     return tuple(v.symbol for v in variables)
 
 
-def _stated(variable: Variable | str) -> dict[str, Any] | str:
-    """The fields of a variable that differ from their defaults; a name as it is."""
+def _stated(variable: Variable | Condition | str) -> dict[str, Any] | str:
+    """The fields of a variable or a condition that differ from their defaults; a name as it is."""
     if isinstance(variable, str):
         return variable
     return {f.name: value for f in fields(variable) if (value := getattr(variable, f.name)) != f.default}

@@ -10,8 +10,9 @@ import numpy as np
 
 from satsym.analysis.classical import law as classical
 from satsym.analysis.classical.signals import excesses, spans_of, totals
+from satsym.analysis.coupling import Driver, reached
 from satsym.arrays import Array
-from satsym.instance import Instance
+from satsym.instance import Instance, load
 from satsym.solution import Solution
 from satsym.solvers import solve
 from satsym.status import BadInput
@@ -82,8 +83,16 @@ def compare(instances: Sequence[Instance], progress: Callable[[str], None] = lam
     found = []
     for instance in instances:
         progress(instance.name)
-        found.append(_flown(instance) if instance.classical else _solved(instance))
+        if instance.driven:
+            found += driven(instance, [case_of(load(name)) for name in instance.driven.by])
+        else:
+            found.append(case_of(instance))
     return found
+
+
+def case_of(instance: Instance) -> Case:
+    """One instance, under the law that it states or else solved."""
+    return _flown(instance) if instance.classical else _solved(instance)
 
 
 def _flown(instance: Instance) -> Case:
@@ -139,6 +148,34 @@ def limits_noted(solution: Solution) -> Solution:
     switches = [s for each in solution.switching_times for s in each]
     passed = excesses(solution.instance, _of_solution(solution.instance, solution, switches))
     return replace(solution, message=passed) if passed else solution
+
+
+def driven(instance: Instance, cases: Sequence[Case]) -> list[Case]:
+    """The motion of an instance whose control each of some cases has worked out, and what it is without.
+
+    Raises
+    ------
+    BadInput
+        If one of them has no answer, or none of them the control.
+    """
+    assert instance.driven is not None
+    name, found = instance.driven.control, []
+    for case in cases:
+        spec = case.instance.model.spec
+        if not case.answered:
+            raise BadInput(f"{instance.name}: [driven] by: {case.instance.name} has no answer: {case.message}")
+        if name not in (*spec.control_names, *(v.symbol for v in spec.quantities)):
+            raise BadInput(f"{instance.name}: [driven] by: {case.instance.name} has no {name}; name instances that do")
+        spans = spans_of(case.instance, case.times, case.x, case.u, case.switching_times)
+        driver = Driver(case.instance, spans, case.metrics.get("impulse", 0.0))
+        run = reached(instance, driver)
+        metrics = {"transition_time": case.metrics["transition_time"]} | run.metrics
+        called = replace(instance, name=case.instance.name)
+        said = f"{name} of {case.instance.name}"
+        found.append(
+            Case(called, said, True, None, run.message, run.times, run.x, run.u, case.switching_times, metrics)
+        )
+    return found
 
 
 @dataclass(frozen=True, eq=False)

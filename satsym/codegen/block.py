@@ -31,7 +31,10 @@ class Block:
 
 
 def build(
-    outputs: Sequence[sp.Expr], definitions: Sequence[Assignment], layers: Sequence[Iterable[sp.Symbol]]
+    outputs: Sequence[sp.Expr],
+    definitions: Sequence[Assignment],
+    layers: Sequence[Iterable[sp.Symbol]],
+    chain: Sequence[Assignment] = (),
 ) -> Block:
     """Turn expressions into a block.
 
@@ -42,7 +45,10 @@ def build(
     layers
         Sets of symbols, innermost invariants first. What depends only on a layer is computed by itself, so
         that it can leave the loop, or be shared by stages that differ only in other symbols.
+    chain
+        Named parts of the outputs that move, each in terms of those before; those not used are left out.
     """
+    chain = used(chain, outputs)
     assignments: list[Assignment] = list(definitions)
     current = [sp.sympify(e) for e in outputs]
     inner = {s for s, _ in definitions}
@@ -50,13 +56,25 @@ def build(
         inner |= set(layer)
         extraction = _Extraction(inner, prefix=f"_layer{len(assignments)}_")
         current = [extraction.apply(e) for e in current]
+        chain = [(s, extraction.apply(e)) for s, e in chain]
         assignments += extraction.assignments
         inner |= {s for s, _ in extraction.assignments}
+    assignments += chain
     cheap = _Cheapened()
     assignments = [(s, cheap.apply(e)) for s, e in assignments]
     current = [cheap.apply(e) for e in current]
     assignments += cheap.assignments
     return _ordered(*_shared(assignments, current))
+
+
+def used(chain: Sequence[Assignment], outputs: Iterable[sp.Expr]) -> list[Assignment]:
+    """The parts that the outputs need, in order."""
+    wanted, kept = set().union(*(sp.sympify(e).free_symbols for e in outputs)), []
+    for symbol, value in reversed(chain):
+        if symbol in wanted:
+            wanted |= value.free_symbols
+            kept.append((symbol, value))
+    return kept[::-1]
 
 
 class _Extraction:

@@ -8,6 +8,7 @@ import sympy as sp
 
 from satsym.codegen import switching
 from satsym.spec import Variable, names
+from satsym.symbolic.chain import Assignment, jacobians, parts_of
 from satsym.symbolic.derivation import Derivation, resolved
 from satsym.symbolic.kepler.central_force import inertial_state, strength_of
 from satsym.symbolic.linear.notation import matrix_symbols
@@ -92,13 +93,11 @@ def symbols(derivation: Derivation) -> Symbols:
 
 def functions(derivation: Derivation) -> list[Function]:
     """Every function that follows from a derivation, in the order in which a module has them."""
-    s = symbols(derivation)
-    n, m = len(s.x), len(s.u)
-    entries = [e.rhs for e in derivation.step("linearisation").equations]
+    a, b = _jacobians(derivation)
     found = [
         _vector("dynamics", "Rates of change of the states, f(t, x, u).", "t x u p", derivation.rhs("first_order")),
-        _matrix("jacobian_x", "A = df/dx, row by row.", "t x u p", sp.Matrix(n, n, entries[: n * n])),
-        _matrix("jacobian_u", "B = df/du, row by row.", "t x u p", sp.Matrix(n, m, entries[n * n :])),
+        _matrix("jacobian_x", "A = df/dx, row by row.", "t x u p", a),
+        _matrix("jacobian_u", "B = df/du, row by row.", "t x u p", b),
     ]
     if derivation.model.reference:
         found.append(_vector("reference", "The reference curve c(t).", "t p", derivation.rhs("reference")))
@@ -128,6 +127,20 @@ def _bounds(derivation: Derivation) -> tuple[Variable, ...]:
     problem = derivation.problem
     found = bounds(problem.control_set, derivation.model.controls) if problem else ()
     return found + (REGULARISED if switching.switches(derivation) else ())
+
+
+def chain_of(derivation: Derivation) -> tuple[Assignment, ...]:
+    """The named parts of functions that are not written in closed form, with those of their derivatives."""
+    return jacobians(derivation)[0] if parts_of(derivation) else ()
+
+
+def _jacobians(derivation: Derivation) -> tuple[sp.Matrix, sp.Matrix]:
+    """A and B."""
+    if parts_of(derivation):
+        return jacobians(derivation)[1:]
+    n, m = len(derivation.model.states), len(derivation.model.controls)
+    entries = [e.rhs for e in derivation.step("linearisation").equations]
+    return sp.Matrix(n, n, entries[: n * n]), sp.Matrix(n, m, entries[n * n :])
 
 
 def _cost_functions(derivation: Derivation) -> list[Function]:

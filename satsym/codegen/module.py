@@ -16,10 +16,10 @@ from satsym.codegen.printers import BatchPrinter, ScalarPrinter
 from satsym.codegen.switching import switches
 from satsym.kernels.contract import TUPLES
 from satsym.kernels.digest import sealed
-from satsym.spec import ProblemSpec, Variable
+from satsym.spec import Condition, ProblemSpec, Variable
 from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.kepler.central_force import strength_of
-from satsym.symbolic.model import t, variables_of
+from satsym.symbolic.model import Demand, t, variables_of
 from satsym.symbolic.switching.curve import states_of
 
 
@@ -43,10 +43,10 @@ def render(derivation: Derivation, source: str) -> str:
     parts = [
         _header(derivation, source),
         _literal(spec(derivation, source)),
-        *(_scalar_form(f, s, constants) for f in code.functions),
+        *(_scalar_form(f, s, constants, code.chain) for f in code.functions),
         *(rk4.source(loop) for loop in _loops(derivation, code, constants)),
         *([symplectic.source(code, parts_of_motion, constants)] if parts_of_motion else []),
-        *(_batch_form(f, s, constants) for f in code.functions),
+        *(_batch_form(f, s, constants, code.chain) for f in code.functions),
     ]
     return sealed("\n\n".join(parts))
 
@@ -79,11 +79,19 @@ def spec(derivation: Derivation, source: str) -> ProblemSpec:
         coordinates=tuple(q.name for q in parts.coordinates) if (parts := symplectic.split(derivation)) else (),
         velocities=tuple(v.name for v in parts.velocities) if parts else (),
         quantities=_quantities(derivation),
+        equilibria=model.followed(),
+        conditions=tuple(_condition(d) for d in model.demanded()),
         balances=tuple(
             Variable(e.name, derivation.notation[e.name])
             for e in (derivation.step("balance").equations if "balance" in derivation else ())
         ),
     )
+
+
+def _condition(demand: Demand) -> Condition:
+    """A demand as plain numbers."""
+    weights = {s.name: float(sp.diff(demand.margin, s)) for s in demand.margin.free_symbols}
+    return Condition(tuple(sorted(weights.items())), demand.strict, demand.reason)
 
 
 def _quantities(derivation: Derivation) -> tuple[Variable, ...]:
@@ -125,18 +133,18 @@ def _unpack(function: Function, s: Symbols) -> list[str]:
 
 
 def _straight_line(
-    function: Function, s: Symbols, constants: Sequence[Assignment]
+    function: Function, s: Symbols, constants: Sequence[Assignment], chain: Sequence[Assignment]
 ) -> tuple[list[Assignment], list[sp.Expr]]:
     """Assignments and outputs of a function under their final names."""
     names = {symbol.name for a in function.arguments for symbol in s.of(a)} | NEEDED
     emit = Emitter(names)
-    outputs = emit.inline(build(function.outputs, constants, ()), {}, function.hints)
+    outputs = emit.inline(build(function.outputs, constants, (), chain), {}, function.hints)
     return emit.before + emit.lines, outputs
 
 
-def _scalar_form(function: Function, s: Symbols, constants: Sequence[Assignment]) -> str:
+def _scalar_form(function: Function, s: Symbols, constants: Sequence[Assignment], chain: Sequence[Assignment]) -> str:
     code = ScalarPrinter().doprint
-    assignments, outputs = _straight_line(function, s, constants)
+    assignments, outputs = _straight_line(function, s, constants, chain)
     results = [code(o) for o in outputs]
     body = [*_unpack(function, s), *(f"{a} = {code(e)}" for a, e in assignments)]
     if function.kind == "scalar":
@@ -146,9 +154,9 @@ def _scalar_form(function: Function, s: Symbols, constants: Sequence[Assignment]
     return _function(f"{function.name}({', '.join(function.arguments)})", function.summary, body)
 
 
-def _batch_form(function: Function, s: Symbols, constants: Sequence[Assignment]) -> str:
+def _batch_form(function: Function, s: Symbols, constants: Sequence[Assignment], chain: Sequence[Assignment]) -> str:
     code = BatchPrinter().doprint
-    assignments, outputs = _straight_line(function, s, constants)
+    assignments, outputs = _straight_line(function, s, constants, chain)
     rows, columns = function.value.shape
     shape = {"scalar": "shape", "vector": f"({rows}, *shape)", "matrix": f"({rows}, {columns}, *shape)"}[function.kind]
     sizes = [a if a == "t" else f"{a}[0]" for a in function.arguments if a not in TUPLES and s.of(a)]
@@ -194,7 +202,7 @@ def _loops(derivation: Derivation, code: Code, constants: Sequence[Assignment]) 
         nodes="x",
         mids="x_mid",
         given=(("u", "u_mid", s.u),),
-        rates=build([code.renamed(e) for e in rates], constants, (fixed,)),
+        rates=build([code.renamed(e) for e in rates], constants, (fixed,), code.chain),
         sums=problem is not None,
     )
     if not problem:

@@ -14,8 +14,9 @@ from typing import TypeVar
 
 import sympy as sp
 
+from satsym.codegen.block import Assignment
 from satsym.codegen.extremals import all_functions
-from satsym.codegen.functions import ARGUMENTS, Function, Symbols, symbols
+from satsym.codegen.functions import ARGUMENTS, Function, Symbols, chain_of, symbols
 from satsym.symbolic.algebra import definitions_of
 from satsym.symbolic.convention import is_minimum
 from satsym.symbolic.derivation import Derivation
@@ -38,6 +39,8 @@ class Code:
     """Of the module, in its order."""
     constants: Mapping[sp.Symbol, sp.Expr]
     """Defined constants and their values."""
+    chain: tuple[Assignment, ...]
+    """Named parts that move, each in terms of those before; empty where functions are written in closed form."""
     names: Mapping[sp.Symbol, sp.Symbol]
     """Symbol of the derivation -> symbol of the code, where they differ."""
 
@@ -56,6 +59,7 @@ def code_of(derivation: Derivation) -> Code:
         Symbols(**{f.name: _renamed(getattr(found, f.name), names) for f in fields(found)}),
         tuple(replace(f, value=f.value.xreplace(names)) for f in all_functions(derivation)),
         {names.get(s, s): value.xreplace(names) for s, value in constants.items()},
+        tuple((s, value.xreplace(names)) for s, value in chain_of(derivation)),
         names,
     )
 

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from satsym.analysis.regulator.feedback import Design
     from satsym.arrays import Array
     from satsym.front.derivation import Derivation
+    from satsym.symbolic.equilibria.survey import Attitudes
 
 Subject: TypeAlias = "Instance | symbolic.Problem | symbolic.Model | Derivation | str | Path"
 
@@ -80,14 +81,23 @@ class Analysis(_Said):
         from satsym.report.results.orbit import examination_object
 
         derived = self.derivation.derived if self.derivation else None
-        return examination_object(self.given, self.linear, self.orbit, derived)
+        return examination_object(self.given, self.linear, self.orbit, derived, self.attitudes)
+
+    @cached_property
+    def attitudes(self) -> Attitudes | None:
+        """All equilibria, of a model that is one attitude in orbit."""
+        from satsym.report.results.equilibria import attitudes
+
+        return attitudes(self.given, self.derivation.derived if self.derivation else None)
 
     def __repr__(self) -> str:
+        from satsym.report.terminal.equilibria import attitudes_text
         from satsym.report.terminal.linear import analysis_text
         from satsym.report.terminal.orbit import orbit_text
 
         parts = [analysis_text(self.linear, False)] if self.linear else []
-        return "\n\n".join(parts + ([orbit_text(self.orbit, False)] if self.orbit else []))
+        parts += [orbit_text(self.orbit, False)] if self.orbit else []
+        return "\n\n".join(parts + ([attitudes_text(self.attitudes)] if self.attitudes else []))
 
 
 @dataclass(frozen=True, eq=False, repr=False)

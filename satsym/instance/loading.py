@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from satsym.instance import files, resolve
 from satsym.instance.options import guess, lqr, solver
-from satsym.instance.pointing import classical, deadband, limits
+from satsym.instance.pointing import classical, deadband, driven, limits
 from satsym.instance.schema import InstanceFile, check
 from satsym.instance.types import Instance
 from satsym.status import BadInput
@@ -135,4 +135,5 @@ def _resolve(written: Written, file: InstanceFile, model: Kernels) -> Instance:
         classical=classical(file.classical, spec),
         limits=limits(file.limits, spec),
         deadband=deadband(file.switching, spec),
+        driven=driven(file.driven, spec),
     )

@@ -1,12 +1,12 @@
-"""The tables [classical], [switching] and [limits] of an instance, checked against its model."""
+"""The tables [classical], [switching], [driven] and [limits] of an instance, checked against its model."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
 from satsym.instance.resolve import known, quantity, time, value_of
-from satsym.instance.schema import ClassicalTable, SwitchingTable
-from satsym.instance.types import ClassicalOptions
+from satsym.instance.schema import ClassicalTable, DrivenTable, SwitchingTable
+from satsym.instance.types import ClassicalOptions, DrivenOptions
 from satsym.spec import ProblemSpec
 from satsym.status import BadInput
 from satsym.wording import shown
@@ -93,6 +93,24 @@ def deadband(table: SwitchingTable | None, spec: ProblemSpec) -> float | None:
             f"write the error of {position.symbol} that is allowed"
         )
     return found
+
+
+def driven(table: DrivenTable | None, spec: ProblemSpec) -> DrivenOptions | None:
+    """The control that other instances have worked out.
+
+    Raises
+    ------
+    BadInput
+        If the model has no such control, or no instance is named.
+    """
+    if table is None:
+        return None
+    if table.control not in spec.control_names:
+        have = ", ".join(spec.control_names) or "none"
+        raise BadInput(f"[driven] control: the model has no control {shown(table.control)}; controls here: {have}")
+    if not table.by:
+        raise BadInput("[driven] by: an empty list; name at least one instance that works the control out")
+    return DrivenOptions(table.control, tuple(table.by))
 
 
 def _rate(spec: ProblemSpec) -> str:

@@ -47,7 +47,14 @@ def value_of(variable: Variable, value: float | str, key: str) -> float:
 def parameters(table: Mapping[str, float | str], spec: ProblemSpec) -> Row:
     """Parameters in the model's order; those left out take the model's defaults."""
     known(table, spec.parameters, "parameter", "parameters")
-    return tuple(_parameter(v, table.get(v.symbol, v.default)) for v in spec.parameters)
+    found = tuple(_parameter(v, table.get(v.symbol, v.default)) for v in spec.parameters)
+    values = dict(zip(spec.parameter_names, found, strict=True))
+    for condition in spec.conditions:
+        margin = math.fsum(weight * values[name] for name, weight in condition.terms)
+        if margin < 0.0 or (condition.strict and margin == 0.0):
+            named = ", ".join(f"{name} = {values[name]:.6g}" for name, _ in condition.terms)
+            raise BadInput(f"[parameters] {condition.terms[0][0]}: {condition.reason}; change one of {named}")
+    return found
 
 
 def _parameter(variable: Variable, value: float | str | None) -> float:

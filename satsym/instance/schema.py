@@ -84,6 +84,11 @@ class SwitchingTable(_Table, frozen=True):
     deadband: Quantity
 
 
+class DrivenTable(_Table, frozen=True):
+    control: Name
+    by: Names
+
+
 class GuessTable(_Table, frozen=True):
     state: dict[str, Series] = {}
     costate: dict[str, Series] = {}
@@ -126,6 +131,7 @@ class InstanceFile(_Table, frozen=True):
     classical: ClassicalTable | None = None
     limits: dict[str, Quantity] = {}
     switching: SwitchingTable | None = None
+    driven: DrivenTable | None = None
 
 
 def check(tree: dict[str, Any]) -> InstanceFile:

@@ -65,6 +65,22 @@ class ClassicalOptions:
 
 
 @dataclass(frozen=True)
+class DrivenOptions:
+    """A control that other instances have worked out.
+
+    Parameters
+    ----------
+    control
+        Its name, also that of a control or a derived quantity of their models.
+    by
+        The instances, one run for each.
+    """
+
+    control: str
+    by: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Guess:
     """Where a solver may start: values evenly spaced from t0 to tf, straight lines between; one value is constant.
 
@@ -112,6 +128,8 @@ class Instance:
         derived quantities, by name.
     deadband
         Error of the position that a switching feedback allows, if it is stated.
+    driven
+        A control that other instances have worked out, if there is one.
     """
 
     name: str
@@ -133,6 +151,7 @@ class Instance:
     classical: ClassicalOptions | None = None
     limits: Mapping[str, float] = field(default_factory=dict)
     deadband: float | None = None
+    driven: DrivenOptions | None = None
 
     @property
     def boundary_type(self) -> int:

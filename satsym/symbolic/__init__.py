@@ -2,24 +2,30 @@
 
 from satsym.spec import Variable
 from satsym.symbolic.derivation import Check, Conclusion, Derivation, DerivationError, Equation, Step
+from satsym.symbolic.kinds.about_rest import AboutRest
+from satsym.symbolic.kinds.bodies import CLOCK, moving
 from satsym.symbolic.kinds.closed_loop.model import ClosedLoop
 from satsym.symbolic.kinds.closed_loop.names import COMMAND, s
 from satsym.symbolic.kinds.first_order import FirstOrder
 from satsym.symbolic.kinds.gyrostat import Gyrostat, Motor
 from satsym.symbolic.kinds.linearised import Linearised
+from satsym.symbolic.kinds.multibody import Multibody
 from satsym.symbolic.kinds.newton import Newton
 from satsym.symbolic.kinds.reduced import Reduced
 from satsym.symbolic.kinds.scaled import Scaled
-from satsym.symbolic.model import Definition, Model, Output, Problem, symbols_of, t
+from satsym.symbolic.model import Definition, Demand, Model, Output, Problem, symbols_of, t
 from satsym.symbolic.notation import rate_of
 from satsym.symbolic.pipeline import derive
 
 __all__ = [
+    "CLOCK",
     "COMMAND",
+    "AboutRest",
     "Check",
     "ClosedLoop",
     "Conclusion",
     "Definition",
+    "Demand",
     "Derivation",
     "DerivationError",
     "Equation",
@@ -28,6 +34,7 @@ __all__ = [
     "Linearised",
     "Model",
     "Motor",
+    "Multibody",
     "Newton",
     "Output",
     "Problem",
@@ -36,6 +43,7 @@ __all__ = [
     "Step",
     "Variable",
     "derive",
+    "moving",
     "rate_of",
     "s",
     "symbols_of",

@@ -52,6 +52,18 @@ def _compiled(expressions: tuple[sp.Expr, ...]) -> tuple[list[sp.Symbol], Callab
     return symbols, sp.lambdify(symbols, list(expressions), modules=[MPMATH_FUNCTIONS, "mpmath"])
 
 
+def numeric_along(
+    chain: Iterable[tuple[sp.Symbol, sp.Expr]], expressions: Iterable[sp.Expr]
+) -> tuple[Callable[[Mapping[sp.Symbol, Any]], list[Any]], list[sp.Symbol]]:
+    """The same for expressions in named parts, each of which may use those before it; and the symbols it needs."""
+    parts, values = list(chain), list(expressions)
+    free = set().union(*(e.free_symbols for _, e in parts), *(e.free_symbols for e in values)) - {s for s, _ in parts}
+    symbols = sorted(free, key=lambda s: s.name)
+    modules = [MPMATH_FUNCTIONS, "mpmath"]
+    function = sp.lambdify(symbols, values, modules=modules, cse=lambda _: (parts, values))
+    return lambda point: function(*(point[s] for s in symbols)), symbols
+
+
 def deviation(found: Iterable[Any], expected: Iterable[Any]) -> float:
     """Largest difference, relative to one plus the size of what was expected; NaN if any of them is."""
     return _largest(abs(a - b) / (1 + abs(b)) for a, b in zip(found, expected, strict=True))
@@ -129,7 +141,13 @@ def identity(claim: str, expressions: Iterable[sp.Expr]) -> Check:
 
 def partial(function: Callable[[Mapping[sp.Symbol, Any]], list[Any]], point: Point, symbol: sp.Symbol) -> list[Any]:
     """Numeric partial derivatives of a vector function by central differences in high precision."""
-    with mp.workdps(3 * DIGITS):
-        h = mp.mpf(10) ** (-DIGITS)
-        above, below = (function({**point, symbol: point[symbol] + s * h}) for s in (1, -1))
+    return slopes(lambda h: function({**point, symbol: point[symbol] + h}))
+
+
+def slopes(function: Callable[[Any], Sequence[Any]]) -> list[Any]:
+    """Numeric derivatives at zero of a vector function of one number, by central differences in high precision."""
+    digits = mp.mp.dps
+    with mp.workdps(3 * digits):
+        h = mp.mpf(10) ** (-digits)
+        above, below = function(h), function(-h)
         return [(a - b) / (2 * h) for a, b in zip(above, below, strict=True)]

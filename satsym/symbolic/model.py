@@ -13,6 +13,7 @@ from satsym.spec import ControlSetKind, Variable
 if TYPE_CHECKING:
     from satsym.symbolic.derivation import Derivation, Step
     from satsym.symbolic.dimension_algebra import Dimension
+    from satsym.symbolic.equilibria.rest import Rest
 
 MaybeStep: TypeAlias = "Callable[[Derivation], Step | None]"
 """A pure function from what has been derived to the next step; ``None`` where it does not apply to the model."""
@@ -46,6 +47,15 @@ class Output:
 
     variable: Variable
     value: sp.Expr
+
+
+@dataclass(frozen=True)
+class Demand:
+    """What parameters must obey together: the margin, a weighted sum of them, is not negative; or positive."""
+
+    margin: sp.Expr
+    reason: str
+    strict: bool = False
 
 
 @dataclass(frozen=True)
@@ -95,6 +105,8 @@ class Model:
         State -> curve c(t, p); proved to satisfy the equations without control. May be empty.
     outputs
         What is measured. May be empty.
+    demands
+        What the parameters must obey together; instances that do not are refused. May be empty.
     """
 
     name: str
@@ -105,6 +117,7 @@ class Model:
     definitions: tuple[Definition, ...] = ()
     reference: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     outputs: tuple[Output, ...] = ()
+    demands: tuple[Demand, ...] = ()
 
     plain_time: ClassVar[bool] = False
     """Whether time is a plain number even though other variables have units."""
@@ -147,6 +160,20 @@ class Model:
         """Quantities derived along the motion, which a running cost may name."""
         origin = self.origin()
         return origin.carried() if origin else ()
+
+    def demanded(self) -> tuple[Demand, ...]:
+        """What is demanded of the parameters that are here, by this model or by that whose motion it is."""
+        origin, own = self.origin(), set(symbols_of(self.parameters))
+        of_origin = origin.demanded() if origin else ()
+        return (*self.demands, *(d for d in of_origin if d.margin.free_symbols <= own))
+
+    def followed(self) -> str:
+        """The parameter over which equilibria of an attitude are followed; empty where it is not one attitude."""
+        return ""
+
+    def rest(self, derived: Derivation) -> Rest | None:
+        """What turns it where it rests in orbit, by its derivation; ``None`` where it is not one attitude."""
+        return None
 
     def misfits(self) -> Iterable[str]:
         """Complaints about declarations that do not fit together; the first one is raised."""

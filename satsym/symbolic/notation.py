@@ -79,6 +79,8 @@ costate_of = named("lambda_{}")
 """The symbol for the costate of a state."""
 acceleration_of = named("{}_ddot")
 """The symbol for the second time derivative of a coordinate."""
+solved = named("solved_{}")
+"""The symbol for the rate of a speed where it is the solution of a linear system, and not written out."""
 optimal = named("{}_star")
 """The symbol for the value of a control that minimises H."""
 unconstrained = named("{}_hat")
@@ -89,6 +91,11 @@ on_reference = named("on_reference_{}")
 """One where a state ends on its reference, else zero."""
 target = named("target_{}")
 """The given final value of a state."""
+
+
+def is_solved(expression: sp.Expr) -> bool:
+    """Whether it is such a symbol as :func:`solved` gives."""
+    return bool(expression.is_Symbol) and expression.name.startswith("solved_")
 
 
 def multipliers(problem: Problem) -> tuple[sp.Symbol, ...]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Literal
 
 import sympy as sp
@@ -111,8 +112,26 @@ def _moving(
     derivation = begin(model, problem)
     refuse_foreign_symbols(derivation)
     if origin := model.origin():
-        derivation = replace(derivation, original=_moving(origin, None, "motion_steps")[0])
+        derivation = replace(derivation, original=_motion_of(_Same(origin)))
     return _taken(derivation, dimensions.declared(derivation), steps)
+
+
+@dataclass(frozen=True, eq=False)
+class _Same:
+    """A model that is the same as itself alone, so that what was derived of it can be kept."""
+
+    model: Model
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Same) and self.model is other.model
+
+    def __hash__(self) -> int:
+        return id(self.model)
+
+
+@lru_cache(maxsize=4)  # several models are derived from one motion, one after the other
+def _motion_of(same: _Same) -> Derivation:
+    return _moving(same.model, None, "motion_steps")[0]
 
 
 def _kinds(of: type[Model]) -> list[type[Model]]:

@@ -31,18 +31,3 @@ def test_the_acceleration_of_the_wheel_turns_roll_and_yaw(axis):
 
 def test_it_does_not_turn_the_gimbals():
     assert not ask("wheel_couples", axes=("roll gimbal",)).holds
-
-
-@pytest.mark.parametrize(
-    ("axis", "term", "yes", "no"),
-    [
-        ("roll", "psi_dot", "(I_y - I_x - I_z)*w0 + H_b", "(I_y - I_x + I_z)*w0 + H_b"),
-        ("yaw", "phi_dot", "-((I_y - I_x - I_z)*w0 + H_b)", "(I_y - I_x - I_z)*w0 + H_b"),
-        ("roll", "g_z", "I_wy*d_Omega", "-I_wy*d_Omega"),
-        ("yaw", "g_x", "-I_wy*d_Omega", "I_wy*d_Omega"),
-        ("roll gimbal", "psi_dot", "w0*(I_wy - 2*I_wx) + H_b", "-w0*(I_wy - 2*I_wx) - H_b"),
-    ],
-)
-def test_terms_of_roll_and_yaw(axis, term, yes, no):
-    assert ask("gimbal_term", yes, axis=axis, term=term).holds
-    assert not ask("gimbal_term", no, axis=axis, term=term).holds

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from satsym.auditing.predicates import Finding, Question, exact, predicate
+from satsym.auditing.predicates import Finding, predicate
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
@@ -82,30 +82,6 @@ def _drawn() -> list[dict[str, float]]:
 def _known(axis: str) -> None:
     if axis not in _AXES:
         raise BadInput(f"no axis {shown(axis)}; {suggestion(axis, _AXES)}")
-
-
-@predicate
-def gimbal_term(row: Question, axis: str, term: str) -> Finding:
-    """Whether a printed coefficient is that of an angle, a rate or an acceleration in the equation of an axis.
-
-    Parameters
-    ----------
-    axis
-        ``roll``, ``yaw``, ``roll gimbal`` or ``yaw gimbal``; the inertial side, without springs.
-    term
-        ``phi``, ``psi``, ``g_x``, ``g_z``, with ``_dot`` or ``_ddot`` for their rates.
-    """
-    _known(axis)
-    printed = exact.expression(str(row.printed))
-    worst = 0.0
-    for values in _drawn():
-        said = exact.number(printed, values)
-        worst = max(worst, abs(said - _coefficient(axis, term, values)))
-    return Finding(
-        worst < _EQUAL,
-        f"off by {worst:.1g} at most, at {_TRIES} sets of numbers",
-        {"largest difference": worst},
-    )
 
 
 @predicate

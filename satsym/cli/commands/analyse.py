@@ -15,13 +15,17 @@ from satsym.status import ExitCode
 if TYPE_CHECKING:
     from satsym.analysis.linear.structure import Analysis
     from satsym.analysis.orbits.survey import Survey
+    from satsym.instance import Instance
+    from satsym.kernels import Kernels
     from satsym.report.results.files import Content
+    from satsym.symbolic.equilibria.survey import Attitudes
 
 EXAMPLES = """\b
 Examples:
   satsym analyse itb-earth --plot       an orbit: its kind, its monodromy matrix, what its stability means
   satsym analyse clohessy_wiltshire     a satellite near a circular orbit
   satsym analyse soft-return-geo        a nonlinear model, near its reference, in kilometres and seconds
+  satsym analyse gyrostat-equilibria    all attitudes at which a satellite with a wheel rests
   satsym analyse uny-lqr --plot         with pictures, into results/uny-lqr/analyse"""
 
 
@@ -36,35 +40,50 @@ def analyse(subject: str, as_json: bool, out: Path | None, plot: bool) -> ExitCo
     X is a shipped model or instance, or the path of one. Eigenvalues with their Jordan blocks, stability with its
     reason, the Routh array, the controllable and the observable subspace of inputs and outputs: by numbers, and exactly
     where the model is linear. Of an instance that starts on an orbit: its elements and kind, the eigenvalues at the
-    start and why they decide nothing, its monodromy matrix and Floquet multipliers.
+    start and why they decide nothing, its monodromy matrix and Floquet multipliers. Of a satellite's attitude in orbit:
+    all equilibria, counted exactly, and how their number and stability change with the momentum of its wheel.
     """
     from satsym.analysis.subject import examined, find
+    from satsym.report.results.equilibria import attitudes
     from satsym.report.results.orbit import examination_object
     from satsym.report.terminal.solution import with_files
 
     given = find(subject)
     folder = folder_for(Path(subject).stem, "analyse", out, plot)
     found, orbit = examined(given)
+    resting = attitudes(given)
     saved: list[Path] = []
     if as_json or folder is not None:
-        result = examination_object(given, found, orbit)
-        saved = save(folder, result, _pictures(found, orbit) if folder and plot else {})
+        result = examination_object(given, found, orbit, attitudes=resting)
+        saved = save(folder, result, _pictures(found, orbit, resting, _title(given)) if folder and plot else {})
     if as_json:
         emit_json(result)
     else:
-        emit(with_files(_text(found, orbit), saved))
+        emit(with_files(_text(found, orbit, resting), saved))
     return ExitCode.DONE
 
 
-def _pictures(found: Analysis | None, orbit: Survey | None) -> dict[str, Content]:
-    from satsym.report.plots.systems import of_analysis, of_orbit
+def _pictures(
+    found: Analysis | None, orbit: Survey | None, resting: Attitudes | None, title: str
+) -> dict[str, Content]:
+    from satsym.report.plots.systems import of_analysis, of_attitudes, of_orbit
 
-    return (of_analysis(found) if found else {}) | (of_orbit(orbit) if orbit else {})
+    pictures = (of_analysis(found) if found else {}) | (of_orbit(orbit) if orbit else {})
+    return pictures | (of_attitudes(resting, title) if resting else {})
 
 
-def _text(found: Analysis | None, orbit: Survey | None) -> str:
+def _title(given: Instance | Kernels) -> str:
+    """What was analysed, in a line."""
+    from satsym.instance import Instance
+
+    return given.title or given.model.spec.title if isinstance(given, Instance) else given.spec.title
+
+
+def _text(found: Analysis | None, orbit: Survey | None, resting: Attitudes | None) -> str:
+    from satsym.report.terminal.equilibria import attitudes_text
     from satsym.report.terminal.linear import analysis_text
     from satsym.report.terminal.orbit import orbit_text
 
     parts = [analysis_text(found, in_colour())] if found else []
-    return "\n\n".join(parts + ([orbit_text(orbit, in_colour())] if orbit else []))
+    parts += [orbit_text(orbit, in_colour())] if orbit else []
+    return "\n\n".join(parts + ([attitudes_text(resting)] if resting else []))

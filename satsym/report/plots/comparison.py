@@ -122,7 +122,9 @@ def _until(case: Case) -> float:
 def _totals(figure: Figure, grid: Any, row: int, cases: Sequence[Case]) -> None:
     from satsym.analysis.classical.performance import SETTLED
 
-    control = cases[0].instance.model.spec.controls[0]
+    controls = cases[0].instance.model.spec.controls
+    used = (c for c in controls if any(case.metrics.get(f"{c.symbol}_total") for case in cases))
+    control = next(used, controls[0])
     bars = (("transition_time", "transition time"), (f"{control.symbol}_total", "total impulse"))
     for column, (key, title) in enumerate(bars):
         axes, unit = figure.add_subplot(grid[row, column]), unit_of(cases, key)

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from satsym.analysis.linear.structure import Analysis
     from satsym.analysis.orbits.survey import Survey
     from satsym.analysis.regulator.feedback import Design
+    from satsym.symbolic.equilibria.survey import Attitudes
 
 Pictures: TypeAlias = dict[str, files.Content]
 """Name -> content of each file."""
@@ -50,6 +51,13 @@ def of_orbit(found: Survey, formats: Sequence[str] = ("png",)) -> Pictures:
         "multipliers": lambda: unit_circle.page(found),
     }
     return _drawn(pictures, formats)
+
+
+def of_attitudes(found: Attitudes, title: str, formats: Sequence[str] = ("png",)) -> Pictures:
+    """Draw the equilibria of an attitude in orbit over a parameter: ``equilibria``."""
+    from satsym.report.plots import equilibria
+
+    return _drawn({"equilibria": lambda: equilibria.page(found, title)}, formats)
 
 
 def of_design(design: Design, formats: Sequence[str] = ("png",)) -> Pictures:

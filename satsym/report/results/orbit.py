@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from satsym.analysis.orbits.conic import TOLERANCE
 from satsym.report.display import length_unit, time_unit
 from satsym.report.results.certificate import plain
+from satsym.report.results.equilibria import attitudes_object
 from satsym.report.results.linear import analysis_object, eigenvalue_object
 from satsym.report.results.objects import head_about
 from satsym.status import Status
@@ -21,10 +22,15 @@ if TYPE_CHECKING:
     from satsym.kernels import Kernels
     from satsym.spec import ProblemSpec
     from satsym.symbolic import Derivation
+    from satsym.symbolic.equilibria.survey import Attitudes
 
 
 def examination_object(
-    given: Instance | Kernels, found: Analysis | None, orbit: Survey | None, derivation: Derivation | None = None
+    given: Instance | Kernels,
+    found: Analysis | None,
+    orbit: Survey | None,
+    derivation: Derivation | None = None,
+    attitudes: Attitudes | None = None,
 ) -> dict[str, Any]:
     """What ``satsym analyse --json`` prints.
 
@@ -34,9 +40,12 @@ def examination_object(
         What was examined, and the two parts of what was found; see :func:`satsym.analysis.subject.examined`.
     derivation
         Of the model, where it is at hand; a shipped one is looked for.
+    attitudes
+        Its equilibria, where it is one attitude in orbit.
     """
     algebra = exact(found.about.model, derivation) if found else None
-    return head_about("analyse", given, Status.CONVERGED) | analysis_object(found, algebra) | orbit_object(orbit)
+    whole = head_about("analyse", given, Status.CONVERGED) | analysis_object(found, algebra) | orbit_object(orbit)
+    return whole | {"equilibria": attitudes_object(attitudes)}
 
 
 def orbit_object(found: Survey | None) -> dict[str, Any]:
@@ -109,7 +118,7 @@ def exact(model: Kernels, derivation: Derivation | None = None) -> dict[str, Any
     -------
     dict or None
         ``None`` for a model whose derivation is not at hand, because it was loaded by path, that is not linear with
-        constant coefficients, or whose entries are beyond exact linear algebra.
+        constant coefficients, or whose entries are beyond exact linear algebra, or too many letters.
     """
     shipped = model.origin is not None and model.origin[1] is None
     if not model.spec.linear or not (shipped or derivation):
@@ -118,10 +127,11 @@ def exact(model: Kernels, derivation: Derivation | None = None) -> dict[str, Any
     from satsym.symbolic import DerivationError
     from satsym.symbolic.analysis import NotExact, analyse
     from satsym.symbolic.analysis.listing import exact_object
-    from satsym.symbolic.linear.matrices import system_of
+    from satsym.symbolic.linear.matrices import system_of, too_many_letters
     from satsym.symbolic.lookup import library
 
     try:
-        return exact_object(analyse(system_of(derivation or library.derivation(model.spec.name))))
+        system = system_of(derivation or library.derivation(model.spec.name))
+        return None if too_many_letters(system) else exact_object(analyse(system))
     except (BadInput, DerivationError, NotExact):
         return None

@@ -16,6 +16,9 @@ from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.linear.notation import results
 from satsym.symbolic.model import symbols_of, t, variables_of
 
+MOST_LETTERS = 24
+"""Of exact analysis, times the states: polynomials of a high degree in many letters fill pages and say nothing."""
+
 Coefficients = Literal["constant", "varying"]
 
 
@@ -71,19 +74,26 @@ def system_of(derivation: Derivation) -> LinearSystem:
 def analysable(derivation: Derivation) -> bool:
     """Whether the steps of exact analysis apply.
 
-    They do to models without a cost and with constant coefficients, if exact arithmetic reaches the entries and no
-    variable has the name of a result.
+    They do to models without a cost and with constant coefficients, if exact arithmetic reaches the entries, not too
+    many letters are in them, and no variable has the name of a result.
     """
     if derivation.problem is not None or coefficients_of(derivation) != "constant":
         return False
     if {v.symbol for v in variables_of(derivation.model)} & set(results(derivation.model)):
         return False
     system = system_of(derivation)
+    if too_many_letters(system):
+        return False
     try:
         exact(system.a, system.b, system.c)
     except NotExact:
         return False
     return True
+
+
+def too_many_letters(system: LinearSystem) -> bool:
+    """Whether exact analysis would not end, or say nothing."""
+    return system.a.rows * len(system.a.free_symbols) > MOST_LETTERS
 
 
 RANK_TOLERANCE = 1e-20

@@ -123,7 +123,8 @@ def jacobians(
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
         there = {**point, **at}
-        return entries(there), [partial(functions, there, column)[k] for k, column in pairs]
+        slopes = {column: partial(functions, there, column) for symbols in columns.values() for column in symbols}
+        return entries(there), [slopes[column][k] for k, column in pairs]
 
     moving = {column for symbols in columns.values() for column in symbols}
     return tuple(equations), compare("numeric derivative", moving.union(*(v.free_symbols for v in values)), sides)

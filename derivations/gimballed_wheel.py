@@ -1,0 +1,315 @@
+"""A satellite in a circular orbit: a rigid body, a momentum wheel in two sprung gimbals, one flexible mode an axis.
+
+The axes are x forward, y against the normal of the orbit, z to the Earth; orbital motion and wheel turn about -y. The
+wheel hangs in an outer gimbal that turns about the body's z and an inner one that turns about its own x; both have no
+inertia. A flexible mode turns about an axis of the body, as panels that bend or twist: a part of the moment of inertia
+about that axis is elastic. I_x, I_y, I_z are those of the whole satellite. The centre of mass stays in the orbit. Other
+numbers than those of the paper lapan_pitch, which prints none of gimbals and panels, are typical ones.
+"""
+
+from typing import Any, TypeAlias
+
+from sympy import Matrix, Symbol, cos, sin, tan
+from sympy.physics.mechanics import Point, ReferenceFrame, RigidBody, cross, inertia, outer
+
+from satsym.symbolic import CLOCK, AboutRest, Demand, Multibody, Problem, Variable, moving, symbols_of
+
+Variables: TypeAlias = "tuple[Variable, ...]"
+Load: TypeAlias = "tuple[Any, Any]"
+Mechanics: TypeAlias = "tuple[ReferenceFrame, list[RigidBody], list[Load]]"
+
+ATTITUDE = (
+    Variable("phi", r"\phi", "rad", "roll angle, about x, after yaw", kind="angle"),
+    Variable("psi", r"\psi", "rad", "yaw angle, about z, the first of the three", kind="angle"),
+    Variable("theta", r"\theta", "rad", "pitch angle, about y, the last of the three", kind="angle"),
+)
+RATES = (
+    Variable("w_x", r"\omega_x", "rad/s", "angular velocity in space along the body's x"),
+    Variable("w_y", r"\omega_y", "rad/s", "angular velocity in space along the body's y"),
+    Variable("w_z", r"\omega_z", "rad/s", "angular velocity in space along the body's z"),
+)
+PITCH = ("theta", "w_y", "eta_y", "eta_y_dot", "wheel_speed")
+GIMBALS = (
+    Variable("g_x", r"\gamma_x", "rad", "angle of the inner gimbal, about x"),
+    Variable("g_z", r"\gamma_z", "rad", "angle of the outer gimbal, about z"),
+)
+GIMBAL_RATES = (
+    Variable("g_x_dot", r"\dot\gamma_x", "rad/s", "rate of the inner gimbal"),
+    Variable("g_z_dot", r"\dot\gamma_z", "rad/s", "rate of the outer gimbal"),
+)
+MODES = tuple(Variable(f"eta_{a}", rf"\eta_{a}", "rad", f"deflection of the mode about {a}") for a in "xyz")
+MODE_RATES = tuple(Variable(f"eta_{a}_dot", rf"\dot\eta_{a}", "rad/s", f"rate of the mode about {a}") for a in "xyz")
+SPEED = (Variable("wheel_speed", r"\Omega", "rad/s", "deviation of the wheel's speed from its nominal one"),)
+CONTROLS = (
+    Variable("T_cx", "T_{cx}", "N*m", "torque of the actuator on the inner gimbal"),
+    Variable("T_cz", "T_{cz}", "N*m", "torque of the actuator on the outer gimbal"),
+    Variable("motor_torque", "T_m", "N*m", "torque of the motor between wheel and inner gimbal"),
+)
+TORQUES = (
+    Variable("torque_x", "T_x", "N*m", "torque on the body in roll"),
+    Variable("torque_z", "T_z", "N*m", "torque on the body in yaw"),
+)
+BODY = (
+    Variable("I_x", "I_x", "kg*m**2", "moment of inertia of the satellite in roll", 1356.0, positive=True),
+    Variable("I_y", "I_y", "kg*m**2", "moment of inertia of the satellite in pitch", 678.0, positive=True),
+    Variable("I_z", "I_z", "kg*m**2", "moment of inertia of the satellite in yaw", 1356.0, positive=True),
+    Variable("w0", r"\omega_0", "rad/s", "angular velocity in the orbit", 7.26e-5, positive=True),
+)
+WHEEL = (
+    Variable("I_wx", "I_{wx}", "kg*m**2", "moment of inertia of the wheel across its axis", 0.05, positive=True),
+    Variable("I_wy", "I_{wy}", "kg*m**2", "moment of inertia of the wheel about its axis", 0.09, positive=True),
+    Variable("nominal_speed", r"\Omega_n", "rad/s", "nominal speed of the wheel", 104.71976, positive=True),
+    Variable("K_x", "K_x", "N*m/rad", "stiffness of the spring on the inner gimbal", 0.9, positive=True),
+    Variable("K_z", "K_z", "N*m/rad", "stiffness of the spring on the outer gimbal", 0.9, positive=True),
+    Variable("D_x", "D_x", "N*m*s/rad", "damping on the inner gimbal", 9.0),
+    Variable("D_z", "D_z", "N*m*s/rad", "damping on the outer gimbal", 9.0),
+)
+PANELS = (
+    Variable("J_x", "J_x", "kg*m**2", "elastic part of I_x", 200.0, positive=True),
+    Variable("J_y", "J_y", "kg*m**2", "elastic part of I_y", 200.0, positive=True),
+    Variable("J_z", "J_z", "kg*m**2", "elastic part of I_z", 200.0, positive=True),
+    Variable("freq_x", r"\nu_x", "rad/s", "frequency of the mode about x, the body fixed", 0.6, positive=True),
+    Variable("freq_y", r"\nu_y", "rad/s", "frequency of the mode about y, the body fixed", 0.9, positive=True),
+    Variable("freq_z", r"\nu_z", "rad/s", "frequency of the mode about z, the body fixed", 0.7, positive=True),
+    Variable("zeta_x", r"\zeta_x", "1", "damping ratio of the mode about x", 0.005),
+    Variable("zeta_y", r"\zeta_y", "1", "damping ratio of the mode about y", 0.005),
+    Variable("zeta_z", r"\zeta_z", "1", "damping ratio of the mode about z", 0.005),
+)
+phi, psi, theta = symbols_of(ATTITUDE)
+I_x, I_y, I_z, w0, I_wx, I_wy, nominal_speed, K_x, K_z, D_x, D_z = symbols_of((*BODY, *WHEEL))
+w_x, w_y, w_z = symbols_of(RATES)
+
+# orbital axes along the body's: yaw, then roll, then pitch
+COSINES = Matrix(3, 3, [Symbol(f"a_{i}{k}", real=True) for i in "xyz" for k in "xyz"])
+first, second, third = (
+    Matrix([[cos(psi), sin(psi), 0], [-sin(psi), cos(psi), 0], [0, 0, 1]]),
+    Matrix([[1, 0, 0], [0, cos(phi), sin(phi)], [0, -sin(phi), cos(phi)]]),
+    Matrix([[cos(theta), 0, -sin(theta)], [0, 1, 0], [sin(theta), 0, cos(theta)]]),
+)
+NAMED = dict(zip(COSINES, (third * second * first).T, strict=True))
+# angular velocity relative to the orbit, and the rates of the angles that it makes
+p, q, r = (w + w0 * a for w, a in zip((w_x, w_y, w_z), COSINES.row(1), strict=True))
+KINEMATICS = {
+    phi: p * cos(theta) + r * sin(theta),
+    psi: (r * cos(theta) - p * sin(theta)) / cos(phi),
+    theta: q + tan(phi) * (p * sin(theta) - r * cos(theta)),
+}
+
+
+def satellite() -> tuple[Any, Any, Any, Any]:
+    """Frames of inertial space, orbit and body, and the centre of mass."""
+    space, orbit, body = (ReferenceFrame(name) for name in ("space", "orbit", "body"))
+    orbit.orient_axis(space, space.y, -w0 * CLOCK)
+    body.orient_explicit(orbit, Matrix(3, 3, moving(COSINES)))
+    turn = moving(RATES)
+    body.set_ang_vel(space, turn[0] * body.x + turn[1] * body.y + turn[2] * body.z)
+    centre = Point("centre")
+    centre.set_vel(space, 0)
+    return space, orbit, body, centre
+
+
+def rigid(name: str, frame: Any, centre: Any, dyadic: Any) -> RigidBody:
+    """A body whose centre of mass is that of the whole; its mass does not matter."""
+    return RigidBody(name, centre, frame, 0, (dyadic, centre))
+
+
+def gravity_gradient(body: RigidBody, orbit: Any) -> Load:
+    """Gravity pulls the near end of a body more strongly: a torque of 3 w0^2 n x (I n), n pointing to the Earth."""
+    return body.frame, 3 * w0**2 * cross(orbit.z, body.central_inertia.dot(orbit.z))
+
+
+def between(torque: Any, frame: Any, other: Any) -> tuple[Load, Load]:
+    """A torque on a frame, and its opposite on another one."""
+    return (frame, torque), (other, -torque)
+
+
+def full() -> Mechanics:
+    """Body, wheel and modes, and what acts between them."""
+    space, orbit, body, centre = satellite()
+    outer_gimbal, inner_gimbal, spinning = (ReferenceFrame(name) for name in ("outer", "inner", "wheel"))
+    (g_x, g_z), (g_x_dot, g_z_dot), (speed,) = moving(GIMBALS), moving(GIMBAL_RATES), moving(SPEED)
+    outer_gimbal.orient_axis(body, body.z, g_z)
+    outer_gimbal.set_ang_vel(body, g_z_dot * body.z)
+    inner_gimbal.orient_axis(outer_gimbal, outer_gimbal.x, g_x)
+    inner_gimbal.set_ang_vel(outer_gimbal, g_x_dot * outer_gimbal.x)
+    spinning.set_ang_vel(inner_gimbal, -(nominal_speed + speed) * inner_gimbal.y)
+    elastic = symbols_of(PANELS[:3])
+    rest = (moment - part for moment, part in zip((I_x - I_wx, I_y - I_wy, I_z - I_wx), elastic, strict=True))
+    bodies = [
+        rigid("body", body, centre, inertia(body, *rest)),
+        rigid("wheel", spinning, centre, inertia(inner_gimbal, I_wx, I_wy, I_wx)),
+    ]
+    T_cx, T_cz, motor_torque = symbols_of(CONTROLS)
+    loads = [
+        *between((T_cx - K_x * g_x - D_x * g_x_dot) * outer_gimbal.x, inner_gimbal, outer_gimbal),
+        *between((T_cz - K_z * g_z - D_z * g_z_dot) * body.z, outer_gimbal, body),
+        *between(-motor_torque * inner_gimbal.y, spinning, inner_gimbal),
+    ]
+    numbers = (symbols_of(PANELS[k : k + 3]) for k in (0, 3, 6))
+    for axis, angle, rate, J, frequency, zeta in zip(body, moving(MODES), moving(MODE_RATES), *numbers, strict=True):
+        panel = ReferenceFrame(f"mode_{J}")
+        panel.set_ang_vel(body, rate * axis)
+        bodies.append(rigid(f"mode {str(J)[-1]}", panel, centre, J * outer(axis, axis)))
+        loads += between(-J * (frequency**2 * angle + 2 * zeta * frequency * rate) * axis, panel, body)
+    return space, bodies, [*loads, *(gravity_gradient(each, orbit) for each in bodies)]
+
+
+def locked(momentum: tuple[Any, ...]) -> Mechanics:
+    """All of it rigid, the wheel with a constant momentum relative to the body."""
+    space, orbit, body, centre = satellite()
+    whole = rigid("body", body, centre, inertia(body, I_x, I_y, I_z))
+    h = sum((c * e for c, e in zip(momentum, body, strict=True)), 0 * body.x)
+    gyroscopic = body, -cross(body.ang_vel_in(space), h)
+    torque_x, torque_z = symbols_of(TORQUES)
+    return space, [whole], [gravity_gradient(whole, orbit), gyroscopic, (body, torque_x * body.x + torque_z * body.z)]
+
+
+def triangle(what: str, moments: tuple[Any, ...]) -> tuple[Demand, ...]:
+    """The demand that no moment of inertia of a body exceeds the sum of the other two."""
+    total = sum(moments)
+    reason = f"a moment of inertia of {what} exceeds the sum of the other two, which no body has"
+    return tuple(Demand(total - 2 * moment, reason) for moment in dict.fromkeys(moments))
+
+
+WHOLE = triangle("the satellite", (I_x, I_y, I_z))
+
+
+def demands() -> tuple[Demand, ...]:
+    """Of the whole, the wheel, and what is left of the body without wheel and modes."""
+    J_x, J_y, J_z = symbols_of(PANELS[:3])
+    parts = ((I_x, I_wx, J_x), (I_y, I_wy, J_y), (I_z, I_wx, J_z))
+    heavy = "the wheel and the elastic part have together no less inertia than the satellite that they are parts of"
+    wheel = triangle("the wheel", (I_wx, I_wy, I_wx))
+    return (*WHOLE, *wheel, *(Demand(i - w - j, heavy, strict=True) for i, w, j in parts))
+
+
+def model(
+    name: str,
+    title: str,
+    more_coordinates: Variables,
+    more_speeds: Variables,
+    controls: Variables,
+    parameters: Variables,
+    mechanics: Mechanics,
+    demanded: tuple[Demand, ...],
+    varied: str = "",
+) -> Multibody:
+    """A model of such bodies."""
+    space, bodies, loads = mechanics
+    states = (*ATTITUDE, *more_coordinates, *RATES, *more_speeds)
+    rates = dict(zip(symbols_of(more_coordinates), symbols_of(more_speeds), strict=False))
+    return Multibody(
+        name=name,
+        title=title,
+        states=states,
+        controls=controls,
+        parameters=parameters,
+        inertial=space,
+        coordinates=KINEMATICS | rates,
+        bodies=tuple(bodies),
+        loads=tuple(loads),
+        named=NAMED,
+        attitude=COSINES,
+        vanishing=tuple(s for s in symbols_of(states) if s.name not in PITCH),
+        demands=demanded,
+        varied=varied,
+        reference=dict.fromkeys(symbols_of(states), 0) | {w_y: -w0},
+    )
+
+
+gimballed_wheel = model(
+    "gimballed_wheel",
+    "Satellite with a momentum wheel in two gimbals and a flexible mode about each axis",
+    (*GIMBALS, *MODES),
+    (*GIMBAL_RATES, *MODE_RATES, *SPEED),
+    CONTROLS,
+    (*BODY, *WHEEL, *PANELS),
+    full(),
+    demands(),
+)
+
+h = Variable("h", "h", "N*m*s", "momentum of the wheel relative to the body, about -y", 9.4247784)
+gyrostat = model(
+    "gyrostat",
+    "Satellite with a constant momentum of its wheel about -y, in a circular orbit",
+    (),
+    (),
+    TORQUES,
+    (*BODY, h),
+    locked((0, -symbols_of((h,))[0], 0)),
+    WHOLE,
+    varied=h.symbol,
+)
+
+ANGLE_RATES = (
+    Variable("phi_dot", r"\dot\phi", "rad/s", "rate of the roll angle"),
+    Variable("psi_dot", r"\dot\psi", "rad/s", "rate of the yaw angle"),
+    Variable("theta_dot", r"\dot\theta", "rad/s", "rate of the pitch angle"),
+)
+
+
+def about_rest(
+    name: str,
+    title: str,
+    of: Multibody,
+    coordinates: Variables,
+    velocities: Variables,
+    more: Variables = (),
+    controls: Variables = (),
+) -> AboutRest:
+    """Linear equations about pointing to the Earth."""
+    return AboutRest(
+        name=name,
+        title=title,
+        of=of,
+        states=(*coordinates, *velocities, *more),
+        controls=controls,
+        parameters=of.parameters,
+        velocities=dict(zip(symbols_of(coordinates), symbols_of(velocities), strict=True)),
+    )
+
+
+gyrostat_linear = about_rest(
+    "gyrostat_linear",
+    "Gyrostat that points to the Earth, linearised about rest",
+    gyrostat,
+    ATTITUDE,
+    ANGLE_RATES,
+    controls=TORQUES,
+)
+gimballed_linear = about_rest(
+    "gimballed_linear",
+    "Satellite with a gimballed wheel and flexible modes, linearised about rest",
+    gimballed_wheel,
+    (*ATTITUDE, *GIMBALS, *MODES),
+    (*ANGLE_RATES, *GIMBAL_RATES, *MODE_RATES),
+    SPEED,
+    CONTROLS,
+)
+roll_yaw = about_rest(
+    "roll_yaw",
+    "Roll and yaw of a satellite with a gimballed wheel and flexible modes, linearised about rest",
+    gimballed_wheel,
+    (*ATTITUDE[:2], *GIMBALS, *MODES[::2]),
+    (*ANGLE_RATES[:2], *GIMBAL_RATES, *MODE_RATES[::2]),
+    controls=CONTROLS[:2],
+)
+
+# with the gimbals locked, thrusters turn the body in roll and yaw
+roll_yaw_locked = about_rest(
+    "roll_yaw_locked",
+    "Roll and yaw of a gyrostat, linearised about rest",
+    gyrostat,
+    ATTITUDE[:2],
+    ANGLE_RATES[:2],
+    controls=TORQUES,
+)
+roll_yaw_manoeuvre = Problem(
+    name="roll_yaw_manoeuvre",
+    title="Roll and yaw manoeuvre of a gyrostat with the minimum integral of squared torques",
+    model=roll_yaw_locked,
+    running_cost=sum(torque**2 for torque in symbols_of(TORQUES)) / 2,
+    control_set="box",
+)
+
+PROBLEMS = (gimballed_wheel, gyrostat, gyrostat_linear, gimballed_linear, roll_yaw, roll_yaw_manoeuvre)

@@ -1,0 +1,111 @@
+"""Attitudes at which bodies rest relative to their orbit: equations in direction cosines, and what holds near them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from satsym.arrays import Array
+from satsym.symbolic.equilibria.real_roots import Solutions, solve
+from satsym.symbolic.equilibria.rest import Rest
+
+ZERO = 1e-7
+"""Of stiffnesses and eigenvalues, relative to the largest: below that they are zero."""
+
+
+class Kind(Enum):
+    """What holds near an equilibrium."""
+
+    STABLE = "stable"
+    """The amended potential has a strict minimum there (Lyapunov)."""
+    GYROSCOPIC = "gyroscopically stabilised"
+    """No minimum, but all eigenvalues lie on the imaginary axis: damping makes it unstable."""
+    UNSTABLE = "unstable"
+    DEGENERATE = "degenerate"
+    """A stiffness vanishes."""
+
+
+@dataclass(frozen=True, eq=False)
+class Equilibrium:
+    """One attitude.
+
+    Attributes
+    ----------
+    cosines
+        Orbital axes (rows) along those of the body, shape (3, 3).
+    kind, eigenvalues
+        What holds near it, and the six eigenvalues of the linearised motion.
+    """
+
+    cosines: Array
+    kind: Kind
+    eigenvalues: Array
+
+
+def all_of(rest: Rest) -> tuple[Solutions, tuple[Equilibrium, ...]]:
+    """Every equilibrium of a body with numbers for its letters, where they are finitely many."""
+    unknowns = [s for k in rest.axes for s in rest.cosines.row(k)]
+    found = solve([*rest.equations, *orthonormal(rest)], unknowns)
+    return found, tuple(classified(rest, completed(rest, point)) for point in found.points)
+
+
+def orthonormal(rest: Rest) -> list[sp.Expr]:
+    """What vanishes because the axes that the torques know of are unit vectors at right angles."""
+    rows = [rest.cosines.row(k) for k in rest.axes]
+    return [a.dot(b) - int(i == k) for i, a in enumerate(rows) for k, b in enumerate(rows) if k <= i]
+
+
+def completed(rest: Rest, point: Array) -> Array:
+    """All direction cosines from the axes that the torques know of: the third axis completes a right-handed frame."""
+    matrix = np.zeros((3, 3))
+    matrix[rest.axes] = np.reshape(point, (-1, 3))
+    if len(rest.axes) == 1:
+        k = rest.axes[0]
+        other = np.cross(matrix[k], np.eye(3)[np.abs(matrix[k]).argmin()])
+        matrix[(k + 1) % 3] = other / np.linalg.norm(other)
+        matrix[(k + 2) % 3] = np.cross(matrix[k], matrix[(k + 1) % 3])
+    elif len(rest.axes) == 2:
+        k = next(k for k in range(3) if k not in rest.axes)
+        matrix[k] = np.cross(matrix[(k + 1) % 3], matrix[(k + 2) % 3])
+    return matrix
+
+
+def classified(rest: Rest, cosines: Array, *letters: float, neutral: int = 0) -> Equilibrium:
+    """What holds near an attitude, of which so many turns may be neutral because it belongs to a continuum."""
+    mass, damp, stiff = (np.array(part, float) for part in _near(rest)(*cosines.ravel(), *letters))
+    inverse = np.linalg.inv(mass)
+    matrix = np.block([[np.zeros((3, 3)), np.eye(3)], [-inverse @ stiff, -inverse @ damp]])
+    rate = max(np.sqrt(np.abs(inverse @ stiff).max()), np.abs(inverse @ damp).max())
+    eigenvalues = np.linalg.eigvals(matrix / np.repeat([1.0, rate], 3)[:, None] * np.repeat([1.0, rate], 3) / rate)
+    stiffness = np.linalg.eigvalsh((stiff + stiff.T) / 2)
+    small = ZERO * np.abs(stiffness).max()
+    flat, falling = int((np.abs(stiffness) <= small).sum()), int((stiffness < -small).sum())
+    growing = eigenvalues.real.max() > np.sqrt(ZERO) if flat else eigenvalues.real.max() > ZERO
+    if growing:
+        kind = Kind.UNSTABLE
+    elif flat > neutral:
+        kind = Kind.DEGENERATE
+    else:
+        kind = Kind.GYROSCOPIC if falling else Kind.STABLE
+    return Equilibrium(cosines, kind, eigenvalues * rate)
+
+
+@lru_cache(maxsize=8)
+def _near(rest: Rest) -> Any:
+    """Mass matrix, derivatives of the torques by rate and by turn, of direction cosines and letters left."""
+    a = rest.cosines
+    turn, faster = sp.Matrix(sp.symbols("turn_:3")), sp.Matrix(sp.symbols("faster_:3"))
+    moved = {s: s + c for k in range(3) for s, c in zip(a.row(k), -turn.cross(a.row(k).T), strict=True)}
+    spin = {w: (e.xreplace(moved) + f) for (w, e), f in zip(rest.turns.items(), faster, strict=True)}
+    rotation = {w: e.xreplace(moved) - e for w, e in rest.turns.items()}
+    whole = rest.torque.xreplace({**moved, **spin})
+    zero = dict.fromkeys((*turn, *faster), sp.Integer(0))
+    stiff = -whole.jacobian(turn).xreplace(zero)
+    damp = -whole.jacobian(faster).xreplace(zero) + rest.inertia * sp.Matrix(list(rotation.values())).jacobian(turn)
+    letters = sorted(rest.inertia.free_symbols | rest.torque.free_symbols - {*a, *rest.turns}, key=str)
+    return sp.lambdify([*a, *letters], [rest.inertia, damp, stiff], "numpy")

@@ -1,0 +1,136 @@
+"""Equilibria followed over a parameter: where their number or their stability changes, in brackets counted exactly."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from satsym.arrays import Array
+from satsym.symbolic.equilibria.attitude import Equilibrium, Kind, all_of, classified, completed, orthonormal
+from satsym.symbolic.equilibria.real_roots import family
+from satsym.symbolic.equilibria.rest import Rest
+
+SAMPLES = 60
+WIDTH = 1e-6
+"""Of a bracket, relative to the largest value of the parameter."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """A bracket of the parameter in which number or stability changes.
+
+    Attributes
+    ----------
+    below, above
+        Its ends.
+    counts
+        Exact numbers of equilibria at both.
+    kinds
+        At both, how many of each kind.
+    """
+
+    below: float
+    above: float
+    counts: tuple[int, int]
+    kinds: tuple[Mapping[Kind, int], Mapping[Kind, int]]
+
+
+@dataclass(frozen=True, eq=False)
+class Followed:
+    """Equilibria at samples of the parameter, and the brackets between which nothing changes."""
+
+    values: Array
+    equilibria: tuple[tuple[Equilibrium, ...], ...]
+    changes: tuple[Change, ...]
+
+
+def follow(rest: Rest, numbers: Mapping[sp.Symbol, sp.Rational], beyond: float) -> Followed | None:
+    """Follow all equilibria as the varied parameter grows from 0; ``None`` where they are never finitely many.
+
+    It grows to `beyond` times the value at which it outweighs every other torque.
+
+    Changes that undo each other between two samples are not seen.
+    """
+    varied = rest.varied
+    assert varied is not None
+
+    def at(value: float) -> Rest:
+        return rest.at({**numbers, varied: sp.Rational(repr(value))})
+
+    search = _search(rest.at({s: v for s, v in numbers.items() if s != varied}), varied)
+    if search is None:
+        return None
+    top = beyond * _outweighing(rest, numbers)
+    values = np.linspace(0.0, top, SAMPLES + 1)
+    values += top / SAMPLES / np.sqrt(50.0)  # off the round numbers at which something may change
+    found = [search(float(v)) for v in values]
+    changes = []
+    for (low, before), (high, after) in pairwise(zip(values.tolist(), found, strict=True)):
+        changes += _joined(_bracketed(search, low, before, high, after, WIDTH * top))
+    return Followed(values, tuple(found), tuple(_counted(at, change) for change in changes))
+
+
+def _outweighing(rest: Rest, numbers: Mapping[sp.Symbol, sp.Rational]) -> float:
+    """The value of the parameter at which its torque is as large as the largest of the others."""
+    assert rest.varied is not None
+    without, alone = [], []
+    for equation in rest.at(numbers).equations:
+        for coefficient in sp.Poly(equation, *rest.cosines).coeffs():
+            without.append(abs(coefficient.xreplace({rest.varied: sp.Integer(0)})))
+            alone.append(abs(sp.diff(coefficient, rest.varied)))
+    return float(max(without) / max(alone))
+
+
+def _joined(brackets: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Brackets that touch are of one change, in whose middle a sample fell."""
+    found: list[tuple[float, float]] = []
+    for low, high in brackets:
+        found[-1:] = [(found[-1][0], high)] if found and found[-1][1] == low else [*found[-1:], (low, high)]
+    return found
+
+
+def _kinds(found: tuple[Equilibrium, ...]) -> Mapping[Kind, int]:
+    return dict(sorted(Counter(e.kind for e in found).items(), key=lambda pair: pair[0].value))
+
+
+def _bracketed(
+    search: Any, low: float, before: Any, high: float, after: Any, width: float
+) -> list[tuple[float, float]]:
+    """Brackets of the changes between two values, by halving."""
+    if _kinds(before) == _kinds(after):
+        return []
+    if high - low <= width:
+        return [(low, high)]
+    middle = (low + high) / 2
+    between = search(middle)
+    return [
+        *_bracketed(search, low, before, middle, between, width),
+        *_bracketed(search, middle, between, high, after, width),
+    ]
+
+
+def _counted(at: Callable[[float], Rest], bracket: tuple[float, float]) -> Change:
+    """The exact counts at both ends."""
+    ends = [all_of(at(float(f"{value:.9g}"))) for value in bracket]
+    counts = tuple(found.real if found.real is not None else -1 for found, _ in ends)
+    kinds = tuple(_kinds(equilibria) for _, equilibria in ends)
+    return Change(*bracket, (counts[0], counts[1]), (kinds[0], kinds[1]))
+
+
+def _search(rest: Rest, varied: sp.Symbol) -> Callable[[float], tuple[Equilibrium, ...]] | None:
+    """All equilibria at a value of the parameter, in floats."""
+    unknowns = [s for k in rest.axes for s in rest.cosines.row(k)]
+    solutions = family([*rest.equations, *orthonormal(rest)], unknowns, varied)
+    if solutions is None:
+        return None
+
+    def search(value: float) -> tuple[Equilibrium, ...]:
+        return tuple(classified(rest, completed(rest, point), value) for point in solutions(value))
+
+    return search

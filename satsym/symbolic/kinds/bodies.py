@@ -1,0 +1,89 @@
+"""Rigid bodies as objects of sympy.physics.mechanics, and their vectors in a model's symbols."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import sympy as sp
+from sympy.physics.mechanics import ReferenceFrame, RigidBody, Vector, dynamicsymbols
+
+from satsym.spec import Variable
+from satsym.symbolic import notation as n
+from satsym.symbolic.model import Model, symbols_of
+
+CLOCK = dynamicsymbols._t
+"""Time, as frames know it."""
+
+
+def moving(variables: Iterable[Variable | sp.Symbol]) -> tuple[sp.Expr, ...]:
+    """Variables as functions of time, as sympy.physics.mechanics wants them."""
+    return tuple(dynamicsymbols(v.name if isinstance(v, sp.Symbol) else v.symbol) for v in variables)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bodies(Model):
+    """Rigid bodies, in terms of the objects of sympy.physics.mechanics.
+
+    Moving variables stand in these objects as functions of time, see :func:`moving`. A spinning body that is symmetric
+    about its axis may have its inertia stated in a frame that does not spin.
+
+    Parameters
+    ----------
+    inertial
+        The inertial frame.
+    coordinates
+        Each state that is a coordinate with its rate of change, in terms of states and named functions; the other
+        states are the speeds.
+    bodies
+        With frames, centres of mass and central inertias.
+    loads
+        A frame and the torque on it, or a point and the force.
+    named
+        Functions of the coordinates that frames and loads use by these names, such as direction cosines.
+    attitude
+        Names among these, as a matrix: the components of the orbital axes (rows) along the body's. Proved orthogonal.
+    vanishing
+        States that stay zero where they are zero, and all controls but those that drive the others too; proved.
+    varied
+        The parameter over which equilibria are followed, such as the momentum of a wheel.
+    """
+
+    inertial: ReferenceFrame
+    coordinates: Mapping[sp.Symbol, sp.Expr]
+    bodies: tuple[RigidBody, ...]
+    loads: tuple[tuple[Any, Vector], ...] = ()
+    named: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    attitude: sp.Matrix | None = None
+    vanishing: tuple[sp.Symbol, ...] = ()
+    varied: str = ""
+
+    @property
+    def speeds(self) -> tuple[sp.Symbol, ...]:
+        """The states that are no coordinates."""
+        return tuple(s for s in symbols_of(self.states) if s not in self.coordinates)
+
+    def along(self, vector: Vector, frame: ReferenceFrame) -> list[sp.Expr]:
+        """Components of a vector, in the model's symbols."""
+        return [self.static(c) for c in vector.to_matrix(frame)]
+
+    def static(self, expression: sp.Expr) -> sp.Expr:
+        """An expression with functions of time as the model's symbols."""
+        symbols = (*symbols_of(self.states), *self.named)
+        known = {dynamicsymbols(s.name): s for s in symbols} | {CLOCK: n.TIME}
+        rates = {dynamicsymbols(s.name).diff(CLOCK): n.rate_of(s) for s in self.speeds}
+        return sp.sympify(expression).xreplace(rates).xreplace(known)
+
+    def spin(self, body: RigidBody) -> list[sp.Expr]:
+        """Components of a body's angular velocity along the axes of its inertia."""
+        return self.along(body.frame.ang_vel_in(self.inertial), axes_of(body))
+
+    def momentum(self, body: RigidBody) -> list[sp.Expr]:
+        """Likewise of its angular momentum about its centre of mass."""
+        return self.along(body.central_inertia.dot(body.frame.ang_vel_in(self.inertial)), axes_of(body))
+
+
+def axes_of(body: RigidBody) -> ReferenceFrame:
+    """The frame in which the central inertia is stated."""
+    return body.central_inertia.args[0][1].args[0][1]

@@ -1,0 +1,102 @@
+"""From bodies, frames and loads of sympy.physics.mechanics to a first-order system, by Kane's equations."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from satsym.symbolic import notation as n
+from satsym.symbolic.algebra import constants_of
+from satsym.symbolic.derivation import Derivation
+from satsym.symbolic.dimension_algebra import Dimension, over
+from satsym.symbolic.equilibria.rest import Rest
+from satsym.symbolic.kinds import kane
+from satsym.symbolic.kinds.bodies import Bodies, axes_of
+from satsym.symbolic.model import Line, MaybeStep, Paragraph, Problem, Requirement, symbols_of
+
+
+@dataclass(frozen=True, kw_only=True)
+class Multibody(Bodies):
+    """Rigid bodies whose equations of motion are Kane's; see :class:`~satsym.symbolic.kinds.bodies.Bodies`."""
+
+    def steps(self) -> tuple[MaybeStep, ...]:
+        """The motion, its reference and, where it has a closed form, its Jacobians."""
+        return (*self.motion_steps(), kane.reference, kane.invariant_motions, kane.linearisation)
+
+    def motion_steps(self) -> tuple[MaybeStep, ...]:
+        """Kinematics, Kane's equations, and their solution."""
+        return (kane.kinematics, kane.kane, kane.first_order)
+
+    def misfits(self) -> Iterator[str]:
+        """Coordinates that are no states."""
+        if not set(self.coordinates) <= set(symbols_of(self.states)):
+            yield "the coordinates must be states"
+
+    def stated(self) -> Iterator[tuple[str, Iterable[Any], set[sp.Symbol]]]:
+        """Named functions by coordinates, rates by states as well, what the bodies have by all of these."""
+        constants = constants_of(self)
+        yield "a named function", self.named.values(), constants | set(self.coordinates)
+        known = constants | set(self.named) | set(symbols_of((*self.states, *self.controls)))
+        yield "the rate of a coordinate", self.coordinates.values(), known
+        for body in self.bodies:
+            yield f"the body {body.name!r}", [*self.spin(body), *self.momentum(body)], known
+        for place, load in self.loads:
+            yield f"the load on {place.name}", self.along(load, self.inertial), known
+
+    def followed(self) -> str:
+        """The parameter that the model names, if its attitude is all that moves."""
+        return self.varied if self.attitude is not None and len(self.states) == 6 else ""
+
+    def names(self, problem: Problem | None) -> dict[str, str]:
+        """Entries of the equations, their common parts, and their solution."""
+        numbers = range(1, len(self.speeds) + 1)
+        found: dict[str, str] = {}
+        for i, speed in zip(numbers, self.speeds, strict=True):
+            found |= {f"mass_{i}_{k}": f"M_{{{i},{k}}}" for k in numbers}
+            found |= {f"bias_{i}": f"b_{{{i}}}", f"force_{i}": f"Q_{{{i}}}"}
+            found[n.solved(speed).name] = rf"[M^{{-1}} (\mathbf{{Q}} - \mathbf{{b}})]_{{{i}}}"
+        found |= {s.name: _indexed(s.name) for s in self.named}
+        return found | {f"part_{k}": f"v_{{{k}}}" for k in range(1, 400)}
+
+    def enter_dimensions(self, known: dict[str, Dimension | None], require: Requirement) -> None:
+        """Of named functions and solved rates; the rates of the coordinates must be theirs."""
+        for symbol, value in self.named.items():
+            known[symbol.name] = require(f"the function {symbol.name}", value)
+        for coordinate, rate in self.coordinates.items():
+            require(f"the rate of {coordinate.name}", rate, known[n.rate_of(coordinate).name])
+        for speed in self.speeds:
+            known[n.solved(speed).name] = over(known[speed.name], known[n.TIME.name])
+
+    def statement(self) -> tuple[Paragraph, ...]:
+        """Bodies along the axes of their inertias, and loads."""
+        lines = []
+        for body in self.bodies:
+            label, axes = rf"\mathrm{{{body.name}}}", axes_of(body)
+            inertia = body.central_inertia.to_matrix(axes).applyfunc(self.static)
+            for k, letter in enumerate("xyz"):
+                index = f"{{{label}, {letter}}}"
+                lines.append(Line("bodies", rf"\omega_{index}", self.spin(body)[k], f"{body.name}.rate.{k + 1}"))
+                moment = sp.Add(*(inertia[k, j] * w for j, w in enumerate(self.spin(body)) if inertia[k, j] != 0))
+                lines.append(Line("bodies", f"h_{index}", moment, f"{body.name}.momentum.{k + 1}"))
+        return (Paragraph("multibody", lines=tuple(lines)),)
+
+    def rest(self, derived: Derivation) -> Rest | None:
+        """What turns it where its rates vanish, in direction cosines."""
+        if self.attitude is None or not self.followed():
+            return None
+        known = {e.name: e.rhs for e in derived.step("kane").equations}
+        inertia = sp.Matrix(3, 3, lambda i, k: known.get(f"mass_{max(i, k) + 1}_{min(i, k) + 1}", sp.Integer(0)))
+        off = dict.fromkeys(symbols_of(self.controls), sp.Integer(0))
+        torque = sp.Matrix([known[f"force_{k}"] - known[f"bias_{k}"] for k in (1, 2, 3)]).xreplace(off)
+        resting, load = sp.linear_eq_to_matrix(list(self.coordinates.values()), self.speeds)
+        turns = dict(zip(self.speeds, map(sp.simplify, resting.LUsolve(load)), strict=True))
+        varied = next(s for s in symbols_of(self.parameters) if s.name == self.varied)
+        return Rest(inertia, torque, turns, self.attitude, varied)
+
+
+def _indexed(name: str) -> str:
+    head, _, foot = name.partition("_")
+    return f"{head}_{{{foot}}}" if foot else head
