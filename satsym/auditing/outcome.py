@@ -22,15 +22,13 @@ class Outcome:
         What is right, in the document's symbols.
     plan, remedy
         Of a formula: how it was compared, and what puts it right.
-    sound, artefact, unit, slip, near
+    sound, artefact, unit, near
         Whether its reason holds; whether the printed algorithm produces it; whether only its unit is wrong; whether it
-        is a slip in print; whether it fails by a last digit alone.
+        fails by a last digit alone.
     remark
         A sentence for the diagnosis.
     evidence
         Measured numbers.
-    command
-        What recomputes it, if not the audit of the row.
     """
 
     row: Row
@@ -41,8 +39,6 @@ class Outcome:
     sound: bool = True
     artefact: bool = False
     unit: bool = False
-    slip: bool = False
     near: bool = False
     remark: str = ""
     evidence: Mapping[str, object] = field(default_factory=dict)
-    command: str = ""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
 from typing import TypeVar
 
@@ -14,8 +13,6 @@ from satsym.status import BadInput
 from satsym.wording import printable
 
 T = TypeVar("T")
-_BREAKS = (ArithmeticError, ValueError, TypeError, LookupError, AttributeError, RuntimeWarning)
-"""What a predicate stops with where its arguments make no sense together."""
 
 
 class Refused(BadInput):
@@ -44,25 +41,3 @@ def named(bench: Bench, row: Row, limit: Limit, work: Callable[[], T], where: st
     except (RecursionError, MemoryError):
         why = "is nested too deep, or too large; split it into rows"
     raise Refused(f"{row.place}: row {printable(row.key)}: {f'{where}: ' if where else ''}{why}")
-
-
-def asked(holds: str, ask: Callable[[], T]) -> T:
-    """What a predicate answers.
-
-    A number that is none, which NumPy only warns of, is no answer: every comparison with it is false.
-
-    Raises
-    ------
-    BadInput
-        If it stops in the middle of its arithmetic.
-    """
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            warnings.simplefilter("error", RuntimeWarning)
-            return ask()
-    except _BREAKS as error:
-        why = printable(" ".join(str(error).split()), 100)
-        raise BadInput(
-            f"{printable(holds, 100)} has no value ({why}); check its arguments, and what is printed"
-        ) from None

@@ -7,7 +7,6 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from satsym.auditing.ledger.contents import Ledger, Row
-from satsym.auditing.predicates import Question, Told
 from satsym.formula import budget
 from satsym.wording import printable
 
@@ -49,32 +48,11 @@ def audit(ledger: Ledger, items: Sequence[str] = (), announce: Callable[[str], N
 
 
 def _outcome(bench: Bench, row: Row) -> Outcome:
-    from satsym.auditing import refusal
     from satsym.auditing.judge import claim, formula, value
     from satsym.auditing.outcome import Outcome
 
     if not row.table.legible:
         return Outcome(row, None)
-    if row.asks is not None:
-        table, ledger = row.table, bench.ledger
-        inputs = {**ledger.inputs, **table.inputs}
-        document = Told("row", {key: other.table.printed for key, other in bench.rows.items()})
-        question = Question(
-            row.key, table.kind, table.printed, table.columns, inputs, table.scope, ledger.scopes, document
-        )
-        found = refusal.asked(table.holds, partial(row.asks, question))
-        return Outcome(
-            row,
-            found.holds,
-            found.derived,
-            sound=found.sound,
-            artefact=found.artefact,
-            unit=found.unit,
-            slip=found.slip,
-            remark=found.remark,
-            evidence=found.evidence,
-            command=found.command,
-        )
     if row.claims is not None:
         return claim.judge(bench, row)
     judges = {"number": value.number, "unit": value.unit}
@@ -85,7 +63,7 @@ def _counted(bench: Bench, row: Row) -> Outcome:
     """The outcome of a row, within what a row may take."""
     from satsym.auditing import refusal
 
-    limit = budget.FORMULA if row.asks is None and row.claims is None else budget.PREDICATE
+    limit = budget.FORMULA if row.claims is None else budget.CLAIM
     return refusal.named(bench, row, limit, lambda: _outcome(bench, row))
 
 

@@ -207,11 +207,6 @@ def number_of(unit: str, derived: str) -> Said:
     )
 
 
-def misprinted_claim(derived: str) -> Said:
-    """A false statement that is plainly a slip in print."""
-    return _said("A slip in print: {derived}.", "Salah cetak: {derived}.", derived=derived)
-
-
 def wrong_unit(printed: str, derived: str) -> Said:
     """The dimension of a unit is another one."""
     return _said(
@@ -223,7 +218,7 @@ def wrong_unit(printed: str, derived: str) -> Said:
 
 
 def false_claim(derived: str) -> Said:
-    """A predicate does not hold."""
+    """A claim does not hold."""
     return joined([DENIED, Said(f": {derived}." if derived else ".")], "")
 
 
@@ -246,7 +241,7 @@ def artefact(derived: str) -> Said:
 
 
 def undecided(derived: str) -> Said:
-    """A predicate could not decide."""
+    """A claim could not be decided."""
     return _said("It cannot be decided: {derived}.", "Tidak dapat diputuskan: {derived}.", derived=derived)
 
 

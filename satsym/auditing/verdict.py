@@ -57,7 +57,7 @@ class _Context:
         verdict, sayings = self._verdict(outcome)
         said = sentences.joined(sayings if verdict != "confirmed" else ())
         row, document = outcome.row, self._bench.ledger.document.key
-        command = outcome.command or recompute(self._bench.ledger.name, row.key)
+        command = recompute(self._bench.ledger.name, row.key)
         numbers = "; ".join(f"{name} = {_shown(value)}" for name, value in outcome.evidence.items())
         return Judged(
             document=document,
@@ -83,8 +83,6 @@ class _Context:
         row = outcome.row
         if not row.table.legible:
             return "illegible", [sentences.illegible(row.table.says)]
-        if row.asks is not None:
-            return self._of_predicate(outcome)
         if row.claims is not None:
             return self._of_claim(outcome)
         if outcome.unit:
@@ -111,18 +109,6 @@ class _Context:
         verdict = by_role.get(outcome.row.table.role, "wrong")
         verdict = "imprecise" if outcome.near else "unit error" if outcome.unit else verdict
         return verdict, [sentences.false_claim(derived), remark]
-
-    def _of_predicate(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
-        derived, remark = outcome.derived, sentences.sentence(outcome.remark)
-        if outcome.right is None:
-            return "illegible", [sentences.undecided(derived), remark]
-        if outcome.artefact:
-            return "artefact", [sentences.artefact(derived), remark]
-        if outcome.right:
-            return ("confirmed", []) if outcome.sound else ("unsound", [sentences.unsound_claim(derived), remark])
-        if outcome.slip:
-            return "misprint", [sentences.misprinted_claim(derived), remark]
-        return "unit error" if outcome.unit else "wrong", [sentences.false_claim(derived), remark]
 
     def _of_wrong_formula(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
         row = outcome.row

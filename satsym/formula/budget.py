@@ -35,11 +35,11 @@ class Limit:
 
 
 READING = Limit(50_000_000)
-"""A whole ledger of a megabyte at most, with all predicates and units loaded; uny_thesis takes 4.9 million."""
+"""A whole ledger of a megabyte at most, with all measurements and units loaded; uny_thesis takes 4.9 million."""
 FORMULA = Limit(25_000_000)
 """A row that is compared with what is derived; lapan_pitch 24 takes 2.5 million."""
-PREDICATE = Limit(80_000_000)
-"""A row that a predicate judges: it simulates, and walks through printed programs; appendix B of its_thesis takes 7.1
+CLAIM = Limit(80_000_000)
+"""A row that a proposition judges: it simulates, and walks through printed programs; appendix B of its_thesis takes 7.1
 million."""
 VERDICT = Limit(25_000_000)
 """A row in the light of the others; uny_thesis 2.64 takes 2.0 million."""

@@ -7,14 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from satsym.auditing.predicates import registry
+from satsym.auditing.measurements import programs
 from satsym.auditing.program import run as program_run
 from satsym.auditing.program import text as program
 from satsym.cli import main
 from satsym.formula import budget, reading, weight
 from satsym.formula.budget import Limit, OverBudget
 from satsym.formula.tree import Mul, Node, Sym
-from tests.auditing.test_audit_program import ROW
 from tests.bench.fuzz_ledgers import audited
 from tests.support.ledgers import HEAD, Row, row, text
 
@@ -102,10 +101,8 @@ def test_work_is_counted_in_whatever_library_it_goes_on(lines: tuple[str, ...]) 
 
 
 def test_what_cannot_be_walked_through_is_not_called_wrong() -> None:
-    runs_through = registry()["runs_through"]
-    asking = type(ROW)(**{**vars(ROW), "printed": ("a = 'ab'", *["a = f'{a}{a}'"] * 40)})
     with pytest.raises(OverBudget):
-        runs_through(row=asking)
+        programs.stops(["a = 'ab'", *["a = f'{a}{a}'"] * 40])
 
 
 def test_counting_is_exact_and_ends_with_the_work() -> None:

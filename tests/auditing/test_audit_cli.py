@@ -184,8 +184,8 @@ BAD = {
     "unknown model": (text([row("1", "u2", "polar_orbits:first_order.r")]), 'no derivation "polar_orbits"'),
     "unknown row": (text([{**GOOD, "from": "row['4.1']"}]), 'no formula in a row "4.1"'),
     "follows from itself": (text([{**GOOD, "from": "row['1']"}]), "cannot follow from itself"),
-    "unknown function": (text([row("1", "u2", "eval('1')")]), "arguments by name"),
-    "unknown predicate": (text([row("1", "u2", "eval(a='1')")]), 'no predicate "eval"'),
+    "unknown function": (text([row("1", "u2", "eval('1')")]), 'the function "eval" is unknown'),
+    "unknown measurement": (text([row("1", "u2", "eval('1') == 1")]), 'the measurement "eval" is unknown'),
     "import": (text([row("1", "__import__('os').system('true')", TANGENTIAL)]), "not allowed"),
     "attribute": (text([row("1", "x1.__class__", TANGENTIAL)]), "attribute"),
     "tower of powers": (text([row("1", "9**9**9", TANGENTIAL)]), "exponent"),
@@ -200,7 +200,7 @@ BAD = {
     "unknown input": (text([row("1", "5 km", "altitud", "number")]), "neither in [inputs]"),
     "matrix of texts": (text([row("1", [["1", "2"], ["3"]], TANGENTIAL, "matrix")]), "differ in length"),
     "attack in from": (text([{**GOOD, "from": "row['1'].__class__"}]), "attribute"),
-    "attack in a predicate": (text([row("1", "x", "f(a=__import__('os'))", "claim")]), "unknown"),
+    "attack in a claim": (text([row("1", "rank(__import__('os')) == 1", "", "claim")]), "unknown"),
 }
 
 

@@ -8,8 +8,6 @@ import pytest
 
 from satsym import auditing
 from satsym.auditing import quantities
-from satsym.auditing.predicates import Finding, Question, predicate
-from satsym.auditing.predicates import registry as predicates
 from satsym.formula.reading import expression
 from satsym.status import BadInput
 from tests.support.ledgers import HAMILTONIAN, TANGENTIAL, judged, ledger, row
@@ -295,48 +293,40 @@ def test_quantities_of_different_dimensions_are_not_added() -> None:
         quantities.evaluated(expression("a + b"), {"a": "1 km", "b": "1 s"})
 
 
-@pytest.fixture
-def registered() -> None:
-    """Predicates of a test's own."""
-    if "always" in predicates():
-        return
-
-    @predicate
-    def always(*, answer: bool, sound: bool = True, artefact: bool = False, row: Question) -> Finding:
-        return Finding(answer, f"asked about {row.printed}", {"size": 2.5}, sound=sound, artefact=artefact)
-
-
-@pytest.mark.usefixtures("registered")
-def test_predicates_judge_claims_tables_and_algorithms(tmp_path: Path) -> None:
+def test_propositions_judge_claims_tables_and_algorithms(tmp_path: Path) -> None:
     rows = [
-        row("true", "it is stable", "always(answer=true)", "claim"),
-        row("false", "it is stable", "always(answer=false)", "claim"),
-        row("by luck", "it is stable", "always(answer=true, sound=false)", "claim"),
-        row("artefact", [["1", "2"]], "always(answer=false, artefact=true)", "table", columns=["a", "b"]),
+        row("true", "len(LINEAR) > 3", "", "claim"),
+        row("false", "len(LINEAR) < 3", "", "claim"),
+        row("by luck", "len(LINEAR) > 3", "", "claim", because="len(LINEAR) < 3"),
+        row("of nothing", "all(implies(dimension(S) > 99, stable(S)) for S in LINEAR)", "", "claim"),
+        row("made by the program", "len(LINEAR) == 1", "", "claim", produced="len(LINEAR) > 1"),
+        row("table", [["1", "2"]], "all(quantity(a) < quantity(b) for a, b in printed)", "table", columns=["a", "b"]),
+        row("digit", "abs(-2.04) == '2.05'", "", "claim", why="it is {abs(-2.04)}"),
     ]
     found = judged(tmp_path, rows, FREE)
-    assert [entry.verdict for entry in found.values()] == ["confirmed", "wrong", "unsound", "artefact"]
-    assert "asked about it is stable" in found["false"].diagnosis
-    assert found["false"].evidence.startswith("size = 2.5; satsym audit ")
-    assert found["artefact"].printed == (("1", "2"),)
+    verdicts = ["confirmed", "wrong", "unsound", "unsound", "artefact", "confirmed", "imprecise"]
+    assert [entry.verdict for entry in found.values()] == verdicts
+    assert "len(LINEAR) = " in found["false"].diagnosis
+    assert found["digit"].why == "It is 2.04."
+    assert found["table"].printed == (("1", "2"),)
 
 
-@pytest.mark.usefixtures("registered")
 @pytest.mark.parametrize(
-    ("call", "reason"),
+    ("printed", "holds", "reason"),
     [
-        ("never(answer=true)", "no predicate"),
-        ("always()", "missing a required"),
-        ("always(answer=true, mood='good')", "unexpected keyword"),
-        ("always(answer=a)", "texts, numbers, true, false"),
-        ("always(row='x', answer=true)", "given the row itself"),
-        ("always(true)", "arguments by name"),
-        ("a + b", "judged by a predicate"),
+        ("never(1) == 2", "", "unknown"),
+        ("rank() == 2", "", "missing a required"),
+        ("it will be stable", "", "not a proposition"),
+        ("rank(1) == a_letter", "", "means nothing here"),
+        ("1 == 1", "rank(1) == 1", "leave `holds` out"),
+        ("text['nowhere'] == 'x'", "", "no row"),
     ],
 )
-def test_predicates_are_checked_before_anything_runs(tmp_path: Path, call: str, reason: str) -> None:
+def test_propositions_are_checked_before_anything_is_measured(
+    tmp_path: Path, printed: str, holds: str, reason: str
+) -> None:
     with pytest.raises(BadInput, match=reason):
-        ledger(tmp_path, [row("claim", "it is stable", call, "claim")], FREE)
+        ledger(tmp_path, [row("claim", printed, holds, "claim")], FREE)
 
 
 def test_a_letter_with_two_meanings_is_found(tmp_path: Path) -> None:

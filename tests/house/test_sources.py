@@ -107,7 +107,7 @@ def forget() -> None:
 
 
 @pytest.mark.parametrize(
-    "place", ["symbolic", "auditing/predicates", "solvers", "kernels", "formula", "analysis/linear", "auditing/judge"]
+    "place", ["symbolic", "auditing/measurements", "solvers", "kernels", "formula", "analysis/linear", "auditing/judge"]
 )
 def test_an_edit_of_what_judges_makes_verdicts_stale(
     edited: Callable[[str, tuple[str, ...]], bool], place: str
@@ -131,7 +131,7 @@ def test_an_edit_of_what_derives_makes_what_is_written_stale(
     assert edited(place, WRITING)
 
 
-@pytest.mark.parametrize("place", ["report/plots", "solvers", "cli", "auditing/predicates"])
+@pytest.mark.parametrize("place", ["report/plots", "solvers", "cli", "auditing/measurements"])
 def test_an_edit_of_what_solves_leaves_what_is_written_as_it_is(
     edited: Callable[[str, tuple[str, ...]], bool], place: str
 ) -> None:

@@ -214,8 +214,8 @@ def public_names(path: Path, tree: ast.Module) -> Iterator[str]:
 
 
 def test_public_names_use_the_words_of_the_glossary(sources: dict[Path, ast.Module], english: list[Avoided]) -> None:
-    # predicates are named by ledgers, in the words of the documents
-    kept = {path: tree for path, tree in sources.items() if path.parts[:2] != ("auditing", "predicates")}
+    # measurements are named by ledgers, in the words of the documents
+    kept = {path: tree for path, tree in sources.items() if path.parts[:2] != ("auditing", "measurements")}
     names = {name for path, tree in kept.items() for name in public_names(path, tree) if name[0] != "_"}
     assert len(names) > 1000
     old = {name for name in names if any(each.words in apart(name) and each.used(apart(name)) for each in english)}

@@ -12,6 +12,7 @@ from satsym.auditing.outcome import Outcome
 from satsym.auditing.propositions.evaluation import Answer, Evaluation
 from satsym.auditing.propositions.reading import Proposition, Words, matching
 from satsym.auditing.propositions.relations import Fit
+from satsym.formula.budget import OverBudget
 from satsym.formula.values import Matrix, Relation
 from satsym.formula.writing import written
 from satsym.status import BadInput
@@ -54,6 +55,8 @@ class Pages:
             return _alone(proposition.text)
         try:
             return Evaluation(self._words, self, _listed(self._row.table.printed)).answer(proposition)
+        except OverBudget:
+            raise
         except BadInput as error:
             if not proposition.quotes:
                 raise

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from satsym.auditing.ledger.schema import DocumentTable, RowTable, SymbolTable
 from satsym.auditing.ledger.scopes import Scope
-from satsym.auditing.predicates import Finding, Question
 from satsym.auditing.propositions.reading import Proposition
 from satsym.formula.tree import Call, Equality, Node, Text, calls
 
@@ -29,11 +28,9 @@ class Row:
         The printed formula in the document's symbols: an expression, an equality, rows of expressions (matrix), or
         ``None`` where what is printed is not a formula.
     holds
-        What it is held against, in our names; ``None`` where a predicate judges.
+        What it is held against, in our names; ``None`` where a proposition judges.
     follows
         How the document says it follows, over printed rows, in the document's symbols.
-    asks
-        The predicate that judges it.
     claims
         The proposition that has to hold: what a claim prints, or what another row is held against.
     because, produced
@@ -48,7 +45,6 @@ class Row:
     printed: Node | Equality | tuple[tuple[Node, ...], ...] | None = None
     holds: Node | Equality | None = None
     follows: Node | Equality | None = None
-    asks: Callable[[Question], Finding] | None = None
     claims: Proposition | None = None
     because: Proposition | None = None
     produced: Proposition | None = None

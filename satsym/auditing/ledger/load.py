@@ -1,6 +1,6 @@
 """Reading a ledger: every formula of it is read and checked before anything is derived or any library loaded.
 
-The order is that of cost: first everything that is text, then the predicates, whose modules must be imported, then
+The order is that of cost: first everything that is text, then
 the units, for which pint is loaded.
 """
 
@@ -12,7 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from satsym.auditing import language, measurements, predicates, quantities
+from satsym.auditing import language, measurements, quantities
 from satsym.auditing.ledger import documents, rows, schema, vocabulary
 from satsym.auditing.ledger import scopes as notation
 from satsym.auditing.ledger.contents import Ledger, Row, calls_in, row_key
@@ -92,7 +92,6 @@ class _Reader:
             raise self._bad("row: no rows; write one [[row]] for each thing that is printed")
         found = [self._row(i, entry) for i, entry in enumerate(tables)]
         self._check_references(found)
-        found = [self._asking(i, row) for i, row in enumerate(found)]
         self._check_units(found)
         return Ledger(self._path, name, document, self._scopes, self._symbols, self._inputs, tuple(found))
 
@@ -166,16 +165,18 @@ class _Reader:
             return self._claim(index, row, scope)
         with self._telling("row", "holds", index, key):
             if not table.holds:
-                raise BadInput("missing; write an address, an expression over addresses, or a predicate")
-            call = rows.predicate_call(table)
+                raise BadInput("missing; write an address, an expression over addresses, or a proposition")
+            if table.kind == "claim":
+                raise BadInput("a claim is judged by the proposition that it prints; leave `holds` out")
+            if table.kind == "table":
+                raise BadInput('a table is judged by a proposition, such as "all(a == b for a, b in printed)"')
         with self._telling("row", "printed", index, key):
-            row = replace(row, printed=rows.printed(table, scope, call is not None))
+            row = replace(row, printed=rows.printed(table, scope))
         with self._telling("row", "inputs", index, key):
             for value in table.inputs.values():
                 _input(value)
         with self._telling("row", "holds", index, key):
-            if call is None:
-                row = replace(row, holds=rows.held_against(table, self._derived, self._known, self._inputs))
+            row = replace(row, holds=rows.held_against(table, self._derived, self._known, self._inputs))
         with self._telling("row", "from", index, key):
             if table.follows:
                 row = replace(row, follows=rows.follows(table, self._derived, self._known, scope))
@@ -204,15 +205,6 @@ class _Reader:
             if isinstance(table.follows, str) and table.follows:
                 raise BadInput('write the keys of the rows that it is drawn from as a list, such as ["2.19", "2.20"]')
         return replace(row, **found)
-
-    def _asking(self, index: int, row: Row) -> Row:
-        """The row with its predicate, if that is what judges it."""
-        undecided = row.table.legible and row.holds is None and row.claims is None
-        call = rows.predicate_call(row.table) if undecided else None
-        if call is None:
-            return row
-        with self._telling("row", "holds", index, row.key):
-            return replace(row, asks=predicates.bound(call.function, rows.arguments(call)))
 
     def _check_references(self, found: Sequence[Row]) -> None:
         by_key: dict[str, Row] = {}

@@ -1,9 +1,8 @@
-"""Reading one row of a ledger: its formulas in the safe language, its predicate with literal arguments."""
+"""Reading one row of a ledger: its formulas in the safe language."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 from satsym.auditing import language, quantities
 from satsym.auditing.ledger import scopes as notation
@@ -12,23 +11,20 @@ from satsym.auditing.ledger.schema import RowTable
 from satsym.auditing.ledger.scopes import Scope
 from satsym.auditing.ledger.vocabulary import Vocabulary
 from satsym.formula import reading
-from satsym.formula.tree import Call, Equality, Grid, Neg, Node, Num, Sym, Text, substituted
+from satsym.formula.tree import Equality, Node, Text, substituted
 from satsym.formula.weight import Scales
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
-PREDICATED = ("table", "claim")
-"""Kinds of rows that only a predicate can judge."""
 FORMULAS = ("equation", "algorithm")
-"""Kinds of rows that print one formula, unless a predicate judges them."""
-_EXAMPLE = "such as \"returns(instance='its-thesis')\""
+"""Kinds of rows that print one formula."""
 
 
-def printed(table: RowTable, scope: Scope, by_predicate: bool) -> Node | Equality | tuple[tuple[Node, ...], ...] | None:
-    """The printed formula; ``None`` for kinds of rows that print none, and where a predicate judges."""
+def printed(table: RowTable, scope: Scope) -> Node | Equality | tuple[tuple[Node, ...], ...] | None:
+    """The printed formula; ``None`` for kinds of rows that print none."""
     if table.kind == "number":
         quantities.printed_number(_one_text(table))
-    if by_predicate or table.kind not in (*FORMULAS, "matrix"):
+    if table.kind not in (*FORMULAS, "matrix"):
         if not table.printed:
             raise BadInput("missing; write what is printed")
         return None
@@ -51,7 +47,7 @@ def printed(table: RowTable, scope: Scope, by_predicate: bool) -> Node | Equalit
 def readable(table: RowTable, scope: Scope) -> Node | Equality | tuple[tuple[Node, ...], ...] | None:
     """The printed formula of a row that a proposition judges; ``None`` where what is printed is none."""
     try:
-        return printed(table, scope, by_predicate=False)
+        return printed(table, scope)
     except BadInput:
         return None
 
@@ -80,27 +76,6 @@ def follows(table: RowTable, derived: Mapping[str, Node], known: Vocabulary, sco
     return formula
 
 
-def predicate_call(table: RowTable) -> Call | None:
-    """``holds`` as the call of a predicate; ``None`` if it is a formula or an address."""
-    name, bracket, _ = table.holds.partition("(")
-    name = name.strip()
-    if table.kind not in PREDICATED and (not bracket or name in language.JUDGING or not reading.NAME.match(name)):
-        return None
-    tree = reading.expression(table.holds, {name: (0, language.MANY)}, judging=True)
-    if isinstance(tree, Call) and tree.function == name:
-        if tree.arguments:
-            raise BadInput(f"{name} takes its arguments by name, {_EXAMPLE}")
-        return tree
-    if table.kind in PREDICATED:
-        raise BadInput(f"a {table.kind} is judged by a predicate, {_EXAMPLE}")
-    return None
-
-
-def arguments(call: Call) -> dict[str, Any]:
-    """What a predicate is given: texts, numbers, truth values, lists."""
-    return {name: _literal(value) for name, value in call.named}
-
-
 def _one_text(table: RowTable) -> str:
     if not isinstance(table.printed, str) or not table.printed:
         raise BadInput("write what is printed as one text in quotes")
@@ -111,20 +86,6 @@ def _refuse_unknown(formula: Node | Equality, scope: Scope) -> None:
     for name in sorted(notation.names_used(formula)):
         if not scope.knows(name):
             raise BadInput(f"{shown(name)} is no symbol of [scope.{scope.name}]; {suggestion(name, scope.meanings)}")
-
-
-def _literal(node: Node) -> Any:
-    if isinstance(node, Text):
-        return node.value
-    if isinstance(node, Num):
-        return int(node.value) if node.value.denominator == 1 else float(node.value)
-    if isinstance(node, Neg) and isinstance(node.operand, Num):
-        return -_literal(node.operand)
-    if isinstance(node, Grid):
-        return tuple(_literal(entry) for entry in node.entries)
-    if isinstance(node, Sym) and node.name in ("true", "false"):
-        return node.name == "true"
-    raise BadInput("the arguments of a predicate are texts, numbers, true, false, or lists of these, by name")
 
 
 def _with(formula: Node | Equality, derived: Mapping[str, Node]) -> Node | Equality:

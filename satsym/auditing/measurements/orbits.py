@@ -102,12 +102,13 @@ def straying(of: Any, revolution: int) -> float:
 
 
 @measurement
-def rates_at(of: Any, x: ArrayLike, **parameters: float) -> Array:
-    """The rates of a model without control, or of a member of a family, in some state."""
+def rates_at(of: Any, x: ArrayLike, controls: Sequence[float] = (), **parameters: float) -> Array:
+    """The rates of a model, by default without control, or of a member of a family, in some state."""
     if isinstance(of, Record):
         return equilibria.rates(of, x)
     model, p = _model(of, parameters)
-    return np.array(model.dynamics(0.0, tuple(np.asarray(x, dtype=float)), (0.0,) * len(model.spec.controls), p))
+    u = tuple(map(float, controls or (0.0,) * len(model.spec.controls)))
+    return np.array(model.dynamics(0.0, tuple(np.asarray(x, dtype=float)), u, p))
 
 
 @measurement

@@ -20,6 +20,7 @@ from satsym.auditing.program.library import Module
 from satsym.auditing.program.run import Run, run
 from satsym.auditing.program.text import Program, Stops
 from satsym.auditing.propositions.values import Record, Undecided, is_exact
+from satsym.formula.budget import OverBudget
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
@@ -68,6 +69,8 @@ def stops(program: Sequence[str]) -> list[str]:
         _run(_read(program).text, ())
     except Stops as error:
         return [str(error)]
+    except OverBudget:
+        raise
     except BadInput as error:
         raise Undecided(str(error)) from None
     return []
@@ -109,6 +112,8 @@ def unit_in(label: str) -> float:
 def _read(program: Sequence[str]) -> Program:
     try:
         return programs.read([program] if isinstance(program, str) else program)
+    except OverBudget:
+        raise
     except BadInput as error:
         raise Undecided(str(error)) from None
 
@@ -145,6 +150,8 @@ def _trying(work: Callable[[], Any]) -> Any:
     """What work returns; a program that stops, or does what is not known here, has no values."""
     try:
         return work()
+    except OverBudget:
+        raise
     except BadInput as error:
         raise Undecided(str(error)) from None
 

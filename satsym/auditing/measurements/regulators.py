@@ -138,11 +138,14 @@ def _summed(*of: Any) -> Array:
 def _solved(a: bytes, b: bytes, q: bytes, r: bytes, *shapes: tuple[int, int]) -> tuple[Array, Array]:
     from satsym.analysis.linear import system as systems
     from satsym.analysis.regulator.lqr import lqr
+    from satsym.formula.budget import OverBudget
     from satsym.status import BadInput
 
     parts = [np.frombuffer(part).reshape(size) for part, size in zip((a, b, q, r), shapes, strict=True)]
     try:
         found = lqr(systems.system(parts[0], parts[1]), parts[2], parts[3])
+    except OverBudget:
+        raise
     except BadInput as error:
         raise Undecided(str(error)) from None
     return found.P, found.K

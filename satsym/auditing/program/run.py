@@ -67,7 +67,7 @@ def run(
     BadInput
         If it does what is not known here.
     """
-    return budget.within(budget.PREDICATE, lambda: _run(program, given or {}, until, world or {}))
+    return budget.within(budget.CLAIM, lambda: _run(program, given or {}, until, world or {}))
 
 
 def _run(program: Program, given: Mapping[str, Any], until: str, world: Mapping[str, Any]) -> Run:
