@@ -11,7 +11,7 @@ import sympy as sp
 
 from satsym.report import stamps
 from tests.support import derived as shared
-from tests.support.switching_models import LEAST_TIME, ROCKET
+from tests.support.switching_models import MINIMUM_TIME, ROCKET
 
 x, y = sp.symbols("x y")
 
@@ -48,7 +48,7 @@ def test_what_is_kept_is_found_again_until_the_engine_changes(engine: pytest.Mon
 def test_expressions_come_back_as_they_stand(engine: pytest.MonkeyPatch) -> None:
     whole = sp.Mul(2, x + y, evaluate=False)
     assert pickle.loads(pickle.dumps(whole)) != whole  # sympy's own way
-    made = shared.derived(LEAST_TIME)
+    made = shared.derived(MINIMUM_TIME)
     (first, *rest), step = made.steps[0].equations, made.steps[0]
     odd = replace(made, steps=(replace(step, equations=(replace(first, rhs=whole), *rest)), *made.steps[1:]))
     shared._keep("odd", odd)

@@ -29,7 +29,7 @@ PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
 \setlength{\jot}{5pt}
 \setlength{\parindent}{0pt}
 \setlength{\parskip}{4pt plus 2pt}
-\setlength{\emergencystretch}{2em}
+\setlength{\emergencystretch}{3em}
 \widowpenalty=10000 \clubpenalty=10000 \displaywidowpenalty=10000 \postdisplaypenalty=10000
 """
 

@@ -128,7 +128,7 @@ def _table(groups: Mapping[str, Sequence[Variable]], texts: Texts) -> str:
             cells = (f"${v.latex}$", tex.name(v.symbol), tex.unit(v.unit), tex.number(v.default), tex.escape(v.meaning))
             lines.append(" & ".join(cells) + r" \\")
     body = "\n".join(lines)
-    columns = r"@{}lllr>{\raggedright\arraybackslash}p{0.44\linewidth}@{}"
+    columns = r"@{}lllr>{\raggedright\arraybackslash}p{0.42\linewidth}@{}"
     return f"\\begin{{longtable}}{{{columns}}}\n{body}\n\\end{{longtable}}"
 
 

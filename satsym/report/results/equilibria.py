@@ -31,10 +31,8 @@ def attitudes(given: Instance | Kernels, derivation: Derivation | None = None) -
     return survey(derivation or library.derivation(model.spec.name), numbers)
 
 
-def attitudes_object(found: Attitudes | None) -> dict[str, Any] | None:
+def attitudes_object(found: Attitudes) -> dict[str, Any]:
     """The key ``equilibria`` of ``satsym analyse --json``."""
-    if found is None:
-        return None
     whole, over = found.continuum, found.followed
     circles = None if whole is None or whole.circles is None else len(whole.circles)
     changes = [] if over is None else over.changes

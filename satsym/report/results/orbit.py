@@ -45,7 +45,7 @@ def examination_object(
     """
     algebra = exact(found.about.model, derivation) if found else None
     whole = head_about("analyse", given, Status.CONVERGED) | analysis_object(found, algebra) | orbit_object(orbit)
-    return whole | {"equilibria": attitudes_object(attitudes)}
+    return whole | ({"equilibria": attitudes_object(attitudes)} if attitudes else {})
 
 
 def orbit_object(found: Survey | None) -> dict[str, Any]:

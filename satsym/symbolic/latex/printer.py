@@ -121,10 +121,13 @@ class Printer(LatexPrinter):
         others = [f for f in top if not f.is_Add and f not in trailing]
         tail = self._product(trailing)
         small_fraction = self._small and (parts.bottom or parts.number_below != 1)
-        if len(sums) != 1 or small_fraction or (others and any(base(f).is_Add for f in parts.bottom)):
-            return _whole(negative, f"{self._over(parts, [*others, *sums])} {tail}".strip(), names)
+        whole = f"{self._over(parts, [*others, *sums])} {tail}".strip()
+        if len(sums) != 1 or small_fraction:
+            return _whole(negative, whole, names)
         (inner,) = sums
         broken = self._with_sum(negative, self._over(parts, others, alone=False), inner, tail, names)
+        if others and any(base(f).is_Add for f in parts.bottom):
+            return Term(negative, whole, broken.pieces, names)
         if parts.bottom and parts.number == 1 and all(self._rank(base(f))[0] is Kind.COSTATE for f in others):
             with self._inside():
                 above = self._print(inner)
