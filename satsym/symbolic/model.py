@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias
 
 import sympy as sp
 
-from satsym.spec import ControlSetKind, Variable
+from satsym.spec import ControlSetKind, ModeGroup, Variable
 
 if TYPE_CHECKING:
     from satsym.symbolic.derivation import Derivation, Step
@@ -170,6 +170,10 @@ class Model:
     def followed(self) -> str:
         """The parameter over which equilibria of an attitude are followed; empty where it is not one attitude."""
         return ""
+
+    def mode_groups(self) -> tuple[ModeGroup, ...]:
+        """What the modes of small motions are called, by the states that have the largest part in them."""
+        return ()
 
     def rest(self, derived: Derivation) -> Rest | None:
         """What turns it where it rests in orbit, by its derivation; ``None`` where it is not one attitude."""
