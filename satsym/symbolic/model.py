@@ -122,6 +122,9 @@ class Model:
     plain_time: ClassVar[bool] = False
     """Whether time is a plain number even though other variables have units."""
 
+    along_chain: ClassVar[bool] = False
+    """Whether it can be derived from a motion whose rates have no closed form, but a chain that leads to them."""
+
     # What a kind of model says of itself; each has a default, so that a kind states only what it has.
 
     def steps(self) -> tuple[MaybeStep, ...]:

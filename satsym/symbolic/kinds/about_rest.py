@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import mpmath as mp
 import sympy as sp
@@ -38,6 +38,8 @@ class AboutRest(SpecialCase):
 
     of: Multibody
     velocities: Mapping[sp.Symbol, sp.Symbol]
+
+    along_chain: ClassVar[bool] = True
 
     def steps(self) -> tuple[MaybeStep, ...]:
         """Equations of second order, then of first."""
