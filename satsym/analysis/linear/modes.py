@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -99,9 +100,7 @@ def participation(A: Array, eigenvalues: Sequence[Eigenvalue]) -> Array:
         near = np.sort(np.abs(numbers - each.value / fitted.rate))
         bound = (near[count - 1] + near[count]) / 2 if count < n else math.inf
         value = each.value / fitted.rate
-        form, basis, _ = schur(
-            fitted.A, output="complex", sort=lambda z, value=value, bound=bound: abs(z - value) < bound
-        )
+        form, basis, _ = schur(fitted.A, output="complex", sort=partial(_within, value, bound))
         # the rows that belong to the first columns, orthogonal to all other eigenvectors
         left = basis[:, :count].conj().T
         if count < n:
@@ -110,6 +109,10 @@ def participation(A: Array, eigenvalues: Sequence[Eigenvalue]) -> Array:
         share = np.abs(np.einsum("ki,ik->k", basis[:, :count], left))
         found[row] = share / share.sum()
     return found
+
+
+def _within(value: complex, bound: float, number: complex) -> bool:
+    return abs(number - value) < bound
 
 
 def _group(groups: Sequence[ModeGroup], part: Mapping[str, float]) -> ModeGroup | None:
@@ -132,10 +135,10 @@ def _slow(about: Linearisation, values: Sequence[complex], groups: Sequence[Mode
     found: list[bool | None] = [None] * len(values)
     for parameter in {group.vanishing for group in groups if group and group.vanishing}:
         limits = _limits(about, parameter) if about.constant else {}
+        starts = np.array(list(limits))
         for k, group in enumerate(groups):
             if group is not None and group.vanishing == parameter and limits:
-                nearest = min(limits, key=lambda start, value=values[k]: abs(start - value))
-                found[k] = limits[nearest]
+                found[k] = limits[complex(starts[np.abs(starts - values[k]).argmin()])]
     return found
 
 
