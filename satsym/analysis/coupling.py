@@ -95,7 +95,10 @@ def reached(instance: Instance, driver: Driver, still: Array, progress: Progress
         u[place, within] = torque(nodes[within])
     rates = [model.dynamics_batch(nodes, x, v, p) for x, v in ((moved, u), (still, 0.0 * u))]
     change, difference = np.abs(rates[0] - rates[1]).max(axis=1), np.abs(moved - still).max(axis=1)
-    metrics, most = {}, spec.states[int(np.abs(column).argmax())].unit
+    metrics: dict[str, float] = {}
+    if driver.impulse:
+        metrics["impulse"] = slope * driver.impulse
+    most = spec.states[int(np.abs(column).argmax())].unit
     for k, control in enumerate(spec.control_names):
         sudden = abs(slope * driver.impulse) if k == place else 0.0
         metrics[f"{control}_peak"] = float(np.abs(u[k]).max())
