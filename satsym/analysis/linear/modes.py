@@ -27,7 +27,7 @@ Numbers = NDArray[np.complexfloating]
 
 SHRUNK = 1e-4
 """How far a parameter shrinks."""
-FIRST, LEAST = 0.5, 1e-4
+LARGEST_STEP, SMALLEST_STEP = 0.5, 1e-4
 """Logarithms of the factors by which it does: the largest, and that below which eigenvalues are taken to meet."""
 CLEAR = 4.0
 """An eigenvalue is followed if every other one is so many times as far away as the one that continues it."""
@@ -156,19 +156,19 @@ def _limits(about: Linearisation, parameter: str) -> dict[complex, bool | None]:
         return {}
     start = numbers(1.0)
     now, before, families = start, start, np.arange(len(start))
-    log, step, last = 0.0, FIRST, FIRST
+    log, step, last = 0.0, LARGEST_STEP, LARGEST_STEP
     while log < -math.log(SHRUNK):
         guess = now + (now - before) * (step / last)
         order, clear = _continued(guess, coming := numbers(math.exp(-log - step)))
-        if not clear.all() and step > LEAST:
-            step = max(step / 2, LEAST)
+        if not clear.all() and step > SMALLEST_STEP:
+            step = max(step / 2, SMALLEST_STEP)
             continue
         for i in np.flatnonzero(~clear):  # they meet: which is which afterwards has no meaning
             met = np.argsort(np.abs(coming - guess[i]))[:2]
             together = families[np.isin(order, met)]
             families[np.isin(families, together)] = together.min()
         before, now, last = now, coming[order], step
-        log, step = log + step, min(2.0 * step, FIRST)
+        log, step = log + step, min(2.0 * step, LARGEST_STEP)
     slow = np.abs(now) <= np.abs(start) * math.sqrt(SHRUNK)
     alike = [len({bool(s) for s in slow[families == f]}) == 1 for f in families]
     return {complex(v): bool(s) if a else None for v, s, a in zip(start, slow, alike, strict=True)}
