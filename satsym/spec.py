@@ -49,8 +49,8 @@ class Variable:
     positive
         Whether only positive values have a meaning. For a state this is its domain.
     typical
-        Lower and upper end of where its values lie, in its unit. Checks at random points draw it from there; without, of
-        size one, which steep functions and roots may have no numbers for.
+        Lower and upper end of where its values lie, in its unit. Checks at random points draw it from there; without it
+        of size one, where steep functions and roots may have no numbers.
     """
 
     symbol: str

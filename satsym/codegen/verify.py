@@ -50,6 +50,9 @@ DERIVATIVES: dict[str, tuple[str | tuple[str, ...], tuple[str, ...], float]] = {
 
 TRIES = 400
 """Random places at most, of which those serve where functions have moderate numbers."""
+STEPS = (0.3, 0.02, 0.03, 0.01)
+"""Of the loops that are compared; the first is where they begin."""
+LIE = "say where the variables lie: Variable(..., typical=(low, high)); nothing written"
 ROUNDING = 1e-14
 """Share of the arguments by which rounding may seem to move them: some tens of the last place."""
 
@@ -96,14 +99,13 @@ def _places(
         place = _arguments(known, derivation, rng)
         with mp.workdps(DIGITS), suppress(ArithmeticError, ValueError):
             values = [e(_point(f, known, place)) for f, e in zip(found, exact, strict=True)]
-            if all(map(moderate, values)):
+            if all(moderate(each) and not any(map(mp.im, each)) for each in values):
                 places.append(place)
                 expected.append(values)
         if len(places) == POINTS:
             return places, expected
     raise DerivationError(
-        f"{derivation.name}: at random points of size one generated functions have no numbers to compare; say where "
-        "the variables lie: Variable(..., typical=(low, high)); nothing written"
+        f"{derivation.name}: at random points of size one generated functions have no numbers to compare; {LIE}"
     )
 
 
@@ -194,10 +196,17 @@ def _stacked(argument: str, places: Sequence[Arguments]) -> Any:
 
 
 def _same_loops(derivation: Derivation, known: Symbols, kernels: Kernels, rng: random.Random, place: Arguments) -> None:
-    times = np.cumsum([0.3, 0.02, 0.03, 0.01])
-    steps, m, p = len(times) - 1, len(known.u), place["p"]
+    p = place["p"]
+    steps, m = len(STEPS) - 1, len(known.u)
     u, u_mid = (np.array([[rng.uniform(-1, 1) for _ in range(m)] for _ in range(k)]).T for k in (steps + 1, steps))
-    exact, exact_mid, cost = plain.forward(kernels, times, place["x"], u, u_mid, p)
+    for shorter in (1.0, 0.1, 0.01, 0.001):  # longer steps may leave the domain
+        times = place["t"] + shorter * np.cumsum(STEPS)
+        with suppress(ArithmeticError, ValueError):
+            exact, exact_mid, cost = plain.forward(kernels, times, place["x"], u, u_mid, p)
+            if moderate([*exact.flat, *exact_mid.flat, cost]):
+                break
+    else:
+        raise DerivationError(f"{derivation.name}: no step of a thousandth is possible at random points; {LIE}")
     x, x_mid, total = kernels.forward(times, place["x"], u, u_mid, p)
     _refuse(derivation.name, "forward", np.hstack([x, x_mid]), np.hstack([exact, exact_mid]))
     if kernels.spec.separable:

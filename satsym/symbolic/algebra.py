@@ -9,7 +9,6 @@ import sympy as sp
 
 from satsym.symbolic.model import Model, symbols_of, t
 
-
 STEEP = 20
 """Largest number in an exponent that is multiplied out."""
 

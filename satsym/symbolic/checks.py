@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import lru_cache
+from types import MappingProxyType
 from typing import Any, TypeAlias
 
 import mpmath as mp
@@ -29,7 +30,7 @@ TRIES = 60
 HUGE = 1e12
 """Where numbers are larger, what is lost by cancellation may exceed :data:`LIMIT`."""
 
-_TYPICAL: ContextVar[Mapping[str, tuple[float, float]]] = ContextVar("typical", default={})
+_TYPICAL: ContextVar[Mapping[str, tuple[float, float]]] = ContextVar("typical", default=MappingProxyType({}))
 
 Point: TypeAlias = dict[sp.Symbol, Any]
 
@@ -38,7 +39,7 @@ Point: TypeAlias = dict[sp.Symbol, Any]
 def drawn_from(variables: Iterable[Variable]) -> Iterator[None]:
     """Draw random points in here from where these variables typically lie.
 
-    As soon as one of them says so, those with a default are drawn about it: what steep functions take must fit together.
+    As soon as one of them says so, those with a default are drawn about that: what they enter must fit together.
     """
     declared = list(variables)
     ranges = {v.symbol: v.typical for v in declared if v.typical}
@@ -139,11 +140,8 @@ def compare(
 
 
 def moderate(values: Iterable[Any]) -> bool:
-    """Whether all of these are real numbers of which 30 digits tell something."""
-    try:
-        return all(abs(value) <= HUGE and mp.im(value) == 0 for value in values)
-    except TypeError:  # what has no absolute value is no number
-        return False
+    """Whether all of these are numbers of which 30 digits tell something."""
+    return all(abs(value) <= HUGE for value in values)
 
 
 def first_order_at_zero(
@@ -171,14 +169,21 @@ def never_below(
     DerivationError
         If a margin is not a real number, as where the root of a negative state is taken.
     """
-    rng = random.Random(claim)
-    try:
-        with mp.workdps(DIGITS):
-            deficits = [max(-m, mp.mpf(0)) if m == m else m for p in points(symbols, claim) for m in margins(p, rng)]
-    except TypeError as error:  # mpmath does not order complex numbers
+    rng, deficits, met = random.Random(claim), list[Any](), 0
+    with mp.workdps(DIGITS):
+        for point in points(symbols, claim, TRIES):
+            try:
+                deficits += [max(-m, mp.mpf(0)) if m == m else m for m in margins(point, rng)]
+            except TypeError:  # mpmath does not order complex numbers
+                continue
+            met += 1
+            if met == POINTS:
+                break
+    if not met:
         raise DerivationError(
-            f"the check {claim!r} met values without an order, such as complex ones; declare what must be positive so"
-        ) from error
+            f"the check {claim!r} met values without an order, such as complex ones; declare what must be positive so, "
+            "or say where the variables lie: Variable(..., typical=(low, high))"
+        )
     return Check(claim, _largest(deficits), LIMIT)
 
 
