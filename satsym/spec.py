@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
+from math import isfinite
 from typing import Any, Literal
 
 FORMAT = 1
@@ -50,6 +51,9 @@ class Variable:
         ``"real"``, or ``"angle"`` where values a turn apart mean the same place.
     positive
         Whether only positive values have a meaning. For a state this is its domain.
+    typical
+        Lower and upper end of where its values lie, in its unit. Checks at random points draw it from there; without it
+        of size one, where steep functions and roots may have no numbers.
     """
 
     symbol: str
@@ -59,10 +63,18 @@ class Variable:
     default: float | None = None
     kind: Literal["real", "angle"] = "real"
     positive: bool = False
+    typical: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         if not _NAME.match(self.symbol) or "__" in self.symbol:
             raise ValueError(f"variable {self.symbol!r}: use a letter, then letters, digits and single underscores")
+        if self.typical is not None:
+            low, high = self.typical
+            if not (isfinite(low) and isfinite(high) and low < high) or (self.positive and low <= 0):
+                wanted = "0 < low < high" if self.positive else "low < high"
+                raise ValueError(
+                    f"variable {self.symbol!r}: typical is {low:g} to {high:g}; give two numbers, {wanted}"
+                )
 
 
 @dataclass(frozen=True)

@@ -11,10 +11,11 @@ import sympy as sp
 
 from satsym.symbolic import dimensions
 from satsym.symbolic import notation as n
+from satsym.symbolic.checks import drawn_from
 from satsym.symbolic.declared import begin, refuse_foreign_symbols, refuse_misfits
 from satsym.symbolic.derivation import Derivation, DerivationError, resolved
 from satsym.symbolic.linear import regulator, stability, structure
-from satsym.symbolic.model import MaybeStep, Model, Problem
+from satsym.symbolic.model import MaybeStep, Model, Problem, variables_of
 from satsym.symbolic.motion import steps
 from satsym.symbolic.principle import effort, pontryagin, transversality
 from satsym.symbolic.switching import curve as switching_curve
@@ -87,7 +88,8 @@ def derive(subject: Problem | Model) -> Derivation:
     """
     problem, model = (subject, subject.model) if isinstance(subject, Problem) else (None, subject)
     try:
-        return _derived(model, problem)
+        with drawn_from(variables_of(model)):
+            return _derived(model, problem)
     except DerivationError as error:
         # what is refused far down, by a control set for instance, does not know of whom it speaks
         known = str(error).startswith((f"{subject.name}:", f"{model.name}:"))
