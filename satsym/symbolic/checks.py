@@ -169,21 +169,15 @@ def never_below(
     DerivationError
         If a margin is not a real number, as where the root of a negative state is taken.
     """
-    rng, deficits, met = random.Random(claim), list[Any](), 0
-    with mp.workdps(DIGITS):
-        for point in points(symbols, claim, TRIES):
-            try:
-                deficits += [max(-m, mp.mpf(0)) if m == m else m for m in margins(point, rng)]
-            except TypeError:  # mpmath does not order complex numbers
-                continue
-            met += 1
-            if met == POINTS:
-                break
-    if not met:
+    rng = random.Random(claim)
+    try:
+        with mp.workdps(DIGITS):
+            deficits = [max(-m, mp.mpf(0)) if m == m else m for p in points(symbols, claim) for m in margins(p, rng)]
+    except TypeError as error:  # mpmath does not order complex numbers
         raise DerivationError(
             f"the check {claim!r} met values without an order, such as complex ones; declare what must be positive so, "
             "or say where the variables lie: Variable(..., typical=(low, high))"
-        )
+        ) from error
     return Check(claim, _largest(deficits), LIMIT)
 
 
