@@ -76,6 +76,7 @@ class _Context:
             original=row.table.original,
             why=str(sentences.sentence(outcome.remark)) if row.claims is not None else "",
             form=_form(outcome),
+            vacuous=outcome.vacuous,
             spoiled_by=tuple(self._spoiled_by(outcome)) if verdict not in SILENT else (),
         )
 
@@ -100,6 +101,8 @@ class _Context:
         if outcome.right is None:
             return "undecided", [sentences.undecided(derived)]
         if outcome.right:
+            if outcome.vacuous:
+                return "unsound", [sentences.vacuous_claim(derived), remark]
             return ("confirmed", []) if outcome.sound else ("unsound", [sentences.unsound_claim(derived), remark])
         if outcome.artefact:
             return "artefact", [sentences.artefact(derived), remark]

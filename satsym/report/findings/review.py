@@ -153,14 +153,19 @@ class Review:
             falls = self._say("falls", len(falling))
             said.append(self._say("fall", total, reasons=reasons, falling=falls))
         if standing:
-            reason = f", {self.texts.get('audit', 'other_reason')}"
             named = [f"{_quoted(row)} ({row.key})" if len(standing) <= _QUOTES else row.key for row in standing]
             parts = [
-                f"{name}{reason if row.verdict == 'unsound' else ''}" for name, row in zip(named, standing, strict=True)
+                f"{name}{self._reserve(row)}" for name, row in zip(named, standing, strict=True)
             ]
             key, number = ("stand", len(standing)) if causes else ("all_stand", total)
             said.append(self._say(key, number, quoted="; ".join(parts)))
         return said
+
+    def _reserve(self, row: Judged) -> str:
+        """With what reserve a conclusion stands."""
+        if row.verdict != "unsound":
+            return ""
+        return f", {self.texts.get('audit', 'of_nothing' if row.vacuous else 'other_reason')}"
 
     def _fallen(self, found: Finding) -> str:
         """The first conclusion that a finding overturns, where it and the others stand, and why they fall."""
