@@ -233,7 +233,9 @@ def unsound_claim(derived: str) -> Said:
 
 def vacuous_claim(derived: str) -> Said:
     """A rule is true of nothing."""
-    return _said("It is true of nothing: {derived}.", "Ini berlaku untuk sesuatu yang tidak ada: {derived}.", derived=derived)
+    return _said(
+        "It is true of nothing: {derived}.", "Ini berlaku untuk sesuatu yang tidak ada: {derived}.", derived=derived
+    )
 
 
 def artefact(derived: str) -> Said:

@@ -154,9 +154,7 @@ class Review:
             said.append(self._say("fall", total, reasons=reasons, falling=falls))
         if standing:
             named = [f"{_quoted(row)} ({row.key})" if len(standing) <= _QUOTES else row.key for row in standing]
-            parts = [
-                f"{name}{self._reserve(row)}" for name, row in zip(named, standing, strict=True)
-            ]
+            parts = [f"{name}{self._reserve(row)}" for name, row in zip(named, standing, strict=True)]
             key, number = ("stand", len(standing)) if causes else ("all_stand", total)
             said.append(self._say(key, number, quoted="; ".join(parts)))
         return said
