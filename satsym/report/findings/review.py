@@ -109,15 +109,20 @@ class Review:
 
     def fact(self, row: Judged) -> str:
         """What is so instead: the sentence for people where there is one, else the diagnosis."""
-        if row.why:
+        if row.why and not is_put_in_words(row):
             return row.why
         if self.texts.language == "id" and row.diagnosis_id:
-            return row.diagnosis_id.removeprefix(f"{in_indonesian(DENIED)}: ")
-        return row.diagnosis.removeprefix(f"{DENIED}: ")
+            said = row.diagnosis_id.removeprefix(f"{in_indonesian(DENIED)}: ")
+        else:
+            said = row.diagnosis.removeprefix(f"{DENIED}: ")
+        return f"{said} {row.why}".rstrip()
 
     def brief(self, found: Finding) -> str:
-        """The first sentence of what is wrong, without its end."""
-        return _first_sentence(next((row.why for row in found.places if row.why), self.fact(found.places[0])))
+        """The first sentence of what is wrong, without its end; of few places that differ, that of each."""
+        said = list(dict.fromkeys(_first_sentence(row.why) for row in found.places if row.why))
+        if len(said) > _PLACES:
+            return said[0]
+        return ". ".join(said) or _first_sentence(self.fact(found.places[0]))
 
     @cached_property
     def summary(self) -> list[str]:
@@ -213,17 +218,18 @@ def items(judged: Sequence[Judged]) -> list[str]:
 
 def measured(row: Judged) -> str:
     """What was measured, where the sentence for people does not say it."""
-    return row.derived if row.why and row.derived not in row.why else ""
+    return row.derived if row.why and not row.by_formula and row.derived not in row.why else ""
 
 
 def correction(row: Judged) -> str:
     """What is right there, where what is said of it does not say so."""
-    return "" if row.why or row.derived in row.diagnosis else row.derived
+    said = row.why or row.diagnosis
+    return "" if (row.why and not row.by_formula) or row.derived in said else row.derived
 
 
 def is_put_in_words(row: Judged) -> bool:
     """Whether the diagnosis of a formula is the edit that puts it right."""
-    return row.kind != "claim" and bool(row.form)
+    return row.by_formula and bool(row.form)
 
 
 def is_mathematical(row: Judged) -> bool:
