@@ -465,6 +465,7 @@ def test_what_is_missing_in_tables_series_examples_and_listings(found, ledger):
     found("wrong", "2.39 for any f")
     found("misprint", "2.40 reference")
     (lines,) = (row["printed"] for row in ledger["row"] if row.get("part") == "function")
-    assert lines[0].startswith("function") and not any(line.split()[0] == "end" for line in lines)
+    assert lines[0].startswith("function")
+    assert not any(line.split()[0] == "end" for line in lines)
     assert any("@satel" in line for line in lines)
     found("wrong", "appendix 5 function")
