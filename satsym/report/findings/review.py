@@ -109,7 +109,7 @@ class Review:
 
     def fact(self, row: Judged) -> str:
         """What is so instead: the sentence for people where there is one, else the diagnosis."""
-        if row.why and not is_put_in_words(row):
+        if row.why and not (row.by_formula and row.form):
             return row.why
         if self.texts.language == "id" and row.diagnosis_id:
             said = row.diagnosis_id.removeprefix(f"{in_indonesian(DENIED)}: ")
@@ -229,7 +229,7 @@ def correction(row: Judged) -> str:
 
 def is_put_in_words(row: Judged) -> bool:
     """Whether the diagnosis of a formula is the edit that puts it right."""
-    return row.by_formula and bool(row.form)
+    return row.kind != "claim" and bool(row.form)
 
 
 def is_mathematical(row: Judged) -> bool:
