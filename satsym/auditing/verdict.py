@@ -10,6 +10,7 @@ from satsym.auditing import refusal, sentences
 from satsym.auditing.causes import SILENT, with_causes
 from satsym.auditing.diagnosis.edits import Change, Edit
 from satsym.auditing.judge.bench import Bench, Formula
+from satsym.auditing.judge.claim import Pages
 from satsym.auditing.judge.compare import plans
 from satsym.auditing.judge.formula import corrected, shown
 from satsym.auditing.judged import Judged, Verdict
@@ -55,6 +56,8 @@ class _Context:
 
     def judged(self, outcome: Outcome) -> Judged:
         verdict, sayings = self._verdict(outcome)
+        if outcome.row.claims is None and outcome.row.why:
+            sayings = [*sayings, sentences.sentence(Pages(self._bench, outcome.row).explained(outcome.row.why))]
         said = sentences.joined(sayings if verdict != "confirmed" else ())
         row, document = outcome.row, self._bench.ledger.document.key
         command = recompute(self._bench.ledger.name, row.key)
@@ -212,11 +215,11 @@ def _same(one: Outcome, other: Outcome) -> bool:
 
 
 def _form(outcome: Outcome) -> str:
-    """What rows with the same fault share: the shape of a claim, whatever its names and numbers; or the same edits."""
+    """What rows with the same fault share: the shape of a claim, whatever its names and numbers; or edits, units."""
     if outcome.row.claims is not None:
         return shape(outcome.row.claims.tree)
     if outcome.remedy is None:
-        return ""
+        return outcome.lacks if outcome.unit else ""
     return "; ".join(sorted({_change(edit) for _, edit in outcome.remedy.edits}))
 
 

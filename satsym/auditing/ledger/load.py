@@ -180,7 +180,8 @@ class _Reader:
         with self._telling("row", "from", index, key):
             if table.follows:
                 row = replace(row, follows=rows.follows(table, self._derived, self._known, scope))
-        return row
+        with self._telling("row", "why", index, key):
+            return replace(row, why=explanation(table.why, measurements.words(scope.meanings)))
 
     def _claim(self, index: int, row: Row, scope: Scope) -> Row:
         """A row that a proposition judges: its own, or what it is held against."""

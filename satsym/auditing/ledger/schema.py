@@ -57,7 +57,7 @@ class RowTable(Table, frozen=True, rename={"follows": "from"}):
 
     Of a claim, ``printed`` is the proposition, ``because`` the reason that the document gives, ``from`` the rows that
     it is drawn from, and ``produced`` what tells that the printed algorithm brings it about, if the problem does not.
-    ``why`` is a sentence for people, with measured terms in braces, that explains a claim which is not confirmed.
+    ``why`` is a sentence for people, with measured terms in braces, that explains what is not confirmed.
     """
 
     item: Text
