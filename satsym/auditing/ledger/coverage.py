@@ -27,6 +27,8 @@ KINDS = ("formulas", "figures", "tables", "sections", "sentences")
 NONE = "none: "
 """Begins the reason why an entry needs no row."""
 
+_TELLING = 12
+"""Signs that a quotation needs to tell which sentence it is from."""
 _NUMBER = r"[A-Z]?\d{1,2}(?:\.\d{1,3})*[a-e]?"
 _FORMULA = re.compile(rf"(?:\\tag\{{\(?|(?<![\w)])\()({_NUMBER})[)}}]+[\s$.,;]*$")
 _CITING = re.compile(r"(?:persamaan|pers\.?|equations?|eqs?\.|dan|and|sampai|to|[-\u2013])\s*$", re.IGNORECASE)
@@ -216,7 +218,7 @@ def _arabic(number: str) -> int:
 
 def _sentences(ledger: Ledger, text: str) -> tuple[dict[str, str], list[tuple[str, str]]]:
     """Sentences that assert something and the row that quotes them, and quotations that are in no sentence."""
-    sentences = _SENTENCE.split(" ".join(re.sub(r"-\n\s*", "", _MARKS.sub("\n", text)).split()))
+    sentences = _SENTENCE.split(" ".join(re.sub(r"(?<=[a-z])-\n\s*(?=[a-z])", "", _MARKS.sub("\n", text)).split()))
     squashed = [_squashed(sentence) for sentence in sentences]
     ends = list(accumulate(map(len, squashed)))
     whole, rows, unquoted = "".join(squashed), [""] * len(sentences), []
@@ -224,7 +226,7 @@ def _sentences(ledger: Ledger, text: str) -> tuple[dict[str, str], list[tuple[st
         for piece in filter(None, map(str.strip, row.table.original.split("..."))):
             sought = _squashed(piece)
             at = -1
-            while sought and (at := whole.find(sought, at + 1)) >= 0:
+            while len(sought) >= _TELLING and (at := whole.find(sought, at + 1)) >= 0:
                 for i, end in enumerate(ends):
                     if end > at and end - len(squashed[i]) < at + len(sought):
                         rows[i] = rows[i] or row.key
