@@ -8,6 +8,8 @@ import pytest
 import sympy as sp
 
 from satsym import auditing as audit
+from satsym.auditing.causes import findings
+from satsym.report.terminal.audit import audit_text
 from tests.support import its_claim_routes as claims
 from tests.support import its_routes as by_hand
 from tests.support import its_sweep_routes as sweeps
@@ -155,13 +157,9 @@ CASES = [(document, key) for document, routes in ROUTES.items() for key in route
 
 
 @pytest.fixture(scope="module")
-def verdicts() -> dict[tuple[str, str], str]:
-    """Verdicts of the audit."""
-    found = {}
-    for document in ROUTES:
-        for row in audit.audit(audit.read(audit.locate(document))):
-            found[document, row.key] = row.verdict
-    return found
+def judged() -> dict[str, list[audit.Judged]]:
+    """What the audit finds."""
+    return {document: audit.audit(audit.read(audit.locate(document))) for document in ROUTES}
 
 
 @pytest.mark.parametrize(("document", "key"), CASES, ids=[f"{d}: {k}" for d, k in CASES])
@@ -170,14 +168,23 @@ def test_a_second_route_finds_fault_with_it_too(document, key):
 
 
 @pytest.mark.slow
-def test_the_audit_and_the_second_routes_agree(verdicts):
+def test_the_audit_and_the_second_routes_agree(judged):
     """No false alarm: whatever is not confirmed has a route, and the route reaches the same verdict."""
     for document, routes in ROUTES.items():
-        found = {key: v for (d, key), v in verdicts.items() if d == document and v != "confirmed"}
+        found = {row.key: row.verdict for row in judged[document] if row.verdict != "confirmed"}
         assert {key for key, verdict in found.items() if verdict == "illegible"} == UNREAD[document]
         assert set(found) - UNREAD[document] == set(routes)
         reached = {key: route(rows(document), key) for key, route in routes.items()}
         assert {key: found[key] for key in routes} == reached
+
+
+@pytest.mark.slow
+def test_the_report_of_the_thesis_can_be_read(judged, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "100")
+    assert len(findings(judged["its_thesis"])) <= 40
+    text = audit_text([audit.read(audit.locate("its_thesis"))], judged)
+    assert len(text.splitlines()) <= 150
+    assert max(map(len, text.splitlines())) <= 100
 
 
 @pytest.mark.parametrize("document", ROUTES)

@@ -181,7 +181,9 @@ class _Reader:
             if table.follows:
                 row = replace(row, follows=rows.follows(table, self._derived, self._known, scope))
         with self._telling("row", "why", index, key):
-            return replace(row, why=explanation(table.why, measurements.words(scope.meanings)))
+            if table.why:  # asking for words loads what measures
+                row = replace(row, why=explanation(table.why, measurements.words(scope.meanings)))
+        return row
 
     def _claim(self, index: int, row: Row, scope: Scope) -> Row:
         """A row that a proposition judges: its own, or what it is held against."""
