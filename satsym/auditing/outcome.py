@@ -27,6 +27,8 @@ class Outcome:
         whether only its unit is wrong; whether it fails by a last digit alone.
     remark
         A sentence for the diagnosis.
+    lacks
+        Of a unit, the dimension that it has to be multiplied by.
     evidence
         Measured numbers.
     """
@@ -42,4 +44,5 @@ class Outcome:
     unit: bool = False
     near: bool = False
     remark: str = ""
+    lacks: str = ""
     evidence: Mapping[str, object] = field(default_factory=dict)

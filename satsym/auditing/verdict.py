@@ -57,6 +57,8 @@ class _Context:
 
     def judged(self, outcome: Outcome) -> Judged:
         verdict, sayings = self._verdict(outcome)
+        if outcome.row.claims is None and outcome.row.why:
+            sayings = [*sayings, sentences.sentence(Pages(self._bench, outcome.row).explained(outcome.row.why))]
         said = sentences.joined(sayings if verdict != "confirmed" else ())
         row, document = outcome.row, self._bench.ledger.document.key
         command = recompute(self._bench.ledger.name, row.key)
@@ -238,11 +240,11 @@ def _same(one: Outcome, other: Outcome) -> bool:
 
 
 def _form(outcome: Outcome) -> str:
-    """What rows with the same fault share: the shape of a claim, whatever its names and numbers; or the same edits."""
+    """What rows with the same fault share: the shape of a claim, whatever its names and numbers; or edits, units."""
     if outcome.row.claims is not None:
         return shape(outcome.row.claims.tree)
     if outcome.remedy is None:
-        return ""
+        return outcome.lacks if outcome.unit else ""
     return "; ".join(sorted({_change(edit) for _, edit in outcome.remedy.edits}))
 
 

@@ -79,6 +79,17 @@ class RowTable(Table, frozen=True, rename={"follows": "from"}):
     legible: Flag = True
 
 
+class ContentsTable(Table, frozen=True):
+    """What a text has, by kind: name -> the row that has it, or ``none: `` and the reason why it needs none."""
+
+    text_digest: Text
+    formulas: Formulas = {}
+    figures: Formulas = {}
+    tables: Formulas = {}
+    sections: Formulas = {}
+    sentences: Formulas = {}
+
+
 KINDS: tuple[str, ...] = get_args(Kind)
 _WORDS = {
     "kind": "one of " + ", ".join(f'"{kind}"' for kind in KINDS),
