@@ -19,6 +19,9 @@ MOST_LETTERS = 24
 """Of exact analysis, times the states: polynomials of a high degree in many letters fill pages and say nothing."""
 
 ControlSetKind = Literal["free", "box", "ball"]
+NAMES = "a small letter, then small letters, digits and underscores"
+"""What names of models and problems are."""
+_MODEL = re.compile(r"[a-z][a-z0-9_]{0,99}\Z")
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
 _OF_LINEAR_MODELS = ("outputs", "linear")
 _OF_VARIABLES = (
@@ -68,6 +71,8 @@ class Variable:
     def __post_init__(self) -> None:
         if not _NAME.match(self.symbol) or "__" in self.symbol:
             raise ValueError(f"variable {self.symbol!r}: use a letter, then letters, digits and single underscores")
+        if self.default is not None and not (isinstance(self.default, int | float) and isfinite(self.default)):
+            raise ValueError(f"variable {self.symbol!r}: default is {self.default!r}; give a finite number")
         if self.typical is not None:
             low, high = self.typical
             if not (isfinite(low) and isfinite(high) and low < high) or (self.positive and low <= 0):
@@ -237,6 +242,11 @@ class ProblemSpec:
             return cls(**stated)
         except (KeyError, TypeError) as error:
             raise ValueError(f"its MODEL has other fields than this version knows ({error})") from None
+
+
+def is_name(name: object) -> bool:
+    """Whether a model may be called so."""
+    return isinstance(name, str) and _MODEL.match(name) is not None
 
 
 def names(variables: Iterable[Variable]) -> tuple[str, ...]:

@@ -11,7 +11,6 @@ import ast
 import copyreg
 import importlib
 import math
-import re
 from collections.abc import Callable, Mapping
 from functools import cache, lru_cache
 from importlib.abc import InspectLoader
@@ -23,7 +22,7 @@ import numpy as np
 
 from satsym.kernels.core import Backend, Function, Kernels
 from satsym.kernels.digest import intact
-from satsym.spec import ProblemSpec
+from satsym.spec import NAMES, ProblemSpec, is_name
 from satsym.status import BadInput
 from satsym.wording import printable, shown, suggestion
 
@@ -31,8 +30,6 @@ PACKAGE = "satsym.generated"
 LARGEST = 1_000_000
 """Bytes of a module file; the shipped ones have a twentieth of that."""
 
-_NAME = re.compile(r"[a-z][a-z0-9_]{0,99}\Z")
-_NAMES = "a small letter, then small letters, digits and underscores"
 _ANEW = "write it anew with `satsym derive`"
 _EDITED = "edited by hand or damaged since it was written; run `satsym derive` again"
 
@@ -40,7 +37,7 @@ _EDITED = "edited by hand or damaged since it was written; run `satsym derive` a
 def shipped() -> list[str]:
     """Names of the shipped models, without importing them."""
     folders = importlib.import_module(PACKAGE).__path__
-    return sorted({file.stem for folder in folders for file in Path(folder).glob("*.py") if _NAME.match(file.stem)})
+    return sorted({file.stem for folder in folders for file in Path(folder).glob("*.py") if is_name(file.stem)})
 
 
 def load(model: str, folder: Path | None = None) -> Kernels:
@@ -61,9 +58,9 @@ def load(model: str, folder: Path | None = None) -> Kernels:
     """
     folder = folder or Path()
     if "/" not in model:
-        if _NAME.match(model) and model in shipped():
+        if is_name(model) and model in shipped():
             return _load_shipped(model)
-        if not (_NAME.match(model) and (folder / f"{model}.py").is_file()):
+        if not (is_name(model) and (folder / f"{model}.py").is_file()):
             raise BadInput(_unknown(model))
         model = f"./{model}"
     path, root = _resolve(model, folder)
@@ -97,8 +94,8 @@ def check_name(name: str) -> None:
     BadInput
         With what a name is.
     """
-    if not _NAME.match(name):
-        raise BadInput(f"{shown(name)}: a model's name is {_NAMES}")
+    if not is_name(name):
+        raise BadInput(f"{shown(name)}: a model's name is {NAMES}")
 
 
 def _unknown(model: str) -> str:
@@ -124,8 +121,8 @@ def _resolve(model: str, folder: Path) -> tuple[Path, Path]:
         raise BadInput(f"{shown(model)}: leave out the ending .py")
     if Path(model).is_absolute():
         raise BadInput(f"{shown(model)}: an absolute path; write one that starts in the instance file's folder")
-    if not _NAME.match(model.rpartition("/")[2]):
-        raise BadInput(f"{shown(model)}: a file's name is {_NAMES}")
+    if not is_name(model.rpartition("/")[2]):
+        raise BadInput(f"{shown(model)}: a file's name is {NAMES}")
     try:
         root = folder.resolve(strict=True)
         path = (root / f"{model}.py").resolve(strict=True)

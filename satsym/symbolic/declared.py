@@ -7,7 +7,7 @@ from typing import Any, get_args
 
 import sympy as sp
 
-from satsym.spec import ControlSetKind, Variable
+from satsym.spec import NAMES, ControlSetKind, Variable, is_name
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import constants_of
 from satsym.symbolic.derivation import Derivation, DerivationError
@@ -27,6 +27,9 @@ def refuse_misfits(model: Model, problem: Problem | None) -> None:
     DerivationError
         At the first of them.
     """
+    for subject in (problem, model) if problem else (model,):
+        if not is_name(subject.name):
+            raise DerivationError(f"name: got {shown(subject.name)}; a model's name is {NAMES}")
     for complaint in model.misfits():
         raise DerivationError(f"{model.name}: {complaint}")
     states = symbols_of(model.states)

@@ -62,6 +62,18 @@ def test_ranges_that_are_none_are_refused(typical: tuple[float, float]) -> None:
         replace(STATES[0], typical=typical)
 
 
+@pytest.mark.parametrize("default", ["1", float("nan"), (1.0,)])
+def test_defaults_that_are_no_numbers_are_refused(default: object) -> None:
+    with pytest.raises(ValueError, match=r"variable 'h': default is .*; give a finite number"):
+        replace(STATES[0], default=default)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("name", ["", "Climb", "a b", "9", "class "])
+def test_names_that_no_file_can_have_are_refused(name: str) -> None:
+    with pytest.raises(DerivationError, match="a model's name is a small letter"):
+        derive(replace(climb(v), name=name))
+
+
 @pytest.mark.parametrize("size", [1e-9, 1.0, 1e6])
 def test_a_wrong_derivative_is_noticed_whatever_the_size_of_the_numbers(size: float) -> None:
     x, y = symbols_of(declared := (Variable("x", "x", typical=(size, 2 * size)), Variable("y", "y")))
