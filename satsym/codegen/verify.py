@@ -21,6 +21,7 @@ from satsym.codegen.naming import code_of
 from satsym.kernels import Kernels, plain
 from satsym.kernels.contract import TUPLES
 from satsym.kernels.evaluation import COMPLEX_STEP
+from satsym.spec import ProblemSpec
 from satsym.symbolic.checks import DIGITS, numeric_along
 from satsym.symbolic.derivation import Derivation, DerivationError
 
@@ -59,7 +60,7 @@ def verify(derivation: Derivation, kernels: Kernels) -> None:
     code = code_of(derivation)
     known, found, constants = code.symbols, code.functions, code.constants
     rng = random.Random(derivation.name)
-    places = [_arguments(known, derivation, rng) for _ in range(POINTS)]
+    places = [_arguments(known, kernels.spec, rng) for _ in range(POINTS)]
     for function in found:
         chain = (*constants.items(), *used(code.chain, function.outputs))
         exact, _ = numeric_along(chain, function.outputs)
@@ -72,7 +73,7 @@ def verify(derivation: Derivation, kernels: Kernels) -> None:
     _same_loops(derivation, known, kernels, rng)
 
 
-def _arguments(known: Symbols, derivation: Derivation, rng: random.Random) -> Arguments:
+def _arguments(known: Symbols, spec: ProblemSpec, rng: random.Random) -> Arguments:
     """Random arguments of size one; bounds that are met by some controls and not by others."""
 
     def draw(symbol: Any) -> float:
@@ -80,10 +81,7 @@ def _arguments(known: Symbols, derivation: Derivation, rng: random.Random) -> Ar
         return size if symbol.is_positive or rng.random() < 0.5 else -size
 
     place: Arguments = {a: tuple(map(draw, known.of(a))) for a in ARGUMENTS if a != "t"}
-    if derivation.problem and derivation.problem.control_set == "box":
-        m = len(known.u)
-        lower, upper, regularised = (place["bounds"][i:k] for i, k in ((0, m), (m, 2 * m), (2 * m, None)))
-        place["bounds"] = (*(-abs(b) for b in lower), *map(abs, (*upper, *regularised)))
+    place["bounds"] = tuple(-abs(b) if i in spec.lower_bounds else abs(b) for i, b in enumerate(place["bounds"]))
     return place | {"t": draw(known.t)}
 
 
@@ -150,7 +148,7 @@ def _stacked(argument: str, places: Sequence[Arguments]) -> Any:
 
 
 def _same_loops(derivation: Derivation, known: Symbols, kernels: Kernels, rng: random.Random) -> None:
-    place = _arguments(known, derivation, rng)
+    place = _arguments(known, kernels.spec, rng)
     times = np.cumsum([0.3, 0.02, 0.03, 0.01])
     steps, m, p = len(times) - 1, len(known.u), place["p"]
     u, u_mid = (np.array([[rng.uniform(-1, 1) for _ in range(m)] for _ in range(k)]).T for k in (steps + 1, steps))

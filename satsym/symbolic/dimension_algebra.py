@@ -68,6 +68,9 @@ def dimension_of(expression: Any, known: Known) -> Dimension | None:
         for comparison in e.atoms(sp.core.relational.Relational):
             _common(comparison.args, known)
         return _common([branch for branch, _ in e.args], known)
+    if isinstance(e, minimisers.Stretch):
+        norm_squared, _, length = (dimension_of(a, known) for a in e.args)
+        return over(length, power_of(norm_squared, sp.Rational(1, 2)))
     if isinstance(e, minimisers.Shorten):
         norm_squared, limit = e.args
         _common((norm_squared, limit**2), known)

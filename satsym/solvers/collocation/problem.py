@@ -170,6 +170,8 @@ class TwoPoint:
         if model.spec.switching:
             u = smoothed_law(self.instance, self.control_set, t, x, lam)
             return smoothed_cost(self.instance, self.control_set, t, x, u) / self.scale.cost
+        if model.spec.directional:
+            return np.asarray(model.regularised_cost_batch(t, x, lam, p, self.control_set.arguments)) / self.scale.cost
         u = model.control_law_batch(t, x, lam, p, self.control_set.arguments)
         beyond = 0.0
         if self.softness:
