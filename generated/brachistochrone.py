@@ -1,8 +1,8 @@
-"""A bead slides along a curve in least time.
+"""A bead slides along a curve in minimum time.
 
 Written by satsym from derivations/examples/brachistochrone.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/brachistochrone.py
-Digest: d16cbeea70d20b8e7935c0c769ae1d29504010c6d06814de6154d1715e0052f4
+Digest: 48d0a287ef264abe911f8475c9d24ded5da3d8fdacbc0b634a6c218816e6b4d7
 """
 
 import math
@@ -13,7 +13,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'brachistochrone',
-    'title': 'A bead slides along a curve in least time',
+    'title': 'A bead slides along a curve in minimum time',
     'source': 'derivations/examples/brachistochrone.py',
     'states': (
         {'symbol': 'x', 'latex': 'x', 'unit': 'm', 'meaning': 'distance'},

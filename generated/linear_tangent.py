@@ -1,8 +1,8 @@
-"""Steering in least time.
+"""Steering in minimum time.
 
 Written by satsym from derivations/examples/linear_tangent.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/linear_tangent.py
-Digest: 7a202d5b992d47c1dcd2104e7dfff85cbc6f488b8d149d86d1bf3f7f7167ecf3
+Digest: 936874427b004454f4870473298bf1116246101baf8ef52b0892e95b0a4b52b5
 """
 
 import math
@@ -13,7 +13,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'linear_tangent',
-    'title': 'Steering in least time',
+    'title': 'Steering in minimum time',
     'source': 'derivations/examples/linear_tangent.py',
     'states': (
         {'symbol': 'x', 'latex': 'x', 'meaning': 'distance'},

@@ -1,8 +1,8 @@
-"""A ship crosses a linear current in least time.
+"""A ship crosses a linear current in minimum time.
 
 Written by satsym from derivations/examples/zermelo.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/zermelo.py
-Digest: 34654378b7e56e2465086d0d826b25da374ed59567e505ba3cfa3c3b31858d5f
+Digest: 98c5cff762f75c0b755bbc1ad04074d8e63664677e49c9fa75da2dc379378ae3
 """
 
 import math
@@ -13,7 +13,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'zermelo',
-    'title': 'A ship crosses a linear current in least time',
+    'title': 'A ship crosses a linear current in minimum time',
     'source': 'derivations/examples/zermelo.py',
     'states': (
         {'symbol': 'x', 'latex': 'x', 'meaning': 'distance along the current'},

@@ -1,4 +1,4 @@
-"""The brachistochrone: along which curve a bead slides from one point to another in least time (Bernoulli, 1696).
+"""The brachistochrone: along which curve a bead slides from one point to another in minimum time (Bernoulli, 1696).
 
 The slope of the curve is the control. From (0, 10) to (10, 5) the curve is a cycloid, and the time with
 g = 9.80665 m/s^2 is 1.8016031225 s: x = a (phi - sin phi), y = 10 - a (1 - cos phi), t = phi sqrt(a / g).
@@ -21,7 +21,7 @@ x, y, v = symbols_of(STATES)
 
 brachistochrone = Problem(
     name="brachistochrone",
-    title="A bead slides along a curve in least time",
+    title="A bead slides along a curve in minimum time",
     model=FirstOrder(
         name="bead",
         title="A bead on a curve",

@@ -1,7 +1,7 @@
 """Steering in a plane at constant acceleration: the linear tangent law (Bryson and Ho, Applied Optimal Control, 2.4).
 
 Example of Betts, Practical Methods for Optimal Control, 4.6: from rest to a height of 5 with a horizontal velocity of
-45 in least time, the acceleration being 100.
+45 in minimum time, the acceleration being 100.
 """
 
 from sympy import cos, sin
@@ -31,7 +31,7 @@ steered = FirstOrder(
 
 linear_tangent = Problem(
     name="linear_tangent",
-    title="Steering in least time",
+    title="Steering in minimum time",
     model=steered,
     running_cost=1,
     control_sets={"steering": Angle("beta")},

@@ -1,4 +1,4 @@
-"""Zermelo's problem: a ship crosses a current in least time (Zermelo, 1931).
+"""Zermelo's problem: a ship crosses a current in minimum time (Zermelo, 1931).
 
 The current flows along x and grows with y. The ship heads for the origin; from (3.66, -1.86) h, where the current is
 -V y / h, the heading turns from 105 degrees to 240 (Bryson and Ho, Applied Optimal Control, 2.7).
@@ -20,7 +20,7 @@ V, h = symbols_of(PARAMETERS)
 
 zermelo = Problem(
     name="zermelo",
-    title="A ship crosses a linear current in least time",
+    title="A ship crosses a linear current in minimum time",
     model=FirstOrder(
         name="ship",
         title="A ship in a current",

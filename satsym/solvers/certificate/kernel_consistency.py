@@ -25,8 +25,8 @@ NODES = 4
 ASIDE = 1e-3
 """How far aside of the nodes, relative to the largest value of each component."""
 
-FAINT = 1e-60
-"""Share of the largest component below which another is none: its square would be lost."""
+FAINT = 1e-25
+"""Share of the largest component below which another is none but rounding."""
 
 WIDE, NARROW = 1e3, 0.5
 """Bounds where there are none, and narrow ones, relative to the largest control."""

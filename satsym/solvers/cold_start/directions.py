@@ -40,6 +40,9 @@ LEVELS = 16
 TIGHTER = 4.0
 """By so much less is smoothed at each level."""
 
+SMOOTHER = (1.0, 30.0, 1e3)
+"""Factors of the first smoothing that are tried."""
+
 SAMPLES = 401
 """Times at which the length of directions is looked at."""
 
@@ -65,10 +68,10 @@ def directed(instance: Instance, limits: Limits, effort: bool) -> tuple[TwoPoint
         When to stop, and whether free durations are looked for with great effort.
     """
     found: tuple[TwoPoint, Start] | Extremal | None = None
-    for one, much in _begun(instance, effort):
+    for one, much, factor in _begun(instance, effort):
         if limits.expired:
             break
-        again = tried(partial(_directed, one, instance, limits, much))
+        again = tried(partial(_directed, one, instance, factor * first_smoothing(instance), limits, much))
         if again is not None and not isinstance(again, Extremal):
             return again
         found = found or again
@@ -77,22 +80,27 @@ def directed(instance: Instance, limits: Limits, effort: bool) -> tuple[TwoPoint
     return found
 
 
-def _begun(instance: Instance, effort: bool) -> Iterator[tuple[Instance, bool]]:
-    """What one starts from, without and then with effort: a motion in one direction first where some state ends free.
+def _begun(instance: Instance, effort: bool) -> Iterator[tuple[Instance, bool, float]]:
+    """What one starts from, and by which factor more is smoothed: a motion in one direction first where a state is free.
 
-    The straight line does not move such a state, and where nothing moves directions may do nothing.
+    The straight line does not move such a state, and where nothing moves directions may do nothing. More is smoothed
+    where that leads nowhere: what directions of any length may do together with states can be worth more than their
+    squares cost. What takes great effort comes last.
     """
     near = steered(instance)
     both = [instance] if near is None else [instance, near]
     if len(instance.final) < len(instance.initial):
         both.reverse()
-    for much in (False, True) if effort else (False,):
-        yield from ((one, much) for one in both)
+    yield from ((one, False, factor) for factor in SMOOTHER for one in both)
+    if effort:
+        yield from ((one, True, 1.0) for one in both)
 
 
-def _directed(started: Instance, instance: Instance, limits: Limits, effort: bool) -> tuple[TwoPoint, Start] | Extremal:
-    """The same from what one instance guesses."""
-    eased = regularised(started, first_smoothing(instance), 1.0)
+def _directed(
+    started: Instance, instance: Instance, smoothing: float, limits: Limits, effort: bool
+) -> tuple[TwoPoint, Start] | Extremal:
+    """The same from what one instance guesses, and this smoothing."""
+    eased = regularised(started, smoothing, 1.0)
     if eased.tf is None:
         chosen = free_duration(eased, limits, effort)
         if isinstance(chosen, Extremal):
@@ -215,6 +223,8 @@ def _sharpened(
         curve, reached = follow(sharper, curve, limits)
         if reached == 0.0:
             message = f"a regularisation below {smoothing:.1e} was not reached"
+            if 0.0 < _share_short(problem, curve) < 1.0:
+                message = f"a direction seems to turn round at once, where the slope of H passes through zero; {message}"
             return _stopped(problem, instance, curve, message, limits)
         smoothing *= TIGHTER**-reached
         problem = replace(problem, instance=regularised(instance, smoothing, 1.0))

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.arrays import Array
-from satsym.control_set import ControlSet
+from satsym.control_set import UNSMOOTHED, ControlSet
 from satsym.instance import Instance
 from satsym.solvers.control.regularised import sloping, smoothed_cost, smoothed_law
 
@@ -77,6 +77,14 @@ class TwoPoint:
     def free_time(self) -> bool:
         """Whether the duration is unknown."""
         return self.instance.tf is None
+
+    @cached_property
+    def homogeneous(self) -> bool:
+        """Whether only the residual of a free duration may tell costates from multiples of them.
+
+        So it is where the law depends on their direction alone, that of a direction or of controls that switch.
+        """
+        return self.free_time and self.instance.model.spec.directional and self.control_set.smoothing <= UNSMOOTHED
 
     @cached_property
     def unknowns(self) -> int:
