@@ -114,7 +114,9 @@ class ControlSet:
         if self.kind == "box":
             lower, upper = tuple(low - by for low in self.lower), tuple(high + by for high in self.upper)
             return replace(self, lower=lower, upper=upper)
-        return replace(self, radius=self.radius + by) if self.kind in ("ball", "annulus", "angle") else self
+        if self.kind == "annulus":
+            return replace(self, radius=self.radius + by, inner=max(self.inner - by, 0.0))
+        return replace(self, radius=self.radius + by) if self.kind in ("ball", "angle") else self
 
     @cached_property
     def without_bounds(self) -> ControlSet:

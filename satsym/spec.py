@@ -211,6 +211,12 @@ class ProblemSpec:
         return frozenset(found)
 
     @property
+    def rings(self) -> tuple[int, ...]:
+        """Places in the argument ``bounds`` of least norms; the largest ones follow them."""
+        at = [sum(part.bounds for part in self.control_parts[:k]) for k in range(len(self.control_parts))]
+        return tuple(i for i, part in zip(at, self.control_parts, strict=True) if part.kind == "annulus")
+
+    @property
     def separable(self) -> bool:
         """Whether the motion without control is q' = v, v' = a(q), with a potential; it then has a symplectic loop."""
         return bool(self.coordinates)

@@ -35,8 +35,10 @@ def of_sets(of: Evaluation) -> Iterator[Relation]:
             yield Relation("control_law", "within its box", law[rows], nearest, size(law[rows]))
         elif part.kind in ("ball", "annulus"):
             norm, radius = np.sqrt((law[rows] ** 2).sum(axis=0)), np.asarray(part.radius)
-            left[rows] = outside_ball(left[rows], law[rows], norm, radius)
-            yield Relation("control_law", "within its ball", norm, np.minimum(norm, radius))
+            inner = np.asarray(part.inner)
+            left[rows] = outside_ball(left[rows], law[rows], norm, radius, inner)
+            nearest = np.minimum(np.maximum(norm, 0.0 if part.directed else inner), radius)
+            yield Relation("control_law", "within its ball", norm, nearest)
         elif part.kind == "angle":
             left[rows] = np.where(curved[rows], left[rows], np.inf)
     yield Relation("control_law", "H is minimal there", left, straight, terms)
@@ -52,12 +54,14 @@ def outside_box(slope: Array, law: Array, low: Array, high: Array, curved: Array
     return np.asarray(np.where(low == high, 0.0, np.where(curved, held, free)))
 
 
-def outside_ball(slope: Array, law: Array, norm: Array, limit: Array) -> Array:
-    """H_u but for a part that points from a control at the limit straight into the ball."""
+def outside_ball(slope: Array, law: Array, norm: Array, limit: Array, inner: Array | float = 0.0) -> Array:
+    """H_u but for a part that points from a control at the limit straight into the ball; or out of a hole in it."""
     outward = law / np.where(norm > 0.0, norm, 1.0)
     along = (slope * outward).sum(axis=0)
     at_limit = norm >= limit * (1.0 - 1e-12)
-    return np.asarray(slope - np.where(at_limit, np.minimum(along, 0.0), 0.0) * outward)
+    at_inner = (norm <= inner * (1.0 + 1e-12)) & ~at_limit
+    held = np.where(at_limit, np.minimum(along, 0.0), np.where(at_inner, np.maximum(along, 0.0), 0.0))
+    return np.asarray(slope - held * outward)
 
 
 def relaxed(of: Evaluation, name: str) -> Array:

@@ -99,7 +99,7 @@ def _bounds_of_sets(instance: Instance, at: dict[str, Any]) -> tuple[Array, ...]
             found += [*np.where(owned, np.maximum(low, -WIDE * size), -NARROW * size)]
             found += [*np.where(owned, np.minimum(high, WIDE * size), NARROW * size)]
         elif part.kind == "annulus":
-            found.append(np.where(owned, part.inner, 0.0))
+            found.append(np.where(owned, part.inner, NARROW**2 * radius))
         if part.kind == "angle":
             found.append(np.where(owned, 1.0, NARROW))
         elif part.kind in ("ball", "annulus"):

@@ -31,7 +31,7 @@ from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.system import System
 from satsym.solvers.control.regularised import regularised
-from satsym.solvers.control.slopes import slope
+from satsym.solvers.control.slopes import full_length_smoothing, slope
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 from satsym.status import Status
@@ -71,7 +71,7 @@ def directed(instance: Instance, limits: Limits, effort: bool) -> tuple[TwoPoint
     for one, much, factor in _begun(instance, effort):
         if limits.expired:
             break
-        again = tried(partial(_directed, one, instance, factor * first_smoothing(instance), limits, much))
+        again = tried(partial(_directed, one, instance, factor * full_length_smoothing(instance), limits, much))
         if again is not None and not isinstance(again, Extremal):
             return again
         found = found or again
@@ -81,7 +81,7 @@ def directed(instance: Instance, limits: Limits, effort: bool) -> tuple[TwoPoint
 
 
 def _begun(instance: Instance, effort: bool) -> Iterator[tuple[Instance, bool, float]]:
-    """What one starts from, and by which factor more is smoothed: a motion in one direction first where a state is free.
+    """What one starts from, and by which factor more is smoothed: a motion in one direction where a state is free.
 
     The straight line does not move such a state, and where nothing moves directions may do nothing. More is smoothed
     where that leads nowhere: what directions of any length may do together with states can be worth more than their
@@ -150,7 +150,7 @@ def _times(instance: Instance) -> Array:
         return np.linspace(0.0, instance.tf - instance.t0, SAMPLES)
     if instance.tf_guess is not None:
         return np.linspace(0.0, 2.0 * (instance.tf_guess - instance.t0), SAMPLES)
-    eased = regularised(instance, first_smoothing(instance), 1.0)
+    eased = regularised(instance, full_length_smoothing(instance), 1.0)
     return np.append(0.0, time_scale(eased) * np.geomspace(*TIMES, 2 * SAMPLES))
 
 
@@ -171,11 +171,15 @@ def bent(
 ) -> tuple[TwoPoint, Start] | Extremal:
     """The same from a path that is drawn, for a final time that is given."""
     assert instance.tf is not None
-    problem = two_point(regularised(instance, first_smoothing(instance), 1.0), instance.tf - instance.t0)
-    found = from_path(problem.relaxed(float("inf")), paths.bent(problem, rng, amplitude), limits)
-    if not found.minimum:
-        return _stopped(problem, instance, found.curve, found.message, limits)
-    return directed_from(problem, Start(found, Origin.DRAWN, found.iterations), instance, limits)
+    waves = rng.integers(2**32)
+    for factor in SMOOTHER:
+        eased = regularised(instance, factor * full_length_smoothing(instance), 1.0)
+        problem = two_point(eased, instance.tf - instance.t0)
+        path = paths.bent(problem, np.random.default_rng(waves), amplitude)
+        found = from_path(problem.relaxed(float("inf")), path, limits)
+        if found.minimum:
+            return directed_from(problem, Start(found, Origin.DRAWN, found.iterations), instance, limits)
+    return _stopped(problem, instance, found.curve, found.message, limits)
 
 
 def directed_from(
@@ -192,15 +196,6 @@ def directed_from(
     if reached < 1.0:
         return _stopped(problem, instance, curve, Reason.BLOCKED.value.format(min(reached, 0.99)), limits)
     return _sharpened(problem.relaxed(0.0), instance, curve, replace(start, bounded=True), limits)
-
-
-def first_smoothing(instance: Instance) -> float:
-    """The smoothing at which full length costs about as much again as time and state do."""
-    model, p, x = instance.model, instance.parameters, instance.initial
-    idle = tuple(instance.control_set.project(np.zeros((len(model.spec.controls), 1)))[:, 0].tolist())
-    cost = abs(model.running_cost(instance.t0, x, idle, p))
-    effort = sum(part.radius**2 for _, part in instance.control_set.parts if part.directed)
-    return 2.0 * (cost or 1.0) / effort
 
 
 def _sharpened(
@@ -224,7 +219,7 @@ def _sharpened(
         if reached == 0.0:
             message = f"a regularisation below {smoothing:.1e} was not reached"
             if 0.0 < _share_short(problem, curve) < 1.0:
-                message = f"a direction seems to turn round at once, where the slope of H passes through zero; {message}"
+                message = f"a direction seems to turn round where the slope of H passes through zero; {message}"
             return _stopped(problem, instance, curve, message, limits)
         smoothing *= TIGHTER**-reached
         problem = replace(problem, instance=regularised(instance, smoothing, 1.0))

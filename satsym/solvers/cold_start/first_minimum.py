@@ -96,7 +96,7 @@ def cold_start(problem: TwoPoint, limits: Limits, quick: bool = False) -> Start:
     if minima:
         return replace(min(minima, key=lambda start: start.found.cost), steps=steps)
     if last is None:
-        raise ArithmeticError("no way from nothing has equations that can be solved")
+        raise ArithmeticError("the equations of every cold start are singular")
     saddle = saddle or (None if limits.expired or quick else _extremal(free, line))
     if last.minimum:
         last = replace(last, reason=Reason.OUT_OF_DOMAIN)

@@ -21,7 +21,7 @@ from satsym.symbolic.algebra import tidy
 from satsym.symbolic.checks import Point, compare, never_below, numeric
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Conclusion, Derivation, DerivationError, Equation, Step
-from satsym.symbolic.minimisers import Stretch
+from satsym.symbolic.minimisers import Stretch, Within
 from satsym.symbolic.model import Problem, symbols_of
 from satsym.symbolic.principle import control_sets
 from satsym.symbolic.principle import notation as pn
@@ -189,7 +189,9 @@ def _law(problem: Problem, one: Minimum) -> list[sp.Expr]:
         return [sp.atan2(across, along)]
     assert one.hessian is not None
     if part.kind == "annulus":
-        raise DerivationError(f"{part.name}: H is quadratic in it, which is not supported for an annulus")
+        control_sets.refuse_unequal(one.hessian)
+        factor = Within(sum((u**2 for u in one.hats), sp.Integer(0)), *part.bounds)
+        return [factor * u for u in one.hats]
     return control_sets.project(_bare(part.kind), one.hats, part.bounds, one.hessian)
 
 
@@ -343,7 +345,7 @@ def _wide(every: Sequence[Minimum]) -> dict[sp.Symbol, Any]:
             found |= dict.fromkeys(one.part.bounds[:half], mp.mpf(-(10**9)))
             found |= dict.fromkeys(one.part.bounds[half:], mp.mpf(10**9))
         elif one.branch == "quadratic":
-            found |= dict.fromkeys(one.part.bounds, mp.mpf(10**9))
+            found |= dict(zip(one.part.bounds[::-1], (mp.mpf(10**9), mp.mpf(10) ** -9), strict=False))
     return found
 
 
