@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, root
 from sympy import Expr, atan2, cos, sin, sympify
 
@@ -163,3 +164,30 @@ def test_a_straight_run_is_steered_straight(tmp_path: Path):
     found = solve(build(tmp_path, steered(sympify(1), PUSHED), START))
     assert found.objective == pytest.approx(math.sqrt(2.0), rel=1e-10)
     assert np.abs(found.u).max() < 1e-8
+
+
+def test_the_transfer_takes_as_long_as_by_shooting():
+    """Costates by Runge-Kutta from the start, tan beta = lambda_u / lambda_v: the orbit of Mars in minimum time."""
+
+    def rates(t: float, z: np.ndarray) -> list[float]:
+        r, u, v, a, b, c = z
+        push, size = 0.1405 / (1.0 - 0.07487 * t), math.hypot(b, c)
+        return [
+            u,
+            v * v / r - 1.0 / r**2 - push * b / size,
+            -u * v / r - push * c / size,
+            b * (v * v / r**2 - 2.0 / r**3) - c * u * v / r**2,
+            -a + c * v / r,
+            -2.0 * b * v / r + c * u / r,
+        ]
+
+    def missed(unknown: np.ndarray) -> np.ndarray:
+        end = solve_ivp(
+            rates, (0.0, unknown[3]), [1.0, 0.0, 1.0, *unknown[:3]], rtol=1e-12, atol=1e-13, method="DOP853"
+        ).y[:, -1]
+        growth = 1.0 + float(end[3:] @ rates(unknown[3], end)[:3])
+        return np.array([end[0] - 1.525, end[1], end[2] - 1.525**-0.5, growth])
+
+    expected = root(missed, [-5.0, -2.5, -5.5, 3.3], tol=1e-10)
+    assert np.abs(missed(expected.x)).max() < 1e-10
+    assert certified("transfer-time").objective == pytest.approx(expected.x[3], rel=1e-9)
