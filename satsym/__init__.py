@@ -11,7 +11,12 @@ Importing it imports nothing else: the names below are loaded when they are firs
 __version__ = "0.2.0"
 
 __all__ = [
+    "Angle",
+    "Annulus",
+    "Ball",
+    "Box",
     "FirstOrder",
+    "Free",
     "Instance",
     "Newton",
     "Problem",
@@ -35,7 +40,7 @@ if TYPE_CHECKING:
     from satsym.front.solution import Solution, solve
     from satsym.front.trajectory import simulate
     from satsym.spec import Variable
-    from satsym.symbolic import FirstOrder, Newton, Problem
+    from satsym.symbolic import Angle, Annulus, Ball, Box, FirstOrder, Free, Newton, Problem
 
 _HOMES = {
     "front.analysing": ("analyse", "lqr"),
@@ -45,7 +50,7 @@ _HOMES = {
     "front.solution": ("Solution", "solve"),
     "front.trajectory": ("simulate",),
     "spec": ("Variable",),
-    "symbolic": ("FirstOrder", "Newton", "Problem"),
+    "symbolic": ("Angle", "Annulus", "Ball", "Box", "FirstOrder", "Free", "Newton", "Problem"),
 }
 
 

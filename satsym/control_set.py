@@ -3,73 +3,120 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from satsym.arrays import Array
-from satsym.spec import ControlSetKind, ProblemSpec
+from satsym.spec import ControlPart, PartKind, ProblemSpec
 
 Row = tuple[float, ...]
 
 UNSMOOTHED = 1e-100
-"""The smoothing of a switching problem itself: none."""
+"""The smoothing of a problem itself whose controls switch or are directions: none."""
+
+Norms = Mapping[str, tuple[float, float]]
+"""By the name of a set, the least and the largest norm of its controls."""
 
 
 @dataclass(frozen=True)
 class ControlSet:
     """Which controls are admissible, and how much of a regularisation there is."""
 
-    kind: ControlSetKind | None
+    kind: PartKind | Literal["product"] | None
     """Which of the following count; ``None`` for a model without a cost, whose controls are free."""
     lower: Row = ()
     upper: Row = ()
     """Of a box: bounds in the model's order, infinite where there is none."""
     radius: float = math.inf
-    """Of a ball: the largest norm, infinite where there is none."""
+    """Of a ball or an annulus: the largest norm, infinite where there is none. Of an angle: one, or more where a
+    regularised problem is relaxed."""
     smoothing: float = 0.0
     """What half the squared controls is weighed with in the cost of a regularised problem, in the unit of the running
-    cost over that of the squared control; zero where controls do not enter the Hamiltonian affinely."""
+    cost over that of the squared control; zero where controls neither switch nor are directions."""
     fraction: float = 1.0
     """Of the weight of |u| that counts there, 0 to 1."""
+    inner: float = 0.0
+    """Of an annulus: the least norm."""
+    directed: bool = False
+    """Whether the control is a direction: it has full length always, but for that of a regularised problem."""
+    parts: tuple[tuple[tuple[int, ...], ControlSet], ...] = ()
+    """Of a product: the sets, each with the places of its controls in the model's order."""
 
     @classmethod
-    def of(cls, spec: ProblemSpec, lower: Row, upper: Row, radius: float) -> ControlSet:
+    def of(cls, spec: ProblemSpec, lower: Row, upper: Row, radius: float, norms: Norms | None = None) -> ControlSet:
         """That of a problem with these bounds, nothing regularised."""
-        return cls(spec.control_set, lower, upper, radius, UNSMOOTHED if spec.switching else 0.0)
+        smoothing = UNSMOOTHED if spec.regularising else 0.0
+        if not spec.control_parts:
+            kind = spec.control_set
+            assert kind != "product"
+            return cls(kind, lower, upper, radius, smoothing)
+
+        def one(part: ControlPart, places: tuple[int, ...]) -> ControlSet:
+            inner, outer = (norms or {}).get(part.name, (0.0, 1.0 if part.kind == "angle" else math.inf))
+            low, high = (tuple(row[i] for i in places) for row in (lower, upper))
+            return cls(part.kind, low, high, outer, 0.0, 1.0, inner, part.branch == "direction")
+
+        return cls("product", smoothing=smoothing, parts=_placed(spec, one))
 
     @classmethod
     def from_arguments(cls, spec: ProblemSpec, bounds: Sequence[Any]) -> ControlSet:
         """What generated functions were given as :attr:`arguments`, numbers or arrays."""
         m = len(spec.controls)
+        if spec.control_parts:
+            left = list(bounds)
+
+            def one(part: ControlPart, places: tuple[int, ...]) -> ControlSet:
+                own = [left.pop(0) for _ in range(part.bounds)]
+                directed = part.branch == "direction"
+                if part.kind == "box":
+                    return cls("box", tuple(own[: len(places)]), tuple(own[len(places) :]))
+                inner = own[0] if part.kind == "annulus" else 0.0
+                return cls(part.kind, radius=own[-1] if own else math.inf, inner=inner, directed=directed)
+
+            parts = _placed(spec, one)
+            return cls("product", smoothing=left[0] if left else 0.0, parts=parts)
         if spec.control_set == "ball":
             return cls("ball", radius=bounds[0])
         if spec.control_set != "box":
-            return cls(spec.control_set)
+            return cls("free" if spec.control_set else None)
         return cls("box", tuple(bounds[:m]), tuple(bounds[m : 2 * m]), math.inf, *bounds[2 * m :])
 
     @cached_property
     def arguments(self) -> Row:
         """The argument ``bounds`` of generated functions: bounds or radius, then what regularises."""
+        if self.kind == "product":
+            own = tuple(value for _, part in self.parts for value in part.arguments)
+            return own + ((self.smoothing,) if self.smoothing else ())
         if self.kind == "box":
             return self.lower + self.upper + ((self.smoothing, self.fraction) if self.smoothing else ())
-        return (self.radius,) if self.kind == "ball" else ()
+        if self.kind == "annulus":
+            return (self.inner, self.radius)
+        return (self.radius,) if self.kind in ("ball", "angle") else ()
 
     @property
     def bounded(self) -> bool:
-        """Whether any bound is finite."""
-        return any(map(math.isfinite, (*self.lower, *self.upper, self.radius)))
+        """Whether any bound is finite, and not only the length of a direction."""
+        if self.kind == "product":
+            return any(part.bounded for _, part in self.parts)
+        return not self.directed and any(map(math.isfinite, (*self.lower, *self.upper, self.radius)))
 
     def relaxed(self, by: float) -> ControlSet:
-        """With relaxed bounds: every one moved outwards, in the controls' units."""
+        """With relaxed bounds: every one moved outwards, in the controls' units; that of a direction if regularised."""
+        if self.kind == "product":
+            eased = self.smoothing > UNSMOOTHED
+            parts = tuple((at, part.relaxed(by) if eased or not part.directed else part) for at, part in self.parts)
+            return replace(self, parts=parts)
         if self.kind == "box":
             lower, upper = tuple(low - by for low in self.lower), tuple(high + by for high in self.upper)
             return replace(self, lower=lower, upper=upper)
-        return replace(self, radius=self.radius + by) if self.kind == "ball" else self
+        if self.kind == "annulus":
+            return replace(self, radius=self.radius + by, inner=max(self.inner - by, 0.0))
+        return replace(self, radius=self.radius + by) if self.kind in ("ball", "angle") else self
 
     @cached_property
     def without_bounds(self) -> ControlSet:
@@ -102,12 +149,18 @@ class ControlSet:
         u
             Controls, shape (m, M).
         """
+        if self.kind == "product":
+            found = np.array(u)
+            for at, part in self.parts:
+                found[list(at)] = part.project(u[list(at)])
+            return found
         if self.kind == "box":
             low, high = self.box
             return np.minimum(np.maximum(u, low), high)
-        if self.kind == "ball":
+        if self.kind in ("ball", "annulus"):
             norm = np.linalg.norm(u, axis=0)
-            return np.where(norm > self.radius, u * (self.radius / np.maximum(norm, 1e-300)), u)
+            within = np.where(norm > self.radius, u * (self.radius / np.maximum(norm, 1e-300)), u)
+            return np.where(norm < self.inner, u * (self.inner / np.maximum(norm, 1e-300)), within)
         return u
 
     def nearest(self) -> Callable[[Sequence[float]], Sequence[float]]:
@@ -117,6 +170,8 @@ class ControlSet:
             return lambda u: [min(max(v, low), high) for v, (low, high) in zip(u, bounds, strict=True)]
         if self.kind == "ball":
             return lambda u: [v * min(1.0, self.radius / max(math.hypot(*u), 1e-300)) for v in u]
+        if self.kind == "product":
+            return lambda u: self.project(np.array(u, dtype=float)[:, None])[:, 0].tolist()
         return lambda u: u
 
     def active(self, unbounded: Array) -> NDArray[np.int8]:
@@ -127,30 +182,86 @@ class ControlSet:
         unbounded
             What the controls would be without bounds, shape (m, M).
         """
+        if self.kind == "product":
+            found = np.zeros(unbounded.shape, np.int8)
+            for at, part in self.parts:
+                found[list(at)] = part.active(unbounded[list(at)])
+            return found
         if self.kind == "box":
             low, high = self.box
             return (unbounded > high).astype(np.int8) - (unbounded < low).astype(np.int8)
-        if self.kind == "ball":
-            outside = np.linalg.norm(unbounded, axis=0) > self.radius
-            return np.broadcast_to(outside, unbounded.shape).astype(np.int8)
+        if self.kind in ("ball", "annulus") and not self.directed:
+            norm = np.linalg.norm(unbounded, axis=0)
+            met = (norm > self.radius).astype(np.int8) - (norm < self.inner).astype(np.int8)
+            return np.broadcast_to(met, unbounded.shape).astype(np.int8)
         return np.zeros(unbounded.shape, np.int8)
 
     def excess(self, unbounded: Array) -> Array:
         """Signed distances to each bound, whose zeros are the switching times; shape (bounds, M).
 
         The rows are, for a box, control minus lower bound and control minus upper bound for each control; for a
-        ball the norm minus its limit. Bounds that are infinite have rows of infinities.
+        ball the norm minus its limit, of an annulus with its least norm before; set after set. Bounds that are infinite
+        have rows of infinities, directions none.
         """
+        if self.kind == "product":
+            rows = [part.excess(unbounded[list(at)]) for at, part in self.parts]
+            return np.concatenate([*rows, np.empty((0, unbounded.shape[1]))])
+        if self.directed:
+            return np.empty((0, unbounded.shape[1]))
         if self.kind == "box":
             return np.concatenate([unbounded - bound for bound in self.box])
         if self.kind == "ball":
             return (np.linalg.norm(unbounded, axis=0) - self.radius)[None, :]
+        if self.kind == "annulus":
+            return np.linalg.norm(unbounded, axis=0)[None, :] - np.array([[self.inner], [self.radius]])
         return np.empty((0, unbounded.shape[1]))
+
+    @cached_property
+    def limited(self) -> tuple[tuple[int, ...], ...]:
+        """For each row of :meth:`excess`, the places of the controls whose bound it is; of a product."""
+        rows: list[tuple[int, ...]] = []
+        for at, part in self.parts:
+            if part.kind == "box":
+                rows += [(i,) for i in at] * 2
+            elif part.kind in ("ball", "annulus") and not part.directed:
+                rows += [at] * len(part.arguments)
+        return tuple(rows)
+
+    @property
+    def angles(self) -> tuple[int, ...]:
+        """Places of the controls that are angles."""
+        return tuple(at[0] for at, part in self.parts if part.kind == "angle")
+
+    def apart(self, u: Array, other: Array) -> Array:
+        """Differences of controls, those of angles of the shorter way round."""
+        found = np.subtract(u, other)
+        for i in self.angles:
+            found[i] = np.remainder(found[i] + math.pi, 2.0 * math.pi) - math.pi
+        return found
+
+    def continued(self, u: Array) -> Array:
+        """Controls over time, shape (m, M), angles without jumps by a turn."""
+        found = np.array(u)
+        for i in self.angles:
+            found[i] = np.unwrap(found[i])
+        return found
 
     def violation(self, u: Array) -> float:
         """By how much controls leave the set at most; not positive where they do not."""
+        if self.kind == "product":
+            return max((part.violation(u[list(at)]) for at, part in self.parts), default=-np.inf)
         distances = self.excess(u)
         if self.kind == "box":
             m = len(u)
             distances = np.concatenate([-distances[:m], distances[m:]])
+        elif self.kind == "annulus" and len(distances):
+            distances[0] *= -1.0
         return float(distances.max(initial=-np.inf))
+
+
+def _placed(
+    spec: ProblemSpec, one: Callable[[ControlPart, tuple[int, ...]], ControlSet]
+) -> tuple[tuple[tuple[int, ...], ControlSet], ...]:
+    """The sets of a product with the places of their controls."""
+    places = [tuple(spec.control_names.index(c) for c in part.controls) for part in spec.control_parts]
+    return tuple((at, one(part, at)) for part, at in zip(spec.control_parts, places, strict=True))

@@ -29,9 +29,10 @@ _BY_NAME = re.compile(r"\bimport_module\(")
 
 
 def shipped() -> list[Path]:
-    """Derivation files that come with satsym, by name."""
+    """Derivation files that come with satsym, by name; the examples after the others."""
     folder = Path(str(files("satsym.derivations")))
-    return sorted(p for p in folder.glob(f"*{SUFFIX}") if not p.name.startswith("_"))
+    found = (sorted(place.glob(f"*{SUFFIX}")) for place in (folder, folder / "examples"))
+    return [p for paths in found for p in paths if not p.name.startswith("_")]
 
 
 def find(name_or_path: str, folder: Path | None = None) -> Path:

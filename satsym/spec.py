@@ -22,6 +22,11 @@ ControlSetKind = Literal["free", "box", "ball"]
 NAMES = "a small letter, then small letters, digits and underscores"
 """What names of models and problems are."""
 _MODEL = re.compile(r"[a-z][a-z0-9_]{0,99}\Z")
+PartKind = Literal["free", "box", "ball", "annulus", "angle"]
+Branch = Literal["quadratic", "direction"]
+"""How H is minimised over one set of controls: where H_u vanishes, or along a direction, whatever it is."""
+PRODUCT: Literal["product"] = "product"
+"""The kind of a control set that is stated set by set."""
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
 _OF_LINEAR_MODELS = ("outputs", "linear")
 _OF_VARIABLES = (
@@ -30,7 +35,7 @@ _OF_VARIABLES = (
 )
 _UNLESS_DEFAULT = (
     *(*_OF_LINEAR_MODELS, "keplerian", "switching", "coordinates", "velocities", "quantities", "balances"),
-    *("switching_curve", "conditions", "equilibria", "mode_groups"),
+    *("switching_curve", "conditions", "equilibria", "mode_groups", "control_parts"),
 )
 
 
@@ -125,6 +130,38 @@ class ModeGroup:
 
 
 @dataclass(frozen=True)
+class ControlPart:
+    """One of the sets whose product is the control set.
+
+    Attributes
+    ----------
+    name
+        As instances name it.
+    kind
+        What the controls of it obey.
+    controls
+        Their names, in order.
+    branch
+        How H is minimised over it.
+    """
+
+    name: str
+    kind: PartKind
+    controls: tuple[str, ...]
+    branch: Branch
+
+    @property
+    def bounds(self) -> int:
+        """How many numbers of the argument ``bounds`` belong to it."""
+        return {"free": 0, "box": 2 * len(self.controls), "ball": 1, "annulus": 2, "angle": 1}[self.kind]
+
+    @property
+    def normed(self) -> bool:
+        """Whether it limits a norm."""
+        return self.kind in ("ball", "annulus")
+
+
+@dataclass(frozen=True)
 class ProblemSpec:
     """Names, units and kinds of one generated model or optimal control problem.
 
@@ -160,6 +197,8 @@ class ProblemSpec:
         empty where there is no such curve in closed form.
     conditions
         What the parameters must obey besides being positive one by one.
+    control_parts
+        The sets whose product the control set is, where it was stated set by set; else empty.
     equilibria
         Of a model that is one attitude in orbit: the parameter over which its equilibria are followed; else empty.
     mode_groups
@@ -172,7 +211,7 @@ class ProblemSpec:
     states: tuple[Variable, ...]
     controls: tuple[Variable, ...]
     parameters: tuple[Variable, ...]
-    control_set: ControlSetKind | None
+    control_set: ControlSetKind | Literal["product"] | None
     has_cost: bool
     has_terminal_cost: bool
     has_reference: bool
@@ -192,6 +231,36 @@ class ProblemSpec:
     conditions: tuple[Condition, ...] = ()
     equilibria: str = ""
     mode_groups: tuple[ModeGroup, ...] = ()
+    control_parts: tuple[ControlPart, ...] = ()
+
+    @property
+    def directional(self) -> bool:
+        """Whether some controls are directions, which nothing decides where H does not depend on them."""
+        return any(part.branch == "direction" for part in self.control_parts)
+
+    @property
+    def regularising(self) -> int:
+        """How many numbers at the end of the argument ``bounds`` say what is regularised."""
+        return 2 * self.switching + self.directional
+
+    @property
+    def lower_bounds(self) -> frozenset[int]:
+        """Places in the argument ``bounds`` of numbers that are lower bounds of controls, which may be negative."""
+        if self.control_set == "box":
+            return frozenset(range(len(self.controls)))
+        found: set[int] = set()
+        at = 0
+        for part in self.control_parts:
+            if part.kind == "box":
+                found |= set(range(at, at + len(part.controls)))
+            at += part.bounds
+        return frozenset(found)
+
+    @property
+    def rings(self) -> tuple[int, ...]:
+        """Places in the argument ``bounds`` of least norms; the largest ones follow them."""
+        at = [sum(part.bounds for part in self.control_parts[:k]) for k in range(len(self.control_parts))]
+        return tuple(i for i, part in zip(at, self.control_parts, strict=True) if part.kind == "annulus")
 
     @property
     def separable(self) -> bool:
@@ -239,6 +308,7 @@ class ProblemSpec:
                 stated[key] = tuple(Variable(**entry) for entry in entries)
             stated["conditions"] = tuple(Condition(**entry) for entry in stated.get("conditions", ()))
             stated["mode_groups"] = tuple(ModeGroup(**entry) for entry in stated.get("mode_groups", ()))
+            stated["control_parts"] = tuple(ControlPart(**entry) for entry in stated.get("control_parts", ()))
             return cls(**stated)
         except (KeyError, TypeError) as error:
             raise ValueError(f"its MODEL has other fields than this version knows ({error})") from None
@@ -254,8 +324,8 @@ def names(variables: Iterable[Variable]) -> tuple[str, ...]:
     return tuple(v.symbol for v in variables)
 
 
-def _stated(variable: Variable | Condition | ModeGroup | str) -> dict[str, Any] | str:
-    """The fields of a variable, a condition or a group of modes that differ from their defaults; a name as it is."""
+def _stated(variable: Variable | Condition | ModeGroup | ControlPart | str) -> dict[str, Any] | str:
+    """The fields of a variable, a condition, a group of modes or a set that differ from their defaults; or a name."""
     if isinstance(variable, str):
         return variable
     return {f.name: value for f in fields(variable) if (value := getattr(variable, f.name)) != f.default}

@@ -13,6 +13,7 @@ from satsym.codegen.functions import Function, Symbols, functions, symbols
 from satsym.codegen.linear import linear_functions
 from satsym.symbolic import notation as n
 from satsym.symbolic.derivation import Derivation
+from satsym.symbolic.principle import product
 
 
 def all_functions(derivation: Derivation) -> list[Function]:
@@ -27,7 +28,7 @@ def extremal_functions(derivation: Derivation, s: Symbols) -> list[Function]:
     z, (rates, h) = sp.Matrix([*s.x, *s.lam]), _under_the_law(derivation, s)
     ends = _ends(derivation, len(s.x)).xreplace({n.HAMILTONIAN: h})
     unknown = sp.Matrix([*z, *s.nu, s.t])
-    smoothed = " of the regularised problem" if switching.switches(derivation) else ""
+    smoothed = " of the regularised problem" if "smoothed_law" in derivation else ""
     return [
         Function(
             "canonical",
@@ -72,9 +73,25 @@ def _under_the_law(derivation: Derivation, s: Symbols) -> tuple[sp.Matrix, sp.Ex
     if switching.switches(derivation):
         regularised = switching.regularised(derivation)
         return regularised.rates, regularised.hamiltonian
+    if product.STEP in derivation:
+        return _under_the_law_of_sets(derivation)
     law = dict(zip(s.u, derivation.rhs("control_law"), strict=True))
     rates = sp.Matrix([*derivation.rhs("first_order"), *derivation.rhs("costate_equations")])
     return rates.xreplace(law), derivation.equation("hamiltonian.H").rhs.xreplace(law)
+
+
+def _under_the_law_of_sets(derivation: Derivation) -> tuple[sp.Matrix, sp.Expr]:
+    """The same where the control set is a product of sets: of the regularised problem, where that differs."""
+    *rates, h = product.relaxed(
+        derivation,
+        [
+            *derivation.rhs("first_order"),
+            *derivation.rhs("costate_equations"),
+            derivation.equation("hamiltonian.H").rhs,
+        ],
+    )
+    law = product.regularised_law(derivation)
+    return sp.Matrix(rates).xreplace(law), (h + product.effort(derivation)).xreplace(law)
 
 
 def _ends(derivation: Derivation, states: int) -> sp.Matrix:

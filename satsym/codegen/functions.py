@@ -8,13 +8,15 @@ import sympy as sp
 
 from satsym.codegen import switching
 from satsym.spec import Variable, names
+from satsym.symbolic.algebra import gradient, tidy
 from satsym.symbolic.chain import Assignment, jacobians, parts_of
 from satsym.symbolic.derivation import Derivation, resolved
 from satsym.symbolic.kepler.central_force import inertial_state, strength_of
 from satsym.symbolic.linear.notation import matrix_symbols
 from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.notation import costate_of, given, multipliers, on_reference, target
-from satsym.symbolic.principle.control_sets import bounds
+from satsym.symbolic.principle import product
+from satsym.symbolic.principle.parts import SMOOTHING, limits_of
 from satsym.symbolic.switching.notation import REGULARISED
 
 ARGUMENTS = tuple("t x original u lam nu gain riccati state_weight control_weight p bounds final".split())
@@ -125,7 +127,9 @@ def functions(derivation: Derivation) -> list[Function]:
 def _bounds(derivation: Derivation) -> tuple[Variable, ...]:
     """What the argument ``bounds`` holds."""
     problem = derivation.problem
-    found = bounds(problem.control_set, derivation.model.controls) if problem else ()
+    found = limits_of(problem) if problem else ()
+    if "smoothed_law" in derivation and product.STEP in derivation:
+        return (*found, SMOOTHING)
     return found + (REGULARISED if switching.switches(derivation) else ())
 
 
@@ -188,24 +192,40 @@ def _switching_laws(derivation: Derivation) -> list[Function]:
 
 
 def _regular_law(derivation: Derivation) -> list[Function]:
-    h_u = [e.rhs for e in derivation.step("stationarity").equations if e.lhs == 0]
-    return [
+    controls, law = symbols_of(derivation.model.controls), derivation.rhs("control_law")
+    if product.STEP in derivation:
+        h = derivation.equation("hamiltonian.H").rhs
+        h_u, law = [tidy(g, controls) for g in gradient(h, controls)], sp.Matrix(product.written_out(derivation, law))
+    else:
+        h_u = [e.rhs for e in derivation.step("stationarity").equations if e.lhs == 0]
+    found = [
         _vector("stationarity", "H_u.", "t x u lam p", sp.Matrix(h_u)),
         _matrix(
             "control_hessian",
             "H_uu, row by row.",
             "t x u lam p",
-            sp.Matrix(h_u).jacobian(symbols_of(derivation.model.controls)),
+            sp.Matrix(h_u).jacobian(controls),
         ),
         Function(
             "control_law",
             "The controls that minimise H over the control set.",
             ("t", "x", "lam", "p", "bounds"),
-            derivation.rhs("control_law"),
+            law,
             "vector",
             names(derivation.model.controls),
         ),
     ]
+    if product.STEP in derivation and "smoothed_law" in derivation:
+        found.append(_regularised_cost(derivation))
+    return found
+
+
+def _regularised_cost(derivation: Derivation) -> Function:
+    """What the problem costs in which directions may be shorter, under its law."""
+    assert derivation.problem is not None
+    (cost,) = product.relaxed(derivation, [sp.sympify(derivation.problem.running_cost)])
+    value = (cost + product.effort(derivation)).xreplace(product.regularised_law(derivation))
+    return _scalar("regularised_cost", "Integrand of the cost of the regularised problem.", "t x lam p bounds", value)
 
 
 def _scalar(name: str, summary: str, arguments: str, value: sp.Expr) -> Function:

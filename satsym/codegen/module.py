@@ -16,10 +16,11 @@ from satsym.codegen.printers import BatchPrinter, ScalarPrinter
 from satsym.codegen.switching import switches
 from satsym.kernels.contract import TUPLES
 from satsym.kernels.digest import sealed
-from satsym.spec import Condition, ProblemSpec, Variable
+from satsym.spec import PRODUCT, Condition, ControlPart, ProblemSpec, Variable, names
 from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.kepler.central_force import strength_of
 from satsym.symbolic.model import Demand, t, variables_of
+from satsym.symbolic.principle import product
 from satsym.symbolic.switching.curve import states_of
 
 
@@ -63,7 +64,8 @@ def spec(derivation: Derivation, source: str) -> ProblemSpec:
         states=model.states,
         controls=model.controls,
         parameters=model.parameters,
-        control_set=problem.control_set if problem else None,
+        control_set=(PRODUCT if product.STEP in derivation else problem.control_set) if problem else None,
+        control_parts=_parts(derivation),
         has_cost=problem is not None,
         has_terminal_cost=bool(problem and problem.terminal_cost != 0),
         has_reference=bool(model.reference),
@@ -86,6 +88,16 @@ def spec(derivation: Derivation, source: str) -> ProblemSpec:
             Variable(e.name, derivation.notation[e.name])
             for e in (derivation.step("balance").equations if "balance" in derivation else ())
         ),
+    )
+
+
+def _parts(derivation: Derivation) -> tuple[ControlPart, ...]:
+    """The sets of a product."""
+    if product.STEP not in derivation:
+        return ()
+    return tuple(
+        ControlPart(one.part.name, one.part.kind, names(one.part.controls), one.branch)
+        for one in product.found(derivation)
     )
 
 

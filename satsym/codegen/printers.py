@@ -95,6 +95,26 @@ class ScalarPrinter(_Printer):
         s, limit = (self._print(a) for a in expr.args)
         return f"0.0 if {s} <= {limit}*{limit} else -0.5*{limit}/({s}*math.sqrt({s}))"
 
+    def _print_Stretch(self, expr: Any) -> str:
+        s, smoothing, length = (self._print(a) for a in expr.args)
+        return f"{length}/math.sqrt({s}) if {s} > {smoothing}*{length}*({smoothing}*{length}) else 1.0/{smoothing}"
+
+    def _print_StretchSlope(self, expr: Any) -> str:
+        s, smoothing, length = (self._print(a) for a in expr.args)
+        return f"-0.5*{length}/({s}*math.sqrt({s})) if {s} > {smoothing}*{length}*({smoothing}*{length}) else 0.0"
+
+    def _print_Within(self, expr: Any) -> str:
+        s, least, largest = (self._print(a) for a in expr.args)
+        root = f"math.sqrt({s})"
+        inside = f"1.0 if {s} >= {least}*{least} else {least}/{root} if {s} > 0.0 else 0.0"
+        return f"{largest}/{root} if {s} > {largest}*{largest} else {inside}"
+
+    def _print_WithinSlope(self, expr: Any) -> str:
+        s, least, largest = (self._print(a) for a in expr.args)
+        cube = f"({s}*math.sqrt({s}))"
+        inside = f"0.0 if {s} >= {least}*{least} else -0.5*{least}/{cube} if {s} > 0.0 else 0.0"
+        return f"-0.5*{largest}/{cube} if {s} > {largest}*{largest} else {inside}"
+
     def _print_Switch(self, expr: Any) -> str:
         slope, weight, lower, upper = (self._print(a) for a in expr.args)
         middle = f"0.5*({lower} + {upper})"
@@ -133,6 +153,28 @@ class BatchPrinter(_Printer):
     def _print_Shorten(self, expr: Any) -> str:
         norm_squared, limit = (self._print(a) for a in expr.args)
         return f"np.minimum(1.0, {limit}/np.sqrt(np.maximum({norm_squared}, 1e-300)))"
+
+    def _print_Stretch(self, expr: Any) -> str:
+        s, smoothing, length = (self._print(a) for a in expr.args)
+        return f"np.minimum(1.0/{smoothing}, {length}/np.sqrt(np.maximum({s}, 1e-300)))"
+
+    def _print_StretchSlope(self, expr: Any) -> str:
+        s, smoothing, length = (self._print(a) for a in expr.args)
+        slope = f"np.minimum({length}, 1e100)/np.maximum({s}*np.sqrt({s}), 1e-200)"
+        return f"-0.5*np.heaviside(np.sqrt({s}) - {smoothing}*{length}, 0.0)*{slope}"
+
+    def _print_Within(self, expr: Any) -> str:
+        s, least, largest = (self._print(a) for a in expr.args)
+        norm = f"np.sqrt(np.maximum({s}, 1e-300))"
+        # a vector without length has no direction to be lengthened in
+        some = f"(({s} + 1e-300)/(np.maximum({s}, {least}*{least}*1e-200) + 1e-300))**2.0"
+        return f"{some}*np.minimum(np.maximum(1.0, {least}/{norm}), {largest}/{norm})"
+
+    def _print_WithinSlope(self, expr: Any) -> str:
+        s, least, largest = (self._print(a) for a in expr.args)
+        far, near = f"np.heaviside({s} - {largest}*{largest}, 0.0)", f"np.heaviside({least}*{least} - {s}, 0.0)"
+        met = f"({far}*np.minimum({largest}, 1e100) + (1.0 - {far})*{near}*{least})"
+        return f"-0.5*np.heaviside({s}, 0.0)*{met}/np.maximum({s}*np.sqrt({s}), 1e-200)"
 
     def _print_Inside(self, expr: Any) -> str:
         value, lower, upper = (self._print(a) for a in expr.args)

@@ -23,6 +23,7 @@ from satsym.codegen.naming import code_of
 from satsym.kernels import Kernels, plain
 from satsym.kernels.contract import TUPLES
 from satsym.kernels.evaluation import COMPLEX_STEP
+from satsym.spec import ProblemSpec
 from satsym.symbolic.checks import DIGITS, drawn_from, moderate, numeric_along, random_number
 from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.model import variables_of
@@ -78,7 +79,7 @@ def _verify(derivation: Derivation, kernels: Kernels) -> None:
     chains = [(*constants.items(), *used(code.chain, function.outputs)) for function in found]
     exact = [numeric_along(chain, f.outputs)[0] for chain, f in zip(chains, found, strict=True)]
     rng = random.Random(derivation.name)
-    places, expected = _places(derivation, found, exact, rng)
+    places, expected = _places(derivation, kernels.spec, found, exact, rng)
     for k, function in enumerate(found):
         _same_values(derivation.name, kernels, (function, exact[k]), known, places, [each[k] for each in expected])
     names = {f.name for f in found}
@@ -90,13 +91,13 @@ def _verify(derivation: Derivation, kernels: Kernels) -> None:
 
 
 def _places(
-    derivation: Derivation, found: Sequence[Function], exact: Sequence[Exact], rng: random.Random
+    derivation: Derivation, spec: ProblemSpec, found: Sequence[Function], exact: Sequence[Exact], rng: random.Random
 ) -> tuple[list[Arguments], list[list[list[Any]]]]:
     """Random arguments at which all functions have moderate numbers, and these, function by function."""
     known = code_of(derivation).symbols
     places, expected = [], []
     for _ in range(TRIES):
-        place = _arguments(known, derivation, rng)
+        place = _arguments(known, spec, rng)
         with mp.workdps(DIGITS), suppress(ArithmeticError, ValueError):
             values = [e(_point(f, known, place)) for f, e in zip(found, exact, strict=True)]
             if all(moderate(each) and not any(map(mp.im, each)) for each in values):
@@ -115,17 +116,14 @@ def _point(function: Function, known: Symbols, place: Arguments, by: float = 0.0
     return {s: mp.mpf(float(v)) * (1 + by * (-1) ** k) for k, (s, v) in enumerate(values.items())}
 
 
-def _arguments(known: Symbols, derivation: Derivation, rng: random.Random) -> Arguments:
+def _arguments(known: Symbols, spec: ProblemSpec, rng: random.Random) -> Arguments:
     """Random arguments; bounds that are met by some controls and not by others."""
 
     def draw(symbol: Any) -> float:
         return random_number(symbol, rng)
 
     place: Arguments = {a: tuple(map(draw, known.of(a))) for a in ARGUMENTS if a != "t"}
-    if derivation.problem and derivation.problem.control_set == "box":
-        m = len(known.u)
-        lower, upper, regularised = (place["bounds"][i:k] for i, k in ((0, m), (m, 2 * m), (2 * m, None)))
-        place["bounds"] = (*(-abs(b) for b in lower), *map(abs, (*upper, *regularised)))
+    place["bounds"] = tuple(-abs(b) if i in spec.lower_bounds else abs(b) for i, b in enumerate(place["bounds"]))
     return place | {"t": draw(known.t)}
 
 

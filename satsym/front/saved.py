@@ -18,7 +18,7 @@ from satsym.solution import Simulation, Solution
 from satsym.wording import printable
 
 ASKED = (
-    *("parameters", "initial", "final", "t0", "tf", "lower", "upper", "max_norm"),
+    *("parameters", "initial", "final", "t0", "tf", "lower", "upper", "max_norm", "norms"),
     *("lqr", "classical", "limits", "deadband"),
 )
 """What of an instance decides its results; options of solvers do not."""

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from satsym.instance import files, resolve
+from satsym.instance import control, files, resolve
 from satsym.instance.options import guess, lqr, solver
 from satsym.instance.pointing import classical, deadband, driven, limits
 from satsym.instance.schema import InstanceFile, check
@@ -114,7 +115,7 @@ def _resolve(written: Written, file: InstanceFile, model: Kernels) -> Instance:
     if len(file.title) > MAX_TITLE or not file.title.isprintable():
         raise BadInput(f"title: {shown(file.title)} is not one short line; write at most {MAX_TITLE} plain characters")
     t0, tf, tf_guess = resolve.times(file.time, spec)
-    lower, upper, max_norm = resolve.bounds(file.control, spec)
+    lower, upper, norms = control.bounds(file.control, spec)
     return Instance(
         name=written.name,
         path=written.path,
@@ -128,7 +129,8 @@ def _resolve(written: Written, file: InstanceFile, model: Kernels) -> Instance:
         tf_guess=tf_guess,
         lower=lower,
         upper=upper,
-        max_norm=max_norm,
+        max_norm=norms.get(control.WHOLE, (0.0, math.inf))[1],
+        norms={name: norm for name, norm in norms.items() if name != control.WHOLE},
         solver=solver(file.solver, spec),
         lqr=lqr(file.lqr, spec),
         guess=guess(file.guess, spec),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from typing import Any, Literal
+from typing import Literal
 
 from satsym import units
 from satsym.instance.schema import TimeTable
@@ -15,7 +15,6 @@ from satsym.wording import printable, shown, suggestion
 Row = tuple[float, ...]
 REFERENCE: Literal["reference"] = "reference"
 FREE = "free"
-MAX_NORM = "max_norm"
 
 
 def quantity(value: float | str, unit: str, key: str) -> float:
@@ -119,55 +118,6 @@ def time(value: float | str, key: str, spec: ProblemSpec) -> float:
     except BadInput as error:
         raise BadInput(f"{key}: {error}") from None
     return quantity(value, unit, key)
-
-
-def bounds(table: Mapping[str, Any], spec: ProblemSpec) -> tuple[Row, Row, float]:
-    """Lower and upper bounds in the model's order and the largest norm, infinite where nothing is given."""
-    controls = spec.controls
-    lower = dict.fromkeys(spec.control_names, -math.inf)
-    upper = dict.fromkeys(spec.control_names, math.inf)
-    max_norm = math.inf
-    for name, value in table.items():
-        key = f"[control] {printable(name)}"
-        if name == MAX_NORM and spec.control_set == "ball":
-            max_norm = _max_norm(value, controls[0].unit, key)
-        elif name == MAX_NORM:
-            raise BadInput(f"{key}: {_control_set(spec)}")
-        else:
-            known([name], controls, "control", "control")
-            if spec.control_set != "box":
-                raise BadInput(f"{key}: {_control_set(spec)}")
-            unit = controls[spec.control_names.index(name)].unit
-            lower[name], upper[name] = _interval(value, unit, key)
-    return tuple(lower.values()), tuple(upper.values()), max_norm
-
-
-def _max_norm(value: Any, unit: str, key: str) -> float:
-    if isinstance(value, tuple):
-        raise BadInput(f"{key}: got a list of {len(value)}; write one positive number")
-    number = quantity(value, unit, key)
-    if number <= 0:
-        raise BadInput(f"{key}: {shown(value)} leaves no control; write a positive number")
-    return number
-
-
-def _interval(value: Any, unit: str, key: str) -> tuple[float, float]:
-    if not isinstance(value, tuple):
-        raise BadInput(f"{key}: got {shown(value)}; write both bounds, such as [-0.2, 0.2]")
-    low, high = (quantity(bound, unit, key) for bound in value)
-    if low > high:
-        raise BadInput(f"{key}: the lower bound {shown(value[0])} is above the upper, {shown(value[1])}; swap them")
-    return low, high
-
-
-def _control_set(spec: ProblemSpec) -> str:
-    """What the model's kind of control set takes."""
-    return {
-        "box": "the model bounds its controls one by one; write u = [lower, upper] for each",
-        "ball": f"the model bounds the norm of its controls; write {MAX_NORM} = a number",
-        "free": "the model's controls are free; remove this bound",
-        None: "the model has no cost, hence no control set; remove this bound",
-    }[spec.control_set]
 
 
 def _wanted(variable: Variable) -> str:

@@ -23,7 +23,7 @@ Quantity = Annotated[float | str, Meta(description='a number, or text with a uni
 FinalValue = Annotated[float | str, Meta(description='a number, text with a unit such as "5 km", or "reference"')]
 FinalTime = Annotated[float | str, Meta(description='a number, text with a unit such as "1 day", or "free"')]
 Bound = Annotated[
-    float | str | tuple[float | str, float | str],
+    float | str | tuple[float | str, float | str] | dict[str, float | str],
     Meta(description="the lower and the upper bound, such as [-0.2, 0.2]; or max_norm, one number"),
 ]
 Matrix = Annotated[

@@ -130,6 +130,8 @@ class Instance:
         Error of the position that a switching feedback allows, if it is stated.
     driven
         A control that other instances have worked out, if there is one.
+    norms
+        Of a product of control sets: the least and the largest norm, by the name of the set.
     """
 
     name: str
@@ -152,6 +154,7 @@ class Instance:
     limits: Mapping[str, float] = field(default_factory=dict)
     deadband: float | None = None
     driven: DrivenOptions | None = None
+    norms: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     @property
     def boundary_type(self) -> int:
@@ -168,4 +171,4 @@ class Instance:
         """The admissible controls."""
         from satsym.control_set import ControlSet  # here, for it loads numpy, which listing instances does not need
 
-        return ControlSet.of(self.model.spec, self.lower, self.upper, self.max_norm)
+        return ControlSet.of(self.model.spec, self.lower, self.upper, self.max_norm, self.norms)

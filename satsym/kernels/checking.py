@@ -16,7 +16,7 @@ import msgspec
 
 from satsym.kernels.bodies import Body, Unexpected, refuse, text_of
 from satsym.kernels.contract import BATCH, LINEAR, Signature, loops, missing, pointwise, sizes
-from satsym.spec import ProblemSpec
+from satsym.spec import PRODUCT, ProblemSpec
 
 _IMPORTS = ("import math", "import numpy as np")
 _LARGEST = 10**6
@@ -121,6 +121,11 @@ def _fault(spec: ProblemSpec) -> str:
         return "no states"
     if spec.switching and spec.control_set != "box":
         return "controls that switch, and no box for them"
+    if (spec.control_set == PRODUCT) != bool(spec.control_parts):
+        return "a product of control sets without them, or the reverse"
+    in_sets = sorted(c for part in spec.control_parts for c in part.controls)
+    if spec.control_parts and sorted(spec.control_names) != in_sets:
+        return "control sets that are not of its controls"
     halves = (*spec.coordinates, *spec.velocities)
     if halves and (len(spec.coordinates) != len(spec.velocities) or sorted(halves) != sorted(spec.state_names)):
         return "coordinates and velocities that are not its states"

@@ -104,8 +104,8 @@ def random_places(kernels: Kernels, seed: int = SEED) -> dict[str, Any]:
         return np.array(rows).reshape(count, PLACES)
 
     signs = {"x": _positive(spec.states), "original": {}, "p": _positive(spec.parameters)}
-    m, b = counts["m"], counts["b"]
-    signs["bounds"] = {i: -1.0 if spec.control_set == "box" and i < m else 1.0 for i in range(b)}
+    b = counts["b"]
+    signs["bounds"] = {i: -1.0 if i in spec.lower_bounds else 1.0 for i in range(b)}
     found: dict[str, Any] = {"t": drawn(1, {})[0]}
     needed = {"x", "u", "lam"}.union(*(signature.arguments for signature in pointwise(spec).values()))
     for name, letters in GROUPS.items():
@@ -115,8 +115,10 @@ def random_places(kernels: Kernels, seed: int = SEED) -> dict[str, Any]:
         if name == "p":
             table = _about_defaults(table, spec.parameters)
         if name in ("lam", "bounds"):  # so that some bounds hold nearly every control, and some hold none
-            varied = table[: b - 2 * spec.switching] if name == "bounds" else table
+            varied = table[: b - spec.regularising] if name == "bounds" else table
             varied *= 10.0 ** np.array(rng.sample([-1.5 + 2.0 * k / PLACES for k in range(PLACES)], PLACES))
+        for i in spec.rings if name == "bounds" else ():
+            table[i : i + 2] = np.sort(table[i : i + 2], axis=0)
         found[name] = tuple(table) if name in TUPLES else table
     if spec.has_cost and spec.control_set == "box" and not spec.switching:
         found["bounds"] = about_the_law(kernels, found)

@@ -13,6 +13,7 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.control_set import ControlSet
+from satsym.kernels.directions import effort, of_sets, outside_ball, outside_box, relaxed
 from satsym.kernels.evaluation import FAINT, Evaluation, size
 from satsym.kernels.relations import Relation, derivative
 
@@ -45,47 +46,41 @@ def _of_hamiltonian(of: Evaluation) -> Iterator[Relation]:
 def _of_regular_law(of: Evaluation) -> Iterator[Relation]:
     yield from derivative(of, "stationarity", "hamiltonian", ("u",))
     yield from derivative(of, "control_hessian", "stationarity", ("u",))
+    if of.kernels.spec.control_parts:
+        yield from of_sets(of)
+        return
     law = of("control_law")
     slope = of.slope("hamiltonian", "u", u=law)
     terms = np.abs(of.slope("hamiltonian", "u", u=np.zeros_like(law))) + np.abs(slope)
     limits = ControlSet.from_arguments(of.kernels.spec, [np.asarray(b) for b in of.at["bounds"]])
     if limits.kind == "box":
         low, high = (np.array(np.broadcast_arrays(*half, law[0])[:-1]) for half in (limits.lower, limits.upper))
-        left = _outside_box(of, law, slope, low, high)
+        curved = np.asarray(np.einsum("iik->ik", of("control_hessian", u=law)) > 0.0)
+        left = outside_box(slope, law, low, high, curved)
         size_of_law = size(law)
         yield Relation("control_law", "within its box", law, np.minimum(np.maximum(law, low), high), size_of_law)
     elif limits.kind == "ball":
         norm = np.sqrt((law * law).sum(axis=0))
-        left = _outside_ball(slope, law, norm, np.asarray(limits.radius))
+        left = outside_ball(slope, law, norm, np.asarray(limits.radius))
         yield Relation("control_law", "within its ball", norm, np.minimum(norm, np.asarray(limits.radius)))
     else:
         left = slope
     yield Relation("control_law", "H is minimal there", left, np.zeros_like(left), terms)
 
 
-def _outside_box(of: Evaluation, law: Array, slope: Array, low: Array, high: Array) -> Array:
-    """H_u but for what a bound that is met may hold; which sign that has where H_uu says which way is down."""
-    curved = np.asarray(np.einsum("iik->ik", of("control_hessian", u=law)) > 0.0)
-    held = np.where(law <= low, np.minimum(slope, 0.0), np.where(law >= high, np.maximum(slope, 0.0), slope))
-    free = np.where((law <= low) | (law >= high), 0.0, slope)
-    return np.asarray(np.where(low == high, 0.0, np.where(curved, held, free)))
-
-
-def _outside_ball(slope: Array, law: Array, norm: Array, limit: Array) -> Array:
-    """H_u but for a part that points from a control at the limit straight into the ball."""
-    outward = law / np.where(norm > 0.0, norm, 1.0)
-    along = (slope * outward).sum(axis=0)
-    at_limit = norm >= limit * (1.0 - 1e-12)
-    return np.asarray(slope - np.where(at_limit, np.minimum(along, 0.0), 0.0) * outward)
-
-
 def _of_canonical(of: Evaluation, control: Array, surplus: Array) -> Iterator[Relation]:
     """The rates of states and costates with the law in them, and what is derived from these."""
-    expected = np.concatenate([of("dynamics", u=control), of("costate_rate", u=control) + surplus])
+    rates = (_under_law(of, name, control) for name in ("dynamics", "costate_rate"))
+    expected = np.concatenate([next(rates), next(rates) + surplus])
     terms = sum(np.abs(of.slope("canonical", name) * of.at[name]).sum(axis=-2) for name in ("x", "lam"))
     yield Relation("canonical", "rates of states and costates under the law", of("canonical"), expected, FAINT * terms)
     yield from derivative(of, "canonical_jacobian", "canonical", ("x", "lam"))
     yield from derivative(of, "canonical_drift", "canonical", ("t",))
+
+
+def _under_law(of: Evaluation, name: str, control: Array) -> Array:
+    """A function of the controls under the law; of the regularised problem, where directions may be shorter."""
+    return relaxed(of, name) if of.kernels.spec.directional else of(name, u=control)
 
 
 def _of_ends(of: Evaluation, control: Array) -> Iterator[Relation]:
@@ -103,7 +98,7 @@ def _of_ends(of: Evaluation, control: Array) -> Iterator[Relation]:
     ends = given * (x - target) + on_reference * (x - curve) + (1.0 - given - on_reference) * (lam - slope)
     terms = np.abs(given * x) + np.abs(on_reference * x) + np.abs(lam) + np.abs(slope)
     yield Relation("boundary", "the end, or transversality, of each state", found[:n], ends, FAINT * terms)
-    h = of("hamiltonian", u=control) + _smoothing(of, control)
+    h = _under_law(of, "hamiltonian", control) + _smoothing(of, control)
     parts = [h, of.slope("terminal_cost", "t")[0], *(weights * by_time[:, 0]), *((slope - lam) * on_reference * pace)]
     size_of_parts = np.sum(np.abs(parts), axis=0)
     yield Relation(
@@ -114,6 +109,8 @@ def _of_ends(of: Evaluation, control: Array) -> Iterator[Relation]:
 
 def _smoothing(of: Evaluation, control: Array) -> Array | float:
     """What the companion's Hamiltonian has besides, where there is one."""
+    if of.kernels.spec.directional:
+        return effort(of)
     if not of.kernels.spec.switching:
         return 0.0
     return extra_cost(of, control)

@@ -195,4 +195,8 @@ def write(rendered: Mapping[str, str], folder: Path) -> list[Path]:
 
 def source_of(path: Path) -> str:
     """How a generated file names its source: relative to the project where it is part of it, else by name."""
-    return f"{path.parent.name}/{path.name}" if path.parent.name == "derivations" else path.name
+    place = path.parent
+    if place.name == "derivations":
+        return f"{place.name}/{path.name}"
+    inside = place.name == "examples" and place.parent.name == "derivations"
+    return f"{place.parent.name}/{place.name}/{path.name}" if inside else path.name

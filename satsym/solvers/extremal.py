@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.control_set import ControlSet
 from satsym.instance import Instance
 from satsym.solution import Iteration, Progress, Solution
 from satsym.solvers import revolutions
@@ -15,6 +16,7 @@ from satsym.solvers.collocation.continuation import by_bound
 from satsym.solvers.collocation.curve import Curve
 from satsym.solvers.collocation.extremal import Extremal
 from satsym.solvers.collocation.problem import Scale, TwoPoint
+from satsym.solvers.control.slopes import continued
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.iteration import Limits, watched
 from satsym.solvers.revolutions import TURN, Best
@@ -83,6 +85,8 @@ def _solution(
         message = f"more turns are always cheaper: the last three numbers cost {costs}; fix the final time"
         status = Status.NO_MINIMISER
     u = problem.control(tau, scaled, path.theta)
+    if instance.model.spec.directional:
+        u = continued(instance, instance.t0 + elapsed * tau, z[:n], z[n:], u)
     if status in (Status.INFEASIBLE, Status.NO_MINIMISER, Status.NON_FINITE):
         z, u = np.full_like(z, np.nan), np.full_like(u, np.nan)  # what was tried on the way is no answer
     met = by_bound(problem, path) if status.answered else []
@@ -96,14 +100,20 @@ def _solution(
         x=z[:n],
         u=u,
         lam=z[n:],
-        switching_times=tuple(_times(met, i, m, instance.t0, elapsed) for i in range(m)),
+        switching_times=tuple(_times(_own(met, i, instance.control_set), instance.t0, elapsed) for i in range(m)),
         iterations=extremal.iterations,
         history=history,
         wall_s=time.perf_counter() - began,
     )
 
 
-def _times(met: list[Array], control: int, controls: int, t0: float, elapsed: float) -> tuple[float, ...]:
-    """Switching times of a control; on a ball the bound is everyone's."""
-    rows = met[control::controls] if len(met) > 1 else met
+def _own(met: list[Array], control: int, within: ControlSet) -> list[Array]:
+    """Of the times at which each bound is met, those of a control's bounds; on a ball the bound is everyone's."""
+    if within.parts:
+        return [row for row, places in zip(met, within.limited, strict=False) if control in places]
+    return met[control :: len(within.lower)] if within.kind == "box" else met
+
+
+def _times(rows: list[Array], t0: float, elapsed: float) -> tuple[float, ...]:
+    """Switching times in the model's unit, in order."""
     return tuple(sorted(t0 + elapsed * float(tau) for row in rows for tau in row))

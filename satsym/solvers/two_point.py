@@ -10,6 +10,7 @@ import numpy as np
 from satsym.instance import Instance
 from satsym.solution import Progress, Solution
 from satsym.solvers.cold_start import paths
+from satsym.solvers.cold_start.directions import directed
 from satsym.solvers.cold_start.durations import free_duration
 from satsym.solvers.cold_start.first_minimum import cold_start
 from satsym.solvers.cold_start.origin import Origin, Start
@@ -78,7 +79,12 @@ def from_cold_start(instance: Instance, limits: Limits, effort: bool, accurate: 
     effort
         Whether free durations are looked for with great effort.
     """
-    if instance.tf is not None:
+    if instance.model.spec.directional:
+        led = directed(instance, limits, effort)
+        if isinstance(led, Extremal):
+            return led
+        (problem, start), duration = led, ""
+    elif instance.tf is not None:
         problem = two_point(instance, instance.tf - instance.t0)
         start, duration = guessed(problem, limits) or cold_start(problem, limits), ""
         if not start.found.minimum and problem.control_set.bounded:
@@ -211,7 +217,7 @@ def within(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
         steps += bounded.iterations
         if not bounded.solved:
             return unfinished(problem, refined.curve, bounded.message, steps, limits)
-        refined = refine(problem, bounded.curve, tolerance, keep_nodes=True)
+        refined = refine(problem, bounded.curve, tolerance, keep_nodes=problem.control_set.bounded)
         steps += refined.iterations
         limits.tell(refined.cost * problem.scale.cost, refined.error)
     if not refined.solved:

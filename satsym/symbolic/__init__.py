@@ -16,11 +16,16 @@ from satsym.symbolic.kinds.scaled import Scaled
 from satsym.symbolic.model import Definition, Demand, Model, Output, Problem, symbols_of, t
 from satsym.symbolic.notation import rate_of
 from satsym.symbolic.pipeline import derive
+from satsym.symbolic.sets import Angle, Annulus, Ball, Box, Free
 
 __all__ = [
     "CLOCK",
     "COMMAND",
     "AboutRest",
+    "Angle",
+    "Annulus",
+    "Ball",
+    "Box",
     "Check",
     "ClosedLoop",
     "Conclusion",
@@ -30,6 +35,7 @@ __all__ = [
     "DerivationError",
     "Equation",
     "FirstOrder",
+    "Free",
     "Gyrostat",
     "Linearised",
     "ModeGroup",

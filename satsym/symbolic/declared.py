@@ -13,8 +13,8 @@ from satsym.symbolic.algebra import constants_of
 from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.linear import notation as linear_notation
 from satsym.symbolic.model import Model, Problem, symbols_of, variables_of
-from satsym.symbolic.principle import control_sets
 from satsym.symbolic.principle import notation as principle_notation
+from satsym.symbolic.principle.parts import limits_of
 from satsym.symbolic.switching import notation as switching_notation
 from satsym.wording import shown
 
@@ -41,6 +41,8 @@ def refuse_misfits(model: Model, problem: Problem | None) -> None:
     if problem and problem.control_set not in get_args(ControlSetKind):
         kinds = " or ".join(f'"{kind}"' for kind in get_args(ControlSetKind))
         raise DerivationError(f"{problem.name}: control_set: got {shown(problem.control_set)}; write {kinds}")
+    if problem and problem.control_sets and problem.control_set != "free":
+        raise DerivationError(f"{problem.name}: control_set: the control sets are stated one by one; leave it out")
     if problem and not model.controls:
         raise DerivationError(f"{problem.name}: the model has no controls, so there is nothing to optimise")
 
@@ -99,7 +101,7 @@ def begin(model: Model, problem: Problem | None) -> Derivation:
     """
     variables = list(variables_of(model))
     if problem:
-        variables += control_sets.bounds(problem.control_set, model.controls)
+        variables += limits_of(problem)
     notation = {s.name: latex for s, latex in n.FIXED.items()}
     results = {} if problem else linear_notation.results(model)
     for state, own in zip(symbols_of(model.states), (v.latex for v in model.states), strict=True):
@@ -117,6 +119,8 @@ def begin(model: Model, problem: Problem | None) -> Derivation:
         notation[multiplier.name] = rf"\nu_{{{k}}}"
         notation[n.residual_of(multiplier).name] = rf"B_{{\psi_{{{k}}}}}"
     notation |= switching_notation.names(problem) if problem else {}
+    if problem and principle_notation.product_stated(problem):
+        notation |= principle_notation.product_names(problem)
     for control in model.controls:
         notation[f"{control.symbol}_star"] = rf"{control.latex}^*"
         notation[f"{control.symbol}_hat"] = rf"\hat {control.latex}"

@@ -68,9 +68,12 @@ def dimension_of(expression: Any, known: Known) -> Dimension | None:
         for comparison in e.atoms(sp.core.relational.Relational):
             _common(comparison.args, known)
         return _common([branch for branch, _ in e.args], known)
-    if isinstance(e, minimisers.Shorten):
-        norm_squared, limit = e.args
-        _common((norm_squared, limit**2), known)
+    if isinstance(e, minimisers.Stretch):
+        norm_squared, _, length = (dimension_of(a, known) for a in e.args)
+        return over(length, power_of(norm_squared, sp.Rational(1, 2)))
+    if isinstance(e, minimisers.Shorten | minimisers.Within):
+        norm_squared, *limits = e.args
+        _common((norm_squared, *(limit**2 for limit in limits)), known)
     elif isinstance(e, sp.atan2):
         _common(e.args, known)
     elif not isinstance(e, sp.sign):

@@ -26,8 +26,8 @@ from satsym.symbolic.dimension_algebra import (
 )
 from satsym.symbolic.linear import notation as linear_dimensions
 from satsym.symbolic.model import Problem, Requirement, symbols_of, variables_of
-from satsym.symbolic.principle import control_sets
 from satsym.symbolic.principle import notation as pn
+from satsym.symbolic.principle.parts import limits_of
 from satsym.symbolic.switching import notation as switching_dimensions
 
 AGREEMENT = "dimensions agree"
@@ -133,6 +133,7 @@ def _enter_cost(known: dict[str, Dimension | None], problem: Problem, require: R
     for control in symbols_of(problem.model.controls):
         known[n.answer_of(control).name] = known[pn.peak_of(control).name] = known[control.name]
     switching_dimensions.declare(known, problem, running)
+    pn.declare_product(known, problem, running)
     for a in problem.model.controls:
         for b in problem.model.controls:
             known[f"H_{a.symbol}_{b.symbol}"] = over(over(running, known[a.symbol]), known[b.symbol])
@@ -143,7 +144,7 @@ def _of_variables(derivation: Derivation) -> dict[str, Dimension | None]:
     model, problem = derivation.model, derivation.problem
     variables = list(variables_of(model))
     if problem:
-        variables += control_sets.bounds(problem.control_set, model.controls)
+        variables += limits_of(problem)
     try:
         known: dict[str, Dimension | None] = {v.symbol: of_unit(v.unit) for v in variables}
     except BadInput as error:

@@ -53,6 +53,45 @@ class ShortenSlope(sp.Function):
     nargs = 2
 
 
+class Stretch(sp.Function):
+    """``Stretch(norm_squared, smoothing, length)``: the factor that gives a vector a length; at most 1 / smoothing.
+
+    Of ``slope . u + smoothing / 2 * u . u`` on a ball, minus the slope, multiplied by it, is the minimiser.
+    """
+
+    nargs = 3
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """By the square of the norm. Smoothing and length are constants."""
+        if argindex != 1:
+            raise sp.ArgumentIndexError(self, argindex)
+        return StretchSlope(*self.args)
+
+
+class StretchSlope(sp.Function):
+    """``StretchSlope(norm_squared, smoothing, length)``: the derivative of :class:`Stretch` by its first argument."""
+
+    nargs = 3
+
+
+class Within(sp.Function):
+    """``Within(norm_squared, least, largest)``: the factor that brings a vector into an annulus."""
+
+    nargs = 3
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """By the square of the norm. The limits are constants."""
+        if argindex != 1:
+            raise sp.ArgumentIndexError(self, argindex)
+        return WithinSlope(*self.args)
+
+
+class WithinSlope(sp.Function):
+    """``WithinSlope(norm_squared, least, largest)``: the derivative of :class:`Within` by its first argument."""
+
+    nargs = 3
+
+
 class Switch(sp.Function):
     """``Switch(slope, weight, lower, upper)``: the minimiser of ``slope * u + weight * |u|`` on an interval.
 
@@ -97,7 +136,7 @@ class Side(sp.Function):
         return sp.Integer(0)
 
 
-MINIMISERS = (Clip, Inside, Shorten, ShortenSlope, Switch, Shrink, Side)
+MINIMISERS = (Clip, Inside, Shorten, ShortenSlope, Stretch, StretchSlope, Within, WithinSlope, Switch, Shrink, Side)
 
 
 def by_signs(expression: sp.Expr) -> sp.Expr:
@@ -133,6 +172,28 @@ def _shorten_slope(norm_squared: Any, limit: Any) -> Any:
     return mp.mpf(0) if norm_squared <= limit**2 else -limit / (2 * norm_squared * mp.sqrt(norm_squared))
 
 
+def _stretch(norm_squared: Any, smoothing: Any, length: Any) -> Any:
+    return 1 / smoothing if norm_squared <= (smoothing * length) ** 2 else length / mp.sqrt(norm_squared)
+
+
+def _stretch_slope(norm_squared: Any, smoothing: Any, length: Any) -> Any:
+    inside = norm_squared <= (smoothing * length) ** 2
+    return mp.mpf(0) if inside else -length / (2 * norm_squared * mp.sqrt(norm_squared))
+
+
+def _within(norm_squared: Any, least: Any, largest: Any) -> Any:
+    norm = mp.sqrt(norm_squared)
+    if not norm:
+        return mp.mpf(not least)
+    return largest / norm if norm > largest else least / norm if norm < least else mp.mpf(1)
+
+
+def _within_slope(norm_squared: Any, least: Any, largest: Any) -> Any:
+    norm = mp.sqrt(norm_squared)
+    met = largest if norm > largest else least if norm < least else 0
+    return -met / (2 * norm_squared * norm)
+
+
 def _switch(slope: Any, weight: Any, lower: Any, upper: Any) -> Any:
     if slope > weight:
         return lower
@@ -155,6 +216,10 @@ MPMATH_FUNCTIONS = {
     "Inside": _inside,
     "Shorten": _shorten,
     "ShortenSlope": _shorten_slope,
+    "Stretch": _stretch,
+    "StretchSlope": _stretch_slope,
+    "Within": _within,
+    "WithinSlope": _within_slope,
     "Switch": _switch,
     "Shrink": _shrink,
     "Side": _side,

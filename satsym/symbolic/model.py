@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias
 import sympy as sp
 
 from satsym.spec import ControlSetKind, ModeGroup, Variable
+from satsym.symbolic.sets import AdmissibleSet
 
 if TYPE_CHECKING:
     from satsym.symbolic.derivation import Derivation, Step
@@ -269,6 +270,9 @@ class Problem:
     control_set
         ``"free"``, ``"box"`` (each control between its bounds) or ``"ball"`` (a bound on the norm); the
         numbers belong to the instance.
+    control_sets
+        Instead of it, the sets whose product the control set is, by name: ``{"thrust": Ball("ux", "uy"), "steering":
+        Angle("beta")}``. Each control is in one of them.
     convention
         In which of the two conventions of Pontryagin's principle the derivation is printed: ``"minimum"`` or
         ``"maximum"``. The controls are the same, the costates change their sign; kernels always have those of
@@ -282,6 +286,7 @@ class Problem:
     terminal_cost: sp.Expr = sp.Integer(0)
     terminal_constraints: tuple[sp.Expr, ...] = ()
     control_set: ControlSetKind = "free"
+    control_sets: Mapping[str, AdmissibleSet] = field(default_factory=dict)
     convention: Convention = "minimum"
 
 

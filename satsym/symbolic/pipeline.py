@@ -17,7 +17,7 @@ from satsym.symbolic.derivation import Derivation, DerivationError, resolved
 from satsym.symbolic.linear import regulator, stability, structure
 from satsym.symbolic.model import MaybeStep, Model, Problem, variables_of
 from satsym.symbolic.motion import steps
-from satsym.symbolic.principle import effort, pontryagin, transversality
+from satsym.symbolic.principle import effort, pontryagin, product, transversality
 from satsym.symbolic.switching import curve as switching_curve
 from satsym.symbolic.switching import functions as switching
 from satsym.symbolic.switching import singular
@@ -37,6 +37,19 @@ MINIMUM_PRINCIPLE: tuple[MaybeStep, ...] = (
     effort.exact_differential,
     effort.minimum_effort,
 )
+
+PRODUCT_PRINCIPLE: tuple[MaybeStep, ...] = (
+    pontryagin.hamiltonian,
+    product.control_parts,
+    product.control_law,
+    product.smoothed_law,
+    product.minimised_hamiltonian,
+    pontryagin.state_equations,
+    pontryagin.costate_equations,
+    pontryagin.boundary_conditions,
+    transversality.boundary_residual,
+)
+"""Where the control set is a product of sets, or H is linear in a vector of controls."""
 
 SWITCHING_PRINCIPLE: tuple[MaybeStep, ...] = (
     pontryagin.hamiltonian,
@@ -173,6 +186,8 @@ def _principle(motion_derived: Derivation) -> tuple[MaybeStep, ...]:
     """What follows from the motion: the principle that suits the cost, or linear theory where there is none."""
     if motion_derived.problem is None:
         return LINEAR
+    if product.applies(motion_derived):
+        return PRODUCT_PRINCIPLE
     return SWITCHING_PRINCIPLE if switching.applies(motion_derived) else MINIMUM_PRINCIPLE
 
 

@@ -73,7 +73,7 @@ def _checked_in(paths: Sequence[Path]) -> Path:
     if home is None:
         raise click.UsageError("--out DIR is needed, because this satsym is no checkout.")
     for path in paths:
-        if path.resolve().parent != home / "derivations":
+        if path.resolve().parent not in (home / "derivations", home / "derivations" / "examples"):
             raise click.UsageError(f"--out DIR is needed, because {path} is not in {home / 'derivations'}.")
     refuse_other_versions()
     return home / "generated"

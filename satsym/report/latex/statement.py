@@ -9,13 +9,14 @@ from satsym.report.latex import tex
 from satsym.report.latex.equations import LINE, Row, array, display
 from satsym.report.latex.width import width
 from satsym.report.texts import Texts
-from satsym.spec import Variable
+from satsym.spec import PRODUCT, Variable
 from satsym.symbolic import Derivation
 from satsym.symbolic import notation as n
 from satsym.symbolic.latex.terms import Term, joined, plain
 from satsym.symbolic.latex.typeset import Typesetter
 from satsym.symbolic.model import Line
-from satsym.symbolic.principle.control_sets import bounds
+from satsym.symbolic.principle.parts import Part as ControlPart
+from satsym.symbolic.principle.parts import parts_of
 
 
 @dataclass(frozen=True)
@@ -71,16 +72,9 @@ def _control_set(derivation: Derivation, texts: Texts, typeset: Typesetter) -> P
     problem = derivation.problem
     if problem is None:
         return Part()
-    controls = [v.latex for v in problem.model.controls]
-    limits = [v.latex for v in bounds(problem.control_set, problem.model.controls)]
-    if problem.control_set == "free":
+    shown = [line for part in parts_of(problem) for line in _limited(part)]
+    if not shown:
         return Part((texts.get("statement", "free"),))
-    if problem.control_set == "ball":
-        squares = " + ".join(f"({c})^2" if "^" in c else f"{c}^2" for c in controls)
-        shown = [rf"\sqrt{{{squares}}} \le {limits[0]}"]
-    else:
-        lower, upper = limits[: len(controls)], limits[len(controls) :]
-        shown = [rf"{low} \le {u} \le {high}" for low, u, high in zip(lower, controls, upper, strict=True)]
     in_a_line = r", \qquad ".join(shown)
     body = (
         in_a_line
@@ -89,7 +83,21 @@ def _control_set(derivation: Derivation, texts: Texts, typeset: Typesetter) -> P
     )
     address = tex.label(_address(derivation, "control_set"))
     equation = f"\\begin{{equation}}\n  {body} \\label{{{address}}}\n\\end{{equation}}"
-    return Part((f"{texts.get('statement', problem.control_set)}\n{equation}",))
+    kind = PRODUCT if problem.control_sets else problem.control_set
+    return Part((f"{texts.get('statement', kind)}\n{equation}",))
+
+
+def _limited(part: ControlPart) -> list[str]:
+    """What the controls of one set obey."""
+    controls, limits = [v.latex for v in part.controls], [v.latex for v in part.limits]
+    if part.kind == "box":
+        lower, upper = limits[: len(controls)], limits[len(controls) :]
+        return [rf"{low} \le {u} \le {high}" for low, u, high in zip(lower, controls, upper, strict=True)]
+    if part.kind in ("ball", "annulus"):
+        squares = " + ".join(f"({c})^2" if "^" in c else f"{c}^2" for c in controls)
+        least = rf"{limits[0]} \le " if part.kind == "annulus" else ""
+        return [rf"{least}\sqrt{{{squares}}} \le {limits[-1]}"]
+    return []
 
 
 def _constraints(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:

@@ -15,6 +15,7 @@ import numpy as np
 
 from satsym.instance import Guess, Instance
 from satsym.solution import Competitors, Kind, Solution
+from satsym.solvers.certificate.directed import led
 from satsym.solvers.certificate.flow import products, unit_sizes
 from satsym.solvers.iteration import Limits
 from satsym.solvers.revolutions import shifted
@@ -154,7 +155,7 @@ def _tried(solution: Solution, kind: Kind, attempts: list[Search], deadline: flo
     if not attempts:
         return None
     found: list[Competitor] = []
-    tried, interrupted = 0, False
+    count, interrupted = 0, False
     for attempt in attempts:
         limits = Limits(200, deadline, work=WORK)
         with np.errstate(all="ignore"):
@@ -162,13 +163,13 @@ def _tried(solution: Solution, kind: Kind, attempts: list[Search], deadline: flo
         interrupted = limits.late
         if interrupted:
             break
-        tried += 1
+        count += 1
         if competitor is not None:
             found.append(competitor)
     cheapest = min(found, key=lambda one: one.cost, default=None)
     cost = cheapest.cost if cheapest else float("nan")
     dearer = margin(cost, solution.objective, coarse=SAME, hidden=hidden(solution))
-    return Compared(Competitors(kind, tried, len(found), cost), dearer, cheapest, interrupted)
+    return Compared(Competitors(kind, count, len(found), cost), dearer, cheapest, interrupted)
 
 
 def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Search]]]:
@@ -185,6 +186,11 @@ def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Search
     def leading(paths: Any, softness: float = 1.0) -> list[Search]:
         return [_from_path(problem, path, softness, cost) for path in paths]
 
+    if instance.model.spec.directional:
+        bent = tuple(BENT[k % len(BENT)] for k in range(SEEDS))
+        for kind, searches in led(instance, lasting, rng, bent, SHORTER_AND_LONGER):
+            yield kind, [_rough(search, cost) for search in searches]
+        return
     yield Kind.STARTS, leading(_bent(problem, rng))
     if instance.control_set.bounded:
         starts = zip(_bent(problem, rng), SOFT * SEEDS, strict=False)
@@ -207,6 +213,16 @@ def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Search
         sooner = [fraction * lasting for fraction in EARLIER]
         early = [two_point(replace(fixed, tf=instance.t0 + t, final=final), t) for t in sooner]
         yield Kind.EARLIER, [_cold(one, cost) for one in early]
+
+
+def _rough(search: Callable[[Limits], tuple[TwoPoint, Curve] | None], cost: float) -> Search:
+    """What a search finds, made accurate."""
+
+    def attempt(limits: Limits) -> Competitor | None:
+        found = search(limits)
+        return None if found is None else _accurate(*found, cost)
+
+    return attempt
 
 
 def _from_path(problem: TwoPoint, path: Callable[[Any], Any], softness: float, cost: float) -> Search:

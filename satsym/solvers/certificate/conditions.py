@@ -14,6 +14,7 @@ from satsym.solvers.certificate.flow import FAINT, NEGLIGIBLE, Flow, products, t
 from satsym.solvers.certificate.segments import Segments, values
 from satsym.solvers.collocation.elimination import Matching
 from satsym.solvers.collocation.scaling import final_argument
+from satsym.solvers.control.slopes import undecided
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import leap
 
@@ -100,13 +101,18 @@ def off_cost(solution: Solution, flow: Flow) -> float:
 
 
 def stationarity(solution: Solution) -> float:
-    """Largest difference of the control from the one that minimises H, relative to the largest control."""
+    """Largest difference of the control from the one that minimises H, relative to the largest control.
+
+    Where nothing decides a direction every one minimises.
+    """
     instance = solution.instance
     law = instance.model.control_law_batch(
         solution.times, solution.x, solution.lam, instance.parameters, instance.control_set.arguments
     )
     size = max(float(np.abs(solution.u).max()), float(np.abs(law).max()))
-    return float(np.abs(law - solution.u).max() / size) if size > 0.0 else 0.0
+    apart = np.abs(instance.control_set.apart(law, solution.u))
+    apart[undecided(instance, solution.times, solution.x, solution.lam)] = 0.0
+    return float(apart.max() / size) if size > 0.0 else 0.0
 
 
 def hamiltonian_drift(solution: Solution, flow: Flow) -> float | None:
@@ -121,12 +127,24 @@ def hamiltonian_drift(solution: Solution, flow: Flow) -> float | None:
 
 
 def legendre_clebsch(solution: Solution) -> float:
-    """Smallest eigenvalue of H_uu along the trajectory; positive where the strict condition holds."""
+    """Smallest eigenvalue of H_uu along the trajectory; positive where the strict condition holds.
+
+    Of a vector of full length on which H depends linearly it is that of H on the sphere: the length of its slope over
+    its own. It may vanish for an instant, such as at an end that leaves velocities free.
+    """
     instance, model = solution.instance, solution.instance.model
-    hessian = np.asarray(
-        model.control_hessian_batch(solution.times, solution.x, solution.u, solution.lam, instance.parameters)
-    )
-    return float(np.linalg.eigvalsh(hessian.transpose(2, 0, 1)).min()) if len(hessian) else float("inf")
+    along = solution.times, solution.x, solution.u, solution.lam, instance.parameters
+    hessian = np.array(model.control_hessian_batch(*along))
+    for places, part in instance.control_set.parts:
+        if part.directed and part.kind != "angle":
+            rows = list(places)
+            slope, u = np.asarray(model.stationarity_batch(*along))[rows], solution.u[rows]
+            hessian[rows, rows] -= (slope * u).sum(axis=0) / np.maximum((u * u).sum(axis=0), 1e-300)
+    smallest = np.linalg.eigvalsh(hessian.transpose(2, 0, 1)).min(axis=1) if len(hessian) else np.full(1, np.inf)
+    open_ones = np.atleast_1d(undecided(instance, solution.times, solution.x, solution.lam).any(axis=0))
+    beside = np.append(open_ones[1:], False) | np.append(False, open_ones[:-1])
+    for_long = np.atleast_1d(np.logical_not(open_ones) | beside)[: len(smallest)]
+    return float(smallest[for_long].min(initial=np.inf))
 
 
 def node_by_node(solution: Solution, along: Segments) -> Flow | None:

@@ -16,6 +16,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.kernels import consistency
 from satsym.solution import Certificate, Check, Solution
+from satsym.solvers.control.slopes import slope
 from satsym.status import Verdict
 
 NODES = 4
@@ -23,6 +24,9 @@ NODES = 4
 
 ASIDE = 1e-3
 """How far aside of the nodes, relative to the largest value of each component."""
+
+FAINT = 1e-25
+"""Share of the largest component below which another is none but rounding."""
 
 WIDE, NARROW = 1e3, 0.5
 """Bounds where there are none, and narrow ones, relative to the largest control."""
@@ -46,6 +50,7 @@ def _places(solution: Solution) -> dict[str, Any]:
 
     def near(table: Array) -> Array:
         unit = np.abs(table).max(axis=-1, keepdims=True)
+        unit = np.where(unit > FAINT * unit.max(initial=0.0), unit, 0.0)
         return table[:, chosen] + ASIDE * np.where(unit > 0.0, unit, 1.0) * rng.uniform(0.5, 1.0, (len(table), columns))
 
     x, u, lam = near(solution.x), near(solution.u), near(solution.lam)
@@ -62,6 +67,8 @@ def _bounds(instance: Instance, at: dict[str, Any]) -> tuple[Array, ...]:
     """The instance's own for the first places, narrow ones for the others."""
     model, u = instance.model, at["u"]
     kind = model.spec.control_set
+    if model.spec.control_parts:
+        return _bounds_of_sets(instance, at)
     if kind not in ("box", "ball"):
         return ()
     size = np.maximum(np.abs(u).max(axis=-1, keepdims=True), 1e-300)
@@ -78,3 +85,30 @@ def _bounds(instance: Instance, at: dict[str, Any]) -> tuple[Array, ...]:
     sigma = np.abs(model.switching_function_batch(at["t"], at["x"], at["lam"], at["p"]))
     smoothing = float(np.maximum(sigma / size, 1e-300).max())
     return (*box, np.full(u.shape[-1], smoothing), np.full(u.shape[-1], NARROW))
+
+
+def _bounds_of_sets(instance: Instance, at: dict[str, Any]) -> tuple[Array, ...]:
+    """The same where the control set is a product of sets; what regularises is as large as slopes of H are."""
+    u, spec, found = at["u"], instance.model.spec, list[Array]()
+    owned = np.arange(u.shape[-1]) < NODES
+    for places, part in instance.control_set.parts:
+        size = np.maximum(np.abs(u[list(places)]).max(axis=-1, keepdims=True), 1e-300)
+        radius = float(np.linalg.norm(size))
+        if part.kind == "box":
+            low, high = part.box
+            found += [*np.where(owned, np.maximum(low, -WIDE * size), -NARROW * size)]
+            found += [*np.where(owned, np.minimum(high, WIDE * size), NARROW * size)]
+        elif part.kind == "annulus":
+            found.append(np.where(owned, part.inner, NARROW**2 * radius))
+        if part.kind == "angle":
+            found.append(np.where(owned, 1.0, NARROW))
+        elif part.kind in ("ball", "annulus"):
+            found.append(np.where(owned, min(part.radius, WIDE * radius), NARROW * radius))
+    if spec.directional:
+        met = [
+            np.median(np.linalg.norm(slope(instance, places, at["t"], at["x"], at["lam"]), axis=0)) / part.radius
+            for places, part in instance.control_set.parts
+            if part.directed
+        ]
+        found.append(np.full(u.shape[-1], max(float(np.mean(met)), 1e-300)))
+    return tuple(found)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from satsym.arrays import Array
 from satsym.solution import Solution
 from satsym.solvers.certificate.flow import unit_sizes
+from satsym.solvers.control.slopes import without_poles
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import leap
 
@@ -102,9 +103,8 @@ def values(solution: Solution) -> Array:
 def _slopes(solution: Solution, t: Array, z: Array) -> Array:
     """The canonical rates by states and costates, shape (M, 2n, 2n)."""
     instance, n = solution.instance, len(z) // 2
-    batch = instance.model.canonical_jacobian_batch(
-        t, z[:n], z[n:], instance.parameters, instance.control_set.arguments
-    )
+    bounds = without_poles(instance, solution.times, solution.x, solution.lam).arguments
+    batch = instance.model.canonical_jacobian_batch(t, z[:n], z[n:], instance.parameters, bounds)
     found: Array = np.asarray(batch).transpose(2, 0, 1)
     return found
 

@@ -29,6 +29,7 @@ from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.system import System
+from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 from satsym.solvers.symmetry import spirals
 
@@ -80,7 +81,7 @@ def cold_start(problem: TwoPoint, limits: Limits, quick: bool = False) -> Start:
         if minima and (origin in LAST or number == len(turning)):
             break
         with np.errstate(all="ignore"):
-            found = attempt()
+            found = tried(attempt)
         if found is None:
             continue
         last, steps = found, steps + found.iterations
@@ -94,7 +95,8 @@ def cold_start(problem: TwoPoint, limits: Limits, quick: bool = False) -> Start:
             break
     if minima:
         return replace(min(minima, key=lambda start: start.found.cost), steps=steps)
-    assert last is not None
+    if last is None:
+        raise ArithmeticError("the equations of every cold start are singular")
     saddle = saddle or (None if limits.expired or quick else _extremal(free, line))
     if last.minimum:
         last = replace(last, reason=Reason.OUT_OF_DOMAIN)

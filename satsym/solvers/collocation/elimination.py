@@ -179,6 +179,9 @@ class Matching:
         Ends of the intervals by the extra unknowns, shape (N, 2n, e).
     finish_by_end, finish_by_theta
         Residuals at the end by the values there and by the extra unknowns, shapes (n + e, 2n) and (n + e, e).
+    mixed
+        Whether the system without the extra unknowns is singular. The last residuals are then added to the others at
+        the end, by which the whole stays equivalent.
 
     Raises
     ------
@@ -186,8 +189,18 @@ class Matching:
         If the system is singular.
     """
 
-    def __init__(self, transition: Array, by_theta: Array, finish_by_end: Array, finish_by_theta: Array) -> None:
+    def __init__(
+        self,
+        transition: Array,
+        by_theta: Array,
+        finish_by_end: Array,
+        finish_by_theta: Array,
+        mixed: bool = False,
+    ) -> None:
         half = transition.shape[1] // 2
+        self._mixing = np.cos(np.arange(1.0, half + 1.0))[:, None] * np.full(by_theta.shape[2], float(mixed))
+        if mixed:
+            finish_by_end, finish_by_theta = self._mixed(finish_by_end), self._mixed(finish_by_theta)
         self.transition, self._lower, self._slopes = transition, finish_by_end[half:], finish_by_theta[half:]
         self._between, nothing = Nodes(transition, finish_by_end[:half]), np.zeros(half)
         self._columns = [
@@ -206,6 +219,7 @@ class Matching:
             Residuals at the boundary, shapes (n,) and (n + e,).
         """
         half = len(start)
+        finish = self._mixed(finish) if self._mixing.any() else finish
         nodes = self._between.solve(-start, -defects, -finish[:half])
         if not self._columns:
             return nodes, np.zeros(0)
@@ -213,6 +227,11 @@ class Matching:
         for value, column in zip(theta, self._columns, strict=True):
             nodes = nodes + value * column
         return nodes, theta
+
+    def _mixed(self, finish: Array) -> Array:
+        """Rows at the end with the last ones added to the others."""
+        half = len(self._mixing)
+        return np.concatenate([finish[:half] + self._mixing @ finish[half:], finish[half:]])
 
     def reduced(self) -> Array:
         """The last residuals by the extra unknowns, all else solved for, shape (e, e)."""

@@ -107,7 +107,8 @@ def linearise(system: System, curve: Curve, residual: Residual, jacobian: Array)
     transition[:, np.arange(n), np.arange(n)] += 1.0 - system.scheme.end.sum()
     extra = solved[:, n + 1 :].reshape(count, e, s, n)
     by_theta = (system.scheme.end @ extra).swapaxes(1, 2)
-    matching = Matching(transition, by_theta, *system.problem.boundary_slopes(curve.nodes[:, -1], curve.theta))
+    ends = system.problem.boundary_slopes(curve.nodes[:, -1], curve.theta)
+    matching = Matching(transition, by_theta, *ends, mixed=system.problem.homogeneous)
     return Linearised(system, blocks, matching, response, extra, residual, solved[:, n])
 
 

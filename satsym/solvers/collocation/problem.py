@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.arrays import Array
-from satsym.control_set import ControlSet
+from satsym.control_set import UNSMOOTHED, ControlSet
 from satsym.instance import Instance
 from satsym.solvers.control.regularised import sloping, smoothed_cost, smoothed_law
 
@@ -77,6 +77,14 @@ class TwoPoint:
     def free_time(self) -> bool:
         """Whether the duration is unknown."""
         return self.instance.tf is None
+
+    @cached_property
+    def homogeneous(self) -> bool:
+        """Whether only the residual of a free duration may tell costates from multiples of them.
+
+        So it is where the law depends on their direction alone, that of a direction or of controls that switch.
+        """
+        return self.free_time and self.instance.model.spec.directional and self.control_set.smoothing <= UNSMOOTHED
 
     @cached_property
     def unknowns(self) -> int:
@@ -170,6 +178,8 @@ class TwoPoint:
         if model.spec.switching:
             u = smoothed_law(self.instance, self.control_set, t, x, lam)
             return smoothed_cost(self.instance, self.control_set, t, x, u) / self.scale.cost
+        if model.spec.directional:
+            return np.asarray(model.regularised_cost_batch(t, x, lam, p, self.control_set.arguments)) / self.scale.cost
         u = model.control_law_batch(t, x, lam, p, self.control_set.arguments)
         beyond = 0.0
         if self.softness:

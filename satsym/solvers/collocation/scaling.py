@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.control_set import UNSMOOTHED
 from satsym.instance import Instance
 from satsym.solvers.collocation.problem import Scale, TwoPoint
 from satsym.solvers.control.regularised import sloping
+from satsym.solvers.control.slopes import full_length_smoothing
 
 POINTS = 9
 """Points of the straight line at which sizes and responses are looked at."""
@@ -63,7 +65,10 @@ def _scale(instance: Instance, start: Array, end: Array, duration: float) -> Sca
     n, model = len(start), instance.model
     path = start[:, None] + (end - start)[:, None] * np.linspace(0.0, 1.0, POINTS)
     times = instance.t0 + duration * np.linspace(0.0, 1.0, POINTS)
-    free = instance.control_set.without_bounds.arguments
+    control_set = instance.control_set
+    if model.spec.directional and control_set.smoothing <= UNSMOOTHED:  # nothing responds to costates that vanish
+        control_set = control_set.regularised(full_length_smoothing(instance), 1.0)
+    free = control_set.without_bounds.arguments
     none = sloping(instance, np.zeros_like(path))
     slopes = np.abs(model.canonical_jacobian_batch(times, path, none, instance.parameters, free)).max(axis=2)
     slopes[slopes < NO_SLOPE] = 0.0

@@ -15,6 +15,9 @@ from satsym.solvers.collocation.curve import Path
 from satsym.solvers.collocation.elimination import Matching
 from satsym.solvers.collocation.problem import TwoPoint
 
+TIED, LOOSE = 1e-11, 1e-6
+"""Relative response of the states to the controls in a direction that counts as none, and the one it is then given."""
+
 
 def negative_directions(problem: TwoPoint, path: Path, matching: Matching) -> int:
     """Number of negative eigenvalues of the discretised second variation; zero at a strict local minimum.
@@ -24,7 +27,20 @@ def negative_directions(problem: TwoPoint, path: Path, matching: Matching) -> in
     numpy.linalg.LinAlgError
         If a field of extremals is singular at a node.
     """
-    n, transition = problem.states, matching.transition
+    try:
+        count = _counted(problem, path, matching, matching.transition)
+    except np.linalg.LinAlgError:
+        if not _tied(problem, matching):
+            raise
+        count = 1
+    if count and _tied(problem, matching):
+        return _counted(problem, path, matching, _loosened(matching.transition))
+    return count
+
+
+def _counted(problem: TwoPoint, path: Path, matching: Matching, transition: Array) -> int:
+    """The number, if controls move states into all directions."""
+    n = problem.states
     # The field of extremals from the start, by its costates as a function of its states: Lambda X^-1.
     slope = _right_divided(transition[0][n:, n:], transition[0][:n, n:])
     left = np.empty((len(transition) - 1, n, n))
@@ -34,6 +50,25 @@ def negative_directions(problem: TwoPoint, path: Path, matching: Matching) -> in
     pivots = np.linalg.solve(-transition[1:, :n, n:], left)
     count = _negative(pivots)
     return count + _at_the_end(problem, path, slope) + _of_the_duration(problem, matching)
+
+
+def _tied(problem: TwoPoint, matching: Matching) -> bool:
+    """Whether controls cannot move the states into all directions: something is conserved whatever they do."""
+    n, field = problem.states, np.eye(2 * problem.states)[:, problem.states :]
+    for matrix in matching.transition:
+        field = matrix @ field
+        field = field / max(float(np.abs(field).max()), 1e-300)
+    sizes = np.linalg.svd(field[:n], compute_uv=False)
+    return bool(sizes[-1] <= TIED * sizes[0])
+
+
+def _loosened(transition: Array) -> Array:
+    """Transitions with controls besides that move every state, and cost so much that they hardly do."""
+    n = transition.shape[1] // 2
+    shear = np.repeat(np.eye(2 * n)[None], len(transition), axis=0)
+    response = np.abs(transition[:, :n, n:]).max(axis=(1, 2))
+    shear[:, np.arange(n), np.arange(n, 2 * n)] = -LOOSE * response[:, None]
+    return np.asarray(shear @ transition)
 
 
 def _right_divided(a: Array, b: Array) -> Array:

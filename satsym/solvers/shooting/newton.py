@@ -75,7 +75,8 @@ def linearised(arcs: Arcs) -> tuple[Matching, Residual]:
     ends, transition = arcs.variations()
     wrong = residual(arcs, ends)
     by_theta = arcs.by_theta(ends, transition)
-    return Matching(transition, by_theta, *arcs.problem.boundary_slopes(arcs.nodes[:, -1], arcs.theta)), wrong
+    of_end = arcs.problem.boundary_slopes(arcs.nodes[:, -1], arcs.theta)
+    return Matching(transition, by_theta, *of_end, mixed=arcs.problem.homogeneous), wrong
 
 
 def newton(arcs: Arcs, limits: Limits) -> Outcome:

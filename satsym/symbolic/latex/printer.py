@@ -257,6 +257,23 @@ class Printer(LatexPrinter):
             ratio = rf"\frac{{{self._print(limit)}}}{{\sqrt{{{self._print(norm_squared)}}}}}"
         return extreme(r"\min", "1", ratio)
 
+    def _print_Stretch(self, expr: sp.Expr, exp: str | None = None) -> str:
+        norm_squared, smoothing, length = expr.args
+        with self._inside():
+            ratio = rf"\frac{{{self._print(length)}}}{{\sqrt{{{self._print(norm_squared)}}}}}"
+            return extreme(r"\min", rf"\frac{{1}}{{{self._print(smoothing)}}}", ratio)
+
+    def _print_Within(self, expr: sp.Expr, exp: str | None = None) -> str:
+        norm_squared, *limits = expr.args
+        with self._inside():
+            root = rf"\sqrt{{{self._print(norm_squared)}}}"
+            least, largest = (rf"\frac{{{self._print(limit)}}}{{{root}}}" for limit in limits)
+        return extreme(r"\min", largest, extreme(r"\max", "1", least))
+
+    def _print_atan2(self, expr: sp.Expr, exp: str | None = None) -> str:
+        across, along = map(self._print, expr.args)
+        return rf"\operatorname{{atan2}}({across},\, {along})"
+
     # sizes
 
     def _parentheses(self, content: str) -> tuple[str, str]:

@@ -54,11 +54,17 @@ def project(
             raise DerivationError("a box needs a diagonal H_uu: clipping each control minimises H only then")
         return [Clip(u, limits[i], limits[m + i]) for i, u in enumerate(unconstrained)]
     if control_set == "ball":
-        if sp.simplify(hessian - hessian[0, 0] * sp.eye(m)) != sp.zeros(m, m):
-            raise DerivationError("a ball needs equal control weights: shortening the control minimises H only then")
+        refuse_unequal(hessian)
         factor = Shorten(sum((u**2 for u in unconstrained), sp.Integer(0)), limits[0])
         return [factor * u for u in unconstrained]
     return list(unconstrained)
+
+
+def refuse_unequal(hessian: sp.Matrix) -> None:
+    """Refuse an H_uu that is not a multiple of the identity."""
+    m = hessian.rows
+    if sp.simplify(hessian - hessian[0, 0] * sp.eye(m)) != sp.zeros(m, m):
+        raise DerivationError("a ball needs equal control weights: shortening the control minimises H only then")
 
 
 def ordered(control_set: ControlSetKind, point: dict[Any, Any], limits: Sequence[sp.Symbol]) -> dict[Any, Any]:

@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import sympy as sp
 
-from satsym.symbolic.model import Model
+from satsym.symbolic.dimension_algebra import PLAIN, Dimension, over
+from satsym.symbolic.model import Model, Problem
 from satsym.symbolic.notation import named
+from satsym.symbolic.principle import parts
+from satsym.symbolic.principle.parts import Part
+
+if TYPE_CHECKING:
+    from satsym.symbolic.principle.branches import Minimum
 
 POTENTIAL, REDUCED_COST = sp.Symbol("cost_potential", real=True), sp.Symbol("reduced_cost", real=True)
 MINIMUM_COST, COST_FROM_REST = sp.Symbol("least_cost", real=True), sp.Symbol("cost_from_rest", real=True)
@@ -24,3 +32,61 @@ def names(model: Model) -> dict[str, str]:
     for v in model.controls:
         found |= {f"{v.symbol}_peak": rf"|{v.latex}|_{{\max}}", f"{v.symbol}_answer": rf"{v.latex}(t)"}
     return found
+
+
+REGULARISED_H = sp.Symbol("H_regularised", real=True)
+"""H of the regularised problem of directions."""
+
+primer_of = named("primer_{}")
+"""The slope of H by a control on which it depends linearly, in a ball."""
+cosine_of, sine_of = named("cosine_of_{}"), named("sine_of_{}")
+"""What multiplies the cosine and the sine of an angle in H."""
+along_of, across_of = named("along_{}"), named("across_{}")
+"""What takes the place of cosine and sine in the regularised problem."""
+
+
+def slopes_of(one: Minimum) -> tuple[sp.Symbol, ...]:
+    """Symbols for the slope of H where it is linear in a vector."""
+    if one.part.kind == "angle":
+        return cosine_of(one.part.symbols[0]), sine_of(one.part.symbols[0])
+    return tuple(map(primer_of, one.part.symbols))
+
+
+def components_of(part: Part) -> tuple[sp.Symbol, ...]:
+    """The vector in which H is linear: the controls, or what takes the place of cosine and sine of an angle."""
+    if part.kind == "angle":
+        return along_of(part.symbols[0]), across_of(part.symbols[0])
+    return part.symbols
+
+
+def product_names(problem: Problem) -> dict[str, str]:
+    """Name -> LaTeX of what the law over a product of sets introduces."""
+    found = {REGULARISED_H.name: r"H_\varepsilon", parts.SMOOTHING.symbol: parts.SMOOTHING.latex}
+    for v in problem.model.controls:
+        found |= {f"primer_{v.symbol}": f"p_{{{v.latex}}}", f"cosine_of_{v.symbol}": f"a_{{{v.latex}}}"}
+        found |= {f"sine_of_{v.symbol}": f"b_{{{v.latex}}}", f"along_{v.symbol}": f"c_{{{v.latex}}}"}
+        found |= {f"across_{v.symbol}": f"s_{{{v.latex}}}"}
+    return found
+
+
+def declare_product(known: dict[str, Dimension | None], problem: Problem, running: Dimension | None) -> None:
+    """Enter the dimensions of these."""
+    if not product_stated(problem):
+        return
+    known[REGULARISED_H.name] = running
+    efforts = []
+    for part in parts.parts_of(problem):
+        for v in part.controls:
+            known[f"primer_{v.symbol}"] = over(running, known[v.symbol])
+            known[f"cosine_of_{v.symbol}"] = known[f"sine_of_{v.symbol}"] = running
+            known[f"along_{v.symbol}"] = known[f"across_{v.symbol}"] = PLAIN
+        if part.kind in ("ball", "annulus", "angle"):
+            unit = PLAIN if part.kind == "angle" else known[part.controls[0].symbol]
+            efforts.append(over(over(running, unit), unit))
+    # one number smooths all directions: where their units differ it has none that would suit them all
+    known[parts.SMOOTHING.symbol] = efforts[0] if efforts and all(e == efforts[0] for e in efforts) else None
+
+
+def product_stated(problem: Problem) -> bool:
+    """Whether the law may be one over a product of sets."""
+    return bool(problem.control_sets) or problem.control_set == "ball"

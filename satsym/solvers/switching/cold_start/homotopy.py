@@ -17,6 +17,7 @@ from satsym.solvers.cold_start.first_minimum import cold_start
 from satsym.solvers.collocation.attempt import Reason
 from satsym.solvers.collocation.curve import Curve, Path
 from satsym.solvers.collocation.extremal import Extremal
+from satsym.solvers.collocation.following import follow
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
@@ -28,7 +29,6 @@ from satsym.solvers.switching.cold_start.minimum_effort import (
     WITHIN,
     Smoothed,
     first_duration,
-    follow,
     of_size,
 )
 from satsym.status import Status

@@ -6,7 +6,7 @@ the bang-bang control; within the bounds, from a long duration towards the least
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,10 +16,9 @@ from satsym.solvers.cold_start.durations import time_scale
 from satsym.solvers.cold_start.paths import curve as as_curve
 from satsym.solvers.cold_start.paths import first
 from satsym.solvers.cold_start.straight_through import straight_through
-from satsym.solvers.collocation.continuation import corners, through
 from satsym.solvers.collocation.curve import Curve
+from satsym.solvers.collocation.following import follow
 from satsym.solvers.collocation.gauss import STAGES
-from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.system import System
@@ -43,15 +42,6 @@ OTHERS = (1.4, 2.0)
 
 SHORTER, SMALLEST_SHORTENING = 0.12, 0.002
 """By this share durations are shortened, and by no less."""
-
-FOLLOWED = 5
-"""Corrections that a step of the continuation usually takes, as its work is counted."""
-
-ROUGHLY = 1e-5
-"""Accuracy of solutions on the way."""
-
-SHORTEST = 1.0 / 256.0
-"""Of a step of the continuation, as a share of the way."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,38 +164,3 @@ def _normalised(problem: TwoPoint, curve: Curve) -> float:
     cost = np.broadcast_to(instance.model.running_cost_batch(t, z[:n], u, p), growth.shape)
     factor = -float(cost.mean() / growth.mean()) if growth.any() else 1.0
     return factor if 0.0 < factor < float("inf") else 1.0
-
-
-def follow(
-    problem: Callable[[float], TwoPoint], curve: Curve, limits: Limits, shortest: float = SHORTEST
-) -> tuple[Curve, float]:
-    """Solutions of a family of problems, from its start to its end, as far as that goes.
-
-    Parameters
-    ----------
-    problem
-        The one at a share of the way.
-    curve
-        A solution at the start.
-    shortest
-        Step below which it is given up, as a share of the way.
-
-    Returns
-    -------
-    curve, reached
-        The last one, and the share of the way at which it is.
-    """
-    at, move, count = 0.0, 1.0, max(8, min(len(curve.mesh) - 1, 60))
-    while at < 1.0 and move >= shortest and not limits.expired:
-        there = problem(min(at + move, 1.0))
-        mesh = through(corners(there, curve), count)
-        limits.spend(FOLLOWED * STAGES * len(mesh))
-        outcome = newton(System(there, mesh, STAGES), curve.on(mesh, STAGES), tolerance=ROUGHLY, most=10)
-        if outcome is None or not outcome.solved or not outcome.curve.in_domain(there.positive):
-            move /= 2.0
-            continue
-        at, curve = min(at + move, 1.0), outcome.curve
-        move *= 2.0
-        if limits.watch:
-            limits.watch(System(there, mesh, STAGES).cost(curve) * there.scale.cost, max(1.0 - at, ROUGHLY))
-    return curve, at

@@ -1,0 +1,37 @@
+"""The brachistochrone: along which curve a bead slides from one point to another in minimum time (Bernoulli, 1696).
+
+The slope of the curve is the control. From (0, 10) to (10, 5) the curve is a cycloid, and the time with
+g = 9.80665 m/s^2 is 1.8016031225 s: x = a (phi - sin phi), y = 10 - a (1 - cos phi), t = phi sqrt(a / g).
+"""
+
+from sympy import cos, sin
+
+from satsym.symbolic import Angle, FirstOrder, Problem, Variable, symbols_of
+
+STATES = (
+    Variable("x", "x", "m", meaning="distance"),
+    Variable("y", "y", "m", meaning="height"),
+    Variable("v", "v", "m/s", meaning="speed"),
+)
+CONTROLS = (Variable("theta", r"\theta", meaning="direction of the motion below the horizontal", kind="angle"),)
+PARAMETERS = (Variable("g", "g", "m/s^2", meaning="gravity", default=9.80665, positive=True),)
+x, y, v = symbols_of(STATES)
+(theta,) = symbols_of(CONTROLS)
+(g,) = symbols_of(PARAMETERS)
+
+brachistochrone = Problem(
+    name="brachistochrone",
+    title="A bead slides along a curve in minimum time",
+    model=FirstOrder(
+        name="bead",
+        title="A bead on a curve",
+        states=STATES,
+        controls=CONTROLS,
+        parameters=PARAMETERS,
+        rates={x: v * cos(theta), y: -v * sin(theta), v: g * sin(theta)},
+    ),
+    running_cost=1,
+    control_sets={"slope": Angle("theta")},
+)
+
+PROBLEMS = (brachistochrone,)

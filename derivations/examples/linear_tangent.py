@@ -1,0 +1,40 @@
+"""Steering in a plane at constant acceleration: the linear tangent law (Bryson and Ho, Applied Optimal Control, 2.4).
+
+Example of Betts, Practical Methods for Optimal Control, 4.6: from rest to a height of 5 with a horizontal velocity of
+45 in minimum time, the acceleration being 100.
+"""
+
+from sympy import cos, sin
+
+from satsym.symbolic import Angle, FirstOrder, Problem, Variable, symbols_of
+
+STATES = (
+    Variable("x", "x", meaning="distance"),
+    Variable("y", "y", meaning="height"),
+    Variable("vx", "v_x", meaning="horizontal velocity"),
+    Variable("vy", "v_y", meaning="vertical velocity"),
+)
+CONTROLS = (Variable("beta", r"\beta", meaning="direction of the acceleration", kind="angle"),)
+PARAMETERS = (Variable("a", "a", meaning="acceleration", default=100.0, positive=True),)
+x, y, vx, vy = symbols_of(STATES)
+(beta,) = symbols_of(CONTROLS)
+(a,) = symbols_of(PARAMETERS)
+
+steered = FirstOrder(
+    name="steered_point",
+    title="A point that is steered in a plane",
+    states=STATES,
+    controls=CONTROLS,
+    parameters=PARAMETERS,
+    rates={x: vx, y: vy, vx: a * cos(beta), vy: a * sin(beta)},
+)
+
+linear_tangent = Problem(
+    name="linear_tangent",
+    title="Steering in minimum time",
+    model=steered,
+    running_cost=1,
+    control_sets={"steering": Angle("beta")},
+)
+
+PROBLEMS = (linear_tangent,)

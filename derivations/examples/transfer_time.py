@@ -1,0 +1,43 @@
+"""From one circular orbit to another in minimum time, with a constant thrust whose direction is free.
+
+The flow of mass is constant as well, so that the mass is known in time: from the orbit of the Earth to that of Mars
+(Bryson and Ho, Applied Optimal Control, 2.5). Units are those of the first orbit: its radius, and the time in which an
+angle of one is passed on it.
+"""
+
+from sympy import cos, sin
+
+from satsym.symbolic import Angle, FirstOrder, Problem, Variable, symbols_of, t
+
+STATES = (
+    Variable("r", "r", meaning="distance from the centre", positive=True),
+    Variable("u", "u", meaning="radial velocity"),
+    Variable("v", "v", meaning="transverse velocity"),
+)
+CONTROLS = (Variable("beta", r"\beta", meaning="direction of the thrust, above the local horizontal", kind="angle"),)
+PARAMETERS = (
+    Variable("mu", r"\mu", meaning="gravitational parameter", default=1.0, positive=True),
+    Variable("F", "F", meaning="thrust over the initial mass", default=0.1405, positive=True),
+    Variable("w", "w", meaning="flow of mass over the initial mass", default=0.07487, positive=True),
+)
+r, u, v = symbols_of(STATES)
+(beta,) = symbols_of(CONTROLS)
+mu, F, w = symbols_of(PARAMETERS)
+push = F / (1 - w * t)
+
+transfer_time = Problem(
+    name="transfer_time",
+    title="Transfer between circular orbits in minimum time",
+    model=FirstOrder(
+        name="thrusting_satellite",
+        title="A satellite with constant thrust",
+        states=STATES,
+        controls=CONTROLS,
+        parameters=PARAMETERS,
+        rates={r: u, u: v**2 / r - mu / r**2 + push * sin(beta), v: -u * v / r + push * cos(beta)},
+    ),
+    running_cost=1,
+    control_sets={"steering": Angle("beta")},
+)
+
+PROBLEMS = (transfer_time,)

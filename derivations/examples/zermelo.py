@@ -1,0 +1,36 @@
+"""Zermelo's problem: a ship crosses a current in minimum time (Zermelo, 1931).
+
+The current flows along x and grows with y. The ship heads for the origin; from (3.66, -1.86) h, where the current is
+-V y / h, the heading turns from 105 degrees to 240 (Bryson and Ho, Applied Optimal Control, 2.7).
+"""
+
+from sympy import cos, sin
+
+from satsym.symbolic import Angle, FirstOrder, Problem, Variable, symbols_of
+
+STATES = (Variable("x", "x", meaning="distance along the current"), Variable("y", "y", meaning="distance across it"))
+CONTROLS = (Variable("heading", r"\theta", meaning="heading", kind="angle"),)
+PARAMETERS = (
+    Variable("V", "V", meaning="speed of the ship in the water", default=1.0, positive=True),
+    Variable("h", "h", meaning="distance over which the current grows by that speed", default=1.0, positive=True),
+)
+x, y = symbols_of(STATES)
+(heading,) = symbols_of(CONTROLS)
+V, h = symbols_of(PARAMETERS)
+
+zermelo = Problem(
+    name="zermelo",
+    title="A ship crosses a linear current in minimum time",
+    model=FirstOrder(
+        name="ship",
+        title="A ship in a current",
+        states=STATES,
+        controls=CONTROLS,
+        parameters=PARAMETERS,
+        rates={x: V * cos(heading) - V * y / h, y: V * sin(heading)},
+    ),
+    running_cost=1,
+    control_sets={"rudder": Angle("heading")},
+)
+
+PROBLEMS = (zermelo,)

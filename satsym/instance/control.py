@@ -1,0 +1,121 @@
+"""The ``[control]`` of an instance: bounds control by control, and norms set by set."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from satsym.instance.resolve import Row, known, quantity
+from satsym.spec import ControlPart, ProblemSpec
+from satsym.status import BadInput
+from satsym.wording import printable, shown, suggestion
+
+MAX_NORM, MIN_NORM = "max_norm", "min_norm"
+WHOLE = ""
+"""The name of the set that all controls are in, where there is but one."""
+
+Norms = dict[str, tuple[float, float]]
+"""By the name of a set, the least and the largest norm."""
+
+
+def bounds(table: Mapping[str, Any], spec: ProblemSpec) -> tuple[Row, Row, Norms]:
+    """Lower and upper bounds in the model's order, and norms by set; infinite where nothing is given."""
+    lower = dict.fromkeys(spec.control_names, -math.inf)
+    upper = dict.fromkeys(spec.control_names, math.inf)
+    norms: Norms = {}
+    sets = {part.name: part for part in spec.control_parts}
+    normed = [part for part in spec.control_parts if part.normed]
+    for name, value in table.items():
+        key = f"[control] {printable(name)}"
+        if name in sets:
+            norms |= _of_set(value, sets[name], spec, f"[control.{name}]")
+        elif name in (MAX_NORM, MIN_NORM) and len(normed) == 1:
+            whole = {k: v for k, v in table.items() if k in (MAX_NORM, MIN_NORM)}
+            norms |= _of_set(whole, normed[0], spec, "[control]")
+        elif name == MAX_NORM and spec.control_set == "ball":
+            norms[WHOLE] = (0.0, _norm(value, spec.controls[0].unit, key))
+        elif isinstance(value, Mapping) or name in (MAX_NORM, MIN_NORM):
+            raise BadInput(f"{key}: {_control_set(spec)}")
+        else:
+            known([name], spec.controls, "control", "control")
+            if spec.control_set != "box" and _part_of(name, spec) != "box":
+                raise BadInput(f"{key}: {_control_set(spec)}")
+            unit = spec.controls[spec.control_names.index(name)].unit
+            lower[name], upper[name] = _interval(value, unit, key)
+    _refuse_endless(spec, norms)
+    return tuple(lower.values()), tuple(upper.values()), norms
+
+
+def _refuse_endless(spec: ProblemSpec, norms: Norms) -> None:
+    """Refuse a vector on which H depends linearly and whose length nothing limits."""
+    for part in spec.control_parts:
+        if part.branch == "direction" and part.normed and part.name not in norms:
+            raise BadInput(
+                f"[control.{part.name}]: nothing limits {', '.join(part.controls)}, which cost no square; "
+                f"write {MAX_NORM} = a number"
+            )
+
+
+def _of_set(value: Any, part: ControlPart, spec: ProblemSpec, key: str) -> Norms:
+    """The norms of one set."""
+    taken = {"ball": (MAX_NORM,), "annulus": (MIN_NORM, MAX_NORM)}.get(part.kind, ())
+    if not isinstance(value, Mapping) or not taken:
+        raise BadInput(f"{key}: {_control_set(spec)}")
+    if odd := [name for name in value if name not in taken]:
+        raise BadInput(f"{key} {printable(odd[0])}: {suggestion(odd[0], taken)}")
+    unit = spec.controls[spec.control_names.index(part.controls[0])].unit
+    least, largest = (
+        _norm(value[name], unit, f"{key} {name}") if name in value else default
+        for name, default in ((MIN_NORM, 0.0), (MAX_NORM, math.inf))
+    )
+    if least > largest:
+        raise BadInput(f"{key}: {MIN_NORM} is above {MAX_NORM}; swap them")
+    return {part.name: (least, largest)}
+
+
+def _norm(value: Any, unit: str, key: str) -> float:
+    if isinstance(value, tuple):
+        raise BadInput(f"{key}: got a list of {len(value)}; write one positive number")
+    number = quantity(value, unit, key)
+    if number <= 0:
+        raise BadInput(f"{key}: {shown(value)} leaves no control; write a positive number")
+    return number
+
+
+def _interval(value: Any, unit: str, key: str) -> tuple[float, float]:
+    if not isinstance(value, tuple):
+        raise BadInput(f"{key}: got {shown(value)}; write both bounds, such as [-0.2, 0.2]")
+    low, high = (quantity(bound, unit, key) for bound in value)
+    if low > high:
+        raise BadInput(f"{key}: the lower bound {shown(value[0])} is above the upper, {shown(value[1])}; swap them")
+    return low, high
+
+
+def _part_of(control: str, spec: ProblemSpec) -> str:
+    """The kind of the set in which a control is."""
+    return next((part.kind for part in spec.control_parts if control in part.controls), "")
+
+
+def _control_set(spec: ProblemSpec) -> str:
+    """What the model's kind of control set takes."""
+    if spec.control_parts:
+        return "the model takes " + "; ".join(map(_taken, spec.control_parts))
+    return {
+        "box": "the model bounds its controls one by one; write u = [lower, upper] for each",
+        "ball": f"the model bounds the norm of its controls; write {MAX_NORM} = a number",
+        "free": "the model's controls are free; remove this bound",
+        None: "the model has no cost, hence no control set; remove this bound",
+    }[spec.control_set]
+
+
+def _taken(part: ControlPart) -> str:
+    """What one set takes."""
+    controls = ", ".join(part.controls)
+    return {
+        "free": f"no bound of {controls}",
+        "angle": f"no bound of the angle {controls}",
+        "box": f"{part.controls[0]} = [lower, upper]",
+        "ball": f"{MAX_NORM} in [control.{part.name}], of {controls}",
+        "annulus": f"{MIN_NORM} and {MAX_NORM} in [control.{part.name}], of {controls}",
+    }[part.kind]

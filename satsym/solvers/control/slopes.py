@@ -1,0 +1,84 @@
+"""The slope of H by controls that are directions, and where it vanishes: the law says nothing there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.arrays import Array
+from satsym.control_set import ControlSet
+from satsym.instance import Instance
+
+VANISHING, MOMENT = 1e-9, 1e-4
+"""Share of the largest slope below which it counts as none, and of the usual one below which its law has a pole."""
+
+
+def slope(instance: Instance, places: Sequence[int], t: Array, x: Array, lam: Array) -> Array:
+    """The slope of H by a direction, shape (components, N): by the controls, or by cosine and sine of an angle.
+
+    Parameters
+    ----------
+    places
+        Of the controls of the direction.
+    t, x, lam
+        Times (N,), states and costates, (n, N).
+    """
+    model, p = instance.model, instance.parameters
+    u = np.zeros((len(model.spec.controls), len(t)))
+
+    def slopes() -> Array:
+        return np.array(np.broadcast_to(model.stationarity_batch(t, x, u, lam, p), u.shape))[list(places)]
+
+    across = slopes()
+    if places[0] not in instance.control_set.angles:
+        return across
+    u[places[0]] = np.pi / 2.0
+    return np.concatenate([-slopes(), across])
+
+
+def undecided(instance: Instance, t: Array, x: Array, lam: Array) -> NDArray[np.bool_]:
+    """Which controls are directions that nothing decides at an instant, shape (m, N)."""
+    found = np.zeros((len(instance.model.spec.controls), len(t)), dtype=bool)
+    for places, part in instance.control_set.parts:
+        if part.directed:
+            size = np.linalg.norm(slope(instance, places, t, x, lam), axis=0)
+            found[list(places)] = ~(size > VANISHING * size.max(initial=0.0))
+    return found
+
+
+def continued(instance: Instance, t: Array, x: Array, lam: Array, u: Array) -> Array:
+    """Controls over time, angles without jumps by a turn, and directions that nothing decides as they were before."""
+    open_ones, found = undecided(instance, t, x, lam), np.array(u)
+    for row, unknown in enumerate(open_ones):
+        if unknown.any() and not unknown.all():
+            known = np.flatnonzero(~unknown)
+            before = np.searchsorted(known, np.arange(len(t)), side="right") - 1
+            found[row] = found[row, known[np.maximum(before, 0)]]
+    return instance.control_set.continued(found)
+
+
+def full_length_smoothing(instance: Instance) -> float:
+    """The smoothing at which full length costs about as much again as time and state do."""
+    model, p, x = instance.model, instance.parameters, instance.initial
+    idle = tuple(instance.control_set.project(np.zeros((len(model.spec.controls), 1)))[:, 0].tolist())
+    cost = abs(model.running_cost(instance.t0, x, idle, p))
+    effort = sum(part.radius**2 for _, part in instance.control_set.parts if part.directed)
+    return 2.0 * (cost or 1.0) / effort
+
+
+def without_poles(instance: Instance, t: Array, x: Array, lam: Array) -> ControlSet:
+    """The control set of a law with derivatives along an extremal, though the slope by a direction may vanish there.
+
+    Such as at an end that leaves velocities free: how a direction follows the costates grows beyond all bounds towards
+    it, and what that moves vanishes. So little is smoothed that it differs for a last moment only.
+    """
+    smallest, usual = float("inf"), 0.0
+    for places, part in instance.control_set.parts:
+        if part.directed:
+            size = np.linalg.norm(slope(instance, places, t, x, lam), axis=0) / part.radius
+            smallest, usual = min(smallest, float(size.min())), max(usual, float(np.median(size)))
+    if not smallest < MOMENT * usual:
+        return instance.control_set
+    return instance.control_set.regularised(MOMENT * usual, 1.0)

@@ -1,0 +1,112 @@
+"""The sets whose product a control set is: what was stated, set by set, with the symbols of their numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import sympy as sp
+
+from satsym.spec import PartKind, Variable
+from satsym.symbolic.derivation import DerivationError
+from satsym.symbolic.model import Problem, symbols_of
+from satsym.symbolic.principle import control_sets
+
+SMOOTHING = Variable("smoothing", r"\varepsilon", meaning="weight of half the squares in it", positive=True)
+"""What follows the bounds in the ``bounds`` argument of kernels where controls are directions."""
+
+SINGLE = "control"
+"""The name of the one set of a problem that was stated in short."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """One of the sets.
+
+    Attributes
+    ----------
+    name, kind
+        As it is stated.
+    controls
+        Its controls.
+    limits
+        The variables that hold an instance's numbers.
+    """
+
+    name: str
+    kind: PartKind
+    controls: tuple[Variable, ...]
+    limits: tuple[Variable, ...]
+
+    @property
+    def symbols(self) -> tuple[sp.Symbol, ...]:
+        """Those of its controls."""
+        return symbols_of(self.controls)
+
+    @property
+    def bounds(self) -> tuple[sp.Symbol, ...]:
+        """Those of its limits."""
+        return symbols_of(self.limits)
+
+
+def parts_of(problem: Problem) -> tuple[Part, ...]:
+    """The sets of a problem, in the order in which they are stated.
+
+    Raises
+    ------
+    DerivationError
+        If they are not sets of the model's controls, each control in one of them.
+    """
+    if not problem.control_sets:
+        return (_part(SINGLE, problem.control_set, problem.model.controls, ""),)
+    declared = {v.symbol: v for v in problem.model.controls}
+    seen: list[str] = []
+    found = []
+    for name, one in problem.control_sets.items():
+        if not one.controls or (one.kind == "angle" and len(one.controls) != 1):
+            wanted = "one control" if one.kind == "angle" else "its controls"
+            raise DerivationError(f"{problem.name}: control_sets {name!r}: name {wanted}, as in {_example(one.kind)}")
+        for control in one.controls:
+            if control not in declared:
+                raise DerivationError(
+                    f"{problem.name}: control_sets {name!r}: {control!r} is no control; there are {', '.join(declared)}"
+                )
+        seen += one.controls
+        mark = "" if sum(other.kind in ("ball", "annulus") for other in problem.control_sets.values()) == 1 else name
+        found.append(_part(name, one.kind, tuple(declared[c] for c in one.controls), mark))
+    for control in declared:
+        if (times := seen.count(control)) != 1:
+            where = "in none of them" if not times else "in several"
+            message = f"control_sets: {control!r} is {where}; put each control into one set"
+            raise DerivationError(f"{problem.name}: {message}")
+    return tuple(found)
+
+
+def limits_of(problem: Problem) -> tuple[Variable, ...]:
+    """The variables that hold an instance's numbers, in the order of the ``bounds`` argument of kernels."""
+    return tuple(limit for part in parts_of(problem) for limit in part.limits)
+
+
+def _part(name: str, kind: PartKind, controls: tuple[Variable, ...], mark: str) -> Part:
+    index = rf"_{{\mathrm{{{mark}}}}}" if mark else ""
+    prefix = f"{mark}_" if mark else "u_"
+    largest = Variable(f"{prefix}max", rf"u{index}^{{\max}}", controls[0].unit, positive=True)
+    if kind in ("free", "box"):
+        return Part(name, kind, controls, control_sets.bounds("box" if kind == "box" else "free", controls))
+    if kind == "angle":
+        (angle,) = controls
+        reach = Variable(f"{angle.symbol}_reach", rf"\varrho_{{{angle.latex}}}", positive=True)
+        return Part(name, kind, controls, (reach,))
+    if len(units := {v.unit for v in controls}) > 1:
+        raise DerivationError(
+            f"control_sets {name!r}: a norm needs controls of one unit, not {', '.join(sorted(units))}"
+        )
+    if kind == "ball":
+        return Part(name, kind, controls, (largest,))
+    smallest = Variable(f"{prefix}min", rf"u{index}^{{\min}}", controls[0].unit, positive=True)
+    return Part(name, kind, controls, (smallest, largest))
+
+
+def _example(kind: PartKind) -> str:
+    return {"angle": 'Angle("beta")', "free": 'Free("u")', "box": 'Box("u1", "u2")'}.get(
+        kind, f'{kind.capitalize()}("ux", "uy")'
+    )

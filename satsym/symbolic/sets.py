@@ -1,0 +1,56 @@
+"""Sets of admissible controls as a derivation file states them; their numbers are those of an instance."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from satsym.spec import PartKind
+
+
+@dataclass(frozen=True, init=False)
+class AdmissibleSet:
+    """A set of controls, which are named; the control set is the product of such sets.
+
+    Parameters
+    ----------
+    controls
+        Names of its controls.
+    """
+
+    controls: tuple[str, ...]
+
+    kind: ClassVar[PartKind]
+
+    def __init__(self, *controls: str) -> None:
+        object.__setattr__(self, "controls", controls)
+
+
+class Free(AdmissibleSet):
+    """Controls that nothing limits."""
+
+    kind = "free"
+
+
+class Box(AdmissibleSet):
+    """Each control between its bounds: ``u = [lower, upper]`` in the ``[control]`` of an instance."""
+
+    kind = "box"
+
+
+class Ball(AdmissibleSet):
+    """Controls whose norm is bounded: ``max_norm`` in the ``[control.NAME]`` of an instance."""
+
+    kind = "ball"
+
+
+class Annulus(AdmissibleSet):
+    """Controls whose norm lies between ``min_norm`` and ``max_norm`` in the ``[control.NAME]`` of an instance."""
+
+    kind = "annulus"
+
+
+class Angle(AdmissibleSet):
+    """One control that is a direction in a plane, any of them."""
+
+    kind = "angle"
