@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import itertools
 import math
+import operator
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import reduce
 
 from satsym import units
 from satsym.auditing.constants import PUBLISHED
@@ -73,8 +75,8 @@ class Quantity:
     def __rtruediv__(self, other: float) -> Quantity:
         return Quantity(other / self.value, _sum({}, self.dimension, Fraction(-1)))
 
-    def __pow__(self, exponent: int) -> Quantity:
-        return Quantity(self.value**exponent, _sum({}, self.dimension, Fraction(exponent)))
+    def __pow__(self, exponent: int | Fraction) -> Quantity:
+        return Quantity(self.value ** float(exponent), _sum({}, self.dimension, Fraction(exponent)))
 
 
 @dataclass(frozen=True)
@@ -219,29 +221,21 @@ def _evaluated(tree: Node, inputs: Mapping[str, str]) -> Quantity:
             return Quantity(math.pi, {})
         return in_base_units(inputs.get(tree.name) or PUBLISHED[tree.name].quantity)
     if isinstance(tree, Neg):
-        operand = _evaluated(tree.operand, inputs)
-        return Quantity(-operand.value, operand.dimension)
+        return -_evaluated(tree.operand, inputs)
     if isinstance(tree, Add):
-        terms = [_evaluated(term, inputs) for term in tree.terms]
-        return Quantity(math.fsum(term.value for term in terms), _same(terms))
-    if isinstance(tree, Mul | Div):
-        parts = (
-            tree.factors if isinstance(tree, Mul) else (tree.numerator, Pow(tree.denominator, Neg(Num(Fraction(1)))))
-        )
-        product = Quantity(1.0, {})
-        for part in parts:
-            factor = _evaluated(part, inputs)
-            product = Quantity(product.value * factor.value, _sum(product.dimension, factor.dimension, Fraction(1)))
-        return product
+        return reduce(operator.add, (_evaluated(term, inputs) for term in tree.terms))
+    if isinstance(tree, Mul):
+        return reduce(operator.mul, (_evaluated(factor, inputs) for factor in tree.factors))
+    if isinstance(tree, Div):
+        return _evaluated(tree.numerator, inputs) / _evaluated(tree.denominator, inputs)
     if isinstance(tree, Pow):
-        base, exponent = _evaluated(tree.base, inputs), constant(tree.exponent) or Fraction(0)
-        return Quantity(base.value ** float(exponent), _sum({}, base.dimension, exponent))
+        return _evaluated(tree.base, inputs) ** (constant(tree.exponent) or Fraction(0))
     if isinstance(tree, Call) and tree.function in _FLOATS:
         arguments = [_evaluated(argument, inputs) for argument in tree.arguments]
         if tree.function in ("abs", "min", "max"):
             return Quantity(_FLOATS[tree.function](*(a.value for a in arguments)), _same(arguments))
         if tree.function == "sqrt":
-            return Quantity(math.sqrt(arguments[0].value), _sum({}, arguments[0].dimension, Fraction(1, 2)))
+            return arguments[0] ** Fraction(1, 2)
         shared = _same(arguments)
         if shared and tree.function != "atan2":
             raise BadInput(f"{tree.function} needs a plain number")

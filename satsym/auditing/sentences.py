@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from satsym.auditing.diagnosis.edits import Change, Edit
@@ -27,53 +28,112 @@ class Said(str):
         return found
 
 
-_SHOULD = ("`{old}` should be `{new}`", "`{old}` seharusnya `{new}`")
+@dataclass(frozen=True)
+class Sentence:
+    """A sentence in both languages, with numbered places; called with texts, or lists of them, to be filled in."""
+
+    english: str
+    indonesian: str
+
+    def __call__(self, *fill: str | Sequence[str]) -> Said:
+        """The sentence with its places filled in."""
+        ways = ((self.english, " and "), (self.indonesian, " dan "))
+        return Said(*(text.format(*(_listed(part, last) for part in fill)) for text, last in ways))
+
+
+# what is wrong with a formula
+wrong_size = Sentence("The size does not fit: {0}.", "Ukurannya tidak cocok: {0}.")
+lacking = Sentence(
+    "No small edit puts it right; it lacks `{0}`.",
+    "Tidak ada suntingan kecil yang membetulkannya; yang kurang `{0}`.",
+)
+no_edit = Sentence(
+    "No small edit puts it right; it should be `{0}`.",
+    "Tidak ada suntingan kecil yang membetulkannya; seharusnya `{0}`.",
+)
+inhomogeneous = Sentence(
+    "The formula is right as numbers, but not in its dimensions: it {0}.",
+    "Sebagai angka rumusnya benar, tetapi dimensinya tidak: rumus ini {0}.",
+)
+also_inhomogeneous = Sentence("Its dimensions show it, too: it {0}.", "Dimensinya juga menunjukkannya: rumus ini {0}.")
+
+# how rows bear on each other
+takes_over = Sentence(
+    "It follows from {0} as printed, and nothing else is wrong with it.",
+    "Ini mengikuti {0} seperti tercetak, dan selain itu tidak ada yang salah.",
+)
+right_elsewhere = Sentence("The document has it right in {0}.", "Dokumen menulisnya dengan benar di {0}.")
+carried_on = Sentence("The error is carried on into {0}.", "Kekeliruan ini terbawa ke {0}.")
+not_carried_on = Sentence(
+    "The right formula, not this one, leads to {0}.", "Rumus yang benar, bukan rumus ini, membawa ke {0}."
+)
+same_slip = Sentence("The same slip is in {0}.", "Kekeliruan yang sama ada di {0}.")
+follows_from_wrong = Sentence(
+    "It does follow from {0} as printed, which is where the error comes from.",
+    "Ini memang mengikuti {0} seperti tercetak; dari sanalah kekeliruannya.",
+)
+unsound = Sentence(
+    "The result is right, but it does not follow from {0} in the way that is said.",
+    "Hasilnya benar, tetapi tidak mengikuti {0} dengan cara yang dikatakan.",
+)
+
+# numbers and units
+wrong_number = Sentence("It is {0}.", "Nilainya {0}.")
+customary_number = Sentence(
+    "It is {0}; the printed digits come out with the customary {1}.",
+    "Nilainya {0}; angka yang tercetak diperoleh dengan nilai lazim {1}.",
+)
+number_of = Sentence("The number is that of {0}; it should be {1}.", "Angkanya untuk satuan {0}; seharusnya {1}.")
+wrong_unit = Sentence("The unit is of dimension {0}; it should be {1}.", "Satuannya berdimensi {0}; seharusnya {1}.")
+
+# claims
+denied = Sentence("It does not hold", "Tidak benar demikian")
+unsound_claim = Sentence(
+    "The conclusion is right, but the reason given does not lead there: {0}.",
+    "Kesimpulannya benar, tetapi alasan yang diberikan tidak menuju ke sana: {0}.",
+)
+artefact = Sentence(
+    "This is what the printed algorithm produces, not what the problem asks for: {0}.",
+    "Ini dihasilkan oleh algoritma yang tercetak, bukan yang diminta masalahnya: {0}.",
+)
+undecided = Sentence("It cannot be decided: {0}.", "Tidak dapat diputuskan: {0}.")
+unread = Sentence("It cannot be read in the copy at hand", "Tidak terbaca pada salinan yang ada")
+
+_SHOULD = Sentence("`{0}` should be `{1}`", "`{0}` seharusnya `{1}`")
 _EDITS = {
-    Change.SIGN: ("the sign of `{old}` is reversed", "tanda `{old}` terbalik"),
-    Change.INDEX: _SHOULD,
-    Change.FACTOR: ("`{old}` should be `{new}`, a matter of a factor", "`{old}` seharusnya `{new}`, soal faktor"),
-    Change.EXPONENT: ("`{old}` should be `{new}`, a matter of an exponent", "`{old}` seharusnya `{new}`, soal pangkat"),
-    Change.FUNCTION: _SHOULD,
-    Change.BRACKET: (
-        "the brackets of `{old}` are misplaced: it should be `{new}`",
-        "kurung pada `{old}` salah tempat: seharusnya `{new}`",
+    Change.SIGN: Sentence("the sign of `{0}` is reversed", "tanda `{0}` terbalik"),
+    Change.FACTOR: Sentence("`{0}` should be `{1}`, a matter of a factor", "`{0}` seharusnya `{1}`, soal faktor"),
+    Change.EXPONENT: Sentence("`{0}` should be `{1}`, a matter of an exponent", "`{0}` seharusnya `{1}`, soal pangkat"),
+    Change.BRACKET: Sentence(
+        "the brackets of `{0}` are misplaced: it should be `{1}`",
+        "kurung pada `{0}` salah tempat: seharusnya `{1}`",
     ),
-    Change.SYMBOL: _SHOULD,
-    Change.DROPPED_FACTOR: (
-        "`{old}` should be `{new}`: a factor too many",
-        "`{old}` seharusnya `{new}`: kelebihan satu faktor",
+    Change.DROPPED_FACTOR: Sentence(
+        "`{0}` should be `{1}`: a factor too many", "`{0}` seharusnya `{1}`: kelebihan satu faktor"
     ),
-    Change.DROPPED_TERM: (
-        "`{old}` has a term too many: it should be `{new}`",
-        "`{old}` kelebihan satu suku: seharusnya `{new}`",
+    Change.DROPPED_TERM: Sentence(
+        "`{0}` has a term too many: it should be `{1}`", "`{0}` kelebihan satu suku: seharusnya `{1}`"
     ),
-    Change.INVERTED: ("`{old}` is upside down", "`{old}` terbalik pembilang dan penyebutnya"),
-    Change.MISSING_FACTOR: (
-        "`{old}` lacks a factor: it should be `{new}`",
-        "`{old}` kekurangan satu faktor: seharusnya `{new}`",
+    Change.INVERTED: Sentence("`{0}` is upside down", "`{0}` terbalik pembilang dan penyebutnya"),
+    Change.MISSING_FACTOR: Sentence(
+        "`{0}` lacks a factor: it should be `{1}`", "`{0}` kekurangan satu faktor: seharusnya `{1}`"
     ),
-    Change.MISSING_TERM: ("the term `{term}` is missing", "suku `{term}` tidak ada"),
-    Change.TERM: ("the term `{old}` should be `{new}`", "suku `{old}` seharusnya `{new}`"),
-    Change.MEAN: (
-        "`{old}` should be `{new}`, the value at that end",
-        "`{old}` seharusnya `{new}`, nilai di ujung itu",
+    Change.MISSING_TERM: Sentence("the term `{2}` is missing", "suku `{2}` tidak ada"),
+    Change.TERM: Sentence("the term `{0}` should be `{1}`", "suku `{0}` seharusnya `{1}`"),
+    Change.MEAN: Sentence("`{0}` should be `{1}`, the value at that end", "`{0}` seharusnya `{1}`, nilai di ujung itu"),
+}
+_MANY = {
+    Change.INDEX: Sentence("`{0}` should be `{1}` at {3} places", "`{0}` seharusnya `{1}` di {3} tempat"),
+    Change.DROPPED_FACTOR: Sentence(
+        "`{0}` is a factor too many at {3} places", "`{0}` kelebihan sebagai faktor di {3} tempat"
     ),
-    Change.ENTRY: _SHOULD,
+    Change.MEAN: Sentence(
+        "`{0}` should be `{1}`, the value at that end, and so at {3} places",
+        "`{0}` seharusnya `{1}`, nilai di ujung itu, demikian pula di {3} tempat",
+    ),
 }
 _WORD = re.compile(r"(?:a|[a-z]{2,})(?=[,:;]? (?![=<>+*/]))")
 """A word that begins a clause; single letters, names with digits and what is called or compared are symbols."""
-_MANY = {
-    Change.INDEX: ("`{old}` should be `{new}` at {times} places", "`{old}` seharusnya `{new}` di {times} tempat"),
-    Change.DROPPED_FACTOR: (
-        "`{old}` is a factor too many at {times} places",
-        "`{old}` kelebihan sebagai faktor di {times} tempat",
-    ),
-    Change.MEAN: (
-        "`{old}` should be `{new}`, the value at that end, and so at {times} places",
-        "`{old}` seharusnya `{new}`, nilai di ujung itu, demikian pula di {times} tempat",
-    ),
-}
-DENIED = Said("It does not hold", "Tidak benar demikian")
 
 
 def joined(parts: Iterable[str], by: str = " ") -> Said:
@@ -90,170 +150,37 @@ def in_indonesian(text: str) -> str:
 def wrong_formula(labels: Sequence[str], remedy: Remedy | None, difference: str, why: str, derived: str) -> Said:
     """What is wrong with a formula; where no edit tells, what it lacks, or what it should be."""
     if why:
-        return _said("The size does not fit: {why}.", "Ukurannya tidak cocok: {why}.", why=why)
-    if remedy is None and difference:
-        return _said(
-            "No small edit puts it right; it lacks `{difference}`.",
-            "Tidak ada suntingan kecil yang membetulkannya; yang kurang `{difference}`.",
-            difference=difference,
-        )
+        return wrong_size(why)
     if remedy is None:
-        return _said(
-            "No small edit puts it right; it should be `{derived}`.",
-            "Tidak ada suntingan kecil yang membetulkannya; seharusnya `{derived}`.",
-            derived=derived,
-        )
+        return lacking(difference) if difference else no_edit(derived)
     if remedy.exchange:
         return sentence(remedy.exchange)
-    clauses = (joined([_place(labels[cell]), edit_in_words(edit)], "") for cell, edit in remedy.edits)
-    return sentence(joined(clauses, "; "))
+    return sentence(joined((joined([_place(labels[i]), in_words(edit)], "") for i, edit in remedy.edits), "; "))
 
 
-def edit_in_words(edit: Edit) -> Said:
+def in_words(edit: Edit) -> Said:
     """One edit, as a clause."""
     old, new = edit.old, edit.new
     if edit.change is Change.SIGN:
         old = old.operand if isinstance(old, Neg) else old
     term = new.terms[-1] if edit.change is Change.MISSING_TERM and isinstance(new, Add) else new
-    texts = _MANY[edit.change] if edit.times > 1 else _EDITS[edit.change]
-    return _said(*texts, old=written(old), new=written(new), term=_signed(term), times=str(edit.times))
-
-
-def inhomogeneous(fault: str) -> Said:
-    """A formula is right once numbers are put in, but its dimensions are not."""
-    return _said(
-        "The formula is right as numbers, but not in its dimensions: it {fault}.",
-        "Sebagai angka rumusnya benar, tetapi dimensinya tidak: it {fault}.",
-        fault=fault,
-    )
-
-
-def also_inhomogeneous(fault: str) -> Said:
-    """Its dimensions alone show that a formula is wrong."""
-    return _said("Its dimensions show it, too: it {fault}.", "Dimensinya juga menunjukkannya: it {fault}.", fault=fault)
-
-
-def takes_over(keys: Sequence[str]) -> Said:
-    """A row goes wrong by what it is taken from alone."""
-    return _said(
-        "It follows from {keys} as printed, and nothing else is wrong with it.",
-        "Ini mengikuti {keys} seperti tercetak, dan selain itu tidak ada yang salah.",
-        keys=keys,
-    )
-
-
-def right_elsewhere(items: Sequence[str]) -> Said:
-    """The document has the same thing right in another place."""
-    return _said("The document has it right in {items}.", "Dokumen menulisnya dengan benar di {items}.", items=items)
-
-
-def carried_on(items: Sequence[str]) -> Said:
-    """Later formulas follow from the wrong one."""
-    return _said("The error is carried on into {items}.", "Kekeliruan ini terbawa ke {items}.", items=items)
-
-
-def not_carried_on(items: Sequence[str]) -> Said:
-    """Later formulas follow from the right one only."""
-    follow = "follows" if len(items) == 1 else "follow"
-    return _said(
-        f"{{items}} {follow} from the right formula, not from this one.",
-        "{items} mengikuti rumus yang benar, bukan rumus ini.",
-        items=items,
-    )
-
-
-def same_slip(items: Sequence[str]) -> Said:
-    """The same is printed wrong in other places."""
-    return _said("The same slip is in {items}.", "Kekeliruan yang sama ada di {items}.", items=items)
-
-
-def follows_from_wrong(items: Sequence[str]) -> Said:
-    """It follows correctly from what is itself wrong."""
-    return _said(
-        "It does follow from {items} as printed, which is where the error comes from.",
-        "Ini memang mengikuti {items} seperti tercetak; dari sanalah kekeliruannya.",
-        items=items,
-    )
-
-
-def unsound(items: Sequence[str]) -> Said:
-    """The result is right, but not for the reason given."""
-    return _said(
-        "The result is right, but it does not follow from {items} in the way that is said.",
-        "Hasilnya benar, tetapi tidak mengikuti {items} dengan cara yang dikatakan.",
-        items=items,
-    )
-
-
-def wrong_number(derived: str, custom: str = "") -> Said:
-    """A number differs from the one computed; with a customary value of a constant it would not."""
-    if not custom:
-        return _said("It is {derived}.", "Nilainya {derived}.", derived=derived)
-    return _said(
-        "It is {derived}; the printed digits come out with the customary {custom}.",
-        "Nilainya {derived}; angka yang tercetak diperoleh dengan nilai lazim {custom}.",
-        derived=derived,
-        custom=custom,
-    )
-
-
-def number_of(unit: str, derived: str) -> Said:
-    """A number is right in another unit."""
-    return _said(
-        "The number is that of {unit}; it should be {derived}.",
-        "Angkanya untuk satuan {unit}; seharusnya {derived}.",
-        unit=unit,
-        derived=derived,
-    )
-
-
-def wrong_unit(printed: str, derived: str) -> Said:
-    """The dimension of a unit is another one."""
-    return _said(
-        "The unit is of dimension {printed}; it should be {derived}.",
-        "Satuannya berdimensi {printed}; seharusnya {derived}.",
-        printed=printed,
-        derived=derived,
-    )
+    said = _MANY[edit.change] if edit.times > 1 else _EDITS.get(edit.change, _SHOULD)
+    return said(written(old), written(new), _signed(term), str(edit.times))
 
 
 def false_claim(derived: str) -> Said:
     """A claim does not hold."""
-    return joined([DENIED, Said(f": {derived}." if derived else ".")], "")
-
-
-def unsound_claim(derived: str) -> Said:
-    """A conclusion is right, the reason given for it is not."""
-    return _said(
-        "The conclusion is right, but the reason given does not lead there: {derived}.",
-        "Kesimpulannya benar, tetapi alasan yang diberikan tidak menuju ke sana: {derived}.",
-        derived=derived,
-    )
-
-
-def artefact(derived: str) -> Said:
-    """What is printed comes from the algorithm."""
-    return _said(
-        "This is what the printed algorithm produces, not what the problem asks for: {derived}.",
-        "Ini dihasilkan oleh algoritma yang tercetak, bukan yang diminta masalahnya: {derived}.",
-        derived=derived,
-    )
-
-
-def undecided(derived: str) -> Said:
-    """A claim could not be decided."""
-    return _said("It cannot be decided: {derived}.", "Tidak dapat diputuskan: {derived}.", derived=derived)
+    return joined([denied(), f": {derived}." if derived else "."], "")
 
 
 def illegible(reason: str) -> Said:
     """A row cannot be read."""
-    copy = _said("It cannot be read in the copy at hand", "Tidak terbaca pada salinan yang ada")
-    return joined([copy, f": {reason}." if reason else "."], "")
+    return joined([unread(), f": {reason}." if reason else "."], "")
 
 
-def one_letter(symbol: str, meanings: Sequence[str]) -> str:
-    """A symbol has several meanings."""
-    return f"{symbol} stands for {_listed(meanings)}"
+def sentence(clause: str) -> Said:
+    """A clause as a sentence of its own, where it does not begin with a symbol; nothing for none."""
+    return Said(*map(_with_capital, (clause, in_indonesian(clause))))
 
 
 def _place(label: str) -> Said:
@@ -269,11 +196,6 @@ def _signed(term: Node) -> str:
     return written(term) if isinstance(term, Neg) else f"+{written(term)}"
 
 
-def sentence(clause: str) -> Said:
-    """A clause as a sentence of its own, where it does not begin with a symbol; nothing for none."""
-    return Said(*map(_with_capital, (clause, in_indonesian(clause))))
-
-
 def _with_capital(clause: str) -> str:
     clause = clause.strip().rstrip(".")
     first = _WORD.match(clause)
@@ -282,17 +204,7 @@ def _with_capital(clause: str) -> str:
     return f"{clause}." if clause else ""
 
 
-def _said(english: str, indonesian: str, **fill: str | Sequence[str]) -> Said:
-    """A text in both languages, with its places filled in."""
-    return Said(
-        *(
-            text.format(**{k: v if isinstance(v, str) else _listed(v, last) for k, v in fill.items()})
-            for text, last in ((english, " and "), (indonesian, " dan "))
-        )
-    )
-
-
-def _listed(items: Sequence[str], last: str = " and ") -> str:
-    if len(items) < 2:
+def _listed(items: str | Sequence[str], last: str) -> str:
+    if isinstance(items, str) or len(items) < 2:
         return "".join(items)
     return f"{', '.join(items[:-1])}{last}{items[-1]}"

@@ -68,17 +68,6 @@ def test_sweeps_that_do_not_settle_are_undecided():
         MEASURE["swept"]("soft-return")
 
 
-def test_one_sided_thrusts_do_not_bring_the_satellite_back():
-    assert MEASURE["reachable"]("its-thesis-return") is False
-    with pytest.raises(BadInput, match="anywhere"):
-        MEASURE["reachable"]("its-thesis")
-
-
-@pytest.mark.slow
-def test_two_sided_thrusts_bring_a_satellite_back():
-    assert MEASURE["reachable"]("return-to-orbit") is True
-
-
 def test_the_cost_of_an_optimum_is_its_terminal_cost_and_the_area_below_the_running_one():
     found = MEASURE["least_cost"]("soft-return")
     running = MEASURE["area"](found.part("V"), found.part("t"))

@@ -57,9 +57,10 @@ def _measured(bench: Bench, row: Row, printed: quantities.PrintedNumber, tree: N
         cgs = _CGS_NAMES.sub(lambda name: _CGS[name[0]], printed.unit)
         if not custom and cgs != printed.unit and _comes_out_in(cgs, printed, tree, inputs):
             return Outcome(row, False, derived, unit=True, remark=sentences.number_of(cgs, derived), evidence=evidence)
-    said = "" if how is Fit.INSIDE else sentences.wrong_number(derived, custom)
-    near = how is Fit.NEAR or bool(custom)
-    return Outcome(row, how is Fit.INSIDE, derived, near=near, remark=said, evidence=evidence)
+    if how is Fit.INSIDE:
+        return Outcome(row, True, derived, evidence=evidence)
+    said = sentences.customary_number(derived, custom) if custom else sentences.wrong_number(derived)
+    return Outcome(row, False, derived, near=how is Fit.NEAR or bool(custom), remark=said, evidence=evidence)
 
 
 def _customary(printed: quantities.PrintedNumber, tree: Node, inputs: Mapping[str, str], scale: float) -> str:

@@ -9,7 +9,6 @@ from satsym.auditing.language import JUDGING
 from satsym.formula import reading
 from satsym.formula.tree import Equality, Node, Sym, calls, substituted, symbols
 from satsym.formula.weight import Scales
-from satsym.formula.writing import written
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
@@ -90,15 +89,6 @@ def scopes(tables: Mapping[str, Mapping[str, object]], derived: Mapping[str, Nod
         return found[name]
 
     return {name: resolve(name, ()) for name in tables}
-
-
-def ambiguities(found: Mapping[str, Scope]) -> dict[str, dict[str, list[str]]]:
-    """Symbols that mean different things in different scopes: symbol -> meaning -> scopes."""
-    meanings: dict[str, dict[str, list[str]]] = {}
-    for scope in found.values():
-        for symbol, meaning in scope.meanings.items():
-            meanings.setdefault(symbol, {}).setdefault(written(meaning), []).append(scope.name)
-    return {symbol: by_meaning for symbol, by_meaning in meanings.items() if len(by_meaning) > 1}
 
 
 def _scope(name: str, table: Mapping[str, object], below: Scope | None, derived: Mapping[str, Node]) -> Scope:

@@ -11,11 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from satsym.arrays import Array
-from satsym.auditing.measurements import linear, measurement, value
+from satsym.auditing.measurements import linear, linear_motions, measurement, value
 from satsym.auditing.propositions.values import Family, Record
 from satsym.formula import reading
-from satsym.status import BadInput
-from satsym.wording import shown, suggestion
 
 _SEED = 53
 _NEAR_BY = 0.02
@@ -25,6 +23,8 @@ _FAR = 10.0
 _FAST = 100.0
 """What would move faster goes its way at this speed, so that what explodes takes a while."""
 _UNTIL, _NODES = 400.0, 2001
+_WHILE = 60.0
+"""How long motions are followed, those of linear systems by themselves."""
 _ATTRACTIVE, _STABLE, _UNSTABLE = "asymptotically stable", "stable", "unstable"
 
 CATALOGUE: Mapping[str, tuple[tuple[str, str], tuple[int, int], str]] = {
@@ -66,15 +66,6 @@ def equilibria() -> Family:
 
 
 @measurement
-def equilibrium(name: str) -> Record:
-    """A member of the family of equilibria."""
-    found = {member.name: member for member in equilibria()}
-    if name not in found:
-        raise BadInput(f"no equilibrium {shown(name)}; {suggestion(name, found)}")
-    return found[name]
-
-
-@measurement
 def followed(of: Any, start: ArrayLike | None = None) -> Record:
     """The motion of a member of a family from a state, or from near its equilibrium.
 
@@ -93,7 +84,11 @@ def _followed(of: Any, start: tuple[float, ...] | None) -> Record:
     n = linear.dimension(whole)
     rest = np.asarray(whole.parts.get("rest", np.zeros(n)))
     begin = rest + _NEAR_BY * _way(n) if start is None else np.array(start, dtype=float)
-    t, x = _nonlinear(whole, begin, rest) if "formulas" in whole.parts else _linear(whole, begin)
+    if "formulas" in whole.parts:
+        t, x = _nonlinear(whole, begin, rest)
+    else:
+        path = linear_motions.trajectory(whole, begin, _WHILE)
+        t, x = path.part("t"), np.array(path.part("curves"))
     curves = {f"x{i + 1}": row for i, row in enumerate(x)}
     sizes = {"size": np.linalg.norm(x.T - rest, axis=1), "gone": np.linalg.norm(x.T - begin, axis=1)}
     return Record(f"a motion of {whole.name}", {"t": t, **sizes, **curves})
@@ -143,11 +138,3 @@ def _nonlinear(of: Record, begin: Array, rest: Array) -> tuple[Array, Array]:
 
     t = np.linspace(0.0, _UNTIL, _NODES)
     return t, np.asarray(odeint(moved, begin, t, rtol=1e-9, atol=1e-12, mxstep=10_000)).T
-
-
-def _linear(of: Record, begin: Array) -> tuple[Array, Array]:
-    t = np.linspace(0.0, 60.0, 1201)
-    step, rows = linear.flow(of, float(t[1])), [begin]
-    for _ in t[1:]:
-        rows.append(step @ rows[-1])
-    return t, np.array(rows).T

@@ -16,8 +16,9 @@ from satsym.auditing.measurements.matrices import dense
 from satsym.auditing.propositions.values import Record
 
 _LATE, _GROWN = 80.0, 1.5
-_STEPS, _MOMENTS = 400, 2000
-_LOST = 1e-9
+_MOMENTS = 400
+STEPS = 4000
+_LOST, _DEAD = 1e-9, 1e-3
 
 
 @measurement
@@ -28,16 +29,13 @@ def motion(of: Any, start: Any, t: float) -> Array:
 
 @measurement
 def trajectory(of: Any, start: Any, until: float) -> Record:
-    """The motion of x' = A x from a start on: ``t``, the states by name, and their ``size``; by e^(At)."""
+    """The motion of x' = A x from a start on, by e^(At): ``t``, states by name, all ``curves``, and their ``size``."""
     system = linear.system_of(of)
-    a = linear.numbers(system.part("A"))
-    advance, x = linear.flow(a, until / _MOMENTS), np.asarray(dense(start), dtype=float).ravel()
-    path = [x]
-    for _ in range(_MOMENTS):
+    advance, path = linear.flow(system, until / STEPS), [np.asarray(dense(start), dtype=float).ravel()]
+    for _ in range(STEPS):
         path.append(advance @ path[-1])
-    curves = np.array(path).T
-    names = system.parts.get("states") or [f"x{k + 1}" for k in range(len(a))]
-    times = np.linspace(0.0, until, _MOMENTS + 1)
+    curves, times = np.array(path).T, np.linspace(0.0, until, STEPS + 1)
+    names = system.parts.get("states") or [f"x{k + 1}" for k in range(len(curves))]
     parts = {"t": times, "size": np.linalg.norm(curves, axis=0), "curves": list(curves)}
     return Record(f"the motion of {system.name}", {**parts, **dict(zip(names, curves, strict=True))})
 
@@ -78,23 +76,23 @@ def remaining(of: Any, size: float) -> float:
 
 
 @measurement
+def stable(of: Any) -> bool:
+    """Whether motions that start near zero stay near it: by e^(At) itself, later and later."""
+    return farthest(of, 1.0) < math.inf
+
+
+@measurement
+def asymptotically_stable(of: Any) -> bool:
+    """Whether motions that start near zero stay near it and die out: by e^(At) itself, later and later."""
+    return remaining(of, 1.0) < _DEAD
+
+
+@measurement
 def quadrature(start: float, end: float, nodes: int = 24) -> list[list[float]]:
     """Places and weights that integrate a smooth function over an interval, by Gauss and Legendre."""
     places, weights = np.polynomial.legendre.leggauss(nodes)
     half = 0.5 * (end - start)
     return [[float(start + half * (p + 1.0)), float(half * w)] for p, w in zip(places, weights, strict=True)]
-
-
-@measurement
-def gramian(of: Any, t: float) -> Array:
-    """The integral of e^(-As) B B' e^(-A's) over [0, t]: from one exponential of twice the size (Van Loan)."""
-    from scipy.linalg import expm
-
-    system = linear.system_of(of)
-    a, b = -linear.numbers(system.part("A")), linear.numbers(system.part("B"))
-    n = len(a)
-    whole = expm(t * np.block([[-a, b @ b.T], [np.zeros((n, n)), a.T]]))
-    return np.asarray(whole[n:, n:].T @ whole[:n, n:])
 
 
 @measurement
@@ -115,7 +113,7 @@ def driven(of: Any, t: float) -> Array:
 def least_energy(of: Any, start: Any, t: float) -> float:
     """The least integral of the inputs squared that brings a state to zero within a time, however large they are."""
     x = dense(start)
-    return float(x @ np.linalg.solve(gramian(of, t), x))
+    return float(x @ np.linalg.solve(linear.gramian(of, t), x))
 
 
 @measurement
@@ -189,10 +187,10 @@ def _transition(a: bytes, n: int, t: float) -> Array:
 @cache
 def _reach(a: bytes, n: int) -> tuple[float, bool]:
     """The largest norm of e^(At) that is seen, and whether it has a bound."""
-    step = linear.flow(np.frombuffer(a).reshape(n, n), _LATE / _STEPS)
+    step = linear.flow(np.frombuffer(a).reshape(n, n), _LATE / _MOMENTS)
     moved, sizes = np.eye(n), []
-    for _ in range(_STEPS):
+    for _ in range(_MOMENTS):
         sizes.append(float(np.linalg.norm(moved, 2)))
         moved = step @ moved
-    early = max(sizes[: _STEPS // 2])
-    return max(sizes), max(sizes[_STEPS // 2 :]) <= _GROWN * early
+    early = max(sizes[: _MOMENTS // 2])
+    return max(sizes), max(sizes[_MOMENTS // 2 :]) <= _GROWN * early

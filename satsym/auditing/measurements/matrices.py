@@ -93,13 +93,6 @@ def kernel(of: Any) -> list[Any]:
 
 
 @measurement
-def rotation(angle: Any) -> Array:
-    """[cos, -sin; sin, cos] of an angle."""
-    turn = float(angle)
-    return np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
-
-
-@measurement
 def exp(x: Any) -> Any:
     """The exponential of a number, or of each point of a curve; exact of an exact number."""
     from satsym.symbolic.lookup import formulas
@@ -138,15 +131,6 @@ def vectors(of: Any) -> list[Array]:
 def numeric(of: Any) -> Array:
     """A matrix with plain numbers."""
     return dense(of)
-
-
-@measurement
-def second_derivatives(of: Any, by: Sequence[str]) -> list[Any]:
-    """All second derivatives of an expression, or of the entries of a matrix, by letters."""
-    entries = list(of) if getattr(of, "is_Matrix", False) else [of]
-    letters = {s.name: s for entry in entries for s in entry.free_symbols}
-    known = [letters[name] for name in by if name in letters]
-    return [entry.diff(a).diff(b) for entry in entries for i, a in enumerate(known) for b in known[i:]]
 
 
 def dense(of: Any) -> Array:

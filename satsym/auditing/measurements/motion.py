@@ -11,7 +11,8 @@ import numpy as np
 
 from satsym import instance as instances
 from satsym.arrays import Array
-from satsym.auditing.measurements import linear, measurement
+from satsym.auditing.measurements import linear, linear_motions, measurement
+from satsym.auditing.measurements.linear_motions import STEPS
 from satsym.auditing.propositions.values import Record, Undecided
 from satsym.status import BadInput, Status
 from satsym.wording import shown, suggestion
@@ -19,8 +20,6 @@ from satsym.wording import shown, suggestion
 if TYPE_CHECKING:
     from satsym.instance import Instance
     from satsym.solution import Solution
-
-STEPS = 4000
 
 
 @measurement
@@ -119,25 +118,13 @@ def _steered(case: Instance, controls: Sequence[float] | float) -> Record:
 
 @measurement
 def free_deviation(model: str, instance: str) -> Record:
-    """Deviations without control in a linear model, from the start of an instance taken for deviations: by e^(At).
-
-    Its parts are the times, each deviation by its name, all ``curves``, and their ``size`` together.
-    """
+    """The trajectory without control in a linear model, from the start of an instance taken for deviations."""
     case, found = loaded(instance), linear.system(model)
     if case.tf is None:
         raise BadInput(f"{instance} has a free final time")
-    letters = {s.name: s for s in found.part("A").free_symbols}
-    known = {v.symbol: p for v, p in zip(case.model.spec.parameters, case.parameters, strict=True)}
-    a = linear.numbers(found.part("A").subs({letters[n]: known[n] for n in letters if n in known}))
-    times = np.linspace(case.t0, case.tf, STEPS + 1)
-    advance, x = linear.flow(a, float(times[1] - times[0])), np.array(case.initial, dtype=float)
-    rows = [x]
-    for _ in range(STEPS):
-        rows.append(advance @ rows[-1])
-    path = np.array(rows).T
-    curves = dict(zip(found.part("states"), path, strict=True))
-    sizes = np.linalg.norm(path, axis=0)
-    return Record(f"{model} without control", {"t": times, "size": sizes, "curves": list(path), **curves})
+    known = dict(zip(_parameters(case), case.parameters, strict=True))
+    a = found.part("A").subs({s: known[s.name] for s in found.part("A").free_symbols if s.name in known})
+    return linear_motions.trajectory(Record(model, {**found.parts, "A": a}), case.initial, case.tf - case.t0)
 
 
 @measurement

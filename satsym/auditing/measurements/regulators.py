@@ -57,6 +57,13 @@ def regulator(of: Any, inputs: Sequence[str] = (), Q: Any = None, R: Any = None)
 
 
 @measurement
+def matlab_lqr(A: Any, B: Any, Q: Any, R: Any) -> list[Any]:
+    """What MATLAB's lqr(A, B, Q, R) gives back, in its order [K, S, e] (Control System Toolbox, page of lqr)."""
+    found = regulator(Record("the system", {"A": linear.numbers(A), "B": linear.numbers(B)}), Q=Q, R=R)
+    return [found.part("K"), found.part("P"), linear.eigenvalues(found)]
+
+
+@measurement
 def cost(of: Any, gain: Any, start: Any) -> float:
     """The integral of x'Qx + u'Ru from a start on, without an end, along u = -K x: summed over doubled intervals."""
     x, parts = np.asarray(dense(start), dtype=float).ravel(), (*_parts(of), np.atleast_2d(dense(gain)).astype(float))

@@ -118,16 +118,6 @@ def swinging(motion: Record) -> float:
 
 
 @measurement
-def wheel_drift(instance: str, torque: float) -> float:
-    """How fast the wheel's speed changes while the body is kept at rest against an outer torque."""
-    from satsym.symbolic.lookup.library import derivation
-
-    held = derivation("pitch_wheel").equation("momenta.angular_momentum").rhs
-    (slope,) = (held.diff(s) for s in held.free_symbols if s.name == "wheel_speed")
-    return abs(torque / valued(slope, instance))
-
-
-@measurement
 def crossing_time(shares: list[float], controls: list[float]) -> float:
     """How long a body of inertia 1 takes over the distance 1 from rest to rest, under forces at shares of the time.
 

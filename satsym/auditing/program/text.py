@@ -120,19 +120,6 @@ def sources(program: Program, names: Iterable[str]) -> set[str]:
     return found
 
 
-def calls_on(program: Program, module: str) -> list[tuple[ast.Call, str]]:
-    """Statements that call ``module.something(...)``, with what is called."""
-    return [
-        (s.value, s.value.func.attr)
-        for s in program.statements
-        if isinstance(s, ast.Expr)
-        and isinstance(s.value, ast.Call)
-        and isinstance(s.value.func, ast.Attribute)
-        and isinstance(s.value.func.value, ast.Name)
-        and s.value.func.value.id == module
-    ]
-
-
 def names_in(node: ast.AST) -> set[str]:
     """Names that an expression uses."""
     return {part.id for part in ast.walk(node) if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Load)}

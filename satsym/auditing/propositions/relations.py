@@ -42,15 +42,11 @@ class Comparison:
     ----------
     holds
         Whether it is true.
-    left, right
-        The values.
     fit
         How the value lies to the printed number, where there is one.
     """
 
     holds: bool
-    left: Any
-    right: Any
     fit: Fit | None = None
 
 
@@ -66,11 +62,11 @@ def compared(operator: ast.cmpop, left: Any, right: Any) -> Comparison:
     """
     if isinstance(operator, ast.In | ast.NotIn):
         inside = any(_equal(left, entry).holds for entry in _entries(right))
-        return Comparison(inside == isinstance(operator, ast.In), left, right)
+        return Comparison(inside == isinstance(operator, ast.In))
     if isinstance(operator, ast.Eq | ast.NotEq):
         found = _equal(left, right)
-        return found if isinstance(operator, ast.Eq) else Comparison(not found.holds, left, right)
-    return Comparison(_ORDERS[type(operator)](_order(left, right)), left, right)
+        return found if isinstance(operator, ast.Eq) else Comparison(not found.holds)
+    return Comparison(_ORDERS[type(operator)](order(left, right)))
 
 
 _ORDERS: Mapping[type[ast.cmpop], Callable[[int], bool]] = {
@@ -84,11 +80,6 @@ _ORDERS: Mapping[type[ast.cmpop], Callable[[int], bool]] = {
 def is_equal(left: Any, right: Any) -> bool:
     """Whether two values are equal."""
     return _equal(left, right).holds
-
-
-def compared_order(left: Any, right: Any) -> int:
-    """1 where the first is greater, -1 where it is less, 0 where they are equal."""
-    return _order(left, right)
 
 
 def fit(value: Any, printed: PrintedNumber) -> Fit:
@@ -127,24 +118,24 @@ def _equal(left: Any, right: Any) -> Comparison:
     if isinstance(left, str) and not isinstance(right, str):
         left, right = right, left
     if isinstance(left, str | bool | np.bool_):
-        return Comparison(bool(left == right), left, right)
+        return Comparison(bool(left == right))
     if isinstance(right, str):
         if _is_sequence(left):
             raise BadInput(f"a list and the text {in_words(right)} do not compare")
         how = fit(left, quantities.printed_number(right))
-        return Comparison(how is Fit.INSIDE, left, right, how)
+        return Comparison(how is Fit.INSIDE, how)
     if isinstance(left, Quantity) and isinstance(right, Quantity):
-        holds = _order(left, right) == 0
-        return Comparison(holds, left, right, Fit.UNIT if not holds and _of_unit(left, right) else None)
+        holds = order(left, right) == 0
+        return Comparison(holds, Fit.UNIT if not holds and _of_unit(left, right) else None)
     if _is_sequence(left) or _is_sequence(right):
         one, other = _entries(left), _entries(right)
         if len(one) != len(other):
-            return Comparison(False, left, right)
+            return Comparison(False)
         pairs = [_equal(a, b) for a, b in zip(one, other, strict=True)]
         fits = [pair.fit for pair in pairs if not pair.holds]
         worst = fits[0] if fits and all(how is fits[0] for how in fits) else None
-        return Comparison(all(pair.holds for pair in pairs), left, right, worst)
-    return Comparison(_same(left, right), left, right)
+        return Comparison(all(pair.holds for pair in pairs), worst)
+    return Comparison(_same(left, right))
 
 
 def _of_unit(one: Quantity, other: Quantity) -> bool:
@@ -158,7 +149,7 @@ def _of_unit(one: Quantity, other: Quantity) -> bool:
 
 def _same(left: Any, right: Any) -> bool:
     if isinstance(left, Quantity) or isinstance(right, Quantity):
-        return _order(left, right) == 0
+        return order(left, right) == 0
     if is_exact(left) or is_exact(right):
         if not _has_floats(left) and not _has_floats(right):
             return _is_zero(left - right)
@@ -168,10 +159,10 @@ def _same(left: Any, right: Any) -> bool:
     return bool(abs(left - right) <= max(RELATIVE * max(abs(left), abs(right)), ABSOLUTE))
 
 
-def _order(left: Any, right: Any) -> int:
-    """The sign of the difference; 0 where they are equal."""
+def order(left: Any, right: Any) -> int:
+    """1 where the first is greater, -1 where it is less, 0 where they are equal."""
     if isinstance(left, str):
-        return -_order(right, left)
+        return -order(right, left)
     if isinstance(right, str):
         printed = quantities.printed_number(right)
         left, right = _in_printed_unit(left, printed.unit), float(printed.value)
