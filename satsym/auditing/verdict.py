@@ -9,7 +9,7 @@ from functools import partial
 from satsym.auditing import refusal, sentences
 from satsym.auditing.causes import SILENT, with_causes
 from satsym.auditing.diagnosis.edits import Change, Edit
-from satsym.auditing.judge.bench import Bench, Formula
+from satsym.auditing.judge.bench import Bench
 from satsym.auditing.judge.compare import plans
 from satsym.auditing.judge.formula import corrected, shown
 from satsym.auditing.judged import Judged, Verdict
@@ -17,6 +17,7 @@ from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
 from satsym.auditing.propositions.reading import shape
 from satsym.formula import budget
+from satsym.formula.cells import Formula
 from satsym.formula.tree import ONE, Mul, Neg, Node
 from satsym.formula.values import Kernel, Matrix, Relation, Roots
 from satsym.formula.writing import written

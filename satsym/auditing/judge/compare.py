@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from satsym.auditing.judge.bench import Bench, Both, Formula
+from satsym.auditing.judge.bench import Bench, Both
 from satsym.auditing.judge.equations import Equal, Multiple
 from satsym.auditing.judge.matrices import EqualMatrix, SameRoots, Spans
 from satsym.auditing.judge.plan import Never, Plan
 from satsym.auditing.ledger.contents import Row
 from satsym.formula.bound import unbound
+from satsym.formula.cells import Formula
 from satsym.formula.tree import ZERO, Equality, Node, Sym, symbols
 from satsym.formula.values import Kernel, Matrix, Relation, Roots
 from satsym.status import BadInput

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from satsym.auditing import sentences
 from satsym.auditing.diagnosis.smallest_edit import remedy
-from satsym.auditing.judge.bench import Bench, Formula, in_ours
+from satsym.auditing.judge.bench import Bench
 from satsym.auditing.judge.compare import plans
 from satsym.auditing.judge.equations import Equal, Multiple
 from satsym.auditing.judge.plan import Never, Plan
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
+from satsym.formula.cells import Formula, cells
 from satsym.formula.tree import Equality, Node
 from satsym.formula.writing import written
 from satsym.symbolic.lookup import library
@@ -73,16 +74,13 @@ def corrected(outcome: Outcome) -> Formula:
 
 def dimension_fault(bench: Bench, row: Row) -> str:
     """Why a printed formula is not homogeneous; empty where it is, or where that is not known."""
-    formula = in_ours(row.printed, bench.scope(row))
-    known = bench.dimensions
-    if isinstance(formula, tuple):
+    if isinstance(row.printed, tuple):
         return ""  # the entries of a matrix have dimensions of their own
-    sides = (formula.lhs, formula.rhs) if isinstance(formula, Equality) else (formula,)
     try:
-        exact = [bench.plain_expression(side) for side in sides]
+        exact = [bench.plain_expression(side) for side in cells(bench.in_ours(row))]
     except library.NotAFormula:
         return ""
-    return library.inhomogeneity(exact, known)
+    return library.inhomogeneity(exact, bench.dimensions)
 
 
 def _target_fault(bench: Bench, compared: Plan) -> bool:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from satsym.auditing.ledger.schema import DocumentTable, RowTable, SymbolTable
 from satsym.auditing.ledger.scopes import Scope
 from satsym.auditing.propositions.reading import Proposition
-from satsym.formula.tree import Call, Equality, Node, Text, calls
+from satsym.formula.cells import Formula, calls_in
+from satsym.formula.tree import Call, Equality, Node, Text
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ class Row:
     table: RowTable
     key: str
     place: str
-    printed: Node | Equality | tuple[tuple[Node, ...], ...] | None = None
+    printed: Formula | None = None
     holds: Node | Equality | None = None
     follows: Node | Equality | None = None
     claims: Proposition | None = None
@@ -79,12 +80,3 @@ class Ledger:
 def row_key(call: Call) -> str:
     """The key that ``row['item']`` or ``row['item', 'part']`` names."""
     return " ".join(argument.value for argument in call.arguments if isinstance(argument, Text))
-
-
-def calls_in(formula: Node | Equality | None) -> Iterator[Call]:
-    """Function calls in an expression or an equality."""
-    if isinstance(formula, Equality):
-        yield from calls(formula.lhs)
-        yield from calls(formula.rhs)
-    elif formula is not None:
-        yield from calls(formula)

@@ -15,13 +15,14 @@ from typing import Any
 from satsym.auditing import language, measurements, quantities
 from satsym.auditing.ledger import documents, rows, schema, vocabulary
 from satsym.auditing.ledger import scopes as notation
-from satsym.auditing.ledger.contents import Ledger, Row, calls_in, row_key
+from satsym.auditing.ledger.contents import Ledger, Row, row_key
 from satsym.auditing.ledger.documents import HEAD
 from satsym.auditing.ledger.positions import Part
 from satsym.auditing.ledger.schema import DocumentTable, RowTable, SymbolTable, WrongKey
 from satsym.auditing.ledger.scopes import Scope, WrongScope
 from satsym.auditing.propositions.reading import explanation, is_proposition, matching, proposition
 from satsym.formula import budget, reading
+from satsym.formula.cells import calls_in
 from satsym.formula.tree import Node, substituted
 from satsym.formula.weight import Scales
 from satsym.instance import files

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from satsym.auditing.language import JUDGING
 from satsym.formula import reading
-from satsym.formula.tree import Equality, Node, Sym, calls, substituted, symbols
+from satsym.formula.tree import Node, Sym, calls, substituted
 from satsym.formula.weight import Scales
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
@@ -117,13 +117,6 @@ def _scope(name: str, table: Mapping[str, object], below: Scope | None, derived:
             if entry not in meanings:
                 raise WrongScope(name, key, f"{shown(entry)} is no symbol of this scope; {suggestion(entry, meanings)}")
     return Scope(name, meanings, orders)
-
-
-def names_used(tree: Node | Equality) -> set[str]:
-    """Names in an expression or an equality."""
-    if isinstance(tree, Equality):
-        return symbols(tree.lhs) | symbols(tree.rhs)
-    return symbols(tree)
 
 
 def self_named(found: Mapping[str, Scope]) -> set[str]:
