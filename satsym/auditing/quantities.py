@@ -90,13 +90,7 @@ class PrintedNumber:
 
 
 def printed_number(text: str) -> PrintedNumber:
-    """Read digits and a unit; zeros at the end of a whole number are not significant, those after a point are.
-
-    Raises
-    ------
-    BadInput
-        If the text does not begin with a number.
-    """
+    """Read digits and a unit; zeros at the end of a whole number are not significant, those after a point are."""
     text = text.removeprefix(ROUNDED)
     match = _PRINTED.match(text)
     if match is None or not (match["whole"] or match["part"]):
@@ -113,13 +107,7 @@ def printed_number(text: str) -> PrintedNumber:
 
 
 def check_unit(unit: str) -> None:
-    """Refuse a unit that is unknown. This loads pint.
-
-    Raises
-    ------
-    BadInput
-        If it is.
-    """
+    """Refuse a unit that is unknown. This loads pint."""
     if unit.strip() not in ("", "1"):
         units.dimension(unit)
 
@@ -140,26 +128,14 @@ def scale(unit: str) -> float:
 
 
 def base_unit(dimension: Mapping[str, Fraction]) -> str:
-    """The product of base units of a dimension.
-
-    Raises
-    ------
-    BadInput
-        For a dimension with broken exponents, which no printed unit has.
-    """
+    """The product of base units of a dimension."""
     if any(power.denominator != 1 or base not in _BASES for base, power in dimension.items()):
         raise BadInput("a unit with broken exponents")
     return "*".join(f"{_BASES[base]}^{int(power)}" for base, power in dimension.items()) or "1"
 
 
 def check(tree: Node | Equality, inputs: Mapping[str, str]) -> None:
-    """Refuse names in the formula of a number that are neither stated by the document nor published constants.
-
-    Raises
-    ------
-    BadInput
-        For the first of them.
-    """
+    """Refuse names in the formula of a number that are neither stated by the document nor published constants."""
     if isinstance(tree, Equality):
         raise BadInput("is an equality; write the expression of the number")
     known = {*inputs, *PUBLISHED, "pi"}

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from functools import partial
 
-from satsym.auditing import refusal, sentences
+from satsym.auditing import refusal
 from satsym.auditing.causes import SILENT, with_causes
 from satsym.auditing.diagnosis.edits import Change, Edit
 from satsym.auditing.judge.bench import Bench
@@ -16,6 +16,7 @@ from satsym.auditing.judged import Judged, Verdict
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
 from satsym.auditing.propositions.reading import shape
+from satsym.auditing.sentences import false_claim, illegible, joined, say, sentence
 from satsym.formula import budget
 from satsym.formula.cells import Formula
 from satsym.formula.tree import ONE, Mul, Neg, Node
@@ -56,7 +57,7 @@ class _Context:
 
     def judged(self, outcome: Outcome) -> Judged:
         verdict, sayings = self._verdict(outcome)
-        said = sentences.joined(sayings if verdict != "confirmed" else ())
+        said = joined(sayings if verdict != "confirmed" else ())
         row, document = outcome.row, self._bench.ledger.document.key
         command = recompute(self._bench.ledger.name, row.key)
         numbers = "; ".join(f"{name} = {_shown(value)}" for name, value in outcome.evidence.items())
@@ -75,7 +76,7 @@ class _Context:
             evidence=f"{numbers}; {command}" if numbers else command,
             role=row.table.role,
             original=row.table.original,
-            why=str(sentences.sentence(outcome.remark)) if row.claims is not None else "",
+            why=str(sentence(outcome.remark)) if row.claims is not None else "",
             form=_form(outcome),
             spoiled_by=tuple(self._spoiled_by(outcome)) if verdict not in SILENT else (),
         )
@@ -83,7 +84,7 @@ class _Context:
     def _verdict(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
         row = outcome.row
         if not row.table.legible:
-            return "illegible", [sentences.illegible(row.table.says)]
+            return "illegible", [illegible(row.table.says)]
         if row.claims is not None:
             return self._of_claim(outcome)
         if outcome.unit:
@@ -93,23 +94,23 @@ class _Context:
         if not outcome.right:
             return "imprecise" if outcome.near else "wrong", [outcome.remark]
         if row.follows is not None and not self._follows(row, {}) and not self._follows_once_mended(row):
-            return "unsound", [sentences.unsound(row.uses)]
+            return "unsound", [say("unsound", row.uses)]
         return "confirmed", []
 
     def _of_claim(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
-        derived, remark = outcome.derived, sentences.sentence(outcome.remark)
+        derived, remark = outcome.derived, sentence(outcome.remark)
         if outcome.right is None:
-            return "undecided", [sentences.undecided(derived)]
+            return "undecided", [say("undecided", derived)]
         if outcome.right:
-            return ("confirmed", []) if outcome.sound else ("unsound", [sentences.unsound_claim(derived), remark])
+            return ("confirmed", []) if outcome.sound else ("unsound", [say("unsound_claim", derived), remark])
         if outcome.artefact:
-            return "artefact", [sentences.artefact(derived), remark]
+            return "artefact", [say("artefact", derived), remark]
         if outcome.row.table.kind == "unit":
-            return "unit error", [sentences.false_claim(derived), remark]
+            return "unit error", [false_claim(derived), remark]
         by_role: dict[str, Verdict] = {"citation": "misprint", "notation": "notation"}
         verdict = by_role.get(outcome.row.table.role, "wrong")
         verdict = "imprecise" if outcome.near else "unit error" if outcome.unit else verdict
-        return verdict, [sentences.false_claim(derived), remark]
+        return verdict, [false_claim(derived), remark]
 
     def _of_wrong_formula(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
         row = outcome.row
@@ -121,12 +122,12 @@ class _Context:
         source = self._spoiled_by(outcome)
         takes_over = self._takes_over(outcome)
         return verdict, [
-            outcome.remark if not takes_over else sentences.takes_over(source),
-            sentences.right_elsewhere(right_elsewhere) if right_elsewhere else "",
-            sentences.follows_from_wrong(source) if source and not takes_over else "",
-            sentences.carried_on(carried) if carried else "",
-            sentences.not_carried_on(mended) if mended else "",
-            sentences.same_slip(slips) if slips else "",
+            outcome.remark if not takes_over else say("takes_over", source),
+            say("right_elsewhere", right_elsewhere) if right_elsewhere else "",
+            say("follows_from_wrong", source) if source and not takes_over else "",
+            say("carried_on", carried) if carried else "",
+            say("not_carried_on", mended) if mended else "",
+            say("same_slip", slips) if slips else "",
         ]
 
     def _spoiled_by(self, outcome: Outcome) -> list[str]:

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from enum import IntEnum
 from fractions import Fraction
 from itertools import combinations
-from typing import Protocol
 
 from satsym.auditing.diagnosis.rewriting import over_symbol, regrouped, shortened, times, times_symbol, without_factor
+from satsym.auditing.ledger.scopes import Scope
 from satsym.formula.tree import (
     ONE,
     Add,
@@ -79,16 +79,6 @@ class Edit:
     times: int = 1
 
 
-class Letters(Protocol):
-    """What an edit needs to know of a notation."""
-
-    def family(self, name: str) -> list[str]:
-        """Other symbols, those that differ by an index first."""
-
-    def is_slip(self, one: str, other: str) -> bool:
-        """Whether two symbols differ by an index alone."""
-
-
 _EXACT = tuple(
     Fraction(n, d) for n, d in ((2, 1), (1, 2), (3, 1), (1, 3), (4, 1), (1, 4), (3, 2), (2, 3), (6, 1), (1, 6))
 )
@@ -99,7 +89,7 @@ _STEPS = (1, -1, 2, -2)
 _FUNCTIONS = {"sin": ("cos",), "cos": ("sin",), "min": ("max",), "max": ("min",), "sinh": ("cosh",), "cosh": ("sinh",)}
 
 
-def single_edits(formula: Node, letters: Letters, usable: Callable[[str], bool] = lambda _: True) -> list[Edit]:
+def single_edits(formula: Node, letters: Scope, usable: Callable[[str], bool] = lambda _: True) -> list[Edit]:
     """Every edit of one place, the smallest first; among equals in the order of the print.
 
     Parameters
@@ -119,7 +109,7 @@ def single_edits(formula: Node, letters: Letters, usable: Callable[[str], bool] 
     return sorted(found, key=lambda edit: edit.change)
 
 
-def repeated_edits(formula: Node, letters: Letters, usable: Callable[[str], bool] = lambda _: True) -> Iterator[Edit]:
+def repeated_edits(formula: Node, letters: Scope, usable: Callable[[str], bool] = lambda _: True) -> Iterator[Edit]:
     """The same slip at several places: one symbol for another, or a factor too many, wherever it stands.
 
     Every choice of two places or more is tried if there are few, else all of them and all but one.
@@ -178,27 +168,30 @@ def _choices(places: Sequence[Path]) -> Iterator[tuple[Path, ...]]:
         yield from combinations(places, size)
 
 
+def spine(formula: Node, path: Path) -> list[Node]:
+    """The parts that one goes through to a place: the whole first, the part there last."""
+    found = [formula]
+    for step in path:
+        found.append(children(found[-1])[step])
+    return found
+
+
 def at(formula: Node, path: Path) -> Node:
     """The part at a place."""
-    for step in path:
-        formula = children(formula)[step]
-    return formula
+    return spine(formula, path)[-1]
 
 
 def in_exponent(formula: Node, path: Path) -> bool:
     """Whether a place is inside an exponent: it is changed as a whole."""
-    node = formula
-    for step in path:
-        if isinstance(node, Pow) and step == 1:
-            return True
-        node = children(node)[step]
-    return False
+    return any(isinstance(node, Pow) and step == 1 for node, step in zip(spine(formula, path), path, strict=False))
 
 
 def _changes(
-    formula: Node, path: Path, node: Node, letters: Letters, usable: Callable[[str], bool]
+    formula: Node, path: Path, node: Node, letters: Scope, usable: Callable[[str], bool]
 ) -> Iterator[tuple[Change, Node]]:
-    direct, parent = _parent(formula, path), _owner(formula, path)
+    *above, _ = spine(formula, path)
+    direct = above[-1] if above else None
+    parent = next((owner for owner in reversed(above) if not isinstance(owner, Neg)), None)  # a minus is of its term
     is_term = not isinstance(node, Neg) and (parent is None or isinstance(parent, Add | Call))
     if not isinstance(direct, Neg) and (
         parent is None or isinstance(parent, Add | Call) or _is_sum_to_a_power(node, parent)
@@ -252,21 +245,8 @@ def _near(value: Fraction) -> list[Fraction]:
     return [other for other in dict.fromkeys([*(value * f for f in _EXACT), *steps]) if other > 0]
 
 
-def _names(letters: Letters, formula: Node) -> list[str]:
+def _names(letters: Scope, formula: Node) -> list[str]:
     """Symbols that a factor may be missing of: those of the formula first, then the others of the notation."""
     inside = list(dict.fromkeys(node.name for _, node in walk(formula) if isinstance(node, Sym)))
     others = letters.family(inside[0]) if inside else letters.family("")
     return [*inside, *(name for name in others if name not in inside)]
-
-
-def _parent(formula: Node, path: Path) -> Node | None:
-    node, current = None, formula
-    for step in path:
-        node, current = current, children(current)[step]
-    return node
-
-
-def _owner(formula: Node, path: Path) -> Node | None:
-    """What a part belongs to: a minus in front of a term belongs to the term."""
-    parent = _parent(formula, path)
-    return _owner(formula, path[:-1]) if isinstance(parent, Neg) else parent

@@ -16,13 +16,7 @@ from satsym.symbolic.lookup import formulas
 
 
 def plans(bench: Bench, row: Row, printed: Formula, target: Both) -> list[Plan]:
-    """How a printed formula may be compared with its target: it is right if one of the plans holds.
-
-    Raises
-    ------
-    BadInput
-        If the two are of kinds that cannot be compared.
-    """
+    """How a printed formula may be compared with its target: it is right if one of the plans holds."""
     trees = target.trees
     if isinstance(printed, tuple):
         return [_of_matrix(bench, row, printed, target)]

@@ -6,12 +6,13 @@ import re
 from collections.abc import Mapping
 from fractions import Fraction
 
-from satsym.auditing import quantities, sentences
+from satsym.auditing import quantities
 from satsym.auditing.constants import CUSTOMARY
 from satsym.auditing.judge.bench import Bench
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
 from satsym.auditing.propositions.relations import Fit, fit_of_range
+from satsym.auditing.sentences import say
 from satsym.formula.tree import Equality, Node, symbols
 from satsym.formula.values import Kernel, Matrix, Relation, Roots
 from satsym.status import BadInput
@@ -42,7 +43,7 @@ def _measured(bench: Bench, row: Row, printed: quantities.PrintedNumber, tree: N
     if dict(stated.dimension) != dict(found.dimension):
         wanted = library.written_dimension(found.dimension)
         derived = f"{found.value:.6g} {quantities.base_unit(found.dimension)}"
-        remark: str = sentences.wrong_unit(library.written_dimension(stated.dimension), wanted)
+        remark: str = say("wrong_unit", library.written_dimension(stated.dimension), wanted)
         return Outcome(row, False, derived, unit=True, remark=remark)
     scale = quantities.scale(printed.unit)
     value, (low, high) = found.value / scale, (bound / scale for bound in quantities.bounds(tree, inputs))
@@ -56,10 +57,10 @@ def _measured(bench: Bench, row: Row, printed: quantities.PrintedNumber, tree: N
         custom = _customary(printed, tree, inputs, scale)
         cgs = _CGS_NAMES.sub(lambda name: _CGS[name[0]], printed.unit)
         if not custom and cgs != printed.unit and _comes_out_in(cgs, printed, tree, inputs):
-            return Outcome(row, False, derived, unit=True, remark=sentences.number_of(cgs, derived), evidence=evidence)
+            return Outcome(row, False, derived, unit=True, remark=say("number_of", cgs, derived), evidence=evidence)
     if how is Fit.INSIDE:
         return Outcome(row, True, derived, evidence=evidence)
-    said = sentences.customary_number(derived, custom) if custom else sentences.wrong_number(derived)
+    said = say("customary_number", derived, custom) if custom else say("wrong_number", derived)
     return Outcome(row, False, derived, near=how is Fit.NEAR or bool(custom), remark=said, evidence=evidence)
 
 
@@ -91,7 +92,7 @@ def _exact(bench: Bench, row: Row, printed: quantities.PrintedNumber) -> Outcome
         raise BadInput(f"a number is held against {formulas.text(target.exact)}, which is none")
     how, derived = fit_of_range(float(by_sympy), float(by_sympy), printed), str(by_sympy)
     right = how is Fit.INSIDE if by_sympy.denominator != 1 else by_sympy == printed.value
-    remark = "" if right else sentences.wrong_number(derived)
+    remark = "" if right else say("wrong_number", derived)
     return Outcome(row, right, derived, near=how is Fit.NEAR and by_sympy.denominator != 1, remark=remark)
 
 
@@ -115,7 +116,7 @@ def unit(bench: Bench, row: Row) -> Outcome:
     found = library.dimension(bench.plain_expression(row.holds), bench.dimensions) or {}
     derived = library.written_dimension(found)
     right = printed == found
-    remark = "" if right else sentences.wrong_unit(library.written_dimension(printed), derived)
+    remark = "" if right else say("wrong_unit", library.written_dimension(printed), derived)
     return Outcome(row, right, derived, unit=not right, remark=remark)
 
 

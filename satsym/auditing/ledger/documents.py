@@ -39,13 +39,7 @@ def named(path: Path) -> str:
 
 
 def locate(name_or_path: str) -> Path:
-    """The shipped ledger of a document, or the path that was given.
-
-    Raises
-    ------
-    BadInput
-        If there is none.
-    """
+    """The shipped ledger of a document, or the path that was given."""
     for path in shipped():
         if path.name == name_or_path:
             return path
@@ -62,13 +56,7 @@ def locate(name_or_path: str) -> Path:
 
 
 def refuse_unknown_items(ledgers: Sequence[Ledger], items: Sequence[str]) -> None:
-    """Refuse items that no ledger has.
-
-    Raises
-    ------
-    BadInput
-        For the first of them.
-    """
+    """Refuse items that no ledger has."""
     known = dict.fromkeys(name for x in ledgers for row in x.rows for name in (row.table.item, row.key))
     for item in items:
         if item not in known:

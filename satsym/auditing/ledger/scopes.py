@@ -66,13 +66,7 @@ class WrongScope(BadInput):
 
 
 def scopes(tables: Mapping[str, Mapping[str, object]], derived: Mapping[str, Node]) -> dict[str, Scope]:
-    """All scopes of a ledger, each with what it extends.
-
-    Raises
-    ------
-    WrongScope
-        For the first entry that cannot be read.
-    """
+    """All scopes of a ledger, each with what it extends."""
     found: dict[str, Scope] = {}
 
     def resolve(name: str, asking: tuple[str, ...]) -> Scope:

@@ -26,6 +26,8 @@ _FIXED = (
 ).split()
 _PARTS = "d lambda residual given on reference target momentum nu hat star 0 min max dot ddot".split()
 """What names are made with in deriving, beside words of the derivation files."""
+_ENTRY = re.compile(r"^[A-Z][A-Za-z]*_")
+"""What the name of an entry of a matrix begins with."""
 
 
 def is_address(text: str) -> bool:
@@ -42,17 +44,11 @@ class Vocabulary:
 
     def knows(self, name: str) -> bool:
         """Whether a derivation may have this name, or the ledger declares it."""
-        made = len(name) <= MAX_NAME and all(part in self.words for part in name.split("_"))
+        made = len(name) <= MAX_NAME and all(part in self.words for part in _ENTRY.sub("", name).split("_"))
         return made or name in self.own or name in self.words
 
     def check(self, tree: Node | Equality) -> None:
-        """Refuse unknown names and malformed addresses.
-
-        Raises
-        ------
-        BadInput
-            For the first of them.
-        """
+        """Refuse unknown names and malformed addresses."""
         for cell in cells(tree):
             for _, part in walk(cell):
                 if isinstance(part, Sym) and not self.knows(part.name):
@@ -76,13 +72,7 @@ def _check_address(address: str) -> None:
 
 
 def check_model(name: str) -> None:
-    """Refuse the name of a model that no derivation file has.
-
-    Raises
-    ------
-    BadInput
-        If none has it.
-    """
+    """Refuse the name of a model that no derivation file has."""
     if name not in _words():
         raise BadInput(f"no derivation {shown(name)}; `satsym models` lists the models")
 

@@ -14,7 +14,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.auditing.measurements import measurement
 from satsym.auditing.propositions.relations import is_equal
-from satsym.auditing.propositions.values import Record, Undecided, is_exact
+from satsym.auditing.propositions.values import Record, Undecided, is_exact, measured
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
@@ -207,9 +207,7 @@ def numbers(of: Any) -> Array:
 
 @lru_cache(maxsize=4096)
 def _numbers(of: Any) -> Array:
-    found = np.array(of.subs(dict.fromkeys(of.free_symbols, 1)).tolist(), dtype=float).reshape(of.shape)
-    found.flags.writeable = False
-    return found
+    return np.asarray(measured(of.subs(dict.fromkeys(of.free_symbols, 1)))).reshape(of.shape)
 
 
 @cache

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from satsym.arrays import Array
 from satsym.auditing.measurements import measurement
-from satsym.auditing.propositions.values import is_exact, is_number
-from satsym.status import BadInput
+from satsym.auditing.propositions.values import is_exact, is_number, measured
 
 _SEED = 3
 
@@ -135,14 +133,4 @@ def numeric(of: Any) -> Array:
 
 def dense(of: Any) -> Array:
     """A matrix, a column or a number with plain numbers."""
-    return _measured(of) if is_exact(of) else np.asarray(of)
-
-
-@lru_cache(maxsize=4096)
-def _measured(of: Any) -> Array:
-    if of.free_symbols:
-        raise BadInput(f"{of} has letters where numbers are needed")
-    found = np.array(of.tolist() if getattr(of, "is_Matrix", False) else of, dtype=complex)
-    found = found if np.imag(found).any() else np.real(found)
-    found.flags.writeable = False
-    return found
+    return np.asarray(measured(of) if is_exact(of) else of)

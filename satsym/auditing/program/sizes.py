@@ -17,13 +17,7 @@ MAX_SIZE = 100_000
 
 
 def made(count: int) -> None:
-    """Count what is about to be made.
-
-    Raises
-    ------
-    OverBudget
-        If it is too large.
-    """
+    """Count what is about to be made."""
     if count > MAX_SIZE:
         raise OverBudget(f"an array, a list or a text of more than {MAX_SIZE:,} entries")
     budget.charge(numbers=count)
@@ -55,13 +49,7 @@ def formatted(parts: Sequence[str]) -> str:
 
 
 def numeric(value: Any) -> Any:
-    """Numbers, or lists of them, as an array.
-
-    Raises
-    ------
-    BadInput
-        If something else is among them.
-    """
+    """Numbers, or lists of them, as an array."""
     if not isinstance(value, np.ndarray):
         _refuse_others(value)
         made(extent(value))

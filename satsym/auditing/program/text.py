@@ -44,13 +44,7 @@ class Program:
 
 
 def read(lines: Sequence[object]) -> Program:
-    """Parse a program.
-
-    Raises
-    ------
-    BadInput
-        If it is too long, too deep, or no Python.
-    """
+    """Parse a program."""
     text = "\n".join(str(line) for line in lines)
     depth = 0
     for character in text:

@@ -9,9 +9,9 @@ from __future__ import annotations
 import ast
 import operator
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, Protocol, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -41,24 +41,27 @@ _TOLD = 4
 _BREAKS = (ArithmeticError, ValueError, TypeError, LookupError, AttributeError, np.linalg.LinAlgError)
 
 
-class Document(Protocol):
-    """What a proposition may look up in the document that it stands in."""
+class Document:
+    """What a proposition may look up in the document that it stands in; this one is for those that look nothing up."""
+
+    items: Sequence[str] = ()
+    """What the document numbers."""
 
     def row(self, key: str) -> Any:
         """The printed formula of a row, as an exact expression or matrix."""
+        raise LookupError(key)
 
     def text(self, key: str) -> Any:
         """What a row prints, letter by letter."""
+        raise LookupError(key)
 
     def symbol(self, name: str) -> Any:
         """What a symbol of the notation means."""
+        raise LookupError(name)
 
     def meanings(self, letter: str) -> list[str]:
         """What the document uses a letter for."""
-
-    @property
-    def items(self) -> list[str]:
-        """What the document numbers."""
+        raise LookupError(letter)
 
 
 @dataclass(frozen=True)
@@ -106,25 +109,13 @@ class Evaluation:
         self._words, self._document, self._own = words, document, own
 
     def answer(self, proposition: Proposition) -> Answer:
-        """Whether a proposition is true.
-
-        Raises
-        ------
-        BadInput
-            If its terms make no sense together.
-        """
+        """Whether a proposition is true."""
         with np.errstate(all="ignore"), warnings.catch_warnings():
             warnings.simplefilter("ignore")
             return self._judge(proposition.tree, {})
 
     def term(self, proposition: Proposition) -> str:
-        """The value of a term that is no proposition, in words.
-
-        Raises
-        ------
-        BadInput
-            If it has none.
-        """
+        """The value of a term that is no proposition, in words."""
         with np.errstate(all="ignore"):
             try:
                 return in_words(self._value(proposition.tree, {}))

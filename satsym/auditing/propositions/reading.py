@@ -107,11 +107,6 @@ def proposition(text: str, words: Words, *, own: bool = False) -> Proposition:
         What it may name.
     own
         Whether it may speak of what its own row prints, as ``printed``.
-
-    Raises
-    ------
-    BadInput
-        With the reason, and the column where there is one.
     """
     if len(text) > MAX_LENGTH:
         raise BadInput(f"longer than {MAX_LENGTH} characters; split it into parts")
@@ -124,13 +119,7 @@ def proposition(text: str, words: Words, *, own: bool = False) -> Proposition:
 
 
 def explanation(text: str, words: Words) -> tuple[str | Proposition, ...]:
-    """A sentence with terms in braces: texts, and the terms between them, read.
-
-    Raises
-    ------
-    BadInput
-        If a term cannot be read, or a brace is not closed.
-    """
+    """A sentence with terms in braces: texts, and the terms between them, read."""
     parts = _BRACES.split(text)
     if any(brace in part for part in parts[::2] for brace in "{}"):
         raise BadInput("a brace stands alone; write a term between { and }")

@@ -10,7 +10,7 @@ from typing import Any
 
 from satsym.auditing import VERDICTS, Judged, Ledger
 from satsym.auditing.causes import Finding, Weight, findings
-from satsym.auditing.sentences import denied
+from satsym.auditing.sentences import say
 from satsym.report.texts import Texts
 
 IN_FULL = (Weight.OVERTURNS, Weight.RESULT)
@@ -112,8 +112,8 @@ class Review:
         if row.why:
             return row.why
         if self.texts.language == "id" and row.diagnosis_id:
-            return row.diagnosis_id.removeprefix(f"{denied().indonesian}: ")
-        return row.diagnosis.removeprefix(f"{denied()}: ")
+            return row.diagnosis_id.removeprefix(f"{say('denied').indonesian}: ")
+        return row.diagnosis.removeprefix(f"{say('denied')}: ")
 
     def brief(self, found: Finding) -> str:
         """The first sentence of what is wrong, without its end."""
