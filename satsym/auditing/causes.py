@@ -32,27 +32,18 @@ class Weight(str, Enum):
 
 @dataclass(frozen=True)
 class Finding:
-    """One cause.
-
-    Attributes
-    ----------
-    document
-        Key of the document.
-    cause
-        Key of the row where it shows first; rows of this cause name it.
-    weight
-        How much depends on it.
-    places
-        Rows that have the fault themselves, the first first.
-    spoiled
-        Rows that are wrong because they follow from those.
-    """
+    """One cause."""
 
     document: str
+    """Key of the document."""
     cause: str
+    """Key of the row where it shows first; rows of this cause name it."""
     weight: Weight
+    """How much depends on it."""
     places: tuple[Judged, ...]
+    """Rows that have the fault themselves, the first first."""
     spoiled: tuple[Judged, ...]
+    """Rows that are wrong because they follow from those."""
 
     @property
     def statement(self) -> str:

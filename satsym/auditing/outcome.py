@@ -12,33 +12,23 @@ from satsym.auditing.ledger.contents import Row
 
 @dataclass(frozen=True)
 class Outcome:
-    """One row, judged by itself.
-
-    Attributes
-    ----------
-    right
-        Whether it equals what it is held against; ``None`` where it cannot be read or decided.
-    derived
-        What is right, in the document's symbols.
-    plan, remedy
-        Of a formula: how it was compared, and what puts it right.
-    sound, artefact, unit, near
-        Whether its reason holds; whether the printed algorithm produces it; whether only its unit is wrong; whether it
-        fails by a last digit alone.
-    remark
-        A sentence for the diagnosis.
-    evidence
-        Measured numbers.
-    """
+    """One row, judged by itself."""
 
     row: Row
     right: bool | None
+    """Whether it equals what it is held against; ``None`` where it cannot be read or decided."""
     derived: str = ""
+    """What is right, in the document's symbols."""
     plan: Plan | None = None
     remedy: Remedy | None = None
+    """Of a formula: how it was compared, and what puts it right."""
     sound: bool = True
     artefact: bool = False
     unit: bool = False
     near: bool = False
+    """Whether its reason holds; whether the printed algorithm produces it; whether only its unit is wrong;
+    whether it fails by a last digit alone."""
     remark: str = ""
+    """A sentence for the diagnosis."""
     evidence: Mapping[str, object] = field(default_factory=dict)
+    """Measured numbers."""

@@ -29,17 +29,7 @@ FORMULAS = ("equation", "matrix")
 
 
 def verdicts(bench: Bench, outcomes: Sequence[Outcome], wanted: Sequence[str] | None = None) -> list[Judged]:
-    """The verdict of each row.
-
-    Parameters
-    ----------
-    bench
-        What the rows were judged with.
-    outcomes
-        Of all rows, in order.
-    wanted
-        Keys of the rows to give; all by default.
-    """
+    """The verdicts of some rows, by default of all, from the outcomes of all rows in order."""
     by_key = {outcome.row.key: outcome for outcome in outcomes}
     context = _Context(bench, by_key)
     chosen = [o for o in outcomes if wanted is None or o.row.key in wanted]

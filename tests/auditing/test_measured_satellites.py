@@ -51,10 +51,9 @@ def test_a_constant_that_is_not_published_is_refused():
 
 def test_what_is_given_at_the_ends_is_what_the_boundary_type_says():
     states = ["r", "r_dot", "theta", "theta_dot"]
-    assert MEASURE["given_at"]("its-thesis", "start") == states
-    assert MEASURE["given_at"]("its-thesis", "end") == [f"lambda_{name}" for name in states]
-    assert MEASURE["given_at"]("soft-return", "end") == ["lambda_theta"]  # the others depend on where it ends
-    assert MEASURE["given_at"]("return-to-orbit", "end") == states
+    assert MEASURE["given_at_end"]("its-thesis") == [f"lambda_{name}" for name in states]
+    assert MEASURE["given_at_end"]("soft-return") == ["lambda_theta"]  # the others depend on where it ends
+    assert MEASURE["given_at_end"]("return-to-orbit") == states
 
 
 def test_sweeps_end_where_no_control_is_needed_whatever_they_begin_with():

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from satsym.auditing.measurements import earth, linear, linear_motions, listings, matrices, models, regulators
+from satsym.auditing.measurements import earth, formulas, linear, linear_motions, listings, matrices, regulators
 from satsym.auditing.measurements import words as all_words
 from satsym.auditing.propositions.values import Record, Undecided
 
@@ -130,7 +130,7 @@ def test_matrices() -> None:
 
 def test_rates_are_integrated() -> None:
     x, v = sp.symbols("x v")
-    path = models.integrated([v, -x], ["x", "v"], [0, 1], 6.0)
+    path = formulas.integrated([v, -x], ["x", "v"], [0, 1], 6.0)
     assert path.part("x") == pytest.approx(np.sin(path.part("t")), abs=1e-8)
 
 

@@ -55,28 +55,19 @@ class Change(IntEnum):
 
 @dataclass(frozen=True)
 class Edit:
-    """One change of one part.
-
-    Attributes
-    ----------
-    change
-        Its kind.
-    path
-        Where the part stands.
-    old, new
-        The part before and after.
-    result
-        The whole formula after it.
-    times
-        At how many places, where it is the same slip at several.
-    """
+    """One change of one part."""
 
     change: Change
+    """Its kind."""
     path: Path
+    """Where the part stands."""
     old: Node
     new: Node
+    """The part before and after."""
     result: Node
+    """The whole formula after it."""
     times: int = 1
+    """At how many places, where it is the same slip at several."""
 
 
 _EXACT = tuple(
@@ -90,17 +81,7 @@ _FUNCTIONS = {"sin": ("cos",), "cos": ("sin",), "min": ("max",), "max": ("min",)
 
 
 def single_edits(formula: Node, letters: Scope, usable: Callable[[str], bool] = lambda _: True) -> list[Edit]:
-    """Every edit of one place, the smallest first; among equals in the order of the print.
-
-    Parameters
-    ----------
-    formula
-        As printed.
-    letters
-        The notation it is printed in.
-    usable
-        Which symbols may be put in.
-    """
+    """Every edit of one place with symbols that are usable, the smallest first; among equals in the printed order."""
     found: list[Edit] = []
     for path, node in walk(formula):
         if not in_exponent(formula, path):
@@ -150,9 +131,8 @@ def _ends(node: Node) -> tuple[Node, ...]:
 def _without_mean(node: Node, end: int) -> Node:
     assert isinstance(node, Mul)
     ends = _ends(node)
-    kept = [ends[end] if factor == Add(ends) else factor for factor in node.factors]
-    kept.remove(Num(Fraction(1, 2)))
-    return Mul(tuple(kept)) if len(kept) > 1 else kept[0]
+    kept = tuple(ends[end] if factor == Add(ends) else factor for factor in node.factors)
+    return without_factor(Mul(kept), Num(Fraction(1, 2)))
 
 
 def _everywhere(change: Change, formula: Node, places: Sequence[Path], old: Node, rule: Callable[[Node], Node]) -> Edit:

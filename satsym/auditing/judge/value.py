@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping
 from fractions import Fraction
 
+from satsym import units
 from satsym.auditing import quantities
 from satsym.auditing.constants import CUSTOMARY
 from satsym.auditing.judge.bench import Bench
@@ -110,7 +111,8 @@ def _rounded(value: float, printed: quantities.PrintedNumber) -> str:
 
 def unit(bench: Bench, row: Row) -> Outcome:
     """Judge a printed unit by its dimension."""
-    printed = {base: Fraction(power) for base, power in _dimension(str(row.table.printed)).items()}
+    text = str(row.table.printed).strip()
+    printed = {base: Fraction(power) for base, power in units.dimension(text).items()} if text not in ("", "1") else {}
     assert row.holds is not None
     assert not isinstance(row.holds, Equality)
     found = library.dimension(bench.plain_expression(row.holds), bench.dimensions) or {}
@@ -118,9 +120,3 @@ def unit(bench: Bench, row: Row) -> Outcome:
     right = printed == found
     remark = "" if right else say("wrong_unit", library.written_dimension(printed), derived)
     return Outcome(row, right, derived, unit=not right, remark=remark)
-
-
-def _dimension(text: str) -> dict[str, int | Fraction]:
-    from satsym import units
-
-    return dict(units.dimension(text)) if text.strip() not in ("", "1") else {}

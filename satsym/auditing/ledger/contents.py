@@ -15,41 +15,28 @@ from satsym.formula.tree import Call, Equality, Node, Text
 
 @dataclass(frozen=True)
 class Row:
-    """One printed thing, read.
-
-    Attributes
-    ----------
-    table
-        As the ledger has it.
-    key
-        The item and its part: how other rows name it.
-    place
-        File and line where it stands.
-    printed
-        The printed formula in the document's symbols: an expression, an equality, rows of expressions (matrix), or
-        ``None`` where what is printed is not a formula.
-    holds
-        What it is held against, in our names; ``None`` where a proposition judges.
-    follows
-        How the document says it follows, over printed rows, in the document's symbols.
-    claims
-        The proposition that has to hold: what a claim prints, or what another row is held against.
-    because, produced
-        The reason given, and what tells that the printed algorithm produces it.
-    why
-        A sentence that explains why it is not so: texts, and terms to be measured between them.
-    """
+    """One printed thing, read."""
 
     table: RowTable
+    """As the ledger has it."""
     key: str
+    """The item and its part: how other rows name it."""
     place: str
+    """File and line where it stands."""
     printed: Formula | None = None
+    """The printed formula in the document's symbols: an expression, an equality, rows of expressions (matrix),
+    or ``None`` where what is printed is not a formula."""
     holds: Node | Equality | None = None
+    """What it is held against, in our names; ``None`` where a proposition judges."""
     follows: Node | Equality | None = None
+    """How the document says it follows, over printed rows, in the document's symbols."""
     claims: Proposition | None = None
+    """The proposition that has to hold: what a claim prints, or what another row is held against."""
     because: Proposition | None = None
     produced: Proposition | None = None
+    """The reason given, and what tells that the printed algorithm produces it."""
     why: tuple[str | Proposition, ...] = ()
+    """A sentence that explains why it is not so: texts, and terms to be measured between them."""
 
     @property
     def uses(self) -> list[str]:

@@ -171,17 +171,17 @@ class _Reader:
                 raise BadInput("a claim is judged by the proposition that it prints; leave `holds` out")
             if table.kind == "table":
                 raise BadInput('a table is judged by a proposition, such as "all(a == b for a, b in printed)"')
+        found: dict[str, Any] = {}
         with self._telling("row", "printed", index, key):
-            row = replace(row, printed=rows.printed(table, scope))
+            found["printed"] = rows.printed(table, scope)
         with self._telling("row", "inputs", index, key):
             for value in table.inputs.values():
                 _input(value)
         with self._telling("row", "holds", index, key):
-            row = replace(row, holds=rows.held_against(table, self._derived, self._known, self._inputs))
+            found["holds"] = rows.held_against(table, self._derived, self._known, self._inputs)
         with self._telling("row", "from", index, key):
-            if table.follows:
-                row = replace(row, follows=rows.follows(table, self._derived, self._known, scope))
-        return row
+            found["follows"] = rows.follows(table, self._derived, self._known, scope) if table.follows else None
+        return replace(row, **found)
 
     def _claim(self, index: int, row: Row, scope: Scope) -> Row:
         """A row that a proposition judges: its own, or what it is held against."""

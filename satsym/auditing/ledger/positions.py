@@ -19,19 +19,13 @@ _DELIMITER = re.compile(r'"""|' + r"'''")
 
 @dataclass(frozen=True)
 class Part:
-    """A file of a ledger.
-
-    Attributes
-    ----------
-    path, tree
-        And what is in it.
-    first
-        Number of the rows in the files before it.
-    """
+    """A file of a ledger."""
 
     path: Path
     tree: dict[str, Any]
+    """And what is in it."""
     first: int
+    """Number of the rows in the files before it."""
 
     @cached_property
     def _lines(self) -> dict[tuple[str, int, str], int]:

@@ -20,21 +20,14 @@ CONSTANTS = frozenset({"I", "pi"})
 
 @dataclass(frozen=True)
 class Scope:
-    """The notation of a part of a document.
-
-    Attributes
-    ----------
-    name
-        As the ledger has it.
-    meanings
-        The document's symbol -> our expression.
-    orders
-        ``states``, ``controls``, ``outputs`` -> the document's symbols in its order, where it states one.
-    """
+    """The notation of a part of a document."""
 
     name: str
+    """As the ledger has it."""
     meanings: Mapping[str, Node]
+    """The document's symbol -> our expression."""
     orders: Mapping[str, tuple[str, ...]]
+    """``states``, ``controls``, ``outputs`` -> the document's symbols in its order, where it states one."""
 
     def knows(self, name: str) -> bool:
         """Whether a printed formula may use the name."""

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from functools import cache
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from satsym.arrays import Array
+from satsym.arrays import Array, kept
 from satsym.auditing.measurements import linear, measurement
 from satsym.auditing.measurements.matrices import dense
 from satsym.auditing.propositions.values import Record
@@ -24,7 +23,7 @@ _LOST, _DEAD = 1e-9, 1e-3
 @measurement
 def motion(of: Any, start: Any, t: float) -> Array:
     """The state at a time from a start on, of x' = A x: by integration, of all unit vectors at once."""
-    return np.asarray(_transition(*_key(of), t) @ dense(start))
+    return np.asarray(_transition(linear.numbers(linear.matrix(of)), t) @ dense(start))
 
 
 @measurement
@@ -61,7 +60,7 @@ def limit(values: Sequence[Any]) -> Any:
 @measurement
 def farthest(of: Any, size: float) -> float:
     """How far motions get that start no farther from zero than this; infinite where that has no bound."""
-    largest, bounded = _reach(*_key(of))
+    largest, bounded = _reach(linear.numbers(linear.matrix(of)))
     return size * largest if bounded else math.inf
 
 
@@ -69,7 +68,7 @@ def farthest(of: Any, size: float) -> float:
 def remaining(of: Any, size: float) -> float:
     """How far motions that start so far from zero are in the end; infinite where that has no bound."""
     a = linear.matrix(of)
-    if not _reach(*_key(of))[1]:
+    if not _reach(linear.numbers(linear.matrix(of)))[1]:
         return math.inf
     left = max(float(np.linalg.norm(linear.flow(a, t), 2)) for t in np.linspace(_LATE, 1.2 * _LATE, 20))
     return 0.0 if left < _LOST else size * left
@@ -120,7 +119,7 @@ def least_energy(of: Any, start: Any, t: float) -> float:
 def steered_to(of: Any, start: Any, aim: Any) -> Array:
     """The state after 1, under the input of least energy that comes as near to an aim as any does: by integration."""
     a, b = (linear.numbers(linear.system_of(of).part(name)) for name in "AB")
-    moved, pushed, effort = _steering(a.tobytes(), b.tobytes(), a.shape, b.shape)
+    moved, pushed, effort = _steering(a, b)
     return np.asarray(moved @ dense(start) + pushed @ (effort @ (dense(aim) - moved @ dense(start))))
 
 
@@ -158,10 +157,9 @@ def _dense(of: Any) -> Array:
     return np.asarray(dense(of), dtype=float)
 
 
-@cache
-def _steering(a_: bytes, b_: bytes, *shapes: tuple[int, int]) -> tuple[Array, Array, Array]:
+@kept
+def _steering(a: Array, b: Array) -> tuple[Array, Array, Array]:
     """After 1: what a start becomes, what the inputs B' e^(-A's) d bring about, and which d a distance asks for."""
-    a, b = (np.frombuffer(part).reshape(size) for part, size in zip((a_, b_), shapes, strict=True))
     n = len(a)
 
     def rates(s: float, x: Array) -> Array:
@@ -172,23 +170,15 @@ def _steering(a_: bytes, b_: bytes, *shapes: tuple[int, int]) -> tuple[Array, Ar
     return whole[:, :n], whole[:, n:], np.linalg.pinv(whole[:, n:], rcond=1e-9)
 
 
-def _key(of: Any) -> tuple[bytes, int]:
-    """A of a system with plain numbers, as what is kept is found by."""
-    a = linear.numbers(linear.matrix(of))
-    return a.tobytes(), len(a)
+@kept
+def _transition(a: Array, t: float) -> Array:
+    return _followed(lambda _, x: np.asarray((a @ x.reshape(a.shape)).ravel()), np.eye(len(a)), t).reshape(a.shape)
 
 
-@cache
-def _transition(a: bytes, n: int, t: float) -> Array:
-    matrix = np.frombuffer(a).reshape(n, n)
-    return _followed(lambda _, x: np.asarray((matrix @ x.reshape(n, n)).ravel()), np.eye(n), t).reshape(n, n)
-
-
-@cache
-def _reach(a: bytes, n: int) -> tuple[float, bool]:
+@kept
+def _reach(a: Array) -> tuple[float, bool]:
     """The largest norm of e^(At) that is seen, and whether it has a bound."""
-    step = linear.flow(np.frombuffer(a).reshape(n, n), _LATE / _MOMENTS)
-    moved, sizes = np.eye(n), []
+    step, moved, sizes = linear.flow(a, _LATE / _MOMENTS), np.eye(len(a)), []
     for _ in range(_MOMENTS):
         sizes.append(float(np.linalg.norm(moved, 2)))
         moved = step @ moved

@@ -6,12 +6,11 @@ A system may bring its weights Q and R; where it does not, and none are given, b
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from satsym.arrays import Array
+from satsym.arrays import Array, kept
 from satsym.auditing.measurements import linear, measurement, value
 from satsym.auditing.measurements.matrices import dense
 from satsym.auditing.propositions.values import Family, Record, Undecided, undecided_if_refused
@@ -45,7 +44,7 @@ def regulators() -> Family:
 def regulator(of: Any, inputs: Sequence[str] = (), Q: Any = None, R: Any = None) -> Record:
     """The regulator of a system, of some inputs alone: the gain K of u = -K x, P, and the closed loop's matrix A."""
     found = _parts(of, inputs, Q, R)
-    P, K = _solved(*(part.tobytes() for part in found), *(part.shape for part in found))
+    P, K = _solved(*found)
     return Record("the regulator", {"K": K, "P": P, "A": found[0] - found[1] @ K})
 
 
@@ -123,12 +122,11 @@ def _parts(of: Any, inputs: Sequence[str] = (), Q: Any = None, R: Any = None) ->
     return a, b, np.asarray(q, dtype=float), np.asarray(r, dtype=float)
 
 
-@lru_cache(maxsize=512)
-def _solved(a: bytes, b: bytes, q: bytes, r: bytes, *shapes: tuple[int, int]) -> tuple[Array, Array]:
+@kept
+def _solved(a: Array, b: Array, q: Array, r: Array) -> tuple[Array, Array]:
     from satsym.analysis.linear import system as systems
     from satsym.analysis.regulator.lqr import lqr
 
-    parts = [np.frombuffer(part).reshape(size) for part, size in zip((a, b, q, r), shapes, strict=True)]
     with undecided_if_refused():
-        found = lqr(systems.system(parts[0], parts[1]), parts[2], parts[3])
+        found = lqr(systems.system(a, b), q, r)
     return found.P, found.K

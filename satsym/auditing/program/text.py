@@ -25,18 +25,12 @@ class Stops(BadInput):
 
 @dataclass(frozen=True, eq=False)
 class Program:
-    """A program as it is printed, and the statements Python's parser finds in it.
-
-    Attributes
-    ----------
-    text
-        Its lines, joined.
-    statements
-        From first to last.
-    """
+    """A program as it is printed, and the statements Python's parser finds in it."""
 
     text: str
+    """Its lines, joined."""
     statements: tuple[ast.stmt, ...]
+    """From first to last."""
 
     def line(self, node: ast.AST) -> str:
         """The printed line that a node begins on."""

@@ -66,44 +66,24 @@ class Document:
 
 @dataclass(frozen=True)
 class Answer:
-    """Whether a proposition is true, and what decides it.
-
-    Attributes
-    ----------
-    truth
-        True, false or undecided.
-    reasons
-        The relations that decide it, with the values measured.
-    evidence
-        Measured values by their terms.
-    members
-        Of the largest family that it was tried on.
-    vacuous
-        Whether it holds of a family only because no member meets its condition.
-    miss
-        How it fails where it does so by a last digit, or by the factor of a unit, alone.
-    """
+    """Whether a proposition is true, and what decides it."""
 
     truth: Truth
+    """True, false or undecided."""
     reasons: tuple[str, ...] = ()
+    """The relations that decide it, with the values measured."""
     evidence: Mapping[str, str] = field(default_factory=dict)
+    """Measured values by their terms."""
     members: int = 0
+    """Of the largest family that it was tried on."""
     vacuous: bool = False
+    """Whether it holds of a family only because no member meets its condition."""
     miss: Fit | None = None
+    """How it fails where it does so by a last digit, or by the factor of a unit, alone."""
 
 
 class Evaluation:
-    """One proposition, evaluated.
-
-    Parameters
-    ----------
-    words
-        Measurements, families and conventions.
-    document
-        Where rows and symbols are looked up.
-    own
-        What the row itself prints.
-    """
+    """Evaluates propositions in certain words, in a document; ``own`` is what the row itself prints."""
 
     def __init__(self, words: Words, document: Document, own: Any = None) -> None:
         self._words, self._document, self._own = words, document, own

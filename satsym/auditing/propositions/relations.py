@@ -36,18 +36,12 @@ class Fit(Enum):
 
 @dataclass(frozen=True)
 class Comparison:
-    """A relation between two values.
-
-    Attributes
-    ----------
-    holds
-        Whether it is true.
-    fit
-        How the value lies to the printed number, where there is one.
-    """
+    """A relation between two values."""
 
     holds: bool
+    """Whether it is true."""
     fit: Fit | None = None
+    """How the value lies to the printed number, where there is one."""
 
 
 def compared(operator: ast.cmpop, left: Any, right: Any) -> Comparison:

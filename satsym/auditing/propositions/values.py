@@ -36,18 +36,12 @@ def undecided_if_refused() -> Iterator[None]:
 
 @dataclass(frozen=True, eq=False)
 class Record:
-    """Named values that belong together: the state at an end, a trajectory, a member of a family.
-
-    Attributes
-    ----------
-    name
-        How it is called where it confirms or refutes.
-    parts
-        Its values by name; a proposition writes ``record.name``.
-    """
+    """Named values that belong together: the state at an end, a trajectory, a member of a family."""
 
     name: str
+    """How it is called where it confirms or refutes."""
     parts: Mapping[str, Any] = field(default_factory=dict)
+    """Its values by name; a proposition writes ``record.name``."""
 
     def part(self, name: str) -> Any:
         """One of its values."""
@@ -58,16 +52,11 @@ class Record:
 
 @dataclass(frozen=True, eq=False)
 class Family:
-    """Members of a kind, some from textbooks and some at random, over which a claim quantifies.
-
-    Attributes
-    ----------
-    name, of
-        As the language has it, and what its members are, in the plural.
-    """
+    """Members of a kind, some from textbooks and some at random, over which a claim quantifies."""
 
     name: str
     of: str
+    """As the language has it, and what its members are, in the plural."""
     members: tuple[Record, ...]
 
     def __iter__(self) -> Iterator[Record]:
