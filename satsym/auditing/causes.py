@@ -91,14 +91,12 @@ def _root(key: str, faulty: Mapping[str, Judged]) -> str:
     """Where the fault of a row comes from: up along what it follows from, as long as that is faulty itself."""
     seen = [key]
     while True:
-        above = [k for k in faulty[seen[-1]].spoiled_by if k in faulty and k not in seen and not _mild(faulty[k])]
+        above = [
+            k for k in faulty[seen[-1]].spoiled_by if k in faulty and k not in seen and faulty[k].verdict not in _MILD
+        ]
         if not above:
             return seen[-1]
         seen.append(above[0])
-
-
-def _mild(row: Judged) -> bool:
-    return row.verdict in _MILD
 
 
 def _falls(row: Judged) -> bool:

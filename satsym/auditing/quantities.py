@@ -122,9 +122,9 @@ def in_base_units(text: str) -> Quantity:
     return Quantity(float(number.value) * one, dimension)
 
 
-def scale(unit: str) -> float:
-    """How many base units one unit is."""
-    return in_base_units(f"1 {unit}").value if unit != "1" else 1.0
+def one(unit: str) -> Quantity:
+    """One unit, in base units."""
+    return in_base_units(f"1 {unit}") if unit != "1" else Quantity(1.0, {})
 
 
 def base_unit(dimension: Mapping[str, Fraction]) -> str:
@@ -155,13 +155,7 @@ def is_numeric(tree: Node | Equality) -> bool:
 
 
 def evaluated(tree: Node, inputs: Mapping[str, str]) -> Quantity:
-    """The value of a formula over stated and published quantities.
-
-    Raises
-    ------
-    BadInput
-        If it puts together what has different dimensions, or has no value.
-    """
+    """The value of a formula over stated and published quantities; different dimensions put together are refused."""
     try:
         found = _evaluated(tree, inputs)
     except (ArithmeticError, ValueError) as error:

@@ -16,6 +16,7 @@ from satsym.auditing.judged import Judged, Verdict
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
 from satsym.auditing.propositions.reading import shape
+from satsym.auditing.propositions.values import in_words
 from satsym.auditing.sentences import false_claim, illegible, joined, say, sentence
 from satsym.formula import budget
 from satsym.formula.cells import Formula
@@ -50,7 +51,7 @@ class _Context:
         said = joined(sayings if verdict != "confirmed" else ())
         row, document = outcome.row, self._bench.ledger.document.key
         command = recompute(self._bench.ledger.name, row.key)
-        numbers = "; ".join(f"{name} = {_shown(value)}" for name, value in outcome.evidence.items())
+        numbers = "; ".join(f"{name} = {in_words(value)}" for name, value in outcome.evidence.items())
         return Judged(
             document=document,
             item=row.table.item,
@@ -196,11 +197,8 @@ def recompute(document: str, key: str) -> str:
 
 def _same(one: Outcome, other: Outcome) -> bool:
     """Whether two rows are put right by the same change."""
-    if one.remedy is None or other.remedy is None:
-        return False
-    return [(e.change, e.old, e.new) for _, e in one.remedy.edits] == [
-        (e.change, e.old, e.new) for _, e in other.remedy.edits
-    ] and bool(one.remedy.edits)
+    mine, others = ([(e.change, e.old, e.new) for _, e in o.remedy.edits] if o.remedy else [] for o in (one, other))
+    return bool(mine) and mine == others
 
 
 def _form(outcome: Outcome) -> str:
@@ -226,7 +224,3 @@ def _factors(node: Node) -> tuple[Node, ...]:
     if isinstance(node, Neg):
         return _factors(node.operand)
     return tuple(f for factor in node.factors for f in _factors(factor)) if isinstance(node, Mul) else (node,)
-
-
-def _shown(value: object) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)

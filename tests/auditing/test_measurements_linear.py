@@ -147,4 +147,3 @@ def test_orbits_of_the_earth() -> None:
 
 def test_signs_and_calls_of_a_line() -> None:
     assert listings.count("plot([a[1], b)", "[") == 2
-    assert listings.calls("lambda := eigvals(ABK(1))") == ["eigvals", "ABK"]

@@ -174,7 +174,7 @@ def _changes(
     parent = next((owner for owner in reversed(above) if not isinstance(owner, Neg)), None)  # a minus is of its term
     is_term = not isinstance(node, Neg) and (parent is None or isinstance(parent, Add | Call))
     if not isinstance(direct, Neg) and (
-        parent is None or isinstance(parent, Add | Call) or _is_sum_to_a_power(node, parent)
+        parent is None or isinstance(parent, Add | Call) or (isinstance(parent, Pow) and isinstance(node, Add))
     ):
         yield Change.SIGN, node.operand if isinstance(node, Neg) else Neg(node)
     if is_term:
@@ -201,10 +201,6 @@ def _changes(
             if usable(name):
                 yield Change.MISSING_FACTOR, times_symbol(node, Sym(name))
                 yield Change.MISSING_FACTOR, over_symbol(node, Sym(name))
-
-
-def _is_sum_to_a_power(node: Node, parent: Node | None) -> bool:
-    return isinstance(parent, Pow) and isinstance(node, Add)
 
 
 def _powers(node: Node, parent: Node | None) -> Iterator[tuple[Change, Node]]:

@@ -207,7 +207,7 @@ class Bench:
             return found.trees if by_trees else found.exact
 
         def other(key: str) -> Any:
-            return self._of_row(self.rows[key], kind, replacements.get(key))
+            return self.of_row(self.rows[key], kind, replacements.get(key))
 
         def symbol(text: str) -> str:
             return self._symbol_meant(row, text) if naming == self._theirs else text
@@ -245,11 +245,8 @@ class Bench:
             raise BadInput(f"{shown(name)} means {written(meaning)}: differentiate by, or replace, what is one symbol")
         return meaning.name
 
-    def of_row(self, row: Row) -> Any:
-        """What a row prints, in our names, as sympy has it."""
-        return self._of_row(row, Sympy, None)
-
-    def _of_row(self, row: Row, kind: type, instead: Formula | None) -> Any:
+    def of_row(self, row: Row, kind: type = Sympy, instead: Formula | None = None) -> Any:
+        """What a row prints, or what is taken instead, in our names; as sympy has it, or the other engine."""
         engine = self._engine(row, kind, self._ours, {})
         formula = instead if instead is not None else self.in_ours(row)
         if isinstance(formula, tuple):

@@ -40,13 +40,13 @@ def _measured(bench: Bench, row: Row, printed: quantities.PrintedNumber, tree: N
     assert not isinstance(tree, Equality)
     inputs = {**bench.ledger.inputs, **row.table.inputs}
     found = quantities.evaluated(tree, inputs)
-    stated = quantities.in_base_units(f"1 {printed.unit}" if printed.unit != "1" else "1")
+    stated = quantities.one(printed.unit)
     if dict(stated.dimension) != dict(found.dimension):
         wanted = library.written_dimension(found.dimension)
         derived = f"{found.value:.6g} {quantities.base_unit(found.dimension)}"
         remark: str = say("wrong_unit", library.written_dimension(stated.dimension), wanted)
         return Outcome(row, False, derived, unit=True, remark=remark)
-    scale = quantities.scale(printed.unit)
+    scale = stated.value
     value, (low, high) = found.value / scale, (bound / scale for bound in quantities.bounds(tree, inputs))
     unit = "" if printed.unit == "1" else f" {printed.unit}"
     derived = f"{_rounded(value, printed)}{unit}"
@@ -77,7 +77,7 @@ def _customary(printed: quantities.PrintedNumber, tree: Node, inputs: Mapping[st
 
 def _comes_out_in(unit: str, printed: quantities.PrintedNumber, tree: Node, inputs: Mapping[str, str]) -> bool:
     """Whether the printed digits are those of another unit."""
-    scale = quantities.scale(unit)
+    scale = quantities.one(unit).value
     found = quantities.evaluated(tree, inputs).value / scale
     return fit_of_range(found, found, printed) is Fit.INSIDE or bool(_customary(printed, tree, inputs, scale))
 

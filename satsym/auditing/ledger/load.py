@@ -16,7 +16,6 @@ from satsym.auditing import language, measurements, quantities
 from satsym.auditing.ledger import documents, rows, schema, vocabulary
 from satsym.auditing.ledger import scopes as notation
 from satsym.auditing.ledger.contents import Ledger, Row, row_key
-from satsym.auditing.ledger.documents import HEAD
 from satsym.auditing.ledger.positions import Part
 from satsym.auditing.ledger.schema import DocumentTable, RowTable, SymbolTable, WrongKey
 from satsym.auditing.ledger.scopes import Scope, WrongScope
@@ -57,7 +56,9 @@ def _parts(path: Path) -> list[Part]:
         part = Part(file, tree, sum(len(each.tree.get("row", [])) for each in found))
         for key in tree if found else ():
             if key != "row":
-                raise BadInput(f"{part.place(key, 0, key)}: {printable(key)}: not in a chapter; put it in {HEAD}")
+                raise BadInput(
+                    f"{part.place(key, 0, key)}: {printable(key)}: not in a chapter; put it in {documents.HEAD}"
+                )
         if found and not isinstance(tree.get("row"), list):
             raise BadInput(f"{part.place('')}: row: no rows; write one [[row]] for each thing that is printed")
         found.append(part)
@@ -86,7 +87,7 @@ class _Reader:
         self._scales = Scales()
         self._derived = self._entries("derived", self._expression, self._derived)
         self._scopes = self._read_scopes()
-        self._known = vocabulary.vocabulary(self._symbols, self._scopes)
+        self._own = vocabulary.declared(self._symbols, self._scopes)
         self._check_scopes()
         tables = self._tree.get("row", [])
         if not isinstance(tables, list) or not tables:
@@ -148,7 +149,7 @@ class _Reader:
             for key in self._tree.get("scope", {}).get(scope.name, {}):
                 if key in scope.meanings:
                     with self._telling(f"scope.{scope.name}", key):
-                        self._known.check(scope.meanings[key])
+                        vocabulary.check(scope.meanings[key], self._own)
 
     def _row(self, index: int, entry: object) -> Row:
         title = printable(str(entry.get("item", index + 1))) if isinstance(entry, dict) else str(index + 1)
@@ -178,9 +179,9 @@ class _Reader:
             for value in table.inputs.values():
                 _input(value)
         with self._telling("row", "holds", index, key):
-            found["holds"] = rows.held_against(table, self._derived, self._known, self._inputs)
+            found["holds"] = rows.held_against(table, self._derived, self._own, self._inputs)
         with self._telling("row", "from", index, key):
-            found["follows"] = rows.follows(table, self._derived, self._known, scope) if table.follows else None
+            found["follows"] = rows.follows(table, self._derived, self._own, scope) if table.follows else None
         return replace(row, **found)
 
     def _claim(self, index: int, row: Row, scope: Scope) -> Row:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from satsym.auditing import language, quantities
 from satsym.auditing.ledger import vocabulary
 from satsym.auditing.ledger.schema import RowTable
 from satsym.auditing.ledger.scopes import Scope
-from satsym.auditing.ledger.vocabulary import Vocabulary
 from satsym.formula import reading
 from satsym.formula.cells import Formula, cells, each, names_in
 from satsym.formula.tree import Equality, Node, Text, substituted
@@ -52,7 +51,7 @@ def readable(table: RowTable, scope: Scope) -> Formula | None:
 
 
 def held_against(
-    table: RowTable, derived: Mapping[str, Node], known: Vocabulary, inputs: Mapping[str, str]
+    table: RowTable, derived: Mapping[str, Node], own: Collection[str], inputs: Mapping[str, str]
 ) -> Node | Equality:
     """The formula that a row is held against."""
     if vocabulary.is_address(table.holds):
@@ -62,14 +61,14 @@ def held_against(
     if table.kind == "number" and quantities.is_numeric(formula):
         quantities.check(formula, {**inputs, **table.inputs})
     else:
-        known.check(formula)
+        vocabulary.check(formula, own)
     return formula
 
 
-def follows(table: RowTable, derived: Mapping[str, Node], known: Vocabulary, scope: Scope) -> Node | Equality:
+def follows(table: RowTable, derived: Mapping[str, Node], own: Collection[str], scope: Scope) -> Node | Equality:
     """How a row is said to follow from others."""
     formula = _with(reading.statement(str(table.follows), language.JUDGING, judging=True), derived)
-    _refuse_unknown(formula, scope, known.knows)
+    _refuse_unknown(formula, scope, own)
     return formula
 
 
@@ -79,9 +78,10 @@ def _one_text(table: RowTable) -> str:
     return table.printed
 
 
-def _refuse_unknown(formula: Formula, scope: Scope, known: Callable[[str], bool] = lambda _: False) -> None:
+def _refuse_unknown(formula: Formula, scope: Scope, own: Collection[str] | None = None) -> None:
+    """Refuse symbols that the notation lacks; where the ledger's own names are given, those of derivations will do."""
     for name in sorted(names_in(formula)):
-        if not scope.knows(name) and not known(name):
+        if not scope.knows(name) and (own is None or not vocabulary.knows(name, own)):
             raise BadInput(f"{shown(name)} is no symbol of [scope.{scope.name}]; {suggestion(name, scope.meanings)}")
 
 

@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
 from satsym.auditing.ledger.scopes import CONSTANTS, Scope, self_named
-from satsym.formula.cells import cells
+from satsym.formula.cells import Formula, cells
 from satsym.formula.reading import MAX_NAME
-from satsym.formula.tree import Call, Equality, Node, Sym, Text, walk
+from satsym.formula.tree import Call, Sym, Text, walk
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
@@ -35,34 +34,28 @@ def is_address(text: str) -> bool:
     return ADDRESS.match(text.strip()) is not None
 
 
-@dataclass(frozen=True)
-class Vocabulary:
-    """Names that may occur in expressions over derived things."""
+def knows(name: str, own: Collection[str]) -> bool:
+    """Whether a derivation may have this name, or the ledger declares it as its own."""
+    made = len(name) <= MAX_NAME and all(part in _words() for part in _ENTRY.sub("", name).split("_"))
+    return made or name in own or name in _words()
 
-    words: Collection[str]
-    own: Collection[str]
 
-    def knows(self, name: str) -> bool:
-        """Whether a derivation may have this name, or the ledger declares it."""
-        made = len(name) <= MAX_NAME and all(part in self.words for part in _ENTRY.sub("", name).split("_"))
-        return made or name in self.own or name in self.words
-
-    def check(self, tree: Node | Equality) -> None:
-        """Refuse unknown names and malformed addresses."""
-        for cell in cells(tree):
-            for _, part in walk(cell):
-                if isinstance(part, Sym) and not self.knows(part.name):
-                    hint = suggestion(part.name, sorted({*self.own, *_FIXED}))
-                    raise BadInput(
-                        f"{shown(part.name)} is no name of a derivation; {hint} (a symbol of your own: [symbols])"
-                    )
-                if isinstance(part, Call) and part.function == "at":
-                    (argument,) = part.arguments
-                    if not isinstance(argument, Text):
-                        raise BadInput("at(...) takes an address in quotes, such as at('polar_orbit:first_order.r')")
-                    _check_address(argument.value)
-                elif isinstance(part, Text) and part is cell:
-                    _check_address(part.value)
+def check(tree: Formula, own: Collection[str]) -> None:
+    """Refuse unknown names and malformed addresses."""
+    for cell in cells(tree):
+        for _, part in walk(cell):
+            if isinstance(part, Sym) and not knows(part.name, own):
+                hint = suggestion(part.name, sorted({*own, *_FIXED}))
+                raise BadInput(
+                    f"{shown(part.name)} is no name of a derivation; {hint} (a symbol of your own: [symbols])"
+                )
+            if isinstance(part, Call) and part.function == "at":
+                (argument,) = part.arguments
+                if not isinstance(argument, Text):
+                    raise BadInput("at(...) takes an address in quotes, such as at('polar_orbit:first_order.r')")
+                _check_address(argument.value)
+            elif isinstance(part, Text) and part is cell:
+                _check_address(part.value)
 
 
 def _check_address(address: str) -> None:
@@ -77,9 +70,9 @@ def check_model(name: str) -> None:
         raise BadInput(f"no derivation {shown(name)}; `satsym models` lists the models")
 
 
-def vocabulary(symbols: Mapping[str, object], scopes: Mapping[str, Scope]) -> Vocabulary:
-    """The names of the shipped derivations and those that a ledger declares."""
-    return Vocabulary(_words(), frozenset({*symbols, *self_named(scopes), *CONSTANTS}))
+def declared(symbols: Mapping[str, object], scopes: Mapping[str, Scope]) -> frozenset[str]:
+    """Names that a ledger declares as its own."""
+    return frozenset({*symbols, *self_named(scopes), *CONSTANTS})
 
 
 @cache

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from functools import cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from satsym.arrays import Array
+from satsym.arrays import Array, kept
 from satsym.auditing.measurements import linear, linear_motions, measurement, value
 from satsym.auditing.propositions.values import Family, Record
 from satsym.formula import reading
@@ -66,24 +65,17 @@ def equilibria() -> Family:
 
 
 @measurement
+@kept
 def followed(of: Any, start: ArrayLike | None = None) -> Record:
     """The motion of a member of a family from a state, or from near its equilibrium.
 
     Its parts are ``t``, ``x1``, ``x2``, ..., its distance from the equilibrium, ``size``, and from its start, ``gone``.
     What goes far away is not followed beyond.
     """
-    return _followed(
-        linear.system_of(of) if isinstance(of, str) else of,
-        None if start is None else tuple(np.asarray(start, dtype=float).tolist()),
-    )
-
-
-@cache
-def _followed(of: Any, start: tuple[float, ...] | None) -> Record:
     whole = linear.system_of(of)
     n = linear.dimension(whole)
     rest = np.asarray(whole.parts.get("rest", np.zeros(n)))
-    begin = rest + _NEAR_BY * _way(n) if start is None else np.array(start, dtype=float)
+    begin = rest + _NEAR_BY * _way(n) if start is None else np.asarray(start, dtype=float)
     if "formulas" in whole.parts:
         t, x = _nonlinear(whole, begin, rest)
     else:

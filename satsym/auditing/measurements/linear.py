@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from satsym.arrays import Array
+from satsym.arrays import Array, kept
 from satsym.auditing.measurements import measurement
 from satsym.auditing.propositions.relations import is_equal
 from satsym.auditing.propositions.values import Record, Undecided, is_exact, measured
@@ -87,9 +87,15 @@ def geometric(eigenvalue: Any, of: Any) -> int:
 
 
 @measurement
+@kept
 def eigenvectors(of: Any) -> list[Record]:
     """Independent eigenvectors as columns, each with its eigenvalue: ``value``, ``vector``; exact."""
-    return _eigenvectors(matrix(of))
+    a = matrix(of)
+    return [
+        Record(f"eigenvector {k + 1} for {e.value}", {"value": e.value, "vector": column})
+        for e in spectrum_of(a).eigenvalues
+        for k, column in enumerate((a - e.value * a.eye(a.rows)).nullspace(simplify=True))
+    ]
 
 
 @measurement
@@ -208,15 +214,6 @@ def numbers(of: Any) -> Array:
 @lru_cache(maxsize=4096)
 def _numbers(of: Any) -> Array:
     return np.asarray(measured(of.subs(dict.fromkeys(of.free_symbols, 1)))).reshape(of.shape)
-
-
-@cache
-def _eigenvectors(a: Any) -> list[Record]:
-    return [
-        Record(f"eigenvector {k + 1} for {e.value}", {"value": e.value, "vector": column})
-        for e in spectrum_of(a).eigenvalues
-        for k, column in enumerate((a - e.value * a.eye(a.rows)).nullspace(simplify=True))
-    ]
 
 
 @cache

@@ -1,4 +1,4 @@
-"""Printed listings in MATLAB and Maple: what lines do, put into Python's syntax and walked through; what they call."""
+"""Printed listings in MATLAB and Maple: what lines do, put into Python's syntax and walked through."""
 
 from __future__ import annotations
 
@@ -19,7 +19,6 @@ _LOOP = re.compile(r"while\((.*)\)")
 _COUNTED = re.compile(r"^for +\w+=\w+:\w+")
 _ENTRY = re.compile(r"\(([ij](?:\+1)?)\)")
 """An index, which picks an entry where brackets else call a function."""
-_CALL = re.compile(r"([A-Za-z_]\w*)\s*\(")
 _SEED = 11
 
 
@@ -48,18 +47,6 @@ def iterates() -> Family:
 def count(text: str, sign: str) -> int:
     """How often a sign stands in a text."""
     return text.count(sign)
-
-
-@measurement
-def calls(text: str) -> list[str]:
-    """The names of what a line calls, in order."""
-    return _CALL.findall(text)
-
-
-@value
-def maple_linalg() -> list[str]:
-    """Names of Maple's package linalg for eigenvalues and -vectors (its help page, "linalg: Overview")."""
-    return ["eigenvals", "eigenvalues", "eigenvectors", "eigenvects"]
 
 
 @measurement

@@ -103,7 +103,7 @@ def unit_in(label: str) -> float:
     found = _BRACKET.search(label)
     if found is None:
         raise BadInput(f"{shown(label)} has no unit in brackets")
-    return quantities.scale(found[1].lower() if found[1].isupper() and len(found[1]) > 1 else found[1])
+    return quantities.one(found[1].lower() if found[1].isupper() and len(found[1]) > 1 else found[1]).value
 
 
 def _read(program: Sequence[str]) -> Program:

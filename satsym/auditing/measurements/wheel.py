@@ -75,12 +75,12 @@ def switched(instance: str, torque: float = 0.0, duration: float = 0.0, share: f
 @measurement
 def gentle(instance: str, duration: float) -> Record:
     """The motion of least heat from rest to rest in some time, by the derived law."""
+    from satsym.symbolic.lookup.library import derivation
+
     n = _numbers(instance)
     unit = n["I_y"] / duration**2  # the torque that is 1 where that time is
-    first, last = (
-        unit * _derived("pitch_scaled_energy:least_effort.from_rest", {"X1_0": -n["P_c"], "t_f": 1.0, "t": end})
-        for end in (0.0, 1.0)
-    )
+    law = derivation("pitch_scaled_energy").equation("least_effort.from_rest").rhs
+    first, last = (unit * valued(law, instance, X1_0=-n["P_c"], t_f=1.0, t=end) for end in (0.0, 1.0))
     return _pushed(instance, [(duration, first, last)])
 
 
@@ -127,15 +127,6 @@ def _numbers(instance: str) -> dict[str, float]:
         raise BadInput(f"{instance} has no damping in a table [classical]")
     found = {v.symbol: float(p) for v, p in zip(case.model.spec.parameters, case.parameters, strict=True)}
     return {**found, "E": law.damping, "P_c": law.command}
-
-
-def _derived(address: str, numbers: dict[str, float]) -> float:
-    """A derived expression at numbers for its letters."""
-    from satsym.symbolic.lookup.library import derivation
-
-    name, _, where = address.partition(":")
-    found = derivation(name).equation(where).rhs
-    return float(found.xreplace({s: numbers[s.name] for s in found.free_symbols}))
 
 
 def _pushed(instance: str, pieces: list[tuple[float, float, float]], rate: float = 0.0) -> Record:

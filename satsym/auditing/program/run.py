@@ -67,19 +67,18 @@ def run(
     BadInput
         If it does what is not known here.
     """
-    return budget.within(budget.CLAIM, lambda: _run(program, given or {}, until, world or {}))
 
+    def walk() -> Run:
+        walker = _Walker(program, given or {}, world or {})
+        with np.errstate(all="ignore"):
+            for statement in program.statements:
+                walker.statement(statement)
+                if until and until in walker.world:
+                    break
+        out = walker.outside
+        return Run(walker.world, tuple(out.said), tuple(out.drawn), tuple(out.evaluations))
 
-def _run(program: Program, given: Mapping[str, Any], until: str, world: Mapping[str, Any]) -> Run:
-    walker = _Walker(program, given)
-    walker.world.update(world)
-    with np.errstate(all="ignore"):
-        for statement in program.statements:
-            walker.statement(statement)
-            if until and until in walker.world:
-                break
-    out = walker.outside
-    return Run(walker.world, tuple(out.said), tuple(out.drawn), tuple(out.evaluations))
+    return budget.within(budget.CLAIM, walk)
 
 
 class _Returned(Exception):
@@ -87,8 +86,8 @@ class _Returned(Exception):
 
 
 class _Walker:
-    def __init__(self, program: Program, given: Mapping[str, Any]) -> None:
-        self.world: dict[str, Any] = {}
+    def __init__(self, program: Program, given: Mapping[str, Any], world: Mapping[str, Any]) -> None:
+        self.world: dict[str, Any] = dict(world)
         self.outside = Outside()
         self._program, self._given = program, given
         self._modules, self._builtins = modules(self.outside), builtins(self.outside)

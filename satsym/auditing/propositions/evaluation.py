@@ -243,7 +243,11 @@ class Evaluation:
             return self._document.meanings(str(node.slice.value))
         whole, index = self._value(node.value, bound), self._value(node.slice, bound)
         try:
-            return whole.part(str(index)) if isinstance(whole, Record) else whole[_index(index)]
+            return (
+                whole.part(str(index))
+                if isinstance(whole, Record)
+                else whole[tuple(index) if isinstance(index, list) else index]
+            )
         except _BREAKS:
             raise BadInput(f"{_text(node)}: there is no such entry in {in_words(whole)}") from None
 
@@ -274,10 +278,6 @@ class Evaluation:
             return _OPERATORS[type(node.op)](left, right)
         except _BREAKS as error:
             raise BadInput(f"{_text(node)} has no value: {error}") from None
-
-
-def _index(index: Any) -> Any:
-    return tuple(index) if isinstance(index, list) else index
 
 
 def _plain(node: ast.expr, entry: Any) -> Answer:

@@ -47,12 +47,7 @@ class Comparison:
 def compared(operator: ast.cmpop, left: Any, right: Any) -> Comparison:
     """Two values in a relation.
 
-    Raises
-    ------
-    Undecided
-        If a value is no number, or exact ones cannot be told apart.
-    BadInput
-        If what they are does not compare.
+    What is no number, or cannot be told apart, is undecided; what does not compare is refused.
     """
     if isinstance(operator, ast.In | ast.NotIn):
         inside = any(_equal(left, entry).holds for entry in _entries(right))
@@ -99,7 +94,7 @@ def fit_of_range(low: float, high: float, printed: PrintedNumber) -> Fit:
 def _in_printed_unit(value: Any, unit: str) -> float:
     number = _real(value.value if isinstance(value, Quantity) else value)
     if isinstance(value, Quantity):
-        one = quantities.in_base_units(f"1 {unit}") if unit != "1" else Quantity(1.0, {})
+        one = quantities.one(unit)
         if dict(one.dimension) != dict(value.dimension):
             raise BadInput(f"{in_words(value)} is not measured in {unit}")
         return number / one.value
