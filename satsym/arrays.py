@@ -19,9 +19,15 @@ def kept(function: Callable[..., T]) -> Callable[..., T]:
 
     @wraps(function)
     def asked(*arguments: Any) -> T:
-        key = tuple((a.tobytes(), a.shape) if isinstance(a, np.ndarray) else a for a in arguments)
+        key = tuple(map(_key, arguments))
         if key not in known:
             known[key] = function(*arguments)
         return known[key]
 
     return asked
+
+
+def _key(argument: Any) -> Any:
+    if isinstance(argument, np.ndarray):
+        return argument.tobytes(), argument.shape
+    return tuple(map(_key, argument)) if isinstance(argument, list) else argument

@@ -170,8 +170,7 @@ class Evaluation:
             return Answer(None, open_.reasons, members=total)
         vacuous = universal and bool(answers) and all(answer.vacuous for answer in answers)
         said = f"{'so' if universal else 'not so'} in all of {total} {of}" if total else "there is none"
-        if vacuous:
-            said = f"no one of {total} {of} meets the condition"
+        said = f"no one of {total} {of} meets the condition" if vacuous else said
         if not vacuous and 0 < total <= _TOLD:
             evidence = {k: v for answer in answers for k, v in answer.evidence.items()}
             reasons = dict.fromkeys(reason for answer in answers for reason in answer.reasons)
