@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from satsym.auditing.program.library import BINARY, COMPARED, Drawing, Module, Outside, builtins, modules
-from satsym.auditing.program.sizes import broadcast, formatted, indexed, listed
+from satsym.auditing.program.sizes import broadcast, extent, formatted, indexed, made
 from satsym.auditing.program.text import Program, Stops
 from satsym.formula import budget
 from satsym.formula.budget import OverBudget
@@ -245,7 +245,8 @@ class _Walker:
         return function(*arguments, **named)
 
     def _list(self, found: ast.List | ast.Tuple, scope: Mapping[str, Any]) -> Any:
-        entries = listed([self._value(entry, scope) for entry in found.elts])
+        entries = [self._value(entry, scope) for entry in found.elts]
+        made(extent(entries))
         return tuple(entries) if isinstance(found, ast.Tuple) else entries
 
     def _subscript(self, found: ast.Subscript, scope: Mapping[str, Any]) -> Any:

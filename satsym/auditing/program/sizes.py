@@ -36,12 +36,6 @@ def indexed(owner: Any, place: Any) -> None:
         made(picked * (owner.size // max(1, owner.shape[0]) if len(parts) == 1 and owner.ndim else owner.size))
 
 
-def listed(entries: list[Any]) -> list[Any]:
-    """A list, unless it is too large with all that is in it, each thing as often as it is."""
-    made(extent(entries))
-    return entries
-
-
 def formatted(parts: Sequence[str]) -> str:
     """Texts as one, unless that is too long."""
     made(sum(map(len, parts)))
