@@ -43,7 +43,7 @@ class Bench:
     ledger: Ledger
 
     def __post_init__(self) -> None:
-        self.allowance = Allowance(counted=not documents.comes_with_satsym(self.ledger.path))
+        self.allowance = Allowance(counted=self.ledger.path not in documents.shipped())
         self.rows = {row.key: row for row in self.ledger.rows}
         self._meanings: dict[str, Mapping[str, Node]] = {}
         self._derived: dict[tuple[str, str], Both] = {}

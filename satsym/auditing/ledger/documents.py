@@ -28,14 +28,9 @@ def files_of(path: Path) -> list[Path]:
     return [path / HEAD, *sorted(path.glob(CHAPTERS))] if path.is_dir() else [path]
 
 
-def comes_with_satsym(path: Path) -> bool:
-    """Whether a path is that of a shipped ledger."""
-    return path in shipped()
-
-
 def named(path: Path) -> str:
     """How commands name a ledger: a shipped one by its document, any other by its path."""
-    return path.name if comes_with_satsym(path) else str(path)
+    return path.name if path in shipped() else str(path)
 
 
 def locate(name_or_path: str) -> Path:

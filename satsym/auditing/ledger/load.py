@@ -41,7 +41,7 @@ def read(path: Path) -> Ledger:
         With one line, ``FILE:LINE: what is wrong; what to do``.
     """
     parts = _parts(path)
-    allowance = budget.Allowance(counted=not documents.comes_with_satsym(path))
+    allowance = budget.Allowance(counted=path not in documents.shipped())
     return allowance.within(budget.READING, lambda: _Reader(path, parts).ledger(documents.named(path)))
 
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from satsym.auditing.measurements import measurement
-from satsym.auditing.propositions.relations import is_equal
+from satsym.auditing.propositions.relations import equal
 from satsym.auditing.propositions.relations import order as ordered
 from satsym.auditing.propositions.values import Undecided, is_exact
 
@@ -66,7 +66,7 @@ def different(values: Sequence[Any]) -> list[Any]:
     """The entries of a list, each once."""
     found: list[Any] = []
     for entry in values:
-        if not any(is_equal(entry, other) for other in found):
+        if not any(equal(entry, other).holds for other in found):
             found.append(entry)
     return found
 

@@ -110,7 +110,10 @@ def _member(name: str, texts: tuple[str, str], rest: tuple[int, int], stability:
     a = formulas.matrix_of([[e.subs(place) for e in slopes[:2]], [e.subs(place) for e in slopes[2:]]])
     ways = {"formulas": formulas.compiled(f, x), "slopes": formulas.compiled(slopes, x)}
     at = np.array(rest, dtype=float)
-    return Record(name, {"A": a, "rest": at, "elsewhere": at + np.array([0.3, 0.2]), "stability": stability, **ways})
+    return Record(
+        name,
+        {"called": name, "A": a, "rest": at, "elsewhere": at + np.array([0.3, 0.2]), "stability": stability, **ways},
+    )
 
 
 def _way(n: int) -> Array:

@@ -13,7 +13,7 @@ import numpy as np
 
 from satsym.arrays import Array, kept
 from satsym.auditing.measurements import measurement
-from satsym.auditing.propositions.relations import is_equal
+from satsym.auditing.propositions.relations import equal
 from satsym.auditing.propositions.values import Record, Undecided, is_exact, measured
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
@@ -119,7 +119,7 @@ def routh(coefficients: Sequence[Any]) -> list[list[Any]]:
     width = (len(given) + 1) // 2
     zero = given[0] - given[0]
     found = [[*line, *[zero] * (width - len(line))] for line in (given[0::2], given[1::2])]
-    while len(found) < len(given) and not is_equal(found[-1][0], 0):
+    while len(found) < len(given) and not equal(found[-1][0], 0).holds:
         above, line = found[-2:]
         after = [(line[0] * a - above[0] * b) / line[0] for a, b in zip(above[1:], line[1:], strict=True)]
         found.append([*after, zero])

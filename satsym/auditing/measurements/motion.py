@@ -171,6 +171,14 @@ def swept(instance: str, guess: float = 0.0) -> Record:
 
 
 @measurement
+def difference(one: Record, other: Record) -> Record:
+    """What one state has more than another, state by state."""
+    names = one.part("names")
+    parts = {name: one.part(name) - other.part(name) for name in names}
+    return Record(f"the difference of {one.name} and {other.name}", {**parts, "names": names})
+
+
+@measurement
 def distance(one: Record, other: Record, states: Sequence[str] = ()) -> float:
     """The largest difference of two states, relative where a value exceeds 1; of all but angles, or of some."""
     angles = one.parts.get("angles", ())

@@ -50,10 +50,10 @@ def compared(operator: ast.cmpop, left: Any, right: Any) -> Comparison:
     What is no number, or cannot be told apart, is undecided; what does not compare is refused.
     """
     if isinstance(operator, ast.In | ast.NotIn):
-        inside = any(_equal(left, entry).holds for entry in _entries(right))
+        inside = any(equal(left, entry).holds for entry in _entries(right))
         return Comparison(inside == isinstance(operator, ast.In))
     if isinstance(operator, ast.Eq | ast.NotEq):
-        found = _equal(left, right)
+        found = equal(left, right)
         return found if isinstance(operator, ast.Eq) else Comparison(not found.holds)
     return Comparison(_ORDERS[type(operator)](order(left, right)))
 
@@ -64,11 +64,6 @@ _ORDERS: Mapping[type[ast.cmpop], Callable[[int], bool]] = {
     ast.Gt: lambda sign: sign > 0,
     ast.GtE: lambda sign: sign >= 0,
 }
-
-
-def is_equal(left: Any, right: Any) -> bool:
-    """Whether two values are equal."""
-    return _equal(left, right).holds
 
 
 def fit(value: Any, printed: PrintedNumber) -> Fit:
@@ -103,7 +98,8 @@ def _in_printed_unit(value: Any, unit: str) -> float:
     return number
 
 
-def _equal(left: Any, right: Any) -> Comparison:
+def equal(left: Any, right: Any) -> Comparison:
+    """Whether two values are equal, and how they miss one another where they are not."""
     if isinstance(left, str) and not isinstance(right, str):
         left, right = right, left
     if isinstance(left, str | bool | np.bool_):
@@ -120,7 +116,7 @@ def _equal(left: Any, right: Any) -> Comparison:
         one, other = _entries(left), _entries(right)
         if len(one) != len(other):
             return Comparison(False)
-        pairs = [_equal(a, b) for a, b in zip(one, other, strict=True)]
+        pairs = [equal(a, b) for a, b in zip(one, other, strict=True)]
         fits = [pair.fit for pair in pairs if not pair.holds]
         worst = fits[0] if fits and all(how is fits[0] for how in fits) else None
         return Comparison(all(pair.holds for pair in pairs), worst)
