@@ -9,10 +9,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
+from math import isfinite
 from typing import Any, Literal
 
 FORMAT = 1
 """Version of the literal that generated modules carry as ``MODEL``."""
+
+MOST_LETTERS = 24
+"""Of exact analysis, times the states: polynomials of a high degree in many letters fill pages and say nothing."""
 
 ControlSetKind = Literal["free", "box", "ball"]
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
@@ -23,7 +27,7 @@ _OF_VARIABLES = (
 )
 _UNLESS_DEFAULT = (
     *(*_OF_LINEAR_MODELS, "keplerian", "switching", "coordinates", "velocities", "quantities", "balances"),
-    *("switching_curve", "conditions", "equilibria"),
+    *("switching_curve", "conditions", "equilibria", "mode_groups"),
 )
 
 
@@ -47,6 +51,9 @@ class Variable:
         ``"real"``, or ``"angle"`` where values a turn apart mean the same place.
     positive
         Whether only positive values have a meaning. For a state this is its domain.
+    typical
+        Lower and upper end of where its values lie, in its unit. Checks at random points draw it from there; without it
+        of size one, where steep functions and roots may have no numbers.
     """
 
     symbol: str
@@ -56,10 +63,18 @@ class Variable:
     default: float | None = None
     kind: Literal["real", "angle"] = "real"
     positive: bool = False
+    typical: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         if not _NAME.match(self.symbol) or "__" in self.symbol:
             raise ValueError(f"variable {self.symbol!r}: use a letter, then letters, digits and single underscores")
+        if self.typical is not None:
+            low, high = self.typical
+            if not (isfinite(low) and isfinite(high) and low < high) or (self.positive and low <= 0):
+                wanted = "0 < low < high" if self.positive else "low < high"
+                raise ValueError(
+                    f"variable {self.symbol!r}: typical is {low:g} to {high:g}; give two numbers, {wanted}"
+                )
 
 
 @dataclass(frozen=True)
@@ -79,6 +94,29 @@ class Condition:
     terms: tuple[tuple[str, float], ...]
     strict: bool
     reason: str
+
+
+@dataclass(frozen=True)
+class ModeGroup:
+    """What a mode of small motions is called in which these states have the largest part.
+
+    Attributes
+    ----------
+    name
+        Where no more is known.
+    states
+        Their names.
+    vanishing, slow
+        A parameter, and what a mode is called that becomes infinitely slow with it; empty where that says nothing.
+    neutral
+        What a mode is called that has the eigenvalue 0; empty where it has no other name.
+    """
+
+    name: str
+    states: tuple[str, ...]
+    vanishing: str = ""
+    slow: str = ""
+    neutral: str = ""
 
 
 @dataclass(frozen=True)
@@ -119,6 +157,8 @@ class ProblemSpec:
         What the parameters must obey besides being positive one by one.
     equilibria
         Of a model that is one attitude in orbit: the parameter over which its equilibria are followed; else empty.
+    mode_groups
+        What its modes are called, by the states that have the largest part in them. May be empty.
     """
 
     name: str
@@ -146,6 +186,7 @@ class ProblemSpec:
     switching_curve: tuple[str, ...] = ()
     conditions: tuple[Condition, ...] = ()
     equilibria: str = ""
+    mode_groups: tuple[ModeGroup, ...] = ()
 
     @property
     def separable(self) -> bool:
@@ -192,6 +233,7 @@ class ProblemSpec:
                 entries = stated[key] if key not in _UNLESS_DEFAULT else stated.get(key, ())
                 stated[key] = tuple(Variable(**entry) for entry in entries)
             stated["conditions"] = tuple(Condition(**entry) for entry in stated.get("conditions", ()))
+            stated["mode_groups"] = tuple(ModeGroup(**entry) for entry in stated.get("mode_groups", ()))
             return cls(**stated)
         except (KeyError, TypeError) as error:
             raise ValueError(f"its MODEL has other fields than this version knows ({error})") from None
@@ -202,8 +244,8 @@ def names(variables: Iterable[Variable]) -> tuple[str, ...]:
     return tuple(v.symbol for v in variables)
 
 
-def _stated(variable: Variable | Condition | str) -> dict[str, Any] | str:
-    """The fields of a variable or a condition that differ from their defaults; a name as it is."""
+def _stated(variable: Variable | Condition | ModeGroup | str) -> dict[str, Any] | str:
+    """The fields of a variable, a condition or a group of modes that differ from their defaults; a name as it is."""
     if isinstance(variable, str):
         return variable
     return {f.name: value for f in fields(variable) if (value := getattr(variable, f.name)) != f.default}

@@ -23,12 +23,15 @@ class Outcome:
     remedy: Remedy | None = None
     """Of a formula: how it was compared, and what puts it right."""
     sound: bool = True
+    vacuous: bool = False
     artefact: bool = False
     unit: bool = False
     near: bool = False
-    """Whether its reason holds; whether the printed algorithm produces it; whether only its unit is wrong;
-    whether it fails by a last digit alone."""
+    """Whether its reason holds; whether nothing meets its condition; whether the printed algorithm produces it;
+    whether only its unit is wrong; whether it fails by a last digit alone."""
     remark: str = ""
     """A sentence for the diagnosis."""
+    lacks: str = ""
+    """Of a unit, the dimension that it has to be multiplied by."""
     evidence: Mapping[str, object] = field(default_factory=dict)
     """Measured numbers."""

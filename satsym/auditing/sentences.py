@@ -66,7 +66,9 @@ def wrong_formula(labels: Sequence[str], remedy: Remedy | None, difference: str,
     if why:
         return say("wrong_size", why)
     if remedy is None:
-        return say("lacking", difference) if difference else say("no_edit", derived)
+        return (
+            say("lacking", difference) if difference else say("no_edit", derived) if derived else say("no_small_edit")
+        )
     if remedy.exchange:
         return sentence(remedy.exchange)
     return sentence(joined((joined([_place(labels[i]), in_words(edit)], "") for i, edit in remedy.edits), "; "))
@@ -86,6 +88,11 @@ def in_words(edit: Edit) -> Said:
 def false_claim(derived: str) -> Said:
     """A claim does not hold."""
     return joined([say("denied"), f": {derived}." if derived else "."], "")
+
+
+def unsound(items: Sequence[str], instead: str = "") -> Said:
+    """The result is right, but not for the reason given; what follows instead."""
+    return joined([say("unsound", items), say("instead", instead) if instead else "", "."], "")
 
 
 def illegible(reason: str) -> Said:

@@ -119,4 +119,6 @@ def unit(bench: Bench, row: Row) -> Outcome:
     derived = library.written_dimension(found)
     right = printed == found
     remark = "" if right else say("wrong_unit", library.written_dimension(printed), derived)
-    return Outcome(row, right, derived, unit=not right, remark=remark)
+    gaps = {base: found.get(base, Fraction(0)) - printed.get(base, Fraction(0)) for base in {**found, **printed}}
+    lacks = library.written_dimension({base: power for base, power in gaps.items() if power})
+    return Outcome(row, right, derived, unit=not right, remark=remark, lacks=lacks)

@@ -182,6 +182,8 @@ class _Reader:
             found["holds"] = rows.held_against(table, self._derived, self._own, self._inputs)
         with self._telling("row", "from", index, key):
             found["follows"] = rows.follows(table, self._derived, self._own, scope) if table.follows else None
+        with self._telling("row", "why", index, key):
+            found["why"] = explanation(table.why, measurements.words(scope.meanings), own=True)
         return replace(row, **found)
 
     def _claim(self, index: int, row: Row, scope: Scope) -> Row:
@@ -202,7 +204,7 @@ class _Reader:
             with self._telling("row", key if key in REASONS else "holds" if own else "printed", index, row.key):
                 found[key] = proposition(str(text), words, own=own) if text else None
         with self._telling("row", "why", index, row.key):
-            found["why"] = explanation(table.why, words)
+            found["why"] = explanation(table.why, words, own=own)
         with self._telling("row", "from", index, row.key):
             if isinstance(table.follows, str) and table.follows:
                 raise BadInput('write the keys of the rows that it is drawn from as a list, such as ["2.19", "2.20"]')
