@@ -183,7 +183,8 @@ class _Reader:
         with self._telling("row", "from", index, key):
             found["follows"] = rows.follows(table, self._derived, self._own, scope) if table.follows else None
         with self._telling("row", "why", index, key):
-            found["why"] = explanation(table.why, measurements.words(scope.meanings), own=True)
+            if table.why:  # measurements load what a ledger without propositions need not wait for
+                found["why"] = explanation(table.why, measurements.words(scope.meanings), own=True)
         return replace(row, **found)
 
     def _claim(self, index: int, row: Row, scope: Scope) -> Row:

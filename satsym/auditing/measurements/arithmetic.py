@@ -72,6 +72,18 @@ def different(values: Sequence[Any]) -> list[Any]:
 
 
 @measurement
+def sqrt(x: Any) -> Any:
+    """Square root."""
+    if hasattr(x, "sqrt"):
+        return x.sqrt()
+    if not is_exact(x):
+        return np.emath.sqrt(x)
+    from satsym.symbolic.lookup import formulas
+
+    return formulas.function("sqrt", [x])
+
+
+@measurement
 def first(values: Sequence[Any]) -> Any:
     """The first entry."""
     return values[0]
@@ -141,10 +153,7 @@ def norm(of: Any) -> Any:
     """The Euclidean length of a list of numbers, or of a column."""
     if isinstance(of, np.ndarray):
         return float(np.linalg.norm(of))
-    from satsym.symbolic.lookup import formulas
-
-    squared = sum_([entry * entry for entry in _flat(of)])
-    return squared ** formulas.exact(Fraction(1, 2)) if is_exact(squared) else np.sqrt(squared)
+    return sqrt(sum_([entry * entry for entry in _flat(of)]))
 
 
 @measurement
