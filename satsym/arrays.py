@@ -2,9 +2,32 @@
 
 from __future__ import annotations
 
-from typing import Any, TypeAlias
+from collections.abc import Callable
+from functools import wraps
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array: TypeAlias = NDArray[np.floating[Any]]
+T = TypeVar("T")
+
+
+def kept(function: Callable[..., T]) -> Callable[..., T]:
+    """Keep what a function of arrays, and other values, has given, by what is in them."""
+    known: dict[Any, T] = {}
+
+    @wraps(function)
+    def asked(*arguments: Any) -> T:
+        key = tuple(map(_key, arguments))
+        if key not in known:
+            known[key] = function(*arguments)
+        return known[key]
+
+    return asked
+
+
+def _key(argument: Any) -> Any:
+    if isinstance(argument, np.ndarray):
+        return argument.tobytes(), argument.shape
+    return tuple(map(_key, argument)) if isinstance(argument, list) else argument

@@ -41,15 +41,7 @@ _LIBRARIES = ("sympy", "numpy", "scipy", "pint", "mpmath")
 def audit(
     ledger: Ledger, items: Sequence[str] = (), announce: Callable[[str], None] = lambda _: None, *, fresh: bool = False
 ) -> list[Judged]:
-    """As :func:`satsym.auditing.run.audit`, from the cache if it can be; judging some items alone is never cached.
-
-    Parameters
-    ----------
-    ledger, items, announce
-        As there.
-    fresh
-        Judge anew, and keep what is found.
-    """
+    """As :func:`satsym.auditing.run.audit`, from the cache unless it is to be fresh; single items are never kept."""
     if items:
         return judge(ledger, items, announce)
     before = None if fresh else _read(_place(ledger))

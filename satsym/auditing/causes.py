@@ -32,27 +32,18 @@ class Weight(str, Enum):
 
 @dataclass(frozen=True)
 class Finding:
-    """One cause.
-
-    Attributes
-    ----------
-    document
-        Key of the document.
-    cause
-        Key of the row where it shows first; rows of this cause name it.
-    weight
-        How much depends on it.
-    places
-        Rows that have the fault themselves, the first first.
-    spoiled
-        Rows that are wrong because they follow from those.
-    """
+    """One cause."""
 
     document: str
+    """Key of the document."""
     cause: str
+    """Key of the row where it shows first; rows of this cause name it."""
     weight: Weight
+    """How much depends on it."""
     places: tuple[Judged, ...]
+    """Rows that have the fault themselves, the first first."""
     spoiled: tuple[Judged, ...]
+    """Rows that are wrong because they follow from those."""
 
     @property
     def statement(self) -> str:
@@ -106,14 +97,12 @@ def _root(key: str, faulty: Mapping[str, Judged]) -> str:
     """Where the fault of a row comes from: up along what it follows from, as long as that is faulty itself."""
     seen = [key]
     while True:
-        above = [k for k in faulty[seen[-1]].spoiled_by if k in faulty and k not in seen and not _mild(faulty[k])]
+        above = [
+            k for k in faulty[seen[-1]].spoiled_by if k in faulty and k not in seen and faulty[k].verdict not in _MILD
+        ]
         if not above:
             return seen[-1]
         seen.append(above[0])
-
-
-def _mild(row: Judged) -> bool:
-    return row.verdict in _MILD
 
 
 def _falls(row: Judged) -> bool:

@@ -12,37 +12,26 @@ from satsym.auditing.ledger.contents import Row
 
 @dataclass(frozen=True)
 class Outcome:
-    """One row, judged by itself.
-
-    Attributes
-    ----------
-    right
-        Whether it equals what it is held against; ``None`` where it cannot be read or decided.
-    derived
-        What is right, in the document's symbols.
-    plan, remedy
-        Of a formula: how it was compared, and what puts it right.
-    sound, vacuous, artefact, unit, near
-        Whether its reason holds; whether nothing meets its condition; whether the printed algorithm produces it;
-        whether only its unit is wrong; whether it fails by a last digit alone.
-    remark
-        A sentence for the diagnosis.
-    lacks
-        Of a unit, the dimension that it has to be multiplied by.
-    evidence
-        Measured numbers.
-    """
+    """One row, judged by itself."""
 
     row: Row
     right: bool | None
+    """Whether it equals what it is held against; ``None`` where it cannot be read or decided."""
     derived: str = ""
+    """What is right, in the document's symbols."""
     plan: Plan | None = None
     remedy: Remedy | None = None
+    """Of a formula: how it was compared, and what puts it right."""
     sound: bool = True
     vacuous: bool = False
     artefact: bool = False
     unit: bool = False
     near: bool = False
+    """Whether its reason holds; whether nothing meets its condition; whether the printed algorithm produces it;
+    whether only its unit is wrong; whether it fails by a last digit alone."""
     remark: str = ""
+    """A sentence for the diagnosis."""
     lacks: str = ""
+    """Of a unit, the dimension that it has to be multiplied by."""
     evidence: Mapping[str, object] = field(default_factory=dict)
+    """Measured numbers."""

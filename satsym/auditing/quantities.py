@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import itertools
 import math
+import operator
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import reduce
 
 from satsym import units
 from satsym.auditing.constants import PUBLISHED
@@ -77,9 +79,9 @@ class Quantity:
     def __rtruediv__(self, other: float) -> Quantity:
         return Quantity(other / self.value, _sum({}, self.dimension, Fraction(-1)))
 
-    def __pow__(self, exponent: float) -> Quantity:
+    def __pow__(self, exponent: float | Fraction) -> Quantity:
         power = Fraction(exponent).limit_denominator(_ROOTS)
-        return Quantity(self.value**exponent, _sum({}, self.dimension, power))
+        return Quantity(self.value ** float(exponent), _sum({}, self.dimension, power))
 
 
 @dataclass(frozen=True)
@@ -93,13 +95,7 @@ class PrintedNumber:
 
 
 def printed_number(text: str) -> PrintedNumber:
-    """Read digits and a unit; zeros at the end of a whole number are not significant, those after a point are.
-
-    Raises
-    ------
-    BadInput
-        If the text does not begin with a number.
-    """
+    """Read digits and a unit; zeros at the end of a whole number are not significant, those after a point are."""
     text = text.removeprefix(ROUNDED)
     match = _PRINTED.match(text)
     if match is None or not (match["whole"] or match["part"]):
@@ -116,13 +112,7 @@ def printed_number(text: str) -> PrintedNumber:
 
 
 def check_unit(unit: str) -> None:
-    """Refuse a unit that is unknown. This loads pint.
-
-    Raises
-    ------
-    BadInput
-        If it is.
-    """
+    """Refuse a unit that is unknown. This loads pint."""
     if unit.strip() not in ("", "1"):
         units.dimension(unit)
 
@@ -137,32 +127,20 @@ def in_base_units(text: str) -> Quantity:
     return Quantity(float(number.value) * one, dimension)
 
 
-def scale(unit: str) -> float:
-    """How many base units one unit is."""
-    return in_base_units(f"1 {unit}").value if unit != "1" else 1.0
+def one(unit: str) -> Quantity:
+    """One unit, in base units."""
+    return in_base_units(f"1 {unit}") if unit != "1" else Quantity(1.0, {})
 
 
 def base_unit(dimension: Mapping[str, Fraction]) -> str:
-    """The product of base units of a dimension.
-
-    Raises
-    ------
-    BadInput
-        For a dimension with broken exponents, which no printed unit has.
-    """
+    """The product of base units of a dimension."""
     if any(power.denominator != 1 or base not in _BASES for base, power in dimension.items()):
         raise BadInput("a unit with broken exponents")
     return "*".join(f"{_BASES[base]}^{int(power)}" for base, power in dimension.items()) or "1"
 
 
 def check(tree: Node | Equality, inputs: Mapping[str, str]) -> None:
-    """Refuse names in the formula of a number that are neither stated by the document nor published constants.
-
-    Raises
-    ------
-    BadInput
-        For the first of them.
-    """
+    """Refuse names in the formula of a number that are neither stated by the document nor published constants."""
     if isinstance(tree, Equality):
         raise BadInput("is an equality; write the expression of the number")
     known = {*inputs, *PUBLISHED, "pi"}
@@ -182,13 +160,7 @@ def is_numeric(tree: Node | Equality) -> bool:
 
 
 def evaluated(tree: Node, inputs: Mapping[str, str]) -> Quantity:
-    """The value of a formula over stated and published quantities.
-
-    Raises
-    ------
-    BadInput
-        If it puts together what has different dimensions, or has no value.
-    """
+    """The value of a formula over stated and published quantities; different dimensions put together are refused."""
     try:
         found = _evaluated(tree, inputs)
     except (ArithmeticError, ValueError) as error:
@@ -224,29 +196,21 @@ def _evaluated(tree: Node, inputs: Mapping[str, str]) -> Quantity:
             return Quantity(math.pi, {})
         return in_base_units(inputs.get(tree.name) or PUBLISHED[tree.name].quantity)
     if isinstance(tree, Neg):
-        operand = _evaluated(tree.operand, inputs)
-        return Quantity(-operand.value, operand.dimension)
+        return -_evaluated(tree.operand, inputs)
     if isinstance(tree, Add):
-        terms = [_evaluated(term, inputs) for term in tree.terms]
-        return Quantity(math.fsum(term.value for term in terms), _same(terms))
-    if isinstance(tree, Mul | Div):
-        parts = (
-            tree.factors if isinstance(tree, Mul) else (tree.numerator, Pow(tree.denominator, Neg(Num(Fraction(1)))))
-        )
-        product = Quantity(1.0, {})
-        for part in parts:
-            factor = _evaluated(part, inputs)
-            product = Quantity(product.value * factor.value, _sum(product.dimension, factor.dimension, Fraction(1)))
-        return product
+        return reduce(operator.add, (_evaluated(term, inputs) for term in tree.terms))
+    if isinstance(tree, Mul):
+        return reduce(operator.mul, (_evaluated(factor, inputs) for factor in tree.factors))
+    if isinstance(tree, Div):
+        return _evaluated(tree.numerator, inputs) / _evaluated(tree.denominator, inputs)
     if isinstance(tree, Pow):
-        base, exponent = _evaluated(tree.base, inputs), constant(tree.exponent) or Fraction(0)
-        return Quantity(base.value ** float(exponent), _sum({}, base.dimension, exponent))
+        return _evaluated(tree.base, inputs) ** (constant(tree.exponent) or Fraction(0))
     if isinstance(tree, Call) and tree.function in _FLOATS:
         arguments = [_evaluated(argument, inputs) for argument in tree.arguments]
         if tree.function in ("abs", "min", "max"):
             return Quantity(_FLOATS[tree.function](*(a.value for a in arguments)), _same(arguments))
         if tree.function == "sqrt":
-            return Quantity(math.sqrt(arguments[0].value), _sum({}, arguments[0].dimension, Fraction(1, 2)))
+            return arguments[0] ** Fraction(1, 2)
         shared = _same(arguments)
         if shared and tree.function != "atan2":
             raise BadInput(f"{tree.function} needs a plain number")

@@ -20,17 +20,9 @@ class Refused(BadInput):
 
 
 def named(bench: Bench, row: Row, limit: Limit, work: Callable[[], T], where: str = "") -> T:
-    """Do some work for a row, within a limit.
+    """Do some work for a row, within a limit; refused with its line and name, and the key that is to blame.
 
-    Parameters
-    ----------
-    where
-        The key of the row that is to blame, such as ``"from"``.
-
-    Raises
-    ------
-    Refused
-        With the line of the row, its name, and what is wrong; of another row, where the work met that first.
+    Where the work met another row that is refused, it is that one which is named.
     """
     try:
         return bench.allowance.within(limit, work)

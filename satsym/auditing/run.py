@@ -33,6 +33,7 @@ def audit(ledger: Ledger, items: Sequence[str] = (), announce: Callable[[str], N
     BadInput
         If a row names what no derivation has, or is held against what it cannot be compared with.
     """
+    from satsym.auditing import refusal
     from satsym.auditing.judge.bench import Bench
     from satsym.auditing.verdict import verdicts
 
@@ -43,7 +44,8 @@ def audit(ledger: Ledger, items: Sequence[str] = (), announce: Callable[[str], N
     outcomes = []
     for i, row in enumerate(rows, start=1):
         announce(f"{ledger.document.key}: row {i} of {len(rows)}, {printable(row.key)}")
-        outcomes.append(_counted(bench, row))
+        limit = budget.FORMULA if row.claims is None else budget.CLAIM
+        outcomes.append(refusal.named(bench, row, limit, partial(_outcome, bench, row)))
     return verdicts(bench, outcomes, wanted)
 
 
@@ -57,14 +59,6 @@ def _outcome(bench: Bench, row: Row) -> Outcome:
         return claim.judge(bench, row)
     judges = {"number": value.number, "unit": value.unit}
     return judges.get(row.table.kind, formula.judge)(bench, row)
-
-
-def _counted(bench: Bench, row: Row) -> Outcome:
-    """The outcome of a row, within what a row may take."""
-    from satsym.auditing import refusal
-
-    limit = budget.FORMULA if row.claims is None else budget.CLAIM
-    return refusal.named(bench, row, limit, lambda: _outcome(bench, row))
 
 
 def _bearing(bench: Bench, wanted: Sequence[str]) -> set[str]:

@@ -7,10 +7,10 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
 
-from satsym.auditing import refusal, sentences
+from satsym.auditing import refusal
 from satsym.auditing.causes import SILENT, with_causes
 from satsym.auditing.diagnosis.edits import Change, Edit
-from satsym.auditing.judge.bench import Bench, Formula
+from satsym.auditing.judge.bench import Bench
 from satsym.auditing.judge.claim import Pages
 from satsym.auditing.judge.compare import plans
 from satsym.auditing.judge.formula import corrected, shown
@@ -18,7 +18,10 @@ from satsym.auditing.judged import Judged, Verdict
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
 from satsym.auditing.propositions.reading import shape
+from satsym.auditing.propositions.values import in_words
+from satsym.auditing.sentences import false_claim, illegible, joined, say, sentence, unsound
 from satsym.formula import budget
+from satsym.formula.cells import Formula
 from satsym.formula.tree import ONE, Mul, Neg, Node
 from satsym.formula.values import Kernel, Matrix, Relation, Roots
 from satsym.formula.writing import written
@@ -29,17 +32,7 @@ FORMULAS = ("equation", "matrix")
 
 
 def verdicts(bench: Bench, outcomes: Sequence[Outcome], wanted: Sequence[str] | None = None) -> list[Judged]:
-    """The verdict of each row.
-
-    Parameters
-    ----------
-    bench
-        What the rows were judged with.
-    outcomes
-        Of all rows, in order.
-    wanted
-        Keys of the rows to give; all by default.
-    """
+    """The verdicts of some rows, by default of all, from the outcomes of all rows in order."""
     by_key = {outcome.row.key: outcome for outcome in outcomes}
     context = _Context(bench, by_key)
     chosen = [o for o in outcomes if wanted is None or o.row.key in wanted]
@@ -58,11 +51,11 @@ class _Context:
     def judged(self, outcome: Outcome) -> Judged:
         verdict, sayings = self._verdict(outcome)
         if outcome.row.claims is None and outcome.row.why:
-            sayings = [*sayings, sentences.sentence(Pages(self._bench, outcome.row).explained(outcome.row.why))]
-        said = sentences.joined(sayings if verdict != "confirmed" else ())
+            sayings = [*sayings, sentence(Pages(self._bench, outcome.row).explained(outcome.row.why))]
+        said = joined(sayings if verdict != "confirmed" else ())
         row, document = outcome.row, self._bench.ledger.document.key
         command = recompute(self._bench.ledger.name, row.key)
-        numbers = "; ".join(f"{name} = {_shown(value)}" for name, value in outcome.evidence.items())
+        numbers = "; ".join(f"{name} = {in_words(value)}" for name, value in outcome.evidence.items())
         return Judged(
             document=document,
             item=row.table.item,
@@ -78,7 +71,7 @@ class _Context:
             evidence=f"{numbers}; {command}" if numbers else command,
             role=row.table.role,
             original=row.table.original,
-            why=str(sentences.sentence(self._why(outcome))) if verdict not in SILENT else "",
+            why=str(sentence(self._why(outcome))) if verdict not in SILENT else "",
             by_formula=row.claims is None,
             form=_form(outcome),
             vacuous=outcome.vacuous,
@@ -93,7 +86,7 @@ class _Context:
     def _verdict(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
         row = outcome.row
         if not row.table.legible:
-            return "illegible", [sentences.illegible(row.table.says)]
+            return "illegible", [illegible(row.table.says)]
         if row.claims is not None:
             return self._of_claim(outcome)
         if outcome.unit:
@@ -103,25 +96,25 @@ class _Context:
         if not outcome.right:
             return "imprecise" if outcome.near else "wrong", [outcome.remark]
         if row.follows is not None and not self._follows(row, {}) and not self._follows_once_mended(row):
-            return "unsound", [sentences.unsound(row.uses, self._instead(row))]
+            return "unsound", [unsound(row.uses, self._instead(row))]
         return "confirmed", []
 
     def _of_claim(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
-        derived, remark = outcome.derived, sentences.sentence(outcome.remark)
+        derived, remark = outcome.derived, sentence(outcome.remark)
         if outcome.right is None:
-            return "undecided", [sentences.undecided(derived)]
+            return "undecided", [say("undecided", derived)]
         if outcome.right:
             if outcome.vacuous:
-                return "unsound", [sentences.vacuous_claim(derived), remark]
-            return ("confirmed", []) if outcome.sound else ("unsound", [sentences.unsound_claim(derived), remark])
+                return "unsound", [say("vacuous_claim", derived), remark]
+            return ("confirmed", []) if outcome.sound else ("unsound", [say("unsound_claim", derived), remark])
         if outcome.artefact:
-            return "artefact", [sentences.artefact(derived), remark]
+            return "artefact", [say("artefact", derived), remark]
         if outcome.row.table.kind == "unit":
-            return "unit error", [sentences.false_claim(derived), remark]
+            return "unit error", [false_claim(derived), remark]
         by_role: dict[str, Verdict] = {"citation": "misprint", "notation": "notation"}
         verdict = by_role.get(outcome.row.table.role, "wrong")
         verdict = "imprecise" if outcome.near else "unit error" if outcome.unit else verdict
-        return verdict, [sentences.false_claim(derived), remark]
+        return verdict, [false_claim(derived), remark]
 
     def _of_wrong_formula(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
         row = outcome.row
@@ -133,12 +126,12 @@ class _Context:
         source = self._spoiled_by(outcome)
         takes_over = self._takes_over(outcome)
         return verdict, [
-            outcome.remark if not takes_over else sentences.takes_over(source),
-            sentences.right_elsewhere(right_elsewhere) if right_elsewhere else "",
-            sentences.follows_from_wrong(source) if source and not takes_over else "",
-            sentences.carried_on(carried) if carried else "",
-            sentences.not_carried_on(mended) if mended else "",
-            sentences.same_slip(slips) if slips else "",
+            outcome.remark if not takes_over else say("takes_over", source),
+            say("right_elsewhere", right_elsewhere) if right_elsewhere else "",
+            say("follows_from_wrong", source) if source and not takes_over else "",
+            say("carried_on", carried) if carried else "",
+            say("not_carried_on", mended) if mended else "",
+            say("same_slip", slips) if slips else "",
         ]
 
     def _spoiled_by(self, outcome: Outcome) -> list[str]:
@@ -232,11 +225,8 @@ def recompute(document: str, key: str) -> str:
 
 def _same(one: Outcome, other: Outcome) -> bool:
     """Whether two rows are put right by the same change."""
-    if one.remedy is None or other.remedy is None:
-        return False
-    return [(e.change, e.old, e.new) for _, e in one.remedy.edits] == [
-        (e.change, e.old, e.new) for _, e in other.remedy.edits
-    ] and bool(one.remedy.edits)
+    mine, others = ([(e.change, e.old, e.new) for _, e in o.remedy.edits] if o.remedy else [] for o in (one, other))
+    return bool(mine) and mine == others
 
 
 def _form(outcome: Outcome) -> str:
@@ -262,7 +252,3 @@ def _factors(node: Node) -> tuple[Node, ...]:
     if isinstance(node, Neg):
         return _factors(node.operand)
     return tuple(f for factor in node.factors for f in _factors(factor)) if isinstance(node, Mul) else (node,)
-
-
-def _shown(value: object) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -51,10 +51,9 @@ def test_a_constant_that_is_not_published_is_refused():
 
 def test_what_is_given_at_the_ends_is_what_the_boundary_type_says():
     states = ["r", "r_dot", "theta", "theta_dot"]
-    assert MEASURE["given_at"]("its-thesis", "start") == states
-    assert MEASURE["given_at"]("its-thesis", "end") == [f"lambda_{name}" for name in states]
-    assert MEASURE["given_at"]("soft-return", "end") == ["lambda_theta"]  # the others depend on where it ends
-    assert MEASURE["given_at"]("return-to-orbit", "end") == states
+    assert MEASURE["given_at_end"]("its-thesis") == [f"lambda_{name}" for name in states]
+    assert MEASURE["given_at_end"]("soft-return") == ["lambda_theta"]  # the others depend on where it ends
+    assert MEASURE["given_at_end"]("return-to-orbit") == states
 
 
 def test_sweeps_end_where_no_control_is_needed_whatever_they_begin_with():
@@ -66,17 +65,6 @@ def test_sweeps_end_where_no_control_is_needed_whatever_they_begin_with():
 def test_sweeps_that_do_not_settle_are_undecided():
     with pytest.raises(Undecided, match="still change"):
         MEASURE["swept"]("soft-return")
-
-
-def test_one_sided_thrusts_do_not_bring_the_satellite_back():
-    assert MEASURE["reachable"]("its-thesis-return") is False
-    with pytest.raises(BadInput, match="anywhere"):
-        MEASURE["reachable"]("its-thesis")
-
-
-@pytest.mark.slow
-def test_two_sided_thrusts_bring_a_satellite_back():
-    assert MEASURE["reachable"]("return-to-orbit") is True
 
 
 def test_the_cost_of_an_optimum_is_its_terminal_cost_and_the_area_below_the_running_one():

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from satsym.auditing.measurements import earth, letters, linear, linear_motions, matrices, models, regulators, spectra
+from satsym.auditing.measurements import earth, formulas, linear, linear_motions, listings, matrices, regulators
 from satsym.auditing.measurements import words as all_words
 from satsym.auditing.propositions.values import Record, Undecided
 
@@ -50,7 +50,7 @@ def test_inputs_bring_about_what_integrals_say() -> None:
     nodes = linear_motions.quadrature(-1, 3)
     assert sum(w * t**5 for t, w in nodes) == pytest.approx((3**6 - 1) / 6)
     decay = Record("", {"A": M([[-2]]), "B": M([[3]])})
-    assert linear_motions.gramian(decay, 0.7)[0, 0] == pytest.approx(9 * math.expm1(4 * 0.7) / 4)
+    assert linear.gramian(decay, 0.7)[0, 0] == pytest.approx(9 * math.expm1(4 * 0.7) / 4)
     assert linear_motions.driven(INTEGRATOR, 1.5) == pytest.approx([math.sin(4.5) / 3])
     assert linear_motions.steered_to(DOUBLE, [1, -1], [0.5, 2]) == pytest.approx([0.5, 2])
     reached = linear_motions.steered_to(HALF, [1, 1], [5, 5])
@@ -60,7 +60,7 @@ def test_inputs_bring_about_what_integrals_say() -> None:
 def test_gains_place_what_can_be_placed() -> None:
     gain = linear_motions.placing_gain(DOUBLE, [1, 5, 6])
     assert gain.tolist() == [[-6, -5]]
-    assert spectra.characteristic(DOUBLE.part("A") + DOUBLE.part("B") * gain) == [1, 5, 6]
+    assert linear.characteristic(DOUBLE.part("A") + DOUBLE.part("B") * gain) == [1, 5, 6]
     kept = np.linalg.eigvals(
         linear.numbers(HALF.part("A")) + linear.numbers(HALF.part("B")) @ linear_motions.stabilising_gain(HALF)
     )
@@ -74,20 +74,20 @@ def test_gains_place_what_can_be_placed() -> None:
 
 def test_rouths_array_is_that_of_the_textbook() -> None:
     # Ogata, Modern Control Engineering, example 5-11
-    assert spectra.routh([1, 2, 3, 4, 5]) == [[1, 3, 5], [2, 4, 0], [1, 5, 0], [-6, 0, 0], [5, 0, 0]]
-    assert spectra.routh([1, -2, -1, 2]) == [[1, -1], [-2, 2], [0, 0]]
+    assert linear.routh([1, 2, 3, 4, 5]) == [[1, 3, 5], [2, 4, 0], [1, 5, 0], [-6, 0, 0], [5, 0, 0]]
+    assert linear.routh([1, -2, -1, 2]) == [[1, -1], [-2, 2], [0, 0]]
     a = sp.symbols("a0:4")
-    assert sp.simplify(spectra.routh(a)[2][0] - (a[1] * a[2] - a[0] * a[3]) / a[1]) == 0
+    assert sp.simplify(linear.routh(a)[2][0] - (a[1] * a[2] - a[0] * a[3]) / a[1]) == 0
 
 
 def test_chains_make_the_jordan_form() -> None:
     a = M([[3, 1], [-1, 1]])
-    found = spectra.jordan(a)
+    found = linear.jordan(a)
     form = found.part("P").inv() * a * found.part("P")
     assert found.part("values") == [2, 2]
     assert form == M([[2, 1], [0, 2]])
-    assert len(spectra.eigenspace(2, a)) == 1
-    assert len(spectra.eigenspace(0, M([[0, 0], [0, 0]]))) == 2
+    assert len(matrices.kernel(a - 2 * a.eye(2))) == 1
+    assert len(matrices.kernel(M([[0, 0], [0, 0]]))) == 2
 
 
 @pytest.mark.parametrize("t", [0.3, 1.0])
@@ -110,7 +110,7 @@ def test_the_regulator_of_a_double_integrator_is_known() -> None:
         assert np.linalg.eigvals(linear.closed_loop(DOUBLE, gain).part("A")).real.max() < 0
     with pytest.raises(Undecided):
         regulators.regulator(HALF)
-    back, solution, poles = letters.matlab_lqr(DOUBLE.part("A"), DOUBLE.part("B"), np.eye(2), [[1]])
+    back, solution, poles = regulators.matlab_lqr(DOUBLE.part("A"), DOUBLE.part("B"), np.eye(2), [[1]])
     assert back == pytest.approx(np.array([[1, math.sqrt(3)]]))
     assert solution[0] == pytest.approx([math.sqrt(3), 1])
     assert sum(poles) == pytest.approx(-math.sqrt(3))
@@ -126,13 +126,11 @@ def test_matrices() -> None:
     assert matrices.inverse(M([[w]])) == M([[1 / w]])
     assert matrices.rows(singular, [2]) == M([[2, 4]])
     assert matrices.diagonal([np.eye(1), 2 * np.eye(2)]).tolist() == [[1, 0, 0], [0, 2, 0], [0, 0, 2]]
-    assert matrices.rotation(math.pi / 2) == pytest.approx(np.array([[0, -1], [1, 0]]))
-    assert matrices.second_derivatives(w**3, ["w", "v"]) == [6 * w]
 
 
 def test_rates_are_integrated() -> None:
     x, v = sp.symbols("x v")
-    path = models.integrated([v, -x], ["x", "v"], [0, 1], 6.0)
+    path = formulas.integrated([v, -x], ["x", "v"], [0, 1], 6.0)
     assert path.part("x") == pytest.approx(np.sin(path.part("t")), abs=1e-8)
 
 
@@ -144,12 +142,11 @@ def test_orbits_of_the_earth() -> None:
     assert all(one < other for one, other in pairwise(along))
     # seen from radius 2 R it is above the horizon for a third of the way
     twice = earth.circular("6378.137 km")
-    assert earth.pass_time(twice).value == pytest.approx(twice.part("period").value / 3)
+    assert earth.seen_latitude(twice) == pytest.approx(60)
 
 
 def test_signs_and_calls_of_a_line() -> None:
-    assert letters.count("plot([a[1], b)", "[") == 2
-    assert letters.calls("lambda := eigvals(ABK(1))") == ["eigvals", "ABK"]
+    assert listings.count("plot([a[1], b)", "[") == 2
 
 
 def test_the_dual_is_observed_where_the_system_is_controlled() -> None:

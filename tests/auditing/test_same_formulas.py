@@ -8,7 +8,6 @@ from collections.abc import Iterator
 import pytest
 
 from satsym.auditing import Judged, cache
-from satsym.auditing.judge.bench import in_ours
 from satsym.auditing.ledger.contents import Row
 from satsym.formula.tree import Equality, Node
 from satsym.formula.writing import written
@@ -36,7 +35,7 @@ def content(document: str, row: Row) -> tuple[str, ...] | None:
     if row.printed is None:
         return ("value", str(row.table.printed), row.table.holds)
     assert row.holds is not None
-    return ("formula", letters(in_ours(row.printed, bench(document).scope(row))), letters(row.holds))
+    return ("formula", letters(bench(document).in_ours(row)), letters(row.holds))
 
 
 @pytest.fixture(scope="module")

@@ -6,6 +6,7 @@ import json
 import re
 import shutil
 import subprocess
+import tomllib
 from collections import Counter
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -307,11 +308,21 @@ def test_symbols_keep_their_case(clause: str, said: str) -> None:
 
 
 def test_diagnoses_are_said_in_both_languages() -> None:
-    fault = sentences.joined([sentences.carried_on(["1", "2"]), "", sentences.same_slip(["3"])])
+    fault = sentences.joined([sentences.say("carried_on", ["1", "2"]), "", sentences.say("same_slip", ["3"])])
     assert fault == "The error is carried on into 1 and 2. The same slip is in 3."
     assert fault.indonesian == "Kekeliruan ini terbawa ke 1 dan 2. Kekeliruan yang sama ada di 3."
     assert sentences.false_claim("{x}").indonesian == "Tidak benar demikian: {x}."
     assert sentence("x is measured") == sentences.in_indonesian("x is measured.")
+
+
+def test_each_sentence_is_said_somewhere_and_has_the_same_places_in_both_languages() -> None:
+    folder = Path(sentences.__file__).parent
+    tables = tomllib.loads((folder / "sentences.toml").read_text(encoding="utf-8"))
+    said = {key for path in folder.rglob("*.py") for key in re.findall(r'say\("(\w+)"', path.read_text("utf-8"))}
+    assert said == set(tables["rows"])
+    for text in (text for table in tables.values() for text in table.values()):
+        assert text.keys() == {"en", "id"}
+        assert set(re.findall(r"{\d}", text["en"])) == set(re.findall(r"{\d}", text["id"])), text
 
 
 # LaTeX and JSON

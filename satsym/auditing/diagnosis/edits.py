@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from enum import IntEnum
 from fractions import Fraction
 from itertools import combinations
-from typing import Protocol
 
 from satsym.auditing.diagnosis.rewriting import over_symbol, regrouped, shortened, times, times_symbol, without_factor
+from satsym.auditing.ledger.scopes import Scope
 from satsym.formula.tree import (
     ONE,
     Add,
@@ -55,38 +55,19 @@ class Change(IntEnum):
 
 @dataclass(frozen=True)
 class Edit:
-    """One change of one part.
-
-    Attributes
-    ----------
-    change
-        Its kind.
-    path
-        Where the part stands.
-    old, new
-        The part before and after.
-    result
-        The whole formula after it.
-    times
-        At how many places, where it is the same slip at several.
-    """
+    """One change of one part."""
 
     change: Change
+    """Its kind."""
     path: Path
+    """Where the part stands."""
     old: Node
     new: Node
+    """The part before and after."""
     result: Node
+    """The whole formula after it."""
     times: int = 1
-
-
-class Letters(Protocol):
-    """What an edit needs to know of a notation."""
-
-    def family(self, name: str) -> list[str]:
-        """Other symbols, those that differ by an index first."""
-
-    def is_slip(self, one: str, other: str) -> bool:
-        """Whether two symbols differ by an index alone."""
+    """At how many places, where it is the same slip at several."""
 
 
 _EXACT = tuple(
@@ -99,18 +80,8 @@ _STEPS = (1, -1, 2, -2)
 _FUNCTIONS = {"sin": ("cos",), "cos": ("sin",), "min": ("max",), "max": ("min",), "sinh": ("cosh",), "cosh": ("sinh",)}
 
 
-def single_edits(formula: Node, letters: Letters, usable: Callable[[str], bool] = lambda _: True) -> list[Edit]:
-    """Every edit of one place, the smallest first; among equals in the order of the print.
-
-    Parameters
-    ----------
-    formula
-        As printed.
-    letters
-        The notation it is printed in.
-    usable
-        Which symbols may be put in.
-    """
+def single_edits(formula: Node, letters: Scope, usable: Callable[[str], bool] = lambda _: True) -> list[Edit]:
+    """Every edit of one place with symbols that are usable, the smallest first; among equals in the printed order."""
     found: list[Edit] = []
     for path, node in walk(formula):
         if not in_exponent(formula, path):
@@ -119,7 +90,7 @@ def single_edits(formula: Node, letters: Letters, usable: Callable[[str], bool] 
     return sorted(found, key=lambda edit: edit.change)
 
 
-def repeated_edits(formula: Node, letters: Letters, usable: Callable[[str], bool] = lambda _: True) -> Iterator[Edit]:
+def repeated_edits(formula: Node, letters: Scope, usable: Callable[[str], bool] = lambda _: True) -> Iterator[Edit]:
     """The same slip at several places: one symbol for another, or a factor too many, wherever it stands.
 
     Every choice of two places or more is tried if there are few, else all of them and all but one.
@@ -160,9 +131,8 @@ def _ends(node: Node) -> tuple[Node, ...]:
 def _without_mean(node: Node, end: int) -> Node:
     assert isinstance(node, Mul)
     ends = _ends(node)
-    kept = [ends[end] if factor == Add(ends) else factor for factor in node.factors]
-    kept.remove(Num(Fraction(1, 2)))
-    return Mul(tuple(kept)) if len(kept) > 1 else kept[0]
+    kept = tuple(ends[end] if factor == Add(ends) else factor for factor in node.factors)
+    return without_factor(Mul(kept), Num(Fraction(1, 2)))
 
 
 def _everywhere(change: Change, formula: Node, places: Sequence[Path], old: Node, rule: Callable[[Node], Node]) -> Edit:
@@ -178,30 +148,33 @@ def _choices(places: Sequence[Path]) -> Iterator[tuple[Path, ...]]:
         yield from combinations(places, size)
 
 
+def spine(formula: Node, path: Path) -> list[Node]:
+    """The parts that one goes through to a place: the whole first, the part there last."""
+    found = [formula]
+    for step in path:
+        found.append(children(found[-1])[step])
+    return found
+
+
 def at(formula: Node, path: Path) -> Node:
     """The part at a place."""
-    for step in path:
-        formula = children(formula)[step]
-    return formula
+    return spine(formula, path)[-1]
 
 
 def in_exponent(formula: Node, path: Path) -> bool:
     """Whether a place is inside an exponent: it is changed as a whole."""
-    node = formula
-    for step in path:
-        if isinstance(node, Pow) and step == 1:
-            return True
-        node = children(node)[step]
-    return False
+    return any(isinstance(node, Pow) and step == 1 for node, step in zip(spine(formula, path), path, strict=False))
 
 
 def _changes(
-    formula: Node, path: Path, node: Node, letters: Letters, usable: Callable[[str], bool]
+    formula: Node, path: Path, node: Node, letters: Scope, usable: Callable[[str], bool]
 ) -> Iterator[tuple[Change, Node]]:
-    direct, parent = _parent(formula, path), _owner(formula, path)
+    *above, _ = spine(formula, path)
+    direct = above[-1] if above else None
+    parent = next((owner for owner in reversed(above) if not isinstance(owner, Neg)), None)  # a minus is of its term
     is_term = not isinstance(node, Neg) and (parent is None or isinstance(parent, Add | Call))
     if not isinstance(direct, Neg) and (
-        parent is None or isinstance(parent, Add | Call) or _is_sum_to_a_power(node, parent)
+        parent is None or isinstance(parent, Add | Call) or (isinstance(parent, Pow) and isinstance(node, Add))
     ):
         yield Change.SIGN, node.operand if isinstance(node, Neg) else Neg(node)
     if is_term:
@@ -230,10 +203,6 @@ def _changes(
                 yield Change.MISSING_FACTOR, over_symbol(node, Sym(name))
 
 
-def _is_sum_to_a_power(node: Node, parent: Node | None) -> bool:
-    return isinstance(parent, Pow) and isinstance(node, Add)
-
-
 def _powers(node: Node, parent: Node | None) -> Iterator[tuple[Change, Node]]:
     if isinstance(node, Pow):
         exponent = constant(node.exponent) or Fraction(0)
@@ -252,21 +221,8 @@ def _near(value: Fraction) -> list[Fraction]:
     return [other for other in dict.fromkeys([*(value * f for f in _EXACT), *steps]) if other > 0]
 
 
-def _names(letters: Letters, formula: Node) -> list[str]:
+def _names(letters: Scope, formula: Node) -> list[str]:
     """Symbols that a factor may be missing of: those of the formula first, then the others of the notation."""
     inside = list(dict.fromkeys(node.name for _, node in walk(formula) if isinstance(node, Sym)))
     others = letters.family(inside[0]) if inside else letters.family("")
     return [*inside, *(name for name in others if name not in inside)]
-
-
-def _parent(formula: Node, path: Path) -> Node | None:
-    node, current = None, formula
-    for step in path:
-        node, current = current, children(current)[step]
-    return node
-
-
-def _owner(formula: Node, path: Path) -> Node | None:
-    """What a part belongs to: a minus in front of a term belongs to the term."""
-    parent = _parent(formula, path)
-    return _owner(formula, path[:-1]) if isinstance(parent, Neg) else parent

@@ -35,31 +35,33 @@ def _split(bracket: Add, around: Callable[[Node], Node]) -> Iterator[Node]:
     """A sum of which only the last terms, or only the first ones, are in the bracket."""
     for k in range(1, len(bracket.terms)):
         head, tail = bracket.terms[:k], bracket.terms[k:]
-        yield Add((*head, around(tail[0] if len(tail) == 1 else Add(tail))))
-        yield Add((around(head[0] if len(head) == 1 else Add(head)), *tail))
+        yield Add((*head, around(combined(Add, tail))))
+        yield Add((around(combined(Add, head)), *tail))
+
+
+def combined(kind: type[Add] | type[Mul], parts: tuple[Node, ...]) -> Node:
+    """A sum or a product, or the only part there is."""
+    return parts[0] if len(parts) == 1 else kind(parts)
 
 
 def shortened(node: Node) -> Iterator[tuple[bool, Node]]:
     """A product without a factor, a sum without a term; and whether it is a term that is gone."""
     if isinstance(node, Mul):
         for i in range(len(node.factors)):
-            rest = (*node.factors[:i], *node.factors[i + 1 :])
-            yield False, rest[0] if len(rest) == 1 else Mul(rest)
+            yield False, combined(Mul, (*node.factors[:i], *node.factors[i + 1 :]))
     if isinstance(node, Div):
         yield False, node.numerator
         yield False, Div(ONE, node.denominator)
     if isinstance(node, Add):
         for i in range(len(node.terms)):
-            rest = (*node.terms[:i], *node.terms[i + 1 :])
-            yield True, rest[0] if len(rest) == 1 else Add(rest)
+            yield True, combined(Add, (*node.terms[:i], *node.terms[i + 1 :]))
 
 
 def without_factor(node: Node, factor: Node) -> Node:
     """A product without a factor it has."""
     assert isinstance(node, Mul)
-    rest = list(node.factors)
-    rest.remove(factor)
-    return rest[0] if len(rest) == 1 else Mul(tuple(rest))
+    place = node.factors.index(factor)
+    return combined(Mul, (*node.factors[:place], *node.factors[place + 1 :]))
 
 
 def times(node: Node, factor: Fraction) -> Node:
@@ -72,11 +74,8 @@ def times(node: Node, factor: Fraction) -> Node:
         above, below = times(node.numerator, Fraction(factor.numerator)), factor.denominator
         return Div(above, node.denominator if below == 1 else times(node.denominator, Fraction(below)))
     if isinstance(node, Mul) and (value := constant(node.factors[0])) is not None:
-        rest = node.factors[1:]
-        scaled = value * factor
-        if scaled == 1:
-            return rest[0] if len(rest) == 1 else Mul(rest)
-        return Mul((number(scaled), *rest))
+        rest, scaled = node.factors[1:], value * factor
+        return combined(Mul, rest if scaled == 1 else (number(scaled), *rest))
     if factor.numerator == 1 and factor.denominator != 1:
         return Div(node, number(factor.denominator))
     if factor == 1:

@@ -9,6 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
 
 from satsym.auditing.diagnosis.edits import Change, Edit, mean_edits, repeated_edits, single_edits
 from satsym.auditing.diagnosis.lacking import mended_terms
@@ -27,21 +30,14 @@ _MOST_ENTRIES = 6
 
 @dataclass(frozen=True)
 class Remedy:
-    """Edits that put a printed thing right together.
-
-    Attributes
-    ----------
-    edits
-        Each with the number of its cell.
-    cells
-        All cells after the edits.
-    exchange
-        Said instead of edits: which rows, columns or entries are exchanged.
-    """
+    """Edits that put a printed thing right together."""
 
     edits: tuple[tuple[int, Edit], ...]
+    """Each with the number of its cell."""
     cells: tuple[Node, ...]
+    """All cells after the edits."""
     exchange: str = ""
+    """Said instead of edits: which rows, columns or entries are exchanged."""
 
 
 def remedy(plan: Plan) -> Remedy | None:
@@ -262,22 +258,20 @@ def _exchanged(plan: Plan) -> Remedy | None:
 
 
 def _exchanges(m: int, n: int) -> Iterator[tuple[str, list[int]]]:
-    place = [[i * n + j for j in range(n)] for i in range(m)]
-    for i in range(m):
-        for k in range(i + 1, m):
-            rows = list(place)
-            rows[i], rows[k] = rows[k], rows[i]
-            yield f"rows {i + 1} and {k + 1} are exchanged", [e for row in rows for e in row]
-    for j in range(n):
-        for k in range(j + 1, n):
-            order = list(range(n))
-            order[j], order[k] = order[k], order[j]
-            yield f"columns {j + 1} and {k + 1} are exchanged", [row[c] for row in place for c in order]
+    """What may be exchanged in a matrix, in words, with the places of its entries then."""
+    place = np.arange(m * n).reshape(m, n)
+    for i, k in combinations(range(m), 2):
+        order = place.copy()
+        order[[i, k]] = order[[k, i]]
+        yield f"rows {i + 1} and {k + 1} are exchanged", order.ravel().tolist()
+    for i, k in combinations(range(n), 2):
+        order = place.copy()
+        order[:, [i, k]] = order[:, [k, i]]
+        yield f"columns {i + 1} and {k + 1} are exchanged", order.ravel().tolist()
     if m == n:
-        yield "rows stand for columns", [place[j][i] for i in range(m) for j in range(n)]
-    for a in range(m * n):
-        for b in range(a + 1, m * n):
-            order = list(range(m * n))
-            order[a], order[b] = b, a
-            one, other = (f"({k // n + 1}, {k % n + 1})" for k in (a, b))
-            yield f"the entries {one} and {other} are exchanged", order
+        yield "rows stand for columns", place.T.ravel().tolist()
+    for a, b in combinations(range(m * n), 2):
+        order = place.copy()
+        order.flat[[a, b]] = b, a
+        one, other = (f"({k // n + 1}, {k % n + 1})" for k in (a, b))
+        yield f"the entries {one} and {other} are exchanged", order.ravel().tolist()

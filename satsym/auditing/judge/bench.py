@@ -13,6 +13,7 @@ from satsym.auditing.ledger.scopes import Scope, self_named
 from satsym.auditing.ledger.vocabulary import is_address
 from satsym.formula.budget import Allowance, OverBudget
 from satsym.formula.calculus import Calculus
+from satsym.formula.cells import Formula, cells, each, names_in
 from satsym.formula.evaluation import Engine
 from satsym.formula.tree import Equality, Node, Sym, Text, substituted, symbols, walk
 from satsym.formula.values import Matrix, Relation, Sources, Value
@@ -22,8 +23,6 @@ from satsym.symbolic.lookup import library
 from satsym.symbolic.lookup.library import Names
 from satsym.symbolic.lookup.operations import Sympy
 from satsym.wording import shown, suggestion
-
-Formula: TypeAlias = Node | Equality | tuple[tuple[Node, ...], ...]
 
 Replacements: TypeAlias = Mapping[str, Formula]
 """Key of a row -> what is taken instead of what it prints, in our names."""
@@ -44,7 +43,7 @@ class Bench:
     ledger: Ledger
 
     def __post_init__(self) -> None:
-        self.allowance = Allowance(counted=not documents.comes_with_satsym(self.ledger.path))
+        self.allowance = Allowance(counted=self.ledger.path not in documents.shipped())
         self.rows = {row.key: row for row in self.ledger.rows}
         self._meanings: dict[str, Mapping[str, Node]] = {}
         self._derived: dict[tuple[str, str], Both] = {}
@@ -58,8 +57,7 @@ class Bench:
     def models(self) -> tuple[str, ...]:
         """Derivations that the ledger names, that of the document first."""
         found = dict.fromkeys([self.ledger.document.model] if self.ledger.document.model else [])
-        formulas = [f for row in self.ledger.rows for f in (row.holds, row.follows)]
-        trees = [side for formula in formulas for side in _sides(formula)]
+        trees = [side for row in self.ledger.rows for f in (row.holds, row.follows) for side in cells(f)]
         trees += [meaning for scope in self.ledger.scopes.values() for meaning in scope.meanings.values()]
         for tree in trees:
             for _, part in walk(tree):
@@ -110,7 +108,7 @@ class Bench:
         A general statement, whose symbols stand for whole derived things, prints none of them.
         """
         meanings = self.scope(row).meanings
-        used = {name for cell in _cells(row.printed) for name in symbols(cell) if name in meanings}
+        used = {name for name in names_in(row.printed) if name in meanings}
         if any(isinstance(part, Text) for name in used for _, part in walk(meanings[name])):
             return ""
         found = self.target(row)
@@ -130,6 +128,11 @@ class Bench:
         """A part of what a row prints."""
         ours = self.scope(row).ours(formula)
         return self._both(row, lambda engine: engine.value(ours), self._ours)
+
+    def in_ours(self, row: Row) -> Formula:
+        """What a row prints, in our names."""
+        assert row.printed is not None
+        return each(row.printed, self.scope(row).ours)
 
     def meanings(self, row: Row) -> Mapping[str, Node]:
         """The document's symbols as trees without addresses; those that are matrices are left out."""
@@ -152,7 +155,7 @@ class Bench:
 
     def theirs(self, row: Row, formula: Node) -> Node:
         """A formula of ours in the document's symbols, where it has one for what we name; those of the row first."""
-        inside = {name for side in _cells(row.printed) for name in symbols(side)}
+        inside = names_in(row.printed)
         names: dict[str, Node] = {}
         meanings = self.meanings(row)
         for name in sorted(meanings, key=lambda name: name not in inside):
@@ -204,7 +207,7 @@ class Bench:
             return found.trees if by_trees else found.exact
 
         def other(key: str) -> Any:
-            return self._of_row(self.rows[key], kind, replacements.get(key))
+            return self.of_row(self.rows[key], kind, replacements.get(key))
 
         def symbol(text: str) -> str:
             return self._symbol_meant(row, text) if naming == self._theirs else text
@@ -242,13 +245,10 @@ class Bench:
             raise BadInput(f"{shown(name)} means {written(meaning)}: differentiate by, or replace, what is one symbol")
         return meaning.name
 
-    def of_row(self, row: Row) -> Any:
-        """What a row prints, in our names, as sympy has it."""
-        return self._of_row(row, Sympy, None)
-
-    def _of_row(self, row: Row, kind: type, instead: Formula | None) -> Any:
+    def of_row(self, row: Row, kind: type = Sympy, instead: Formula | None = None) -> Any:
+        """What a row prints, or what is taken instead, in our names; as sympy has it, or the other engine."""
         engine = self._engine(row, kind, self._ours, {})
-        formula = instead if instead is not None else in_ours(row.printed, self.scope(row))
+        formula = instead if instead is not None else self.in_ours(row)
         if isinstance(formula, tuple):
             return Matrix(tuple(tuple(engine.scalar(entry) for entry in line) for line in formula))
         if isinstance(formula, Equality) and isinstance(engine.value(formula.rhs), Matrix):
@@ -266,23 +266,3 @@ class Bench:
             if sorted(places) == list(range(len(entries))):
                 return tuple(places)
         return tuple(range(len(entries)))
-
-
-def in_ours(formula: Formula | None, scope: Scope) -> Formula:
-    """A printed formula in our names."""
-    if isinstance(formula, tuple):
-        return tuple(tuple(scope.ours(entry) for entry in line) for line in formula)
-    if isinstance(formula, Equality):
-        return Equality(scope.ours(formula.lhs), scope.ours(formula.rhs))
-    assert formula is not None
-    return scope.ours(formula)
-
-
-def _cells(formula: Formula | None) -> list[Node]:
-    return [cell for line in formula for cell in line] if isinstance(formula, tuple) else _sides(formula)
-
-
-def _sides(formula: Node | Equality | None) -> list[Node]:
-    if formula is None:
-        return []
-    return [formula.lhs, formula.rhs] if isinstance(formula, Equality) else [formula]

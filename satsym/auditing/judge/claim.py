@@ -9,8 +9,8 @@ from satsym.auditing import measurements
 from satsym.auditing.judge.bench import Bench
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
-from satsym.auditing.propositions.evaluation import Answer, Evaluation
-from satsym.auditing.propositions.reading import Proposition, Words, matching
+from satsym.auditing.propositions.evaluation import Answer, Document, Evaluation
+from satsym.auditing.propositions.reading import Proposition, Words, matching, proposition
 from satsym.auditing.propositions.relations import Fit
 from satsym.formula.budget import OverBudget
 from satsym.formula.values import Matrix, Relation
@@ -44,11 +44,12 @@ def judge(bench: Bench, row: Row) -> Outcome:
     )
 
 
-class Pages:
+class Pages(Document):
     """The document as a proposition of one of its rows sees it."""
 
     def __init__(self, bench: Bench, row: Row) -> None:
         self._bench, self._row = bench, row
+        self.items = bench.ledger.document.numbers
 
     def answer(self, proposition: Proposition) -> Answer:
         """Whether a proposition is true; one that looks nothing up in the document is asked once for all rows."""
@@ -101,33 +102,11 @@ class Pages:
             raise BadInput(f"no notation of the ledger has the letter {shown(letter)}")
         return sorted(map(written, found))
 
-    @property
-    def items(self) -> list[str]:
-        """What the document numbers."""
-        return list(self._bench.ledger.document.numbers)
-
 
 @lru_cache(maxsize=4096)
 def _alone(text: str) -> Answer:
-    from satsym.auditing.propositions.reading import proposition
-
     words = measurements.words()
-    return Evaluation(words, Nowhere()).answer(proposition(text, words))
-
-
-class Nowhere:
-    """No document: for propositions that look nothing up."""
-
-    def row(self, key: str) -> Any:
-        """No row."""
-        raise LookupError(key)
-
-    text = symbol = meanings = row
-
-    @property
-    def items(self) -> list[str]:
-        """No numbers."""
-        return []
+    return Evaluation(words, Document()).answer(proposition(text, words))
 
 
 def _listed(printed: Any) -> Any:

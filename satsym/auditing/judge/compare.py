@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from satsym.auditing.judge.bench import Bench, Both, Formula
+from satsym.auditing.judge.bench import Bench, Both
 from satsym.auditing.judge.equations import Equal, Multiple
 from satsym.auditing.judge.matrices import EqualMatrix, SameRoots, Spans
 from satsym.auditing.judge.plan import Never, Plan
 from satsym.auditing.ledger.contents import Row
 from satsym.formula.bound import unbound
+from satsym.formula.cells import Formula
 from satsym.formula.tree import ZERO, Equality, Node, Sym, symbols
 from satsym.formula.values import Kernel, Matrix, Relation, Roots
 from satsym.status import BadInput
@@ -15,13 +16,7 @@ from satsym.symbolic.lookup import formulas
 
 
 def plans(bench: Bench, row: Row, printed: Formula, target: Both) -> list[Plan]:
-    """How a printed formula may be compared with its target: it is right if one of the plans holds.
-
-    Raises
-    ------
-    BadInput
-        If the two are of kinds that cannot be compared.
-    """
+    """How a printed formula may be compared with its target: it is right if one of the plans holds."""
     trees = target.trees
     if isinstance(printed, tuple):
         return [_of_matrix(bench, row, printed, target)]

@@ -68,9 +68,11 @@ class Equal(Plan):
             raise BadInput("a symbol that means a matrix stands where it is held against an expression")
         return self.vanish(difference(found.trees, target.trees), found.exact - target.exact)
 
-    def residuals(self, point: field.Point, cells: Cells) -> Iterator[list[int]]:
-        base = point.base if isinstance(point, BoundPoint) else point
-        yield [(point.value(cell) - base.value(aim)) % field.PRIME for cell, aim in zip(cells, self._aims, strict=True)]
+    def residuals(self, point: BoundPoint, cells: Cells) -> Iterator[list[int]]:
+        yield [
+            (point.value(cell) - point.base.value(aim)) % field.PRIME
+            for cell, aim in zip(cells, self._aims, strict=True)
+        ]
 
 
 class Multiple(Plan):
@@ -132,11 +134,10 @@ class Multiple(Plan):
         tree = product([formulas.to_tree(quotient), self._trees])
         return self.vanish(difference(found.trees, tree), found.exact - quotient * self._exact)
 
-    def residuals(self, point: field.Point, cells: Cells) -> Iterator[list[int]]:
-        base = point.base if isinstance(point, BoundPoint) else point
-        gap, aim = point.value(cells[0]) - point.value(cells[1]), base.value(self._aim)
+    def residuals(self, point: BoundPoint, cells: Cells) -> Iterator[list[int]]:
+        gap, aim = point.value(cells[0]) - point.value(cells[1]), point.base.value(self._aim)
         for factor in self.factors:
-            yield [(gap - base.value(factor) * aim) % field.PRIME]
+            yield [(gap - point.base.value(factor) * aim) % field.PRIME]
 
 
 def _quotient(one: tuple[Monomial, Complex], other: tuple[Monomial, Complex], positive: frozenset[str]) -> Node | None:

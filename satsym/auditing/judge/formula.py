@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from satsym.auditing import sentences
 from satsym.auditing.diagnosis.smallest_edit import remedy
-from satsym.auditing.judge.bench import Bench, Formula, in_ours
+from satsym.auditing.judge.bench import Bench
 from satsym.auditing.judge.compare import plans
 from satsym.auditing.judge.equations import Equal, Multiple
 from satsym.auditing.judge.plan import Never, Plan
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
+from satsym.auditing.sentences import joined, say, wrong_formula
+from satsym.formula.cells import Formula, cells
 from satsym.formula.tree import Equality, Node
 from satsym.formula.writing import written
 from satsym.symbolic.lookup import library
@@ -24,14 +25,14 @@ def judge(bench: Bench, row: Row) -> Outcome:
         if compared.is_right(compared.printed):
             derived = shown(compared, compared.printed)
             if fault and not _target_fault(bench, compared):
-                return Outcome(row, True, derived, compared, unit=True, remark=sentences.inhomogeneous(fault))
+                return Outcome(row, True, derived, compared, unit=True, remark=say("inhomogeneous", fault))
             return Outcome(row, True, derived, compared)
     compared, found = next(((way, fix) for way in ways if (fix := remedy(way)) is not None), (ways[0], None))
     derived = shown(compared, found.cells if found else None)
     why = compared.why if isinstance(compared, Never) else ""
-    remark = sentences.wrong_formula(compared.labels, found, "" if found else compared.difference(), why, derived)
+    remark = wrong_formula(compared.labels, found, "" if found else compared.difference(), why, derived)
     if fault:
-        remark = sentences.joined([remark, sentences.also_inhomogeneous(fault)])
+        remark = joined([remark, say("also_inhomogeneous", fault)])
     return Outcome(row, False, derived, compared, found, remark=remark)
 
 
@@ -73,16 +74,13 @@ def corrected(outcome: Outcome) -> Formula:
 
 def dimension_fault(bench: Bench, row: Row) -> str:
     """Why a printed formula is not homogeneous; empty where it is, or where that is not known."""
-    formula = in_ours(row.printed, bench.scope(row))
-    known = bench.dimensions
-    if isinstance(formula, tuple):
+    if isinstance(row.printed, tuple):
         return ""  # the entries of a matrix have dimensions of their own
-    sides = (formula.lhs, formula.rhs) if isinstance(formula, Equality) else (formula,)
     try:
-        exact = [bench.plain_expression(side) for side in sides]
+        exact = [bench.plain_expression(side) for side in cells(bench.in_ours(row))]
     except library.NotAFormula:
         return ""
-    return library.inhomogeneity(exact, known)
+    return library.inhomogeneity(exact, bench.dimensions)
 
 
 def _target_fault(bench: Bench, compared: Plan) -> bool:

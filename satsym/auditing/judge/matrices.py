@@ -41,12 +41,11 @@ class SameRoots(Plan):
         exact = formulas.product(self._symbol - root.exact for root in found)
         return self.vanish(difference(trees, self._trees), exact - self._exact)
 
-    def residuals(self, point: field.Point, cells: Cells) -> Iterator[list[int]]:
-        base = point.base if isinstance(point, BoundPoint) else point
-        place, total = base.value(self._variable), 1
+    def residuals(self, point: BoundPoint, cells: Cells) -> Iterator[list[int]]:
+        place, total = point.base.value(self._variable), 1
         for cell in cells:
             total = total * (place - point.value(cell)) % field.PRIME
-        yield [(total - base.value(self._aim)) % field.PRIME]
+        yield [(total - point.base.value(self._aim)) % field.PRIME]
 
 
 class Spans(Plan):
@@ -87,10 +86,9 @@ class Spans(Plan):
         nullity = matrix.shape[1] - engine.rank(matrix)
         return engine.rank(basis) == nullity == basis.shape[1]
 
-    def residuals(self, point: field.Point, cells: Cells) -> Iterator[list[int]]:
-        base = point.base if isinstance(point, BoundPoint) else point
+    def residuals(self, point: BoundPoint, cells: Cells) -> Iterator[list[int]]:
         basis = _rows([point.value(cell) for cell in cells], self._columns)
-        matrix = [[base.value(entry) for entry in line] for line in self._target.trees.of.rows]
+        matrix = [[point.base.value(entry) for entry in line] for line in self._target.trees.of.rows]
         yield [
             sum(a * line[k] for a, line in zip(entries, basis, strict=True)) % field.PRIME
             for entries in matrix
@@ -121,8 +119,7 @@ class EqualMatrix(Plan):
                     return False
         return True
 
-    def residuals(self, point: field.Point, cells: Cells) -> Iterator[list[int]]:
-        base = point.base if isinstance(point, BoundPoint) else point
+    def residuals(self, point: BoundPoint, cells: Cells) -> Iterator[list[int]]:
         try:
             found = self.bench.engines(self.row)[0].value(self.bench.scope(self.row).ours(cells[0]))
         except BadInput:
@@ -131,7 +128,7 @@ class EqualMatrix(Plan):
             yield [1]
             return
         yield [
-            (base.value(a) - base.value(b)) % field.PRIME
+            (point.base.value(a) - point.base.value(b)) % field.PRIME
             for one, other in zip(found.rows, self._target.trees.rows, strict=True)
             for a, b in zip(one, other, strict=True)
         ]

@@ -27,15 +27,7 @@ QUICK = 2
 
 
 class Plan(ABC):
-    """When printed cells are right.
-
-    Attributes
-    ----------
-    labels
-        Which cell is which: empty, ``"lhs"``, ``"rhs"``, or ``"1, 2"``.
-    printed
-        The printed cells, in the document's symbols.
-    """
+    """When printed cells are right; labels say which is which: empty, a side of an equation, or ``"1, 2"``."""
 
     def __init__(self, bench: Bench, row: Row, printed: Cells, labels: Sequence[str]) -> None:
         self.bench, self.row = bench, row
@@ -46,7 +38,7 @@ class Plan(ABC):
         """Whether these cells would be right: proved by both engines."""
 
     @abstractmethod
-    def residuals(self, point: field.Point, cells: Cells) -> Iterator[list[int]]:
+    def residuals(self, point: BoundPoint, cells: Cells) -> Iterator[list[int]]:
         """Values that vanish at a point if the cells are right; alternatives, each in the same place at all points."""
 
     @property
@@ -165,5 +157,5 @@ class Never(Plan):
     def holds(self, cells: Cells) -> bool:
         return False
 
-    def residuals(self, point: field.Point, cells: Cells) -> Iterator[list[int]]:
+    def residuals(self, point: BoundPoint, cells: Cells) -> Iterator[list[int]]:
         yield [1]

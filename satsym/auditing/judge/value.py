@@ -6,12 +6,14 @@ import re
 from collections.abc import Mapping
 from fractions import Fraction
 
-from satsym.auditing import quantities, sentences
+from satsym import units
+from satsym.auditing import quantities
 from satsym.auditing.constants import CUSTOMARY
 from satsym.auditing.judge.bench import Bench
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
 from satsym.auditing.propositions.relations import Fit, fit_of_range
+from satsym.auditing.sentences import say
 from satsym.formula.tree import Equality, Node, symbols
 from satsym.formula.values import Kernel, Matrix, Relation, Roots
 from satsym.status import BadInput
@@ -38,13 +40,13 @@ def _measured(bench: Bench, row: Row, printed: quantities.PrintedNumber, tree: N
     assert not isinstance(tree, Equality)
     inputs = {**bench.ledger.inputs, **row.table.inputs}
     found = quantities.evaluated(tree, inputs)
-    stated = quantities.in_base_units(f"1 {printed.unit}" if printed.unit != "1" else "1")
+    stated = quantities.one(printed.unit)
     if dict(stated.dimension) != dict(found.dimension):
         wanted = library.written_dimension(found.dimension)
         derived = f"{found.value:.6g} {quantities.base_unit(found.dimension)}"
-        remark: str = sentences.wrong_unit(library.written_dimension(stated.dimension), wanted)
+        remark: str = say("wrong_unit", library.written_dimension(stated.dimension), wanted)
         return Outcome(row, False, derived, unit=True, remark=remark)
-    scale = quantities.scale(printed.unit)
+    scale = stated.value
     value, (low, high) = found.value / scale, (bound / scale for bound in quantities.bounds(tree, inputs))
     unit = "" if printed.unit == "1" else f" {printed.unit}"
     derived = f"{_rounded(value, printed)}{unit}"
@@ -56,10 +58,11 @@ def _measured(bench: Bench, row: Row, printed: quantities.PrintedNumber, tree: N
         custom = _customary(printed, tree, inputs, scale)
         cgs = _CGS_NAMES.sub(lambda name: _CGS[name[0]], printed.unit)
         if not custom and cgs != printed.unit and _comes_out_in(cgs, printed, tree, inputs):
-            return Outcome(row, False, derived, unit=True, remark=sentences.number_of(cgs, derived), evidence=evidence)
-    said = "" if how is Fit.INSIDE else sentences.wrong_number(derived, custom)
-    near = how is Fit.NEAR or bool(custom)
-    return Outcome(row, how is Fit.INSIDE, derived, near=near, remark=said, evidence=evidence)
+            return Outcome(row, False, derived, unit=True, remark=say("number_of", cgs, derived), evidence=evidence)
+    if how is Fit.INSIDE:
+        return Outcome(row, True, derived, evidence=evidence)
+    said = say("customary_number", derived, custom) if custom else say("wrong_number", derived)
+    return Outcome(row, False, derived, near=how is Fit.NEAR or bool(custom), remark=said, evidence=evidence)
 
 
 def _customary(printed: quantities.PrintedNumber, tree: Node, inputs: Mapping[str, str], scale: float) -> str:
@@ -74,7 +77,7 @@ def _customary(printed: quantities.PrintedNumber, tree: Node, inputs: Mapping[st
 
 def _comes_out_in(unit: str, printed: quantities.PrintedNumber, tree: Node, inputs: Mapping[str, str]) -> bool:
     """Whether the printed digits are those of another unit."""
-    scale = quantities.scale(unit)
+    scale = quantities.one(unit).value
     found = quantities.evaluated(tree, inputs).value / scale
     return fit_of_range(found, found, printed) is Fit.INSIDE or bool(_customary(printed, tree, inputs, scale))
 
@@ -90,7 +93,7 @@ def _exact(bench: Bench, row: Row, printed: quantities.PrintedNumber) -> Outcome
         raise BadInput(f"a number is held against {formulas.text(target.exact)}, which is none")
     how, derived = fit_of_range(float(by_sympy), float(by_sympy), printed), str(by_sympy)
     right = how is Fit.INSIDE if by_sympy.denominator != 1 else by_sympy == printed.value
-    remark = "" if right else sentences.wrong_number(derived)
+    remark = "" if right else say("wrong_number", derived)
     return Outcome(row, right, derived, near=how is Fit.NEAR and by_sympy.denominator != 1, remark=remark)
 
 
@@ -108,22 +111,14 @@ def _rounded(value: float, printed: quantities.PrintedNumber) -> str:
 
 def unit(bench: Bench, row: Row) -> Outcome:
     """Judge a printed unit by its dimension."""
-    printed = {base: Fraction(power) for base, power in _dimension(str(row.table.printed)).items()}
+    text = str(row.table.printed).strip()
+    printed = {base: Fraction(power) for base, power in units.dimension(text).items()} if text not in ("", "1") else {}
     assert row.holds is not None
     assert not isinstance(row.holds, Equality)
     found = library.dimension(bench.plain_expression(row.holds), bench.dimensions) or {}
     derived = library.written_dimension(found)
     right = printed == found
-    remark = "" if right else sentences.wrong_unit(library.written_dimension(printed), derived)
-    lacks = {
-        base: power
-        for base in {**found, **printed}
-        if (power := found.get(base, Fraction(0)) - printed.get(base, Fraction(0)))
-    }
-    return Outcome(row, right, derived, unit=not right, remark=remark, lacks=library.written_dimension(lacks))
-
-
-def _dimension(text: str) -> dict[str, int | Fraction]:
-    from satsym import units
-
-    return dict(units.dimension(text)) if text.strip() not in ("", "1") else {}
+    remark = "" if right else say("wrong_unit", library.written_dimension(printed), derived)
+    gaps = {base: found.get(base, Fraction(0)) - printed.get(base, Fraction(0)) for base in {**found, **printed}}
+    lacks = library.written_dimension({base: power for base, power in gaps.items() if power})
+    return Outcome(row, right, derived, unit=not right, remark=remark, lacks=lacks)

@@ -2,53 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from satsym.auditing.ledger.schema import DocumentTable, RowTable, SymbolTable
 from satsym.auditing.ledger.scopes import Scope
 from satsym.auditing.propositions.reading import Proposition
-from satsym.formula.tree import Call, Equality, Node, Text, calls
+from satsym.formula.cells import Formula, calls_in
+from satsym.formula.tree import Call, Equality, Node, Text
 
 
 @dataclass(frozen=True)
 class Row:
-    """One printed thing, read.
-
-    Attributes
-    ----------
-    table
-        As the ledger has it.
-    key
-        The item and its part: how other rows name it.
-    place
-        File and line where it stands.
-    printed
-        The printed formula in the document's symbols: an expression, an equality, rows of expressions (matrix), or
-        ``None`` where what is printed is not a formula.
-    holds
-        What it is held against, in our names; ``None`` where a proposition judges.
-    follows
-        How the document says it follows, over printed rows, in the document's symbols.
-    claims
-        The proposition that has to hold: what a claim prints, or what another row is held against.
-    because, produced
-        The reason given, and what tells that the printed algorithm produces it.
-    why
-        A sentence that explains why it is not so: texts, and terms to be measured between them.
-    """
+    """One printed thing, read."""
 
     table: RowTable
+    """As the ledger has it."""
     key: str
+    """The item and its part: how other rows name it."""
     place: str
-    printed: Node | Equality | tuple[tuple[Node, ...], ...] | None = None
+    """File and line where it stands."""
+    printed: Formula | None = None
+    """The printed formula in the document's symbols: an expression, an equality, rows of expressions (matrix),
+    or ``None`` where what is printed is not a formula."""
     holds: Node | Equality | None = None
+    """What it is held against, in our names; ``None`` where a proposition judges."""
     follows: Node | Equality | None = None
+    """How the document says it follows, over printed rows, in the document's symbols."""
     claims: Proposition | None = None
+    """The proposition that has to hold: what a claim prints, or what another row is held against."""
     because: Proposition | None = None
     produced: Proposition | None = None
+    """The reason given, and what tells that the printed algorithm produces it."""
     why: tuple[str | Proposition, ...] = ()
+    """A sentence that explains why it is not so: texts, and terms to be measured between them."""
 
     @property
     def uses(self) -> list[str]:
@@ -79,12 +67,3 @@ class Ledger:
 def row_key(call: Call) -> str:
     """The key that ``row['item']`` or ``row['item', 'part']`` names."""
     return " ".join(argument.value for argument in call.arguments if isinstance(argument, Text))
-
-
-def calls_in(formula: Node | Equality | None) -> Iterator[Call]:
-    """Function calls in an expression or an equality."""
-    if isinstance(formula, Equality):
-        yield from calls(formula.lhs)
-        yield from calls(formula.rhs)
-    elif formula is not None:
-        yield from calls(formula)

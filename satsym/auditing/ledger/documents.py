@@ -28,24 +28,13 @@ def files_of(path: Path) -> list[Path]:
     return [path / HEAD, *sorted(path.glob(CHAPTERS))] if path.is_dir() else [path]
 
 
-def comes_with_satsym(path: Path) -> bool:
-    """Whether a path is that of a shipped ledger."""
-    return path in shipped()
-
-
 def named(path: Path) -> str:
     """How commands name a ledger: a shipped one by its document, any other by its path."""
-    return path.name if comes_with_satsym(path) else str(path)
+    return path.name if path in shipped() else str(path)
 
 
 def locate(name_or_path: str) -> Path:
-    """The shipped ledger of a document, or the path that was given.
-
-    Raises
-    ------
-    BadInput
-        If there is none.
-    """
+    """The shipped ledger of a document, or the path that was given."""
     for path in shipped():
         if path.name == name_or_path:
             return path
@@ -62,13 +51,7 @@ def locate(name_or_path: str) -> Path:
 
 
 def refuse_unknown_items(ledgers: Sequence[Ledger], items: Sequence[str]) -> None:
-    """Refuse items that no ledger has.
-
-    Raises
-    ------
-    BadInput
-        For the first of them.
-    """
+    """Refuse items that no ledger has."""
     known = dict.fromkeys(name for x in ledgers for row in x.rows for name in (row.table.item, row.key))
     for item in items:
         if item not in known:

@@ -15,13 +15,13 @@ from typing import Any
 from satsym.auditing import language, measurements, quantities
 from satsym.auditing.ledger import documents, rows, schema, vocabulary
 from satsym.auditing.ledger import scopes as notation
-from satsym.auditing.ledger.contents import Ledger, Row, calls_in, row_key
-from satsym.auditing.ledger.documents import HEAD
+from satsym.auditing.ledger.contents import Ledger, Row, row_key
 from satsym.auditing.ledger.positions import Part
 from satsym.auditing.ledger.schema import DocumentTable, RowTable, SymbolTable, WrongKey
 from satsym.auditing.ledger.scopes import Scope, WrongScope
 from satsym.auditing.propositions.reading import explanation, is_proposition, matching, proposition
 from satsym.formula import budget, reading
+from satsym.formula.cells import calls_in
 from satsym.formula.tree import Node, substituted
 from satsym.formula.weight import Scales
 from satsym.instance import files
@@ -41,7 +41,7 @@ def read(path: Path) -> Ledger:
         With one line, ``FILE:LINE: what is wrong; what to do``.
     """
     parts = _parts(path)
-    allowance = budget.Allowance(counted=not documents.comes_with_satsym(path))
+    allowance = budget.Allowance(counted=path not in documents.shipped())
     return allowance.within(budget.READING, lambda: _Reader(path, parts).ledger(documents.named(path)))
 
 
@@ -56,7 +56,9 @@ def _parts(path: Path) -> list[Part]:
         part = Part(file, tree, sum(len(each.tree.get("row", [])) for each in found))
         for key in tree if found else ():
             if key != "row":
-                raise BadInput(f"{part.place(key, 0, key)}: {printable(key)}: not in a chapter; put it in {HEAD}")
+                raise BadInput(
+                    f"{part.place(key, 0, key)}: {printable(key)}: not in a chapter; put it in {documents.HEAD}"
+                )
         if found and not isinstance(tree.get("row"), list):
             raise BadInput(f"{part.place('')}: row: no rows; write one [[row]] for each thing that is printed")
         found.append(part)
@@ -85,7 +87,7 @@ class _Reader:
         self._scales = Scales()
         self._derived = self._entries("derived", self._expression, self._derived)
         self._scopes = self._read_scopes()
-        self._known = vocabulary.vocabulary(self._symbols, self._scopes)
+        self._own = vocabulary.declared(self._symbols, self._scopes)
         self._check_scopes()
         tables = self._tree.get("row", [])
         if not isinstance(tables, list) or not tables:
@@ -147,7 +149,7 @@ class _Reader:
             for key in self._tree.get("scope", {}).get(scope.name, {}):
                 if key in scope.meanings:
                     with self._telling(f"scope.{scope.name}", key):
-                        self._known.check(scope.meanings[key])
+                        vocabulary.check(scope.meanings[key], self._own)
 
     def _row(self, index: int, entry: object) -> Row:
         title = printable(str(entry.get("item", index + 1))) if isinstance(entry, dict) else str(index + 1)
@@ -170,20 +172,20 @@ class _Reader:
                 raise BadInput("a claim is judged by the proposition that it prints; leave `holds` out")
             if table.kind == "table":
                 raise BadInput('a table is judged by a proposition, such as "all(a == b for a, b in printed)"')
+        found: dict[str, Any] = {}
         with self._telling("row", "printed", index, key):
-            row = replace(row, printed=rows.printed(table, scope))
+            found["printed"] = rows.printed(table, scope)
         with self._telling("row", "inputs", index, key):
             for value in table.inputs.values():
                 _input(value)
         with self._telling("row", "holds", index, key):
-            row = replace(row, holds=rows.held_against(table, self._derived, self._known, self._inputs))
+            found["holds"] = rows.held_against(table, self._derived, self._own, self._inputs)
         with self._telling("row", "from", index, key):
-            if table.follows:
-                row = replace(row, follows=rows.follows(table, self._derived, self._known, scope))
+            found["follows"] = rows.follows(table, self._derived, self._own, scope) if table.follows else None
         with self._telling("row", "why", index, key):
-            if table.why:
-                row = replace(row, why=explanation(table.why, measurements.words(scope.meanings), own=True))
-        return row
+            if table.why:  # measurements load what a ledger without propositions need not wait for
+                found["why"] = explanation(table.why, measurements.words(scope.meanings), own=True)
+        return replace(row, **found)
 
     def _claim(self, index: int, row: Row, scope: Scope) -> Row:
         """A row that a proposition judges: its own, or what it is held against."""

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from collections import Counter
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -18,61 +19,39 @@ _DELIMITER = re.compile(r'"""|' + r"'''")
 
 @dataclass(frozen=True)
 class Part:
-    """A file of a ledger.
-
-    Attributes
-    ----------
-    path, tree
-        And what is in it.
-    first
-        Number of the rows in the files before it.
-    """
+    """A file of a ledger."""
 
     path: Path
     tree: dict[str, Any]
+    """And what is in it."""
     first: int
+    """Number of the rows in the files before it."""
 
     @cached_property
-    def positions(self) -> Positions:
-        """Where things stand in it; only read where that is asked for."""
-        return positions(self.path.read_text(encoding="utf-8-sig"))
+    def _lines(self) -> dict[tuple[str, int, str], int]:
+        return lines(self.path.read_text(encoding="utf-8-sig"))  # only read where a place is asked for
 
     def place(self, table: str, index: int = 0, key: str = "") -> str:
-        """File and line of the n-th table of a name in the whole ledger, or of a key in it."""
-        own = index - self.first if table == "row" else index
-        return f"{printable(str(self.path), 200)}:{self.positions.line(table, own, key)}"
+        """File and line of a key in the n-th table of a name in the whole ledger, else of the table, else the first."""
+        own, found = index - self.first if table == "row" else index, self._lines
+        line = found.get((table, own, key)) or found.get((table, own, ""), 1)
+        return f"{printable(str(self.path), 200)}:{line}"
 
 
-@dataclass
-class Positions:
-    """Line numbers, from 1: of the n-th table of a name, and of keys in it."""
-
-    tables: dict[tuple[str, int], int] = field(default_factory=dict)
-    keys: dict[tuple[str, int, str], int] = field(default_factory=dict)
-
-    def line(self, table: str, index: int = 0, key: str = "") -> int:
-        """Line of a key, else of its table, else the first."""
-        return self.keys.get((table, index, key)) or self.tables.get((table, index), 1)
-
-
-def positions(text: str) -> Positions:
-    """Find tables and keys in a text that is valid TOML."""
-    found = Positions()
-    seen: dict[str, int] = {}
-    table, index, inside = "", 0, ""
+def lines(text: str) -> dict[tuple[str, int, str], int]:
+    """Line numbers, from 1, in a text that is valid TOML: of the n-th table of a name, and of each key in it."""
+    found: dict[tuple[str, int, str], int] = {}
+    seen: Counter[str] = Counter([""])
+    table, inside = "", ""
     for number, line in enumerate(text.splitlines(), start=1):
         if not inside:
             header, key = _HEADER.match(line), _KEY.match(line)
             if header:
                 table = "".join(header[1].split())
-                index = seen.get(table, -1) + 1
-                seen[table] = index
-                found.tables[table, index] = number
+                found[table, seen[table], ""] = number
+                seen[table] += 1
             elif key:
-                found.keys.setdefault((table, index, key[1].strip("\"'")), number)
+                found.setdefault((table, seen[table] - 1, key[1].strip("\"'")), number)
         for delimiter in _DELIMITER.findall(line):
-            if not inside:
-                inside = delimiter
-            elif inside == delimiter:
-                inside = ""
+            inside = "" if inside == delimiter else inside or delimiter
     return found

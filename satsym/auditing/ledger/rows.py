@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
+from typing import Any
 
 from satsym.auditing import language, quantities
-from satsym.auditing.ledger import scopes as notation
 from satsym.auditing.ledger import vocabulary
 from satsym.auditing.ledger.schema import RowTable
 from satsym.auditing.ledger.scopes import Scope
-from satsym.auditing.ledger.vocabulary import Vocabulary
 from satsym.formula import reading
+from satsym.formula.cells import Formula, cells, each, names_in
 from satsym.formula.tree import Equality, Node, Text, substituted
 from satsym.formula.weight import Scales
 from satsym.status import BadInput
@@ -20,7 +20,7 @@ FORMULAS = ("equation", "algorithm")
 """Kinds of rows that print one formula."""
 
 
-def printed(table: RowTable, scope: Scope) -> Node | Equality | tuple[tuple[Node, ...], ...] | None:
+def printed(table: RowTable, scope: Scope) -> Formula | None:
     """The printed formula; ``None`` for kinds of rows that print none."""
     if table.kind == "number":
         quantities.printed_number(_one_text(table))
@@ -37,14 +37,12 @@ def printed(table: RowTable, scope: Scope) -> Node | Equality | tuple[tuple[Node
     lines = [(line,) if isinstance(line, str) else line for line in table.printed]
     if len({len(line) for line in lines}) > 1 or not lines[0]:
         raise BadInput("the rows differ in length")
-    entries = tuple(tuple(reading.expression(text) for text in line) for line in lines)
-    for line in entries:
-        for entry in line:
-            _refuse_unknown(entry, scope)
+    entries = tuple(tuple(map(reading.expression, line)) for line in lines)
+    _refuse_unknown(entries, scope)
     return entries
 
 
-def readable(table: RowTable, scope: Scope) -> Node | Equality | tuple[tuple[Node, ...], ...] | None:
+def readable(table: RowTable, scope: Scope) -> Formula | None:
     """The printed formula of a row that a proposition judges; ``None`` where what is printed is none."""
     try:
         return printed(table, scope)
@@ -53,7 +51,7 @@ def readable(table: RowTable, scope: Scope) -> Node | Equality | tuple[tuple[Nod
 
 
 def held_against(
-    table: RowTable, derived: Mapping[str, Node], known: Vocabulary, inputs: Mapping[str, str]
+    table: RowTable, derived: Mapping[str, Node], own: Collection[str], inputs: Mapping[str, str]
 ) -> Node | Equality:
     """The formula that a row is held against."""
     if vocabulary.is_address(table.holds):
@@ -63,16 +61,14 @@ def held_against(
     if table.kind == "number" and quantities.is_numeric(formula):
         quantities.check(formula, {**inputs, **table.inputs})
     else:
-        known.check(formula)
+        vocabulary.check(formula, own)
     return formula
 
 
-def follows(table: RowTable, derived: Mapping[str, Node], known: Vocabulary, scope: Scope) -> Node | Equality:
+def follows(table: RowTable, derived: Mapping[str, Node], own: Collection[str], scope: Scope) -> Node | Equality:
     """How a row is said to follow from others."""
     formula = _with(reading.statement(str(table.follows), language.JUDGING, judging=True), derived)
-    for name in sorted(notation.names_used(formula)):
-        if not scope.knows(name) and not known.knows(name):
-            raise BadInput(f"{shown(name)} is no symbol of [scope.{scope.name}]; {suggestion(name, scope.meanings)}")
+    _refuse_unknown(formula, scope, own)
     return formula
 
 
@@ -82,16 +78,15 @@ def _one_text(table: RowTable) -> str:
     return table.printed
 
 
-def _refuse_unknown(formula: Node | Equality, scope: Scope) -> None:
-    for name in sorted(notation.names_used(formula)):
-        if not scope.knows(name):
+def _refuse_unknown(formula: Formula, scope: Scope, own: Collection[str] | None = None) -> None:
+    """Refuse symbols that the notation lacks; where the ledger's own names are given, those of derivations will do."""
+    for name in sorted(names_in(formula)):
+        if not scope.knows(name) and (own is None or not vocabulary.knows(name, own)):
             raise BadInput(f"{shown(name)} is no symbol of [scope.{scope.name}]; {suggestion(name, scope.meanings)}")
 
 
-def _with(formula: Node | Equality, derived: Mapping[str, Node]) -> Node | Equality:
-    if isinstance(formula, Equality):
-        found: Node | Equality = Equality(substituted(formula.lhs, derived), substituted(formula.rhs, derived))
-    else:
-        found = substituted(formula, derived)
-    Scales().checked(found)
+def _with(formula: Formula, derived: Mapping[str, Node]) -> Any:
+    found = each(formula, lambda cell: substituted(cell, derived))
+    for cell in cells(found):
+        Scales().checked(cell)
     return found

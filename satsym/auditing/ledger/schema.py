@@ -26,7 +26,6 @@ Printed = Annotated[
 ]
 Whole = Annotated[int, Meta(ge=1, le=3000, description="a whole number")]
 Flag = Annotated[bool, Meta(description="true or false")]
-Number = Annotated[Literal[1], Meta(description="1")]
 
 
 class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -106,13 +105,7 @@ class WrongKey(BadInput):
 
 
 def table(tree: Any, kind: type[Any]) -> Any:
-    """A table of the ledger, checked.
-
-    Raises
-    ------
-    WrongKey
-        For the first key that is unknown, missing, or of another type.
-    """
+    """A table of the ledger, checked."""
     if not isinstance(tree, dict):
         raise WrongKey("", f"got {shown(tree)}; write a table")
     fields = _fields(kind)  # type: ignore[arg-type]

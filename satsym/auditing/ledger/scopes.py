@@ -7,9 +7,8 @@ from dataclasses import dataclass
 
 from satsym.auditing.language import JUDGING
 from satsym.formula import reading
-from satsym.formula.tree import Equality, Node, Sym, calls, substituted, symbols
+from satsym.formula.tree import Node, Sym, calls, substituted
 from satsym.formula.weight import Scales
-from satsym.formula.writing import written
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
@@ -21,21 +20,14 @@ CONSTANTS = frozenset({"I", "pi"})
 
 @dataclass(frozen=True)
 class Scope:
-    """The notation of a part of a document.
-
-    Attributes
-    ----------
-    name
-        As the ledger has it.
-    meanings
-        The document's symbol -> our expression.
-    orders
-        ``states``, ``controls``, ``outputs`` -> the document's symbols in its order, where it states one.
-    """
+    """The notation of a part of a document."""
 
     name: str
+    """As the ledger has it."""
     meanings: Mapping[str, Node]
+    """The document's symbol -> our expression."""
     orders: Mapping[str, tuple[str, ...]]
+    """``states``, ``controls``, ``outputs`` -> the document's symbols in its order, where it states one."""
 
     def knows(self, name: str) -> bool:
         """Whether a printed formula may use the name."""
@@ -67,13 +59,7 @@ class WrongScope(BadInput):
 
 
 def scopes(tables: Mapping[str, Mapping[str, object]], derived: Mapping[str, Node]) -> dict[str, Scope]:
-    """All scopes of a ledger, each with what it extends.
-
-    Raises
-    ------
-    WrongScope
-        For the first entry that cannot be read.
-    """
+    """All scopes of a ledger, each with what it extends."""
     found: dict[str, Scope] = {}
 
     def resolve(name: str, asking: tuple[str, ...]) -> Scope:
@@ -90,15 +76,6 @@ def scopes(tables: Mapping[str, Mapping[str, object]], derived: Mapping[str, Nod
         return found[name]
 
     return {name: resolve(name, ()) for name in tables}
-
-
-def ambiguities(found: Mapping[str, Scope]) -> dict[str, dict[str, list[str]]]:
-    """Symbols that mean different things in different scopes: symbol -> meaning -> scopes."""
-    meanings: dict[str, dict[str, list[str]]] = {}
-    for scope in found.values():
-        for symbol, meaning in scope.meanings.items():
-            meanings.setdefault(symbol, {}).setdefault(written(meaning), []).append(scope.name)
-    return {symbol: by_meaning for symbol, by_meaning in meanings.items() if len(by_meaning) > 1}
 
 
 def _scope(name: str, table: Mapping[str, object], below: Scope | None, derived: Mapping[str, Node]) -> Scope:
@@ -127,13 +104,6 @@ def _scope(name: str, table: Mapping[str, object], below: Scope | None, derived:
             if entry not in meanings:
                 raise WrongScope(name, key, f"{shown(entry)} is no symbol of this scope; {suggestion(entry, meanings)}")
     return Scope(name, meanings, orders)
-
-
-def names_used(tree: Node | Equality) -> set[str]:
-    """Names in an expression or an equality."""
-    if isinstance(tree, Equality):
-        return symbols(tree.lhs) | symbols(tree.rhs)
-    return symbols(tree)
 
 
 def self_named(found: Mapping[str, Scope]) -> set[str]:

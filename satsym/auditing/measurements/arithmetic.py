@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from satsym.auditing.measurements import measurement
-from satsym.auditing.propositions.relations import compared_order, is_equal
+from satsym.auditing.propositions.relations import equal
+from satsym.auditing.propositions.relations import order as ordered
 from satsym.auditing.propositions.values import Undecided, is_exact
 
 
@@ -65,7 +66,7 @@ def different(values: Sequence[Any]) -> list[Any]:
     """The entries of a list, each once."""
     found: list[Any] = []
     for entry in values:
-        if not any(is_equal(entry, other) for other in found):
+        if not any(equal(entry, other).holds for other in found):
             found.append(entry)
     return found
 
@@ -143,7 +144,7 @@ def _extreme(values: Any, sign: int) -> Any:
         return float(values.max() if sign > 0 else values.min())
     best = values[0]
     for entry in values[1:]:
-        best = entry if sign * compared_order(entry, best) > 0 else best
+        best = entry if sign * ordered(entry, best) > 0 else best
     return best
 
 
@@ -165,7 +166,7 @@ def cosine(one: Any, other: Any) -> Any:
 @measurement
 def sign(x: Any) -> int:
     """-1, 0 or 1."""
-    return compared_order(x, 0)
+    return ordered(x, 0)
 
 
 @measurement

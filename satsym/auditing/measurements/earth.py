@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from satsym.analysis.orbits.kepler import propagate
 from satsym.arrays import Array
 from satsym.auditing import quantities
 from satsym.auditing.constants import PUBLISHED
@@ -19,8 +20,6 @@ from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
 _MOMENTS = 360
-_ROUNDS = 12
-"""Of Newton's method for Kepler's equation; five would do up to an eccentricity of 0.6."""
 _STATION = math.radians(30.0), math.radians(20.0)
 """A ground station: its latitude, and how far it is to the east of where the satellite begins."""
 _SEED = 11
@@ -94,15 +93,9 @@ def signal_time(orbit: Record, legs: int, elevation: float) -> Quantity:
 
 @measurement
 def distance_after(orbit: Record, share: float) -> Quantity:
-    """The distance from the Earth's centre after a share of a revolution from the perigee on, by Kepler's equation."""
-    e, mean = orbit.part("eccentricity"), 2.0 * math.pi * share
-    return orbit.part("axis") * float(1.0 - e * np.cos(_eccentric_anomaly(np.array([mean]), e)[0]))
-
-
-@measurement
-def pass_time(orbit: Record) -> Quantity:
-    """How long a satellite on a circle that comes overhead is above the horizon of a ground that does not turn."""
-    return orbit.part("period") * (math.acos(constant("R_earth").value / orbit.part("axis").value) / math.pi)
+    """The distance from the Earth's centre after a share of a revolution from the perigee on."""
+    place = _places(orbit, np.array([share * orbit.part("period").value]))
+    return Quantity(float(np.linalg.norm(place)), orbit.part("axis").dimension)
 
 
 @measurement
@@ -121,26 +114,23 @@ def _orbit(period: float, eccentricity: float = 0.0, inclination: float = 0.0, p
     return Record(name, {"period": Quantity(period, time), "axis": axis, "altitude": axis - ground, **shape})
 
 
+def _places(orbit: Record, times: Array) -> Array:
+    """Positions at times from the perigee on, in axes along the perigee and ahead of it, shape (3, times)."""
+    e, axis, mu = orbit.part("eccentricity"), orbit.part("axis").value, constant("mu_earth").value
+    speed = math.sqrt(mu / axis * (1.0 + e) / (1.0 - e))
+    return propagate([[axis * (1.0 - e)], [0.0], [0.0]], [[0.0], [speed], [0.0]], mu, times)[0]
+
+
 def _fixed(orbit: Record) -> Array:
-    """Positions over a day in axes that turn with the Earth, shape (3, moments), by Kepler's equation."""
-    e, tilt, perigee = orbit.part("eccentricity"), *np.radians([orbit.part("inclination"), orbit.part("perigee")])
+    """Positions over a day in axes that turn with the Earth, shape (3, moments)."""
+    tilt, perigee = np.radians([orbit.part("inclination"), orbit.part("perigee")])
     share = np.linspace(0.0, 1.0, _MOMENTS)
-    day = constant("sidereal_day").value
-    mean = 2.0 * math.pi * share * day / orbit.part("period").value
-    eccentric = _eccentric_anomaly(mean, e)
-    x, y = np.cos(eccentric) - e, math.sqrt(1.0 - e**2) * np.sin(eccentric)
+    x, y, _ = _places(orbit, share * constant("sidereal_day").value)
     along = np.array([x * math.cos(perigee) - y * math.sin(perigee), x * math.sin(perigee) + y * math.cos(perigee)])
     turned = 2.0 * math.pi * share
     across = along[1] * math.cos(tilt)
     fixed = [along[0] * np.cos(turned) + across * np.sin(turned), across * np.cos(turned) - along[0] * np.sin(turned)]
-    return orbit.part("axis").value * np.array([*fixed, along[1] * math.sin(tilt)])
-
-
-def _eccentric_anomaly(mean: Array, e: float) -> Array:
-    found = mean.copy()
-    for _ in range(_ROUNDS):
-        found -= (found - e * np.sin(found) - mean) / (1.0 - e * np.cos(found))
-    return found
+    return np.array([*fixed, along[1] * math.sin(tilt)])
 
 
 def _swing(vectors: Array) -> float:

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from functools import cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from satsym.arrays import Array
-from satsym.auditing.measurements import linear, measurement, value
+from satsym.arrays import Array, kept
+from satsym.auditing.measurements import linear, linear_motions, measurement, value
 from satsym.auditing.propositions.values import Family, Record
 from satsym.formula import reading
-from satsym.status import BadInput
-from satsym.wording import shown, suggestion
 
 _SEED = 53
 _NEAR_BY = 0.02
@@ -25,6 +22,8 @@ _FAR = 10.0
 _FAST = 100.0
 """What would move faster goes its way at this speed, so that what explodes takes a while."""
 _UNTIL, _NODES = 400.0, 2001
+_WHILE = 60.0
+"""How long motions are followed, those of linear systems by themselves."""
 _ATTRACTIVE, _STABLE, _UNSTABLE = "asymptotically stable", "stable", "unstable"
 
 CATALOGUE: Mapping[str, tuple[tuple[str, str], tuple[int, int], str]] = {
@@ -66,34 +65,22 @@ def equilibria() -> Family:
 
 
 @measurement
-def equilibrium(name: str) -> Record:
-    """A member of the family of equilibria."""
-    found = {member.name: member for member in equilibria()}
-    if name not in found:
-        raise BadInput(f"no equilibrium {shown(name)}; {suggestion(name, found)}")
-    return found[name]
-
-
-@measurement
+@kept
 def followed(of: Any, start: ArrayLike | None = None) -> Record:
     """The motion of a member of a family from a state, or from near its equilibrium.
 
     Its parts are ``t``, ``x1``, ``x2``, ..., its distance from the equilibrium, ``size``, and from its start, ``gone``.
     What goes far away is not followed beyond.
     """
-    return _followed(
-        linear.system_of(of) if isinstance(of, str) else of,
-        None if start is None else tuple(np.asarray(start, dtype=float).tolist()),
-    )
-
-
-@cache
-def _followed(of: Any, start: tuple[float, ...] | None) -> Record:
     whole = linear.system_of(of)
     n = linear.dimension(whole)
     rest = np.asarray(whole.parts.get("rest", np.zeros(n)))
-    begin = rest + _NEAR_BY * _way(n) if start is None else np.array(start, dtype=float)
-    t, x = _nonlinear(whole, begin, rest) if "formulas" in whole.parts else _linear(whole, begin)
+    begin = rest + _NEAR_BY * _way(n) if start is None else np.asarray(start, dtype=float)
+    if "formulas" in whole.parts:
+        t, x = _nonlinear(whole, begin, rest)
+    else:
+        path = linear_motions.trajectory(whole, begin, _WHILE)
+        t, x = path.part("t"), np.array(path.part("curves"))
     curves = {f"x{i + 1}": row for i, row in enumerate(x)}
     sizes = {"size": np.linalg.norm(x.T - rest, axis=1), "gone": np.linalg.norm(x.T - begin, axis=1)}
     return Record(f"a motion of {whole.name}", {"t": t, **sizes, **curves})
@@ -123,7 +110,10 @@ def _member(name: str, texts: tuple[str, str], rest: tuple[int, int], stability:
     a = formulas.matrix_of([[e.subs(place) for e in slopes[:2]], [e.subs(place) for e in slopes[2:]]])
     ways = {"formulas": formulas.compiled(f, x), "slopes": formulas.compiled(slopes, x)}
     at = np.array(rest, dtype=float)
-    return Record(name, {"A": a, "rest": at, "elsewhere": at + np.array([0.3, 0.2]), "stability": stability, **ways})
+    return Record(
+        name,
+        {"called": name, "A": a, "rest": at, "elsewhere": at + np.array([0.3, 0.2]), "stability": stability, **ways},
+    )
 
 
 def _way(n: int) -> Array:
@@ -143,11 +133,3 @@ def _nonlinear(of: Record, begin: Array, rest: Array) -> tuple[Array, Array]:
 
     t = np.linspace(0.0, _UNTIL, _NODES)
     return t, np.asarray(odeint(moved, begin, t, rtol=1e-9, atol=1e-12, mxstep=10_000)).T
-
-
-def _linear(of: Record, begin: Array) -> tuple[Array, Array]:
-    t = np.linspace(0.0, 60.0, 1201)
-    step, rows = linear.flow(of, float(t[1])), [begin]
-    for _ in t[1:]:
-        rows.append(step @ rows[-1])
-    return t, np.array(rows).T

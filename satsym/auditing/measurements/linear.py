@@ -5,24 +5,21 @@ Wherever a system is asked for, the name of a model, a member of a family or a s
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from functools import cache, lru_cache
 from typing import Any
 
 import numpy as np
 
-from satsym.arrays import Array
+from satsym.arrays import Array, kept
 from satsym.auditing.measurements import measurement
-from satsym.auditing.propositions.values import Record, Undecided, is_exact
+from satsym.auditing.propositions.relations import equal
+from satsym.auditing.propositions.values import Record, Undecided, is_exact, measured
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
-_LATE = 40.0
-"""From here on motions are compared: what grows like t doubles until twice this time, what is bounded does not."""
-_MOMENTS = 16
-"""How often they are looked at before and after; what turns is not always at its largest."""
-_NODES = 40
+_INTERVAL = 2.0
+"""Over which inputs act, and outputs are seen, to tell whether they do all that they can."""
 _ZERO = 1e-9
 
 
@@ -97,18 +94,50 @@ def geometric(eigenvalue: Any, of: Any) -> int:
 
 
 @measurement
+@kept
 def eigenvectors(of: Any) -> list[Record]:
     """Independent eigenvectors as columns, each with its eigenvalue: ``value``, ``vector``; exact."""
-    return _eigenvectors(matrix(of))
+    a = matrix(of)
+    return [
+        Record(f"eigenvector {k + 1} for {e.value}", {"value": e.value, "vector": column})
+        for e in spectrum_of(a).eigenvalues
+        for k, column in enumerate((a - e.value * a.eye(a.rows)).nullspace(simplify=True))
+    ]
 
 
 @measurement
-def growth_rate(of: Any) -> float:
-    """The exponent with which motions grow in the long run, by e^(At) itself; what grows like a power of t has none."""
-    sizes = [_largest(numbers(matrix(of)), start, start + _LATE) for start in (_LATE, 2.0 * _LATE)]
-    if not (sizes[0] > 0.0 and math.isfinite(sizes[1])):
-        raise Undecided("motions grow or shrink beyond all numbers")
-    return math.log(sizes[1] / sizes[0]) / _LATE
+def jordan(of: Any) -> Record:
+    """A basis P of chains of an exact matrix, as columns, and the eigenvalue that belongs to each."""
+    from satsym.symbolic.analysis.jordan import jordan_form
+
+    found = jordan_form(spectrum_of(matrix(of)))
+    if found is None:
+        raise Undecided("no closed form of the eigenvalues")
+    return Record("the Jordan form", {"P": found.basis, "values": [found.form[i, i] for i in range(found.form.rows)]})
+
+
+@measurement
+def routh(coefficients: Sequence[Any]) -> list[list[Any]]:
+    """The rows of Routh's array by its plain rule, padded with zeros, up to one that begins with zero.
+
+    Coefficients are those of a polynomial, the highest power first, or a matrix of one row.
+    """
+    given = list(coefficients)
+    width = (len(given) + 1) // 2
+    zero = given[0] - given[0]
+    found = [[*line, *[zero] * (width - len(line))] for line in (given[0::2], given[1::2])]
+    while len(found) < len(given) and not equal(found[-1][0], 0).holds:
+        above, line = found[-2:]
+        after = [(line[0] * a - above[0] * b) / line[0] for a, b in zip(above[1:], line[1:], strict=True)]
+        found.append([*after, zero])
+    return found
+
+
+@measurement
+def characteristic(of: Any) -> list[Any]:
+    """Coefficients of det(s I - A), the highest power first."""
+    a = matrix(of)
+    return list(a.charpoly().all_coeffs()) if is_exact(a) else list(np.poly(a))
 
 
 @measurement
@@ -143,15 +172,25 @@ def observability(of: Any, outputs: Sequence[str] = ()) -> Any:
 @measurement
 def controllable(of: Any, inputs: Sequence[str] = ()) -> bool:
     """Whether some input carries every state to every other: by the Gramian, not by a rank."""
-    whole = system_of(of)
-    return _definite(_gramian(numbers(whole.part("A")), numbers(_columns(whole, inputs))))
+    whole = inputs_of(of, inputs) if inputs else system_of(of)
+    return _definite(gramian(whole, _INTERVAL))
 
 
 @measurement
 def observable(of: Any) -> bool:
     """Whether the output over an interval tells the state it began at: by the Gramian, not by a rank."""
     whole = system_of(of)
-    return _definite(_gramian(numbers(whole.part("A")).T, numbers(whole.part("C")).T))
+    return _definite(gramian(Record(whole.name, {"A": whole.part("A").T, "B": whole.part("C").T}), _INTERVAL))
+
+
+@measurement
+def gramian(of: Any, t: float) -> Array:
+    """The integral of e^(-As) B B' e^(-A's) over [0, t]: from one exponential of twice the size (Van Loan)."""
+    whole = system_of(of)
+    a, b = -numbers(whole.part("A")), numbers(whole.part("B"))
+    n = len(a)
+    both = flow(np.block([[-a, b @ b.T], [np.zeros((n, n)), a.T]]), t)
+    return np.asarray(both[n:, n:].T @ both[:n, n:])
 
 
 @measurement
@@ -160,20 +199,6 @@ def flow(of: Any, t: float) -> Array:
     from scipy.linalg import expm
 
     return np.asarray(expm(t * numbers(matrix(of))))
-
-
-@measurement
-def stable(of: Any) -> bool:
-    """Whether motions that start near zero stay near it: by e^(At) itself, later and later."""
-    early, late = _sizes(of)
-    return late <= 1.5 * early
-
-
-@measurement
-def asymptotically_stable(of: Any) -> bool:
-    """Whether motions that start near zero stay near it and die out: by e^(At) itself, later and later."""
-    early, late = _sizes(of)
-    return late <= 1.5 * early and late < 1e-3
 
 
 def system_of(of: Any) -> Record:
@@ -195,18 +220,7 @@ def numbers(of: Any) -> Array:
 
 @lru_cache(maxsize=4096)
 def _numbers(of: Any) -> Array:
-    found = np.array(of.subs(dict.fromkeys(of.free_symbols, 1)).tolist(), dtype=float).reshape(of.shape)
-    found.flags.writeable = False
-    return found
-
-
-@cache
-def _eigenvectors(a: Any) -> list[Record]:
-    return [
-        Record(f"eigenvector {k + 1} for {e.value}", {"value": e.value, "vector": column})
-        for e in spectrum_of(a).eigenvalues
-        for k, column in enumerate((a - e.value * a.eye(a.rows)).nullspace(simplify=True))
-    ]
+    return np.asarray(measured(of.subs(dict.fromkeys(of.free_symbols, 1)))).reshape(of.shape)
 
 
 @cache
@@ -249,18 +263,6 @@ def _krylov(a: Any, b: Any) -> Any:
     return b.hstack(*blocks)
 
 
-def _gramian(a: Array, b: Array, end: float = 2.0) -> Array:
-    """The integral of e^(As) B B' e^(A's) over [0, end], by Gauss-Legendre quadrature."""
-    from scipy.linalg import expm
-
-    places, weights = np.polynomial.legendre.leggauss(_NODES)
-    total = np.zeros_like(a)
-    for place, weight in zip(places, weights, strict=True):
-        column = expm(0.5 * end * (place + 1.0) * a) @ b
-        total += 0.5 * end * weight * column @ column.T
-    return total
-
-
 def _definite(gramian: Array) -> bool:
     sizes = np.linalg.eigvalsh(gramian)
     if sizes[-1] <= 0.0:
@@ -268,29 +270,3 @@ def _definite(gramian: Array) -> bool:
     if 1e-13 < sizes[0] / sizes[-1] < 1e-10:
         raise Undecided(f"the Gramian is nearly singular ({sizes[0] / sizes[-1]:.0e})")
     return bool(sizes[0] / sizes[-1] >= 1e-10)
-
-
-def _sizes(of: Any) -> tuple[float, float]:
-    """The largest norm of e^(At) around some time, and around twice that time."""
-    a = matrix(of)
-    return _exact_sizes(a) if is_exact(a) else _sizes_of(numbers(a))
-
-
-@cache
-def _exact_sizes(a: Any) -> tuple[float, float]:
-    return _sizes_of(numbers(a))
-
-
-def _sizes_of(a: Array) -> tuple[float, float]:
-    early, late = (_largest(a, start, 1.25 * start) for start in (_LATE, 2.0 * _LATE))
-    return (early, late) if math.isfinite(early) and math.isfinite(late) else (1.0, math.inf)
-
-
-def _largest(a: Array, start: float, end: float) -> float:
-    """The largest norm of e^(At) at some moments."""
-    here, step = flow(a, start), flow(a, (end - start) / _MOMENTS)
-    largest = 0.0
-    for _ in range(_MOMENTS):
-        largest = max(largest, float(np.linalg.norm(here, 2))) if np.isfinite(here).all() else math.inf
-        here = step @ here
-    return largest

@@ -4,40 +4,37 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from functools import cache
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from satsym.arrays import Array
+from satsym.arrays import Array, kept
 from satsym.auditing.measurements import linear, measurement
 from satsym.auditing.measurements.matrices import dense
 from satsym.auditing.propositions.values import Record
 
 _LATE, _GROWN = 80.0, 1.5
-_STEPS, _MOMENTS = 400, 2000
-_LOST = 1e-9
+_MOMENTS = 400
+STEPS = 4000
+_LOST, _DEAD = 1e-9, 1e-3
 
 
 @measurement
 def motion(of: Any, start: Any, t: float) -> Array:
     """The state at a time from a start on, of x' = A x: by integration, of all unit vectors at once."""
-    return np.asarray(_transition(*_key(of), t) @ dense(start))
+    return np.asarray(_transition(linear.numbers(linear.matrix(of)), t) @ dense(start))
 
 
 @measurement
 def trajectory(of: Any, start: Any, until: float) -> Record:
-    """The motion of x' = A x from a start on: ``t``, the states by name, and their ``size``; by e^(At)."""
+    """The motion of x' = A x from a start on, by e^(At): ``t``, states by name, all ``curves``, and their ``size``."""
     system = linear.system_of(of)
-    a = linear.numbers(system.part("A"))
-    advance, x = linear.flow(a, until / _MOMENTS), np.asarray(dense(start), dtype=float).ravel()
-    path = [x]
-    for _ in range(_MOMENTS):
+    advance, path = linear.flow(system, until / STEPS), [np.asarray(dense(start), dtype=float).ravel()]
+    for _ in range(STEPS):
         path.append(advance @ path[-1])
-    curves = np.array(path).T
-    names = system.parts.get("states") or [f"x{k + 1}" for k in range(len(a))]
-    times = np.linspace(0.0, until, _MOMENTS + 1)
+    curves, times = np.array(path).T, np.linspace(0.0, until, STEPS + 1)
+    names = system.parts.get("states") or [f"x{k + 1}" for k in range(len(curves))]
     parts = {"t": times, "size": np.linalg.norm(curves, axis=0), "curves": list(curves)}
     return Record(f"the motion of {system.name}", {**parts, **dict(zip(names, curves, strict=True))})
 
@@ -63,7 +60,7 @@ def limit(values: Sequence[Any]) -> Any:
 @measurement
 def farthest(of: Any, size: float) -> float:
     """How far motions get that start no farther from zero than this; infinite where that has no bound."""
-    largest, bounded = _reach(*_key(of))
+    largest, bounded = _reach(linear.numbers(linear.matrix(of)))
     return size * largest if bounded else math.inf
 
 
@@ -71,10 +68,22 @@ def farthest(of: Any, size: float) -> float:
 def remaining(of: Any, size: float) -> float:
     """How far motions that start so far from zero are in the end; infinite where that has no bound."""
     a = linear.matrix(of)
-    if not _reach(*_key(of))[1]:
+    if not _reach(linear.numbers(linear.matrix(of)))[1]:
         return math.inf
     left = max(float(np.linalg.norm(linear.flow(a, t), 2)) for t in np.linspace(_LATE, 1.2 * _LATE, 20))
     return 0.0 if left < _LOST else size * left
+
+
+@measurement
+def stable(of: Any) -> bool:
+    """Whether motions that start near zero stay near it: by e^(At) itself, later and later."""
+    return farthest(of, 1.0) < math.inf
+
+
+@measurement
+def asymptotically_stable(of: Any) -> bool:
+    """Whether motions that start near zero stay near it and die out: by e^(At) itself, later and later."""
+    return remaining(of, 1.0) < _DEAD
 
 
 @measurement
@@ -83,18 +92,6 @@ def quadrature(start: float, end: float, nodes: int = 24) -> list[list[float]]:
     places, weights = np.polynomial.legendre.leggauss(nodes)
     half = 0.5 * (end - start)
     return [[float(start + half * (p + 1.0)), float(half * w)] for p, w in zip(places, weights, strict=True)]
-
-
-@measurement
-def gramian(of: Any, t: float) -> Array:
-    """The integral of e^(-As) B B' e^(-A's) over [0, t]: from one exponential of twice the size (Van Loan)."""
-    from scipy.linalg import expm
-
-    system = linear.system_of(of)
-    a, b = -linear.numbers(system.part("A")), linear.numbers(system.part("B"))
-    n = len(a)
-    whole = expm(t * np.block([[-a, b @ b.T], [np.zeros((n, n)), a.T]]))
-    return np.asarray(whole[n:, n:].T @ whole[:n, n:])
 
 
 @measurement
@@ -115,14 +112,14 @@ def driven(of: Any, t: float) -> Array:
 def least_energy(of: Any, start: Any, t: float) -> float:
     """The least integral of the inputs squared that brings a state to zero within a time, however large they are."""
     x = dense(start)
-    return float(x @ np.linalg.solve(gramian(of, t), x))
+    return float(x @ np.linalg.solve(linear.gramian(of, t), x))
 
 
 @measurement
 def steered_to(of: Any, start: Any, aim: Any) -> Array:
     """The state after 1, under the input of least energy that comes as near to an aim as any does: by integration."""
     a, b = (linear.numbers(linear.system_of(of).part(name)) for name in "AB")
-    moved, pushed, effort = _steering(a.tobytes(), b.tobytes(), a.shape, b.shape)
+    moved, pushed, effort = _steering(a, b)
     return np.asarray(moved @ dense(start) + pushed @ (effort @ (dense(aim) - moved @ dense(start))))
 
 
@@ -160,10 +157,9 @@ def _dense(of: Any) -> Array:
     return np.asarray(dense(of), dtype=float)
 
 
-@cache
-def _steering(a_: bytes, b_: bytes, *shapes: tuple[int, int]) -> tuple[Array, Array, Array]:
+@kept
+def _steering(a: Array, b: Array) -> tuple[Array, Array, Array]:
     """After 1: what a start becomes, what the inputs B' e^(-A's) d bring about, and which d a distance asks for."""
-    a, b = (np.frombuffer(part).reshape(size) for part, size in zip((a_, b_), shapes, strict=True))
     n = len(a)
 
     def rates(s: float, x: Array) -> Array:
@@ -174,25 +170,17 @@ def _steering(a_: bytes, b_: bytes, *shapes: tuple[int, int]) -> tuple[Array, Ar
     return whole[:, :n], whole[:, n:], np.linalg.pinv(whole[:, n:], rcond=1e-9)
 
 
-def _key(of: Any) -> tuple[bytes, int]:
-    """A of a system with plain numbers, as what is kept is found by."""
-    a = linear.numbers(linear.matrix(of))
-    return a.tobytes(), len(a)
+@kept
+def _transition(a: Array, t: float) -> Array:
+    return _followed(lambda _, x: np.asarray((a @ x.reshape(a.shape)).ravel()), np.eye(len(a)), t).reshape(a.shape)
 
 
-@cache
-def _transition(a: bytes, n: int, t: float) -> Array:
-    matrix = np.frombuffer(a).reshape(n, n)
-    return _followed(lambda _, x: np.asarray((matrix @ x.reshape(n, n)).ravel()), np.eye(n), t).reshape(n, n)
-
-
-@cache
-def _reach(a: bytes, n: int) -> tuple[float, bool]:
+@kept
+def _reach(a: Array) -> tuple[float, bool]:
     """The largest norm of e^(At) that is seen, and whether it has a bound."""
-    step = linear.flow(np.frombuffer(a).reshape(n, n), _LATE / _STEPS)
-    moved, sizes = np.eye(n), []
-    for _ in range(_STEPS):
+    step, moved, sizes = linear.flow(a, _LATE / _MOMENTS), np.eye(len(a)), []
+    for _ in range(_MOMENTS):
         sizes.append(float(np.linalg.norm(moved, 2)))
         moved = step @ moved
-    early = max(sizes[: _STEPS // 2])
-    return max(sizes), max(sizes[_STEPS // 2 :]) <= _GROWN * early
+    early = max(sizes[: _MOMENTS // 2])
+    return max(sizes), max(sizes[_MOMENTS // 2 :]) <= _GROWN * early

@@ -1,4 +1,4 @@
-"""What printed lines of MATLAB do: they are put into Python's syntax and walked through, never executed."""
+"""Printed listings in MATLAB and Maple: what lines do, put into Python's syntax and walked through."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from satsym.auditing.measurements import measurement, value
 from satsym.auditing.program import text as programs
 from satsym.auditing.program.run import run
 from satsym.auditing.program.text import Program
-from satsym.auditing.propositions.values import Family, Record, Undecided
+from satsym.auditing.propositions.values import Family, Record, undecided_if_refused
 
 _LOOP = re.compile(r"while\((.*)\)")
 _COUNTED = re.compile(r"^for +\w+=\w+:\w+")
@@ -26,10 +26,9 @@ _SEED = 11
 def matlab(lines: str | Sequence[str], **given: Any) -> Record:
     """The values that lines give to names; ``again`` tells whether a loop ``while(...)`` goes round once more."""
     world = {name: np.array(v, dtype=float) if isinstance(v, list) else v for name, v in given.items()}
-    try:
-        found = run(_program(lines), world={**_FUNCTIONS, **world})
-    except programs.Stops as stop:
-        raise Undecided(str(stop)) from None
+    program = _program(lines)
+    with undecided_if_refused():
+        found = run(program, world={**_FUNCTIONS, **world})
     return Record("the lines", {name: value for name, value in found.values.items() if name not in _FUNCTIONS})
 
 
@@ -42,6 +41,12 @@ def iterates() -> Family:
         old = new + share * new * rng.choice([-1.0, 1.0], 20)
         members.append(Record(f"a change by {100 * share:g} %", {"old": old, "new": new, "share": share}))
     return Family("ITERATES", "iterations", tuple(members))
+
+
+@measurement
+def count(text: str, sign: str) -> int:
+    """How often a sign stands in a text."""
+    return text.count(sign)
 
 
 @measurement

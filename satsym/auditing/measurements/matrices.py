@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from satsym.arrays import Array
 from satsym.auditing.measurements import measurement
-from satsym.auditing.propositions.values import is_exact, is_number
-from satsym.status import BadInput
+from satsym.auditing.propositions.values import is_exact, is_number, measured
 
 _SEED = 3
 
@@ -93,13 +91,6 @@ def kernel(of: Any) -> list[Any]:
 
 
 @measurement
-def rotation(angle: Any) -> Array:
-    """[cos, -sin; sin, cos] of an angle."""
-    turn = float(angle)
-    return np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
-
-
-@measurement
 def exp(x: Any) -> Any:
     """The exponential of a number, or of each point of a curve; exact of an exact number."""
     from satsym.symbolic.lookup import formulas
@@ -140,25 +131,6 @@ def numeric(of: Any) -> Array:
     return dense(of)
 
 
-@measurement
-def second_derivatives(of: Any, by: Sequence[str]) -> list[Any]:
-    """All second derivatives of an expression, or of the entries of a matrix, by letters."""
-    entries = list(of) if getattr(of, "is_Matrix", False) else [of]
-    letters = {s.name: s for entry in entries for s in entry.free_symbols}
-    known = [letters[name] for name in by if name in letters]
-    return [entry.diff(a).diff(b) for entry in entries for i, a in enumerate(known) for b in known[i:]]
-
-
 def dense(of: Any) -> Array:
     """A matrix, a column or a number with plain numbers."""
-    return _measured(of) if is_exact(of) else np.asarray(of)
-
-
-@lru_cache(maxsize=4096)
-def _measured(of: Any) -> Array:
-    if of.free_symbols:
-        raise BadInput(f"{of} has letters where numbers are needed")
-    found = np.array(of.tolist() if getattr(of, "is_Matrix", False) else of, dtype=complex)
-    found = found if np.imag(found).any() else np.real(found)
-    found.flags.writeable = False
-    return found
+    return np.asarray(measured(of) if is_exact(of) else of)

@@ -18,7 +18,7 @@ from satsym.arrays import Array
 from satsym.auditing.measurements import measurement, value
 from satsym.auditing.program import text as programs
 from satsym.auditing.program.run import run
-from satsym.auditing.propositions.values import Record, Undecided
+from satsym.auditing.propositions.values import Record, Undecided, undecided_if_refused
 from satsym.formula.runge_kutta import classical_weights
 from satsym.status import BadInput
 
@@ -134,10 +134,8 @@ def _error(lines: Sequence[str], along: Record, h: float) -> float:
                 world[name] = exact
     if not errors:
         raise BadInput("no line gives a value at another node")
-    try:
+    with undecided_if_refused():
         values = run(program, world=world).values
-    except programs.Stops as stop:
-        raise Undecided(str(stop)) from None
     return float(max(np.abs(values[name] - exact).max() for name, exact in errors))
 
 

@@ -1,4 +1,4 @@
-"""Motions of shipped instances: where they begin, the optimum, what a constant control does, what none does."""
+"""Motions of shipped instances: where they begin, the optimum, what sweeps come to, what a constant control does."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ import numpy as np
 
 from satsym import instance as instances
 from satsym.arrays import Array
-from satsym.auditing.measurements import linear, measurement
+from satsym.auditing.measurements import linear, linear_motions, measurement
+from satsym.auditing.measurements.linear_motions import STEPS
 from satsym.auditing.propositions.values import Record, Undecided
 from satsym.status import BadInput, Status
 from satsym.wording import shown, suggestion
@@ -20,7 +21,9 @@ if TYPE_CHECKING:
     from satsym.instance import Instance
     from satsym.solution import Solution
 
-STEPS = 4000
+_SEED = 20
+_SWEEPS = 60
+_SETTLED = 1e-10
 
 
 @measurement
@@ -119,25 +122,52 @@ def _steered(case: Instance, controls: Sequence[float] | float) -> Record:
 
 @measurement
 def free_deviation(model: str, instance: str) -> Record:
-    """Deviations without control in a linear model, from the start of an instance taken for deviations: by e^(At).
-
-    Its parts are the times, each deviation by its name, all ``curves``, and their ``size`` together.
-    """
+    """The trajectory without control in a linear model, from the start of an instance taken for deviations."""
     case, found = loaded(instance), linear.system(model)
     if case.tf is None:
         raise BadInput(f"{instance} has a free final time")
-    letters = {s.name: s for s in found.part("A").free_symbols}
-    known = {v.symbol: p for v, p in zip(case.model.spec.parameters, case.parameters, strict=True)}
-    a = linear.numbers(found.part("A").subs({letters[n]: known[n] for n in letters if n in known}))
+    known = dict(zip(_parameters(case), case.parameters, strict=True))
+    a = found.part("A").subs({s: known[s.name] for s in found.part("A").free_symbols if s.name in known})
+    return linear_motions.trajectory(Record(model, {**found.parts, "A": a}), case.initial, case.tf - case.t0)
+
+
+@measurement
+def given_at_end(instance: str) -> list[str]:
+    """States and costates whose final values the boundary conditions give as numbers."""
+    case = loaded(instance)
+    names = case.model.spec.state_names
+    if case.tf is None:
+        return list(case.final)
+    points = np.random.default_rng(_SEED).uniform(0.5, 2.0, (2, len(names)))
+    one, other = (np.array(case.model.terminal_gradient(case.tf, tuple(x), case.parameters)) for x in points)
+    free = [f"lambda_{name}" for k, name in enumerate(names) if name not in case.final and one[k] == other[k]]
+    return [*case.final, *free]
+
+
+@measurement
+def swept(instance: str, guess: float = 0.0) -> Record:
+    """Where forward-backward sweeps end that begin with constant controls and replace them by the law: J and controls.
+
+    States go forwards and costates backwards by the classical method of order four.
+    """
+    case = loaded(instance)
+    if case.tf is None or case.final:
+        raise BadInput(f"{instance}: sweeps need a given final time and a free final state")
+    model, p = case.model, case.parameters
     times = np.linspace(case.t0, case.tf, STEPS + 1)
-    advance, x = linear.flow(a, float(times[1] - times[0])), np.array(case.initial, dtype=float)
-    rows = [x]
-    for _ in range(STEPS):
-        rows.append(advance @ rows[-1])
-    path = np.array(rows).T
-    curves = dict(zip(found.part("states"), path, strict=True))
-    sizes = np.linalg.norm(path, axis=0)
-    return Record(f"{model} without control", {"t": times, "size": sizes, "curves": list(path), **curves})
+    u = np.full((len(model.spec.controls), len(times)), float(guess))
+    for _ in range(_SWEEPS):
+        middle = 0.5 * (u[:, 1:] + u[:, :-1])
+        x, x_mid, integral = model.forward(times, case.initial, u, middle, p)
+        end = model.terminal_gradient(case.tf, tuple(x[:, -1]), p)
+        lam, _ = model.backward(times, end, x, x_mid, u, middle, p)
+        law = _law(case, times, x, lam)
+        change, u = float(np.abs(law - u).max()), law
+        if change <= _SETTLED:
+            cost = float(integral + model.terminal_cost(case.tf, tuple(x[:, -1]), p))
+            controls = dict(zip((v.symbol for v in model.spec.controls), u, strict=True))
+            return Record(f"the sweeps of {instance}", {"J": cost, "t": times, **controls})
+    raise Undecided(f"after {_SWEEPS} sweeps the controls still change by {change:.2g}")
 
 
 @measurement
@@ -185,3 +215,13 @@ def _state(case: Instance, values: Sequence[float] | Array, name: str) -> Record
     parts: dict[str, Any] = {v.symbol: float(value) for v, value in zip(spec.states, values, strict=True)}
     angles = [v.symbol for v in spec.states if v.kind == "angle"]
     return Record(name, {**parts, "names": list(spec.state_names), "angles": angles})
+
+
+def _law(case: Instance, times: Array, x: Array, lam: Array) -> Array:
+    """The controls that minimise the Hamiltonian, at each node."""
+    limits: Any = case.control_set.arguments
+    rows = [
+        case.model.control_law(float(t), tuple(a), tuple(b), case.parameters, limits)
+        for t, a, b in zip(times, x.T, lam.T, strict=True)
+    ]
+    return np.array(rows, dtype=float).T

@@ -18,15 +18,12 @@ from satsym.analysis.orbits.elements import elements
 from satsym.analysis.orbits.kepler import propagate
 from satsym.arrays import Array
 from satsym.auditing.measurements import equilibria, measurement, motion, value
-from satsym.auditing.propositions.values import Family, Record, Undecided
+from satsym.auditing.propositions.values import Family, Record
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
 _SEED = 47
-_KICK = 1e-6
-_NEIGHBOURS = 10
 _PLACES = 400
-_IMPROVED = 6
 
 
 @value
@@ -79,26 +76,6 @@ def turned(of: Any, t: float, velocity: ArrayLike | None = None, mu: float | Non
     one, next_ = places[:, :-1], places[:, 1:]
     across = np.linalg.norm(np.cross(one, next_, axis=0), axis=0)
     return float(np.arctan2(across, (one * next_).sum(axis=0)).sum())
-
-
-@measurement
-def straying(of: Any, revolution: int) -> float:
-    """How far neighbours are from an orbit as a curve in some revolution, as a multiple of their first deviation."""
-    position, velocity, mu = _start(of, None, None)
-    found = elements(position, velocity, mu)
-    if found.period is None:
-        raise Undecided("the orbit is not closed")
-    rng, start = np.random.default_rng(_SEED), np.concatenate([position, velocity])
-    length = float(np.linalg.norm(position))
-    scale = np.array([length] * 3 + [float(np.linalg.norm(velocity))] * 3)
-    once = np.linspace(0.0, found.period, _PLACES, endpoint=False)
-    t, farthest = found.period * (revolution - 1.0 + np.linspace(0.0, 1.0, 40, endpoint=False)), 0.0
-    for _ in range(_NEIGHBOURS):
-        shift = rng.normal(size=6)
-        moved = start + _KICK * scale * shift / np.linalg.norm(shift)
-        places = coasted(moved[:3], t, moved[3:], mu)[:3]
-        farthest = max(farthest, _distance(places, start, mu, once) / length / _KICK)
-    return farthest
 
 
 @measurement
@@ -162,16 +139,3 @@ def _model(name: str, parameters: dict[str, float]) -> tuple[Any, tuple[float, .
         if other not in known:
             raise BadInput(f"{name} has no parameter {shown(other)}; {suggestion(other, known)}")
     return model, tuple(float(v) for v in (known | parameters).values())
-
-
-def _distance(places: Array, start: Array, mu: float, t: Array) -> float:
-    """The largest distance of places from the path of a start, near which it is sampled at times t.
-
-    From the nearest sample on, the time is improved until the way to the path is normal to it.
-    """
-    path = coasted(start[:3], t, start[3:], mu)[:3]
-    time = t[np.argmin(np.linalg.norm(path[:, None, :] - places[:, :, None], axis=0), axis=1)]
-    for _ in range(_IMPROVED):
-        state = coasted(start[:3], time, start[3:], mu)
-        time = time + ((places - state[:3]) * state[3:]).sum(axis=0) / (state[3:] ** 2).sum(axis=0)
-    return float(np.linalg.norm(places - coasted(start[:3], time, start[3:], mu)[:3], axis=0).max())

@@ -7,7 +7,7 @@ by name take the place of those that the lines assign. A line that is put at the
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -19,8 +19,7 @@ from satsym.auditing.program import text as programs
 from satsym.auditing.program.library import Module
 from satsym.auditing.program.run import Run, run
 from satsym.auditing.program.text import Program, Stops
-from satsym.auditing.propositions.values import Record, Undecided, is_exact
-from satsym.formula.budget import OverBudget
+from satsym.auditing.propositions.values import Record, is_exact, measured, undecided_if_refused
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
@@ -43,7 +42,8 @@ def called(program: Sequence[str], name: str, *arguments: Any, **given: Any) -> 
         raise BadInput(
             f"the program has no function {shown(name)}; {suggestion(name, list(_assigned(_read(program))))}"
         )
-    return np.asarray(_trying(lambda: found(*(np.asarray(a) if isinstance(a, list) else a for a in arguments))))
+    with undecided_if_refused():
+        return np.asarray(found(*(np.asarray(a) if isinstance(a, list) else a for a in arguments)))
 
 
 @measurement
@@ -65,14 +65,11 @@ def drawn(program: Sequence[str], call: str, **given: Any) -> list[Record]:
 @measurement
 def stops(program: Sequence[str]) -> list[str]:
     """Why a program would stop before its end, as Python would; empty where it goes through."""
-    try:
-        _run(_read(program).text, ())
-    except Stops as error:
-        return [str(error)]
-    except OverBudget:
-        raise
-    except BadInput as error:
-        raise Undecided(str(error)) from None
+    with undecided_if_refused():
+        try:
+            _run(_read(program).text, ())
+        except Stops as error:
+            return [str(error)]
     return []
 
 
@@ -106,16 +103,12 @@ def unit_in(label: str) -> float:
     found = _BRACKET.search(label)
     if found is None:
         raise BadInput(f"{shown(label)} has no unit in brackets")
-    return quantities.scale(found[1].lower() if found[1].isupper() and len(found[1]) > 1 else found[1])
+    return quantities.one(found[1].lower() if found[1].isupper() and len(found[1]) > 1 else found[1]).value
 
 
 def _read(program: Sequence[str]) -> Program:
-    try:
+    with undecided_if_refused():
         return programs.read([program] if isinstance(program, str) else program)
-    except OverBudget:
-        raise
-    except BadInput as error:
-        raise Undecided(str(error)) from None
 
 
 def _assigned(program: Program) -> dict[str, None]:
@@ -127,7 +120,8 @@ def _walked(program: Sequence[str], given: Mapping[str, Any]) -> Run:
     first = [f"{name} = 0.0" for name in given if name not in _assigned(found)]
     numbers = {name: np.asarray(_numeric(value)) for name, value in given.items()}
     frozen = tuple((name, value.shape, tuple(value.ravel().tolist())) for name, value in numbers.items())
-    return _trying(lambda: _run("\n".join([*first, found.text]), frozen))
+    with undecided_if_refused():
+        return _run("\n".join([*first, found.text]), frozen)
 
 
 @lru_cache(maxsize=512)
@@ -140,20 +134,7 @@ def _numeric(value: Any) -> Any:
     """Exact numbers, and those in lists, as floats."""
     if isinstance(value, list):
         return [_numeric(entry) for entry in value]
-    if not is_exact(value):
-        return value
-    number = complex(value)
-    return number if number.imag else number.real
-
-
-def _trying(work: Callable[[], Any]) -> Any:
-    """What work returns; a program that stops, or does what is not known here, has no values."""
-    try:
-        return work()
-    except OverBudget:
-        raise
-    except BadInput as error:
-        raise Undecided(str(error)) from None
+    return measured(value)[()] if is_exact(value) else value
 
 
 def _plain(value: Any) -> Any:

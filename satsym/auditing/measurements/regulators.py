@@ -1,4 +1,4 @@
-"""Linear-quadratic regulators: gains by Riccati's equation, costs by integrals along motions, costates by e^(Ht).
+"""Linear-quadratic regulators: gains by Riccati's equation, costs by Liapunov's equation, costates by e^(Ht).
 
 A system may bring its weights Q and R; where it does not, and none are given, both are the identity.
 """
@@ -6,18 +6,16 @@ A system may bring its weights Q and R; where it does not, and none are given, b
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from satsym.arrays import Array
+from satsym.arrays import Array, kept
 from satsym.auditing.measurements import linear, measurement, value
 from satsym.auditing.measurements.matrices import dense
-from satsym.auditing.propositions.values import Family, Record, Undecided
+from satsym.auditing.propositions.values import Family, Record, Undecided, undecided_if_refused
 
 _SEED = 19
-_ROUNDS, _NODES = 16, 16
 
 
 @value
@@ -44,23 +42,29 @@ def regulators() -> Family:
 
 @measurement
 def regulator(of: Any, inputs: Sequence[str] = (), Q: Any = None, R: Any = None) -> Record:
-    """The regulator of a system, of some inputs alone: the gain K of u = -K x, P, and the closed loop's matrix A.
-
-    Raises
-    ------
-    Undecided
-        If there is none.
-    """
+    """The regulator of a system, of some inputs alone: the gain K of u = -K x, P, and the closed loop's matrix A."""
     found = _parts(of, inputs, Q, R)
-    P, K = _solved(*(part.tobytes() for part in found), *(part.shape for part in found))
+    P, K = _solved(*found)
     return Record("the regulator", {"K": K, "P": P, "A": found[0] - found[1] @ K})
 
 
 @measurement
+def matlab_lqr(A: Any, B: Any, Q: Any, R: Any) -> list[Any]:
+    """What MATLAB's lqr(A, B, Q, R) gives back, in its order [K, S, e] (Control System Toolbox, page of lqr)."""
+    found = regulator(Record("the system", {"A": linear.numbers(A), "B": linear.numbers(B)}), Q=Q, R=R)
+    return [found.part("K"), found.part("P"), linear.eigenvalues(found)]
+
+
+@measurement
 def cost(of: Any, gain: Any, start: Any) -> float:
-    """The integral of x'Qx + u'Ru from a start on, without an end, along u = -K x: summed over doubled intervals."""
-    x, parts = np.asarray(dense(start), dtype=float).ravel(), (*_parts(of), np.atleast_2d(dense(gain)).astype(float))
-    return float(x @ _summed(*(part.tobytes() for part in parts), *(part.shape for part in parts)) @ x)
+    """The integral of x'Qx + u'Ru from a start on, without an end, along u = -K x: by Liapunov's equation."""
+    from scipy.linalg import solve_continuous_lyapunov
+
+    (a, b, q, r), gains = _parts(of), np.atleast_2d(dense(gain)).astype(float)
+    loop, x = a - b @ gains, np.asarray(dense(start), dtype=float).ravel()
+    if np.linalg.eigvals(loop).real.max() >= 0.0:
+        raise Undecided("the loop is not stable, and what it costs has no bound")
+    return float(x @ solve_continuous_lyapunov(loop.T, -(q + gains.T @ r @ gains)) @ x)
 
 
 @measurement
@@ -118,34 +122,11 @@ def _parts(of: Any, inputs: Sequence[str] = (), Q: Any = None, R: Any = None) ->
     return a, b, np.asarray(q, dtype=float), np.asarray(r, dtype=float)
 
 
-@lru_cache(maxsize=512)
-def _summed(*of: Any) -> Array:
-    a, b, q, r, K = (np.frombuffer(part).reshape(size) for part, size in zip(of[:5], of[5:], strict=True))
-    loop, weight = a - b @ K, q + K.T @ r @ K
-    if np.linalg.eigvals(loop).real.max() >= 0.0:
-        raise Undecided("the loop is not stable, and what it costs has no bound")
-    whole, length = np.zeros_like(a), 0.5 / max(1.0, float(np.linalg.norm(loop, 2)))
-    for place, share in zip(*np.polynomial.legendre.leggauss(_NODES), strict=True):
-        moved = linear.flow(loop, 0.5 * length * (place + 1.0))
-        whole += 0.5 * length * share * moved.T @ weight @ moved
-    step = linear.flow(loop, length)
-    for _ in range(_ROUNDS):  # over twice the time at each round
-        whole, step = whole + step.T @ whole @ step, step @ step
-    return whole
-
-
-@lru_cache(maxsize=512)
-def _solved(a: bytes, b: bytes, q: bytes, r: bytes, *shapes: tuple[int, int]) -> tuple[Array, Array]:
+@kept
+def _solved(a: Array, b: Array, q: Array, r: Array) -> tuple[Array, Array]:
     from satsym.analysis.linear import system as systems
     from satsym.analysis.regulator.lqr import lqr
-    from satsym.formula.budget import OverBudget
-    from satsym.status import BadInput
 
-    parts = [np.frombuffer(part).reshape(size) for part, size in zip((a, b, q, r), shapes, strict=True)]
-    try:
-        found = lqr(systems.system(parts[0], parts[1]), parts[2], parts[3])
-    except OverBudget:
-        raise
-    except BadInput as error:
-        raise Undecided(str(error)) from None
+    with undecided_if_refused():
+        found = lqr(systems.system(a, b), q, r)
     return found.P, found.K

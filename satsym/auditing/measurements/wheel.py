@@ -8,10 +8,10 @@ it. What its back-EMF takes comes to nothing between two states of rest.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 from math import sqrt
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 
@@ -21,10 +21,9 @@ from satsym.auditing.propositions.values import Record
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
-Torque: TypeAlias = Callable[[float, Array], float]
 _TIGHT = 1e-11
-_LONG = 32.0
-"""How long the classical law is followed, in units of 1/E."""
+_LAGS = 5000.0
+"""How long the law with a real differentiator is followed at most, in its time constants."""
 _NODES = 1001
 _PHASES = np.linspace(4.0, 200.0, 800)
 """Frequencies of a panel times the duration of the manoeuvre."""
@@ -48,25 +47,15 @@ def classical(instance: str, differentiator: float = 0.0) -> Record:
 
     Its rate is that of an ideal differentiator, which answers the step with an impulse, or of one with a time constant.
     """
-    n = _numbers(instance)
-    e, command = n["E"], n["P_c"]
-    k1, k2 = (_derived(f"pitch_classical:critical_damping.{name}", n) for name in ("K1", "K2"))
-    long = _LONG / e
-    if differentiator:
+    from satsym.analysis.classical import law
 
-        def filtered(_: float, x: Array) -> float:
-            return float(k2 * (command - x[0]) + k1 * (command - x[0] - x[3]) / differentiator)
-
-        quick = 40.0 * differentiator
-        pieces: list[tuple[float, Torque]] = [(quick, filtered), (long - quick, filtered)]
-        return _simulated(instance, pieces, np.zeros(4), lambda x: (command - x[0] - x[3]) / differentiator)
-
-    def law(_: float, x: Array) -> float:
-        return float(k2 * (command - x[0]) - k1 * x[1])
-
-    impulse = _derived("pitch_classical:control_response.impulse", n)  # the rate of a step
-    start = np.array([0.0, impulse / n["I_y"], impulse / n["I_wy"]])
-    return _simulated(instance, [(5.0 / e, law), (long - 5.0 / e, law)], start, spent=impulse)
+    case = motion.loaded(instance)
+    if case.classical is None or case.tf is None:
+        raise BadInput(f"{instance} has no table [classical], or no final time")
+    until = min(case.tf, case.t0 + _LAGS * differentiator) if differentiator else case.tf
+    case = replace(case, tf=until, classical=replace(case.classical, differentiator=differentiator))
+    found = law.simulate(case)
+    return _recorded(instance, found.times, found.x, found.u[0], law.loop(case).impulse)
 
 
 @measurement
@@ -80,20 +69,19 @@ def switched(instance: str, torque: float = 0.0, duration: float = 0.0, share: f
         raise BadInput("give the torque, or the duration")
     push = torque or 4.0 * n["I_y"] * n["P_c"] / duration**2
     half = sqrt(n["I_y"] * n["P_c"] / push)
-    start = np.array([0.0, share * push * half / n["I_y"], 0.0])
-    return _simulated(instance, [(half, lambda t, x: push), (half, lambda t, x: -push)], start)
+    return _pushed(instance, [(half, push, push), (half, -push, -push)], share * push * half / n["I_y"])
 
 
 @measurement
 def gentle(instance: str, duration: float) -> Record:
     """The motion of least heat from rest to rest in some time, by the derived law."""
+    from satsym.symbolic.lookup.library import derivation
+
     n = _numbers(instance)
     unit = n["I_y"] / duration**2  # the torque that is 1 where that time is
-    first, last = (
-        unit * _derived("pitch_scaled_energy:least_effort.from_rest", {"X1_0": -n["P_c"], "t_f": 1.0, "t": end})
-        for end in (0.0, 1.0)
-    )
-    return _simulated(instance, [(duration, lambda t, x: first + (last - first) * t / duration)], np.zeros(3))
+    law = derivation("pitch_scaled_energy").equation("least_effort.from_rest").rhs
+    first, last = (unit * valued(law, instance, X1_0=-n["P_c"], t_f=1.0, t=end) for end in (0.0, 1.0))
+    return _pushed(instance, [(duration, first, last)])
 
 
 @measurement
@@ -115,16 +103,6 @@ def swinging(motion: Record) -> float:
         wave = (np.exp(-1j * w * end) - np.exp(-1j * w * begin)) / (-1j * w)
         largest = max(largest, abs(complex((push * wave).sum())) * w)
     return float(largest)
-
-
-@measurement
-def wheel_drift(instance: str, torque: float) -> float:
-    """How fast the wheel's speed changes while the body is kept at rest against an outer torque."""
-    from satsym.symbolic.lookup.library import derivation
-
-    held = derivation("pitch_wheel").equation("momenta.angular_momentum").rhs
-    (slope,) = (held.diff(s) for s in held.free_symbols if s.name == "wheel_speed")
-    return abs(torque / valued(slope, instance))
 
 
 @measurement
@@ -151,50 +129,36 @@ def _numbers(instance: str) -> dict[str, float]:
     return {**found, "E": law.damping, "P_c": law.command}
 
 
-def _derived(address: str, numbers: dict[str, float]) -> float:
-    """A derived expression at numbers for its letters."""
-    from satsym.symbolic.lookup.library import derivation
-
-    name, _, where = address.partition(":")
-    found = derivation(name).equation(where).rhs
-    return float(found.xreplace({s: numbers[s.name] for s in found.free_symbols}))
-
-
-def _simulated(
-    instance: str,
-    pieces: list[tuple[float, Torque]],
-    start: Array,
-    further: Callable[[Array], float] | None = None,
-    spent: float = 0.0,
-) -> Record:
-    """The motion under torques one after the other, each for its time, from angle, rate and wheel speed.
-
-    ``further`` is the rate of a further state, ``spent`` the impulse with which it begins.
-    """
+def _pushed(instance: str, pieces: list[tuple[float, float, float]], rate: float = 0.0) -> Record:
+    """The motion under torques one after the other, each for its time straight from one to another; from some rate."""
     from scipy.integrate import solve_ivp
 
     case = motion.loaded(instance)
-    times, columns, torques, begin, state = [], [], [], 0.0, start
-    for duration, torque in pieces:
+    times, states, torques = [0.0], np.array([[0.0], [rate], [0.0]]), [0.0]
 
-        def rates(t: float, x: Array, torque: Torque = torque) -> list[float]:
-            moved = list(case.model.dynamics(t, tuple(x[:3]), (torque(t, x),), case.parameters))
-            return [*moved, further(x)] if further else moved
+    def rates(t: float, x: Array, until: float, piece: tuple[float, float, float]) -> Any:
+        duration, first, last = piece
+        torque = last + (first - last) * (until - t) / duration
+        return case.model.dynamics(t, tuple(x), (torque,), case.parameters)
 
-        t = np.linspace(begin, begin + duration, _NODES)
-        method = "LSODA" if further else "DOP853"
-        done = solve_ivp(rates, (begin, begin + duration), state, method, t, rtol=_TIGHT, atol=_TIGHT * 1e-3)
-        times.append(t)
-        columns.append(done.y)
-        torques.append(np.array([torque(s, x) for s, x in zip(t, done.y.T, strict=True)]))
-        begin, state = begin + duration, done.y[:, -1]
-    t, x, pushes = np.concatenate(times), np.hstack(columns), np.concatenate(torques)
+    for piece in pieces:
+        t = times[-1] + np.linspace(0.0, piece[0], _NODES)
+        done = solve_ivp(
+            rates, (t[0], t[-1]), states[:, -1], "DOP853", t, args=(t[-1], piece), rtol=_TIGHT, atol=_TIGHT * 1e-3
+        )
+        times, states = [*times, *t], np.hstack([states, done.y])
+        torques += np.linspace(piece[1], piece[2], _NODES).tolist()
+    return _recorded(instance, np.array(times), states, np.array(torques))
+
+
+def _recorded(instance: str, t: Array, x: Array, pushes: Array, spent: float = 0.0) -> Record:
+    """A motion by its curves; ``spent`` is the impulse with which it begins."""
     means = 0.5 * (np.abs(pushes[1:]) + np.abs(pushes[:-1])) * np.diff(t)
     squares = (pushes[1:] ** 2 + pushes[1:] * pushes[:-1] + pushes[:-1] ** 2) / 3.0 * np.diff(t)
     return Record(
         f"a motion of {instance}",
         {
-            "t": t, "angle": x[0], "rate": x[1], "speed": x[2], "torque": pushes, "duration": begin,
+            "t": t, "angle": x[0], "rate": x[1], "speed": x[2], "torque": pushes, "duration": float(t[-1]),
             "impulse": spent + np.concatenate([[0.0], np.cumsum(means)]), "heat": float(squares.sum()),
         },
     )  # fmt: skip

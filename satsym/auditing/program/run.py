@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from satsym.auditing.program.library import BINARY, COMPARED, Drawing, Module, Outside, builtins, modules
-from satsym.auditing.program.sizes import broadcast, formatted, indexed, listed
+from satsym.auditing.program.sizes import broadcast, extent, formatted, indexed, made
 from satsym.auditing.program.text import Program, Stops
 from satsym.formula import budget
 from satsym.formula.budget import OverBudget
@@ -67,19 +67,18 @@ def run(
     BadInput
         If it does what is not known here.
     """
-    return budget.within(budget.CLAIM, lambda: _run(program, given or {}, until, world or {}))
 
+    def walk() -> Run:
+        walker = _Walker(program, given or {}, world or {})
+        with np.errstate(all="ignore"):
+            for statement in program.statements:
+                walker.statement(statement)
+                if until and until in walker.world:
+                    break
+        out = walker.outside
+        return Run(walker.world, tuple(out.said), tuple(out.drawn), tuple(out.evaluations))
 
-def _run(program: Program, given: Mapping[str, Any], until: str, world: Mapping[str, Any]) -> Run:
-    walker = _Walker(program, given)
-    walker.world.update(world)
-    with np.errstate(all="ignore"):
-        for statement in program.statements:
-            walker.statement(statement)
-            if until and until in walker.world:
-                break
-    out = walker.outside
-    return Run(walker.world, tuple(out.said), tuple(out.drawn), tuple(out.evaluations))
+    return budget.within(budget.CLAIM, walk)
 
 
 class _Returned(Exception):
@@ -87,8 +86,8 @@ class _Returned(Exception):
 
 
 class _Walker:
-    def __init__(self, program: Program, given: Mapping[str, Any]) -> None:
-        self.world: dict[str, Any] = {}
+    def __init__(self, program: Program, given: Mapping[str, Any], world: Mapping[str, Any]) -> None:
+        self.world: dict[str, Any] = dict(world)
         self.outside = Outside()
         self._program, self._given = program, given
         self._modules, self._builtins = modules(self.outside), builtins(self.outside)
@@ -246,7 +245,8 @@ class _Walker:
         return function(*arguments, **named)
 
     def _list(self, found: ast.List | ast.Tuple, scope: Mapping[str, Any]) -> Any:
-        entries = listed([self._value(entry, scope) for entry in found.elts])
+        entries = [self._value(entry, scope) for entry in found.elts]
+        made(extent(entries))
         return tuple(entries) if isinstance(found, ast.Tuple) else entries
 
     def _subscript(self, found: ast.Subscript, scope: Mapping[str, Any]) -> Any:

@@ -17,13 +17,7 @@ MAX_SIZE = 100_000
 
 
 def made(count: int) -> None:
-    """Count what is about to be made.
-
-    Raises
-    ------
-    OverBudget
-        If it is too large.
-    """
+    """Count what is about to be made."""
     if count > MAX_SIZE:
         raise OverBudget(f"an array, a list or a text of more than {MAX_SIZE:,} entries")
     budget.charge(numbers=count)
@@ -42,12 +36,6 @@ def indexed(owner: Any, place: Any) -> None:
         made(picked * (owner.size // max(1, owner.shape[0]) if len(parts) == 1 and owner.ndim else owner.size))
 
 
-def listed(entries: list[Any]) -> list[Any]:
-    """A list, unless it is too large with all that is in it, each thing as often as it is."""
-    made(extent(entries))
-    return entries
-
-
 def formatted(parts: Sequence[str]) -> str:
     """Texts as one, unless that is too long."""
     made(sum(map(len, parts)))
@@ -55,13 +43,7 @@ def formatted(parts: Sequence[str]) -> str:
 
 
 def numeric(value: Any) -> Any:
-    """Numbers, or lists of them, as an array.
-
-    Raises
-    ------
-    BadInput
-        If something else is among them.
-    """
+    """Numbers, or lists of them, as an array."""
     if not isinstance(value, np.ndarray):
         _refuse_others(value)
         made(extent(value))

@@ -25,18 +25,12 @@ class Stops(BadInput):
 
 @dataclass(frozen=True, eq=False)
 class Program:
-    """A program as it is printed, and the statements Python's parser finds in it.
-
-    Attributes
-    ----------
-    text
-        Its lines, joined.
-    statements
-        From first to last.
-    """
+    """A program as it is printed, and the statements Python's parser finds in it."""
 
     text: str
+    """Its lines, joined."""
     statements: tuple[ast.stmt, ...]
+    """From first to last."""
 
     def line(self, node: ast.AST) -> str:
         """The printed line that a node begins on."""
@@ -44,13 +38,7 @@ class Program:
 
 
 def read(lines: Sequence[object]) -> Program:
-    """Parse a program.
-
-    Raises
-    ------
-    BadInput
-        If it is too long, too deep, or no Python.
-    """
+    """Parse a program."""
     text = "\n".join(str(line) for line in lines)
     depth = 0
     for character in text:
@@ -118,19 +106,6 @@ def sources(program: Program, names: Iterable[str]) -> set[str]:
             found.add(name)
             left += made_from.get(name, ())
     return found
-
-
-def calls_on(program: Program, module: str) -> list[tuple[ast.Call, str]]:
-    """Statements that call ``module.something(...)``, with what is called."""
-    return [
-        (s.value, s.value.func.attr)
-        for s in program.statements
-        if isinstance(s, ast.Expr)
-        and isinstance(s.value, ast.Call)
-        and isinstance(s.value.func, ast.Attribute)
-        and isinstance(s.value.func.value, ast.Name)
-        and s.value.func.value.id == module
-    ]
 
 
 def names_in(node: ast.AST) -> set[str]:

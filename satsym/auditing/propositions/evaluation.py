@@ -9,9 +9,9 @@ from __future__ import annotations
 import ast
 import operator
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, Protocol, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -31,10 +31,6 @@ from satsym.status import BadInput
 
 Truth: TypeAlias = bool | None
 """True, false, or ``None`` where it is undecided."""
-_RELATIONS: Mapping[type[ast.cmpop], str] = {
-    ast.Eq: "=", ast.NotEq: "!=", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=",
-    ast.In: "in", ast.NotIn: "not in",
-}  # fmt: skip
 _OPERATORS: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
     ast.Pow: operator.pow, ast.MatMult: operator.matmul,
@@ -45,52 +41,45 @@ _TOLD = 4
 _BREAKS = (ArithmeticError, ValueError, TypeError, LookupError, AttributeError, np.linalg.LinAlgError)
 
 
-class Document(Protocol):
-    """What a proposition may look up in the document that it stands in."""
+class Document:
+    """What a proposition may look up in the document that it stands in; this one is for those that look nothing up."""
+
+    items: Sequence[str] = ()
+    """What the document numbers."""
 
     def row(self, key: str) -> Any:
         """The printed formula of a row, as an exact expression or matrix."""
+        raise LookupError(key)
 
     def text(self, key: str) -> Any:
         """What a row prints, letter by letter."""
+        raise LookupError(key)
 
     def symbol(self, name: str) -> Any:
         """What a symbol of the notation means."""
+        raise LookupError(name)
 
     def meanings(self, letter: str) -> list[str]:
         """What the document uses a letter for."""
-
-    @property
-    def items(self) -> list[str]:
-        """What the document numbers."""
+        raise LookupError(letter)
 
 
 @dataclass(frozen=True)
 class Answer:
-    """Whether a proposition is true, and what decides it.
-
-    Attributes
-    ----------
-    truth
-        True, false or undecided.
-    reasons
-        The relations that decide it, with the values measured.
-    evidence
-        Measured values by their terms.
-    members
-        Of the largest family that it was tried on.
-    idle
-        Conditions in it that nothing meets, so that what they imply says nothing.
-    miss
-        How it fails where it does so by a last digit, or by the factor of a unit, alone.
-    """
+    """Whether a proposition is true, and what decides it."""
 
     truth: Truth
+    """True, false or undecided."""
     reasons: tuple[str, ...] = ()
+    """The relations that decide it, with the values measured."""
     evidence: Mapping[str, str] = field(default_factory=dict)
+    """Measured values by their terms."""
     members: int = 0
+    """Of the largest family that it was tried on."""
     idle: frozenset[str] = frozenset()
+    """Conditions in it that nothing meets, so that what they imply says nothing."""
     miss: Fit | None = None
+    """How it fails where it does so by a last digit, or by the factor of a unit, alone."""
 
     @property
     def vacuous(self) -> bool:
@@ -99,41 +88,19 @@ class Answer:
 
 
 class Evaluation:
-    """One proposition, evaluated.
-
-    Parameters
-    ----------
-    words
-        Measurements, families and conventions.
-    document
-        Where rows and symbols are looked up.
-    own
-        What the row itself prints.
-    """
+    """Evaluates propositions in certain words, in a document; ``own`` is what the row itself prints."""
 
     def __init__(self, words: Words, document: Document, own: Any = None) -> None:
         self._words, self._document, self._own = words, document, own
 
     def answer(self, proposition: Proposition) -> Answer:
-        """Whether a proposition is true.
-
-        Raises
-        ------
-        BadInput
-            If its terms make no sense together.
-        """
+        """Whether a proposition is true."""
         with np.errstate(all="ignore"), warnings.catch_warnings():
             warnings.simplefilter("ignore")
             return self._judge(proposition.tree, {})
 
     def term(self, proposition: Proposition) -> str:
-        """The value of a term that is no proposition, in words.
-
-        Raises
-        ------
-        BadInput
-            If it has none.
-        """
+        """The value of a term that is no proposition, in words."""
         with np.errstate(all="ignore"):
             try:
                 return in_words(self._value(proposition.tree, {}))
@@ -282,7 +249,11 @@ class Evaluation:
             return self._document.meanings(str(node.slice.value))
         whole, index = self._value(node.value, bound), self._value(node.slice, bound)
         try:
-            return whole.part(str(index)) if isinstance(whole, Record) else whole[_index(index)]
+            return (
+                whole.part(str(index))
+                if isinstance(whole, Record)
+                else whole[tuple(index) if isinstance(index, list) else index]
+            )
         except _BREAKS:
             raise BadInput(f"{_text(node)}: there is no such entry in {in_words(whole)}") from None
 
@@ -313,10 +284,6 @@ class Evaluation:
             return _OPERATORS[type(node.op)](left, right)
         except _BREAKS as error:
             raise BadInput(f"{_text(node)} has no value: {error}") from None
-
-
-def _index(index: Any) -> Any:
-    return tuple(index) if isinstance(index, list) else index
 
 
 def _plain(node: ast.expr, entry: Any) -> Answer:

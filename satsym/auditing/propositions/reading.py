@@ -45,43 +45,28 @@ _WORDS: Mapping[type[ast.AST], str] = {ast.Lambda: "lambda", ast.IfExp: "if/else
 
 @dataclass(frozen=True)
 class Words:
-    """What a proposition may name.
-
-    Attributes
-    ----------
-    functions
-        Measurements by name.
-    values
-        Families, conventions and constants by name, each made when it is asked for.
-    symbols
-        Symbols of the notation.
-    """
+    """What a proposition may name."""
 
     functions: Mapping[str, Callable[..., Any]]
+    """Measurements by name."""
     values: Mapping[str, Callable[[], Any]]
+    """Families, conventions and constants by name, each made when it is asked for."""
     symbols: Collection[str] = ()
+    """Symbols of the notation."""
 
 
 @dataclass(frozen=True)
 class Proposition:
-    """A claim that can be found true or false.
-
-    Attributes
-    ----------
-    text
-        As the ledger has it.
-    tree
-        The same, checked.
-    rows
-        Keys of the rows that it looks up.
-    symbols
-        Symbols of the notation that it names, and ``printed``.
-    """
+    """A claim that can be found true or false."""
 
     text: str
+    """As the ledger has it."""
     tree: ast.expr
+    """The same, checked."""
     rows: tuple[str, ...] = ()
+    """Keys of the rows that it looks up."""
     symbols: tuple[str, ...] = ()
+    """Symbols of the notation that it names, and ``printed``."""
 
     @property
     def quotes(self) -> bool:
@@ -97,22 +82,7 @@ class Proposition:
 
 
 def proposition(text: str, words: Words, *, own: bool = False) -> Proposition:
-    """Read a proposition.
-
-    Parameters
-    ----------
-    text
-        Python's expression syntax.
-    words
-        What it may name.
-    own
-        Whether it may speak of what its own row prints, as ``printed``.
-
-    Raises
-    ------
-    BadInput
-        With the reason, and the column where there is one.
-    """
+    """Read a proposition; ``own`` is whether it may speak of what its own row prints, as ``printed``."""
     if len(text) > MAX_LENGTH:
         raise BadInput(f"longer than {MAX_LENGTH} characters; split it into parts")
     measured(text, judging=True, relations=True)
@@ -124,13 +94,7 @@ def proposition(text: str, words: Words, *, own: bool = False) -> Proposition:
 
 
 def explanation(text: str, words: Words, *, own: bool = False) -> tuple[str | Proposition, ...]:
-    """A sentence with terms in braces: texts, and the terms between them, read.
-
-    Raises
-    ------
-    BadInput
-        If a term cannot be read, or a brace is not closed.
-    """
+    """A sentence with terms in braces: texts, and the terms between them, read."""
     parts = _BRACES.split(text)
     if any(brace in part for part in parts[::2] for brace in "{}"):
         raise BadInput("a brace stands alone; write a term between { and }")

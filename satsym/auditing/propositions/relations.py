@@ -36,41 +36,26 @@ class Fit(Enum):
 
 @dataclass(frozen=True)
 class Comparison:
-    """A relation between two values.
-
-    Attributes
-    ----------
-    holds
-        Whether it is true.
-    left, right
-        The values.
-    fit
-        How the value lies to the printed number, where there is one.
-    """
+    """A relation between two values."""
 
     holds: bool
-    left: Any
-    right: Any
+    """Whether it is true."""
     fit: Fit | None = None
+    """How the value lies to the printed number, where there is one."""
 
 
 def compared(operator: ast.cmpop, left: Any, right: Any) -> Comparison:
     """Two values in a relation.
 
-    Raises
-    ------
-    Undecided
-        If a value is no number, or exact ones cannot be told apart.
-    BadInput
-        If what they are does not compare.
+    What is no number, or cannot be told apart, is undecided; what does not compare is refused.
     """
     if isinstance(operator, ast.In | ast.NotIn):
-        inside = any(_equal(left, entry).holds for entry in _entries(right))
-        return Comparison(inside == isinstance(operator, ast.In), left, right)
+        inside = any(equal(left, entry).holds for entry in _entries(right))
+        return Comparison(inside == isinstance(operator, ast.In))
     if isinstance(operator, ast.Eq | ast.NotEq):
-        found = _equal(left, right)
-        return found if isinstance(operator, ast.Eq) else Comparison(not found.holds, left, right)
-    return Comparison(_ORDERS[type(operator)](_order(left, right)), left, right)
+        found = equal(left, right)
+        return found if isinstance(operator, ast.Eq) else Comparison(not found.holds)
+    return Comparison(_ORDERS[type(operator)](order(left, right)))
 
 
 _ORDERS: Mapping[type[ast.cmpop], Callable[[int], bool]] = {
@@ -79,16 +64,6 @@ _ORDERS: Mapping[type[ast.cmpop], Callable[[int], bool]] = {
     ast.Gt: lambda sign: sign > 0,
     ast.GtE: lambda sign: sign >= 0,
 }
-
-
-def is_equal(left: Any, right: Any) -> bool:
-    """Whether two values are equal."""
-    return _equal(left, right).holds
-
-
-def compared_order(left: Any, right: Any) -> int:
-    """1 where the first is greater, -1 where it is less, 0 where they are equal."""
-    return _order(left, right)
 
 
 def fit(value: Any, printed: PrintedNumber) -> Fit:
@@ -114,7 +89,7 @@ def fit_of_range(low: float, high: float, printed: PrintedNumber) -> Fit:
 def _in_printed_unit(value: Any, unit: str) -> float:
     number = _real(value.value if isinstance(value, Quantity) else value)
     if isinstance(value, Quantity):
-        one = quantities.in_base_units(f"1 {unit}") if unit != "1" else Quantity(1.0, {})
+        one = quantities.one(unit)
         if dict(one.dimension) != dict(value.dimension):
             raise BadInput(f"{in_words(value)} is not measured in {unit}")
         return number / one.value
@@ -123,28 +98,29 @@ def _in_printed_unit(value: Any, unit: str) -> float:
     return number
 
 
-def _equal(left: Any, right: Any) -> Comparison:
+def equal(left: Any, right: Any) -> Comparison:
+    """Whether two values are equal, and how they miss one another where they are not."""
     if isinstance(left, str) and not isinstance(right, str):
         left, right = right, left
     if isinstance(left, str | bool | np.bool_):
-        return Comparison(bool(left == right), left, right)
+        return Comparison(bool(left == right))
     if isinstance(right, str):
         if _is_sequence(left):
             raise BadInput(f"a list and the text {in_words(right)} do not compare")
         how = fit(left, quantities.printed_number(right))
-        return Comparison(how is Fit.INSIDE, left, right, how)
+        return Comparison(how is Fit.INSIDE, how)
     if isinstance(left, Quantity) and isinstance(right, Quantity):
-        holds = _order(left, right) == 0
-        return Comparison(holds, left, right, Fit.UNIT if not holds and _of_unit(left, right) else None)
+        holds = order(left, right) == 0
+        return Comparison(holds, Fit.UNIT if not holds and _of_unit(left, right) else None)
     if _is_sequence(left) or _is_sequence(right):
         one, other = _entries(left), _entries(right)
         if len(one) != len(other):
-            return Comparison(False, left, right)
-        pairs = [_equal(a, b) for a, b in zip(one, other, strict=True)]
+            return Comparison(False)
+        pairs = [equal(a, b) for a, b in zip(one, other, strict=True)]
         fits = [pair.fit for pair in pairs if not pair.holds]
         worst = fits[0] if fits and all(how is fits[0] for how in fits) else None
-        return Comparison(all(pair.holds for pair in pairs), left, right, worst)
-    return Comparison(_same(left, right), left, right)
+        return Comparison(all(pair.holds for pair in pairs), worst)
+    return Comparison(_same(left, right))
 
 
 def _of_unit(one: Quantity, other: Quantity) -> bool:
@@ -158,7 +134,7 @@ def _of_unit(one: Quantity, other: Quantity) -> bool:
 
 def _same(left: Any, right: Any) -> bool:
     if isinstance(left, Quantity) or isinstance(right, Quantity):
-        return _order(left, right) == 0
+        return order(left, right) == 0
     if is_exact(left) or is_exact(right):
         if not _has_floats(left) and not _has_floats(right):
             return _is_zero(left - right)
@@ -168,10 +144,10 @@ def _same(left: Any, right: Any) -> bool:
     return bool(abs(left - right) <= max(RELATIVE * max(abs(left), abs(right)), ABSOLUTE))
 
 
-def _order(left: Any, right: Any) -> int:
-    """The sign of the difference; 0 where they are equal."""
+def order(left: Any, right: Any) -> int:
+    """1 where the first is greater, -1 where it is less, 0 where they are equal."""
     if isinstance(left, str):
-        return -_order(right, left)
+        return -order(right, left)
     if isinstance(right, str):
         printed = quantities.printed_number(right)
         left, right = _in_printed_unit(left, printed.unit), float(printed.value)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any
@@ -10,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from satsym.auditing.quantities import Quantity
+from satsym.formula.budget import OverBudget
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
@@ -21,29 +23,28 @@ class Undecided(Exception):
     """A measurement that has no answer; the reason is said."""
 
 
+@contextmanager
+def undecided_if_refused() -> Iterator[None]:
+    """What is refused within has no answer, unless it is refused for taking too much."""
+    try:
+        yield
+    except OverBudget:
+        raise
+    except BadInput as error:
+        raise Undecided(str(error)) from None
+
+
 @dataclass(frozen=True, eq=False)
 class Record:
-    """Named values that belong together: the state at an end, a trajectory, a member of a family.
-
-    Attributes
-    ----------
-    name
-        How it is called where it confirms or refutes.
-    parts
-        Its values by name; a proposition writes ``record.name``.
-    """
+    """Named values that belong together: the state at an end, a trajectory, a member of a family."""
 
     name: str
+    """How it is called where it confirms or refutes."""
     parts: Mapping[str, Any] = field(default_factory=dict)
+    """Its values by name; a proposition writes ``record.name``."""
 
     def part(self, name: str) -> Any:
-        """One of its values.
-
-        Raises
-        ------
-        BadInput
-            If it has none of this name.
-        """
+        """One of its values."""
         if name not in self.parts:
             raise BadInput(f"{self.name} has no {shown(name)}; {suggestion(name, self.parts)}")
         return self.parts[name]
@@ -51,16 +52,11 @@ class Record:
 
 @dataclass(frozen=True, eq=False)
 class Family:
-    """Members of a kind, some from textbooks and some at random, over which a claim quantifies.
-
-    Attributes
-    ----------
-    name, of
-        As the language has it, and what its members are, in the plural.
-    """
+    """Members of a kind, some from textbooks and some at random, over which a claim quantifies."""
 
     name: str
     of: str
+    """As the language has it, and what its members are, in the plural."""
     members: tuple[Record, ...]
 
     def __iter__(self) -> Iterator[Record]:
@@ -83,19 +79,22 @@ def is_number(value: Any) -> bool:
 
 
 @lru_cache(maxsize=4096)
-def _entries(of: Any) -> Any:
-    found = np.array(of.tolist(), dtype=complex)
-    return found if np.imag(found).any() else np.real(found)
+def measured(of: Any) -> Any:
+    """An exact number or matrix as an array of plain numbers."""
+    if of.free_symbols:
+        raise BadInput(f"{of} has letters where numbers are needed")
+    found = np.array(of.tolist() if getattr(of, "is_Matrix", False) else of, dtype=complex)
+    found = found if np.imag(found).any() else np.real(found)
+    found.flags.writeable = False
+    return found
 
 
 def alike(left: Any, right: Any) -> tuple[Any, Any]:
     """Two values that can be calculated with together: an exact one beside measured ones becomes a measured one."""
     for one, other in ((left, right), (right, left)):
         if isinstance(one, np.ndarray) and is_exact(other):
-            measured = _entries(other) if getattr(other, "is_Matrix", False) else complex(other)
-            if isinstance(measured, complex) and not measured.imag:
-                measured = measured.real
-            return (left, measured) if one is left else (measured, right)
+            plain = measured(other)[()]
+            return (left, plain) if one is left else (plain, right)
     return left, right
 
 

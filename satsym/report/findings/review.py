@@ -10,7 +10,7 @@ from typing import Any
 
 from satsym.auditing import VERDICTS, Judged, Ledger
 from satsym.auditing.causes import Finding, Weight, findings
-from satsym.auditing.sentences import DENIED, in_indonesian
+from satsym.auditing.sentences import say
 from satsym.report.texts import Texts
 
 IN_FULL = (Weight.OVERTURNS, Weight.RESULT)
@@ -112,9 +112,9 @@ class Review:
         if row.why and not (row.by_formula and row.form):
             return row.why
         if self.texts.language == "id" and row.diagnosis_id:
-            said = row.diagnosis_id.removeprefix(f"{in_indonesian(DENIED)}: ")
+            said = row.diagnosis_id.removeprefix(f"{say('denied').indonesian}: ")
         else:
-            said = row.diagnosis.removeprefix(f"{DENIED}: ")
+            said = row.diagnosis.removeprefix(f"{say('denied')}: ")
         return f"{said} {row.why}".rstrip()
 
     def brief(self, found: Finding) -> str:
