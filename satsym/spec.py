@@ -16,8 +16,9 @@ FORMAT = 1
 
 ControlSetKind = Literal["free", "box", "ball"]
 PartKind = Literal["free", "box", "ball", "annulus", "angle"]
-Branch = Literal["quadratic", "direction"]
-"""How H is minimised over one set of controls: where H_u vanishes, or along a direction, whatever it is."""
+Branch = Literal["quadratic", "direction", "throttled"]
+"""How H is minimised over one set of controls: where H_u vanishes; along a direction, whatever it is; or along one if
+that is worth more than the norm of the controls costs, and not at all elsewhere."""
 PRODUCT: Literal["product"] = "product"
 """The kind of a control set that is stated set by set."""
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
@@ -190,12 +191,17 @@ class ProblemSpec:
     @property
     def directional(self) -> bool:
         """Whether some controls are directions, which nothing decides where H does not depend on them."""
-        return any(part.branch == "direction" for part in self.control_parts)
+        return any(part.branch != "quadratic" for part in self.control_parts)
+
+    @property
+    def throttled(self) -> bool:
+        """Whether H depends on the norm of such controls as well, so that they may be none at all."""
+        return any(part.branch == "throttled" for part in self.control_parts)
 
     @property
     def regularising(self) -> int:
         """How many numbers at the end of the argument ``bounds`` say what is regularised."""
-        return 2 * self.switching + self.directional
+        return 2 * self.switching + self.directional + self.throttled
 
     @property
     def lower_bounds(self) -> frozenset[int]:
