@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 from sympy import Matrix, Symbol, cos, sin, tan
 from sympy.physics.mechanics import Point, ReferenceFrame, RigidBody, cross, inertia, outer
 
-from satsym.symbolic import CLOCK, AboutRest, Demand, Multibody, Problem, Variable, moving, symbols_of
+from satsym.symbolic import CLOCK, AboutRest, Demand, ModeGroup, Multibody, Problem, Variable, moving, symbols_of
 
 Variables: TypeAlias = "tuple[Variable, ...]"
 Load: TypeAlias = "tuple[Any, Any]"
@@ -74,6 +74,14 @@ PANELS = (
     Variable("zeta_x", r"\zeta_x", "1", "damping ratio of the mode about x", 0.005),
     Variable("zeta_y", r"\zeta_y", "1", "damping ratio of the mode about y", 0.005),
     Variable("zeta_z", r"\zeta_z", "1", "damping ratio of the mode about z", 0.005),
+)
+# what small motions are called: with the orbital rate, those in which the momentum stays put in space become slow
+NAMES = (
+    ModeGroup("nutation", ("phi", "psi", "w_x", "w_z"), vanishing="w0", slow="orbit-rate mode"),
+    ModeGroup("pitch libration", ("theta", "w_y"), neutral="pitch drift"),
+    ModeGroup("gimbal mode", tuple(v.symbol for v in (*GIMBALS, *GIMBAL_RATES))),
+    *(ModeGroup(f"flexible mode about {a}", (f"eta_{a}", f"eta_{a}_dot")) for a in "xyz"),
+    ModeGroup("speed of the wheel", ("wheel_speed",)),
 )
 phi, psi, theta = symbols_of(ATTITUDE)
 I_x, I_y, I_z, w0, I_wx, I_wy, nominal_speed, K_x, K_z, D_x, D_z = symbols_of((*BODY, *WHEEL))
@@ -213,6 +221,7 @@ def model(
         vanishing=tuple(s for s in symbols_of(states) if s.name not in PITCH),
         demands=demanded,
         varied=varied,
+        modes=tuple(group for group in NAMES if {*group.states} <= {v.symbol for v in states}),
         reference=dict.fromkeys(symbols_of(states), 0) | {w_y: -w0},
     )
 

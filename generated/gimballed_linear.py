@@ -2,7 +2,7 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Digest: 1c1e580b7d55188f3b2beca1b92a94f05b19e081883cd52ec4e3c201c9846cdb
+Digest: a2a97b475100da55263195f3116fe4438720b36bde74aefcb229c3912c17aefe
 """
 
 import math
@@ -82,6 +82,15 @@ MODEL = {
         {'terms': (('I_wx', -1.0), ('I_x', 1.0), ('J_x', -1.0)), 'strict': True, 'reason': 'the wheel and the elastic part have together no less inertia than the satellite that they are parts of'},
         {'terms': (('I_wy', -1.0), ('I_y', 1.0), ('J_y', -1.0)), 'strict': True, 'reason': 'the wheel and the elastic part have together no less inertia than the satellite that they are parts of'},
         {'terms': (('I_wx', -1.0), ('I_z', 1.0), ('J_z', -1.0)), 'strict': True, 'reason': 'the wheel and the elastic part have together no less inertia than the satellite that they are parts of'},
+    ),
+    'mode_groups': (
+        {'name': 'nutation', 'states': ('phi', 'psi', 'phi_dot', 'psi_dot'), 'vanishing': 'w0', 'slow': 'orbit-rate mode'},
+        {'name': 'pitch libration', 'states': ('theta', 'theta_dot'), 'neutral': 'pitch drift'},
+        {'name': 'gimbal mode', 'states': ('g_x', 'g_z', 'g_x_dot', 'g_z_dot', 'g_x_dot', 'g_z_dot')},
+        {'name': 'flexible mode about x', 'states': ('eta_x', 'eta_x_dot', 'eta_x_dot')},
+        {'name': 'flexible mode about y', 'states': ('eta_y', 'eta_y_dot', 'eta_y_dot')},
+        {'name': 'flexible mode about z', 'states': ('eta_z', 'eta_z_dot', 'eta_z_dot')},
+        {'name': 'speed of the wheel', 'states': ('wheel_speed',)},
     ),
 }
 

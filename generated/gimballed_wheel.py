@@ -2,7 +2,7 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Digest: df515f363ceabb045efe7dbffb2659c289ee258986418d8e4ce225463d2316f4
+Digest: 4422e94bfe07f74bda54d8f14fc0ea1a7247395daff1acd7f6333c84ca09509c
 """
 
 import math
@@ -78,6 +78,15 @@ MODEL = {
         {'terms': (('I_wx', -1.0), ('I_x', 1.0), ('J_x', -1.0)), 'strict': True, 'reason': 'the wheel and the elastic part have together no less inertia than the satellite that they are parts of'},
         {'terms': (('I_wy', -1.0), ('I_y', 1.0), ('J_y', -1.0)), 'strict': True, 'reason': 'the wheel and the elastic part have together no less inertia than the satellite that they are parts of'},
         {'terms': (('I_wx', -1.0), ('I_z', 1.0), ('J_z', -1.0)), 'strict': True, 'reason': 'the wheel and the elastic part have together no less inertia than the satellite that they are parts of'},
+    ),
+    'mode_groups': (
+        {'name': 'nutation', 'states': ('phi', 'psi', 'w_x', 'w_z'), 'vanishing': 'w0', 'slow': 'orbit-rate mode'},
+        {'name': 'pitch libration', 'states': ('theta', 'w_y'), 'neutral': 'pitch drift'},
+        {'name': 'gimbal mode', 'states': ('g_x', 'g_z', 'g_x_dot', 'g_z_dot')},
+        {'name': 'flexible mode about x', 'states': ('eta_x', 'eta_x_dot')},
+        {'name': 'flexible mode about y', 'states': ('eta_y', 'eta_y_dot')},
+        {'name': 'flexible mode about z', 'states': ('eta_z', 'eta_z_dot')},
+        {'name': 'speed of the wheel', 'states': ('wheel_speed',)},
     ),
 }
 

@@ -2,7 +2,7 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Digest: 8f8c257169bfc1ade6c2e6915a5c09b95a9f2ef0b903f088539d9faa54eb2898
+Digest: 4224228a1e26ab06c4c070b3586c55eabdc671fd898f96e2edd5ce95be65d65f
 """
 
 import math
@@ -48,6 +48,10 @@ MODEL = {
         {'terms': (('I_x', 1.0), ('I_y', 1.0), ('I_z', -1.0)), 'strict': False, 'reason': 'a moment of inertia of the satellite exceeds the sum of the other two, which no body has'},
     ),
     'equilibria': 'h',
+    'mode_groups': (
+        {'name': 'nutation', 'states': ('phi', 'psi', 'w_x', 'w_z'), 'vanishing': 'w0', 'slow': 'orbit-rate mode'},
+        {'name': 'pitch libration', 'states': ('theta', 'w_y'), 'neutral': 'pitch drift'},
+    ),
 }
 
 

@@ -2,7 +2,7 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Digest: dca716dd75da7fd22709e93e88add5ad686e8283782cb5650d6a9033fedb8c50
+Digest: cc1db51353851ceab53ad52f92834c0d7a31aa9ac34e424f563413e9ccd63a6a
 """
 
 import math
@@ -50,6 +50,10 @@ MODEL = {
         {'terms': (('I_x', -1.0), ('I_y', 1.0), ('I_z', 1.0)), 'strict': False, 'reason': 'a moment of inertia of the satellite exceeds the sum of the other two, which no body has'},
         {'terms': (('I_x', 1.0), ('I_y', -1.0), ('I_z', 1.0)), 'strict': False, 'reason': 'a moment of inertia of the satellite exceeds the sum of the other two, which no body has'},
         {'terms': (('I_x', 1.0), ('I_y', 1.0), ('I_z', -1.0)), 'strict': False, 'reason': 'a moment of inertia of the satellite exceeds the sum of the other two, which no body has'},
+    ),
+    'mode_groups': (
+        {'name': 'nutation', 'states': ('phi', 'psi', 'phi_dot', 'psi_dot'), 'vanishing': 'w0', 'slow': 'orbit-rate mode'},
+        {'name': 'pitch libration', 'states': ('theta', 'theta_dot'), 'neutral': 'pitch drift'},
     ),
 }
 

@@ -2,7 +2,7 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Digest: 7fb1b549aafe861f09fcd24cadae7abda7a1c1b62a584d282b84598274f75a42
+Digest: 1a9b778cc63dae8411aac25b5e1f37b551e759d1904e04a0acfcf436aae4705a
 """
 
 import math
@@ -76,6 +76,12 @@ MODEL = {
         {'terms': (('I_wx', -1.0), ('I_x', 1.0), ('J_x', -1.0)), 'strict': True, 'reason': 'the wheel and the elastic part have together no less inertia than the satellite that they are parts of'},
         {'terms': (('I_wy', -1.0), ('I_y', 1.0), ('J_y', -1.0)), 'strict': True, 'reason': 'the wheel and the elastic part have together no less inertia than the satellite that they are parts of'},
         {'terms': (('I_wx', -1.0), ('I_z', 1.0), ('J_z', -1.0)), 'strict': True, 'reason': 'the wheel and the elastic part have together no less inertia than the satellite that they are parts of'},
+    ),
+    'mode_groups': (
+        {'name': 'nutation', 'states': ('phi', 'psi', 'phi_dot', 'psi_dot'), 'vanishing': 'w0', 'slow': 'orbit-rate mode'},
+        {'name': 'gimbal mode', 'states': ('g_x', 'g_z', 'g_x_dot', 'g_z_dot', 'g_x_dot', 'g_z_dot')},
+        {'name': 'flexible mode about x', 'states': ('eta_x', 'eta_x_dot', 'eta_x_dot')},
+        {'name': 'flexible mode about z', 'states': ('eta_z', 'eta_z_dot', 'eta_z_dot')},
     ),
 }
 

@@ -9,10 +9,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
+from math import isfinite
 from typing import Any, Literal
 
 FORMAT = 1
 """Version of the literal that generated modules carry as ``MODEL``."""
+
+MOST_LETTERS = 24
+"""Of exact analysis, times the states: polynomials of a high degree in many letters fill pages and say nothing."""
 
 ControlSetKind = Literal["free", "box", "ball"]
 PartKind = Literal["free", "box", "ball", "annulus", "angle"]
@@ -29,7 +33,7 @@ _OF_VARIABLES = (
 )
 _UNLESS_DEFAULT = (
     *(*_OF_LINEAR_MODELS, "keplerian", "switching", "coordinates", "velocities", "quantities", "balances"),
-    *("switching_curve", "conditions", "equilibria", "control_parts"),
+    *("switching_curve", "conditions", "equilibria", "mode_groups", "control_parts"),
 )
 
 
@@ -53,6 +57,9 @@ class Variable:
         ``"real"``, or ``"angle"`` where values a turn apart mean the same place.
     positive
         Whether only positive values have a meaning. For a state this is its domain.
+    typical
+        Lower and upper end of where its values lie, in its unit. Checks at random points draw it from there; without it
+        of size one, where steep functions and roots may have no numbers.
     """
 
     symbol: str
@@ -62,10 +69,18 @@ class Variable:
     default: float | None = None
     kind: Literal["real", "angle"] = "real"
     positive: bool = False
+    typical: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         if not _NAME.match(self.symbol) or "__" in self.symbol:
             raise ValueError(f"variable {self.symbol!r}: use a letter, then letters, digits and single underscores")
+        if self.typical is not None:
+            low, high = self.typical
+            if not (isfinite(low) and isfinite(high) and low < high) or (self.positive and low <= 0):
+                wanted = "0 < low < high" if self.positive else "low < high"
+                raise ValueError(
+                    f"variable {self.symbol!r}: typical is {low:g} to {high:g}; give two numbers, {wanted}"
+                )
 
 
 @dataclass(frozen=True)
@@ -85,6 +100,29 @@ class Condition:
     terms: tuple[tuple[str, float], ...]
     strict: bool
     reason: str
+
+
+@dataclass(frozen=True)
+class ModeGroup:
+    """What a mode of small motions is called in which these states have the largest part.
+
+    Attributes
+    ----------
+    name
+        Where no more is known.
+    states
+        Their names.
+    vanishing, slow
+        A parameter, and what a mode is called that becomes infinitely slow with it; empty where that says nothing.
+    neutral
+        What a mode is called that has the eigenvalue 0; empty where it has no other name.
+    """
+
+    name: str
+    states: tuple[str, ...]
+    vanishing: str = ""
+    slow: str = ""
+    neutral: str = ""
 
 
 @dataclass(frozen=True)
@@ -155,10 +193,12 @@ class ProblemSpec:
         empty where there is no such curve in closed form.
     conditions
         What the parameters must obey besides being positive one by one.
-    control_parts
-        The sets whose product the control set is, where it was stated set by set; else empty.
     equilibria
         Of a model that is one attitude in orbit: the parameter over which its equilibria are followed; else empty.
+    control_parts
+        The sets whose product the control set is, where it was stated set by set; else empty.
+    mode_groups
+        What its modes are called, by the states that have the largest part in them. May be empty.
     """
 
     name: str
@@ -186,6 +226,7 @@ class ProblemSpec:
     switching_curve: tuple[str, ...] = ()
     conditions: tuple[Condition, ...] = ()
     equilibria: str = ""
+    mode_groups: tuple[ModeGroup, ...] = ()
     control_parts: tuple[ControlPart, ...] = ()
 
     @property
@@ -267,6 +308,7 @@ class ProblemSpec:
                 entries = stated[key] if key not in _UNLESS_DEFAULT else stated.get(key, ())
                 stated[key] = tuple(Variable(**entry) for entry in entries)
             stated["conditions"] = tuple(Condition(**entry) for entry in stated.get("conditions", ()))
+            stated["mode_groups"] = tuple(ModeGroup(**entry) for entry in stated.get("mode_groups", ()))
             stated["control_parts"] = tuple(ControlPart(**entry) for entry in stated.get("control_parts", ()))
             return cls(**stated)
         except (KeyError, TypeError) as error:
@@ -278,8 +320,8 @@ def names(variables: Iterable[Variable]) -> tuple[str, ...]:
     return tuple(v.symbol for v in variables)
 
 
-def _stated(variable: Variable | Condition | ControlPart | str) -> dict[str, Any] | str:
-    """The fields of a variable, a condition or a set that differ from their defaults; a name as it is."""
+def _stated(variable: Variable | Condition | ModeGroup | ControlPart | str) -> dict[str, Any] | str:
+    """The fields of one of these that differ from their defaults; a name as it is."""
     if isinstance(variable, str):
         return variable
     return {f.name: value for f in fields(variable) if (value := getattr(variable, f.name)) != f.default}

@@ -10,7 +10,7 @@ import numpy as np
 
 from satsym.analysis.classical import law as classical
 from satsym.analysis.classical.signals import excesses, spans_of, totals
-from satsym.analysis.coupling import Driver, reached
+from satsym.analysis.coupling import Driver, reached, undriven
 from satsym.arrays import Array
 from satsym.instance import Instance, load
 from satsym.solution import Solution
@@ -64,7 +64,7 @@ def compare(instances: Sequence[Instance], progress: Callable[[str], None] = lam
     instances
         Their models have the same controls, and begin with the same states.
     progress
-        Told the name of each before its turn.
+        Told the name of each before its turn, and how far one that is driven has come.
 
     Raises
     ------
@@ -84,7 +84,7 @@ def compare(instances: Sequence[Instance], progress: Callable[[str], None] = lam
     for instance in instances:
         progress(instance.name)
         if instance.driven:
-            found += driven(instance, [case_of(load(name)) for name in instance.driven.by])
+            found += driven(instance, progress)
         else:
             found.append(case_of(instance))
     return found
@@ -150,8 +150,8 @@ def limits_noted(solution: Solution) -> Solution:
     return replace(solution, message=passed) if passed else solution
 
 
-def driven(instance: Instance, cases: Sequence[Case]) -> list[Case]:
-    """The motion of an instance whose control each of some cases has worked out, and what it is without.
+def driven(instance: Instance, progress: Callable[[str], None] = lambda name: None) -> list[Case]:
+    """The motion of an instance whose control each of some others has worked out, and what it is without.
 
     Raises
     ------
@@ -159,16 +159,23 @@ def driven(instance: Instance, cases: Sequence[Case]) -> list[Case]:
         If one of them has no answer, or none of them the control.
     """
     assert instance.driven is not None
-    name, found = instance.driven.control, []
+    cases = []
+    for driver in instance.driven.by:
+        progress(driver)
+        cases.append(_driving(instance, case_of(load(driver))))
+
+    def told(what: str) -> Callable[[float], None]:
+        return lambda share: progress(f"{instance.name}, {what}: {share:.0%}")
+
+    still, name, found = undriven(instance, told("not driven")), instance.driven.control, []
     for case in cases:
-        spec = case.instance.model.spec
-        if not case.answered:
-            raise BadInput(f"{instance.name}: [driven] by: {case.instance.name} has no answer: {case.message}")
-        if name not in (*spec.control_names, *(v.symbol for v in spec.quantities)):
-            raise BadInput(f"{instance.name}: [driven] by: {case.instance.name} has no {name}; name instances that do")
         spans = spans_of(case.instance, case.times, case.x, case.u, case.switching_times)
-        driver = Driver(case.instance, spans, case.metrics.get("impulse", 0.0))
-        run = reached(instance, driver)
+        run = reached(
+            instance,
+            Driver(case.instance, spans, case.metrics.get("impulse", 0.0)),
+            still,
+            told(f"driven by {case.instance.name}"),
+        )
         metrics = {"transition_time": case.metrics["transition_time"]} | run.metrics
         called = replace(instance, name=case.instance.name)
         said = f"{name} of {case.instance.name}"
@@ -176,6 +183,17 @@ def driven(instance: Instance, cases: Sequence[Case]) -> list[Case]:
             Case(called, said, True, None, run.message, run.times, run.x, run.u, case.switching_times, metrics)
         )
     return found
+
+
+def _driving(instance: Instance, case: Case) -> Case:
+    """A case that has an answer and the control that drives."""
+    assert instance.driven is not None
+    name, spec = instance.driven.control, case.instance.model.spec
+    if not case.answered:
+        raise BadInput(f"{instance.name}: [driven] by: {case.instance.name} has no answer: {case.message}")
+    if name not in (*spec.control_names, *(v.symbol for v in spec.quantities)):
+        raise BadInput(f"{instance.name}: [driven] by: {case.instance.name} has no {name}; name instances that do")
+    return case
 
 
 @dataclass(frozen=True, eq=False)

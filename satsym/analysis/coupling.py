@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -14,6 +14,8 @@ from satsym.grid import Grid
 from satsym.instance import Instance
 from satsym.kernels import Kernels
 from satsym.status import BadInput
+
+Progress: TypeAlias = Callable[[float], None]
 
 TOLERANCE = 1e-7
 SAMPLES = 400
@@ -40,11 +42,37 @@ class Reached:
     message: str
 
 
-def reached(instance: Instance, driver: Driver) -> Reached:
-    """Follow the motion under the driver's control, and without, from the same start.
+def nodes_of(instance: Instance) -> Array:
+    """Times at which the motions are compared.
+
+    Raises
+    ------
+    BadInput
+        If the final time is free.
+    """
+    if instance.tf is None:
+        raise BadInput(f"{instance.name}: time.tf: a driven motion needs a number, not a free final time")
+    return Grid.uniform(instance.t0, instance.tf, instance.solver.steps).nodes
+
+
+def undriven(instance: Instance, progress: Progress = lambda share: None) -> Array:
+    """States at the nodes without control, shape (n, N+1); the same for every driver."""
+    start = np.array(instance.initial)
+    return _followed(instance.model, instance.parameters, nodes_of(instance), start, [], 0, progress)
+
+
+def reached(instance: Instance, driver: Driver, still: Array, progress: Progress = lambda share: None) -> Reached:
+    """Follow the motion under the driver's control, and hold it against that without, from the same start.
 
     The equations are stiff, as wheels nutate fast: an implicit method of order five (Radau) follows them, with the
     exact Jacobian. An impulse at the start makes the speeds jump by its effect on them.
+
+    Parameters
+    ----------
+    still
+        The latter, see :func:`undriven`.
+    progress
+        Told which share of the time has been followed.
 
     Returns
     -------
@@ -54,23 +82,23 @@ def reached(instance: Instance, driver: Driver) -> Reached:
         rate of change, relative to the largest of all in that unit.
     """
     assert instance.driven is not None
-    if instance.tf is None:
-        raise BadInput(f"{instance.name}: time.tf: a driven motion needs a number, not a free final time")
     model, p = instance.model, instance.parameters
     spec, place = model.spec, instance.model.spec.control_names.index(instance.driven.control)
     torques, slope = _signals(driver, instance.driven.control)
-    nodes = Grid.uniform(instance.t0, instance.tf, instance.solver.steps).nodes
+    nodes = nodes_of(instance)
     count, start = len(spec.controls), np.array(instance.initial)
     column = np.reshape(model.jacobian_u(instance.t0, start.tolist(), (0.0,) * count, p), (-1, count))[:, place]
-    still = _flown(model, p, nodes, start, [], place)
-    moved = _flown(model, p, nodes, start + column * slope * driver.impulse, torques, place)
+    moved = _followed(model, p, nodes, start + column * slope * driver.impulse, torques, place, progress)
     u = np.zeros((count, len(nodes)))
     for a, b, torque in torques:
         within = (nodes >= a) & (nodes <= b)
         u[place, within] = torque(nodes[within])
     rates = [model.dynamics_batch(nodes, x, v, p) for x, v in ((moved, u), (still, 0.0 * u))]
     change, difference = np.abs(rates[0] - rates[1]).max(axis=1), np.abs(moved - still).max(axis=1)
-    metrics, most = {}, spec.states[int(np.abs(column).argmax())].unit
+    metrics: dict[str, float] = {}
+    if driver.impulse:
+        metrics["impulse"] = slope * driver.impulse
+    most = spec.states[int(np.abs(column).argmax())].unit
     for k, control in enumerate(spec.control_names):
         sudden = abs(slope * driver.impulse) if k == place else 0.0
         metrics[f"{control}_peak"] = float(np.abs(u[k]).max())
@@ -116,13 +144,14 @@ def _lines(times: Array, values: Array) -> Callable[[Array], Array]:
     return lambda t: np.interp(t, times, values)
 
 
-def _flown(
+def _followed(
     model: Kernels,
     p: Sequence[float],
     nodes: Array,
     start: Array,
     torques: Sequence[tuple[float, float, Callable[[Array], Array]]],
     place: int,
+    progress: Progress,
 ) -> Array:
     """States at the nodes, part by part; without control after the last."""
     from scipy.integrate import solve_ivp
@@ -141,6 +170,7 @@ def _flown(
             return [*u[:place], float(torque(np.array(t))), *u[place + 1 :]]
 
         def rates(t: float, y: Array, controls: Any = controls) -> Array:
+            progress((t - nodes[0]) / (nodes[-1] - nodes[0]))
             return np.array(model.dynamics(t, y.tolist(), controls(t), p))
 
         def slopes(t: float, y: Array, controls: Any = controls) -> Array:

@@ -77,8 +77,8 @@ def findings(rows: Sequence[Judged]) -> list[Finding]:
     first: dict[tuple[str, str], str] = {}
     for key, root in roots.items():
         if root == key:
-            first.setdefault((faulty[key].verdict, faulty[key].form or key), key)
-    causes = {key: first[faulty[root].verdict, faulty[root].form or root] for key, root in roots.items()}
+            first.setdefault(_fault(faulty[key]), key)
+    causes = {key: first[_fault(faulty[root])] for key, root in roots.items()}
     found = []
     for cause in dict.fromkeys(first.values()):
         own = [faulty[key] for key in faulty if causes[key] == cause]
@@ -94,6 +94,12 @@ def with_causes(rows: Sequence[Judged]) -> list[Judged]:
     return [
         replace(row, cause=of[row.key].cause, weight=of[row.key].weight.value) if row.key in of else row for row in rows
     ]
+
+
+def _fault(row: Judged) -> tuple[str, str]:
+    """What rows with one cause share: the edit or form, or what is printed and what it should be."""
+    printed = f"{row.printed}: {row.derived}" if row.by_formula else row.key
+    return row.verdict, row.form or printed
 
 
 def _root(key: str, faulty: Mapping[str, Judged]) -> str:

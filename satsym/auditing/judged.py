@@ -46,6 +46,10 @@ class Judged:
         Why it is not so, in a sentence for people, where the ledger has one.
     form
         What rows with the same fault share: the edit that puts them right, or the form of the claim.
+    by_formula
+        Whether it was held against a formula or a number, not judged by a proposition.
+    vacuous
+        Whether it is true only because nothing meets its condition.
     spoiled_by
         Faulty rows that it follows from.
     cause, weight
@@ -68,6 +72,8 @@ class Judged:
     why: str = ""
     diagnosis_id: str = ""
     form: str = ""
+    by_formula: bool = False
+    vacuous: bool = False
     spoiled_by: tuple[str, ...] = ()
     cause: str = ""
     weight: str = ""

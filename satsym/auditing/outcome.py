@@ -22,11 +22,13 @@ class Outcome:
         What is right, in the document's symbols.
     plan, remedy
         Of a formula: how it was compared, and what puts it right.
-    sound, artefact, unit, near
-        Whether its reason holds; whether the printed algorithm produces it; whether only its unit is wrong; whether it
-        fails by a last digit alone.
+    sound, vacuous, artefact, unit, near
+        Whether its reason holds; whether nothing meets its condition; whether the printed algorithm produces it;
+        whether only its unit is wrong; whether it fails by a last digit alone.
     remark
         A sentence for the diagnosis.
+    lacks
+        Of a unit, the dimension that it has to be multiplied by.
     evidence
         Measured numbers.
     """
@@ -37,8 +39,10 @@ class Outcome:
     plan: Plan | None = None
     remedy: Remedy | None = None
     sound: bool = True
+    vacuous: bool = False
     artefact: bool = False
     unit: bool = False
     near: bool = False
     remark: str = ""
+    lacks: str = ""
     evidence: Mapping[str, object] = field(default_factory=dict)

@@ -35,6 +35,10 @@ _FLOATS = {name: getattr(math, name) for name in "sin cos tan sqrt exp log asin 
 _FLOATS |= {"abs": abs, "min": min, "max": max}
 
 
+_ROOTS = 12
+"""The highest root that is taken of a unit."""
+
+
 @dataclass(frozen=True)
 class Quantity:
     """A value in base units, and the exponents of its dimension."""
@@ -73,8 +77,9 @@ class Quantity:
     def __rtruediv__(self, other: float) -> Quantity:
         return Quantity(other / self.value, _sum({}, self.dimension, Fraction(-1)))
 
-    def __pow__(self, exponent: int) -> Quantity:
-        return Quantity(self.value**exponent, _sum({}, self.dimension, Fraction(exponent)))
+    def __pow__(self, exponent: float) -> Quantity:
+        power = Fraction(exponent).limit_denominator(_ROOTS)
+        return Quantity(self.value**exponent, _sum({}, self.dimension, power))
 
 
 @dataclass(frozen=True)

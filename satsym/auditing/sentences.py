@@ -97,6 +97,8 @@ def wrong_formula(labels: Sequence[str], remedy: Remedy | None, difference: str,
             "Tidak ada suntingan kecil yang membetulkannya; yang kurang `{difference}`.",
             difference=difference,
         )
+    if remedy is None and not derived:
+        return Said("No small edit puts it right.", "Tidak ada suntingan kecil yang membetulkannya.")
     if remedy is None:
         return _said(
             "No small edit puts it right; it should be `{derived}`.",
@@ -176,13 +178,15 @@ def follows_from_wrong(items: Sequence[str]) -> Said:
     )
 
 
-def unsound(items: Sequence[str]) -> Said:
-    """The result is right, but not for the reason given."""
-    return _said(
-        "The result is right, but it does not follow from {items} in the way that is said.",
-        "Hasilnya benar, tetapi tidak mengikuti {items} dengan cara yang dikatakan.",
+def unsound(items: Sequence[str], instead: str = "") -> Said:
+    """The result is right, but not for the reason given; what follows instead."""
+    said = _said(
+        "The result is right, but it does not follow from {items} in the way that is said",
+        "Hasilnya benar, tetapi tidak mengikuti {items} dengan cara yang dikatakan",
         items=items,
     )
+    gives = _said(": that gives `{instead}`", ": hasilnya `{instead}`", instead=instead) if instead else Said("")
+    return joined([said, gives, Said(".")], "")
 
 
 def wrong_number(derived: str, custom: str = "") -> Said:
@@ -228,6 +232,13 @@ def unsound_claim(derived: str) -> Said:
         "The conclusion is right, but the reason given does not lead there: {derived}.",
         "Kesimpulannya benar, tetapi alasan yang diberikan tidak menuju ke sana: {derived}.",
         derived=derived,
+    )
+
+
+def vacuous_claim(derived: str) -> Said:
+    """A rule is true of nothing."""
+    return _said(
+        "It is true of nothing: {derived}.", "Ini berlaku untuk sesuatu yang tidak ada: {derived}.", derived=derived
     )
 
 

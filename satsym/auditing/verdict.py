@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from functools import partial
+from typing import Any
 
 from satsym.auditing import refusal, sentences
 from satsym.auditing.causes import SILENT, with_causes
 from satsym.auditing.diagnosis.edits import Change, Edit
 from satsym.auditing.judge.bench import Bench, Formula
+from satsym.auditing.judge.claim import Pages
 from satsym.auditing.judge.compare import plans
 from satsym.auditing.judge.formula import corrected, shown
 from satsym.auditing.judged import Judged, Verdict
@@ -55,6 +57,8 @@ class _Context:
 
     def judged(self, outcome: Outcome) -> Judged:
         verdict, sayings = self._verdict(outcome)
+        if outcome.row.claims is None and outcome.row.why:
+            sayings = [*sayings, sentences.sentence(Pages(self._bench, outcome.row).explained(outcome.row.why))]
         said = sentences.joined(sayings if verdict != "confirmed" else ())
         row, document = outcome.row, self._bench.ledger.document.key
         command = recompute(self._bench.ledger.name, row.key)
@@ -74,10 +78,17 @@ class _Context:
             evidence=f"{numbers}; {command}" if numbers else command,
             role=row.table.role,
             original=row.table.original,
-            why=str(sentences.sentence(outcome.remark)) if row.claims is not None else "",
+            why=str(sentences.sentence(self._why(outcome))) if verdict not in SILENT else "",
+            by_formula=row.claims is None,
             form=_form(outcome),
+            vacuous=outcome.vacuous,
             spoiled_by=tuple(self._spoiled_by(outcome)) if verdict not in SILENT else (),
         )
+
+    def _why(self, outcome: Outcome) -> str:
+        """The sentence for people; that of a claim was made when it was judged."""
+        row = outcome.row
+        return outcome.remark if row.claims is not None else Pages(self._bench, row).explained(row.why)
 
     def _verdict(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
         row = outcome.row
@@ -92,7 +103,7 @@ class _Context:
         if not outcome.right:
             return "imprecise" if outcome.near else "wrong", [outcome.remark]
         if row.follows is not None and not self._follows(row, {}) and not self._follows_once_mended(row):
-            return "unsound", [sentences.unsound(row.uses)]
+            return "unsound", [sentences.unsound(row.uses, self._instead(row))]
         return "confirmed", []
 
     def _of_claim(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
@@ -100,6 +111,8 @@ class _Context:
         if outcome.right is None:
             return "undecided", [sentences.undecided(derived)]
         if outcome.right:
+            if outcome.vacuous:
+                return "unsound", [sentences.vacuous_claim(derived), remark]
             return ("confirmed", []) if outcome.sound else ("unsound", [sentences.unsound_claim(derived), remark])
         if outcome.artefact:
             return "artefact", [sentences.artefact(derived), remark]
@@ -183,6 +196,21 @@ class _Context:
             self._known[asked] = refusal.named(self._bench, row, budget.VERDICT, work, "from")
         return self._known[asked]
 
+    def _instead(self, row: Row) -> str:
+        """What follows from the rows that a row names, in the symbols of the document; empty where it is no formula."""
+        found = self._bench.follows(row).exact
+        found = found.rhs if isinstance(found, Relation) else found
+        if isinstance(found, Roots | Kernel):
+            return ""
+
+        def told(exact: Any) -> str:
+            return written(self._bench.theirs(row, formulas.to_tree(exact)))
+
+        if not isinstance(found, Matrix):
+            return told(found)
+        lines = [", ".join(map(told, line)) for line in found.rows]
+        return f"[{', '.join(f'[{line}]' for line in lines)}]"
+
     def _follows_from(self, row: Row, replacements: Mapping[str, Formula]) -> bool:
         assert row.printed is not None
         value = self._bench.follows(row, replacements)
@@ -212,11 +240,11 @@ def _same(one: Outcome, other: Outcome) -> bool:
 
 
 def _form(outcome: Outcome) -> str:
-    """What rows with the same fault share: the shape of a claim, whatever its names and numbers; or the same edits."""
+    """What rows with the same fault share: the shape of a claim, whatever its names and numbers; or edits, units."""
     if outcome.row.claims is not None:
         return shape(outcome.row.claims.tree)
     if outcome.remedy is None:
-        return ""
+        return outcome.lacks if outcome.unit else ""
     return "; ".join(sorted({_change(edit) for _, edit in outcome.remedy.edits}))
 
 

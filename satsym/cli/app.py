@@ -22,6 +22,7 @@ from satsym.cli.commands.instances import instances
 from satsym.cli.commands.latex import latex
 from satsym.cli.commands.lqr import lqr
 from satsym.cli.commands.models import models
+from satsym.cli.commands.new import new
 from satsym.cli.commands.plot import plot
 from satsym.cli.commands.simulate import simulate
 from satsym.cli.commands.solve import solve
@@ -65,7 +66,7 @@ class Program(click.Group):
 
 @click.group(
     cls=Program,
-    commands=[models, instances, solve, simulate, plot, compare, analyse, lqr, derive, latex, audit, doctor],
+    commands=[models, instances, new, solve, simulate, plot, compare, analyse, lqr, derive, latex, audit, doctor],
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog=OVERVIEW,
 )

@@ -82,6 +82,7 @@ def spec(derivation: Derivation, source: str) -> ProblemSpec:
         velocities=tuple(v.name for v in parts.velocities) if parts else (),
         quantities=_quantities(derivation),
         equilibria=model.followed(),
+        mode_groups=model.mode_groups(),
         conditions=tuple(_condition(d) for d in model.demanded()),
         balances=tuple(
             Variable(e.name, derivation.notation[e.name])

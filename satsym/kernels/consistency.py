@@ -8,7 +8,7 @@ must be derivatives (:mod:`satsym.kernels.relations`).
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import prod
 from typing import Any
@@ -93,7 +93,7 @@ def _finite(of: Evaluation) -> NDArray[np.bool_]:
 
 
 def random_places(kernels: Kernels, seed: int = SEED) -> dict[str, Any]:
-    """Arguments of size one, within the domain, with bounds that some controls meet and others do not."""
+    """Arguments of size one, parameters about their defaults, with bounds that some controls meet and others do not."""
     spec, counts, rng = kernels.spec, sizes(kernels.spec), random.Random(seed)
 
     def drawn(count: int, positive: Mapping[int, float]) -> Array:
@@ -112,6 +112,8 @@ def random_places(kernels: Kernels, seed: int = SEED) -> dict[str, Any]:
         if name not in needed:
             continue
         table = drawn(prod(counts[letter] for letter in letters), signs.get(name, {}))
+        if name == "p":
+            table = _about_defaults(table, spec.parameters)
         if name in ("lam", "bounds"):  # so that some bounds hold nearly every control, and some hold none
             varied = table[: b - spec.regularising] if name == "bounds" else table
             varied *= 10.0 ** np.array(rng.sample([-1.5 + 2.0 * k / PLACES for k in range(PLACES)], PLACES))
@@ -121,6 +123,15 @@ def random_places(kernels: Kernels, seed: int = SEED) -> dict[str, Any]:
     if spec.has_cost and spec.control_set == "box" and not spec.switching:
         found["bounds"] = about_the_law(kernels, found)
     return found
+
+
+def _about_defaults(table: Array, parameters: Sequence[Variable]) -> Array:
+    """Parameters of size one in units of their defaults: any others need not be possible together.
+
+    Masses that are no masses make a nearly singular matrix of inertia, along whose elimination all digits are lost.
+    """
+    each = zip(table, parameters, strict=True)
+    return np.array([np.abs(row) * p.default if p.default else row for row, p in each]).reshape(table.shape)
 
 
 def about_the_law(kernels: Kernels, at: Mapping[str, Any]) -> tuple[Array, ...]:

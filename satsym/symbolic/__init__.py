@@ -1,6 +1,6 @@
 """Reasoning with sympy: from declared physics and a cost to a derivation whose every step was checked."""
 
-from satsym.spec import Variable
+from satsym.spec import ModeGroup, Variable
 from satsym.symbolic.derivation import Check, Conclusion, Derivation, DerivationError, Equation, Step
 from satsym.symbolic.kinds.about_rest import AboutRest
 from satsym.symbolic.kinds.bodies import CLOCK, moving
@@ -38,6 +38,7 @@ __all__ = [
     "Free",
     "Gyrostat",
     "Linearised",
+    "ModeGroup",
     "Model",
     "Motor",
     "Multibody",

@@ -9,6 +9,9 @@ import sympy as sp
 
 from satsym.symbolic.model import Model, symbols_of, t
 
+STEEP = 20
+"""Largest number in an exponent that is multiplied out."""
+
 
 def total_derivative(expression: sp.Expr | sp.Matrix, rates: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr | sp.Matrix:
     """d/dt of an expression, or entry by entry of a matrix, along a motion with the given rates: the chain rule."""
@@ -31,12 +34,17 @@ def gradient(expression: sp.Expr, symbols: Iterable[sp.Symbol]) -> list[sp.Expr]
     return [sp.diff(expression, s) for s in symbols]
 
 
-@lru_cache(maxsize=4096)  # problems of one model ask alike
 def simplified(expression: sp.Expr) -> sp.Expr:
     """As by sympy, which need not be asked where only sums of products of symbols and their powers are left.
 
     Of those there is but one way to write them; squares of cosines are put in terms of sines to get there.
     """
+    named, steep = _steep_named(expression)
+    return _simplified(named).xreplace(steep)
+
+
+@lru_cache(maxsize=4096)  # problems of one model ask alike
+def _simplified(expression: sp.Expr) -> sp.Expr:
     expanded = _expand(expression)
     squares = {
         p: (1 - sp.sin(p.base.args[0]) ** 2) ** (p.exp // 2) * p.base ** (p.exp % 2)
@@ -55,10 +63,22 @@ def vanishes(expression: sp.Expr) -> bool:
 
 def tidy(expression: sp.Expr, by: Sequence[sp.Symbol] = ()) -> sp.Expr:
     """The expression as a sum over the symbols it is linear in, each with its shortest coefficient."""
-    expanded = _expand(sp.sympify(expression))
+    named, steep = _steep_named(sp.sympify(expression))
+    expanded = _expand(named)
     collected = sp.collect(expanded, list(by), evaluate=False) if by else {sp.Integer(1): expanded}
     parts = [factor * _shortest(coefficient) for factor, coefficient in collected.items()]
-    return sp.Add(*parts)
+    return sp.Add(*parts).xreplace(steep)
+
+
+def _steep_named(expression: sp.Expr) -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]]:
+    """The expression with symbols for steep exponentials, and these: to sympy e^(500 h) is a 500th power of e^h."""
+    exponentials = [e for e in expression.atoms(sp.exp) if any(abs(c) > STEEP for c in _coefficients(e))]
+    named = {e: sp.Dummy(f"e{k}", positive=True) for k, e in enumerate(sorted(exponentials, key=sp.default_sort_key))}
+    return expression.xreplace(named), {dummy: e for e, dummy in named.items()}
+
+
+def _coefficients(exponential: sp.exp) -> Iterable[sp.Expr]:
+    return exponential.args[0].as_coefficients_dict().values()
 
 
 @lru_cache(maxsize=4096)  # problems of one model ask alike

@@ -5,12 +5,16 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import lru_cache
+from types import MappingProxyType
 from typing import Any, TypeAlias
 
 import mpmath as mp
 import sympy as sp
 
+from satsym.spec import Variable
 from satsym.symbolic.algebra import vanishes
 from satsym.symbolic.derivation import Check, DerivationError
 from satsym.symbolic.minimisers import MPMATH_FUNCTIONS
@@ -18,18 +22,50 @@ from satsym.symbolic.minimisers import MPMATH_FUNCTIONS
 DIGITS = 30
 LIMIT = 1e-15
 """Allowed relative deviation: far above what 30 digits and numeric differentiation leave, far below a mistake."""
+FAINT = 1e-10
+"""What is smaller is compared as if it were that large: it may be what numbers of size one leave when they cancel."""
 POINTS = 5
+TRIES = 60
+"""Random points at most, of which those are looked at where functions have numbers of a moderate size."""
+HUGE = 1e12
+"""Where numbers are larger, what is lost by cancellation may exceed :data:`LIMIT`."""
+
+_TYPICAL: ContextVar[Mapping[str, tuple[float, float]]] = ContextVar("typical", default=MappingProxyType({}))
 
 Point: TypeAlias = dict[sp.Symbol, Any]
 
 
+@contextmanager
+def drawn_from(variables: Iterable[Variable]) -> Iterator[None]:
+    """Draw random points in here from where these variables typically lie.
+
+    As soon as one of them says so, those with a default are drawn about that: what they enter must fit together.
+    """
+    declared = list(variables)
+    ranges = {v.symbol: v.typical for v in declared if v.typical}
+    if ranges:
+        for v in declared:
+            if v.default and not v.typical:
+                ranges[v.symbol] = (0.5 * v.default, 1.5 * v.default)
+    token = _TYPICAL.set(ranges)
+    try:
+        yield
+    finally:
+        _TYPICAL.reset(token)
+
+
+def random_number(symbol: sp.Symbol, rng: random.Random) -> float:
+    """From where the symbol typically lies; else of size one, positive where the symbol is, and away from zero."""
+    size = rng.uniform(0.5, 1.5)
+    if symbol.name in (typical := _TYPICAL.get()):
+        low, high = typical[symbol.name]
+        return low + (size - 0.5) * (high - low)
+    return size if symbol.is_positive or rng.random() < 0.5 else -size
+
+
 def random_point(symbols: Iterable[sp.Symbol], rng: random.Random) -> Point:
-    """A generic point: numbers of size one, positive where the symbol is, and away from zero."""
-    point = {}
-    for symbol in sorted(symbols, key=lambda s: s.name):
-        size = mp.mpf(rng.uniform(0.5, 1.5))
-        point[symbol] = size if symbol.is_positive or rng.random() < 0.5 else -size
-    return point
+    """A generic point, a number for each symbol."""
+    return {symbol: mp.mpf(random_number(symbol, rng)) for symbol in sorted(symbols, key=lambda s: s.name)}
 
 
 def points(symbols: Iterable[sp.Symbol], seed: str, count: int = POINTS) -> Iterator[Point]:
@@ -65,8 +101,13 @@ def numeric_along(
 
 
 def deviation(found: Iterable[Any], expected: Iterable[Any]) -> float:
-    """Largest difference, relative to one plus the size of what was expected; NaN if any of them is."""
-    return _largest(abs(a - b) / (1 + abs(b)) for a, b in zip(found, expected, strict=True))
+    """Largest difference, relative to the size of what was expected and of the largest of it, but one at most.
+
+    NaN if any of them is.
+    """
+    pairs = list(zip(found, expected, strict=True))
+    unit = max(FAINT, min(1.0, _largest(abs(b) for _, b in pairs)))
+    return _largest(abs(a - b) / (unit + abs(b)) for a, b in pairs)
 
 
 def compare(
@@ -86,9 +127,21 @@ def compare(
     sides
         Point -> (numbers by the derived expressions, the same numbers by the other route).
     """
+    errors: list[float] = []
     with mp.workdps(DIGITS):
-        errors = [deviation(*sides(point)) for point in points(symbols, claim)]
-    return Check(claim, _largest(errors), limit)
+        for point in points(symbols, claim, TRIES):
+            found, expected = map(list, sides(point))
+            if not moderate(expected):
+                continue  # outside the domain, or where rounding hides what is to be compared
+            errors.append(deviation(found, expected))
+            if len(errors) == POINTS:
+                break
+    return Check(claim, _largest(errors) if errors else math.nan, limit)
+
+
+def moderate(values: Iterable[Any]) -> bool:
+    """Whether all of these are numbers of which 30 digits tell something."""
+    return all(abs(value) <= HUGE for value in values)
 
 
 def first_order_at_zero(
@@ -122,7 +175,8 @@ def never_below(
             deficits = [max(-m, mp.mpf(0)) if m == m else m for p in points(symbols, claim) for m in margins(p, rng)]
     except TypeError as error:  # mpmath does not order complex numbers
         raise DerivationError(
-            f"the check {claim!r} met values without an order, such as complex ones; declare what must be positive so"
+            f"the check {claim!r} met values without an order, such as complex ones; declare what must be positive so, "
+            "or say where the variables lie: Variable(..., typical=(low, high))"
         ) from error
     return Check(claim, _largest(deficits), LIMIT)
 
@@ -145,9 +199,13 @@ def partial(function: Callable[[Mapping[sp.Symbol, Any]], list[Any]], point: Poi
 
 
 def slopes(function: Callable[[Any], Sequence[Any]]) -> list[Any]:
-    """Numeric derivatives at zero of a vector function of one number, by central differences in high precision."""
+    """Numeric derivatives at zero of a vector function of one number, by central differences in high precision.
+
+    NaN where the function is so large that rounding hides how it changes.
+    """
     digits = mp.mp.dps
     with mp.workdps(3 * digits):
         h = mp.mpf(10) ** (-digits)
         above, below = function(h), function(-h)
-        return [(a - b) / (2 * h) for a, b in zip(above, below, strict=True)]
+        readable = h * mp.mpf(10) ** (2 * digits + digits // 3)
+        return [(a - b) / (2 * h) if abs(a) < readable else mp.nan for a, b in zip(above, below, strict=True)]

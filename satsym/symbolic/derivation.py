@@ -166,10 +166,13 @@ class Derivation:
         step = replace(step, checks=(*step.checks, *besides))
         for check in step.checks:
             if not check.passed:
-                raise DerivationError(
-                    f"{self.name}:{step.name} failed its check {check.claim!r}: "
-                    f"deviation {check.error:.2g}, allowed {check.limit:.0g}"
-                )
+                failed = f"{self.name}:{step.name} failed its check {check.claim!r}: "
+                if check.error != check.error:
+                    raise DerivationError(
+                        f"{failed}at random points of size one there are no numbers to compare; "
+                        "say where the variables lie: Variable(..., typical=(low, high))"
+                    )
+                raise DerivationError(f"{failed}deviation {check.error:.2g}, allowed {check.limit:.0g}")
         return replace(self, steps=(*self.steps, step))
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias
 
 import sympy as sp
 
-from satsym.spec import ControlSetKind, Variable
+from satsym.spec import ControlSetKind, ModeGroup, Variable
 from satsym.symbolic.sets import AdmissibleSet
 
 if TYPE_CHECKING:
@@ -123,6 +123,9 @@ class Model:
     plain_time: ClassVar[bool] = False
     """Whether time is a plain number even though other variables have units."""
 
+    along_chain: ClassVar[bool] = False
+    """Whether it can be derived from a motion whose rates have no closed form, but a chain that leads to them."""
+
     # What a kind of model says of itself; each has a default, so that a kind states only what it has.
 
     def steps(self) -> tuple[MaybeStep, ...]:
@@ -171,6 +174,10 @@ class Model:
     def followed(self) -> str:
         """The parameter over which equilibria of an attitude are followed; empty where it is not one attitude."""
         return ""
+
+    def mode_groups(self) -> tuple[ModeGroup, ...]:
+        """What the modes of small motions are called, by the states that have the largest part in them."""
+        return ()
 
     def rest(self, derived: Derivation) -> Rest | None:
         """What turns it where it rests in orbit, by its derivation; ``None`` where it is not one attitude."""

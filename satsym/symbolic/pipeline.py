@@ -10,10 +10,12 @@ from typing import Literal
 import sympy as sp
 
 from satsym.symbolic import dimensions
+from satsym.symbolic import notation as n
+from satsym.symbolic.checks import drawn_from
 from satsym.symbolic.declared import begin, refuse_foreign_symbols, refuse_misfits
 from satsym.symbolic.derivation import Derivation, DerivationError, resolved
 from satsym.symbolic.linear import regulator, stability, structure
-from satsym.symbolic.model import MaybeStep, Model, Problem
+from satsym.symbolic.model import MaybeStep, Model, Problem, variables_of
 from satsym.symbolic.motion import steps
 from satsym.symbolic.principle import effort, pontryagin, product, transversality
 from satsym.symbolic.switching import curve as switching_curve
@@ -99,7 +101,8 @@ def derive(subject: Problem | Model) -> Derivation:
     """
     problem, model = (subject, subject.model) if isinstance(subject, Problem) else (None, subject)
     try:
-        return _derived(model, problem)
+        with drawn_from(variables_of(model)):
+            return _derived(model, problem)
     except DerivationError as error:
         # what is refused far down, by a control set for instance, does not know of whom it speaks
         known = str(error).startswith((f"{subject.name}:", f"{model.name}:"))
@@ -109,6 +112,8 @@ def derive(subject: Problem | Model) -> Derivation:
 def _derived(model: Model, problem: Problem | None) -> Derivation:
     """The motion, then its outputs, then what follows from the cost."""
     derivation, known = _moving(model, problem, "steps")
+    if problem is not None:
+        _refuse_unsolved(problem.name, derivation)
     derivation = _with_quantities(derivation)
     return _taken(derivation, known, (*OUTPUTS, *_principle(derivation)))[0]
 
@@ -125,8 +130,24 @@ def _moving(
     derivation = begin(model, problem)
     refuse_foreign_symbols(derivation)
     if origin := model.origin():
-        derivation = replace(derivation, original=_motion_of(_Same(origin)))
+        derivation = replace(derivation, original=(original := _motion_of(_Same(origin))))
+        if not model.along_chain:
+            _refuse_unsolved(model.name, original)
     return _taken(derivation, dimensions.declared(derivation), steps)
+
+
+def _refuse_unsolved(name: str, motion: Derivation) -> None:
+    """Refuse to go on from rates without a closed form, whose symbols would be differentiated as if they were constant.
+
+    A model alone does not go on from its own: its kernels follow and differentiate the chain that leads to them.
+    """
+    rates = motion.step("first_order").equations
+    unsolved = [e.name for e in rates if any(map(n.is_solved, e.rhs.free_symbols))]
+    if unsolved:
+        raise DerivationError(
+            f"{name}: the rates of {', '.join(unsolved)} have no closed form short enough to be differentiated; "
+            "linearise the bodies first, with AboutRest(of=...), or state fewer of them"
+        )
 
 
 @dataclass(frozen=True, eq=False)

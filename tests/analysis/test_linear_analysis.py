@@ -249,6 +249,13 @@ def test_a_model_without_an_equilibrium_says_so():
         linearise(falling)
 
 
+def test_a_model_that_rests_for_an_instant_has_no_equilibrium():
+    model = pendulum()
+    forced = {"dynamics": lambda t, x, u, p: (x[1], -np.sin(x[0]) + np.sin(t) + (u[0] if u else 0.0))}
+    with pytest.raises(BadInput, match=r"rests at \(0, 0\) only at t = 0, which is no equilibrium; state a reference"):
+        linearise(replace(model, functions=model.functions | forced))
+
+
 def test_coefficients_that_depend_on_time_decide_nothing():
     model = pendulum()
     swinging = {"jacobian_x": lambda t, x, u, p: (0.0, 1.0, -1.0 - 0.5 * np.sin(t), 0.0)}

@@ -8,6 +8,8 @@ import pytest
 import sympy as sp
 
 from satsym import auditing as audit
+from satsym.auditing.causes import findings
+from satsym.report.terminal.audit import audit_text
 from tests.support import its_claim_routes as claims
 from tests.support import its_routes as by_hand
 from tests.support import its_sweep_routes as sweeps
@@ -28,6 +30,8 @@ LETTERS = {
     "lambda1": ("lam", "lambda1"),
     "theta": ("theta", "omega*t"),
     "u1": ("r_dot", "u1"),
+    "f": ("f1", "f2"),
+    "x": ("r", "u1"),
 }
 returned = claims.returned("r", "r_dot", "theta_dot")
 
@@ -42,7 +46,10 @@ ROUTES: dict[str, dict[str, Route]] = {
         "section 2.3.3 coverage": claims.polar_caps,
         "section 1.1 gravity": claims.gravity,
         "section 2.4 gravity": claims.gravity,
+        "section 2.4.3 reference": by_hand.one_force_alone,
         "section 2.7 type 5, start": by_hand.varied_start,
+        "section 3.2 eigenvalues decide": claims.driven_oscillator,
+        "section 4.1.1 characteristic function": by_hand.matrix_itself,
         **{f"2.19 {part}": sweeps.inconsistent for part in ("k2", "k3", "k4", "order")},
         "section 4.1 equilibrium": by_hand.steady_motion,
         "4.19": by_hand.from_zero_differences,
@@ -52,7 +59,13 @@ ROUTES: dict[str, dict[str, Route]] = {
         "4.27": by_hand.angular_rate,
         "section 4.2 weights": units("newton*s*s/m", "joule/(m/s**2)**2/s"),
         "section 4.2 bounds": claims.unreachable,
+        "section 4.2 aim": claims.left_alone,
         "section 4.2 reference": claims.beyond_the_last,
+        "section 4.3 H* within the bounds": by_hand.beyond_the_bounds,
+        "section 4.4 reference, costates": by_hand.two_of_four,
+        "section 4.5 reference": by_hand.one_force_alone,
+        "section 4.5 within 60 s": claims.too_fast,
+        "figure 4.13 reference": claims.other_weights,
         "4.28": by_hand.thesis_hamiltonian,
         "4.35": by_hand.state_equation,
         "section 4.4 truncation error": sweeps.fifth_power,
@@ -90,6 +103,7 @@ ROUTES: dict[str, dict[str, Route]] = {
         "appendix A force": claims.force,
         "appendix B u2s": sweeps.least_squares,
         "appendix B while": sweeps.backward_test,
+        "appendix B oldu1": sweeps.guess_for_ever,
         **{f"appendix B initial, {v}{k}": sweeps.line_of_the_listing for v in "abed" for k in (2, 3, 4)},
         **{f"appendix B state, k{k}_x{i}s": sweeps.line_of_the_listing for i in range(1, 5) for k in (2, 3, 4)},
         **{f"appendix B costate, k{k}_l{i}": sweeps.line_of_the_listing for i in (1, 2, 4) for k in (2, 3, 4)},
@@ -108,11 +122,17 @@ ROUTES: dict[str, dict[str, Route]] = {
         "II (15) start": by_hand.varied_start,
         **dict.fromkeys(("II (19)", "II (20)", "II (21)", "section II.D order"), sweeps.inconsistent),
         "III (12)": by_hand.angular_rate,
+        "section III.A characteristic function": by_hand.matrix_itself,
+        "section III.A theorems": claims.no_theorems,
         "section III.D bounds": claims.unreachable,
+        "section III.D aim": claims.left_alone,
+        "section III.D H*": by_hand.controls_left,
         "III (14)": by_hand.paper_hamiltonian,
         "III (18)": by_hand.state_equation,
         "section III.E step 2, length": claims.one_too_few,
         "section III.E reference, states": claims.one_too_early,
+        "section III.E reference, costates": claims.one_too_early,
+        "section III.F within 60 s": claims.too_fast,
         "section III.E step 4, before the states": sweeps.zero_over_zero,
         "section III.F x1(0)": by_hand.no_displacement,
         "section III.F x4(0)": by_hand.no_displacement,
@@ -120,7 +140,11 @@ ROUTES: dict[str, dict[str, Route]] = {
         "table 1": claims.halved_guess,
         "section III.F least J": claims.proportional,
         "section III.F u1 = u2 = 0.005": claims.halved_guess,
-        **{f"notation {letter}": by_hand.two_meanings(*pair) for letter, pair in LETTERS.items() if letter != "u1"},
+        **{
+            f"notation {letter}": by_hand.two_meanings(*pair)
+            for letter, pair in LETTERS.items()
+            if letter not in ("u1", "f", "x")
+        },
         "section IV 1, unstable": by_hand.defective,
         "section IV 3, returns": returned,
         "section IV 3, cost": claims.halved_guess,
@@ -133,13 +157,9 @@ CASES = [(document, key) for document, routes in ROUTES.items() for key in route
 
 
 @pytest.fixture(scope="module")
-def verdicts() -> dict[tuple[str, str], str]:
-    """Verdicts of the audit."""
-    found = {}
-    for document in ROUTES:
-        for row in audit.audit(audit.read(audit.locate(document))):
-            found[document, row.key] = row.verdict
-    return found
+def judged() -> dict[str, list[audit.Judged]]:
+    """What the audit finds."""
+    return {document: audit.audit(audit.read(audit.locate(document))) for document in ROUTES}
 
 
 @pytest.mark.parametrize(("document", "key"), CASES, ids=[f"{d}: {k}" for d, k in CASES])
@@ -148,14 +168,23 @@ def test_a_second_route_finds_fault_with_it_too(document, key):
 
 
 @pytest.mark.slow
-def test_the_audit_and_the_second_routes_agree(verdicts):
+def test_the_audit_and_the_second_routes_agree(judged):
     """No false alarm: whatever is not confirmed has a route, and the route reaches the same verdict."""
     for document, routes in ROUTES.items():
-        found = {key: v for (d, key), v in verdicts.items() if d == document and v != "confirmed"}
+        found = {row.key: row.verdict for row in judged[document] if row.verdict != "confirmed"}
         assert {key for key, verdict in found.items() if verdict == "illegible"} == UNREAD[document]
         assert set(found) - UNREAD[document] == set(routes)
         reached = {key: route(rows(document), key) for key, route in routes.items()}
         assert {key: found[key] for key in routes} == reached
+
+
+@pytest.mark.slow
+def test_the_report_of_the_thesis_can_be_read(judged, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "100")
+    assert len(findings(judged["its_thesis"])) <= 40
+    text = audit_text([audit.read(audit.locate("its_thesis"))], judged)
+    assert len(text.splitlines()) <= 150
+    assert max(map(len, text.splitlines())) <= 100
 
 
 @pytest.mark.parametrize("document", ROUTES)

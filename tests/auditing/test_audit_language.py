@@ -225,6 +225,12 @@ def test_both_engines_agree_whether_a_difference_vanishes(tree: Node) -> None:
     assert formulas.differs_somewhere(in_sympy(moved))
 
 
+@pytest.mark.parametrize("bound", ["2", "1.01", "0.5", "30"])
+def test_bounds_that_differ_are_told_apart(bound: str) -> None:
+    of = f"min({bound}, max(0, -x/(y*z))) - min(1, max(0, -x/(y*z)))"
+    assert formulas.differs_somewhere(in_sympy(expression(of)))
+
+
 @given(trees)
 def test_our_derivatives_are_those_of_sympy(tree: Node) -> None:
     by_sympy = sp.diff(in_sympy(tree), SYMBOLS["x"])

@@ -348,3 +348,14 @@ def test_outer_torques_load_the_wheel_whatever_the_law(found):
     assert abs(y[0, -1]) < 2e-3
     assert abs(y[2, -1]) > 0.1 * NOMINAL
     found("wrong", "conclusions desaturation")
+
+
+def test_the_gain_of_the_rate_is_called_that_of_the_angle(found):
+    s, K1, K2 = sp.symbols("s K1 K2")
+    law = sp.Poly(K1 * s + K2, s)
+    assert law.coeff_monomial(s) == K1  # the operator s is a rate
+    assert law.coeff_monomial(1) == K2
+    found("wrong", "9 gains")
+    t, size = sp.symbols("t size", positive=True)
+    assert sp.laplace_transform(size * sp.Heaviside(t), t, s, noconds=True) == size / s != 1 / s
+    found("notation", "12 unit step")

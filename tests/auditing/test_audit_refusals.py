@@ -54,14 +54,14 @@ def test_a_rank_without_a_value_is_told_in_one_line(tmp_path: Path, capsys: pyte
     assert "row 1: no point at which max(theta," in line
 
 
-ROW = 'item = "{}"\nkind = "claim"\nwhere = "here"\nsays = "so"\nprinted = "x"\nholds = "{}"\n'
+ROW = 'item = "{}"\nkind = "claim"\nwhere = "here"\nfrom = []\noriginal = "so"\nprinted = "{}"\n'
 
 
 @pytest.mark.parametrize(
     ("chapter", "complaint"),
     [
-        ("[[row]]\n" + ROW.format("2", "nothing()"), "ledger_2.toml:7: row 2: holds: "),
-        ("[[row]]\n" + ROW.format("1", "illegible()"), "ledger_2.toml:2: row 1: item: there is another row"),
+        ("[[row]]\n" + ROW.format("2", "nothing()"), "ledger_2.toml:7: row 2: printed: "),
+        ("[[row]]\n" + ROW.format("1", "1 == 1"), "ledger_2.toml:2: row 1: item: there is another row"),
         ("\n[symbols]\nx = 'm'\n", "ledger_2.toml:2: symbols: not in a chapter; put it in ledger.toml"),
         ("", "ledger_2.toml:1: row: no rows"),
         ("row = 1", "ledger_2.toml:1: row: no rows"),
@@ -72,7 +72,7 @@ def test_what_is_wrong_with_a_chapter_is_told_with_its_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], chapter: str, complaint: str
 ) -> None:
     pitch = whole("lapan_pitch")
-    rows = "".join(f"[[row]]\nlegible = false\n{ROW.format(item, '')}" for item in ("13", "1"))
+    rows = "".join(f"[[row]]\nlegible = false\n{ROW.format(item, '1 == 1')}" for item in ("13", "1"))
     (tmp_path / "ledger.toml").write_text(pitch[: pitch.index("[[row]]")] + rows, encoding="utf-8")
     (tmp_path / "ledger_2.toml").write_text(chapter, encoding="utf-8")
     assert main(["audit", str(tmp_path)]) == 3

@@ -422,3 +422,50 @@ def test_listings_of_maple(found, ledger):
     found("wrong", "appendix 4 names")
     assert lines["appendix 4 eigvals"].split("(")[0].split()[-1] not in ("eigenvals", "eigenvalues")
     found("wrong", "appendix 4 eigvals")
+
+
+def test_the_gain_for_omega_one_drives_a_geostationary_satellite_away(found):
+    omega = 2 * math.pi / DAY
+    radius = (MU / omega**2) ** (1 / 3)
+    gain = B2.T @ P_PRINTED
+
+    def deviation(gain, until):  # km and s, by the equations of motion themselves, from 1 km too high
+        def rates(t, y):
+            r, r_dot, angle, rate = y
+            x = np.array([r - radius, r_dot, radius * (angle - omega * t), radius * (rate - omega)])
+            thrust = -(gain @ x).item()
+            return [r_dot, r * rate**2 - MU / r**2, rate, (thrust - 2 * r_dot * rate) / r]
+
+        start = [radius + 1, 0, 0, omega]
+        return scipy.integrate.solve_ivp(rates, (0, until), start, rtol=1e-10, atol=1e-12).y[0] - radius
+
+    assert abs(deviation(gain, 40)[-1]) > 10
+    scaled = gain @ np.diag([omega**2, omega, omega**2, omega])
+    assert abs(deviation(scaled, 10 / omega)[-1]) < 0.01
+    found("wrong", "figure 3.3 geostationary", "section 4.A.5 geostationary")
+    for axis in ("appendix 6 time axis", "appendix 7 time axis"):
+        found("unit error", axis)
+    speed = radius * (omega + math.radians(1))
+    assert speed**2 / 2 - MU / radius > 0
+    found("wrong", "section 3.F x4, size")
+
+
+def test_an_offset_in_angle_alone_stays_as_it_is(found):
+    assert (scipy.linalg.expm(40 * A1) @ [0, 0, 1, 0]).tolist() == [0, 0, 1, 0]
+    assert abs((scipy.linalg.expm(40 * A1) @ np.ones(4))[2]) > 100
+    found("artefact", "figure 3.6 angle alone")
+
+
+def test_what_is_missing_in_tables_series_examples_and_listings(found, ledger):
+    assert len(np.roots([1, 4.0170, 8.5682, 8.391, 3])) + 1 == 5  # rows of an array, one more than the degree
+    found("wrong", "table 3.1 number of rows")
+    assert round(np.linalg.det([[-4, 3], [4, -2]])) == -4 != 16
+    found("wrong", "example 2.4 matrix of the minor")
+    assert math.e > 1 + 1 + 1 / 2
+    found("wrong", "2.39 for any f")
+    found("misprint", "2.40 reference")
+    (lines,) = (row["printed"] for row in ledger["row"] if row.get("part") == "function")
+    assert lines[0].startswith("function")
+    assert not any(line.split()[0] == "end" for line in lines)
+    assert any("@satel" in line for line in lines)
+    found("wrong", "appendix 5 function")

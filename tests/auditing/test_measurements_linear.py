@@ -150,3 +150,9 @@ def test_orbits_of_the_earth() -> None:
 def test_signs_and_calls_of_a_line() -> None:
     assert letters.count("plot([a[1], b)", "[") == 2
     assert letters.calls("lambda := eigvals(ABK(1))") == ["eigvals", "ABK"]
+
+
+def test_the_dual_is_observed_where_the_system_is_controlled() -> None:
+    whole = linear.inputs_of(linear.system("clohessy_wiltshire"), ["u1"])
+    assert linear.dual(linear.dual(whole)).part("B") == whole.part("B")
+    assert linear.rank(linear.observability(linear.dual(whole))) == linear.rank(linear.controllability(whole)) == 3

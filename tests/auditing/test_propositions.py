@@ -97,6 +97,32 @@ def test_an_answer_names_what_refutes_and_what_was_measured() -> None:
 def test_a_universal_that_no_member_meets_is_vacuous() -> None:
     assert answer("all(implies(m.n > 9, m.n == 1) for m in NUMBERS)").vacuous
     assert not answer("all(implies(m.n > 2, m.n == 3) for m in NUMBERS)").vacuous
+    assert answer("all(m.n == 1 for m in NUMBERS if m.n > 9)").vacuous
+
+
+@pytest.mark.parametrize(
+    ("text", "vacuous"),
+    [  # members that meet one condition need not meet the other, but each has to be met by one
+        ("all(implies(m.n < 2, m.n == 1) and implies(m.n > 2, m.n == 3) for m in NUMBERS)", False),
+        ("all(implies(m.n < 2, m.n == 1) and implies(m.n > 9, m.n == 3) for m in NUMBERS)", True),
+        ("all(implies(m.n < 2, m.n == 1) for m in NUMBERS) and all(implies(m.n > 9, m.n == 3) for m in NUMBERS)", True),
+        ("1 == 1 and all(implies(m.n > 9, m.n == 3) for m in NUMBERS)", True),
+        ("1 == 1 or all(implies(m.n > 9, m.n == 3) for m in NUMBERS)", False),
+        ("all(implies(m.n > 9, m.n == 3) for m in NUMBERS) or 1 == 1", False),
+        ("all(implies(m.n > 9, m.n == 3) for m in NUMBERS) or 1 == 2", True),
+        ("all(all(implies(m.n > k, m.n > 1) for m in NUMBERS) for k in [1, 9])", False),
+        ("any(implies(m.n > 9, m.n == 3) for m in NUMBERS)", False),
+    ],
+)
+def test_each_condition_of_a_sentence_has_to_be_met_by_something(text: str, vacuous: bool) -> None:
+    found = answer(text)
+    assert found.truth
+    assert found.vacuous is vacuous
+
+
+def test_what_is_vacuous_names_the_condition_that_nothing_meets() -> None:
+    found = answer("all(implies(m.n < 2, m.n == 1) and implies(m.n > 9, m.n == 3) for m in NUMBERS)")
+    assert found.reasons == ("no one of 3 numbers meets the condition m.n > 9",)
 
 
 @pytest.mark.parametrize(

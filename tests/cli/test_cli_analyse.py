@@ -12,13 +12,14 @@ import pytest
 import sympy
 
 from satsym import instance, kernels
+from satsym.analysis.linear.equilibrium import linearise
 from satsym.analysis.linear.structure import analyse
 from satsym.analysis.regulator.feedback import designed
 from satsym.cli import main
 from satsym.report.plots import responses, style, systems
 from satsym.report.plots.orbits import plane
+from satsym.report.results.exact import exact
 from satsym.report.results.linear import analysis_object, regulator_object
-from satsym.report.results.orbit import exact
 from satsym.report.terminal.linear import analysis_text, regulator_text
 from tests.house.test_floors import run_satsym
 
@@ -26,8 +27,9 @@ Run = Callable[..., tuple[int, str, str]]
 
 HEAD = "satsym schema command model instance status units "
 ANALYSIS_KEYS = (
-    HEAD + "equilibrium A B C eigenvalues jordan_blocks characteristic_polynomial routh stability controllability "
-    "observability exact orbit point floquet"
+    HEAD
+    + "equilibrium A B C eigenvalues modes jordan_blocks characteristic_polynomial routh stability controllability "
+    "observability exact exact_omitted orbit point floquet"
 ).split()
 REGULATOR_KEYS = (
     HEAD + "inputs K P riccati_residual riccati_error closed_loop_eigenvalues characteristic_polynomial routh "
@@ -92,7 +94,7 @@ def test_analyse_prints_the_agreed_object(run: Run) -> None:
 
 def test_the_exact_part_says_the_same_as_the_numbers() -> None:
     found = analyse(instance.load("uny-lqr"))
-    result = analysis_object(found, exact(found.about.model))
+    result = analysis_object(found, *exact(found.about))
     strings = result["exact"]
     assert strings is not None
     assert all(not isinstance(leaf, float) for leaf in leaves({k: strings[k] for k in ("A", "B", "C", "eigenvalues")}))
@@ -110,7 +112,16 @@ def test_the_exact_part_says_the_same_as_the_numbers() -> None:
 
 
 def test_models_that_are_not_linear_have_no_exact_part() -> None:
-    assert exact(kernels.load("polar_orbit")) is None
+    assert exact(linearise(kernels.load("polar_orbit"))) == (None, "")
+
+
+def test_an_exact_part_that_is_left_out_is_said_to_be_so(run: Run) -> None:
+    code, out, _ = run("analyse", "roll_yaw", "--json")
+    found = json.loads(out)
+    assert (code, found["exact"]) == (0, None)
+    assert "12 states and 17 letters" in found["exact_omitted"]
+    assert "17 letters" in " ".join(run("analyse", "roll_yaw")[1].split())
+    assert "letters" not in run("analyse", "clohessy_wiltshire")[1]
 
 
 def test_lqr_prints_the_agreed_object(run: Run) -> None:

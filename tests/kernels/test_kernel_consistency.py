@@ -104,7 +104,7 @@ def test_shipped_modules_agree_with_themselves_to_rounding(name: str):
     for seed in range(3):
         worst = consistency.worst(kernels, consistency.random_places(kernels, seed), seed)
         assert worst is not None
-        # 17 states along a chain of 460 operations lose two digits more by cancellation than the others do
+        # 17 states along a chain of 460 operations lose two digits more than the others by cancellation
         rounding = 0.1 if name == "gimballed_wheel" else 1e-3
         assert worst.deviation < rounding * consistency.LIMIT, worst
 

@@ -187,6 +187,13 @@ def not_astronomical_units(document: Rows, key: str) -> str:
     return "unit error" if "AU" in label and divided != {scipy.constants.au} and len(divided) == 1 else "confirmed"
 
 
+def never_shown(rows: Rows, key: str) -> str:
+    """The lines that draw are called from matplotlib, and none of them opens a window or writes a file."""
+    last = [line.split("(")[0] for line in whole(rows) if line.startswith("plt.")]
+    assert "plt.plot" in last
+    return "confirmed" if {"plt.show", "plt.savefig"} & set(last) else "wrong"
+
+
 def nothing_integrated(document: Rows, key: str) -> str:
     """The pieces import the solver and never call it, and give x and y no value outside functions."""
     lines = pieces(document)
@@ -291,6 +298,7 @@ ROUTES: dict[str, Route] = {
     "listing 7 decides": same_for_all_orbits,
     "listing 8 x and y": nothing_integrated,
     "listing 8 proves": drawn_before_judged,
+    "listing 8 shown": never_shown,
     **{f"{item} M_sun": mass_of_the_sun for item in ("listing 3", "program")},
     **{f"{item} stability": zero_is_called_stable for item in ("listing 7", "program")},
     **{f"{item} label": label_is_a_constant for item in ("listing 8", "program")},

@@ -120,9 +120,43 @@ def beyond_the_last(document: Rows, key: str) -> str:
 
 
 def one_too_early(document: Rows, key: str) -> str:
-    """The first of the state equations is the one whose left-hand side is the rate of x1."""
-    first = [item for item, row in document.items() if str(row.get("printed")).startswith("d_x1") and "III" in item]
-    return "misprint" if "III (14)" not in first and "III (15)" in first else "confirmed"
+    """The first of the equations is the one whose left-hand side is the rate of x1, or of lambda1."""
+    rate, number = ("d_lambda1", 18) if "costates" in key else ("d_x1", 14)
+    first = [item for item, row in document.items() if str(row.get("printed")).startswith(rate) and "III" in item]
+    said = f"({number})" in document[key]["original"]
+    return "misprint" if said and f"III ({number})" not in first and f"III ({number + 1})" in first else "confirmed"
+
+
+def no_theorems(document: Rows, key: str) -> str:
+    return "confirmed" if any(item.startswith("theorem") for item in document) else "misprint"
+
+
+def left_alone(document: Rows, key: str) -> str:
+    """J is a sum of squares, least where both controls are 0; then the satellite is far away after 60."""
+    return "wrong" if end_of_motion(0.0)[0] > 2.0 * REFERENCE["r"] else "confirmed"
+
+
+def driven_oscillator(document: Rows, key: str) -> str:
+    """x'' = -x + x'^3 has the eigenvalues +-i, and its energy grows at the rate x'^4."""
+    x = solve_ivp(lambda _, x: [x[1], -x[0] + x[1] ** 3], (0.0, 60.0), [0.1, 0.0], rtol=1e-9, atol=1e-12).y
+    assert np.allclose(np.linalg.eigvals([[0.0, 1.0], [-1.0, 0.0]]).real, 0.0)
+    return "wrong" if np.hypot(*x[:, -1]) > 1.1 * np.hypot(*x[:, 0]) else "confirmed"
+
+
+def too_fast(document: Rows, key: str) -> str:
+    """One degree a second at the distance of the orbit, in km/s, against what 1 km/s^2 adds in 60 s."""
+    radius = (MU * (DAY / (2 * math.pi)) ** 2) ** (1 / 3)
+    assert math.radians(1.0) * radius > 100.0 * math.sqrt(2 * MU / radius), "nor is it bound to the Earth"
+    return "wrong" if math.radians(1.0) * radius > 1.0 * 60.0 else "confirmed"
+
+
+def other_weights(document: Rows, key: str) -> str:
+    """Which instance the controlled motion of a figure is that of: in 4.5 c1 is 50, in 4.13 it is 10."""
+    cases = {
+        n: re.search(r"reference\('([\w-]+)'", document[f"figure {n} with control"]["printed"])[1]
+        for n in ("4.5", "4.13")
+    }  # type: ignore[index]
+    return "misprint" if cases["4.5"] != cases["4.13"] and "4.5" in document[key]["original"] else "confirmed"
 
 
 def gravity(document: Rows, key: str) -> str:

@@ -181,3 +181,36 @@ def two_systems(document: Rows, key: str) -> str:
 def two_meanings(first: str, second: str) -> Route:
     """A letter that stands for two expressions, which differ."""
     return lambda document, key: "confirmed" if same(sp.sympify(first), sp.sympify(second)) else "notation"
+
+
+def one_force_alone(document: Rows, key: str) -> str:
+    """A system in r and theta has two equations; the one that is named has the force of one direction only."""
+    named = re.search(r"\((2\.\d+)\)", document[key]["original"])[1]  # type: ignore[index]
+    lines = [row["printed"] for item, row in document.items() if item == named or item.startswith(f"{named} ")]
+    both = all(any(force in line for line in lines) for force in ("F_r", "F_theta"))
+    return "confirmed" if both else "misprint"
+
+
+def two_of_four(document: Rows, key: str) -> str:
+    first, last = re.findall(r"\(4\.(\d+)\)", document[key]["original"])
+    named = {document[f"4.{n}"]["printed"].split(" = ")[0] for n in range(int(first), int(last) + 1)}
+    return "confirmed" if named == {f"d_lambda{i}" for i in range(1, 5)} else "misprint"
+
+
+def matrix_itself(document: Rows, key: str) -> str:
+    """What is printed below has four rows and no lambda."""
+    own = document["section 4.1.1 A" if "4.1.1" in key else "III (1)"]["printed"]
+    found = sp.Matrix([[sp.sympify(entry) for entry in line] for line in own])
+    return "notation" if found == A and found.charpoly(lam).as_expr().has(lam) else "confirmed"
+
+
+def beyond_the_bounds(document: Rows, key: str) -> str:
+    """At lambda2 = 3 the smallest of H over controls from 0 to 1 is not what (4.31) says."""
+    point = {x1: 1, x2: 0, x3: 0, x4: 0, c1: 1, c2: 1, sigma: 1, omega: 1, l1: 0, l2: 3, l3: 0, l4: 0}
+    h = formula(document["4.28 first line"]).subs(point)
+    least = min(float(h.subs({u1: a, u2: b})) for a in np.linspace(0, 1, 21) for b in np.linspace(0, 1, 21))
+    return "wrong" if abs(float(formula(document["4.31"]).subs(point)) - least) > 1.0 else "confirmed"
+
+
+def controls_left(document: Rows, key: str) -> str:
+    return "notation" if formula(document["III (14)"]).free_symbols >= {u1, u2} else "confirmed"

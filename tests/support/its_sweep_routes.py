@@ -287,3 +287,12 @@ def backward_test(document: Rows, key: str) -> str:
     error = tol * (n + 1) * new - (n + 1) * (old - new)
     settled = tol * (n + 1) * 0.2 - 0.0
     return "wrong" if not error > tol and settled > tol else "confirmed"
+
+
+def guess_for_ever(document: Rows, key: str) -> str:
+    """The loop gone through twenty times with the law 0: with the last control for oldu1 it would come to 0."""
+    names = {"u1sb": np.zeros(3), "u2sb": np.zeros(3), "oldu1": np.ones(3), "oldu2": np.ones(3), "tol": 0.01}
+    for _ in range(20):
+        for line in document[key]["printed"]:
+            exec(python(line).replace("sum", "np.sum").replace("abs", "np.abs"), {"np": np}, names)  # noqa: S102, our own ledger
+    return "wrong" if np.allclose(names["u1"], 0.5) else "confirmed"

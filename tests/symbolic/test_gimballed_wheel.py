@@ -1,11 +1,16 @@
 """The satellite with a gimballed wheel: angular momenta by hand, known linear equations, what is kept."""
 
+from dataclasses import replace
+from importlib import import_module
+
 import numpy as np
 import pytest
 from scipy.integrate import DOP853
 
 from satsym import instance, kernels
 from satsym.status import BadInput
+from satsym.symbolic import DerivationError, ModeGroup, Problem, Reduced, derive, symbols_of
+from satsym.symbolic.kinds import kane
 
 NUMBERS = {"I_x": 11.0, "I_y": 7.0, "I_z": 9.0, "w0": 0.6, "I_wx": 0.4, "I_wy": 0.7, "nominal_speed": 5.0}
 NUMBERS |= {"K_x": 1.3, "K_z": 1.7, "D_x": 0.3, "D_z": 0.2, "J_x": 0.9, "J_y": 0.8, "J_z": 0.7}
@@ -204,3 +209,24 @@ def test_numbers_that_no_satellite_has_are_refused_with_the_reason(tmp_path, nam
         instance.load(path)
     path.write_text("\n".join([*lines[: -len(NUMBERS)], *(f"{key} = {number}" for key, number in NUMBERS.items())]))
     assert instance.load(path).parameters[0] == NUMBERS["I_x"]
+
+
+@pytest.mark.parametrize("kind", ["problem", "reduced"])
+def test_what_would_differentiate_rates_without_a_closed_form_is_refused(monkeypatch, kind):
+    bodies = import_module("satsym.derivations.gimballed_wheel").gyrostat
+    monkeypatch.setattr(kane, "LONG", 20)  # so that a small model, too, has a chain
+    declared = {"states": bodies.states, "controls": bodies.controls, "parameters": bodies.parameters}
+    if kind == "problem":
+        cost = sum(u**2 for u in symbols_of(bodies.controls))
+        asked = Problem(name="costly", title="costly", model=bodies, running_cost=cost)
+    else:
+        asked = Reduced(name="costly", title="costly", of=bodies, **declared)
+    with pytest.raises(DerivationError, match=r"costly: the rates of w_x, w_y, w_z have no closed form.*AboutRest"):
+        derive(asked)
+
+
+def test_a_mode_named_by_what_the_model_does_not_have_is_refused():
+    bodies = import_module("satsym.derivations.gimballed_wheel").gyrostat
+    for group in (ModeGroup("sway", ("phi", "eta")), ModeGroup("sway", ("phi",), vanishing="eta")):
+        with pytest.raises(DerivationError, match="sway"):
+            derive(replace(bodies, modes=(group,)))

@@ -83,7 +83,8 @@ def linearise(subject: Kernels | Instance) -> Linearisation:
     Raises
     ------
     BadInput
-        If the model has no reference, and no equilibrium is found from the initial state (or from zero).
+        If the model has no reference, and no equilibrium is found from the initial state (or from zero), or it rests
+        there for an instant only.
     """
     if isinstance(subject, Kernels):
         model, p, t0, where = subject, _defaults(subject), 0.0, subject.spec.name
@@ -119,6 +120,11 @@ def linearise(subject: Kernels | Instance) -> Linearisation:
     )
     unit = scaled(found.system)
     times = [t0 + ahead / (unit.rate * unit.size) for ahead in LOOKED_AT]
+    if not (on_reference or spec.linear or all(_rests(model, p, unit, t, point) for t in times)):
+        raise BadInput(
+            f"{where}: the model rests at ({', '.join(f'{v:.6g}' for v in point)}) only at t = {t0:.6g}, which is no "
+            "equilibrium; state a reference in the model, a motion that it has without control"
+        )
     aside = [point + shift * (unit.states + np.abs(point)) for shift in SHIFTS]
     return replace(
         found,
@@ -146,6 +152,12 @@ def _same(unit: Scaled, found: Linearisation, t: float, x: Array) -> bool:
     A, B = jacobians(found.model, found.parameters, t, x)
     change = np.hstack([(A - found.system.A) * unit.states, (B - found.system.B) * unit.inputs])
     return bool((np.abs(change) / unit.states[:, None] <= SAME * unit.rate * unit.size).all())
+
+
+def _rests(model: Kernels, p: Sequence[float], unit: Scaled, t: float, x: Array) -> bool:
+    """Whether nothing moves there at that time."""
+    rates = np.array(model.dynamics(t, x.tolist(), (0.0,) * len(model.spec.controls), p))
+    return bool((np.abs(rates) <= SAME * unit.rate * unit.size * (unit.states + np.abs(x))).all())
 
 
 def equilibrium(model: Kernels, p: Sequence[float], start: Array, t: float = 0.0, where: str = "") -> Array:

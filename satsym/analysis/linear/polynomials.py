@@ -4,29 +4,28 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from math import comb
 
 import numpy as np
 
 from satsym.analysis.linear.ranks import controllability
 from satsym.analysis.linear.scaling import scaled
+from satsym.analysis.linear.spectrum import spectrum
 from satsym.analysis.linear.stability import shown
-from satsym.analysis.linear.system import LinearSystem, system
+from satsym.analysis.linear.system import LinearSystem
 from satsym.arrays import Array
 from satsym.status import BadInput
 
 ROUNDING = 1e-13
-"""A coefficient that is smaller than this, relative to the largest that a matrix of this size can have, is zero."""
+"""A coefficient that is smaller than this, relative to what it would be if nothing in it cancelled, is zero."""
 
 
 def characteristic(A: Array) -> Array:
     """Coefficients of det(s - A), highest power first, the first one 1; shape (n + 1,)."""
-    n, fitted = len(A), scaled(system(A))
-    size = float(np.linalg.norm(fitted.A, 2))
-    coefficients = np.poly(fitted.A).real
-    largest = np.array([comb(n, k) * size**k for k in range(n + 1)])
+    values = np.array([each.value for each in spectrum(A) for _ in range(each.algebraic)])
+    rate = float(np.abs(values).max()) or 1.0
+    coefficients, largest = np.poly(values / rate).real, np.poly(-np.abs(values / rate))
     coefficients[np.abs(coefficients) <= ROUNDING * largest] = 0.0
-    return coefficients * fitted.rate ** np.arange(n + 1)
+    return np.asarray(coefficients * rate ** np.arange(len(values) + 1))
 
 
 def companion_matrix(coefficients: Sequence[float] | Array) -> Array:

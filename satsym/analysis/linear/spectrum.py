@@ -4,6 +4,10 @@ An eigenvalue of algebraic multiplicity m comes out of any algorithm as m number
 error apart; their mean is accurate. Neighbours are therefore tried as one eigenvalue s, and kept together only if the
 null spaces of A - s, (A - s)^2, ... together have m dimensions. These dimensions also tell the Jordan blocks (Weyr's
 characteristic); they are found by deflation, never by forming powers (Golub and Wilkinson, SIAM Review 18, 1976).
+
+Not tried are numbers that stand alone: those which relative errors of the entries of A, and the rounding errors of the
+algorithm, move by much less than what parts them from all others. A slow motion beside a fast one, as that of a
+satellite beside its wheel's in sprung gimbals, has eigenvalues that are next to zero for the matrix, and well known.
 """
 
 from __future__ import annotations
@@ -27,6 +31,13 @@ SPREAD = 1e-12
 
 AXIS = 1e-11
 """A real or imaginary part below this, relative to the size of the matrix, is zero."""
+
+
+ENTRIES, ROUNDING = 1e-12, 1e-15
+"""Errors of the entries, relative to each, and of the algorithm, relative to the matrix."""
+
+ALONE = 30.0
+"""An eigenvalue that is so many times farther from all others than these errors move it stands alone."""
 
 
 @dataclass(frozen=True)
@@ -59,12 +70,40 @@ def spectrum(A: Array) -> tuple[Eigenvalue, ...]:
     """
     fitted = scaled(system(A))
     size = float(np.exp2(np.rint(np.log2(np.linalg.norm(fitted.A, 2) or 1.0))))  # a power of two adds no error
-    numbers = np.linalg.eigvals(fitted.A / size).astype(complex)
+    numbers, alone = _alone(fitted.A / size)
+    rest = numbers[~alone]
+    groups = [(complex(value), [1]) for value in numbers[alone]]
+    groups += _told_apart(_without(fitted.A / size, numbers, alone), rest, _tree(rest)) if len(rest) else []
     found = [
         Eigenvalue(_clean(value) * size * fitted.rate, tuple(sum(added > i for added in weyr) for i in range(weyr[0])))
-        for value, weyr in _told_apart(fitted.A / size, numbers, _tree(numbers))
+        for value, weyr in groups
     ]
     return tuple(sorted(found, key=lambda each: (-each.value.real, abs(each.value.imag), -each.value.imag)))
+
+
+def _alone(A: Array) -> tuple[NDArray[np.complexfloating], NDArray[np.bool_]]:
+    """Eigenvalues of a matrix of size 1, and which of them are simple beyond doubt."""
+    from scipy.linalg import eig
+
+    numbers, left, right = eig(A, left=True, right=True)
+    apart = np.abs(numbers[:, None] - numbers) + np.diag(np.full(len(A), np.inf))
+    entries = ENTRIES * np.einsum("ij,ik,kj->j", np.abs(left), np.abs(A), np.abs(right))
+    overlap = np.abs(np.einsum("ij,ij->j", left.conj(), right))
+    by_entries = np.divide(entries, overlap, out=np.where(entries > 0.0, np.inf, 0.0), where=overlap > 0.0)
+    # what is zero because of where A has no entries is so for the algorithm, too
+    by_both = by_entries + np.divide(ROUNDING, overlap, out=np.full(len(A), np.inf), where=overlap > ROUNDING)
+    far = apart > np.maximum(NULL, ALONE * np.maximum(by_both[:, None], by_entries))
+    return numbers, far.all(axis=1)
+
+
+def _without(A: Array, numbers: NDArray[np.complexfloating], alone: NDArray[np.bool_]) -> Array:
+    """The matrix on the invariant subspace of the eigenvalues that do not stand alone."""
+    if not alone.any():
+        return A
+    from scipy.linalg import schur
+
+    form, _, count = schur(A, sort=lambda re, im: not alone[np.abs(numbers - complex(re, im)).argmin()])
+    return np.asarray(form[:count, :count])
 
 
 def _tree(numbers: NDArray[np.complexfloating]) -> Any:

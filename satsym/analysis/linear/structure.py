@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from satsym.analysis.linear.equilibrium import Linearisation, linearise
+from satsym.analysis.linear.modes import Mode, modes
 from satsym.analysis.linear.polynomials import characteristic
 from satsym.analysis.linear.ranks import Reach, controllability, observability
 from satsym.analysis.linear.routh import Routh, routh
@@ -22,6 +23,7 @@ class Analysis:
     about: Linearisation
     """The system, and what it is the linearisation of."""
     eigenvalues: tuple[Eigenvalue, ...]
+    modes: tuple[Mode, ...]
     polynomial: Array
     routh: Routh
     stability: Stability
@@ -45,6 +47,7 @@ def analyse(subject: Kernels | Instance) -> Analysis:
     return Analysis(
         about=about,
         eigenvalues=eigenvalues,
+        modes=modes(about, eigenvalues),
         polynomial=polynomial,
         routh=routh(polynomial.tolist(), [each.value for each in eigenvalues for _ in range(each.algebraic)]),
         stability=_verdict(about, eigenvalues),

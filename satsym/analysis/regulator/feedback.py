@@ -135,7 +135,10 @@ def law(about: Linearisation, found: Regulator) -> Law:
             u[place] = -sum(k * d for k, d in zip(row, deviation, strict=True))
         return u
 
-    return Law("lqr", control)
+    linear = found.horizon is None and not on_reference and not about.point.any()
+    whole = np.zeros((len(zeros), len(point)))
+    whole[places] = found.K
+    return Law("lqr", control, whole if linear else None)
 
 
 def gain(about: Linearisation, found: Regulator) -> Callable[[float], list[list[float]]]:

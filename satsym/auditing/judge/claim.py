@@ -28,17 +28,18 @@ def judge(bench: Bench, row: Row) -> Outcome:
     reason = pages.answer(row.because) if row.because is not None and found.truth else None
     produced = pages.answer(row.produced) if row.produced is not None and found.truth is False else None
     deciding = next((answer for answer in (reason, produced) if answer is not None), found)
-    sound = not found.vacuous and (reason is None or reason.truth is not False)
+    sound = reason is None or reason.truth is not False
     said = "; ".join(dict.fromkeys((*found.reasons, *deciding.reasons)))
     return Outcome(
         row,
         found.truth,
         said,
         sound=sound,
+        vacuous=bool(found.truth) and found.vacuous,
         artefact=produced is not None and bool(produced.truth),
         near=found.miss is Fit.NEAR,
         unit=found.miss is Fit.UNIT,
-        remark="" if found.truth and sound else pages.explained(row.why),
+        remark="" if found.truth and sound and not found.vacuous else pages.explained(row.why),
         evidence={**found.evidence, **deciding.evidence},
     )
 

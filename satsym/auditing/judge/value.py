@@ -115,7 +115,12 @@ def unit(bench: Bench, row: Row) -> Outcome:
     derived = library.written_dimension(found)
     right = printed == found
     remark = "" if right else sentences.wrong_unit(library.written_dimension(printed), derived)
-    return Outcome(row, right, derived, unit=not right, remark=remark)
+    lacks = {
+        base: power
+        for base in {**found, **printed}
+        if (power := found.get(base, Fraction(0)) - printed.get(base, Fraction(0)))
+    }
+    return Outcome(row, right, derived, unit=not right, remark=remark, lacks=library.written_dimension(lacks))
 
 
 def _dimension(text: str) -> dict[str, int | Fraction]:

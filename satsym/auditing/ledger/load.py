@@ -180,6 +180,9 @@ class _Reader:
         with self._telling("row", "from", index, key):
             if table.follows:
                 row = replace(row, follows=rows.follows(table, self._derived, self._known, scope))
+        with self._telling("row", "why", index, key):
+            if table.why:
+                row = replace(row, why=explanation(table.why, measurements.words(scope.meanings), own=True))
         return row
 
     def _claim(self, index: int, row: Row, scope: Scope) -> Row:
@@ -200,7 +203,7 @@ class _Reader:
             with self._telling("row", key if key in REASONS else "holds" if own else "printed", index, row.key):
                 found[key] = proposition(str(text), words, own=own) if text else None
         with self._telling("row", "why", index, row.key):
-            found["why"] = explanation(table.why, words)
+            found["why"] = explanation(table.why, words, own=own)
         with self._telling("row", "from", index, row.key):
             if isinstance(table.follows, str) and table.follows:
                 raise BadInput('write the keys of the rows that it is drawn from as a list, such as ["2.19", "2.20"]')

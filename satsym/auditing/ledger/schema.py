@@ -57,7 +57,7 @@ class RowTable(Table, frozen=True, rename={"follows": "from"}):
 
     Of a claim, ``printed`` is the proposition, ``because`` the reason that the document gives, ``from`` the rows that
     it is drawn from, and ``produced`` what tells that the printed algorithm brings it about, if the problem does not.
-    ``why`` is a sentence for people, with measured terms in braces, that explains a claim which is not confirmed.
+    ``why`` is a sentence for people, with measured terms in braces, that explains why it is not confirmed.
     """
 
     item: Text
@@ -77,6 +77,17 @@ class RowTable(Table, frozen=True, rename={"follows": "from"}):
     columns: Texts = ()
     inputs: Formulas = {}
     legible: Flag = True
+
+
+class ContentsTable(Table, frozen=True):
+    """What a text has, by kind: name -> the row that has it, or ``none: `` and the reason why it needs none."""
+
+    text_digest: Text
+    formulas: Formulas = {}
+    figures: Formulas = {}
+    tables: Formulas = {}
+    sections: Formulas = {}
+    sentences: Formulas = {}
 
 
 KINDS: tuple[str, ...] = get_args(Kind)

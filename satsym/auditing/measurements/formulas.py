@@ -6,6 +6,7 @@ from typing import Any
 
 from satsym.auditing.measurements import measurement
 from satsym.auditing.propositions.values import is_exact
+from satsym.auditing.quantities import Quantity
 from satsym.formula import reading
 from satsym.formula.tree import Equality, symbols
 from satsym.status import BadInput
@@ -65,4 +66,8 @@ def _letter(of: Any, by: Any) -> Any:
 def _exact(value: Any) -> Any:
     from satsym.symbolic.lookup import formulas
 
+    if isinstance(value, Quantity):
+        if value.dimension:
+            raise BadInput(f"{value} is no plain number; divide it by its unit")
+        value = value.value
     return formulas.exact(value)

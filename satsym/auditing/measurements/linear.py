@@ -47,6 +47,13 @@ def inputs_of(of: Any, inputs: Sequence[str]) -> Record:
 
 
 @measurement
+def dual(of: Any) -> Record:
+    """The system with A', C' and B' for A, B and C: inputs and outputs change places."""
+    whole = system_of(of)
+    return Record(f"the dual of {whole.name}", {"A": whole.part("A").T, "B": whole.part("C").T, "C": whole.part("B").T})
+
+
+@measurement
 def eigenvalues(of: Any) -> list[Any]:
     """All eigenvalues, each as often as it is a root of the characteristic polynomial; exact if the matrix is.
 

@@ -79,8 +79,8 @@ class Answer:
         Measured values by their terms.
     members
         Of the largest family that it was tried on.
-    vacuous
-        Whether it holds of a family only because no member meets its condition.
+    idle
+        Conditions in it that nothing meets, so that what they imply says nothing.
     miss
         How it fails where it does so by a last digit, or by the factor of a unit, alone.
     """
@@ -89,8 +89,13 @@ class Answer:
     reasons: tuple[str, ...] = ()
     evidence: Mapping[str, str] = field(default_factory=dict)
     members: int = 0
-    vacuous: bool = False
+    idle: frozenset[str] = frozenset()
     miss: Fit | None = None
+
+    @property
+    def vacuous(self) -> bool:
+        """Whether it holds, or a part of it does, only because nothing meets its condition."""
+        return bool(self.idle)
 
 
 class Evaluation:
@@ -147,7 +152,7 @@ class Evaluation:
             if name in CONNECTIVES:
                 first = self._judge(node.args[0], bound)
                 if name == "implies" and first.truth is False:  # what is implied need not have a value then
-                    return replace(first, truth=True, vacuous=True, miss=None)
+                    return replace(first, truth=True, idle=frozenset({_text(node.args[0])}), miss=None)
                 second = self._judge(node.args[1], bound)
                 return _implied(first, second) if name == "implies" else _equivalent(first, second)
         return self._leaf(node, bound)
@@ -196,20 +201,21 @@ class Evaluation:
             found = self._judge(node.elt, inner)
             found = replace(found, reasons=tuple(f"{reason} ({member})" for reason in found.reasons))
             if found.truth is (not universal):
-                return replace(found, members=max(total, found.members), vacuous=False)
+                return replace(found, members=max(total, found.members), idle=frozenset())
             answers.append(found)
         if any(answer.truth is None for answer in answers):
             open_ = next(answer for answer in answers if answer.truth is None)
             return Answer(None, open_.reasons, members=total)
-        vacuous = universal and bool(answers) and all(answer.vacuous for answer in answers)
+        idle = frozenset.intersection(*(answer.idle for answer in answers)) if answers else frozenset({_text(node)})
+        idle = idle if universal else frozenset()
         said = f"{'so' if universal else 'not so'} in all of {total} {of}" if total else "there is none"
-        if vacuous:
-            said = f"no one of {total} {of} meets the condition"
-        if not vacuous and 0 < total <= _TOLD:
+        if idle and total:
+            said = f"no one of {total} {of} meets the condition {' or '.join(sorted(idle))}"
+        if not idle and 0 < total <= _TOLD:
             evidence = {k: v for answer in answers for k, v in answer.evidence.items()}
             reasons = dict.fromkeys(reason for answer in answers for reason in answer.reasons)
             return Answer(universal, tuple(reasons), evidence, total)
-        return Answer(universal, (said,), {of: str(total)}, total, vacuous)
+        return Answer(universal, (said,), {of: str(total)}, total, idle)
 
     def _members(
         self, parts: list[ast.comprehension], bound: Mapping[str, Any]
@@ -340,10 +346,10 @@ def _unpacked(target: ast.expr, member: Any) -> dict[str, Any]:
 
 
 def _joined(answers: list[Answer], conjunction: bool) -> Answer:
-    """And, or of several."""
+    """And, or of several. Each part of an "and" has to say something; of an "or" one does."""
     deciding = [answer for answer in answers if answer.truth is (not conjunction)]
     if deciding:
-        first = deciding[0]
+        first = min(deciding, key=lambda answer: answer.vacuous)
         return replace(first, miss=first.miss if all(answer.miss is first.miss for answer in deciding) else None)
     undecided = [answer for answer in answers if answer.truth is None]
     if undecided:
@@ -351,11 +357,12 @@ def _joined(answers: list[Answer], conjunction: bool) -> Answer:
     together = {k: v for answer in answers for k, v in answer.evidence.items()}
     reasons = tuple(dict.fromkeys(reason for answer in answers for reason in answer.reasons))
     members = max(answer.members for answer in answers)
-    return Answer(conjunction, reasons, together, members, any(answer.vacuous for answer in answers))
+    idle = frozenset().union(*(answer.idle for answer in answers)) if conjunction else frozenset()
+    return Answer(conjunction, reasons, together, members, idle)
 
 
 def _denied(answer: Answer) -> Answer:
-    return replace(answer, truth=None if answer.truth is None else not answer.truth, vacuous=False, miss=None)
+    return replace(answer, truth=None if answer.truth is None else not answer.truth, idle=frozenset(), miss=None)
 
 
 def _implied(first: Answer, second: Answer) -> Answer:

@@ -123,7 +123,7 @@ def proposition(text: str, words: Words, *, own: bool = False) -> Proposition:
     return Proposition(text, tree, tuple(dict.fromkeys(keys_in(tree))), tuple(check.symbols))
 
 
-def explanation(text: str, words: Words) -> tuple[str | Proposition, ...]:
+def explanation(text: str, words: Words, *, own: bool = False) -> tuple[str | Proposition, ...]:
     """A sentence with terms in braces: texts, and the terms between them, read.
 
     Raises
@@ -134,7 +134,7 @@ def explanation(text: str, words: Words) -> tuple[str | Proposition, ...]:
     parts = _BRACES.split(text)
     if any(brace in part for part in parts[::2] for brace in "{}"):
         raise BadInput("a brace stands alone; write a term between { and }")
-    return tuple(proposition(part, words) if k % 2 else part for k, part in enumerate(parts) if part)
+    return tuple(proposition(part, words, own=own) if k % 2 else part for k, part in enumerate(parts) if part)
 
 
 def is_proposition(text: str) -> bool:

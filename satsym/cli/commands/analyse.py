@@ -55,7 +55,7 @@ def analyse(subject: str, as_json: bool, out: Path | None, plot: bool) -> ExitCo
     saved: list[Path] = []
     if as_json or folder is not None:
         result = examination_object(given, found, orbit, attitudes=resting)
-        saved = save(folder, result, _pictures(found, orbit, resting, _title(given)) if folder and plot else {})
+        saved = save(folder, result, _pictures(given, found, orbit, resting) if folder and plot else {})
     if as_json:
         emit_json(result)
     else:
@@ -64,19 +64,18 @@ def analyse(subject: str, as_json: bool, out: Path | None, plot: bool) -> ExitCo
 
 
 def _pictures(
-    found: Analysis | None, orbit: Survey | None, resting: Attitudes | None, title: str
+    given: Instance | Kernels, found: Analysis | None, orbit: Survey | None, resting: Attitudes | None
 ) -> dict[str, Content]:
+    from satsym.instance import Instance
     from satsym.report.plots.systems import of_analysis, of_attitudes, of_orbit
 
     pictures = (of_analysis(found) if found else {}) | (of_orbit(orbit) if orbit else {})
-    return pictures | (of_attitudes(resting, title) if resting else {})
-
-
-def _title(given: Instance | Kernels) -> str:
-    """What was analysed, in a line."""
-    from satsym.instance import Instance
-
-    return given.title or given.model.spec.title if isinstance(given, Instance) else given.spec.title
+    if resting is None:
+        return pictures
+    spec = given.model.spec if isinstance(given, Instance) else given.spec
+    title = (given.title if isinstance(given, Instance) else "") or spec.title
+    unit = next(v.unit for v in spec.parameters if v.symbol == resting.parameter)
+    return pictures | of_attitudes(resting, title, unit)
 
 
 def _text(found: Analysis | None, orbit: Survey | None, resting: Attitudes | None) -> str:

@@ -7,8 +7,8 @@ from pathlib import Path
 import click
 
 from satsym.cli.options import json_option, language_option, place_option
-from satsym.cli.output import answer, emit, emit_json, live
-from satsym.status import ExitCode
+from satsym.cli.output import answer, live
+from satsym.status import BadInput, ExitCode
 
 EXAMPLES = """\b
 Examples:
@@ -16,7 +16,8 @@ Examples:
   satsym audit its_thesis --item 4.27   one equation, recomputed
   satsym audit --html audit.html        a page of all of them, for people
   satsym audit my_ledger.toml --latex report.tex --lang id
-  satsym audit --coverage               which numbers of the documents have no row"""
+  satsym audit --coverage               which numbers of the documents have no row
+  satsym audit its_thesis --coverage --text thesis.txt   what of a text has no row"""
 
 
 @click.command(epilog=EXAMPLES)
@@ -26,6 +27,8 @@ Examples:
 @place_option("--latex", metavar="FILE", help="Write a report for LaTeX, too.")
 @click.option("--item", "items", metavar="X", multiple=True, help="Judge this item alone; may be repeated.")
 @click.option("--coverage", is_flag=True, help="List the document's numbers that have no row; judge nothing.")
+@place_option("--text", metavar="FILE", help="With --coverage: measure against this text of the document.")
+@place_option("--keep", metavar="FILE", help="With --text: write what was found there, to be kept with the ledger.")
 @click.option("--rows", is_flag=True, help="Give every row that is not confirmed in full, after the findings.")
 @language_option
 @click.option("--fresh", is_flag=True, help="Compute anew, whatever is in the cache.")
@@ -36,6 +39,8 @@ def audit(
     latex: Path | None,
     items: tuple[str, ...],
     coverage: bool,
+    text: Path | None,
+    keep: Path | None,
     rows: bool,
     language: str,
     fresh: bool,
@@ -54,11 +59,17 @@ def audit(
     paths = [auditing.locate(name) for name in ledgers] if ledgers else auditing.shipped()
     read = [auditing.read(path) for path in paths]
     auditing.refuse_unknown_items(read, items)
+    if (text and not (coverage and len(read) == 1)) or (keep and not text):
+        raise BadInput("--text goes with --coverage and one LEDGER, and --keep with --text; give them together")
     if coverage:
-        if as_json:
-            emit_json(objects.coverage_object(read))
-        else:
-            emit(reporting.coverage_text(read))
+        from satsym.auditing.ledger import coverage as contents
+
+        found = [contents.measured(x, contents.text_of(text)) if text else contents.kept(x) for x in read]
+        if keep and found[0]:
+            from satsym.report.results.files import write_text
+
+            write_text(keep, contents.to_toml(found[0]))
+        answer(as_json, objects.coverage_object(read, found), lambda: reporting.coverage_text(read, found))
         return ExitCode.DONE
     with live() as line:
         judged = cache.audit_all(read, items, line.show, fresh=fresh)

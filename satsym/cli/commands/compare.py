@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from satsym.cli.options import json_option, out_option, plot_option
-from satsym.cli.output import answer, complain
+from satsym.cli.output import answer, complain, live
 from satsym.cli.saving import folder_for, save
 from satsym.status import ExitCode
 
@@ -47,7 +47,8 @@ def compare(subjects: tuple[str, ...], as_json: bool, ranged: bool, out: Path | 
     loaded = [instance.load(subject) for subject in subjects]
     folder = folder_for(loaded[0].name, "compare", out, plot)
     over = _range(loaded[0]) if ranged else None
-    cases = comparison.compare(loaded)
+    with live() as line:
+        cases = comparison.compare(loaded, line.show)
     result = comparison_object(cases, over)
     pages: dict[str, Content] = {}
     if folder and plot:

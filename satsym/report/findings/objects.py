@@ -7,6 +7,7 @@ from typing import Any
 
 from satsym.auditing import Judged, Ledger
 from satsym.auditing.causes import Finding, findings
+from satsym.auditing.ledger.coverage import KINDS, Coverage
 from satsym.report.findings.review import counts
 
 
@@ -23,8 +24,8 @@ def audit_object(judged: Sequence[Judged]) -> dict[str, Any]:
     }
 
 
-def coverage_object(ledgers: Sequence[Ledger]) -> dict[str, Any]:
-    """What of the documents has no row."""
+def coverage_object(ledgers: Sequence[Ledger], found: Sequence[Coverage | None]) -> dict[str, Any]:
+    """What of the documents, and of their texts as far as they are known, has no row."""
     return {
         "coverage": [
             {
@@ -32,9 +33,21 @@ def coverage_object(ledgers: Sequence[Ledger]) -> dict[str, Any]:
                 "numbers": len(x.document.numbers),
                 "rows": len(x.rows),
                 "missing": x.uncovered(),
+                **({} if text is None else {"text": _text_object(text)}),
             }
-            for x in ledgers
+            for x, text in zip(ledgers, found, strict=True)
         ]
+    }
+
+
+def _text_object(text: Coverage) -> dict[str, Any]:
+    names = ("found", "rows", "excused", "missing")
+    return {
+        "digest": text.digest,
+        "same": text.same,
+        "counts": {kind: dict(zip(names, text.counts(kind), strict=True)) for kind in KINDS},
+        "missing": {kind: text.missing(kind) for kind in KINDS},
+        "unquoted": [{"row": row, "original": piece} for row, piece in text.unquoted],
     }
 
 

@@ -109,15 +109,20 @@ class Review:
 
     def fact(self, row: Judged) -> str:
         """What is so instead: the sentence for people where there is one, else the diagnosis."""
-        if row.why:
+        if row.why and not (row.by_formula and row.form):
             return row.why
         if self.texts.language == "id" and row.diagnosis_id:
-            return row.diagnosis_id.removeprefix(f"{in_indonesian(DENIED)}: ")
-        return row.diagnosis.removeprefix(f"{DENIED}: ")
+            said = row.diagnosis_id.removeprefix(f"{in_indonesian(DENIED)}: ")
+        else:
+            said = row.diagnosis.removeprefix(f"{DENIED}: ")
+        return f"{said} {row.why}".rstrip()
 
     def brief(self, found: Finding) -> str:
-        """The first sentence of what is wrong, without its end."""
-        return _first_sentence(next((row.why for row in found.places if row.why), self.fact(found.places[0])))
+        """The first sentence of what is wrong, without its end; of few places that differ, that of each."""
+        said = list(dict.fromkeys(_first_sentence(row.why) for row in found.places if row.why))
+        if len(said) > _PLACES:
+            return said[0]
+        return ". ".join(said) or _first_sentence(self.fact(found.places[0]))
 
     @cached_property
     def summary(self) -> list[str]:
@@ -153,14 +158,17 @@ class Review:
             falls = self._say("falls", len(falling))
             said.append(self._say("fall", total, reasons=reasons, falling=falls))
         if standing:
-            reason = f", {self.texts.get('audit', 'other_reason')}"
             named = [f"{_quoted(row)} ({row.key})" if len(standing) <= _QUOTES else row.key for row in standing]
-            parts = [
-                f"{name}{reason if row.verdict == 'unsound' else ''}" for name, row in zip(named, standing, strict=True)
-            ]
+            parts = [f"{name}{self._reserve(row)}" for name, row in zip(named, standing, strict=True)]
             key, number = ("stand", len(standing)) if causes else ("all_stand", total)
             said.append(self._say(key, number, quoted="; ".join(parts)))
         return said
+
+    def _reserve(self, row: Judged) -> str:
+        """With what reserve a conclusion stands."""
+        if row.verdict != "unsound":
+            return ""
+        return f", {self.texts.get('audit', 'of_nothing' if row.vacuous else 'other_reason')}"
 
     def _fallen(self, found: Finding) -> str:
         """The first conclusion that a finding overturns, where it and the others stand, and why they fall."""
@@ -210,12 +218,13 @@ def items(judged: Sequence[Judged]) -> list[str]:
 
 def measured(row: Judged) -> str:
     """What was measured, where the sentence for people does not say it."""
-    return row.derived if row.why and row.derived not in row.why else ""
+    return row.derived if row.why and not row.by_formula and row.derived not in row.why else ""
 
 
 def correction(row: Judged) -> str:
     """What is right there, where what is said of it does not say so."""
-    return "" if row.why or row.derived in row.diagnosis else row.derived
+    said = row.why or row.diagnosis
+    return "" if (row.why and not row.by_formula) or row.derived in said else row.derived
 
 
 def is_put_in_words(row: Judged) -> bool:

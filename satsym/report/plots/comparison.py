@@ -45,7 +45,8 @@ def page(cases: Sequence[Case]) -> Figure | None:
     names = _shared(answered)
     law = next((case for case in answered if case.instance.classical and case.instance.classical.damping), None)
     rows = -(-len(names) // 2) + 1 + (law is not None)
-    title = ", ".join(case.instance.name for case in cases)
+    driven = all(case.instance.driven for case in cases)
+    title = cases[0].instance.title if driven else ", ".join(case.instance.name for case in cases)
     figure = style.titled(title, style.WIDTH, 0.9 + 2.35 * rows)
     grid = figure.add_gridspec(rows, 2)
     for k, variable in enumerate(names):
@@ -65,7 +66,7 @@ def page(cases: Sequence[Case]) -> Figure | None:
 
 
 def _shared(cases: Sequence[Case]) -> list[Variable]:
-    """States, controls and limited quantities that all cases have, those that follow a command or are limited first."""
+    """States, used controls and limited quantities of all cases; what follows a command or is limited comes first."""
     every = [
         {
             v.symbol: v
@@ -76,7 +77,8 @@ def _shared(cases: Sequence[Case]) -> list[Variable]:
     spec = cases[0].instance.model.spec
     limited = [name for case in cases for name in case.instance.limits]
     wanted = dict.fromkeys([spec.states[0].symbol, *spec.control_names, *(v.symbol for v in spec.states), *limited])
-    return [every[0][name] for name in wanted if all(name in each for each in every)]
+    idle = {name for name in spec.control_names if not any(case.signal(name).any() for case in cases)}
+    return [every[0][name] for name in wanted if name not in idle and all(name in each for each in every)]
 
 
 def _over_time(axes: Axes, cases: Sequence[Case], variable: Variable) -> None:
@@ -114,9 +116,9 @@ def _over_time(axes: Axes, cases: Sequence[Case], variable: Variable) -> None:
 
 
 def _until(case: Case) -> float:
-    """How long its transition takes, or all of its time where that is not known."""
-    found = case.metrics["transition_time"]
-    return found if np.isfinite(found) else float(case.times[-1] - case.times[0])
+    """How long its transition takes, or all of its time where that is not known, or less."""
+    found, whole = case.metrics["transition_time"], float(case.times[-1] - case.times[0])
+    return min(found, whole) if np.isfinite(found) else whole
 
 
 def _totals(figure: Figure, grid: Any, row: int, cases: Sequence[Case]) -> None:

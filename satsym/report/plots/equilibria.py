@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from satsym.report import display
 from satsym.report.plots import legend, style
 
 if TYPE_CHECKING:
@@ -21,8 +22,14 @@ LOOKS: dict[str, dict[str, Any]] = {
 }
 
 
-def page(found: Attitudes, title: str) -> Figure | None:
-    """Number above, angle between the body's y and the normal of the orbit below; nothing where they are not finite."""
+def page(found: Attitudes, title: str, unit: str = "") -> Figure | None:
+    """Number above, angle between the y of body and orbit below; nothing where they are not finite.
+
+    Parameters
+    ----------
+    unit
+        Of the parameter over which they are followed.
+    """
     if found.followed is None:
         return None
     values, sets = found.followed.values, found.followed.equilibria
@@ -31,8 +38,9 @@ def page(found: Attitudes, title: str) -> Figure | None:
     edges = [float(values[0]), *((c.below + c.above) / 2 for c in found.followed.changes), float(values[-1])]
     counts = [len(sets[0]), *(c.counts[1] for c in found.followed.changes)]
     above.stairs(counts, edges, baseline=None, color=style.INK, linewidth=1.4)
-    above.set_ylabel("equilibria")
-    above.set_ylim(0, None)
+    above.set_ylabel("number of equilibria")
+    above.set_ylim(0, 1.08 * max(counts))
+    above.set_yticks(sorted({0, *counts}))
     seen = []
     for kind, look in LOOKS.items():
         points = [
@@ -44,11 +52,14 @@ def page(found: Attitudes, title: str) -> Figure | None:
         if points:
             below.plot(*np.array(points).T, linestyle="none", **look)
             seen.append((legend.line(linestyle="none", **look), kind))
+    dotted: dict[str, Any] = {"color": style.INK, "linewidth": 0.6, "linestyle": (0, (2, 3))}
     for axes in (above, below):
         for change in found.followed.changes:
-            axes.axvline((change.below + change.above) / 2, color=style.INK, linewidth=0.6, linestyle=(0, (2, 3)))
-    below.set_ylabel("body's y from the orbit's (deg)")
-    below.set_xlabel(found.parameter)
+            axes.axvline((change.below + change.above) / 2, **dotted)
+    if found.followed.changes:
+        seen.append((legend.line(**dotted), "number or kinds change"))
+    below.set_ylabel("from the orbit's y to the body's [deg]")
+    below.set_xlabel(display.labelled(found.parameter, unit))
     below.set_yticks(range(0, 181, 30))
     legend.below(sheet, seen)
     return sheet

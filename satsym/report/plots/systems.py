@@ -53,11 +53,11 @@ def of_orbit(found: Survey, formats: Sequence[str] = ("png",)) -> Pictures:
     return _drawn(pictures, formats)
 
 
-def of_attitudes(found: Attitudes, title: str, formats: Sequence[str] = ("png",)) -> Pictures:
-    """Draw the equilibria of an attitude in orbit over a parameter: ``equilibria``."""
+def of_attitudes(found: Attitudes, title: str, unit: str = "", formats: Sequence[str] = ("png",)) -> Pictures:
+    """Draw the equilibria of an attitude in orbit over a parameter with a unit: ``equilibria``."""
     from satsym.report.plots import equilibria
 
-    return _drawn({"equilibria": lambda: equilibria.page(found, title)}, formats)
+    return _drawn({"equilibria": lambda: equilibria.page(found, title, unit)}, formats)
 
 
 def of_design(design: Design, formats: Sequence[str] = ("png",)) -> Pictures:

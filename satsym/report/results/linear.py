@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from satsym.report.results.certificate import plain
 
 if TYPE_CHECKING:
+    from satsym.analysis.linear.modes import Mode
     from satsym.analysis.linear.ranks import Reach
     from satsym.analysis.linear.routh import Routh
     from satsym.analysis.linear.spectrum import Eigenvalue
@@ -16,13 +17,13 @@ if TYPE_CHECKING:
 
 
 ANALYSIS = (
-    *("equilibrium", "A", "B", "C", "eigenvalues", "jordan_blocks", "characteristic_polynomial", "routh", "stability"),
-    *("controllability", "observability", "exact"),
+    *("equilibrium", "A", "B", "C", "eigenvalues", "modes", "jordan_blocks", "characteristic_polynomial", "routh"),
+    *("stability", "controllability", "observability", "exact", "exact_omitted"),
 )
 """The keys of an analysis, all ``None`` where there is nothing to linearise about."""
 
 
-def analysis_object(found: Analysis | None, exact: Mapping[str, Any] | None) -> dict[str, Any]:
+def analysis_object(found: Analysis | None, exact: Mapping[str, Any] | None, omitted: str = "") -> dict[str, Any]:
     """What ``satsym analyse --json`` prints; :mod:`satsym.report.results.orbit` has what it adds of an orbit.
 
     Parameters
@@ -31,6 +32,8 @@ def analysis_object(found: Analysis | None, exact: Mapping[str, Any] | None) -> 
         ``None`` for a motion that is near no reference and no equilibrium.
     exact
         The same by exact reckoning, as strings; ``None`` where there is none.
+    omitted
+        Why there is none, of a linear model.
     """
     if found is None:
         return dict.fromkeys(ANALYSIS)
@@ -43,6 +46,7 @@ def analysis_object(found: Analysis | None, exact: Mapping[str, Any] | None) -> 
             "B": system.B,
             "C": system.C,
             "eigenvalues": [eigenvalue_object(each) for each in found.eigenvalues],
+            "modes": [mode_object(each) for each in found.modes],
             "jordan_blocks": [{"eigenvalue": complex(value), "size": size} for value, size in blocks],
             "characteristic_polynomial": found.polynomial,
             "routh": routh_object(found.routh),
@@ -50,6 +54,7 @@ def analysis_object(found: Analysis | None, exact: Mapping[str, Any] | None) -> 
             "controllability": _reach(found.controllability, "by_input"),
             "observability": _reach(found.observability, "by_output"),
             "exact": exact,
+            "exact_omitted": omitted or None,
         }
     )
 
@@ -80,6 +85,22 @@ def routh_object(found: Routh) -> dict[str, Any]:
 def eigenvalue_object(found: Eigenvalue) -> dict[str, Any]:
     """An eigenvalue with its multiplicities."""
     return {"value": complex(found.value), "algebraic": found.algebraic, "geometric": found.geometric}
+
+
+def mode_object(found: Mode) -> dict[str, Any]:
+    """A mode: its eigenvalue (with its conjugate), what it is called, and what each state has of it.
+
+    Times are in the unit of time of the model, the natural frequency in radians by it.
+    """
+    return {
+        "eigenvalue": complex(found.eigenvalue.value),
+        "name": found.name or None,
+        "natural_frequency": found.frequency,
+        "damping_ratio": found.damping_ratio,
+        "period": found.period,
+        "time_constant": found.time_constant,
+        "participation": dict(found.participation),
+    }
 
 
 def _reach(found: Reach | None, key: str) -> dict[str, Any] | None:

@@ -8,6 +8,7 @@ from satsym.analysis.orbits.conic import TOLERANCE
 from satsym.report.display import length_unit, time_unit
 from satsym.report.results.certificate import plain
 from satsym.report.results.equilibria import attitudes_object
+from satsym.report.results.exact import exact
 from satsym.report.results.linear import analysis_object, eigenvalue_object
 from satsym.report.results.objects import head_about
 from satsym.status import Status
@@ -43,8 +44,9 @@ def examination_object(
     attitudes
         Its equilibria, where it is one attitude in orbit.
     """
-    algebra = exact(found.about.model, derivation) if found else None
-    whole = head_about("analyse", given, Status.CONVERGED) | analysis_object(found, algebra) | orbit_object(orbit)
+    algebra, omitted = exact(found.about, derivation) if found else (None, "")
+    linear = analysis_object(found, algebra, omitted)
+    whole = head_about("analyse", given, Status.CONVERGED) | linear | orbit_object(orbit)
     return whole | ({"equilibria": attitudes_object(attitudes)} if attitudes else {})
 
 
@@ -104,34 +106,3 @@ def _floquet(found: Floquet) -> dict[str, Any]:
 def _named(record: object, *names: str) -> dict[str, Any]:
     """What a record has under these names; ``None`` for each where there is no record."""
     return {name: None if record is None else getattr(record, name) for name in names}
-
-
-def exact(model: Kernels, derivation: Derivation | None = None) -> dict[str, Any] | None:
-    """What sympy finds about a linear model, as ``satsym analyse --json`` prints it.
-
-    Parameters
-    ----------
-    derivation
-        Of the model; by default that of a shipped one.
-
-    Returns
-    -------
-    dict or None
-        ``None`` for a model whose derivation is not at hand, because it was loaded by path, that is not linear with
-        constant coefficients, or whose entries are beyond exact linear algebra, or too many letters.
-    """
-    shipped = model.origin is not None and model.origin[1] is None
-    if not model.spec.linear or not (shipped or derivation):
-        return None
-    from satsym.status import BadInput
-    from satsym.symbolic import DerivationError
-    from satsym.symbolic.analysis import NotExact, analyse
-    from satsym.symbolic.analysis.listing import exact_object
-    from satsym.symbolic.linear.matrices import system_of, too_many_letters
-    from satsym.symbolic.lookup import library
-
-    try:
-        system = system_of(derivation or library.derivation(model.spec.name))
-        return None if too_many_letters(system) else exact_object(analyse(system))
-    except (BadInput, DerivationError, NotExact):
-        return None

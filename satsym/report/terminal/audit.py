@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from satsym.auditing import Judged, Ledger
 from satsym.auditing.causes import SILENT, Finding
+from satsym.auditing.ledger.coverage import KINDS, Coverage
 from satsym.report.findings.review import (
     IN_FULL,
     Review,
@@ -19,6 +20,7 @@ from satsym.report.findings.review import (
     recompute,
     where,
 )
+from satsym.report.terminal.table import table
 from satsym.report.texts import Texts, load
 from satsym.wording import printable
 
@@ -49,10 +51,10 @@ def audit_text(
     return "\n\n".join("\n".join(_document(review, rows)) for review in reviews)
 
 
-def coverage_text(ledgers: Sequence[Ledger]) -> str:
-    """What of the documents has no row, for the terminal."""
+def coverage_text(ledgers: Sequence[Ledger], found: Sequence[Coverage | None]) -> str:
+    """What of the documents, and of their texts as far as they are known, has no row, for the terminal."""
     lines = []
-    for ledger in ledgers:
+    for ledger, text in zip(ledgers, found, strict=True):
         missing, numbers = ledger.uncovered(), len(ledger.document.numbers)
         if not missing:
             lines.append(f"{ledger.document.key}: each of its {numbers} numbers has a row ({len(ledger.rows)} rows)")
@@ -60,7 +62,21 @@ def coverage_text(ledgers: Sequence[Ledger]) -> str:
             lines.append(
                 f"{ledger.document.key}: {len(missing)} of {numbers} numbers have no row: {', '.join(missing)}"
             )
+        lines += [] if text is None else _of_text(text)
     return "\n".join(lines)
+
+
+def _of_text(text: Coverage) -> Iterator[str]:
+    yield f"{_INDENT}text: sha256 {text.digest}"
+    if text.same is False:
+        yield f"{_INDENT}another text than the one that the kept list was made of; measured against this one"
+    heads = ("", "in the text", "with a row", "none needed", "missing")
+    yield from table([heads, *((kind, *map(str, text.counts(kind))) for kind in KINDS)], right=range(1, 5))
+    for kind in KINDS:
+        for name in text.missing(kind):
+            yield from _wrapped(f"no row: {kind}: {printable(name, 100)}", 1)
+    for row, piece in text.unquoted:
+        yield from _wrapped(f"not in the text: {row}: {printable(piece, 200)}", 1)
 
 
 def _document(review: Review, rows: bool) -> Iterator[str]:

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from satsym.analysis.linear.stability import UNSTABLE, shown
+from satsym.report.results.exact import omitted_because
+from satsym.report.results.unit_names import time_unit
 from satsym.report.terminal.solution import WIDTH, joined
 from satsym.report.terminal.table import figure, table
 
@@ -39,9 +41,11 @@ def analysis_text(found: Analysis, colour: bool = False) -> str:
             _matrix("B", system.B, system.states, system.inputs),
             _matrix("C", system.C, system.outputs, system.states),
             table([header, *eigenvalues], right=(1, 2)),
+            _mode_table(found),
             _polynomial("characteristic polynomial", found.polynomial, found.routh),
             _reach("controllability", "controllable", "inputs", found.controllability, len(system.states))
             + _reach("observability", "observable", "outputs", found.observability, len(system.states)),
+            wrapped(omitted_because(about)),
         ]
     )
 
@@ -93,6 +97,25 @@ def _matrix(letter: str, matrix: Array, rows: Sequence[str], columns: Sequence[s
         return []
     lines = [(name, *(figure(value) for value in row)) for name, row in zip(rows, matrix, strict=True)]
     return table([(letter, *columns), *lines], right=range(1, len(columns) + 1))
+
+
+def _mode_table(found: Analysis) -> list[str]:
+    """What each mode is, how long it takes and which states carry it."""
+    unit = time_unit(found.about.model.spec)
+    header = ("mode", "", f"period{unit and f' [{unit}]'}", "damping ratio", f"time constant{unit and f' [{unit}]'}")
+    rows = [
+        (
+            shown(each.eigenvalue.value),
+            each.name,
+            *(
+                "" if value is None else figure(value)
+                for value in (each.period, each.damping_ratio, each.time_constant)
+            ),
+            ", ".join(f"{name} {share:.0%}" for name, share in each.carried_by()),
+        )
+        for each in found.modes
+    ]
+    return table([(*header, "carried by"), *rows], right=(2, 3, 4))
 
 
 def _polynomial(what: str, coefficients: Array, array: Routh) -> list[str]:

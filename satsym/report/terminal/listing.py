@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from satsym.report.results.objects import bounded
@@ -13,11 +13,19 @@ if TYPE_CHECKING:
     from satsym.instance import Instance
 
 
+MOST = 4
+"""Names of a model that fit in its line; `satsym models MODEL` has all."""
+
+
 def models_text(specs: Iterable[ProblemSpec]) -> str:
     """A line for each model."""
     header = ("model", "states", "controls", "title")
-    rows = [(s.name, ", ".join(s.state_names), ", ".join(s.control_names), s.title) for s in specs]
+    rows = [(s.name, _few(s.state_names), _few(s.control_names), s.title) for s in specs]
     return "\n".join(table([header, *rows], indent=""))
+
+
+def _few(names: Sequence[str]) -> str:
+    return ", ".join(names) if len(names) <= MOST else f"{', '.join(names[: MOST - 1])} ... {len(names)} in all"
 
 
 def instances_text(instances: Iterable[Instance]) -> str:

@@ -15,11 +15,19 @@ from satsym.instance import Instance
 from satsym.kernels.core import Function
 from satsym.solvers.iteration import Limits
 from satsym.solvers.simulation import blocks
+from satsym.solvers.simulation.stability import fastest, stable_steps
 
 Control: TypeAlias = Callable[[float, Sequence[float]], Sequence[float]]
 
 MOST_EVALUATIONS = 100_000
-"""Of the rates in one run; a motion that needs more is on its way to a singularity."""
+"""Of the rates in one run, besides those that the fastest motion needs; what needs more is on its way to a singularity.
+"""
+
+FOR_STABILITY = 4
+"""Evaluations of DOP853 while the fastest motion decays by a factor e: twice what its stability needs."""
+
+MOST_FOR_SIZES = 2**17
+"""Steps in which it is found out how large states become."""
 
 EVERY = 256
 """Evaluations between two looks at the clock."""
@@ -33,6 +41,8 @@ class Law:
     """As results call it."""
     control: Control
     """The controls at a time and state, in the model's order; bounds are not its business."""
+    gain: Array | None = None
+    """K of shape (m, n), where the law is u = -K x."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,13 +86,14 @@ def simulate(
 
     f, p, within = dynamics or instance.model.dynamics, instance.parameters, instance.control_set.nearest()
     count = 0
+    most = MOST_EVALUATIONS + int(FOR_STABILITY * fastest(instance) * abs(nodes[-1] - nodes[0]))
 
     def rates(t: float, x: Array) -> Any:
         nonlocal count
         count += 1
         if limits is not None and count % EVERY == 0:
             limits.check()
-        if count > MOST_EVALUATIONS:
+        if count > most:
             return [math.nan] * len(x)
         try:
             state = x.tolist()
@@ -124,6 +135,8 @@ def simulate(
 
 def _sizes(instance: Instance, nodes: Array, limits: Limits | None) -> Array:
     """What counts as large for each state: how large it becomes without control."""
+    steps = stable_steps(instance, len(nodes) - 1, MOST_FOR_SIZES)
+    nodes = np.linspace(nodes[0], nodes[-1], steps + 1) if steps >= len(nodes) else nodes
     rest = np.zeros((len(instance.model.spec.controls), len(nodes)))
     x, _, _ = blocks.forward(instance.model, nodes, instance.initial, rest, rest[:, 1:], instance.parameters, limits)
     sizes = np.nan_to_num(np.abs(x), nan=0.0, posinf=0.0).max(axis=1)

@@ -15,6 +15,7 @@ from satsym.solvers.iteration import Limits, TimeUp, watched
 from satsym.solvers.simulation import blocks, closed_loop
 from satsym.solvers.simulation.balances import balances
 from satsym.solvers.simulation.closed_loop import Law
+from satsym.solvers.simulation.stability import propagated, stable_steps
 from satsym.status import BadInput, Status
 
 RICHARDSON = 2.0**4 - 1.0
@@ -49,6 +50,9 @@ to a singularity would take longest, to no avail.
 def simulate(instance: Instance, law: Law | None = None) -> Simulation:
     """Integrate the motion, twice, until the two runs agree: with RK4, or under a law with DOP853.
 
+    Where the given steps are too long for the fastest motion, a linear motion follows from e^(At), and any other is
+    integrated with DOP853.
+
     Parameters
     ----------
     instance
@@ -80,11 +84,15 @@ def simulate(instance: Instance, law: Law | None = None) -> Simulation:
 def _simulated(instance: Instance, law: Law | None, limits: Limits) -> Simulation:
     assert instance.tf is not None
     times = Grid.uniform(instance.t0, instance.tf, instance.solver.steps).nodes
-    if law is None:
+    fast = stable_steps(instance, instance.solver.steps, 2 * instance.solver.steps) > instance.solver.steps
+    exact = _propagated(instance, law, times) if fast else None
+    if exact is not None:
+        (x, u, error), steps, left = exact, len(times) - 1, False
+    elif law is None and not fast:
         x, steps, error = _uncontrolled(instance, limits)
         u, left = np.repeat(_control(instance), len(times), axis=1), False
     else:
-        run, error = _controlled(instance, law, times, limits)
+        run, error = _controlled(instance, law or _idle(instance), times, limits)
         x, u, steps, left = run.x, run.u, run.steps, run.left_domain
     status = Status.LEFT_DOMAIN if left else _status(instance, x, error, limits)
     return Simulation(
@@ -98,6 +106,24 @@ def _simulated(instance: Instance, law: Law | None, limits: Limits) -> Simulatio
         invariants=(_invariants(instance, times, x) if not u.any() else {}) | balances(instance, times, x, u),
         metrics=_metrics(instance, x) | {"steps": float(steps), "estimated_error": error},
     )
+
+
+def _propagated(instance: Instance, law: Law | None, times: Array) -> tuple[Array, Array, float] | None:
+    """States, controls and estimated error of a linear motion under a linear law; ``None`` for others."""
+    if law is not None and law.gain is None:
+        return None
+    found = propagated(instance, times, law.gain if law else None)
+    if found is None:
+        return None
+    x, coarser = found
+    u = np.repeat(_control(instance), len(times), axis=1) if law is None or law.gain is None else -law.gain @ x
+    return x, u, _difference(coarser, x)
+
+
+def _idle(instance: Instance) -> Law:
+    """No control."""
+    rest = [0.0] * len(instance.model.spec.controls)
+    return Law("none", lambda t, x: rest)
 
 
 def _control(instance: Instance) -> Array:

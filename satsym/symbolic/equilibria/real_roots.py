@@ -134,9 +134,17 @@ def _trace_form(monomials: Sequence[Monomial], matrices: Sequence[Any]) -> Any:
     of = {monomials[0]: np.array([[sp.QQ(int(i == k)) for i in range(len(monomials))] for k in range(len(monomials))])}
     for m in monomials[1:]:
         k = next(k for k, e in enumerate(m) if e)
-        of[m] = matrices[k].dot(of[(*m[:k], m[k] - 1, *m[k + 1 :])])
+        of[m] = _product(of[(*m[:k], m[k] - 1, *m[k + 1 :])], matrices[k])
     traces = np.array([sum(of[m].diagonal(), sp.QQ(0)) for m in monomials], dtype=object)
     return np.array([traces.dot(of[m]) for m in monomials], dtype=object)
+
+
+def _product(left: Any, right: Any) -> Any:
+    """Two matrices multiplied, the second of which is sparse: most products of basis monomials are monomials."""
+    found = np.full(left.shape, sp.QQ(0), dtype=object)
+    for column, (row, entry) in ((k, pair) for k in range(len(right)) for pair in enumerate(right[:, k]) if pair[1]):
+        found[:, column] += left[:, row] if entry == 1 else left[:, row] * entry
+    return found
 
 
 def _signature(form: Any) -> tuple[int, int]:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
 
 import mpmath as mp
 import sympy as sp
 
-from satsym.spec import Variable
+from satsym.spec import ModeGroup, Variable
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import tidy
 from satsym.symbolic.checks import Point, compare, identity, numeric, numeric_along, slopes
@@ -39,6 +39,8 @@ class AboutRest(SpecialCase):
     of: Multibody
     velocities: Mapping[sp.Symbol, sp.Symbol]
 
+    along_chain: ClassVar[bool] = True
+
     def steps(self) -> tuple[MaybeStep, ...]:
         """Equations of second order, then of first."""
         return self.motion_steps()
@@ -54,6 +56,17 @@ class AboutRest(SpecialCase):
             yield f"the states must be coordinates of {self.of.name}, their rates, and speeds without a coordinate"
         if self.along:
             yield "what is linearised about rest is stated by the states that are kept; leave out along"
+
+    def mode_groups(self) -> tuple[ModeGroup, ...]:
+        """Those of the bodies, each with what is kept of its states, and with the rates of its coordinates."""
+        kept = {v.symbol for v in self.states}
+        rates = {q.name: v.name for q, v in self.velocities.items()}
+        found = []
+        for group in self.of.mode_groups():
+            states = [s for s in group.states if s in kept]
+            states += [rates[s] for s in group.states if s in rates]
+            found += [replace(group, states=tuple(states))] if states else []
+        return tuple(found)
 
     def brings(self) -> tuple[Variable, ...]:
         """None: the coordinates keep their names."""

@@ -9,7 +9,7 @@ from typing import Any
 import sympy as sp
 from sympy.physics.mechanics import ReferenceFrame, RigidBody, Vector, dynamicsymbols
 
-from satsym.spec import Variable
+from satsym.spec import ModeGroup, Variable
 from satsym.symbolic import notation as n
 from satsym.symbolic.model import Model, symbols_of
 
@@ -48,6 +48,8 @@ class Bodies(Model):
         States that stay zero where they are zero, and all controls but those that drive the others too; proved.
     varied
         The parameter over which equilibria are followed, such as the momentum of a wheel.
+    modes
+        What small motions are called, by the states that have the largest part in them.
     """
 
     inertial: ReferenceFrame
@@ -58,6 +60,11 @@ class Bodies(Model):
     attitude: sp.Matrix | None = None
     vanishing: tuple[sp.Symbol, ...] = ()
     varied: str = ""
+    modes: tuple[ModeGroup, ...] = ()
+
+    def mode_groups(self) -> tuple[ModeGroup, ...]:
+        """As stated."""
+        return self.modes
 
     @property
     def speeds(self) -> tuple[sp.Symbol, ...]:

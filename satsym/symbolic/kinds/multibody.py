@@ -31,9 +31,15 @@ class Multibody(Bodies):
         return (kane.kinematics, kane.kane, kane.first_order)
 
     def misfits(self) -> Iterator[str]:
-        """Coordinates that are no states."""
+        """Coordinates that are no states, and modes that are named by what is not here."""
         if not set(self.coordinates) <= set(symbols_of(self.states)):
             yield "the coordinates must be states"
+        known, constants = ({v.symbol for v in each} for each in (self.states, self.parameters))
+        for group in self.modes:
+            if not group.states or not known.issuperset(group.states):
+                yield f"the mode {group.name!r}: name some of the states, and nothing else"
+            if group.vanishing and group.vanishing not in constants:
+                yield f"the mode {group.name!r}: {group.vanishing} is no parameter"
 
     def stated(self) -> Iterator[tuple[str, Iterable[Any], set[sp.Symbol]]]:
         """Named functions by coordinates, rates by states as well, what the bodies have by all of these."""

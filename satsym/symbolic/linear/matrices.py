@@ -8,6 +8,7 @@ from typing import Any, Literal
 import mpmath as mp
 import sympy as sp
 
+from satsym.spec import MOST_LETTERS
 from satsym.symbolic.algebra import definitions_of
 from satsym.symbolic.analysis.field import NotExact, exact
 from satsym.symbolic.analysis.system import LinearSystem
@@ -15,9 +16,6 @@ from satsym.symbolic.checks import numeric
 from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.linear.notation import results
 from satsym.symbolic.model import symbols_of, t, variables_of
-
-MOST_LETTERS = 24
-"""Of exact analysis, times the states: polynomials of a high degree in many letters fill pages and say nothing."""
 
 Coefficients = Literal["constant", "varying"]
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import random
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
@@ -14,7 +15,7 @@ from sympy.functions.elementary.trigonometric import TrigonometricFunction
 
 from satsym.formula.budget import charge
 from satsym.formula.tree import Add, Call, Div, Mul, Neg, Node, Num, Pow, Sym, constant, number
-from satsym.symbolic.checks import points
+from satsym.symbolic.checks import POINTS, points
 from satsym.symbolic.minimisers import Clip, Shorten, Shrink, Switch, by_signs
 
 _FUNCTIONS: dict[str, Callable[..., sp.Expr]] = {
@@ -38,6 +39,8 @@ _FUNCTIONS: dict[str, Callable[..., sp.Expr]] = {
 }
 _NAMES = {function: name for name, function in _FUNCTIONS.items() if name != "sqrt"}
 _DIGITS = 40
+_OF_CASES = 100
+"""Points for what has cases."""
 _NOT_ZERO = 1e-12
 _MOST_COEFFICIENTS = 200_000
 """Of a dense polynomial that is factored only to be shown shorter."""
@@ -223,13 +226,19 @@ def _squares(expression: sp.Expr) -> dict[sp.Expr, sp.Expr]:
 
 
 def differs_somewhere(expression: sp.Expr) -> bool:
-    """Whether an expression has a value other than zero at a random point, with 40 digits."""
+    """Whether an expression has a value other than zero at a random point, with 40 digits.
+
+    Where it has cases, points are many, and of many sizes: bounds differ only beyond the smaller one.
+    """
     symbols = sorted(expression.free_symbols, key=lambda s: s.name)
-    function_ = sp.lambdify(symbols, plain(expression), modules="mpmath")
+    shown = plain(expression)
+    function_ = sp.lambdify(symbols, shown, modules="mpmath")
+    rng, cases = random.Random(str(expression)), shown.has(sp.Min, sp.Max, sp.Abs, sp.sign, sp.Piecewise)
     with mp.workdps(_DIGITS):
-        for point in points(symbols, str(expression)):
+        for point in points(symbols, str(expression), _OF_CASES if cases else POINTS):
+            sizes = [mp.mpf(10) ** rng.uniform(-2.0, 2.0) if cases else 1 for _ in symbols]
             try:
-                if abs(function_(*(point[s] for s in symbols))) > _NOT_ZERO:
+                if abs(function_(*(point[s] * size for s, size in zip(symbols, sizes, strict=True)))) > _NOT_ZERO:
                     return True
             except (ArithmeticError, ValueError, TypeError, AttributeError):  # mpmath orders no complex numbers
                 continue

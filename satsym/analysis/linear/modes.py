@@ -1,0 +1,186 @@
+"""Modes of a linear system: what each carries, how fast and how damped it is, and what it is called.
+
+How much a state takes part in a mode is the product of its entries in the right and the left eigenvector: the diagonal
+of the projector on the mode, which knows no units (Perez-Arriaga, Verghese and Schweppe, IEEE Trans. PAS 101, 1982). A
+model may say what a mode is called in which some of its states have the largest part, and may tell two of them apart by
+whether they become infinitely slow with one of its parameters: eigenvalues are then followed while it shrinks.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.analysis.linear.equilibrium import Linearisation, jacobians
+from satsym.analysis.linear.scaling import scaled
+from satsym.analysis.linear.spectrum import Eigenvalue
+from satsym.analysis.linear.system import system
+from satsym.arrays import Array
+from satsym.spec import ModeGroup
+
+Numbers = NDArray[np.complexfloating]
+
+SHRUNK = 1e-4
+"""How far a parameter shrinks."""
+LARGEST_STEP, SMALLEST_STEP = 0.5, 1e-4
+"""Logarithms of the factors by which it does: the largest, and that below which eigenvalues are taken to meet."""
+CLEAR = 4.0
+"""An eigenvalue is followed if every other one is so many times as far away as the one that continues it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Mode:
+    """An eigenvalue, with its conjugate if it is not real."""
+
+    eigenvalue: Eigenvalue
+    participation: Mapping[str, float]
+    """State -> its part; they add up to 1."""
+    name: str
+    """What it is; empty where the model does not say."""
+
+    @property
+    def frequency(self) -> float:
+        """Natural frequency, the magnitude of the eigenvalue."""
+        return abs(self.eigenvalue.value)
+
+    @property
+    def damping_ratio(self) -> float | None:
+        """Of critical damping; negative if the mode grows; ``None`` for real eigenvalues."""
+        value = self.eigenvalue.value
+        return -value.real / abs(value) + 0.0 if value.imag else None
+
+    @property
+    def period(self) -> float | None:
+        """Of the oscillation."""
+        value = self.eigenvalue.value
+        return 2.0 * math.pi / abs(value.imag) if value.imag else None
+
+    @property
+    def time_constant(self) -> float | None:
+        """The time in which it decays, or grows, by a factor e; ``None`` where it does neither."""
+        return 1.0 / abs(self.eigenvalue.value.real) if self.eigenvalue.value.real else None
+
+    def carried_by(self) -> list[tuple[str, float]]:
+        """The states that have the largest parts, half of the whole or more together."""
+        found: list[tuple[str, float]] = []
+        for name, share in sorted(self.participation.items(), key=lambda pair: -pair[1]):
+            # equal parts are shown together
+            if sum(s for _, s in found) >= 0.5 and share < 0.9 * found[-1][1]:
+                break
+            found.append((name, share))
+        return found
+
+
+def modes(about: Linearisation, eigenvalues: Sequence[Eigenvalue]) -> tuple[Mode, ...]:
+    """The modes of a linearisation, in the order of its eigenvalues."""
+    chosen = [each for each in eigenvalues if each.value.imag >= 0.0]
+    parts = [dict(zip(about.system.states, row, strict=True)) for row in participation(about.system.A, chosen)]
+    groups = [_group(about.model.spec.mode_groups, each) for each in parts]
+    slow = _slow(about, [each.value for each in chosen], groups)
+    return tuple(
+        Mode(value, part, _name(group, value, vanishes))
+        for value, part, group, vanishes in zip(chosen, parts, groups, slow, strict=True)
+    )
+
+
+def participation(A: Array, eigenvalues: Sequence[Eigenvalue]) -> Array:
+    """The part of each state in each eigenvalue's invariant subspace; shape (eigenvalues, n), rows add up to 1."""
+    from scipy.linalg import schur, solve_sylvester
+
+    fitted, n = scaled(system(A)), len(A)
+    found = np.zeros((len(eigenvalues), n))
+    numbers = np.linalg.eigvals(fitted.A)
+    for row, each in enumerate(eigenvalues):
+        count = each.algebraic
+        near = np.sort(np.abs(numbers - each.value / fitted.rate))
+        bound = (near[count - 1] + near[count]) / 2 if count < n else math.inf
+        value = each.value / fitted.rate
+        form, basis, _ = schur(fitted.A, output="complex", sort=partial(_within, value, bound))
+        # the rows that belong to the first columns, orthogonal to all other eigenvectors
+        left = basis[:, :count].conj().T
+        if count < n:
+            across = solve_sylvester(form[:count, :count], -form[count:, count:], form[:count, count:])
+            left = left + across @ basis[:, count:].conj().T
+        share = np.abs(np.einsum("ki,ik->k", basis[:, :count], left))
+        found[row] = share / share.sum()
+    return found
+
+
+def _within(value: complex, bound: float, number: complex) -> bool:
+    return abs(number - value) < bound
+
+
+def _group(groups: Sequence[ModeGroup], part: Mapping[str, float]) -> ModeGroup | None:
+    """The group whose states have the largest part, if that is most of the whole."""
+    shares = [(sum(part[s] for s in group.states), group) for group in groups]
+    share, group = max(shares, key=lambda pair: pair[0], default=(0.0, None))
+    return group if share > 0.5 else None
+
+
+def _name(group: ModeGroup | None, each: Eigenvalue, vanishes: bool | None) -> str:
+    if group is None or (group.slow and vanishes is None):
+        return ""
+    if each.value == 0.0 and group.neutral:
+        return group.neutral
+    return group.slow if vanishes else group.name
+
+
+def _slow(about: Linearisation, values: Sequence[complex], groups: Sequence[ModeGroup | None]) -> list[bool | None]:
+    """Whether each value vanishes with the parameter of its group; ``None`` where it has none, or nobody can tell."""
+    found: list[bool | None] = [None] * len(values)
+    for parameter in {group.vanishing for group in groups if group and group.vanishing}:
+        limits = _limits(about, parameter) if about.constant else {}
+        starts = np.array(list(limits))
+        for k, group in enumerate(groups):
+            if group is not None and group.vanishing == parameter and limits:
+                found[k] = limits[complex(starts[np.abs(starts - values[k]).argmin()])]
+    return found
+
+
+def _limits(about: Linearisation, parameter: str) -> dict[complex, bool | None]:
+    """Each eigenvalue, and whether it vanishes with a parameter; ``None`` where it meets one that does otherwise."""
+    place = about.model.spec.parameter_names.index(parameter)
+
+    def numbers(factor: float) -> Numbers:
+        p = (*about.parameters[:place], about.parameters[place] * factor, *about.parameters[place + 1 :])
+        point = np.array(about.model.reference(about.t0, p)) if about.on_reference else about.point
+        fitted = scaled(system(jacobians(about.model, p, about.t0, point)[0]))
+        return np.asarray(np.linalg.eigvals(fitted.A) * fitted.rate, dtype=complex)
+
+    if not about.parameters[place]:
+        return {}
+    start = numbers(1.0)
+    now, before, families = start, start, np.arange(len(start))
+    log, step, last = 0.0, LARGEST_STEP, LARGEST_STEP
+    while log < -math.log(SHRUNK):
+        guess = now + (now - before) * (step / last)
+        order, clear = _continued(guess, coming := numbers(math.exp(-log - step)))
+        if not clear.all() and step > SMALLEST_STEP:
+            step = max(step / 2, SMALLEST_STEP)
+            continue
+        for i in np.flatnonzero(~clear):  # they meet: which is which afterwards has no meaning
+            met = np.argsort(np.abs(coming - guess[i]))[:2]
+            together = families[np.isin(order, met)]
+            families[np.isin(families, together)] = together.min()
+        before, now, last = now, coming[order], step
+        log, step = log + step, min(2.0 * step, LARGEST_STEP)
+    slow = np.abs(now) <= np.abs(start) * math.sqrt(SHRUNK)
+    alike = [len({bool(s) for s in slow[families == f]}) == 1 for f in families]
+    return {complex(v): bool(s) if a else None for v, s, a in zip(start, slow, alike, strict=True)}
+
+
+def _continued(guess: Numbers, coming: Numbers) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
+    """Which of the coming numbers continues each one, and whether that is clear."""
+    from scipy.optimize import linear_sum_assignment
+
+    apart = np.abs(guess[:, None] - coming)
+    order = linear_sum_assignment(apart)[1]
+    own = np.take_along_axis(apart, order[:, None], axis=1)[:, 0]
+    others = apart + np.where(np.arange(len(coming)) == order[:, None], np.inf, 0.0)
+    same = 1e-9 * np.abs(coming).max()  # numbers for one multiple eigenvalue need not be told apart
+    return order, (CLEAR * own <= others.min(axis=1)) | (own <= same)

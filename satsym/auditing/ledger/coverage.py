@@ -1,0 +1,269 @@
+"""What a text has, numbered or asserted, and which of it has a row in the ledger.
+
+What was found is kept beside the ledger, in ``contents.toml`` (of a ledger that is one file in ``NAME.contents.toml``),
+with the digest of the text: for each entry the row that has it, ``none: `` and why it needs none, or nothing.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+import unicodedata
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import accumulate
+from pathlib import Path
+
+from satsym.auditing.ledger import schema
+from satsym.auditing.ledger.contents import Ledger
+from satsym.auditing.ledger.positions import Part
+from satsym.auditing.ledger.schema import ContentsTable, WrongKey
+from satsym.instance import files
+from satsym.status import BadInput
+from satsym.wording import printable
+
+KINDS = ("formulas", "figures", "tables", "sections", "sentences")
+NONE = "none: "
+"""Begins the reason why an entry needs no row."""
+
+_TELLING = 12
+"""Signs that a quotation needs to tell which sentence it is from."""
+_NUMBER = r"[A-Z]?\d{1,2}(?:\.\d{1,3})*[a-e]?"
+_FORMULA = re.compile(rf"(?:\\tag\{{\(?|(?<![\w)])\()({_NUMBER})[)}}]+[\s$.,;]*$")
+_CITING = re.compile(r"(?:persamaan|pers\.?|equations?|eqs?\.|dan|and|sampai|to|[-\u2013])\s*$", re.IGNORECASE)
+_CAPTION = re.compile(rf"(gambar|tabel|figure|fig\.|table)\s+({_NUMBER})(?!\w)(?=[.:]?\s*(?:[A-Z]|$))", re.IGNORECASE)
+_CAPTIONS = {"g": "figure", "f": "figure", "t": "table"}
+_CHAPTER = re.compile(r"(?:BAB|CHAPTER|Chapter)\s+([IVX]+|\d+)\b")
+_ROMAN = re.compile(r"([IVX]+)\.\s+[A-Z]{3,}")
+_LETTER = re.compile(r"([A-H])\.\s+[A-Z][a-z]+")
+_DECIMAL = re.compile(r"(\d{1,2}(?:\.\d{1,2})+)\.?\s+[A-Z]")
+_SENTENCE = re.compile(r"(?<=[.!?;])\s+(?=[A-Z•])|\s+(?=•)")
+_MARKS = re.compile(r"<\|[^|<>]*\|>|\f")
+_LAYOUT = re.compile(
+    r"\\(?:text|math\w+|left|right|q?quad|d?frac|tag|dot|ddot|hat|bar|vec|(?:begin|end)\{\w+\})(?![a-z])"
+)
+_PROSE = re.compile(r"(?:[A-Za-z-]{2,}[, ]+)+[A-Za-z-]{2,}")
+_ABOUT = re.compile(
+    r"satel|orbit|sistem|system|kontrol|control|matri|eigen|grafi[ks]|curve|energ|biaya|cost|roda|wheel|torsi|torque|"
+    r"metode|method|posisi|position|kecepatan|speed|velocit|gravit|hamilton|titik|state|program|waktu|time",
+    re.IGNORECASE,
+)
+_ASSERTS = re.compile(
+    r"\b(?:adalah|ialah|merupakan|yaitu|maka|sehingga|karena|jika|bila|akan|dapat|tidak|selalu|harus|memiliki|mempunyai|"
+    r"memerlukan|menyebabkan|menghasilkan|menunjukkan|bernilai|bersifat|berupa|berada|sebesar|sama|lebih|di(?:peroleh|dapat"
+    r"\w*)|(?:me|ber|ter|di)\w+|is|are|was|were|has|have|will|can|cannot|must|does|gives?|yields?|therefore|thus)\b",
+    re.IGNORECASE,
+)
+
+
+@dataclass(frozen=True)
+class Coverage:
+    """A text, or what was kept of one, held against the rows.
+
+    Attributes
+    ----------
+    digest
+        Of the text, SHA-256.
+    same
+        Whether what is kept with the ledger was found in this text; ``None`` where nothing is kept.
+    found
+        By kind: name of the entry -> the row that has it, ``none: `` with the reason, or nothing.
+    unquoted
+        Rows, and pieces of their ``original`` that the text does not have; only known with the text.
+    """
+
+    digest: str
+    same: bool | None
+    found: Mapping[str, Mapping[str, str]]
+    unquoted: tuple[tuple[str, str], ...] = ()
+
+    def counts(self, kind: str) -> tuple[int, int, int, int]:
+        """How many entries there are, have a row, need none, have neither."""
+        rows = list(self.found[kind].values())
+        excused, missing = sum(row.startswith(NONE) for row in rows), rows.count("")
+        return len(rows), len(rows) - excused - missing, excused, missing
+
+    def missing(self, kind: str) -> list[str]:
+        """Entries that have neither a row nor a reason."""
+        return [name for name, row in self.found[kind].items() if not row]
+
+
+def place(ledger: Ledger) -> Path:
+    """Where the contents of a ledger's text are kept."""
+    return ledger.path / "contents.toml" if ledger.path.is_dir() else ledger.path.with_suffix(".contents.toml")
+
+
+def kept(ledger: Ledger) -> Coverage | None:
+    """What is kept of the text, if anything is; what names a row that is gone is without one.
+
+    Raises
+    ------
+    BadInput
+        With file and line, where a key is unknown or missing.
+    """
+    path = place(ledger)
+    if not path.exists():
+        return None
+    part = Part(path, files.read(path), 0)
+    try:
+        table: ContentsTable = schema.table(part.tree, ContentsTable)
+    except WrongKey as error:
+        raise BadInput(f"{part.place(error.key if error.key in part.tree else '')}: {error}") from None
+    known = {name for row in ledger.rows for name in (row.key, row.table.item, row.table.where)}
+    found = {
+        kind: {name: row if row.startswith(NONE) or row in known else "" for name, row in getattr(table, kind).items()}
+        for kind in KINDS
+    }
+    return Coverage(table.text_digest, True, found)
+
+
+def text_of(path: Path) -> str:
+    """A text to measure against.
+
+    Raises
+    ------
+    BadInput
+        If it cannot be read.
+    """
+    try:
+        found = path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError:
+        raise BadInput(f"--text: {printable(str(path), 200)}: not UTF-8 text; save it as UTF-8") from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or "not a path"
+        raise BadInput(f"--text: {printable(str(path), 200)}: cannot be read ({reason}); give a text file") from None
+    if not found.strip():
+        raise BadInput(f"--text: {printable(str(path), 200)}: holds no text; give the document's text")
+    return found
+
+
+def measured(ledger: Ledger, text: str) -> Coverage:
+    """A text held against the rows; what the rows do not show is taken from what is kept."""
+    digest, before = hashlib.sha256(text.encode()).hexdigest(), kept(ledger)
+    names = {kind: dict(_numbered(ledger, text, kind)) for kind in KINDS[:-1]}
+    sentences, unquoted = _sentences(ledger, text)
+    found = {**names, KINDS[-1]: sentences}
+    if before is not None:
+        for kind, entries in found.items():
+            entries |= {name: row for name, row in before.found[kind].items() if entries.get(name) == ""}
+    return Coverage(digest, None if before is None else before.digest == digest, found, tuple(unquoted))
+
+
+def to_toml(coverage: Coverage) -> str:
+    """As it is kept."""
+    lines = [f"text_digest = {json.dumps(coverage.digest)}"]
+    for kind in KINDS:
+        lines += ["", f"[{kind}]"]
+        lines += [f"{_quoted(name)} = {_quoted(row)}" for name, row in coverage.found[kind].items()]
+    return "\n".join(lines) + "\n"
+
+
+def _quoted(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False)
+
+
+def _numbered(ledger: Ledger, text: str, kind: str) -> Iterator[tuple[str, str]]:
+    """Numbered things of a kind, and what in the ledger has them; by the name that the ledger uses."""
+    items = {row.table.item for row in ledger.rows}
+    places = {**dict.fromkeys(items), **dict.fromkeys(row.table.where for row in ledger.rows)}
+    for entry, names in _headed(text):
+        if entry == kind == "sections":
+            begins = re.compile(re.escape(names[0]) + r"(?![A-Za-z0-9])")
+            yield names[0], next((each for each in places if begins.match(each)), "")
+        elif entry == kind:
+            own = next((name for name in names if name in items), "")
+            yield own or names[0], own
+
+
+def _headed(text: str) -> Iterator[tuple[str, list[str]]]:
+    """Kind and possible names of each formula, caption and heading, in order."""
+    chapter, section, sign = "", "", ""
+    for raw in text.splitlines():
+        line = _MARKS.sub("", raw).strip(" #*\t")
+        for pattern in (_CHAPTER, _ROMAN, _LETTER, _DECIMAL):
+            heading = pattern.match(line)
+            if heading:
+                number = heading[1]
+                if pattern is _CHAPTER:
+                    chapter, section, sign = f"chapter {_arabic(number)}", "", ", "
+                elif pattern is _ROMAN:
+                    chapter, section, sign = f"section {number}", number, "."
+                name = chapter if pattern in (_CHAPTER, _ROMAN) else f"section {number}"
+                if pattern is _LETTER:
+                    if not chapter:
+                        continue
+                    name = f"{chapter}{sign}{number}"
+                yield "sections", [name]
+        caption = _CAPTION.match(line)
+        if caption:
+            kind = _CAPTIONS[caption[1][0].lower()]
+            yield f"{kind}s", _names(f"{kind} {caption[2]}", caption[2], f"{section} {kind} {caption[2]}", section)
+        formula = _FORMULA.search(line)
+        if formula and not _CITING.search(line[: formula.start()]):
+            yield "formulas", _names(formula[1], formula[1], f"{section} ({formula[1]})", section)
+
+
+def _names(plain: str, number: str, within: str, section: str) -> list[str]:
+    """Numbers that every section begins anew are named with it."""
+    return [within, plain] if section and "." not in number else [plain]
+
+
+def _arabic(number: str) -> int:
+    if number.isdigit():
+        return int(number)
+    values = [{"I": 1, "V": 5, "X": 10}[letter] for letter in number]
+    return sum(-v if v < after else v for v, after in zip(values, [*values[1:], 0], strict=True))
+
+
+def _sentences(ledger: Ledger, text: str) -> tuple[dict[str, str], list[tuple[str, str]]]:
+    """Sentences that assert something and the row that quotes them, and quotations that are in no sentence."""
+    sentences = _SENTENCE.split(" ".join(re.sub(r"(?<=[a-z])-\n\s*(?=[a-z])", "", _MARKS.sub("\n", text)).split()))
+    squashed = [_squashed(sentence) for sentence in sentences]
+    ends = list(accumulate(map(len, squashed)))
+    whole, rows, unquoted = "".join(squashed), [""] * len(sentences), []
+    for row in ledger.rows:
+        for piece in filter(None, map(str.strip, row.table.original.split("..."))):
+            sought = _squashed(piece)
+            at = -1
+            while len(sought) >= _TELLING and (at := whole.find(sought, at + 1)) >= 0:
+                for i, end in enumerate(ends):
+                    if end > at and end - len(squashed[i]) < at + len(sought):
+                        rows[i] = rows[i] or row.key
+            if sought not in whole and not _in_words(piece, whole):
+                unquoted.append((row.key, piece))
+    found: dict[str, str] = {}
+    for sentence, own, row_key in zip(sentences, squashed, rows, strict=True):
+        if row_key or (_ABOUT.search(sentence) and _ASSERTS.search(sentence)):
+            name = f"{hashlib.sha256(own.encode()).hexdigest()[:6]} {_opening(sentence)}"
+            found[name] = found.get(name) or row_key
+    return found, unquoted
+
+
+def _in_words(piece: str, whole: str) -> bool:
+    """Whether the text has the words of a quotation: its formulas may have been read in another way."""
+    prose: list[str] = _PROSE.findall(piece)
+    return bool(prose) and all(_squashed(words) in whole for words in prose)
+
+
+def _opening(sentence: str) -> str:
+    words = re.sub(r"[^\w\s.,()/=-]", "", unicodedata.normalize("NFKC", sentence)).split()
+    return " ".join(words[:6])[:60]
+
+
+def _squashed(text: str) -> str:
+    """Without what reading a page by machine adds or loses: breaks, spaces, accents, mathematical alphabets, TeX."""
+    plain = (
+        unicodedata.normalize("NFKD", _LAYOUT.sub("", text))
+        .casefold()
+        .replace("≤", "<=")
+        .replace("≥", ">=")
+        .replace("\u2013", "-")
+    )
+    plain = re.sub(r"[\u0370-\u03ff]", lambda letter: _greek(letter[0]), plain)
+    plain = re.sub(r"\\(le|ge)q?(?![a-z])", lambda sign: {"le": "<=", "ge": ">="}[sign[1]], plain)
+    return re.sub(r"[^a-z0-9.,<>=+/()|\[\]-]", "", plain)
+
+
+def _greek(letter: str) -> str:
+    return unicodedata.name(letter, "").rsplit(" ", 1)[-1].lower().replace("lamda", "lambda")

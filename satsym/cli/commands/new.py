@@ -1,0 +1,91 @@
+"""``satsym new``: files to start from."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import click
+
+from satsym.cli.options import place_option
+from satsym.cli.output import emit
+from satsym.status import BadInput, ExitCode
+
+EXAMPLES = """\b
+Examples:
+  satsym new my_model                           a model of your own, in my_model/
+  satsym new my_case --instance soft-return     my_case.toml, to be changed"""
+
+TEMPLATES = Path(__file__).parents[2] / "templates"
+FILES = {
+    "model.py.txt": ("{}.py", "what moves, and what it costs"),
+    "instance.toml": ("{}.toml", "the numbers of one case"),
+    "test.py.txt": ("test_{}.py", "the answer held against equations typed by hand"),
+}
+_NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
+_FILE = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]*\Z")
+
+
+@click.command(epilog=EXAMPLES)
+@click.argument("name")
+@click.option("--instance", "original", metavar="X", help="Copy this shipped instance instead, to NAME.toml.")
+@place_option("--out", metavar="DIR", help="Write there; without it a model goes into NAME/, an instance here.")
+def new(name: str, original: str | None, out: Path | None) -> ExitCode:
+    """Write files to start from: a model of your own, or a copy of an instance.
+
+    A model is three files that run as they are: a commented derivation file, an instance of it, and a test.
+    Nothing that exists is written over.
+    """
+    from satsym.report.results.files import check_writable, write_text
+
+    texts, following = _model(name, out or Path(name)) if original is None else _copy(name, original, out or Path())
+    for path in texts:
+        if path.exists():
+            raise BadInput(f"{path}: exists already and is not written over; choose another name, or --out DIR")
+    folder = next(iter(texts)).parent
+    check_writable(folder)
+    for path, (text, _) in texts.items():
+        write_text(path, text)
+    width = max(len(str(path)) for path in texts)
+    emit("\n".join([*(f"{path!s:{width}}  {what}" for path, (_, what) in texts.items()), "", "Next:", *following]))
+    return ExitCode.DONE
+
+
+def _model(name: str, folder: Path) -> tuple[dict[Path, tuple[str, str]], list[str]]:
+    """Path -> text and what it is, and the commands that one may go on with."""
+    import keyword
+    import sys
+
+    from satsym import kernels
+    from satsym.wording import shown
+
+    if not _NAME.match(name) or keyword.iskeyword(name):
+        raise BadInput(f"NAME: got {shown(name)}; write small letters, digits and single underscores, such as my_model")
+    if name in {*sys.stdlib_module_names, "numpy", "pytest", "satsym", "scipy", "sympy"}:
+        raise BadInput(f"NAME: {name}.py would hide a module that Python imports; choose another name")
+    if name in kernels.shipped():
+        raise BadInput(f"NAME: {name} is a model that comes with satsym; choose another name")
+    texts = {}
+    for template, (pattern, what) in FILES.items():
+        text = (TEMPLATES / template).read_text(encoding="utf-8").replace("$name", name)
+        texts[folder / pattern.format(name)] = (text, what)
+    model, instance, test = texts
+    return texts, [
+        f"  satsym derive {model} --out {folder / 'generated'}",
+        f"  satsym solve {instance} --plot",
+        f"  python -m pytest {test}",
+    ]
+
+
+def _copy(name: str, original: str, folder: Path) -> tuple[dict[Path, tuple[str, str]], list[str]]:
+    from satsym.instance import files
+    from satsym.wording import shown
+
+    if not _FILE.match(name):
+        raise BadInput(f"NAME: got {shown(name)}; write letters, digits, - and _, such as my-case")
+    if original not in files.shipped():
+        files.locate(original)
+        raise BadInput(f"--instance: {shown(original)} is a path; name a shipped one (`satsym instances` lists them)")
+    source = files.locate(original)
+    path = folder / f"{name}.toml"
+    return {path: (source.read_text(encoding="utf-8"), f"a copy of {original}")}, [f"  satsym solve {path} --plot"]
