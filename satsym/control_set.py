@@ -44,6 +44,8 @@ class ControlSet:
     """Of an annulus: the least norm."""
     directed: bool = False
     """Whether the control is a direction: it has full length always, but for that of a regularised problem."""
+    throttled: bool = False
+    """Whether it may also be none at all, because its norm counts as well."""
     parts: tuple[tuple[tuple[int, ...], ControlSet], ...] = ()
     """Of a product: the sets, each with the places of its controls in the model's order."""
 
@@ -59,7 +61,8 @@ class ControlSet:
         def one(part: ControlPart, places: tuple[int, ...]) -> ControlSet:
             inner, outer = (norms or {}).get(part.name, (0.0, 1.0 if part.kind == "angle" else math.inf))
             low, high = (tuple(row[i] for i in places) for row in (lower, upper))
-            return cls(part.kind, low, high, outer, 0.0, 1.0, inner, part.branch == "direction")
+            directed, throttled = part.branch != "quadratic", part.branch == "throttled"
+            return cls(part.kind, low, high, outer, 0.0, 1.0, inner, directed, throttled)
 
         return cls("product", smoothing=smoothing, parts=_placed(spec, one))
 
@@ -72,14 +75,16 @@ class ControlSet:
 
             def one(part: ControlPart, places: tuple[int, ...]) -> ControlSet:
                 own = [left.pop(0) for _ in range(part.bounds)]
-                directed = part.branch == "direction"
+                directed, throttled = part.branch != "quadratic", part.branch == "throttled"
                 if part.kind == "box":
                     return cls("box", tuple(own[: len(places)]), tuple(own[len(places) :]))
                 inner = own[0] if part.kind == "annulus" else 0.0
-                return cls(part.kind, radius=own[-1] if own else math.inf, inner=inner, directed=directed)
+                radius = own[-1] if own else math.inf
+                return cls(part.kind, radius=radius, inner=inner, directed=directed, throttled=throttled)
 
             parts = _placed(spec, one)
-            return cls("product", smoothing=left[0] if left else 0.0, parts=parts)
+            smoothing, fraction = left + [0.0, 1.0][len(left) :]
+            return cls("product", smoothing=smoothing, fraction=fraction, parts=parts)
         if spec.control_set == "ball":
             return cls("ball", radius=bounds[0])
         if spec.control_set != "box":
@@ -91,7 +96,8 @@ class ControlSet:
         """The argument ``bounds`` of generated functions: bounds or radius, then what regularises."""
         if self.kind == "product":
             own = tuple(value for _, part in self.parts for value in part.arguments)
-            return own + ((self.smoothing,) if self.smoothing else ())
+            throttled = any(part.throttled for _, part in self.parts)
+            return own + ((self.smoothing,) if self.smoothing else ()) + ((self.fraction,) if throttled else ())
         if self.kind == "box":
             return self.lower + self.upper + ((self.smoothing, self.fraction) if self.smoothing else ())
         if self.kind == "annulus":

@@ -23,8 +23,9 @@ NAMES = "a small letter, then small letters, digits and underscores"
 """What names of models and problems are."""
 _MODEL = re.compile(r"[a-z][a-z0-9_]{0,99}\Z")
 PartKind = Literal["free", "box", "ball", "annulus", "angle"]
-Branch = Literal["quadratic", "direction"]
-"""How H is minimised over one set of controls: where H_u vanishes, or along a direction, whatever it is."""
+Branch = Literal["quadratic", "direction", "throttled"]
+"""How H is minimised over one set of controls: where H_u vanishes; along a direction, whatever it is; or along one if
+that is worth more than the norm of the controls costs, and not at all elsewhere."""
 PRODUCT: Literal["product"] = "product"
 """The kind of a control set that is stated set by set."""
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
@@ -197,10 +198,10 @@ class ProblemSpec:
         empty where there is no such curve in closed form.
     conditions
         What the parameters must obey besides being positive one by one.
-    control_parts
-        The sets whose product the control set is, where it was stated set by set; else empty.
     equilibria
         Of a model that is one attitude in orbit: the parameter over which its equilibria are followed; else empty.
+    control_parts
+        The sets whose product the control set is, where it was stated set by set; else empty.
     mode_groups
         What its modes are called, by the states that have the largest part in them. May be empty.
     """
@@ -236,12 +237,17 @@ class ProblemSpec:
     @property
     def directional(self) -> bool:
         """Whether some controls are directions, which nothing decides where H does not depend on them."""
-        return any(part.branch == "direction" for part in self.control_parts)
+        return any(part.branch != "quadratic" for part in self.control_parts)
+
+    @property
+    def throttled(self) -> bool:
+        """Whether H depends on the norm of such controls as well, so that they may be none at all."""
+        return any(part.branch == "throttled" for part in self.control_parts)
 
     @property
     def regularising(self) -> int:
         """How many numbers at the end of the argument ``bounds`` say what is regularised."""
-        return 2 * self.switching + self.directional
+        return 2 * self.switching + self.directional + self.throttled
 
     @property
     def lower_bounds(self) -> frozenset[int]:
@@ -325,7 +331,7 @@ def names(variables: Iterable[Variable]) -> tuple[str, ...]:
 
 
 def _stated(variable: Variable | Condition | ModeGroup | ControlPart | str) -> dict[str, Any] | str:
-    """The fields of a variable, a condition, a group of modes or a set that differ from their defaults; or a name."""
+    """The fields of one of these that differ from their defaults; a name as it is."""
     if isinstance(variable, str):
         return variable
     return {f.name: value for f in fields(variable) if (value := getattr(variable, f.name)) != f.default}

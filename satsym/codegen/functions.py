@@ -16,7 +16,7 @@ from satsym.symbolic.linear.notation import matrix_symbols
 from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.notation import costate_of, given, multipliers, on_reference, target
 from satsym.symbolic.principle import product
-from satsym.symbolic.principle.parts import SMOOTHING, limits_of
+from satsym.symbolic.principle.parts import FRACTION, SMOOTHING, limits_of
 from satsym.symbolic.switching.notation import REGULARISED
 
 ARGUMENTS = tuple("t x original u lam nu gain riccati state_weight control_weight p bounds final".split())
@@ -129,7 +129,8 @@ def _bounds(derivation: Derivation) -> tuple[Variable, ...]:
     problem = derivation.problem
     found = limits_of(problem) if problem else ()
     if "smoothed_law" in derivation and product.STEP in derivation:
-        return (*found, SMOOTHING)
+        throttled = any(one.branch == "throttled" for one in product.found(derivation))
+        return (*found, SMOOTHING, *((FRACTION,) if throttled else ()))
     return found + (REGULARISED if switching.switches(derivation) else ())
 
 

@@ -27,8 +27,10 @@ def of_sets(of: Evaluation) -> Iterator[Relation]:
     for places, part in within.parts:
         rows = list(places)
         if part.directed and part.kind != "angle":
-            left[rows] += within.smoothing * law[rows]
-        if part.kind == "box":
+            left[rows] = 0.0
+            best = _longest(of, rows, part, within)
+            yield Relation("control_law", "against the slope of H, as long as pays", law[rows], best)
+        elif part.kind == "box":
             low, high = (np.array(np.broadcast_arrays(*half, law[0])[:-1]) for half in (part.lower, part.upper))
             left[rows] = outside_box(left[rows], law[rows], low, high, curved[rows])
             nearest = np.minimum(np.maximum(law[rows], low), high)
@@ -45,6 +47,16 @@ def of_sets(of: Evaluation) -> Iterator[Relation]:
     if of.has("regularised_cost"):
         expected = relaxed(of, "running_cost") + effort(of)
         yield Relation("regularised_cost", "running cost and half the squares", of("regularised_cost"), expected)
+
+
+def _longest(of: Evaluation, rows: list[int], part: ControlSet, within: ControlSet) -> Array:
+    """Against the slope of H by a vector, as long as its slope, less what the norm adds, and the smoothing make it."""
+    unit = np.zeros_like(of.at["u"])
+    unit[rows[0]] = 1.0
+    ahead, back = (of("stationarity", u=side * unit)[rows] for side in (1.0, -1.0))
+    slope, weight = (ahead + back) / 2.0, np.asarray(within.fraction) * (ahead - back)[0] / 2.0
+    size = np.maximum(np.linalg.norm(slope, axis=0), 1e-300)
+    return np.asarray(-slope / size * np.clip((size - weight) / np.asarray(within.smoothing), 0.0, part.radius))
 
 
 def outside_box(slope: Array, law: Array, low: Array, high: Array, curved: Array) -> Array:
@@ -76,6 +88,13 @@ def relaxed(of: Evaluation, name: str) -> Array:
         back, side = (of(name, u=_turned(flat, row, turn)) for turn in (np.pi, np.pi / 2.0))
         middle = (whole + back) / 2.0
         total = total + (whole - middle) * along + (side - middle) * across + middle - whole
+    for places, part in within.parts:
+        if part.throttled:  # a share only of what depends on the norm
+            back, none = np.array(flat), np.array(flat)
+            back[list(places)] *= -1.0
+            none[list(places)] = 0.0
+            by_norm = (whole + of(name, u=back)) / 2.0 - of(name, u=none)
+            total = total - (1.0 - np.asarray(within.fraction)) * by_norm
     return np.asarray(total)
 
 

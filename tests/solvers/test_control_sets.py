@@ -10,13 +10,14 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq, root
-from sympy import cos, sin
+from sympy import Expr, Float, Symbol, cos, sin, sqrt, sympify
 
-from satsym.instance import Instance
+from satsym.instance import Instance, load
 from satsym.solution import Solution
 from satsym.solvers import solve
 from satsym.status import BadInput, Status, Verdict
 from satsym.symbolic import Angle, Annulus, Ball, Box, DerivationError, FirstOrder, Free, Problem, Variable, symbols_of
+from satsym.symbolic.checks import numeric
 from tests.support.derived import derived
 from tests.support.models import build
 
@@ -230,6 +231,102 @@ def test_products_of_controls_in_different_sets_are_refused():
     with pytest.raises(DerivationError, match="H has products of ux with uy, which are in other control sets"):
         derived(mixed)
     assert derived(Problem(name="one", title="", model=POINT, running_cost=EFFORT + ux * uy / 2)).name == "one"
+
+
+SATELLITE = tuple(Variable(name, name, positive=name in "rm") for name in "ruvm")
+JETS = tuple(Variable(name, name) for name in ("jr", "jv"))
+EXHAUST = Variable("c", "c", default=0.1405 / 0.07487, positive=True)
+
+
+def thrusting(name: str, cost: int, final: Expr, **fields: object) -> Problem:
+    """A satellite whose mass flows with the size of its thrust."""
+    r, u, v, m = symbols_of(SATELLITE)
+    jr, jv = symbols_of(JETS)
+    model = FirstOrder(
+        name=f"{name}_satellite",
+        title="A satellite",
+        states=SATELLITE,
+        controls=JETS,
+        parameters=(EXHAUST,),
+        rates={
+            r: u,
+            u: v**2 / r - 1 / r**2 + jr / m,
+            v: -u * v / r + jv / m,
+            m: -sqrt(jr**2 + jv**2) / symbols_of((EXHAUST,))[0],
+        },
+    )
+    sets = {"thrust": Ball("jr", "jv")}
+    return Problem(
+        name=name, title=name, model=model, running_cost=cost, terminal_cost=final, **{"control_sets": sets, **fields}
+    )
+
+
+ORBITS = """
+[initial]
+r = 1.0
+u = 0.0
+v = 1.0
+m = 1.0
+[final]
+r = 1.525
+u = 0.0
+v = 0.809776330178916
+[time]
+tf = {}
+[control.thrust]
+max_norm = 0.1405
+"""
+
+
+def test_thrust_in_a_ball_whose_size_burns_mass_is_full_in_minimum_time(tmp_path: Path):
+    """The same as with a mass that is known in time, of which a shipped example is held against shooting."""
+    found = certified(build(tmp_path, thrusting("hurry", 1, sympify(0)), ORBITS.format('"free"')))
+    known = solve(load("transfer-time"))
+    assert found.objective == pytest.approx(known.objective, rel=1e-10)
+    assert found.x[3, -1] == pytest.approx(1.0 - 0.07487 * found.objective, rel=1e-9)
+    assert np.hypot(*found.u) == pytest.approx(0.1405, rel=1e-12)
+
+
+def test_the_throttle_of_a_thrust_has_a_switching_function():
+    derivation = derived(thrusting("spare", 0, -symbols_of(SATELLITE)[3]))
+    stated = {e.name: e.rhs for step in ("control_parts", "control_law") for e in derivation.step(step).equations}
+    numbers = {
+        "lambda_u": 0.3,
+        "lambda_v": -0.4,
+        "m": 0.5,
+        "c": 2.0,
+        "u_max": 7.0,
+        "smoothing": 1e-20,
+        "norm_share": 1.0,
+    }
+
+    def law(mass: float) -> tuple[float, float]:
+        at = {**numbers, "lambda_m": mass}
+        slopes = {name: value.xreplace(given(value, at)) for name, value in stated.items() if name[0] in "pn"}
+        at |= {name: float(value) for name, value in slopes.items()}
+        both = [numeric([stated[u]])(given(stated[u], at))[0] for u in ("jr", "jv")]
+        return float(both[0]), float(both[1])
+
+    assert law(0.0) == pytest.approx((-0.6 * 7.0, 0.8 * 7.0))  # the primer vector is (0.6, -0.8)
+    assert law(-1.99) == pytest.approx((-0.6 * 7.0, 0.8 * 7.0))
+    assert law(2.01) == pytest.approx((-0.6 * 7.0, 0.8 * 7.0))
+    assert law(-2.01) == (0.0, 0.0)
+
+
+def given(expression: Expr, at: dict[str, float]) -> dict[Symbol, Float]:
+    return {s: Float(at[s.name], 30) for s in expression.free_symbols}
+
+
+@pytest.mark.slow
+def test_coasting_is_said_and_not_answered(tmp_path: Path):
+    found = solve(build(tmp_path, thrusting("spare", 0, -symbols_of(SATELLITE)[3]), ORBITS.format("4.0")))
+    assert found.status is Status.NOT_CONVERGED
+    assert "a vector is none for some time" in found.message
+
+
+def test_the_norm_counts_in_a_ball_only():
+    with pytest.raises(DerivationError, match="the norm of jr, jv in H is supported for a ball only"):
+        derived(thrusting("ringed", 1, sympify(0), control_sets={"thrust": Annulus("jr", "jv")}))
 
 
 def test_geodesics_are_minima_up_to_the_antipode_only(tmp_path: Path):

@@ -111,4 +111,6 @@ def _bounds_of_sets(instance: Instance, at: dict[str, Any]) -> tuple[Array, ...]
             if part.directed
         ]
         found.append(np.full(u.shape[-1], max(float(np.mean(met)), 1e-300)))
+    if spec.throttled:
+        found.append(np.full(u.shape[-1], NARROW))
     return tuple(found)

@@ -17,6 +17,7 @@ from satsym.solvers.certificate.competitors import HIDDEN, hidden, margin
 from satsym.solvers.certificate.end_form import fixed_states
 from satsym.solvers.certificate.flow import products, typical
 from satsym.solvers.collocation.scaling import final_argument
+from satsym.solvers.control.regularised import sloping
 
 STEPS = ((200, 1e-3), (800, 1e-3), (3200, 1e-2))
 """RK4 steps with which neighbours are compared, on as many as the solution itself, and the relative distance from the
@@ -88,6 +89,8 @@ class Simulations:
         instance, end = self.instance, tuple(x[:, -1].tolist())
         terminal = instance.model.terminal_cost(grid.tf, end, instance.parameters)
         none, nu = (0.0,) * len(end), (0.0,) * len(instance.model.spec.multipliers)
+        if instance.model.spec.throttled:
+            none = tuple(sloping(instance, np.zeros((len(end), 1)))[:, 0].tolist())
         arguments = none, nu, instance.parameters, instance.control_set.arguments, final_argument(instance)
         residual = np.array(instance.model.boundary(grid.tf, end, *arguments))
         return running + terminal, residual[self.rows] / self.scale

@@ -31,7 +31,7 @@ from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.system import System
 from satsym.solvers.control.regularised import regularised
-from satsym.solvers.control.slopes import full_length_smoothing, slope
+from satsym.solvers.control.slopes import full_length_smoothing, gain
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 from satsym.status import Status
@@ -100,7 +100,7 @@ def _directed(
     started: Instance, instance: Instance, smoothing: float, limits: Limits, effort: bool
 ) -> tuple[TwoPoint, Start] | Extremal:
     """The same from what one instance guesses, and this smoothing."""
-    eased = regularised(started, smoothing, 1.0)
+    eased = regularised(started, smoothing, _first_share(instance))
     if eased.tf is None:
         chosen = free_duration(eased, limits, effort)
         if isinstance(chosen, Extremal):
@@ -173,7 +173,7 @@ def bent(
     assert instance.tf is not None
     waves = rng.integers(2**32)
     for factor in SMOOTHER:
-        eased = regularised(instance, factor * full_length_smoothing(instance), 1.0)
+        eased = regularised(instance, factor * full_length_smoothing(instance), _first_share(instance))
         problem = two_point(eased, instance.tf - instance.t0)
         path = paths.bent(problem, np.random.default_rng(waves), amplitude)
         found = from_path(problem.relaxed(float("inf")), path, limits)
@@ -195,7 +195,24 @@ def directed_from(
     curve, reached = follow(bounded, curve, limits)
     if reached < 1.0:
         return _stopped(problem, instance, curve, Reason.BLOCKED.value.format(min(reached, 0.99)), limits)
-    return _sharpened(problem.relaxed(0.0), instance, curve, replace(start, bounded=True), limits)
+    problem = problem.relaxed(0.0)
+    smoothing = problem.control_set.smoothing
+
+    def weighed(fraction: float) -> TwoPoint:
+        return replace(problem, instance=regularised(instance, smoothing, fraction))
+
+    if instance.model.spec.throttled:
+        curve, reached = follow(weighed, curve, limits)
+        if reached < 1.0:
+            message = f"what the norm of a vector costs could be brought in only {reached:.0%}"
+            return _stopped(problem, instance, curve, message, limits)
+        problem = weighed(1.0)
+    return _sharpened(problem, instance, curve, replace(start, bounded=True), limits)
+
+
+def _first_share(instance: Instance) -> float:
+    """Of what norms cost, at first: with it the law is flat where costates vanish."""
+    return 0.0 if instance.model.spec.throttled else 1.0
 
 
 def _sharpened(
@@ -224,6 +241,12 @@ def _sharpened(
         smoothing *= TIGHTER**-reached
         problem = replace(problem, instance=regularised(instance, smoothing, 1.0))
     message = "the slope of H by a direction vanishes for some time, and no law is known there"
+    if instance.model.spec.throttled:
+        cost = System(problem, curve.mesh, curve.order).cost(curve) * problem.scale.cost
+        message = (
+            f"a vector is none for some time, and when it switches is not found exactly; smoothed by {smoothing:.1e} "
+        )
+        message += f"the cost is {cost:.8g}"
     return _stopped(problem, instance, curve, message, limits)
 
 
@@ -244,8 +267,8 @@ def _lengths(problem: TwoPoint, curve: Curve) -> list[tuple[float, Array]]:
     for k, (places, part) in enumerate(within.parts):
         if not part.directed:
             continue
-        against = slope(problem.instance, places, t, z[:n], z[n:])
-        length = np.minimum(np.linalg.norm(against, axis=0) / stated.smoothing, part.radius)
+        longer = gain(problem.instance, places, t, z[:n], z[n:])
+        length = np.clip(longer / stated.smoothing, 0.0, part.radius)
         found.append((stated.parts[k][1].radius, length))
     return found
 

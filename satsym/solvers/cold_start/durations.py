@@ -16,6 +16,7 @@ from satsym.instance import Instance
 from satsym.solvers.cold_start.duration_search import AROUND_GUESS, AROUND_SCALE, FEWER, Search
 from satsym.solvers.cold_start.duration_trials import Minimum, Trials, Try
 from satsym.solvers.collocation.extremal import Extremal
+from satsym.solvers.control.regularised import sloping
 from satsym.solvers.iteration import Limits
 from satsym.status import Status
 
@@ -54,7 +55,8 @@ def free_duration(instance: Instance, limits: Limits, effort: bool = True) -> Mi
 def time_scale(instance: Instance) -> float:
     """One over the largest rate of the motion at the start: of the eigenvalues of f_x without control; one if zero."""
     n = len(instance.initial)
-    nothing = tuple([0.0] * n)
+    none = np.zeros((n, 1))
+    nothing = tuple((sloping(instance, none) if instance.model.spec.directional else none)[:, 0].tolist())
     slopes = instance.model.canonical_jacobian(
         instance.t0, instance.initial, nothing, instance.parameters, instance.control_set.without_bounds.arguments
     )

@@ -256,6 +256,8 @@ class TwoPoint:
         """Arguments of the boundary functions."""
         n, multipliers = self.states, self.unknowns - self.free_time
         physical = (end * self.scale.both[:, 0]).tolist()
+        if self.instance.model.spec.throttled:
+            physical[n:] = sloping(self.instance, np.array(physical[n:])[:, None])[:, 0].tolist()
         tf = self.instance.t0 + self.elapsed(theta)
         nu = tuple((theta[:multipliers] * self.scale.cost).tolist())
         return (

@@ -31,11 +31,27 @@ def slope(instance: Instance, places: Sequence[int], t: Array, x: Array, lam: Ar
     def slopes() -> Array:
         return np.array(np.broadcast_to(model.stationarity_batch(t, x, u, lam, p), u.shape))[list(places)]
 
-    across = slopes()
-    if places[0] not in instance.control_set.angles:
-        return across
-    u[places[0]] = np.pi / 2.0
-    return np.concatenate([-slopes(), across])
+    if places[0] in instance.control_set.angles:
+        across = slopes()
+        u[places[0]] = np.pi / 2.0
+        return np.concatenate([-slopes(), across])
+    u[places[0]] = 1.0  # to both sides, so that what depends on the norm falls out
+    ahead = slopes()
+    u[places[0]] = -1.0
+    return np.asarray((ahead + slopes()) / 2.0)
+
+
+def gain(instance: Instance, places: Sequence[int], t: Array, x: Array, lam: Array) -> Array:
+    """How much H falls with the length of a direction, shape (N,): its slope, less what its norm adds to H."""
+    model, p = instance.model, instance.parameters
+    against = slope(instance, places, t, x, lam)
+    size = np.linalg.norm(against, axis=0)
+    if places[0] in instance.control_set.angles:
+        return np.asarray(size)
+    u = np.zeros((len(model.spec.controls), len(t)))
+    u[list(places)] = -against / np.maximum(size, 1e-300)
+    along = np.broadcast_to(model.stationarity_batch(t, x, u, lam, p), u.shape)[list(places)]
+    return np.asarray(-(along * u[list(places)]).sum(axis=0))
 
 
 def undecided(instance: Instance, t: Array, x: Array, lam: Array) -> NDArray[np.bool_]:

@@ -31,6 +31,8 @@ class Minimum:
         Which branch applies.
     vector
         Where H is linear in a vector, its slope: H_u of the controls, or what multiplies cosine and sine of an angle.
+    weight
+        What multiplies the norm of such a vector in H; zero where it does not occur.
     gradient, hats, hessian
         Where it is quadratic: H_u, the controls at which that vanishes, and H_uu.
     """
@@ -41,6 +43,7 @@ class Minimum:
     gradient: tuple[sp.Expr, ...] = ()
     hats: tuple[sp.Expr, ...] = ()
     hessian: sp.Matrix | None = None
+    weight: sp.Expr = sp.Integer(0)
 
 
 def minima(name: str, h: sp.Expr, parts: Sequence[Part]) -> tuple[Minimum, ...]:
@@ -59,18 +62,20 @@ def minima(name: str, h: sp.Expr, parts: Sequence[Part]) -> tuple[Minimum, ...]:
         Where there is none, with the reason.
     """
     found = []
+    h = with_norms(h, parts)
     for part in parts:
         others = {u for other in parts if other is not part for u in other.symbols}
         slopes = [tidy(g, part.symbols) for g in gradient(h, part.symbols)]
         for u, slope in zip(part.symbols, slopes, strict=True):
-            if mixed := sorted(v.name for v in slope.free_symbols & others):
+            norms = {norm_of(other) for other in parts if other is not part}
+            if mixed := sorted(v.name for v in slope.free_symbols & (others | norms)):
                 raise DerivationError(
                     f"{name}: H has products of {u.name} with {', '.join(mixed)}, which are in other control sets; "
                     "this is not supported: state them as one set, such as the components of a vector"
                 )
-            if slope == 0:
+            if slope == 0 and not h.has(norm_of(part)):
                 raise DerivationError(f"{name}: {u.name} enters neither the motion nor the cost; leave it out")
-        found.append(_of_angle(name, h, part) if part.kind == "angle" else _of_vector(name, part, slopes))
+        found.append(_of_angle(name, h, part) if part.kind == "angle" else _of_vector(name, h, part, slopes))
     return tuple(found)
 
 
@@ -101,8 +106,34 @@ def by_circle(expression: sp.Expr, angle: sp.Symbol) -> tuple[sp.Expr, sp.Expr, 
     return (turned.xreplace(none), *(s.xreplace(none) for s in slopes))
 
 
-def _of_vector(name: str, part: Part, slopes: list[sp.Expr]) -> Minimum:
-    controls = ", ".join(u.name for u in part.symbols)
+def norm_of(part: Part) -> sp.Symbol:
+    """The symbol for the norm of the controls of a set."""
+    return sp.Symbol(f"norm_of_{part.name}", nonnegative=True)
+
+
+def with_norms(expression: sp.Expr, parts: Sequence[Part]) -> sp.Expr:
+    """An expression with symbols for the norms of controls of sets that limit these."""
+    found = sp.sympify(expression)
+    for part in parts:
+        if part.kind not in ("ball", "annulus"):
+            continue
+        square, norm = sp.expand(sum(u**2 for u in part.symbols)), norm_of(part)
+        roots = [p for p in found.atoms(sp.Pow) if 2 * p.exp % 2 == 1 and sp.expand(p.base) == square]
+        found = found.xreplace({p: norm ** (2 * p.exp) for p in roots})
+        if len(part.symbols) == 1:
+            found = found.xreplace({sp.Abs(part.symbols[0]): norm})
+    return found
+
+
+def _of_vector(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr]) -> Minimum:
+    controls, norm = ", ".join(u.name for u in part.symbols), norm_of(part)
+    weight = sp.diff(h, norm)
+    if weight != 0:
+        if weight.has(norm, *part.symbols) or any(slope.has(norm, *part.symbols) for slope in slopes):
+            raise DerivationError(f"{name}: H is not linear in {controls} and in their norm, which is not supported")
+        if part.kind != "ball":
+            raise DerivationError(f"{name}: the norm of {controls} in H is supported for a ball only")
+        return Minimum(part, "throttled", tuple(slopes), weight=tidy(weight))
     try:
         rows, load = sp.linear_eq_to_matrix(slopes, part.symbols)
     except NonlinearError:

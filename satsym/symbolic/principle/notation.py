@@ -39,6 +39,8 @@ REGULARISED_H = sp.Symbol("H_regularised", real=True)
 
 primer_of = named("primer_{}")
 """The slope of H by a control on which it depends linearly, in a ball."""
+weight_of = named("norm_weight_{}")
+"""What multiplies the norm of a vector in H, by the first of its controls."""
 cosine_of, sine_of = named("cosine_of_{}"), named("sine_of_{}")
 """What multiplies the cosine and the sine of an angle in H."""
 along_of, across_of = named("along_{}"), named("across_{}")
@@ -61,11 +63,15 @@ def components_of(part: Part) -> tuple[sp.Symbol, ...]:
 
 def product_names(problem: Problem) -> dict[str, str]:
     """Name -> LaTeX of what the law over a product of sets introduces."""
-    found = {REGULARISED_H.name: r"H_\varepsilon", parts.SMOOTHING.symbol: parts.SMOOTHING.latex}
+    found = {REGULARISED_H.name: r"H_\varepsilon"}
+    found |= {v.symbol: v.latex for v in (parts.SMOOTHING, parts.FRACTION)}
     for v in problem.model.controls:
         found |= {f"primer_{v.symbol}": f"p_{{{v.latex}}}", f"cosine_of_{v.symbol}": f"a_{{{v.latex}}}"}
         found |= {f"sine_of_{v.symbol}": f"b_{{{v.latex}}}", f"along_{v.symbol}": f"c_{{{v.latex}}}"}
-        found |= {f"across_{v.symbol}": f"s_{{{v.latex}}}"}
+        found |= {f"across_{v.symbol}": f"s_{{{v.latex}}}", f"norm_weight_{v.symbol}": f"w_{{{v.latex}}}"}
+    for part in parts.parts_of(problem):
+        squares = " + ".join(f"{v.latex}^2" for v in part.controls)
+        found[f"norm_of_{part.name}"] = rf"\sqrt{{{squares}}}"
     return found
 
 
@@ -73,11 +79,12 @@ def declare_product(known: dict[str, Dimension | None], problem: Problem, runnin
     """Enter the dimensions of these."""
     if not product_stated(problem):
         return
-    known[REGULARISED_H.name] = running
+    known[REGULARISED_H.name], known[parts.FRACTION.symbol] = running, PLAIN
     efforts = []
     for part in parts.parts_of(problem):
         for v in part.controls:
-            known[f"primer_{v.symbol}"] = over(running, known[v.symbol])
+            known[f"primer_{v.symbol}"] = known[f"norm_weight_{v.symbol}"] = over(running, known[v.symbol])
+            known[f"norm_of_{part.name}"] = known[v.symbol]
             known[f"cosine_of_{v.symbol}"] = known[f"sine_of_{v.symbol}"] = running
             known[f"along_{v.symbol}"] = known[f"across_{v.symbol}"] = PLAIN
         if part.kind in ("ball", "annulus", "angle"):

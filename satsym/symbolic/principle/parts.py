@@ -14,6 +14,9 @@ from satsym.symbolic.principle import control_sets
 SMOOTHING = Variable("smoothing", r"\varepsilon", meaning="weight of half the squares in it", positive=True)
 """What follows the bounds in the ``bounds`` argument of kernels where controls are directions."""
 
+FRACTION = Variable("norm_share", r"\kappa", meaning="factor of what norms add to H in it", positive=True)
+"""What follows that where H depends on norms of such vectors."""
+
 SINGLE = "control"
 """The name of the one set of a problem that was stated in short."""
 

@@ -21,12 +21,12 @@ from satsym.symbolic.algebra import tidy
 from satsym.symbolic.checks import Point, compare, never_below, numeric
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Conclusion, Derivation, DerivationError, Equation, Step
-from satsym.symbolic.minimisers import Stretch, Within
+from satsym.symbolic.minimisers import Clip, Stretch, Within
 from satsym.symbolic.model import Problem, symbols_of
 from satsym.symbolic.principle import control_sets
 from satsym.symbolic.principle import notation as pn
-from satsym.symbolic.principle.branches import Minimum, by_circle, minima
-from satsym.symbolic.principle.parts import SMOOTHING, limits_of, parts_of
+from satsym.symbolic.principle.branches import Minimum, by_circle, minima, norm_of, with_norms
+from satsym.symbolic.principle.parts import FRACTION, SMOOTHING, limits_of, parts_of
 from satsym.symbolic.principle.pontryagin import COMPETITORS, costates
 
 STEP = "control_parts"
@@ -35,7 +35,11 @@ STEP = "control_parts"
 SCALES = (0.1, 1.0, 10.0)
 """Factors on the costates at each random point."""
 
-(EPSILON,) = symbols_of((SMOOTHING,))
+EPSILON, SHARE = symbols_of((SMOOTHING, FRACTION))
+
+
+EXACT = {EPSILON: sp.Float(1e-25, 30), SHARE: sp.Integer(1)}
+"""With which the law of the regularised problem is that of the problem itself."""
 
 
 def applies(so_far: Derivation) -> bool:
@@ -45,13 +49,11 @@ def applies(so_far: Derivation) -> bool:
         return False
     if problem.control_sets:
         return True
+    if problem.control_set != "ball":
+        return False
     controls = symbols_of(problem.model.controls)
-    return problem.control_set == "ball" and not any(
-        sp.simplify(sp.diff(e, u, v)) != 0
-        for e in (problem.running_cost, *so_far.rhs("first_order"))
-        for u in controls
-        for v in controls
-    )
+    stated = [with_norms(e, parts_of(problem)) for e in (problem.running_cost, *so_far.rhs("first_order"))]
+    return not any(sp.simplify(sp.diff(e, u, v)) != 0 for e in stated for u in controls for v in controls)
 
 
 def found(so_far: Derivation) -> tuple[Minimum, ...]:
@@ -74,6 +76,9 @@ def control_parts(so_far: Derivation) -> Step:
             ]
         else:
             equations += [Equation(s.name, s, value) for s, value in zip(pn.slopes_of(one), one.vector, strict=True)]
+            if one.weight != 0:
+                weight = pn.weight_of(one.part.symbols[0])
+                equations.append(Equation(weight.name, weight, one.weight))
     checks = [_adds_up(so_far, h, every)]
     checks += [_convex(so_far, one) for one in every if one.branch == "quadratic"]
     return Step(STEP, worded("set by set", problem), tuple(equations), ("hamiltonian",), tuple(checks))
@@ -85,12 +90,12 @@ def control_law(so_far: Derivation) -> Step:
     laws = {u: law for one in every for u, law in zip(one.part.symbols, _law(problem, one), strict=True)}
     equations = tuple(Equation(u.name, n.optimal(u), laws[u]) for u in symbols_of(problem.model.controls))
     h = so_far.equation("hamiltonian.H").rhs
-    exact = [e.rhs.xreplace({EPSILON: sp.Float(1e-25, 30)}) for e in equations]
+    exact = [e.rhs.xreplace(EXACT) for e in equations]
     check = _cheapest(so_far, h, written_out(so_far, exact))
     said = tuple(
         Conclusion("no direction where it vanishes", {"slope": sp.Tuple(*pn.slopes_of(one))})
         for one in every
-        if one.branch == "direction"
+        if one.branch != "quadratic"
     )
     return Step("control_law", worded("minimum set by set", problem), equations, (STEP,), (check,), said)
 
@@ -98,7 +103,7 @@ def control_law(so_far: Derivation) -> Step:
 def smoothed_law(so_far: Derivation) -> Step | None:
     """Where controls are directions: H of the problem in which half their squares cost a little, and its law."""
     problem = _problem(so_far)
-    directions = [one for one in found(so_far) if one.branch == "direction"]
+    directions = [one for one in found(so_far) if one.branch != "quadratic"]
     if not directions:
         return None
     short = [component for one in directions for component in pn.components_of(one.part)]
@@ -110,6 +115,8 @@ def smoothed_law(so_far: Derivation) -> Step | None:
         equations += [Equation(c.name, c, law) for c, law in zip(pn.components_of(one.part), laws, strict=True)]
     h = relaxed(so_far, [so_far.equation("hamiltonian.H").rhs])[0]
     h += sign(problem) * EPSILON / 2 * sum(c**2 for c in short)
+    norms = {norm_of(one.part): SHARE * sp.sqrt(sum(u**2 for u in one.part.symbols)) for one in directions}
+    h = h.xreplace(norms)
     value, chosen = numeric([h]), numeric(written_out(so_far, [e.rhs for e in equations[1:]]))
 
     def margins(point: Point, rng: random.Random) -> list[Any]:
@@ -137,7 +144,7 @@ def smoothed_law(so_far: Derivation) -> Step | None:
 
 def relaxed(so_far: Derivation, expressions: Iterable[sp.Expr]) -> list[sp.Expr]:
     """Expressions with directions as vectors that may be shorter: what the regularised problem has in place of them."""
-    values = [sp.sympify(e) for e in expressions]
+    values = [with_norms(e, parts_of(_problem(so_far))) for e in expressions]
     for part in parts_of(_problem(so_far)):
         if part.kind != "angle":
             continue
@@ -155,8 +162,10 @@ def regularised_law(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
     problem, every = _problem(so_far), found(so_far)
     laws: dict[sp.Symbol, sp.Expr] = {}
     for one in every:
-        if one.branch == "direction":
+        if one.branch != "quadratic":
             laws |= dict(zip(pn.components_of(one.part), _shortened(problem, one), strict=True))
+            if one.weight != 0:
+                laws[norm_of(one.part)] = SHARE * _size(problem, one)
         else:
             laws |= dict(zip(one.part.symbols, _law(problem, one), strict=True))
     return dict(zip(laws, written_out(so_far, laws.values()), strict=True))
@@ -164,7 +173,7 @@ def regularised_law(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
 
 def effort(so_far: Derivation) -> sp.Expr:
     """What the regularised problem costs besides, by its components."""
-    every = [one for one in found(so_far) if one.branch == "direction"]
+    every = [one for one in found(so_far) if one.branch != "quadratic"]
     return EPSILON / 2 * sum((c**2 for one in every for c in pn.components_of(one.part)), sp.Integer(0))
 
 
@@ -173,16 +182,17 @@ def written_out(so_far: Derivation, expressions: Iterable[sp.Expr]) -> list[sp.E
     values = {
         s: value
         for one in found(so_far)
-        if one.branch == "direction"
+        if one.branch != "quadratic"
         for s, value in zip(pn.slopes_of(one), one.vector, strict=True)
     }
+    values |= {pn.weight_of(one.part.symbols[0]): one.weight for one in found(so_far) if one.weight != 0}
     return [e.xreplace(values) for e in expressions]
 
 
 def _law(problem: Problem, one: Minimum) -> list[sp.Expr]:
     """The minimiser over one set."""
     part = one.part
-    if one.branch == "direction":
+    if one.branch != "quadratic":
         if part.kind != "angle":
             return _shortened(problem, one)
         along, across = (-sign(problem) * s for s in pn.slopes_of(one))
@@ -198,8 +208,18 @@ def _law(problem: Problem, one: Minimum) -> list[sp.Expr]:
 def _shortened(problem: Problem, one: Minimum) -> list[sp.Expr]:
     """The minimiser over a ball where half the square costs the smoothing, by the components of the slope."""
     slopes = pn.slopes_of(one)
-    factor = Stretch(sum((s**2 for s in slopes), sp.Integer(0)), EPSILON, one.part.bounds[-1])
+    square = sum((s**2 for s in slopes), sp.Integer(0))
+    if one.weight != 0:
+        return [-sign(problem) * s / sp.sqrt(square) * _size(problem, one) for s in slopes]
+    factor = Stretch(square, EPSILON, one.part.bounds[-1])
     return [-sign(problem) * s * factor for s in slopes]
+
+
+def _size(problem: Problem, one: Minimum) -> sp.Expr:
+    """The norm of that minimiser, where H depends on the norm."""
+    length = sp.sqrt(sum((s**2 for s in pn.slopes_of(one)), sp.Integer(0)))
+    margin = length - sign(problem) * SHARE * pn.weight_of(one.part.symbols[0])
+    return Clip(margin / EPSILON, sp.Integer(0), one.part.bounds[-1])
 
 
 def _adds_up(so_far: Derivation, h: sp.Expr, every: Sequence[Minimum]) -> Any:
@@ -213,8 +233,10 @@ def _adds_up(so_far: Derivation, h: sp.Expr, every: Sequence[Minimum]) -> Any:
             (angle,) = symbols
             moved = [f(other[angle]) - f(angle) for f in (sp.cos, sp.sin)]
             changes += [s * m for s, m in zip(one.vector, moved, strict=True)]
-        elif one.branch == "direction":
+        elif one.branch != "quadratic":
             changes += [s * (other[u] - u) for s, u in zip(one.vector, symbols, strict=True)]
+            before, after = (sp.sqrt(sum(v**2 for v in w)) for w in (symbols, [other[u] for u in symbols]))
+            changes.append(one.weight * (after - before))
         else:
             assert one.hessian is not None
             move = sp.Matrix([other[u] - u for u in symbols])
@@ -316,13 +338,17 @@ def minimised_hamiltonian(so_far: Derivation) -> Step:
             continue
         least |= dict.fromkeys(pn.components_of(one.part), sp.Integer(0))
         length = sp.Integer(1) if one.part.kind == "angle" else one.part.bounds[-1]
-        gained += sign(problem) * length * sp.sqrt(sp.factor(sum((s**2 for s in one.vector), sp.Integer(0))))
+        slope = sp.sqrt(sp.factor(sum((s**2 for s in one.vector), sp.Integer(0))))
+        if one.weight != 0:
+            least[norm_of(one.part)] = sp.Integer(0)
+            slope = sp.Max(slope - sign(problem) * one.weight, 0)
+        gained += sign(problem) * length * slope
     (plain,) = relaxed(so_far, [h])
     h_star = tidy(plain.xreplace(least), ()) - gained
     value, at_minimum = numeric([h]), numeric([h_star])
     laws = [so_far.equation(f"control_law.{u.name}").rhs for u in symbols_of(problem.model.controls)]
     wide = _wide(every)
-    chosen = numeric(written_out(so_far, [law.xreplace({EPSILON: sp.Float(1e-25, 30)}) for law in laws]))
+    chosen = numeric(written_out(so_far, [law.xreplace(EXACT) for law in laws]))
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
         here = {**point, **wide}
