@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from satsym.cli import main
-from satsym.instance import shipped
+from satsym.instance import load, shipped
 from satsym.instance.files import SHIPPED
 
 Run = Callable[..., tuple[int, str, str]]
@@ -56,7 +56,10 @@ def test_the_test_of_a_new_model_notices_another_model(run: Run, tmp_path: Path)
 
 @pytest.mark.parametrize("original", shipped())
 def test_a_copied_instance_is_the_shipped_one(run: Run, tmp_path: Path, original: str):
-    assert run("new", "my-case", "--instance", original)[0] == 0
+    code, out, _ = run("new", "my-case", "--instance", original)
+    assert code == 0
+    command = "solve" if load(original).model.spec.has_cost else "analyse"
+    assert out.endswith(f"  satsym {command} my-case.toml --plot\n")
     assert (tmp_path / "my-case.toml").read_bytes() == (SHIPPED / f"{original}.toml").read_bytes()
 
 

@@ -78,6 +78,7 @@ def _model(name: str, folder: Path) -> tuple[dict[Path, tuple[str, str]], list[s
 
 
 def _copy(name: str, original: str, folder: Path) -> tuple[dict[Path, tuple[str, str]], list[str]]:
+    from satsym import instance
     from satsym.instance import files
     from satsym.wording import shown
 
@@ -88,4 +89,5 @@ def _copy(name: str, original: str, folder: Path) -> tuple[dict[Path, tuple[str,
         raise BadInput(f"--instance: {shown(original)} is a path; name a shipped one (`satsym instances` lists them)")
     source = files.locate(original)
     path = folder / f"{name}.toml"
-    return {path: (source.read_text(encoding="utf-8"), f"a copy of {original}")}, [f"  satsym solve {path} --plot"]
+    command = "solve" if instance.load(original).model.spec.has_cost else "analyse"
+    return {path: (source.read_text(encoding="utf-8"), f"a copy of {original}")}, [f"  satsym {command} {path} --plot"]
