@@ -61,6 +61,8 @@ def refuse_foreign_symbols(derivation: Derivation) -> None:
     everything = motion | set(symbols_of(model.controls))
 
     def refuse(what: str, expressions: Iterable[Any], allowed: set[sp.Symbol]) -> None:
+        if any(sp.sympify(e).has(sp.nan, sp.oo, -sp.oo, sp.zoo) for e in expressions):
+            raise DerivationError(f"{derivation.name}: {what} is not finite; something in it is divided by zero")
         foreign = set().union(*(sp.sympify(e).free_symbols for e in expressions)) - allowed
         if foreign:
             raise DerivationError(f"{derivation.name}: {what} {_complaint(foreign, everything)}")

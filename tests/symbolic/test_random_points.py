@@ -68,6 +68,14 @@ def test_defaults_that_are_no_numbers_are_refused(default: object) -> None:
         replace(STATES[0], default=default)  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize("value", [sp.zoo, sp.nan, sp.oo, -sp.oo])
+def test_what_is_not_finite_is_refused_where_it_is_stated(value: sp.Expr) -> None:
+    with pytest.raises(DerivationError, match="the rate of v is not finite; something in it is divided by zero"):
+        derive(climb(v * h - sp.sin(v) * value))
+    with pytest.raises(DerivationError, match="the running cost is not finite"):
+        derive(replace(climb(v), running_cost=u**2 + value))
+
+
 @pytest.mark.parametrize("name", ["", "Climb", "a b", "9", "class "])
 def test_names_that_no_file_can_have_are_refused(name: str) -> None:
     with pytest.raises(DerivationError, match="a model's name is a small letter"):
