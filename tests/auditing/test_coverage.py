@@ -66,6 +66,21 @@ def test_what_is_numbered_or_asserted_is_found_and_matched(ledger: Path) -> None
     assert not [k for k in found["sentences"] if "Terima" in k], "nothing is asserted there"
 
 
+def test_a_common_piece_of_a_quotation_counts_only_near_its_longest_one(ledger: Path) -> None:
+    again = "Sistem itu adalah sistem yang stabil. "
+    found = coverage.measured(auditing.read(ledger), TEXT + again + "Kami diam saja. " * 200 + again[:-2] + " juga.")
+    rows = list(found.found["sentences"].values())
+    assert rows.count("stable") == 3
+    assert rows[-1] == "", "a thousand signs away"
+
+
+def test_the_row_with_the_longest_piece_has_a_sentence(ledger: Path) -> None:
+    longer = CLAIM.replace('"stable"', '"longer"').replace("kontrol optimal dari", "Kami mencari kontrol optimal dari")
+    ledger.write_text(ledger.read_text(encoding="utf-8") + longer, encoding="utf-8")
+    found = coverage.measured(auditing.read(ledger), TEXT).found["sentences"]
+    assert [row for name, row in found.items() if "Kami mencari" in name] == ["longer"]
+
+
 def test_quotations_that_the_text_has_not_are_named(ledger: Path) -> None:
     read = auditing.read(ledger)
     assert coverage.measured(read, TEXT).unquoted == ()

@@ -62,6 +62,16 @@ def test_the_method_for_several_unknowns_is_of_order_four_both_ways(unknown, oth
     assert MEASURE["order"](late, along) == (1 if others else 4)
 
 
+@pytest.mark.parametrize("amiss", [None, 0, 1, 2, 3])
+def test_a_slip_in_an_argument_that_a_rate_of_the_model_lacks_shows_along_a_coupled_motion(amiss):
+    method, signs = MEASURE["runge_kutta"](X, U), ["-" if k == amiss else "+" for k in range(4)]
+    moved = ", ".join(f"{x}_n {sign} k3_{x}" for x, sign in zip(X, signs, strict=True))
+    lines = MEASURE["with_line"](method, f"k4_{X[2]} = h*f3({moved}, {', '.join(f'{u}_n1' for u in U)})")
+    alone, coupled = (MEASURE["order"](lines, MEASURE["moving"]("polar_orbit", X, U, coupled=c)) for c in (False, True))
+    assert (alone == 4) is (amiss != 3)  # x3' = x4
+    assert (coupled == 4) is (amiss is None)
+
+
 def test_a_stage_that_adds_a_slope_without_the_step_spoils_the_method():
     assert MEASURE["order"](MEASURE["with_line"](RK4, "k3 = f(x_n + h/2, y_n + k2/2)")) == 0
     assert MEASURE["order"](MEASURE["with_line"](RK4, "k3 = f(x_n + h/2, y_n + h*k2/2)")) == 4

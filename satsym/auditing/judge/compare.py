@@ -31,11 +31,9 @@ def plans(bench: Bench, row: Row, printed: Formula, target: Both) -> list[Plan]:
         return _of_relation(bench, row, printed, target)
     if not isinstance(printed, Equality):
         return [Equal(bench, row, (printed,), ("",), (target,))]
-    if ZERO in (printed.lhs, printed.rhs):
-        return [Multiple(bench, row, printed, Both(Relation(trees, ZERO), Relation(target.exact, formulas.ZERO)))]
-    if _is_label(printed):
+    if ZERO not in (printed.lhs, printed.rhs) and _is_label(printed):
         return [Equal(bench, row, (printed.rhs,), ("",), (target,))]
-    raise BadInput("an equation of two expressions is held against one expression; hold it against an equation")
+    return [Multiple(bench, row, printed, Both(Relation(trees, ZERO), Relation(target.exact, formulas.ZERO)))]
 
 
 def _is_label(printed: Equality) -> bool:

@@ -29,6 +29,10 @@ NONE = "none: "
 
 _TELLING = 12
 """Signs that a quotation needs to tell which sentence it is from."""
+_REPEATED = 40
+"""Signs that it needs to tell each sentence that says the same; a shorter one is taken where it is found first."""
+_NEAR = 1000
+"""Signs between the longest piece of a quotation and its other pieces, at most."""
 _NUMBER = r"[A-Z]?\d{1,2}(?:\.\d{1,3})*[a-e]?"
 _FORMULA = re.compile(rf"(?:\\tag\{{\(?|(?<![\w)])\()({_NUMBER})[)}}]+[\s$.,;]*$")
 _CITING = re.compile(r"(?:persamaan|pers\.?|equations?|eqs?\.|dan|and|sampai|to|[-\u2013])\s*$", re.IGNORECASE)
@@ -221,23 +225,29 @@ def _sentences(ledger: Ledger, text: str) -> tuple[dict[str, str], list[tuple[st
     sentences = _SENTENCE.split(" ".join(re.sub(r"(?<=[a-z])-\n\s*(?=[a-z])", "", _MARKS.sub("\n", text)).split()))
     squashed = [_squashed(sentence) for sentence in sentences]
     ends = list(accumulate(map(len, squashed)))
-    whole, rows, unquoted = "".join(squashed), [""] * len(sentences), []
+    whole, quoted, unquoted = "".join(squashed), [(0, "")] * len(sentences), []
     for row in ledger.rows:
-        for piece in filter(None, map(str.strip, row.table.original.split("..."))):
-            sought = _squashed(piece)
-            at = -1
-            while len(sought) >= _TELLING and (at := whole.find(sought, at + 1)) >= 0:
-                for i, end in enumerate(ends):
-                    if end > at and end - len(squashed[i]) < at + len(sought):
-                        rows[i] = rows[i] or row.key
+        pieces = [(_squashed(piece), piece) for piece in filter(None, map(str.strip, row.table.original.split("...")))]
+        longest = max((sought for sought, _ in pieces), key=len, default="")
+        anchors = _places(longest, whole)[: None if len(longest) >= _REPEATED else 1]
+        for sought, piece in pieces:
+            for at in _places(sought, whole):
+                if any(abs(at - anchor) <= _NEAR for anchor in anchors):
+                    for i, end in enumerate(ends):
+                        if end > at and end - len(squashed[i]) < at + len(sought):
+                            quoted[i] = max(quoted[i], (len(sought), row.key), key=lambda each: each[0])
             if sought not in whole and not _in_words(piece, whole):
                 unquoted.append((row.key, piece))
     found: dict[str, str] = {}
-    for sentence, own, row_key in zip(sentences, squashed, rows, strict=True):
+    for sentence, own, (_, row_key) in zip(sentences, squashed, quoted, strict=True):
         if row_key or (_ABOUT.search(sentence) and _ASSERTS.search(sentence)):
             name = f"{hashlib.sha256(own.encode()).hexdigest()[:6]} {_opening(sentence)}"
             found[name] = found.get(name) or row_key
     return found, unquoted
+
+
+def _places(sought: str, whole: str) -> list[int]:
+    return [at.start() for at in re.finditer(re.escape(sought), whole)] if len(sought) >= _TELLING else []
 
 
 def _in_words(piece: str, whole: str) -> bool:

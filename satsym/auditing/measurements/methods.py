@@ -81,12 +81,19 @@ def with_line(lines: Sequence[str], line: str) -> list[str]:
 
 
 @measurement
-def moving(model: str, states: Sequence[str], controls: Sequence[str] = (), costates: Sequence[str] = ()) -> Record:
+def moving(
+    model: str,
+    states: Sequence[str],
+    controls: Sequence[str] = (),
+    costates: Sequence[str] = (),
+    coupled: bool = False,
+) -> Record:
     """A motion of a model under controls that vary, by the names that are given to its states, controls and costates.
 
-    ``f1``, ``f2``, ... are the rates of the states, or of the costates where these are named, for lines of a method.
+    ``f1``, ``f2``, ... are the rates of the states, or of the costates where these are named, for lines of a method;
+    ``coupled`` adds to each a term with all these states, or costates, so that no argument is without effect.
     """
-    return _motion(model, tuple(states), tuple(controls), tuple(costates))
+    return _motion(model, tuple(states), tuple(controls), tuple(costates), coupled)
 
 
 @measurement
@@ -147,7 +154,9 @@ def _growth() -> Record:
 
 
 @cache
-def _motion(model: str, states: tuple[str, ...], controls: tuple[str, ...], costates: tuple[str, ...]) -> Record:
+def _motion(
+    model: str, states: tuple[str, ...], controls: tuple[str, ...], costates: tuple[str, ...], coupled: bool
+) -> Record:
     from scipy.integrate import solve_ivp
 
     system, rng = kernels.load(model), np.random.default_rng(_SEED)
@@ -162,16 +171,17 @@ def _motion(model: str, states: tuple[str, ...], controls: tuple[str, ...], cost
         return 0.05 * np.cos(3.0 * np.asarray(t)[..., None] + phases) * bool(controls)
 
     def states_rate(x: Array, v: Array) -> Array:
-        return np.array(system.dynamics(0.0, tuple(x), tuple(v) or still, p))
+        return np.array(system.dynamics(0.0, tuple(x), tuple(v) or still, p)) + np.sin(mixing @ x) * (not costates)
 
     def costates_rate(lam: Array, x: Array, v: Array) -> Array:
-        return np.array(system.costate_rate(0.0, tuple(x), tuple(v) or still, tuple(lam), p))
+        return np.array(system.costate_rate(0.0, tuple(x), tuple(v) or still, tuple(lam), p)) + np.sin(mixing @ lam)
 
     def both(t: float, y: Array) -> Array:
         rate = states_rate(y[:n], u(t))
         return np.concatenate([rate, costates_rate(y[n:], y[:n], u(t))]) if costates else rate
 
     start = rng.uniform(0.8, 1.2, n + len(costates))
+    mixing = rng.uniform(0.2, 0.5, (n, n)) * coupled
     found = solve_ivp(both, _SPAN, start, method="DOP853", rtol=1e-13, atol=1e-14, max_step=1 / 64, dense_output=True)
 
     def component(of: Callable[[Array], Array], k: int) -> Callable[[Array], Array]:
