@@ -50,8 +50,6 @@ class _Context:
 
     def judged(self, outcome: Outcome) -> Judged:
         verdict, sayings = self._verdict(outcome)
-        if outcome.row.claims is None and outcome.row.why:
-            sayings = [*sayings, sentence(Pages(self._bench, outcome.row).explained(outcome.row.why))]
         said = joined(sayings if verdict != "confirmed" else ())
         row, document = outcome.row, self._bench.ledger.document.key
         command = recompute(self._bench.ledger.name, row.key)
