@@ -297,7 +297,7 @@ def test_the_throttle_of_a_thrust_has_a_switching_function():
         "c": 2.0,
         "u_max": 7.0,
         "smoothing": 1e-20,
-        "norm_share": 1.0,
+        "norm_factor": 1.0,
     }
 
     def law(mass: float) -> tuple[float, float]:

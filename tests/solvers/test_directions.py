@@ -10,13 +10,14 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, root
-from sympy import Expr, atan2, cos, sin, sympify
+from sympy import Expr, Symbol, atan2, cos, sin, sympify
 
 from satsym import instance
 from satsym.solution import Solution
 from satsym.solvers import solve
 from satsym.status import BadInput, Status, Verdict
-from satsym.symbolic import Angle, Ball, DerivationError, FirstOrder, Problem, Variable, symbols_of
+from satsym.symbolic import Angle, Ball, DerivationError, FirstOrder, Problem, Variable, derive, symbols_of
+from satsym.symbolic.principle import branches, product
 from tests.support.derived import derived
 from tests.support.models import build
 
@@ -191,3 +192,21 @@ def test_the_transfer_takes_as_long_as_by_shooting():
     expected = root(missed, [-5.0, -2.5, -5.5, 3.3], tol=1e-10)
     assert np.abs(missed(expected.x)).max() < 1e-10
     assert certified("transfer-time").objective == pytest.approx(expected.x[3], rel=1e-9)
+
+
+def test_a_law_that_turns_the_wrong_way_is_refused(monkeypatch: pytest.MonkeyPatch):
+    right = product._law
+    monkeypatch.setattr(product, "_law", lambda problem, one: [v + 1 for v in right(problem, one)])
+    with pytest.raises(DerivationError, match="failed its check 'cheapest admissible'"):
+        derive(steered(sympify(1), PUSHED, name="turned"))
+
+
+def test_a_slope_that_is_not_that_of_the_hamiltonian_is_refused(monkeypatch: pytest.MonkeyPatch):
+    def wrong(h: Expr, angle: Symbol) -> tuple[Expr, ...] | None:
+        found = by_circle(h, angle)
+        return found and (found[0], found[1], 2 * found[2])
+
+    by_circle = branches.by_circle
+    monkeypatch.setattr(branches, "by_circle", wrong)
+    with pytest.raises(DerivationError, match="failed its check 'adds up to H'"):
+        derive(steered(sympify(1), PUSHED, name="doubled"))

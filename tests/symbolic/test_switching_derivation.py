@@ -137,6 +137,7 @@ def test_a_control_with_a_weight_is_singular_on_either_side() -> None:
 @pytest.mark.parametrize(
     ("problem", "complaint"),
     [
+        (switching({x1: u1}, 1, control_set="ball"), 'this needs control_set = "box", not "ball"'),
         (switching({x1: u1}, 1, control_set="free"), 'this needs control_set = "box", not "free"'),
         (switching({x1: u1}, -sp.Abs(u1)), "the weight of |u1| in the cost, -1, may be negative"),
         (switching({x1: u1}, x1 * sp.Abs(u1)), "the weight of |u1| in the cost, x1, may be negative"),
@@ -144,7 +145,7 @@ def test_a_control_with_a_weight_is_singular_on_either_side() -> None:
         (switching({x1: u1, x2: x1}, u2**2 + x2), "H_uu is singular"),
         (switching({x1: u1}, sp.Abs(u1) + u1**2), "H is not quadratic in the controls"),
     ],
-    ids=["free", "minus |u|", "weight of either sign", "|u| in the motion", "mixed", "|u| and u^2"],
+    ids=["ball", "free", "minus |u|", "weight of either sign", "|u| in the motion", "mixed", "|u| and u^2"],
 )
 def test_what_has_no_law_here_is_refused_in_one_line(problem: Problem, complaint: str) -> None:
     with pytest.raises(DerivationError) as caught:

@@ -14,6 +14,7 @@ from satsym.report.plots import curves
 from satsym.report.plots.scene import Scene
 from satsym.report.results.unit_names import cost_per, time_unit
 from satsym.solution import Simulation
+from satsym.spec import PRODUCT
 
 ON_BOUND = 1e-7
 """How near to a bound a control is on it, relative to the width of its range."""
@@ -79,7 +80,7 @@ def controls(scene: Scene) -> list[Series]:
     if isinstance(scene.result, Simulation) and scene.coasting:
         return []
     switching = getattr(scene.result, "switching_times", ()) or ((),) * len(spec.controls)
-    box = spec.control_set == "box"
+    box = spec.control_set in ("box", PRODUCT)
     found = [
         Series(
             v.latex,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from satsym import __version__
 from satsym.report.results.certificate import certificate_object, plain
 from satsym.report.results.unit_names import units
-from satsym.spec import ProblemSpec, Variable
+from satsym.spec import ControlPart, ProblemSpec, Variable
 from satsym.status import Status
 
 if TYPE_CHECKING:
@@ -96,6 +96,7 @@ def model_object(spec: ProblemSpec) -> dict[str, Any]:
         "controls": [_variable(v) for v in spec.controls],
         "parameters": [_variable(v) | {"default": v.default} for v in spec.parameters],
         "control_set": spec.control_set,
+        **({"control_sets": [_set(part) for part in spec.control_parts]} if spec.control_parts else {}),
         "has_cost": spec.has_cost,
         "has_terminal_cost": spec.has_terminal_cost,
         "has_reference": spec.has_reference,
@@ -119,6 +120,10 @@ def instance_object(instance: Instance) -> dict[str, Any]:
 def bounded(instance: Instance) -> bool:
     """Whether anything limits the control."""
     return instance.control_set.bounded
+
+
+def _set(part: ControlPart) -> dict[str, Any]:
+    return {"name": part.name, "kind": part.kind, "controls": list(part.controls)}
 
 
 def _variable(variable: Variable) -> dict[str, Any]:

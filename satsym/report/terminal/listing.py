@@ -47,9 +47,8 @@ def instances_text(instances: Iterable[Instance]) -> str:
 
 def model_text(spec: ProblemSpec) -> str:
     """Everything that an instance of the model can name."""
-    kinds = {None: "no cost", "free": "any control", "box": "each control between its bounds", "ball": "bounded norm"}
     blocks = [
-        [spec.title, f"{spec.name}, from {spec.source}: {kinds[spec.control_set]}"],
+        [spec.title, f"{spec.name}, from {spec.source}: {_control_set(spec)}"],
         _variables("state", spec.states),
         _variables("control", spec.controls),
         _variables("parameter", spec.parameters),
@@ -57,6 +56,15 @@ def model_text(spec: ProblemSpec) -> str:
     if spec.has_reference:
         blocks.append(['  It has a reference: [final] may say "reference" for any state.'])
     return "\n\n".join("\n".join(block) for block in blocks if block)
+
+
+def _control_set(spec: ProblemSpec) -> str:
+    """What limits the controls, in words."""
+    kinds = {"free": "any control", "box": "each control between its bounds", "ball": "bounded norm"}
+    kinds |= {"annulus": "norm between its bounds", "angle": "any angle"}
+    if spec.control_parts:
+        return "; ".join(f"{part.name} ({', '.join(part.controls)}): {kinds[part.kind]}" for part in spec.control_parts)
+    return kinds[spec.control_set] if spec.control_set else "no cost"
 
 
 def _variables(word: str, variables: Iterable[Variable]) -> list[str]:

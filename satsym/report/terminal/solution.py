@@ -190,12 +190,20 @@ def _controls(instance: Instance, times: Array, u: Array) -> list[str]:
     spec = instance.model.spec
     rows = [("control", "minimum", "maximum", "bounds", "saturated", "unit")]
     for i, control in enumerate(spec.controls):
-        limits = (instance.lower[i], instance.upper[i]) if spec.control_set == "box" else (-math.inf, math.inf)
+        limits = (instance.lower[i], instance.upper[i])
         unit = "" if control.unit == "1" else control.unit
         rows.append((control.symbol, *_range(times, u[i], limits), unit))
     if spec.control_set == "ball" and math.isfinite(instance.max_norm):
         norm = np.sqrt((u * u).sum(axis=0))
         rows.append(("norm", *_range(times, norm, (-math.inf, instance.max_norm)), ""))
+    for name, (least, largest) in instance.norms.items():
+        places = next(
+            at
+            for part, (at, _) in zip(spec.control_parts, instance.control_set.parts, strict=True)
+            if part.name == name
+        )
+        norm = np.linalg.norm(u[list(places)], axis=0) if u.size else u[0]
+        rows.append((f"norm of {name}", *_range(times, norm, (least or -math.inf, largest)), ""))
     return table(rows, right=(1, 2, 4))
 
 

@@ -16,6 +16,7 @@ from satsym.instance import Instance
 from satsym.solvers.cold_start.duration_search import AROUND_GUESS, AROUND_SCALE, FEWER, Search
 from satsym.solvers.cold_start.duration_trials import Minimum, Trials, Try
 from satsym.solvers.collocation.extremal import Extremal
+from satsym.solvers.collocation.scaling import NO_SLOPE
 from satsym.solvers.control.regularised import sloping
 from satsym.solvers.iteration import Limits
 from satsym.status import Status
@@ -56,12 +57,12 @@ def time_scale(instance: Instance) -> float:
     """One over the largest rate of the motion at the start: of the eigenvalues of f_x without control; one if zero."""
     n = len(instance.initial)
     none = np.zeros((n, 1))
-    nothing = tuple((sloping(instance, none) if instance.model.spec.directional else none)[:, 0].tolist())
+    nothing = tuple((sloping(instance, none) if instance.model.spec.throttled else none)[:, 0].tolist())
     slopes = instance.model.canonical_jacobian(
         instance.t0, instance.initial, nothing, instance.parameters, instance.control_set.without_bounds.arguments
     )
     fastest = np.abs(np.linalg.eigvals(np.array(slopes).reshape(2 * n, 2 * n)[:n, :n])).max()
-    return 1.0 / float(fastest) if np.isfinite(fastest) and fastest > 0.0 else 1.0
+    return 1.0 / float(fastest) if np.isfinite(fastest) and fastest > NO_SLOPE else 1.0
 
 
 def _plans(instance: Instance, scale: float, guess: float) -> list[tuple[float, tuple[int, int], bool]]:

@@ -198,8 +198,9 @@ class Matching:
         mixed: bool = False,
     ) -> None:
         half = transition.shape[1] // 2
-        self._mixing = np.cos(np.arange(1.0, half + 1.0))[:, None] * np.full(by_theta.shape[2], float(mixed))
+        self._mixing: Array | None = None
         if mixed:
+            self._mixing = np.repeat(np.cos(np.arange(1.0, half + 1.0))[:, None], by_theta.shape[2], axis=1)
             finish_by_end, finish_by_theta = self._mixed(finish_by_end), self._mixed(finish_by_theta)
         self.transition, self._lower, self._slopes = transition, finish_by_end[half:], finish_by_theta[half:]
         self._between, nothing = Nodes(transition, finish_by_end[:half]), np.zeros(half)
@@ -219,7 +220,7 @@ class Matching:
             Residuals at the boundary, shapes (n,) and (n + e,).
         """
         half = len(start)
-        finish = self._mixed(finish) if self._mixing.any() else finish
+        finish = finish if self._mixing is None else self._mixed(finish)
         nodes = self._between.solve(-start, -defects, -finish[:half])
         if not self._columns:
             return nodes, np.zeros(0)
@@ -230,6 +231,7 @@ class Matching:
 
     def _mixed(self, finish: Array) -> Array:
         """Rows at the end with the last ones added to the others."""
+        assert self._mixing is not None
         half = len(self._mixing)
         return np.concatenate([finish[:half] + self._mixing @ finish[half:], finish[half:]])
 

@@ -133,6 +133,10 @@ def _of_vector(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr]) -> Mini
             raise DerivationError(f"{name}: H is not linear in {controls} and in their norm, which is not supported")
         if part.kind != "ball":
             raise DerivationError(f"{name}: the norm of {controls} in H is supported for a ball only")
+        if len(slopes) == 1:
+            raise DerivationError(
+                f"{name}: the norm of {controls} alone is its magnitude; state a box, and |{controls}|"
+            )
         return Minimum(part, "throttled", tuple(slopes), weight=tidy(weight))
     try:
         rows, load = sp.linear_eq_to_matrix(slopes, part.symbols)
@@ -144,6 +148,11 @@ def _of_vector(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr]) -> Mini
             raise DerivationError(
                 f"{name}: H is linear in {controls}, so that its minimum is where they end; {part.name!r} has to be a "
                 "ball, or all controls of the problem to be in one box"
+            )
+        if len(slopes) == 1:
+            raise DerivationError(
+                f"{name}: H is linear in {controls} alone, which switches and does not turn; state a problem whose "
+                "controls are all in one box"
             )
         return Minimum(part, "direction", tuple(slopes))
     if sp.simplify(rows.det()) == 0:

@@ -14,7 +14,7 @@ from satsym.symbolic.principle import control_sets
 SMOOTHING = Variable("smoothing", r"\varepsilon", meaning="weight of half the squares in it", positive=True)
 """What follows the bounds in the ``bounds`` argument of kernels where controls are directions."""
 
-FRACTION = Variable("norm_share", r"\kappa", meaning="factor of what norms add to H in it", positive=True)
+FRACTION = Variable("norm_factor", r"\kappa", meaning="factor of what norms add to H in it", positive=True)
 """What follows that where H depends on norms of such vectors."""
 
 SINGLE = "control"

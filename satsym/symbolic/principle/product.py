@@ -35,10 +35,10 @@ STEP = "control_parts"
 SCALES = (0.1, 1.0, 10.0)
 """Factors on the costates at each random point."""
 
-EPSILON, SHARE = symbols_of((SMOOTHING, FRACTION))
+EPSILON, FACTOR = symbols_of((SMOOTHING, FRACTION))
 
 
-EXACT = {EPSILON: sp.Float(1e-25, 30), SHARE: sp.Integer(1)}
+EXACT = {EPSILON: sp.Float(1e-25, 30), FACTOR: sp.Integer(1)}
 """With which the law of the regularised problem is that of the problem itself."""
 
 
@@ -49,7 +49,7 @@ def applies(so_far: Derivation) -> bool:
         return False
     if problem.control_sets:
         return True
-    if problem.control_set != "ball":
+    if problem.control_set != "ball" or len(problem.model.controls) == 1:
         return False
     controls = symbols_of(problem.model.controls)
     stated = [with_norms(e, parts_of(problem)) for e in (problem.running_cost, *so_far.rhs("first_order"))]
@@ -115,7 +115,7 @@ def smoothed_law(so_far: Derivation) -> Step | None:
         equations += [Equation(c.name, c, law) for c, law in zip(pn.components_of(one.part), laws, strict=True)]
     h = relaxed(so_far, [so_far.equation("hamiltonian.H").rhs])[0]
     h += sign(problem) * EPSILON / 2 * sum(c**2 for c in short)
-    norms = {norm_of(one.part): SHARE * sp.sqrt(sum(u**2 for u in one.part.symbols)) for one in directions}
+    norms = {norm_of(one.part): FACTOR * sp.sqrt(sum(u**2 for u in one.part.symbols)) for one in directions}
     h = h.xreplace(norms)
     value, chosen = numeric([h]), numeric(written_out(so_far, [e.rhs for e in equations[1:]]))
 
@@ -165,7 +165,7 @@ def regularised_law(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
         if one.branch != "quadratic":
             laws |= dict(zip(pn.components_of(one.part), _shortened(problem, one), strict=True))
             if one.weight != 0:
-                laws[norm_of(one.part)] = SHARE * _size(problem, one)
+                laws[norm_of(one.part)] = FACTOR * _size(problem, one)
         else:
             laws |= dict(zip(one.part.symbols, _law(problem, one), strict=True))
     return dict(zip(laws, written_out(so_far, laws.values()), strict=True))
@@ -218,7 +218,7 @@ def _shortened(problem: Problem, one: Minimum) -> list[sp.Expr]:
 def _size(problem: Problem, one: Minimum) -> sp.Expr:
     """The norm of that minimiser, where H depends on the norm."""
     length = sp.sqrt(sum((s**2 for s in pn.slopes_of(one)), sp.Integer(0)))
-    margin = length - sign(problem) * SHARE * pn.weight_of(one.part.symbols[0])
+    margin = length - sign(problem) * FACTOR * pn.weight_of(one.part.symbols[0])
     return Clip(margin / EPSILON, sp.Integer(0), one.part.bounds[-1])
 
 
