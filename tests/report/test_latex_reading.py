@@ -42,7 +42,7 @@ class Reader:
         names = "|".join(re.escape(name) + r"(?![A-Za-z])" for name in sorted(values, key=len, reverse=True))
         commands = (
             r"\\(?:[td]?frac|sqrt|cos|sin|tan|ln|cdot|max|min|lvert|rvert|ge|le|text)(?![A-Za-z])|\\[{}]|\\\\"
-            r"|\\operatorname\{sgn\}|\\mathcal\{S\}_|\\(?:begin|end)\{cases\}"
+            r"|\\operatorname\{(?:sgn|atan2)\}|\\mathcal\{S\}_|\\(?:begin|end)\{cases\}"
         )
         self._token = re.compile(rf"({names or '(?!)'})|({commands})|(\d+(?:\.\d+)?)|([-+/^(){{}},<>|=])")
         self._values = values
@@ -122,6 +122,13 @@ class Reader:
             argument = self._sum()
             self._take(")")
             return math.copysign(1.0, argument) if argument else 0.0
+        if token == r"\operatorname{atan2}":
+            self._take("(")
+            across = self._sum()
+            self._take(",")
+            along = self._sum()
+            self._take(")")
+            return math.atan2(across, along)
         if token == r"\mathcal{S}_":
             width = self._group()
             self._take("(")
