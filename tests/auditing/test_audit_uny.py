@@ -71,6 +71,9 @@ def test_units_of_gravitation_and_of_deviations(found):
     in_cgs = (6.6743e-11 * ureg("N*m^2/kg^2")).to("dyn*cm^2/g^2").magnitude
     assert abs(in_cgs / 6.670e-8 - 1) < 1e-3
     found("unit error", "2.3")
+    metres, kilometres = (6.670e-8 * ureg("N*m^2/kg^2") * ureg("1 kg^2") / ureg(unit) ** 2 for unit in ("1 m", "1 km"))
+    assert (metres / kilometres).to("").magnitude == pytest.approx(1e6)
+    found("unit error", "section 3.A.2 G and r")
 
 
 def test_tangential_velocity_and_acceleration_are_not_those_of_the_angle(found):
@@ -127,6 +130,11 @@ def test_orbit_facts(found):
     assert 3600 * (2 * math.pi * MU / 5700) ** (1 / 3) > 27360
     assert pytest.approx(27359, abs=0.5) == 17000 * 1.609344
     found("wrong", "section 2.A.2 low, speed")
+    # the ends of the two ranges are other orbits: only the narrower one begins at what is printed, 90 minutes
+    lows, highs = [period(h) / 60 for h in (0, 320)], [period(h) / 60 for h in (2000, 800)]
+    assert lows[0] < 85 < lows[1] < 95
+    assert highs[0] > highs[1] + 20
+    found("wrong", "section 2.A.2 low, altitude")
     assert 1.5 * period(9656) / 3600 > 4
     assert period(9656) / 3600 > 4.5
     found("wrong", "section 2.A.2 medium, period")
@@ -138,6 +146,14 @@ def test_orbit_facts(found):
     retrograde_low, prograde_high = 2 * math.pi / period(500), 2 * math.pi / period(35786)
     assert retrograde_low > 10 * prograde_high
     found("wrong", "section 2.A.2 prograde")
+
+
+def test_the_index_of_a_regulator_is_not_the_energy_of_its_control(found):
+    # x' = u, J the integral of x^2 + u^2: u = -x, so that x = e^-t from 1, and half of J is the deviation's
+    integral = scipy.integrate.quad(lambda t: math.exp(-2 * t), 0, math.inf)[0]
+    assert integral == pytest.approx(0.5)
+    assert scipy.integrate.quad(lambda t: 2 * math.exp(-2 * t), 0, math.inf)[0] == pytest.approx(2 * integral)
+    found("wrong", "section 2.H.2 energy")
 
 
 def test_a_flow_is_the_identity_at_zero_only(found):

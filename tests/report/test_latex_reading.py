@@ -165,6 +165,9 @@ class Reader:
                 return found[0]
 
 
+TRIES = 1000
+
+
 def values_of(expression: sp.Expr, rng: random.Random) -> dict[sp.Symbol, float]:
     return {s: rng.uniform(0.5, 1.5) for s in sorted(expression.free_symbols, key=lambda s: s.name)}
 
@@ -173,18 +176,22 @@ def value(expression: sp.Expr, point: Mapping[sp.Symbol, float]) -> float:
     plain = by_signs(expression)
     plain = plain.replace(lambda e: e.func.__name__ == "Clip", lambda e: sp.Max(e.args[1], sp.Min(*e.args[::2])))
     plain = plain.replace(lambda e: e.func.__name__ == "Shorten", lambda e: sp.Min(1, e.args[1] / sp.sqrt(e.args[0])))
+    plain = plain.replace(
+        lambda e: e.func.__name__ == "Stretch", lambda e: sp.Min(1 / e.args[1], e.args[2] / sp.sqrt(e.args[0]))
+    )
     return float(plain.subs(point))
 
 
 def real_point(expression: sp.Expr, rng: random.Random) -> dict[sp.Expr, float]:
     """Where no root is taken of a negative number; a factor i is read as any other factor."""
-    while True:
+    for _ in range(TRIES):
         point = values_of(expression, rng) | {sp.I: 0.7}
         try:
             value(expression, point)
         except TypeError:
             continue
         return point
+    raise AssertionError(f"no numbers for {expression}")
 
 
 def assert_reads_back(derivation: Derivation, expression: sp.Expr) -> None:
