@@ -135,3 +135,25 @@ def test_forces_that_jump_are_quickest():
     assert wheel.crossing_time([0.0, 1.0], [1.0, -1.0]) == pytest.approx(math.sqrt(6.0), rel=1e-6)
     with pytest.raises(BadInput, match="not at rest"):
         wheel.crossing_time([0.0, 1.0], [1.0, 1.0])
+
+
+@pytest.mark.parametrize("pace", [1e-6, 1e-3, 1.0, 1e3, 1e6])
+@pytest.mark.parametrize(
+    ("a", "verdict"),
+    [
+        ([[0, 1], [-1, 0]], (True, False)),
+        ([[0, 1], [0, 0]], (False, False)),
+        ([[0.01]], (False, False)),
+        ([[-0.01]], (True, True)),
+        ([[0, 1], [-1, -0.02]], (True, True)),
+        ([[0, 1], [-1, 0.02]], (False, False)),
+        ([[0, 0], [0, -1]], (True, False)),
+        ([[-1000, 0], [0, 0.01]], (False, False)),
+        ([[-1000, 0], [0, -0.01]], (True, True)),
+    ],
+)
+def test_stability_is_seen_in_motions_of_any_pace(
+    a: list[list[float]], verdict: tuple[bool, bool], pace: float
+) -> None:
+    matrix = pace * np.array(a, dtype=float)
+    assert (linear_motions.stable(matrix), linear_motions.asymptotically_stable(matrix)) == verdict

@@ -27,10 +27,14 @@ _ZERO = 1e-9
 @cache
 def system(model: str) -> Record:
     """A linear model: its exact matrices A, B and C, and the names of its states, inputs and outputs."""
+    from satsym.symbolic import DerivationError
     from satsym.symbolic.linear.matrices import system_of
     from satsym.symbolic.lookup.library import derivation
 
-    found = system_of(derivation(model))
+    try:
+        found = system_of(derivation(model))
+    except DerivationError as error:
+        raise Undecided(str(error)) from None
     parts = {"A": found.a, "B": found.b, "C": found.c}
     names = {"states": list(found.states), "inputs": list(found.inputs), "outputs": list(found.outputs)}
     return Record(model, {**parts, **names})

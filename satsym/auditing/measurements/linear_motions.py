@@ -15,6 +15,9 @@ from satsym.auditing.measurements.matrices import dense
 from satsym.auditing.propositions.values import Record
 
 _LATE, _GROWN = 80.0, 1.5
+_ENDLESS = 1e100
+_SLOWEST = 1e-6
+"""Share of the largest eigenvalue below which others are taken for zero, which rounding may leave of it."""
 _MOMENTS = 400
 STEPS = 4000
 _LOST, _DEAD = 1e-9, 1e-3
@@ -67,10 +70,10 @@ def farthest(of: Any, size: float) -> float:
 @measurement
 def remaining(of: Any, size: float) -> float:
     """How far motions that start so far from zero are in the end; infinite where that has no bound."""
-    a = linear.matrix(of)
-    if not _reach(linear.numbers(linear.matrix(of)))[1]:
+    a = linear.numbers(linear.matrix(of))
+    if not _reach(a)[1]:
         return math.inf
-    left = max(float(np.linalg.norm(linear.flow(a, t), 2)) for t in np.linspace(_LATE, 1.2 * _LATE, 20))
+    left = max(float(np.linalg.norm(linear.flow(a, t), 2)) for t in _late(a) * np.linspace(1.0, 1.2, 20))
     return 0.0 if left < _LOST else size * left
 
 
@@ -175,12 +178,24 @@ def _transition(a: Array, t: float) -> Array:
     return _followed(lambda _, x: np.asarray((a @ x.reshape(a.shape)).ravel()), np.eye(len(a)), t).reshape(a.shape)
 
 
+def _late(a: Array) -> float:
+    """A time after which the slowest motion shows what becomes of it."""
+    found = np.linalg.eigvals(a)
+    rates = np.abs([found, found.real])
+    telling = rates[rates > _SLOWEST * np.abs(found).max(initial=0.0)]
+    return _LATE / float(telling.min(initial=np.linalg.norm(a, 2) or 1.0))
+
+
 @kept
 def _reach(a: Array) -> tuple[float, bool]:
     """The largest norm of e^(At) that is seen, and whether it has a bound."""
-    step, moved, sizes = linear.flow(a, _LATE / _MOMENTS), np.eye(len(a)), []
-    for _ in range(_MOMENTS):
-        sizes.append(float(np.linalg.norm(moved, 2)))
-        moved = step @ moved
+    moved, sizes = np.eye(len(a)), []
+    with np.errstate(over="ignore", invalid="ignore"):
+        step = linear.flow(a, _late(a) / _MOMENTS)
+        for _ in range(_MOMENTS):
+            if not np.abs(moved).max() <= _ENDLESS:
+                return math.inf, False
+            sizes.append(float(np.linalg.norm(moved, 2)))
+            moved = step @ moved
     early = max(sizes[: _MOMENTS // 2])
     return max(sizes), max(sizes[_MOMENTS // 2 :]) <= _GROWN * early
