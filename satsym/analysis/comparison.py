@@ -33,7 +33,7 @@ class Case:
     answered: bool
     verdict: str | None
     message: str
-    """Whether there is an answer, what its certificate says (``None`` for a flight), and a sentence on both and on
+    """Whether there is an answer, what its certificate says (``None`` for a simulation), and a sentence on both and on
     limits that were passed."""
     times: Array
     x: Array
@@ -64,7 +64,7 @@ def compare(instances: Sequence[Instance], progress: Callable[[str], None] = lam
     instances
         Their models have the same controls, and begin with the same states.
     progress
-        Told the name of each before its turn, and how far one that is driven has come.
+        Called with the name of each before its turn, and with how far one that is driven has come.
 
     Raises
     ------
@@ -92,10 +92,10 @@ def compare(instances: Sequence[Instance], progress: Callable[[str], None] = lam
 
 def case_of(instance: Instance) -> Case:
     """One instance, under the law that it states or else solved."""
-    return _flown(instance) if instance.classical else _solved(instance)
+    return _simulated(instance) if instance.classical else _solved(instance)
 
 
-def _flown(instance: Instance) -> Case:
+def _simulated(instance: Instance) -> Case:
     simulation = classical.simulate(instance)
     metrics = simulation.metrics
     if simulation.status.answered:
@@ -164,17 +164,17 @@ def driven(instance: Instance, progress: Callable[[str], None] = lambda name: No
         progress(driver)
         cases.append(_driving(instance, case_of(load(driver))))
 
-    def told(what: str) -> Callable[[float], None]:
+    def share_of(what: str) -> Callable[[float], None]:
         return lambda share: progress(f"{instance.name}, {what}: {share:.0%}")
 
-    still, name, found = undriven(instance, told("not driven")), instance.driven.control, []
+    still, name, found = undriven(instance, share_of("not driven")), instance.driven.control, []
     for case in cases:
         spans = spans_of(case.instance, case.times, case.x, case.u, case.switching_times)
         run = reached(
             instance,
             Driver(case.instance, spans, case.metrics.get("impulse", 0.0)),
             still,
-            told(f"driven by {case.instance.name}"),
+            share_of(f"driven by {case.instance.name}"),
         )
         metrics = {"transition_time": case.metrics["transition_time"]} | run.metrics
         called = replace(instance, name=case.instance.name)

@@ -72,7 +72,7 @@ def reached(instance: Instance, driver: Driver, still: Array, progress: Progress
     still
         The latter, see :func:`undriven`.
     progress
-        Told which share of the time has been followed.
+        Called with the share of the time that has been followed.
 
     Returns
     -------

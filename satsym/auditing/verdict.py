@@ -93,7 +93,7 @@ class _Context:
             return self._of_wrong_formula(outcome)
         if not outcome.right:
             return "imprecise" if outcome.near else "wrong", [outcome.remark]
-        if row.follows is not None and not self._follows(row, {}) and not self._follows_once_mended(row):
+        if row.follows is not None and not self._follows(row, {}) and not self._follows_once_corrected(row):
             return "unsound", [unsound(row.uses, self._instead(row))]
         return "confirmed", []
 
@@ -119,7 +119,7 @@ class _Context:
         same = [o for o in self._outcomes.values() if o is not outcome and self._bench.same_target(o.row, row)]
         right_elsewhere = [o.row.key for o in same if o.right]
         slips = [o.row.key for o in same if o.right is False and o.remedy and _same(o, outcome)]
-        carried, mended = self._used_by(row)
+        carried, corrected = self._used_by(row)
         verdict: Verdict = "wrong" if carried and not right_elsewhere else "misprint"
         source = self._spoiled_by(outcome)
         takes_over = self._takes_over(outcome)
@@ -128,7 +128,7 @@ class _Context:
             say("right_elsewhere", right_elsewhere) if right_elsewhere else "",
             say("follows_from_wrong", source) if source and not takes_over else "",
             say("carried_on", carried) if carried else "",
-            say("not_carried_on", mended) if mended else "",
+            say("not_carried_on", corrected) if corrected else "",
             say("same_slip", slips) if slips else "",
         ]
 
@@ -141,7 +141,7 @@ class _Context:
 
     def _used_by(self, row: Row) -> tuple[list[str], list[str]]:
         """Rows that carry the error on, and rows that follow from the right formula only."""
-        carried, mended = [], []
+        carried, corrected = [], []
         for other in self._outcomes.values():
             if row.key in other.row.uses and other.plan is not None:
                 as_printed = self._follows(other.row, {})
@@ -149,10 +149,10 @@ class _Context:
                 if as_printed and not put_right:
                     carried.append(other.row.key)
                 elif put_right and not as_printed:
-                    mended.append(other.row.key)
-        return carried, mended
+                    corrected.append(other.row.key)
+        return carried, corrected
 
-    def _follows_once_mended(self, row: Row) -> bool:
+    def _follows_once_corrected(self, row: Row) -> bool:
         wrong = self._wrong_among(row.uses)
         return bool(wrong) and self._follows(row, {key: self._corrected(key) for key in wrong})
 

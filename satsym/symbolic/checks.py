@@ -118,6 +118,8 @@ def compare(
 ) -> Check:
     """Check two routes to the same numbers at random points.
 
+    Points where the other route has no moderate numbers are passed over; the error is NaN where too few have them.
+
     Parameters
     ----------
     claim
@@ -136,7 +138,7 @@ def compare(
             errors.append(deviation(found, expected))
             if len(errors) == POINTS:
                 break
-    return Check(claim, _largest(errors) if errors else math.nan, limit)
+    return Check(claim, _largest(errors) if len(errors) == POINTS else math.nan, limit)
 
 
 def moderate(values: Iterable[Any]) -> bool:

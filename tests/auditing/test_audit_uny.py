@@ -149,10 +149,13 @@ def test_orbit_facts(found):
 
 
 def test_the_index_of_a_regulator_is_not_the_energy_of_its_control(found):
-    # x' = u, J the integral of x^2 + u^2: u = -x, so that x = e^-t from 1, and half of J is the deviation's
-    integral = scipy.integrate.quad(lambda t: math.exp(-2 * t), 0, math.inf)[0]
-    assert integral == pytest.approx(0.5)
-    assert scipy.integrate.quad(lambda t: 2 * math.exp(-2 * t), 0, math.inf)[0] == pytest.approx(2 * integral)
+    # x' = u from 1, J the integral of q x^2 + u^2: J is P, by Riccati's equation, whatever of it the control takes
+    indices, efforts = [], []
+    for q in (1.0, 4.0):
+        (gain,) = scipy.linalg.solve_continuous_are([[0.0]], [[1.0]], [[q]], [[1.0]])[0]
+        indices.append(gain)
+        efforts.append(scipy.integrate.quad(lambda t, k=gain: (k * math.exp(-k * t)) ** 2, 0, math.inf)[0])
+    assert efforts == pytest.approx([0.5 * index for index in indices])
     found("wrong", "section 2.H.2 energy")
 
 

@@ -11,7 +11,8 @@ import pytest
 from satsym.symbolic import FirstOrder, Model, Newton, Problem, Variable, loader
 from satsym.symbolic.model import Particle
 
-PAGE = (Path(__file__).parents[2] / "docs" / "models.md").read_text(encoding="utf-8")
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "models.md").read_text(encoding="utf-8")
 SECTIONS = {
     "`Variable`": (Variable, None),
     "All models": (Model, None),
@@ -48,8 +49,8 @@ def test_the_example_is_derived_solved_and_certified(tmp_path: Path) -> None:
 
 
 def test_refusals_are_quoted_as_they_are_given() -> None:
-    source = "".join(path.read_text(encoding="utf-8") for path in Path("satsym/symbolic").rglob("*.py"))
-    source += "".join(path.read_text(encoding="utf-8") for path in Path("satsym/codegen").rglob("*.py"))
+    files = [path for room in ("symbolic", "codegen") for path in (ROOT / "satsym" / room).rglob("*.py")]
+    source = "".join(path.read_text(encoding="utf-8") for path in files)
     text = re.sub(r'"\s*\n\s*f?"', "", source)
     quoted = re.findall(r"^\| ([^|`]+?) \|", PAGE.partition("## When it is refused")[2], re.MULTILINE)[1:]
     quoted = [line for line in quoted if line != "---"]

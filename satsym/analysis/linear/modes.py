@@ -182,5 +182,5 @@ def _continued(guess: Numbers, coming: Numbers) -> tuple[NDArray[np.intp], NDArr
     order = linear_sum_assignment(apart)[1]
     own = np.take_along_axis(apart, order[:, None], axis=1)[:, 0]
     others = apart + np.where(np.arange(len(coming)) == order[:, None], np.inf, 0.0)
-    same = 1e-9 * np.abs(coming).max()  # numbers for one multiple eigenvalue need not be told apart
+    same = 1e-9 * np.abs(coming).max()  # numbers for one multiple eigenvalue need not be distinguished
     return order, (CLEAR * own <= others.min(axis=1)) | (own <= same)

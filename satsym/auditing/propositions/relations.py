@@ -47,7 +47,7 @@ class Comparison:
 def compared(operator: ast.cmpop, left: Any, right: Any) -> Comparison:
     """Two values in a relation.
 
-    What is no number, or cannot be told apart, is undecided; what does not compare is refused.
+    What is no number, or cannot be distinguished, is undecided; what does not compare is refused.
     """
     if isinstance(operator, ast.In | ast.NotIn):
         inside = any(equal(left, entry).holds for entry in _entries(right))
