@@ -359,3 +359,41 @@ def test_the_gain_of_the_rate_is_called_that_of_the_angle(found):
     t, size = sp.symbols("t size", positive=True)
     assert sp.laplace_transform(size * sp.Heaviside(t), t, s, noconds=True) == size / s != 1 / s
     found("notation", "12 unit step")
+
+
+def test_a_torque_of_the_motor_reaches_roll_only_past_a_tilted_axis(found):
+    """The mass matrix of body, gimbals, wheel and modes from their velocities, by hand."""
+    rest, wheel, elastic = np.diag([1356 - 0.05 - 200, 678 - 0.09 - 200, 1356 - 0.05 - 200]), (0.05, 0.09), 200.0
+    made = {}
+    for tilt in (0.0, 0.05, 0.1):
+        across, axis = np.array([math.cos(tilt), math.sin(tilt), 0]), np.array([-math.sin(tilt), math.cos(tilt), 0])
+        up = np.array([0.0, 0.0, 1.0])
+        # body (3), inner gimbal, outer gimbal, wheel, modes (3)
+        of_wheel = np.column_stack([np.eye(3), across, up, -axis, np.zeros((3, 3))])
+        of_modes = np.column_stack([np.eye(3), np.zeros((3, 3)), np.eye(3)])
+        inertia = wheel[0] * np.eye(3) + (wheel[1] - wheel[0]) * np.outer(axis, axis)
+        mass = of_wheel.T @ inertia @ of_wheel + elastic * of_modes.T @ of_modes
+        mass[:3, :3] += rest
+        made[tilt] = np.linalg.solve(mass, np.eye(9)[5])
+    assert [abs(made[tilt][0]) > 1e-6 for tilt in made] == [False, True, True]
+    assert made[0.1][0] / made[0.05][0] == pytest.approx(2, rel=1e-2)
+    assert all(abs(answer[7]) > 1e-4 for answer in made.values())  # the panels in pitch
+    found("wrong", "section 2 coupling, each time")
+
+
+def test_springs_wheel_and_gravity_hold_roll_and_yaw(found):
+    """The second variation of what is conserved without dampers is positive: by Kelvin, Tait and Chetaev nothing grows.
+
+    In roll, yaw and the gimbals; a mode, whose spring is 10^5 times what gravity does to it, is held by that.
+    """
+    orbit, stiffness, momentum = 7.26e-5, 0.9, I_WY * 104.71976
+    wheel = orbit * momentum  # along the normal of the orbit, as the orbit's own: tilted, it has more energy
+    for lateral in (1356.0, 678.0):
+        roll, yaw = 4 * (I_Y - lateral) * orbit**2, (I_Y - lateral) * orbit**2
+        form = np.array([
+            [roll + wheel, 0, wheel, 0], [0, yaw + wheel, 0, wheel],
+            [wheel, 0, wheel + stiffness, 0], [0, wheel, 0, wheel + stiffness],
+        ])  # fmt: skip
+        assert np.linalg.eigvalsh(form).min() > 1e-4
+    assert 1e5 * 4 * 200 * orbit**2 < 200 * 0.6**2
+    found("wrong", "section 2 coupling, stability")

@@ -80,7 +80,9 @@ def test_false_and_its_negation_true(text: str) -> None:
 
 
 @pytest.mark.parametrize("text", ["unknown() == 1", "unknown() == 1 and 1 == 1", "implies(1 == 1, unknown() == 1)",
-                                  "iff(unknown() == 1, 1 == 1)", "all(unknown() == m.n for m in NUMBERS)"])  # fmt: skip
+                                  "iff(unknown() == 1, 1 == 1)", "all(unknown() == m.n for m in NUMBERS)",
+                                  "all(n < 9 for n in [unknown(), 1])", "any(n == 1 for n in [1, unknown()])",
+                                  "all(m.n < 9 for m in NUMBERS if unknown() == 1)"])  # fmt: skip
 def test_what_cannot_be_measured_is_undecided_either_way(text: str) -> None:
     for asked in (text, f"not ({text})"):
         found = answer(asked)

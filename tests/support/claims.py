@@ -25,6 +25,9 @@ _OPPOSITE: dict[type[ast.cmpop], type[ast.cmpop]] = {
     ast.Eq: ast.NotEq, ast.NotEq: ast.Eq, ast.Lt: ast.GtE, ast.GtE: ast.Lt, ast.Gt: ast.LtE, ast.LtE: ast.Gt,
     ast.In: ast.NotIn, ast.NotIn: ast.In,
 }  # fmt: skip
+# put in place of others: always the same, whatever is shipped some day
+_MODELS = ("clohessy_wiltshire", "double_integrator_energy")
+_INSTANCES = ("double-integrator-energy", "soft-return")
 DOCUMENTS = tuple(path.name for path in auditing.shipped())
 
 
@@ -81,8 +84,8 @@ def _changes_of(node: ast.AST) -> Iterator[tuple[str, Any]]:
         if node.func.id == "implies":
             yield "direction", lambda n: n.args.reverse()
     if isinstance(node, ast.Constant) and isinstance(node.value, str):
-        for kind, others in (("model", shipped()), ("instance", _instances())):
-            if node.value in others:
+        for kind, known, others in (("model", shipped(), _MODELS), ("instance", _instances(), _INSTANCES)):
+            if node.value in known:
                 yield kind, lambda n, o=others: setattr(n, "value", _another(n.value, o))
         if node.value[:1].isdigit() or node.value[:2] in ("0.", "-0"):
             yield "digit", lambda n: setattr(n, "value", other_digit(n.value))

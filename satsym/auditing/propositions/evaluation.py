@@ -115,7 +115,10 @@ class Evaluation:
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
             name = node.func.id
             if name in QUANTIFIERS:
-                return self._quantified(node.args[0], bound, name == "all")
+                try:
+                    return self._quantified(node.args[0], bound, name == "all")
+                except Undecided as reason:  # of what it is said
+                    return Answer(None, (str(reason),))
             if name in CONNECTIVES:
                 first = self._judge(node.args[0], bound)
                 if name == "implies" and first.truth is False:  # what is implied need not have a value then
@@ -192,9 +195,12 @@ class Evaluation:
         family = self._value(part.iter, bound)
         for member in _iterated(part, family):
             inner = {**bound, **_unpacked(part.target, member)}
-            conditions = [self._judge(condition, inner).truth for condition in part.ifs]
-            if not all(conditions):
+            conditions = [self._judge(condition, inner) for condition in part.ifs]
+            if any(condition.truth is False for condition in conditions):
                 continue
+            open_ = next((condition for condition in conditions if condition.truth is None), None)
+            if open_ is not None:
+                raise Undecided("; ".join(open_.reasons))
             name = member.name if isinstance(member, Record) else in_words(member)
             if not others:
                 yield name, inner, family
