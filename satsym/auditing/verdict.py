@@ -10,7 +10,7 @@ from typing import Any
 from satsym.auditing import refusal
 from satsym.auditing.causes import SILENT, with_causes
 from satsym.auditing.diagnosis.edits import Change, Edit
-from satsym.auditing.judge.bench import Bench
+from satsym.auditing.judge.bench import Bench, Both
 from satsym.auditing.judge.claim import Pages
 from satsym.auditing.judge.compare import plans
 from satsym.auditing.judge.formula import corrected, shown
@@ -21,8 +21,8 @@ from satsym.auditing.propositions.reading import shape
 from satsym.auditing.propositions.values import in_words
 from satsym.auditing.sentences import false_claim, illegible, joined, say, sentence, unsound
 from satsym.formula import budget
-from satsym.formula.cells import Formula
-from satsym.formula.tree import ONE, Mul, Neg, Node
+from satsym.formula.cells import Formula, names_in
+from satsym.formula.tree import ONE, Mul, Neg, Node, Num, Sym
 from satsym.formula.values import Kernel, Matrix, Relation, Roots
 from satsym.formula.writing import written
 from satsym.symbolic.lookup import formulas
@@ -207,8 +207,20 @@ class _Context:
         value = self._bench.follows(row, replacements)
         if isinstance(value.trees, Roots | Kernel) and not isinstance(row.printed, tuple):
             return False
+        if isinstance(value.exact, Relation) and self._only_names(row, value.exact):
+            value = Both(value.trees.rhs, value.exact.rhs)  # what is named follows, not 0 = 0
         ways = plans(self._bench, row, row.printed, value)
         return any(way.may_hold(way.printed) and way.is_right(way.printed) for way in ways)
+
+    def _only_names(self, row: Row, relation: Relation[Any]) -> bool:
+        """Whether a relation says what a name stands for, and a row does not put the same name in another form."""
+        used = {name for key in row.uses for name in self._defined_in(self._bench.rows[key])}
+        return formulas.is_zero(relation.lhs - relation.rhs) and not used & self._defined_in(row)
+
+    def _defined_in(self, row: Row) -> set[str]:
+        """Letters of a row that stand for more than themselves."""
+        meanings = self._bench.scope(row).meanings
+        return {name for name in names_in(row.printed) if not isinstance(meanings.get(name, ONE), Sym | Num)}
 
     def _corrected(self, key: str) -> Formula:
         if key not in self._right:

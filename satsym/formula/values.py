@@ -20,7 +20,7 @@ class Matrix(Generic[S]):
     @property
     def shape(self) -> tuple[int, int]:
         """Numbers of rows and columns."""
-        return len(self.rows), len(self.rows[0])
+        return len(self.rows), len(self.rows[0]) if self.rows else 0
 
 
 @dataclass(frozen=True)

@@ -212,6 +212,7 @@ def free(tmp_path_factory: pytest.TempPathFactory) -> dict[str, auditing.Judged]
         row("roots, one lost", ["-I*w", "I*w"], f"eigenvalues({a})", "matrix"),
         row("kernel", [["0"], ["0"], ["5"]], f"nullspace({a})", "matrix"),
         row("kernel, wrong", [["0"], ["1"], ["0"]], f"nullspace({a})", "matrix"),
+        row("kernel, too short", [["0"], ["5"]], f"nullspace({a})", "matrix"),
         row("characteristic", "s**3 + w**2*s", f"charpoly({a}, s)"),
         row("rank", "2", f"rank({a})", "number"),
         row("rank, wrong", "3", f"rank({a})", "number"),
@@ -234,6 +235,11 @@ def free(tmp_path_factory: pytest.TempPathFactory) -> dict[str, auditing.Judged]
 )
 def test_matrices_and_what_is_made_of_them(free: dict[str, auditing.Judged], key: str) -> None:
     assert free[key].verdict == "confirmed"
+
+
+def test_a_column_of_another_length_is_no_kernel(free: dict[str, auditing.Judged]) -> None:
+    assert free["kernel, too short"].verdict == "misprint"
+    assert "columns of 2 are printed, they are of 3" in free["kernel, too short"].diagnosis
 
 
 @pytest.mark.parametrize(

@@ -98,3 +98,14 @@ def test_a_slip_in_what_is_printed_is_noticed(tmp_path, document, planted):
 def test_what_is_put_right_is_confirmed(tmp_path, document, planted):
     found = _verdicts(tmp_path, document, *planted)
     assert set(found.values()) == {"confirmed"}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("source", "verdict"), [("d2x_dz", "confirmed"), ("r_norm", "unsound"), ("d2x_dy", "unsound")])
+def test_what_a_name_stands_for_follows_from_no_other_name(tmp_path, source, verdict):
+    """Each line says what a name stands for, so that both are 0 = 0 once the names are put in."""
+    text, key = ledgers.whole("itb_eigen"), "program d2z_dx"
+    rows = {f"{row['item']} {row.get('part', '')}".strip(): row for row in tomllib.loads(text)["row"]}
+    rows[key]["from"] = f"row['program {source}']"
+    path = ledgers.write(tmp_path, list(rows.values()), text[: text.index("[[row]]")])
+    assert {row.key: row.verdict for row in audit(read(path), [key])}[key] == verdict

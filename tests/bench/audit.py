@@ -8,6 +8,7 @@ in two processes. Usage: ``python -m tests.bench.audit [N]``, for N slips in for
 
 from __future__ import annotations
 
+import ast
 import random
 import sys
 import tomllib
@@ -25,16 +26,39 @@ from satsym.auditing import quantities
 from satsym.auditing.judge import formula as formulas
 from satsym.auditing.judge import value
 from satsym.auditing.judge.bench import Bench
-from satsym.auditing.ledger.contents import Row
+from satsym.auditing.judged import Judged
+from satsym.auditing.ledger.contents import Ledger, Row, row_key
 from satsym.auditing.outcome import Outcome
 from satsym.auditing.propositions.relations import Fit, fit_of_range
+from satsym.auditing.run import audit
 from satsym.formula import field
-from satsym.formula.tree import Add, Div, Equality, Mul, Neg, Node, Num, Pow, Sym, number, replaced, symbols, walk
+from satsym.formula.cells import each, names_in
+from satsym.formula.tree import (
+    Add,
+    Call,
+    Div,
+    Equality,
+    Mul,
+    Neg,
+    Node,
+    Num,
+    Pow,
+    Sym,
+    Text,
+    number,
+    replaced,
+    substituted,
+    symbols,
+    walk,
+)  # fmt: skip
+from satsym.formula.tree import Path as Path_
 from satsym.formula.writing import written
 from satsym.status import BadInput
 from tests.support.claims import DOCUMENTS, bench, changes, claims, judged, other_digit, turns
 
 SEED = 7
+ALIAS = "_again"
+"""Ends the second name of a letter."""
 EQUIVALENT: dict[str, list[list[str]]] = {
     document: [[row, text] for row, texts in rows.items() for text in texts]
     for document, rows in tomllib.loads(Path(__file__).with_name("equivalent.toml").read_text(encoding="utf-8")).items()
@@ -135,16 +159,116 @@ def planted(ready: Bench, row: Row, rng: random.Random) -> Trial | None:
 
 
 def rewritten(ready: Bench, row: Row, rng: random.Random) -> Trial | None:
-    """A harmless change of a formula row; caught means a false alarm."""
+    """A formula row with terms and factors in another order; caught means a false alarm."""
     cells, put = _cells(row)
     k = rng.randrange(len(cells))
     changed = reordered(rng, cells[k])
     if changed == cells[k]:
         return None
     found = _judged(ready, replace(row, printed=put(k, changed)))
-    if found is None:
+    return None if found is None else Trial("rewriting: order", not found.right, True, f"{row.key}: {written(changed)}")
+
+
+def relettered(ready: Bench, row: Row, rng: random.Random) -> Trial | None:
+    """A formula row with another letter that means the same throughout; caught means a false alarm."""
+    letters = sorted(name for name in names_in(row.printed) if name + ALIAS in ready.scope(row).meanings)
+    if row.printed is None or not letters:
         return None
-    return Trial("rewriting: order", not found.right, True, f"{row.key}: {written(changed)}")
+    old = rng.choice(letters)
+    changed = each(row.printed, lambda cell: substituted(cell, {old: Sym(old + ALIAS)}))
+    found = _judged(ready, replace(row, printed=changed))
+    return None if found is None else Trial("rewriting: letter", not found.right, True, f"{row.key}: {old}")
+
+
+def with_aliases(ledger: Ledger) -> Bench:
+    """A ledger in whose notations every letter has a second one that means the same."""
+    scopes = {
+        name: replace(scope, meanings={**scope.meanings, **{n + ALIAS: m for n, m in scope.meanings.items()}})
+        for name, scope in ledger.scopes.items()
+    }
+    return Bench(replace(ledger, scopes=scopes))
+
+
+def rerounded(ready: Bench, row: Row) -> Iterator[Trial]:
+    """A number with fewer or more digits, as recomputed; caught means a false alarm."""
+    found, before = value.number(ready, row), quantities.printed_number(str(row.table.printed))
+    exact = found.evidence.get("recomputed")
+    for digits_ in range(2, 7) if isinstance(exact, float) else ():
+        text = f"{exact:.{digits_}g}" + ("" if before.unit == "1" else f" {before.unit}")
+        right = value.number(ready, replace_table(row, text)).right
+        yield Trial("rewriting: rounding", not right, True, f"{row.key}: {text}")
+
+
+def exchanged(text: str) -> Iterator[str]:
+    """A proposition with the sides of its relations exchanged, and its conjunctions and disjunctions read backwards."""
+    tree = ast.parse(text, mode="eval")
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Compare) and len(node.ops) == 1 and type(node.ops[0]) in _MIRRORED:
+            node.left, node.comparators = node.comparators[0], [node.left]
+            node.ops = [_MIRRORED[type(node.ops[0])]()]
+        elif isinstance(node, ast.BoolOp):
+            node.values.reverse()
+    changed = ast.unparse(tree)
+    if changed != ast.unparse(ast.parse(text, mode="eval")):
+        yield changed
+
+
+_MIRRORED: dict[type[ast.cmpop], type[ast.cmpop]] = {
+    ast.Eq: ast.Eq, ast.NotEq: ast.NotEq, ast.Lt: ast.Gt, ast.Gt: ast.Lt, ast.LtE: ast.GtE, ast.GtE: ast.LtE
+}  # fmt: skip
+
+
+def references(document: str, rng: random.Random) -> Iterator[Trial]:
+    """A row that follows from others, with another row of the document named in the place of one of these.
+
+    Named where the diagnosis gives the row that was put in. Rows that print the same are no slip.
+    """
+    ready = bench(document)
+    formulas_of = {row.key: row for row in ready.ledger.rows if row.printed is not None and row.holds is not None}
+    for row in ready.ledger.rows:
+        if row.follows is None or _verdict(ready.ledger, row).verdict != "confirmed":
+            continue
+        named = [(at, part) for at, part in _walked(row.follows) if isinstance(part, Call) and part.function == "row"]
+        (side, path), call = rng.choice(named)
+        old = formulas_of.get(row_key(call))
+        others = [key for key, each_ in formulas_of.items() if old and key != row.key and _alike(ready, each_, old)]
+        if old is None or not others:
+            continue
+        other = formulas_of[rng.choice(others)]
+        new = Call("row", tuple(Text(t) for t in (other.table.item, other.table.part) if t))
+        changed = replace(row, follows=_put(row.follows, side, path, new))
+        rows = tuple(changed if entry.key == row.key else entry for entry in ready.ledger.rows)
+        try:
+            found = _verdict(replace(ready.ledger, rows=rows), row)
+        except BadInput:  # what it names cannot be put in there
+            continue
+        caught = found.verdict != "confirmed"
+        yield Trial("reference: row", caught, other.key in found.diagnosis, f"{row.key}: {other.key} for {old.key}")
+
+
+def _verdict(ledger: Ledger, row: Row) -> Judged:
+    return next(found for found in audit(ledger, [row.key]) if found.key == row.key)
+
+
+def _walked(formula: Node | Equality) -> Iterator[tuple[tuple[int, Path_], Node]]:
+    sides = (formula.lhs, formula.rhs) if isinstance(formula, Equality) else (formula,)
+    for k, side in enumerate(sides):
+        for path, part in walk(side):
+            yield (k, path), part
+
+
+def _put(formula: Node | Equality, side: int, path: Path_, new: Node) -> Node | Equality:
+    if not isinstance(formula, Equality):
+        return replaced(formula, path, new)
+    sides = [formula.lhs, formula.rhs]
+    sides[side] = replaced(sides[side], path, new)
+    return Equality(*sides)
+
+
+def _alike(ready: Bench, one: Row, other: Row) -> bool:
+    """Whether two rows print formulas of one kind in one notation, and not the same."""
+    same_kind = one.table.scope == other.table.scope and type(one.printed) is type(other.printed)
+    return same_kind and one.table.holds != other.table.holds and bool(ready.of_row(one) != ready.of_row(other))
 
 
 def digits(ready: Bench, row: Row) -> Trial | None:
@@ -168,9 +292,12 @@ def replace_table(row: Row, printed: str) -> Row:
 
 
 def of_claims(document: str) -> Iterator[Trial]:
-    """Every confirmed claim with one leaf changed."""
+    """Every confirmed claim with one leaf changed; and each claim, its sides exchanged, which has to stay as it is."""
     for row in claims(document):
         before = judged(document, row, str(row.table.printed))
+        for text in exchanged(" ".join(str(row.table.printed).split())):
+            other = judged(document, row, text).truth is not before.truth
+            yield Trial("rewriting: sides of a claim", other, True, f"{row.key}: {text}")
         for changed in changes(str(row.table.printed)) if before.truth else ():
             if changed.kind != "any for all" and [row.key, changed.text] not in EQUIVALENT.get(document, []):
                 turned = turns(document, row, changed, before)
@@ -183,10 +310,15 @@ def trials(document: str, count: int) -> Iterator[Trial]:
     right = [row for row in ready.ledger.rows if row.printed is not None and row.holds is not None]
     right = [row for row in right if row.table.kind in ("equation", "matrix", "algorithm")]
     right = [row for row in right if (found := _judged(ready, row)) is not None and found.right and not found.unit]
-    for make, wanted in ((planted, count), (rewritten, count // 4)):
+    aliased = with_aliases(ready.ledger)
+    for make, desk, wanted in (
+        (planted, ready, count),
+        (rewritten, ready, count // 4),
+        (relettered, aliased, count // 4),
+    ):
         done = 0
         for _ in range(20 * wanted):
-            trial = make(ready, rng.choice(right), rng)
+            trial = make(desk, rng.choice(right), rng)
             if trial is not None:
                 done += 1
                 yield trial
@@ -194,8 +326,10 @@ def trials(document: str, count: int) -> Iterator[Trial]:
                 break
     for row in ready.ledger.rows:
         numeric = row.table.kind == "number" and row.table.legible and row.holds is not None
-        if numeric and value.number(ready, row).right and (other := digits(ready, row)) is not None:
-            yield other
+        if numeric and value.number(ready, row).right:
+            yield from filter(None, [digits(ready, row)])
+            yield from rerounded(ready, row)
+    yield from references(document, rng)
     yield from of_claims(document)
 
 
@@ -247,7 +381,7 @@ def main(count: int) -> int:
     missed = []
     with ProcessPoolExecutor(2, get_context("spawn")) as pool:
         found = dict(zip(DOCUMENTS, pool.map(partial(_all_trials, count=count), DOCUMENTS), strict=True))
-    for document, trial in ((name, trial) for name, each in found.items() for trial in each):
+    for document, trial in ((name, trial) for name, trials_ in found.items() for trial in trials_):
         tally[trial.kind].update(tried=1, caught=int(trial.caught), named=int(trial.caught and trial.named))
         if trial.caught == trial.kind.startswith("rewriting"):
             missed.append(f"{document}: {trial.kind}: {trial.text}")

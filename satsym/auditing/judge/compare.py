@@ -78,7 +78,10 @@ def _of_matrix(bench: Bench, row: Row, printed: tuple[tuple[Node, ...], ...], ta
             return Never(bench, row, cells, labels, roots, f"{len(cells)} are printed, there are {len(roots)}")
         return SameRoots(bench, row, cells, target)
     if isinstance(trees, Kernel):
-        return Spans(bench, row, cells, labels, n, target)
+        columns = Spans(bench, row, cells, labels, n, target)
+        if m != (long := trees.of.shape[1]):
+            return Never(bench, row, cells, labels, columns.targets, f"columns of {m} are printed, they are of {long}")
+        return columns
     if not isinstance(trees, Matrix):
         raise BadInput("a matrix is held against an expression; hold it against a matrix")
     targets = [

@@ -78,8 +78,6 @@ class Spans(Plan):
     ) -> bool:
         """Whether the columns are mapped to zero, and are as many as there are independent ones."""
         basis = Matrix(_rows(cells, self._columns))
-        if basis.shape[0] != matrix.shape[1]:
-            return False
         image = engine.product(matrix, basis)
         if not all(is_zero(entry) for line in image.rows for entry in line):
             return False
