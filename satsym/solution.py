@@ -140,7 +140,8 @@ class Solution:
     method, status, message
         Solver, outcome, and one sentence for people.
     objective
-        The cost J; NaN where there is none.
+        The cost J, which is minimised, so that it is minus the objective that a model maximises; NaN where there is
+        none.
     times
         Nodes, shape (N+1,). Where a control jumps, the time occurs twice: the end of one arc and the start of the next.
     x, u, lam

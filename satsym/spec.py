@@ -36,7 +36,7 @@ _OF_VARIABLES = (
 )
 _UNLESS_DEFAULT = (
     *(*_OF_LINEAR_MODELS, "keplerian", "switching", "coordinates", "velocities", "quantities", "balances"),
-    *("switching_curve", "conditions", "equilibria", "mode_groups", "control_parts"),
+    *("switching_curve", "conditions", "equilibria", "mode_groups", "control_parts", "maximise", "objective_unit"),
 )
 
 
@@ -204,6 +204,10 @@ class ProblemSpec:
         The sets whose product the control set is, where it was stated set by set; else empty.
     mode_groups
         What its modes are called, by the states that have the largest part in them. May be empty.
+    maximise
+        Whether the author's objective is to be large; functions are those of its negative, the cost.
+    objective_unit
+        Of the objective, where it is stated; else empty.
     """
 
     name: str
@@ -233,6 +237,12 @@ class ProblemSpec:
     equilibria: str = ""
     mode_groups: tuple[ModeGroup, ...] = ()
     control_parts: tuple[ControlPart, ...] = ()
+    maximise: bool = False
+    objective_unit: str = ""
+
+    def objective(self, cost: float) -> float:
+        """What the author calls the objective, where the cost is this; and the other way round."""
+        return -cost if self.maximise else cost
 
     @property
     def directional(self) -> bool:

@@ -47,6 +47,15 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         raise BadInput(f"{instance.name}: model {spec.name} has no cost, so there is nothing to solve; try simulate")
     if refusal := methods.refusal(name, instance):
         raise BadInput(f"{instance.name}: {refusal}")
+    solution = _found(instance, progress)
+    if spec.maximise and "cost" in solution.message:
+        return replace(solution, message=f"{solution.message}; a cost is minus the objective")
+    return solution
+
+
+def _found(instance: Instance, progress: Progress | None) -> Solution:
+    """What the method finds, or the sweep in its place."""
+    spec, name = instance.model.spec, instance.solver.method
     automatic = name == methods.AUTO
     method = methods.automatic(spec) if automatic else methods.METHODS[name]
     solution = _solved(method, instance, progress)

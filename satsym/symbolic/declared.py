@@ -43,6 +43,10 @@ def refuse_misfits(model: Model, problem: Problem | None) -> None:
         raise DerivationError(f"{problem.name}: control_set: got {shown(problem.control_set)}; write {kinds}")
     if problem and problem.control_sets and problem.control_set != "free":
         raise DerivationError(f"{problem.name}: control_set: the control sets are stated one by one; leave it out")
+    if problem and not isinstance(problem.maximise, bool):
+        raise DerivationError(f"{problem.name}: maximise: got {shown(problem.maximise)}; write True or False")
+    if problem and problem.running_cost == 0 and problem.terminal_cost == 0:
+        raise DerivationError(f"{problem.name}: no objective; state a running_cost or a terminal_cost")
     if problem and not model.controls:
         raise DerivationError(f"{problem.name}: the model has no controls, so there is nothing to optimise")
 

@@ -117,6 +117,8 @@ def _enter_cost(known: dict[str, Dimension | None], problem: Problem, require: R
     running = over(final, second) if running is None else running
     total = product((running, second))
     require("the terminal cost, beside the integral of the running cost,", problem.terminal_cost, total)
+    if problem.unit and total is not None and total != (needed := _units_dimension(problem)):
+        raise DerivationError(f"unit: the objective has the dimension {written(total)}, not {written(needed)}")
     known.update({s.name: running for s in (n.RUNNING_COST, n.HAMILTONIAN, n.MINIMISED)})
     known[n.TERMINAL_COST.name] = total
     for state in symbols_of(problem.model.states):
@@ -137,6 +139,14 @@ def _enter_cost(known: dict[str, Dimension | None], problem: Problem, require: R
     for a in problem.model.controls:
         for b in problem.model.controls:
             known[f"H_{a.symbol}_{b.symbol}"] = over(over(running, known[a.symbol]), known[b.symbol])
+
+
+def _units_dimension(problem: Problem) -> Dimension:
+    """Dimension of the unit that is stated of the objective."""
+    try:
+        return of_unit(problem.unit)
+    except BadInput as error:
+        raise DerivationError(f"unit: {error}") from None
 
 
 def _of_variables(derivation: Derivation) -> dict[str, Dimension | None]:

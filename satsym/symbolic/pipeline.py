@@ -12,6 +12,7 @@ import sympy as sp
 from satsym.symbolic import dimensions
 from satsym.symbolic import notation as n
 from satsym.symbolic.checks import drawn_from
+from satsym.symbolic.convention import as_cost
 from satsym.symbolic.declared import begin, refuse_foreign_symbols, refuse_misfits
 from satsym.symbolic.derivation import Derivation, DerivationError, resolved
 from satsym.symbolic.linear import regulator, stability, structure
@@ -102,7 +103,7 @@ def derive(subject: Problem | Model) -> Derivation:
     problem, model = (subject, subject.model) if isinstance(subject, Problem) else (None, subject)
     try:
         with drawn_from(variables_of(model)):
-            return _derived(model, problem)
+            return _derived(model, problem and as_cost(problem))
     except DerivationError as error:
         # what is refused far down, by a control set for instance, does not know of whom it speaks
         known = str(error).startswith((f"{subject.name}:", f"{model.name}:"))

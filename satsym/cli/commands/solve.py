@@ -74,7 +74,7 @@ def solve(
     case = _changed(instance.load(subject), method=method, steps=steps, tolerance=tolerance)
     folder = folder_for(case.name, "solve", out, plot)
     with live() as line:
-        solution = solvers.solve(case, progress=lambda iteration: line.show(progress_line(iteration)))
+        solution = solvers.solve(case, progress=lambda iteration: line.show(progress_line(iteration, case)))
     if case.limits:
         from satsym.analysis.comparison import limits_noted
 

@@ -64,14 +64,14 @@ def solution_object(solution: Solution) -> dict[str, Any]:
         "method": solution.method,
         "message": solution.status.explain(solution.message),
         "boundary_type": solution.instance.boundary_type,
-        "objective": plain(solution.objective),
+        "objective": plain(spec.objective(solution.objective)),
         "t_final": _at(solution.times, -1),
         "x_final": _each(states, solution.x, -1),
         "costate_initial": _each(states, solution.lam, 0),
         "switching_times": sorted(switches),
         "iterations": solution.iterations,
         "wall_s": plain(solution.wall_s),
-        "certificate": certificate_object(solution.certificate) if solution.certificate else None,
+        "certificate": certificate_object(solution.certificate, spec) if solution.certificate else None,
     }
 
 

@@ -83,7 +83,7 @@ def contents(found: Solution | Simulation) -> dict[str, Content]:
         arrays["lam"] = found.lam
         header += [f"lambda_{name}" for name in spec.state_names]
         met = [(i, time) for i, times in enumerate(found.switching_times) for time in times]
-        more["history"] = np.array([(one.objective, one.residual) for one in found.history]).reshape(-1, 2).T
+        more["history"] = np.array([(spec.objective(one.objective), one.residual) for one in found.history]).reshape(-1, 2).T
         more["switching"] = np.array(met, dtype=float).reshape(-1, 2).T
 
     def lines() -> Iterator[bytes]:
@@ -140,21 +140,23 @@ def read(instance: Instance, folder: Path) -> tuple[Solution | Simulation, sets.
 
 def _solution(instance: Instance, result: _Result, stored: Stored) -> Solution:
     controls, met = stored["switching"]
+    spec = instance.model.spec
+    history = [(spec.objective(float(value)), float(left)) for value, left in stored["history"].T]
     return Solution(
         instance=instance,
         method=result.method,
         status=Status(str(stored["status"])),
         message=result.message,
-        objective=absent(result.objective),
+        objective=spec.objective(absent(result.objective)),
         times=stored["times"],
         x=stored["x"],
         u=stored["u"],
         lam=stored["lam"],
         switching_times=tuple(tuple(met[controls == i].tolist()) for i in range(len(stored["u"]))),
         iterations=result.iterations,
-        history=tuple(Iteration(k, float(cost), float(left)) for k, (cost, left) in enumerate(stored["history"].T)),
+        history=tuple(Iteration(k, cost, left) for k, (cost, left) in enumerate(history)),
         wall_s=absent(result.wall_s),
-        certificate=result.certificate.certificate() if result.certificate else None,
+        certificate=result.certificate.certificate(spec) if result.certificate else None,
     )
 
 
