@@ -59,6 +59,7 @@ class Kind(str, Enum):
     DURATIONS = "duration"
     EARLIER = "earlier arrival"
     STARTS = "seeded starts"
+    UNKNOWNS = "other values of what is free"
 
 
 @dataclass(frozen=True)

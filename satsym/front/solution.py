@@ -135,4 +135,4 @@ def solve(instance: Instance | str | Path, progress: Progress | None = None, **o
         from satsym.analysis.comparison import limits_noted
 
         found = limits_noted(found)
-    return Solution(case, replace(found, instance=case.case))
+    return Solution(case, found if case.case.free else replace(found, instance=case.case))

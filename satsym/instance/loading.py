@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from satsym.instance import control, files, resolve
+from satsym.instance import control, files, resolve, unknowns
 from satsym.instance.options import guess, lqr, solver
 from satsym.instance.pointing import classical, deadband, driven, limits
 from satsym.instance.schema import InstanceFile, check
@@ -114,6 +114,7 @@ def _resolve(written: Written, file: InstanceFile, model: Kernels) -> Instance:
     spec = model.spec
     if len(file.title) > MAX_TITLE or not file.title.isprintable():
         raise BadInput(f"title: {shown(file.title)} is not one short line; write at most {MAX_TITLE} plain characters")
+    file, free = unknowns.begun(file, spec)
     t0, tf, tf_guess = resolve.times(file.time, spec)
     lower, upper, norms = control.bounds(file.control, spec)
     return Instance(
@@ -138,4 +139,5 @@ def _resolve(written: Written, file: InstanceFile, model: Kernels) -> Instance:
         limits=limits(file.limits, spec),
         deadband=deadband(file.switching, spec),
         driven=driven(file.driven, spec),
+        free=free,
     )

@@ -62,6 +62,7 @@ class TimeTable(_Table, frozen=True):
     tf: FinalTime
     t0: Quantity = 0.0
     tf_guess: Quantity | None = None
+    t0_guess: Quantity | None = None
 
 
 class LqrTable(_Table, frozen=True):
@@ -93,6 +94,7 @@ class GuessTable(_Table, frozen=True):
     state: dict[str, Series] = {}
     costate: dict[str, Series] = {}
     control: dict[str, Series] = {}
+    parameter: dict[str, Quantity] = {}
 
 
 class SolverOptions(_Table, frozen=True):

@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from satsym.instance.schema import SolverOptions
+from satsym.instance.unknowns import Unknown
+from satsym.status import BadInput
 
 if TYPE_CHECKING:
     from satsym.control_set import ControlSet
@@ -132,6 +134,8 @@ class Instance:
         A control that other instances have worked out, if there is one.
     norms
         Of a product of control sets: the least and the largest norm, by the name of the set.
+    free
+        Initial states, initial time and parameters that are to be found; their fields hold where to begin.
     """
 
     name: str
@@ -155,6 +159,18 @@ class Instance:
     deadband: float | None = None
     driven: DrivenOptions | None = None
     norms: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    free: tuple[Unknown, ...] = ()
+
+    def require_numbers(self) -> None:
+        """Refuse, for what does not optimise, an instance that leaves something free.
+
+        Raises
+        ------
+        BadInput
+            With the first of these.
+        """
+        if self.free:
+            raise BadInput(f'{self.name}: {self.free[0].key}: "free" is found by solving only; write a number')
 
     @property
     def boundary_type(self) -> int:

@@ -47,10 +47,19 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         raise BadInput(f"{instance.name}: model {spec.name} has no cost, so there is nothing to solve; try simulate")
     if refusal := methods.refusal(name, instance):
         raise BadInput(f"{instance.name}: {refusal}")
-    solution = _found(instance, progress)
+    solution = _with_free(instance, progress) if instance.free else _found(instance, progress)
     if spec.maximise and "cost" in solution.message:
         return replace(solution, message=f"{solution.message}; a cost is minus the objective")
     return solution
+
+
+def _with_free(instance: Instance, progress: Progress | None) -> Solution:
+    """With what the instance leaves free besides the final time and state."""
+    from satsym.solvers.unknowns import solving
+
+    name = instance.solver.method
+    method = methods.automatic(instance.model.spec) if name == methods.AUTO else methods.METHODS[name]
+    return solving.solve(instance, progress, _in_time(method), _found)
 
 
 def _found(instance: Instance, progress: Progress | None) -> Solution:
@@ -108,4 +117,5 @@ def simulate(instance: Instance, law: Law | None = None) -> Simulation:
     """Simulate an instance under a control law; see :func:`satsym.solvers.simulation.simulating.simulate`."""
     from satsym.solvers.simulation import simulating
 
+    instance.require_numbers()
     return simulating.simulate(instance, law)

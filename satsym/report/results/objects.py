@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from satsym import __version__
+from satsym.instance.unknowns import Place
 from satsym.report.results.certificate import certificate_object, plain
 from satsym.report.results.unit_names import units
 from satsym.spec import ControlPart, ProblemSpec, Variable
@@ -65,6 +66,9 @@ def solution_object(solution: Solution) -> dict[str, Any]:
         "message": solution.status.explain(solution.message),
         "boundary_type": solution.instance.boundary_type,
         "objective": plain(spec.objective(solution.objective)),
+        "t_initial": _at(solution.times, 0),
+        "x_initial": _each(states, solution.x, 0),
+        "parameters_found": _found(solution),
         "t_final": _at(solution.times, -1),
         "x_final": _each(states, solution.x, -1),
         "costate_initial": _each(states, solution.lam, 0),
@@ -128,6 +132,13 @@ def _set(part: ControlPart) -> dict[str, Any]:
 
 def _variable(variable: Variable) -> dict[str, Any]:
     return {"name": variable.symbol, "unit": variable.unit, "meaning": variable.meaning}
+
+
+def _found(solution: Solution) -> dict[str, float | None]:
+    """Parameters that were free, where there is an answer."""
+    instance, answered = solution.instance, solution.status.answered
+    free = (unknown for unknown in instance.free if unknown.place is Place.PARAMETER)
+    return {unknown.name: plain(unknown.of(instance)) if answered else None for unknown in free}
 
 
 def _each(names: Sequence[str], rows: Array, place: int) -> dict[str, float | None]:

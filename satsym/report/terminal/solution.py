@@ -11,6 +11,7 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.instance import Instance
+from satsym.instance.unknowns import Place
 from satsym.report.results.unit_names import cost_per, time_unit
 from satsym.report.terminal.table import figure, table
 from satsym.solution import Certificate, Iteration, Simulation, Solution
@@ -37,6 +38,7 @@ def solution_text(solution: Solution, colour: bool = False) -> str:
     unit = time_unit(instance.model.spec)
     facts = [
         _objective(instance, solution.objective),
+        *_found(instance, unit),
         ("final time", f"{figure(_last(solution.times), 10)} {unit}".rstrip()),
         ("boundary type", f"{instance.boundary_type}, {_BOUNDARY[instance.boundary_type]}"),
     ]
@@ -90,6 +92,19 @@ def _objective(instance: Instance, cost: float) -> tuple[str, str]:
     spec = instance.model.spec
     text = f"{figure(spec.objective(cost), 10)} {spec.objective_unit}".rstrip()
     return ("objective J, maximised", f"{text} (costates are those of -J)") if spec.maximise else ("cost J", text)
+
+
+def _found(instance: Instance, time: str) -> list[tuple[str, str]]:
+    """What was free at the start and among the parameters."""
+    spec = instance.model.spec
+    groups = {Place.INITIAL: ("initial", spec.states), Place.PARAMETER: ("parameter", spec.parameters)}
+    rows = []
+    for one in instance.free:
+        word, variables = groups.get(one.place, ("initial time", ()))
+        unit = variables[one.index].unit if variables else time
+        name = f"{word} {one.name}" if variables else word
+        rows.append((name, f"{figure(one.of(instance), 10)} {'' if unit == '1' else unit}".rstrip() + ", found"))
+    return rows
 
 
 def progress_line(iteration: Iteration, instance: Instance) -> str:
