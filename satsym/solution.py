@@ -155,6 +155,8 @@ class Solution:
         Seconds of solving, without loading and reporting.
     certificate
         ``None`` where there is no answer to certify.
+    on_the_way
+        Of a continuation: the answers of the problems before this one, in order.
     """
 
     instance: Instance
@@ -171,6 +173,7 @@ class Solution:
     history: tuple[Iteration, ...]
     wall_s: float
     certificate: Certificate | None = None
+    on_the_way: tuple[Solution, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from satsym.instance import control, files, resolve, unknowns
+from satsym.instance import continuation, control, files, resolve, unknowns
 from satsym.instance.options import guess, lqr, solver
 from satsym.instance.pointing import classical, deadband, driven, limits
 from satsym.instance.schema import InstanceFile, check
@@ -117,7 +117,7 @@ def _resolve(written: Written, file: InstanceFile, model: Kernels) -> Instance:
     file, free = unknowns.begun(file, spec)
     t0, tf, tf_guess = resolve.times(file.time, spec)
     lower, upper, norms = control.bounds(file.control, spec)
-    return Instance(
+    found = Instance(
         name=written.name,
         path=written.path,
         title=file.title,
@@ -141,3 +141,7 @@ def _resolve(written: Written, file: InstanceFile, model: Kernels) -> Instance:
         driven=driven(file.driven, spec),
         free=free,
     )
+    changing = continuation.ways(file.continuation, spec, found)
+    for way in changing:
+        found = way.at(found, 1.0)
+    return replace(found, continuation=changing)

@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from satsym.instance.continuation import Way
 from satsym.instance.schema import SolverOptions
 from satsym.instance.unknowns import Unknown
 from satsym.status import BadInput
@@ -136,6 +137,8 @@ class Instance:
         Of a product of control sets: the least and the largest norm, by the name of the set.
     free
         Initial states, initial time and parameters that are to be found; their fields hold where to begin.
+    continuation
+        What changes on the way to this problem, where it is solved by continuation.
     """
 
     name: str
@@ -160,6 +163,7 @@ class Instance:
     driven: DrivenOptions | None = None
     norms: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     free: tuple[Unknown, ...] = ()
+    continuation: tuple[Way, ...] = ()
 
     def require_numbers(self) -> None:
         """Refuse, for what does not optimise, an instance that leaves something free.

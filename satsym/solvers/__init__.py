@@ -47,19 +47,34 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         raise BadInput(f"{instance.name}: model {spec.name} has no cost, so there is nothing to solve; try simulate")
     if refusal := methods.refusal(name, instance):
         raise BadInput(f"{instance.name}: {refusal}")
-    solution = _with_free(instance, progress) if instance.free else _found(instance, progress)
+    solution = _solved_in_steps(instance, progress) if instance.continuation else _with_free(instance, progress)
     if spec.maximise and "cost" in solution.message:
         return replace(solution, message=f"{solution.message}; a cost is minus the objective")
     return solution
 
 
+def _solved_in_steps(instance: Instance, progress: Progress | None) -> Solution:
+    """By continuation."""
+    from satsym.solvers import continued
+
+    quick = _with_free if instance.free else _uncertified
+    return continued.solve(instance, progress, quick, _with_free)
+
+
 def _with_free(instance: Instance, progress: Progress | None) -> Solution:
-    """With what the instance leaves free besides the final time and state."""
+    """With what the instance leaves free besides its end, if it does."""
+    if not instance.free:
+        return _found(instance, progress)
     from satsym.solvers.unknowns import solving
 
+    return solving.solve(instance, progress, _uncertified, _found)
+
+
+def _uncertified(instance: Instance, progress: Progress | None) -> Solution:
+    """By the method alone."""
     name = instance.solver.method
     method = methods.automatic(instance.model.spec) if name == methods.AUTO else methods.METHODS[name]
-    return solving.solve(instance, progress, _in_time(method), _found)
+    return _in_time(method)(instance, progress)
 
 
 def _found(instance: Instance, progress: Progress | None) -> Solution:

@@ -76,6 +76,19 @@ def solution_object(solution: Solution) -> dict[str, Any]:
         "iterations": solution.iterations,
         "wall_s": plain(solution.wall_s),
         "certificate": certificate_object(solution.certificate, spec) if solution.certificate else None,
+        **(
+            {"continuation": [_on_the_way(one, solution) for one in solution.on_the_way]} if solution.on_the_way else {}
+        ),
+    }
+
+
+def _on_the_way(one: Solution, to: Solution) -> dict[str, Any]:
+    """An answer of a continuation, with what had changed by then."""
+    instance = one.instance
+    return {way.key: plain(way.of(instance)) for way in to.instance.continuation} | {
+        "objective": plain(instance.model.spec.objective(one.objective)),
+        "t_final": _at(one.times, -1),
+        "costate_initial": _each(instance.model.spec.state_names, one.lam, 0),
     }
 
 

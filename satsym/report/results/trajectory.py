@@ -95,10 +95,13 @@ def contents(found: Solution | Simulation) -> dict[str, Content]:
         for row in np.vstack(list(arrays.values())).T:
             yield (",".join(map(repr, row.tolist())) + "\n").encode()
 
-    return {
+    files: dict[str, Content] = {
         "trajectory.npz": lambda stream: np.savez(stream, **arrays, **more),
         "trajectory.csv": lambda stream: stream.writelines(lines()),
     }
+    for k, one in enumerate(found.on_the_way if isinstance(found, Solution) else ()):
+        files |= {f"way-{k:03d}.csv": contents(one)["trajectory.csv"]}
+    return files
 
 
 def read(instance: Instance, folder: Path) -> tuple[Solution | Simulation, sets.Found]:
