@@ -18,6 +18,7 @@ from satsym.symbolic.convention import in_convention, is_minimum
 from satsym.symbolic.latex.typeset import Typesetter, matrices
 from satsym.symbolic.lookup import addresses
 from satsym.symbolic.model import Convention
+from satsym.symbolic.time_limit import within
 from satsym.wording import counted, shown
 
 if TYPE_CHECKING:
@@ -97,7 +98,7 @@ class Derivation:
     def _generated(self) -> tuple[str, Kernels]:
         if not is_minimum(self.derived):
             return derive(self, "minimum")._generated
-        with loader.explained():
+        with loader.explained(), within(artefacts.MAX_SECONDS, self.name):
             return artefacts.generated(self.derived, self.source)
 
     @cached_property
@@ -250,7 +251,7 @@ _KEPT: OrderedDict[bytes, Derivation] = OrderedDict()
 def _kept(subject: Problem | Model, source: str) -> Derivation:
     key = pickle.dumps((subject, source))
     if key not in _KEPT:
-        with loader.explained():
+        with loader.explained(), within(artefacts.MAX_SECONDS, subject.name):
             _KEPT[key] = Derivation(subject, symbolic.derive(subject), source)
         while len(_KEPT) > KEPT:
             _KEPT.popitem(last=False)

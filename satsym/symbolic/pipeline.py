@@ -22,6 +22,7 @@ from satsym.symbolic.principle import effort, pontryagin, product, transversalit
 from satsym.symbolic.switching import curve as switching_curve
 from satsym.symbolic.switching import functions as switching
 from satsym.symbolic.switching import singular
+from satsym.symbolic.time_limit import entering
 
 OUTPUTS: tuple[MaybeStep, ...] = (steps.output_matrix, steps.output_equations)
 
@@ -197,6 +198,7 @@ def _taken(
 ) -> tuple[Derivation, dimensions.Known]:
     """The derivation and the dimensions after some more steps."""
     for step_function in steps:
+        entering(derivation.name, step_function.__name__.replace("_", " "))
         step = step_function(derivation)
         if step is not None:
             derivation = derivation.extended(step, dimensions.agreement(known, step))
