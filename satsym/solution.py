@@ -155,7 +155,7 @@ class Solution:
         Seconds of solving, without loading and reporting.
     certificate
         ``None`` where there is no answer to certify.
-    on_the_way
+    intermediate
         Of a continuation: the answers of the problems before this one, in order.
     """
 
@@ -173,7 +173,7 @@ class Solution:
     history: tuple[Iteration, ...]
     wall_s: float
     certificate: Certificate | None = None
-    on_the_way: tuple[Solution, ...] = ()
+    intermediate: tuple[Solution, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ INITIAL, FINAL, TIMES = "initial.", "final.", ("t0", "tf")
 
 
 @dataclass(frozen=True)
-class Way:
+class Varied:
     """A number of an instance that changes, in the model's unit."""
 
     key: str
@@ -65,7 +65,9 @@ class Way:
         return (*row[:k], value, *row[k + 1 :])
 
 
-def ways(table: Mapping[str, tuple[float | str, float | str]], spec: ProblemSpec, given: Instance) -> tuple[Way, ...]:
+def varied(
+    table: Mapping[str, tuple[float | str, float | str]], spec: ProblemSpec, given: Instance
+) -> tuple[Varied, ...]:
     """What changes, checked against the model and against what the instance gives.
 
     Raises
@@ -92,11 +94,11 @@ def ways(table: Mapping[str, tuple[float | str, float | str]], spec: ProblemSpec
         free |= any(unknown.name == named for unknown in given.free)
         if free:
             raise BadInput(f"{place}: the instance gives no number for it; give it one")
-        found.append(Way(key, begin, end))
+        found.append(Varied(key, begin, end))
     for share in (0.0, 1.0):
         case = given
-        for way in found:
-            case = way.at(case, share)
+        for one in found:
+            case = one.at(case, share)
         if case.tf is not None and not case.tf > case.t0:
             raise BadInput(f"[continuation]: tf = {case.tf:g} is not after t0 = {case.t0:g}; write later times")
     return tuple(found)

@@ -141,7 +141,7 @@ def _resolve(written: Written, file: InstanceFile, model: Kernels) -> Instance:
         driven=driven(file.driven, spec),
         free=free,
     )
-    changing = continuation.ways(file.continuation, spec, found)
-    for way in changing:
-        found = way.at(found, 1.0)
+    changing = continuation.varied(file.continuation, spec, found)
+    for one in changing:
+        found = one.at(found, 1.0)
     return replace(found, continuation=changing)

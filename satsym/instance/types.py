@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from satsym.instance.continuation import Way
+from satsym.instance.continuation import Varied
 from satsym.instance.schema import SolverOptions
 from satsym.instance.unknowns import Unknown
 from satsym.status import BadInput
@@ -163,7 +163,7 @@ class Instance:
     driven: DrivenOptions | None = None
     norms: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     free: tuple[Unknown, ...] = ()
-    continuation: tuple[Way, ...] = ()
+    continuation: tuple[Varied, ...] = ()
 
     def require_numbers(self) -> None:
         """Refuse, for what does not optimise, an instance that leaves something free.

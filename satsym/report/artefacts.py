@@ -146,8 +146,8 @@ def _rendered(job: Job) -> dict[str, str]:
     from satsym.symbolic.time_limit import within
 
     path, name, seconds = job
-    with within(seconds, name):
-        problem = next(problem for problem in loader.load(path) if problem.name == name)
+    problem = next(problem for problem in loader.load(path) if problem.name == name)
+    with loader.explained(path, problem), within(seconds, name):
         derivation = derive(problem)
         in_minimum_form = derivation if is_minimum(derivation) else derive(in_convention(problem, "minimum"))
         text, _ = generated(in_minimum_form, source_of(path))

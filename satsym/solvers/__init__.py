@@ -47,10 +47,7 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         raise BadInput(f"{instance.name}: model {spec.name} has no cost, so there is nothing to solve; try simulate")
     if refusal := methods.refusal(name, instance):
         raise BadInput(f"{instance.name}: {refusal}")
-    solution = _solved_in_steps(instance, progress) if instance.continuation else _with_free(instance, progress)
-    if spec.maximise and "cost" in solution.message:
-        return replace(solution, message=f"{solution.message}; a cost is minus the objective")
-    return solution
+    return _solved_in_steps(instance, progress) if instance.continuation else _with_free(instance, progress)
 
 
 def _solved_in_steps(instance: Instance, progress: Progress | None) -> Solution:

@@ -95,8 +95,8 @@ def solve(instance: Instance, progress: Progress | None, quick: Solver, certifie
 def at(instance: Instance, share: float) -> Instance:
     """The problem at a share of the way."""
     found = replace(instance, continuation=())
-    for way in instance.continuation:
-        found = way.at(found, share)
+    for one in instance.continuation:
+        found = one.at(found, share)
     return found
 
 
@@ -190,7 +190,7 @@ def _near(before: Solution, after: Solution) -> bool:
 
 
 def _values(instance: Instance, share: float) -> str:
-    return ", ".join(f"{way.key} = {way.value(share):.6g}" for way in instance.continuation)
+    return ", ".join(f"{one.key} = {one.value(share):.6g}" for one in instance.continuation)
 
 
 def _told(instance: Instance, found: Solution, message: str, answers: tuple[Solution, ...], began: float) -> Solution:
@@ -199,4 +199,4 @@ def _told(instance: Instance, found: Solution, message: str, answers: tuple[Solu
     for unknown in instance.free:
         asked = unknown.at(asked, unknown.of(found.instance))
     wall, spent = time.perf_counter() - began, found.iterations + sum(one.iterations for one in answers)
-    return replace(found, instance=asked, message=message, on_the_way=answers, wall_s=wall, iterations=spent)
+    return replace(found, instance=asked, message=message, intermediate=answers, wall_s=wall, iterations=spent)

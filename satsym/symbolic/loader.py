@@ -16,6 +16,7 @@ from satsym.sources import digest_of, shipped
 from satsym.status import BadInput
 from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.model import Model, Problem
+from satsym.symbolic.places import line_of
 from satsym.wording import printable, suggestion
 
 __all__ = ["explained", "find", "load", "problem", "reached", "shipped"]
@@ -115,12 +116,22 @@ def problem(name: str) -> tuple[Problem | Model, Path]:
 
 
 @contextmanager
-def explained() -> Iterator[None]:
-    """Turns what is wrong with a derivation into bad input: one line, no traceback."""
+def explained(path: Path | None = None, subject: Problem | Model | None = None) -> Iterator[None]:
+    """Turns what is wrong with a derivation into bad input: one line, no traceback.
+
+    Parameters
+    ----------
+    path, subject
+        The file and what of it is derived, where they are known: the message then begins with file and line.
+    """
     try:
         yield
     except DerivationError as error:
-        raise BadInput(" ".join(str(error).split())) from error
+        message = " ".join(str(error).split())
+        if path is not None and subject is not None:
+            line = line_of(path, subject, error.named)
+            message = f"{path}{'' if line is None else f':{line}'}: {message}"
+        raise BadInput(message) from error
 
 
 def _module(path: Path) -> ModuleType:

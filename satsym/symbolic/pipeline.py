@@ -108,7 +108,8 @@ def derive(subject: Problem | Model) -> Derivation:
     except DerivationError as error:
         # what is refused far down, by a control set for instance, does not know of whom it speaks
         known = str(error).startswith((f"{subject.name}:", f"{model.name}:"))
-        raise DerivationError(str(error) if known else f"{subject.name}: {error}") from error.__cause__
+        message = str(error) if known else f"{subject.name}: {error}"
+        raise DerivationError(message, error.named) from error.__cause__
 
 
 def _derived(model: Model, problem: Problem | None) -> Derivation:

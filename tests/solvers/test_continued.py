@@ -57,7 +57,7 @@ def test_folds_are_passed() -> None:
     assert "past 2 folds" in found.message
     assert found.certificate is not None
     assert found.certificate.verdict == "certified"
-    assert found.x[0, -1] > 0.5 > -0.5 > found.found.on_the_way[0].x[0, -1]
+    assert found.x[0, -1] > 0.5 > -0.5 > found.found.intermediate[0].x[0, -1]
     times = np.linspace(0.0, 3.0, 40)
     other = solve_bvp(
         lambda t, z: np.array([-z[1], -(2 * z[0] ** 3 - 2 * z[0])]),
@@ -85,7 +85,7 @@ def test_where_the_way_ends_is_said_with_the_reason() -> None:
     assert found.status.value == "infeasible"
     assert "continuation ends at tf = 2.0" in found.message
     assert math.isnan(found.objective)
-    assert len(found.found.on_the_way) > 1
+    assert len(found.found.intermediate) > 1
 
 
 def test_every_answer_is_kept(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -93,8 +93,8 @@ def test_every_answer_is_kept(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     assert main(arguments) == 0
     count = len(json.loads(capsys.readouterr().out)["continuation"])
     assert count > 1
-    assert sorted(path.name for path in tmp_path.glob("way-*.csv")) == [f"way-{k:03d}.csv" for k in range(count)]
-    first = (tmp_path / "way-000.csv").read_text().splitlines()
+    assert sorted(path.name for path in tmp_path.glob("step-*.csv")) == [f"step-{k:03d}.csv" for k in range(count)]
+    first = (tmp_path / "step-000.csv").read_text().splitlines()
     assert first[0].startswith("t,r,r_dot")
     assert len(first) > 100
 

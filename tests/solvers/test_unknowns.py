@@ -192,7 +192,7 @@ def test_a_corner_of_the_least_cost_is_said() -> None:
     ends = {"initial": {"q": "free", "q_dot": 1.0}, "final": {"q": 0.0, "q_dot": 0.0}}
     found = solved("double_integrator_time", **ends, tf="free", control={"u1": [-1, 1]})
     assert found.status.value == "not converged"
-    assert "the least cost has a corner, where costates are not unique, at q = -0.5" in found.message
+    assert "the minimum cost has a corner, where costates are not unique, at q = -0.5" in found.message
 
 
 def test_results_are_saved_with_what_was_found(tmp_path: Path) -> None:

@@ -55,7 +55,7 @@ def _positive(_context: click.Context, _option: click.Parameter, value: float | 
 @click.option("--steps", type=click.IntRange(2, 10**7), metavar="N", help="Steps of the grid.")
 @click.option(
     "--continue",
-    "ways",
+    "varied",
     multiple=True,
     metavar="KEY=FROM:TO",
     help="Begin with another value of KEY, and follow the answers; a parameter, tf, t0, initial.STATE or final.STATE.",
@@ -68,7 +68,7 @@ def solve(
     plot: bool,
     method: str | None,
     steps: int | None,
-    ways: tuple[str, ...],
+    varied: tuple[str, ...],
     tolerance: float | None,
 ) -> ExitCode:
     """Find the control of minimum cost.
@@ -82,7 +82,7 @@ def solve(
     from satsym.report.terminal.solution import progress_line, solution_text, with_files
 
     written = instance.read(subject)
-    written = replace(written, tree=_continued(written.tree, ways))
+    written = replace(written, tree=_continued(written.tree, varied))
     case = _changed(written.instance(), method=method, steps=steps, tolerance=tolerance)
     folder = folder_for(case.name, "solve", out, plot)
     with live() as line:
@@ -100,14 +100,14 @@ def solve(
     return ExitCode.CERTIFICATE_FAILED if failed else ExitCode.DONE
 
 
-def _continued(tree: Mapping[str, Any], ways: Sequence[str]) -> Mapping[str, Any]:
+def _continued(tree: Mapping[str, Any], varied: Sequence[str]) -> Mapping[str, Any]:
     """The tables of an instance with the continuation that the command line gave."""
     found: dict[str, list[float | str]] = {}
-    for way in ways:
-        key, equals, values = way.partition("=")
+    for text in varied:
+        key, equals, values = text.partition("=")
         ends = values.split(":")
         if not (equals and key and len(ends) == 2 and all(ends)):
-            raise click.BadParameter(f"{way} is not KEY=FROM:TO, such as c1=1:1e-6.", param_hint="--continue")
+            raise click.BadParameter(f"{text} is not KEY=FROM:TO, such as c1=1:1e-6.", param_hint="--continue")
         found[key] = [_number(end) for end in ends]
     before = tree.get("continuation", {})
     return {**tree, "continuation": {**before, **found}} if found and isinstance(before, Mapping) else tree

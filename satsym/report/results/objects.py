@@ -66,9 +66,6 @@ def solution_object(solution: Solution) -> dict[str, Any]:
         "message": solution.status.explain(solution.message),
         "boundary_type": solution.instance.boundary_type,
         "objective": plain(spec.objective(solution.objective)),
-        "t_initial": _at(solution.times, 0),
-        "x_initial": _each(states, solution.x, 0),
-        "parameters_found": _found(solution),
         "t_final": _at(solution.times, -1),
         "x_final": _each(states, solution.x, -1),
         "costate_initial": _each(states, solution.lam, 0),
@@ -76,20 +73,26 @@ def solution_object(solution: Solution) -> dict[str, Any]:
         "iterations": solution.iterations,
         "wall_s": plain(solution.wall_s),
         "certificate": certificate_object(solution.certificate, spec) if solution.certificate else None,
-        **(
-            {"continuation": [_on_the_way(one, solution) for one in solution.on_the_way]} if solution.on_the_way else {}
-        ),
+        "x_initial": _each(states, solution.x, 0),
+        "t_initial": _at(solution.times, 0),
+        "parameters_found": _found(solution),
+        **_continuation(solution),
     }
 
 
-def _on_the_way(one: Solution, to: Solution) -> dict[str, Any]:
-    """An answer of a continuation, with what had changed by then."""
-    instance = one.instance
-    return {way.key: plain(way.of(instance)) for way in to.instance.continuation} | {
-        "objective": plain(instance.model.spec.objective(one.objective)),
-        "t_final": _at(one.times, -1),
-        "costate_initial": _each(instance.model.spec.state_names, one.lam, 0),
-    }
+def _continuation(solution: Solution) -> dict[str, list[dict[str, Any]]]:
+    """The answers before it of a continuation, with what had changed by then; no key where there are none."""
+    spec = solution.instance.model.spec
+    rows = [
+        {
+            **{one.key: plain(one.of(answer.instance)) for one in solution.instance.continuation},
+            "objective": plain(spec.objective(answer.objective)),
+            "t_final": _at(answer.times, -1),
+            "costate_initial": _each(spec.state_names, answer.lam, 0),
+        }
+        for answer in solution.intermediate
+    ]
+    return {"continuation": rows} if rows else {}
 
 
 def simulation_object(simulation: Simulation) -> dict[str, Any]:

@@ -99,8 +99,8 @@ def contents(found: Solution | Simulation) -> dict[str, Content]:
         "trajectory.npz": lambda stream: np.savez(stream, **arrays, **more),
         "trajectory.csv": lambda stream: stream.writelines(lines()),
     }
-    for k, one in enumerate(found.on_the_way if isinstance(found, Solution) else ()):
-        files |= {f"way-{k:03d}.csv": contents(one)["trajectory.csv"]}
+    for k, one in enumerate(found.intermediate if isinstance(found, Solution) else ()):
+        files |= {f"step-{k:03d}.csv": contents(one)["trajectory.csv"]}
     return files
 
 

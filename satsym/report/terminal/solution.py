@@ -91,7 +91,11 @@ def _objective(instance: Instance, cost: float) -> tuple[str, str]:
     """The objective in its author's sense and unit; costates keep the sign of a cost, which is said."""
     spec = instance.model.spec
     text = f"{figure(spec.objective(cost), 10)} {spec.objective_unit}".rstrip()
-    return ("objective J, maximised", f"{text} (costates are those of -J)") if spec.maximise else ("cost J", text)
+    return (
+        ("objective J, maximised", f"{text} (costs and costates are those of -J)")
+        if spec.maximise
+        else ("cost J", text)
+    )
 
 
 def _found(instance: Instance, time: str) -> list[tuple[str, str]]:

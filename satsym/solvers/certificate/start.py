@@ -1,6 +1,6 @@
-"""What is free at the start and among the parameters: the slope of the least cost by it, and what certificates say.
+"""What is free at the start and among the parameters: the slope of the minimum cost by it, and what certificates say.
 
-The least cost V of the problem with all these given changes by the costate of an initial state, by -H of the initial
+The minimum cost V of the problem with all these given changes by the costate of an initial state, by -H of the initial
 time, and by the integral of H_p with what the end adds of a parameter (Bryson and Ho, Applied Optimal Control, 2.8 and
 3.3; it is the costate of p as a state with p' = 0). Where these vanish the start is stationary. The accessory problem
 with a free start is positive exactly where that with a given one is, and so is the second derivative of V: it is what
@@ -24,17 +24,17 @@ from satsym.solvers.collocation.scaling import final_argument
 from satsym.status import Verdict
 
 STATIONARY = 1e-8
-"""Largest slope of the least cost by what is free, relative."""
+"""Largest slope of the minimum cost by what is free, relative."""
 
 FLAT = 1e-5
-"""Relative curvature of the least cost below which nobody can tell whether there is any."""
+"""Relative curvature of the minimum cost below which nobody can tell whether there is any."""
 
 COMPLEX_STEP = 1e-30
 
 
 @dataclass(frozen=True)
 class Slope:
-    """The slope of the least cost by something that is free."""
+    """The slope of the minimum cost by something that is free."""
 
     value: float
     size: float
@@ -48,7 +48,7 @@ class Slope:
 
 
 def slope(solution: Solution, unknown: Unknown) -> Slope:
-    """The slope of the least cost by what is free, at a solution with that given."""
+    """The slope of the minimum cost by what is free, at a solution with that given."""
     if unknown.place is Place.INITIAL:
         lam, x = np.abs(solution.lam).max(axis=1), np.abs(solution.x).max(axis=1)
         i = unknown.index
@@ -125,18 +125,18 @@ def _stepped(parameters: tuple[float, ...], index: int) -> tuple[Any, ...]:
 
 @dataclass(frozen=True)
 class Curvature:
-    """Of the least cost in what is free."""
+    """Of the minimum cost in what is free."""
 
-    least: float
+    smallest: float
     """Relative; NaN where it was not resolved."""
 
     @property
     def checks(self) -> list[Check]:
         """Each is a deficit that must not be positive."""
-        if not np.isfinite(self.least):
+        if not np.isfinite(self.smallest):
             return [Check("second-order condition at the free start not resolved", 1.0, 0.0)]
-        found = [Check("second-order condition at the free start", float(not self.least > -FLAT), 0.0)]
-        return [*found, Check(NOT_STRICT, 1.0, 0.0)] if abs(self.least) <= FLAT else found
+        found = [Check("second-order condition at the free start", float(not self.smallest > -FLAT), 0.0)]
+        return [*found, Check(NOT_STRICT, 1.0, 0.0)] if abs(self.smallest) <= FLAT else found
 
 
 UNRESOLVED = Curvature(float("nan"))

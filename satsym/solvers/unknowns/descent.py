@@ -1,6 +1,6 @@
-"""From a choice of what is free down to where the least cost is least: a trust region over what solutions tell.
+"""From a choice of what is free down to where the minimum cost is least: a trust region over what solutions tell.
 
-Symmetric rank-one updates know of negative curvature; differences of slopes tell at the end how the least cost is
+Symmetric rank-one updates know of negative curvature; differences of slopes tell at the end how the minimum cost is
 curved: upwards at a minimum, downwards at a saddle, which is left to both sides.
 """
 
@@ -48,8 +48,8 @@ AGREEMENT = 0.05
 """Relative difference of the curvatures that costs and slopes tell, beyond which neither is believed."""
 
 
-def least_from(trials: Trials, here: Trial) -> tuple[Trial, Curvature] | Solution:
-    """From a trial down to where the least cost is least, and its curvature there; or no answer."""
+def minimum_from(trials: Trials, here: Trial) -> tuple[Trial, Curvature] | Solution:
+    """From a trial down to where the minimum cost is least, and its curvature there; or no answer."""
     form = _first_form(trials, here)
     for _ in range(DEPARTURES):
         descended = _descended(trials, here, form)
@@ -187,7 +187,7 @@ def _updated(form: Array, step: Array, change: Array) -> Array:
 
 
 def met_beside(trials: Trials, here: Trial) -> str | None:
-    """What is met where the slope of the least cost does not vanish and no step down is found; ``None``: nothing."""
+    """What is met where the slope of the minimum cost does not vanish and no step down is found; ``None``: nothing."""
     length = max(float(np.linalg.norm(here.slope)), 1e-300)
     beside = [trials(here.at + sign * NEAR * here.slope / length) for sign in (1.0, -1.0)]
     if beside[1] is None:

@@ -1,6 +1,6 @@
-"""Free initial states, a free initial time and free parameters: where the least cost with them given is least.
+"""Free initial states, a free initial time and free parameters: where the minimum cost with them given is least.
 
-The problem with these given is solved by the instance's method, whatever that is. Its least cost has a slope that the
+The problem with these given is solved by the instance's method, whatever that is. Its minimum cost has a slope that the
 solution itself tells (:mod:`satsym.solvers.certificate.start`); the way down along it is that of
 :mod:`satsym.solvers.unknowns.descent`.
 """
@@ -17,7 +17,7 @@ from satsym.instance import Instance
 from satsym.solution import Check, Competitors, Kind, Progress, Solution
 from satsym.solvers.certificate.start import STATIONARY, Curvature, with_start
 from satsym.solvers.iteration import unsolved
-from satsym.solvers.unknowns.descent import NOISE, least_from, met_beside
+from satsym.solvers.unknowns.descent import NOISE, met_beside, minimum_from
 from satsym.solvers.unknowns.trials import Late, Solver, Trial, Trials, unit_of
 from satsym.status import Status
 from satsym.wording import counted
@@ -65,13 +65,13 @@ def _solved(trials: Trials, certified: Solver) -> Solution:
         return here
     curvature = Curvature(math.nan)
     for again in (True, False):
-        reached = least_from(trials, here)
+        reached = minimum_from(trials, here)
         if isinstance(reached, Solution):
             return reached
         here, curvature = reached
         if here.residual > STATIONARY:
             beside = met_beside(trials, here) or f"has a slope of {here.residual:.0e} still, after {trials.count},"
-            return _unanswered(trials, Status.NOT_CONVERGED, f"the least cost {beside} at {trials.values(here.at)}")
+            return _unanswered(trials, Status.NOT_CONVERGED, f"the minimum cost {beside} at {trials.values(here.at)}")
         chosen = trials.chosen(here.at)
         assert chosen is not None
         final = certified(chosen, trials.progress)

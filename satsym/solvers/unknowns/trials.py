@@ -30,13 +30,13 @@ class Trial:
     """In units, from the first guess."""
     solution: Solution
     slope: Array
-    """Of the least cost, by each unit."""
+    """Of the minimum cost, by each unit."""
     residual: float
     """The largest of them, relative."""
 
     @property
     def cost(self) -> float:
-        """The least cost."""
+        """The minimum cost."""
         return self.solution.objective
 
     @property
