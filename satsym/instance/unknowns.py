@@ -96,6 +96,10 @@ def begun(file: InstanceFile, spec: ProblemSpec) -> tuple[InstanceFile, tuple[Un
             tables["time"] = msgspec.structs.replace(file.time, t0=_first_time(file, spec))
         else:
             tables[unknown.place.value][unknown.name] = _first(file, unknown, spec)
+    # one number says where to begin, and nothing of the motion; several are a motion that is guessed
+    begins = {one.name for one in found if one.place is Place.INITIAL}
+    moving = {k: v for k, v in file.guess.state.items() if k not in begins or (isinstance(v, list) and len(v) > 1)}
+    tables["guess"] = msgspec.structs.replace(file.guess, state=moving)
     return msgspec.structs.replace(file, **tables), found
 
 

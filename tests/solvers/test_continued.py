@@ -77,6 +77,11 @@ def test_times_and_ends_change_as_well() -> None:
     assert found.status.value == "converged"
     assert [found.times[-1], found.x[0, 0], found.x[0, -1]] == pytest.approx([4.0, -1.0, 2.0], rel=1e-9)
     assert found.to_dict()["continuation"][0]["final.x"] == 0.0
+    assert (found.instance.case.tf, found.instance.case.initial, found.instance.case.final) == (
+        4.0,
+        (-1.0,),
+        {"x": 2.0},
+    )
 
 
 def test_where_the_way_ends_is_said_with_the_reason() -> None:

@@ -114,6 +114,15 @@ def test_bounds_of_the_control_are_kept_on_the_way() -> None:
     assert said["objective"] == pytest.approx(steep**2 * until**3 / 6 + bound**2 * (1 - until) / 2, rel=1e-9)
 
 
+@pytest.mark.slow
+def test_the_free_height_of_a_brachistochrone_is_that_of_half_a_cycloid() -> None:
+    far, g = 10.0, 9.80665
+    case = satsym.load("brachistochrone").with_(initial={"y": "free"}, guess={"state": {"y": 10.0}})
+    said = certified(satsym.solve(case))
+    assert said["x_initial"]["y"] == pytest.approx(5.0 + 2.0 * far / math.pi, rel=1e-8)
+    assert said["objective"] == pytest.approx(math.sqrt(math.pi * far / g), rel=1e-9)
+
+
 def test_a_saddle_in_what_is_free_is_left_for_a_minimum() -> None:
     said = certified(solved(WELLS, initial={"x": "free"}, tf=1.0, parameters=STILL))
     assert abs(said["x_initial"]["x"]) == pytest.approx(1.0, rel=1e-6)
@@ -131,6 +140,8 @@ def test_what_is_minimal_only_with_its_start_given_is_not_certified() -> None:
     for least, verdict in ((-0.5, "extremal only"), (0.0, "extremal only"), (math.nan, "extremal only")):
         assert with_start(given.certificate, freed, Curvature(least).checks).verdict.value == verdict
     assert with_start(given.certificate, freed, Curvature(0.5).checks).verdict is Verdict.CERTIFIED
+    lesser = replace(given.certificate, verdict=Verdict.EXTREMAL_ONLY)
+    assert with_start(lesser, freed, Curvature(0.5).checks).verdict is Verdict.EXTREMAL_ONLY
 
 
 def test_a_start_that_is_not_stationary_fails() -> None:
