@@ -75,6 +75,9 @@ class Variable:
     typical: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
+        for field in ("symbol", "latex", "unit", "meaning"):
+            if not isinstance(value := getattr(self, field), str):
+                raise ValueError(f"variable {self.symbol!r}: {field} is {value!r}; write text in quotes")
         if not _NAME.match(self.symbol) or "__" in self.symbol:
             raise ValueError(f"variable {self.symbol!r}: use a letter, then letters, digits and single underscores")
         if self.default is not None and not (isinstance(self.default, int | float) and isfinite(self.default)):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import importlib.util
 import sys
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -155,7 +156,9 @@ def _execute(path: Path, name: str) -> None:
     _REACHED[resolved] = {resolved: digest_of(resolved)}
     _EXECUTING.append(resolved)
     try:
-        spec.loader.exec_module(module)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", SyntaxWarning)  # the error that follows says the same, with its line
+            spec.loader.exec_module(module)
     except Exception as error:
         del sys.modules[name]
         line = _line_in(resolved, error)

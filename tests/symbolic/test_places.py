@@ -54,6 +54,8 @@ PROBLEMS = (effort,)
         ("terminal_cost=0 * x", 'control_set="disc"', "control_set", "control_set: got"),
         ("running_cost=u**2", "running_cost=u**4", "effort = ", "."),
         ('"u", "u", "m/s^2"', '"u", "u", "m/s^^2"', None, "unit"),
+        ('"u", "u", "m/s^2"', '"u", -1, "m/s^2"', "CONTROLS", "latex is -1; write text in quotes"),
+        ("u - k * v", "u - 'k'(v)", "v: u", "not callable"),
     ],
 )
 def test_the_message_names_file_and_line(
