@@ -99,3 +99,11 @@ def test_the_same_problem_as_a_cost_has_the_opposite_objective(found: Solution) 
 def test_what_makes_no_sense_is_refused(changes: dict[str, object], message: str) -> None:
     with pytest.raises(DerivationError, match=message):
         derive(replace(GAIN, **changes))  # type: ignore[arg-type]
+
+
+def test_pictures_show_the_objective_and_its_unit(found: Solution) -> None:
+    from satsym.report.plots.pages import _facts
+    from satsym.report.plots.scene import Scene
+
+    facts = _facts(Scene.of(found.found))
+    assert any(re.fullmatch(r"\$J\$ = 1\.166667 .*m.*", fact) for fact in facts), facts
