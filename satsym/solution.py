@@ -59,6 +59,7 @@ class Kind(str, Enum):
     DURATIONS = "duration"
     EARLIER = "earlier arrival"
     STARTS = "seeded starts"
+    UNKNOWNS = "other values of what is free"
 
 
 @dataclass(frozen=True)
@@ -140,7 +141,8 @@ class Solution:
     method, status, message
         Solver, outcome, and one sentence for people.
     objective
-        The cost J; NaN where there is none.
+        The cost J, which is minimised, so that it is minus the objective that a model maximises; NaN where there is
+        none.
     times
         Nodes, shape (N+1,). Where a control jumps, the time occurs twice: the end of one arc and the start of the next.
     x, u, lam
@@ -153,6 +155,8 @@ class Solution:
         Seconds of solving, without loading and reporting.
     certificate
         ``None`` where there is no answer to certify.
+    intermediate
+        Of a continuation: the answers of the problems before this one, in order.
     """
 
     instance: Instance
@@ -169,6 +173,7 @@ class Solution:
     history: tuple[Iteration, ...]
     wall_s: float
     certificate: Certificate | None = None
+    intermediate: tuple[Solution, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -36,7 +36,7 @@ _OF_VARIABLES = (
 )
 _UNLESS_DEFAULT = (
     *(*_OF_LINEAR_MODELS, "keplerian", "switching", "coordinates", "velocities", "quantities", "balances"),
-    *("switching_curve", "conditions", "equilibria", "mode_groups", "control_parts"),
+    *("switching_curve", "conditions", "equilibria", "mode_groups", "control_parts", "maximise", "objective_unit"),
 )
 
 
@@ -75,6 +75,9 @@ class Variable:
     typical: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
+        for field in ("symbol", "latex", "unit", "meaning"):
+            if not isinstance(value := getattr(self, field), str):
+                raise ValueError(f"variable {self.symbol!r}: {field} is {value!r}; write text in quotes")
         if not _NAME.match(self.symbol) or "__" in self.symbol:
             raise ValueError(f"variable {self.symbol!r}: use a letter, then letters, digits and single underscores")
         if self.default is not None and not (isinstance(self.default, int | float) and isfinite(self.default)):
@@ -204,6 +207,10 @@ class ProblemSpec:
         The sets whose product the control set is, where it was stated set by set; else empty.
     mode_groups
         What its modes are called, by the states that have the largest part in them. May be empty.
+    maximise
+        Whether the author's objective is to be large; functions are those of its negative, the cost.
+    objective_unit
+        Of the objective, where it is stated; else empty.
     """
 
     name: str
@@ -233,6 +240,12 @@ class ProblemSpec:
     equilibria: str = ""
     mode_groups: tuple[ModeGroup, ...] = ()
     control_parts: tuple[ControlPart, ...] = ()
+    maximise: bool = False
+    objective_unit: str = ""
+
+    def objective(self, cost: float) -> float:
+        """What the author calls the objective, where the cost is this; and the other way round."""
+        return -cost if self.maximise else cost
 
     @property
     def directional(self) -> bool:

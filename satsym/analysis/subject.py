@@ -22,7 +22,9 @@ def find(name: str) -> Instance | Kernels:
         If there is neither, or it cannot be read.
     """
     if name in instance.shipped() or name.endswith(".toml"):
-        return instance.load(name)
+        found = instance.load(name)
+        found.require_numbers()
+        return found
     if name in kernels.shipped() or Path(f"{name}.py").is_file():
         return kernels.load(name)
     instead = suggestion(name, [*instance.shipped(), *kernels.shipped()])

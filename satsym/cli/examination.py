@@ -147,7 +147,7 @@ def _trial() -> Finding:
         solution = solvers.solve(instance.load(TRIAL))
     except Exception as error:
         return Finding(name, "fails", False, True, _line(error))
-    note = f"J = {solution.objective:.6g}, {solution.wall_s:.2g} s"
+    note = f"J = {solution.instance.model.spec.objective(solution.objective):.6g}, {solution.wall_s:.2g} s"
     return Finding(name, solution.status.value, solution.status.answered, True, note)
 
 

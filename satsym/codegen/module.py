@@ -68,8 +68,12 @@ def spec(derivation: Derivation, source: str) -> ProblemSpec:
         control_parts=_parts(derivation),
         has_cost=problem is not None,
         has_terminal_cost=bool(problem and problem.terminal_cost != 0),
+        maximise=bool(problem and problem.maximise),
+        objective_unit=problem.unit if problem else "",
         has_reference=bool(model.reference),
-        autonomous=not any(e.has(t) for e in derivation.rhs("first_order")),
+        autonomous=not any(
+            e.has(t) for e in (*derivation.rhs("first_order"), sp.sympify(problem.running_cost if problem else 0))
+        ),
         invariants=tuple(Variable(e.name, derivation.notation[e.name]) for e in conserved),
         multipliers=tuple(Variable(v.name, derivation.notation[v.name]) for v in symbols(derivation).nu),
         position=tuple(Variable(axis, axis) for axis in ("x", "y", "z")[: len(particle.position) if particle else 0]),

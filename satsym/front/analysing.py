@@ -177,6 +177,7 @@ def lqr(subject: Subject) -> Regulator:
 def _given(subject: Subject) -> tuple[Case | Kernels, Derivation | None]:
     """What floors below take, and the derivation of a model that is given as such."""
     if isinstance(subject, Instance):
+        subject.case.require_numbers()
         return subject.case, None
     if isinstance(subject, str | Path):
         return subjects.find(str(subject)), None

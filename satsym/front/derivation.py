@@ -18,6 +18,7 @@ from satsym.symbolic.convention import in_convention, is_minimum
 from satsym.symbolic.latex.typeset import Typesetter, matrices
 from satsym.symbolic.lookup import addresses
 from satsym.symbolic.model import Convention
+from satsym.symbolic.time_limit import within
 from satsym.wording import counted, shown
 
 if TYPE_CHECKING:
@@ -97,7 +98,7 @@ class Derivation:
     def _generated(self) -> tuple[str, Kernels]:
         if not is_minimum(self.derived):
             return derive(self, "minimum")._generated
-        with loader.explained():
+        with loader.explained(), within(artefacts.MAX_SECONDS, self.name):
             return artefacts.generated(self.derived, self.source)
 
     @cached_property
@@ -229,7 +230,7 @@ def derive(subject: Subject, convention: Convention | None = None) -> Derivation
     BadInput
         If there is no such thing, or it cannot be derived from: with one line that says why.
     """
-    source = ""
+    source, path = "", None
     if isinstance(subject, Derivation):
         source, subject = subject.source, subject.subject
     elif isinstance(subject, str | Path):
@@ -240,17 +241,17 @@ def derive(subject: Subject, convention: Convention | None = None) -> Derivation
     if convention not in (None, "minimum", "maximum"):
         raise BadInput(f'convention: {shown(convention)} is neither "minimum" nor "maximum"')
     chosen = in_convention(subject, convention)
-    return _kept(chosen, source or f"{chosen.name}.py")
+    return _kept(chosen, source or f"{chosen.name}.py", path)
 
 
 _KEPT: OrderedDict[bytes, Derivation] = OrderedDict()
 """By what was asked, in full: problems hold tables, which may have changed since."""
 
 
-def _kept(subject: Problem | Model, source: str) -> Derivation:
+def _kept(subject: Problem | Model, source: str, path: Path | None) -> Derivation:
     key = pickle.dumps((subject, source))
     if key not in _KEPT:
-        with loader.explained():
+        with loader.explained(path, subject), within(artefacts.MAX_SECONDS, subject.name):
             _KEPT[key] = Derivation(subject, symbolic.derive(subject), source)
         while len(_KEPT) > KEPT:
             _KEPT.popitem(last=False)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 Table: TypeAlias = Mapping[Any, Any]
 """Names, or symbols, and values: numbers, or texts such as ``"5 km"``, ``"reference"``, ``"free"``."""
 
-TIMES = ("tf", "t0", "tf_guess")
+TIMES = ("tf", "t0", "tf_guess", "t0_guess")
 _NAME = re.compile(r"[^\W_][\w.-]{0,99}\Z")
 
 
@@ -73,6 +73,7 @@ class Instance:
         final: Table | None = None,
         t0: float | str | None = None,
         tf_guess: float | str | None = None,
+        t0_guess: float | str | None = None,
         parameters: Table | None = None,
         control: Table | None = None,
         name: str | None = None,
@@ -87,8 +88,8 @@ class Instance:
             in memory, once.
         initial, final, parameters, control
             The tables of these names.
-        tf, t0, tf_guess
-            The table [time]: final time, or ``"free"`` where it is to be found; initial time; where to look for it.
+        tf, t0, tf_guess, t0_guess
+            The table [time]: final and initial time, or ``"free"`` where one is to be found; where to look for it.
         name
             What it is called in results; by default as its model.
         more
@@ -108,7 +109,7 @@ class Instance:
         """
         kernels, called = _kernels(model), _called(model)
         given = {"initial": initial, "final": final, "parameters": parameters, "control": control}
-        given["time"] = {"tf": tf, "t0": t0, "tf_guess": tf_guess}
+        given["time"] = {"tf": tf, "t0": t0, "tf_guess": tf_guess, "t0_guess": t0_guess}
         tree = tables.merged({"model": called}, tables.plain(given))
         last = called.rpartition("/")[2]
         chosen = _checked(name) if name is not None else last if _NAME.match(last) else "instance"

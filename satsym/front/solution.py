@@ -27,8 +27,8 @@ class Solution(Result[solution.Solution]):
 
     @property
     def objective(self) -> float:
-        """The cost J; NaN where there is none."""
-        return self.found.objective
+        """The objective J in the sense of the model's author, that is the cost unless it is maximised; NaN for none."""
+        return float(self._spec.objective(self.found.objective))
 
     @property
     def method(self) -> str:
@@ -135,4 +135,4 @@ def solve(instance: Instance | str | Path, progress: Progress | None = None, **o
         from satsym.analysis.comparison import limits_noted
 
         found = limits_noted(found)
-    return Solution(case, replace(found, instance=case.case))
+    return Solution(case, found if case.case.free else replace(found, instance=case.case))

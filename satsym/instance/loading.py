@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from satsym.instance import control, files, resolve
+from satsym.instance import continuation, control, files, resolve, unknowns
 from satsym.instance.options import guess, lqr, solver
 from satsym.instance.pointing import classical, deadband, driven, limits
 from satsym.instance.schema import InstanceFile, check
@@ -114,9 +114,10 @@ def _resolve(written: Written, file: InstanceFile, model: Kernels) -> Instance:
     spec = model.spec
     if len(file.title) > MAX_TITLE or not file.title.isprintable():
         raise BadInput(f"title: {shown(file.title)} is not one short line; write at most {MAX_TITLE} plain characters")
+    file, free = unknowns.begun(file, spec)
     t0, tf, tf_guess = resolve.times(file.time, spec)
     lower, upper, norms = control.bounds(file.control, spec)
-    return Instance(
+    found = Instance(
         name=written.name,
         path=written.path,
         title=file.title,
@@ -138,4 +139,9 @@ def _resolve(written: Written, file: InstanceFile, model: Kernels) -> Instance:
         limits=limits(file.limits, spec),
         deadband=deadband(file.switching, spec),
         driven=driven(file.driven, spec),
+        free=free,
     )
+    changing = continuation.varied(file.continuation, spec, found)
+    for one in changing:
+        found = one.at(found, 1.0)
+    return replace(found, continuation=changing)

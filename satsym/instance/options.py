@@ -66,6 +66,7 @@ def _weights(table: LqrTable, spec: ProblemSpec, inputs: Sequence[Variable]) -> 
 
 def guess(table: GuessTable, spec: ProblemSpec) -> Guess:
     """Series by name, in the model's units; costates have no unit of their own and take plain numbers."""
+    known(table.parameter, spec.parameters, "parameter", "guess.parameter")
     return Guess(
         state=_series(table.state, spec.states, "state"),
         costate=_series(table.costate, spec.states, "costate"),

@@ -26,6 +26,9 @@ Bound = Annotated[
     float | str | tuple[float | str, float | str] | dict[str, float | str],
     Meta(description="the lower and the upper bound, such as [-0.2, 0.2]; or max_norm, one number"),
 ]
+Ends = Annotated[
+    tuple[float | str, float | str], Meta(description="where it begins and where it ends, such as [1.0, 1e-6]")
+]
 Matrix = Annotated[
     list[float | list[float]], Meta(description="a list of rows of numbers, or the list of the diagonal's numbers")
 ]
@@ -62,6 +65,7 @@ class TimeTable(_Table, frozen=True):
     tf: FinalTime
     t0: Quantity = 0.0
     tf_guess: Quantity | None = None
+    t0_guess: Quantity | None = None
 
 
 class LqrTable(_Table, frozen=True):
@@ -93,6 +97,7 @@ class GuessTable(_Table, frozen=True):
     state: dict[str, Series] = {}
     costate: dict[str, Series] = {}
     control: dict[str, Series] = {}
+    parameter: dict[str, Quantity] = {}
 
 
 class SolverOptions(_Table, frozen=True):
@@ -132,6 +137,7 @@ class InstanceFile(_Table, frozen=True):
     limits: dict[str, Quantity] = {}
     switching: SwitchingTable | None = None
     driven: DrivenTable | None = None
+    continuation: dict[str, Ends] = {}
 
 
 def check(tree: dict[str, Any]) -> InstanceFile:

@@ -8,7 +8,10 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from satsym.instance.continuation import Varied
 from satsym.instance.schema import SolverOptions
+from satsym.instance.unknowns import Unknown
+from satsym.status import BadInput
 
 if TYPE_CHECKING:
     from satsym.control_set import ControlSet
@@ -132,6 +135,10 @@ class Instance:
         A control that other instances have worked out, if there is one.
     norms
         Of a product of control sets: the least and the largest norm, by the name of the set.
+    free
+        Initial states, initial time and parameters that are to be found; their fields hold where to begin.
+    continuation
+        What changes on the way to this problem, where it is solved by continuation.
     """
 
     name: str
@@ -155,6 +162,19 @@ class Instance:
     deadband: float | None = None
     driven: DrivenOptions | None = None
     norms: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    free: tuple[Unknown, ...] = ()
+    continuation: tuple[Varied, ...] = ()
+
+    def require_numbers(self) -> None:
+        """Refuse, for what does not optimise, an instance that leaves something free.
+
+        Raises
+        ------
+        BadInput
+            With the first of these.
+        """
+        if self.free:
+            raise BadInput(f'{self.name}: {self.free[0].key}: "free" is found by solving only; write a number')
 
     @property
     def boundary_type(self) -> int:

@@ -9,7 +9,7 @@ from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from multiprocessing import get_context
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from satsym.report import stamps
 from satsym.report.results.files import write_text
@@ -22,17 +22,27 @@ SUFFIXES = (".py", ".tex")
 KEPT = "__init__.py"
 """The one file of the generated folder that people write."""
 
+MAX_SECONDS = 900.0
+"""Of deriving one problem: several times what the longest of those that come with satsym takes."""
+
+Job: TypeAlias = "tuple[Path, str, float]"
+"""A derivation file, the name of a problem in it, and the time that deriving it may take."""
+
 FEW = 6
 """Problems up to which less one process derives them all."""
 
 
-def render(paths: Iterable[Path], announce: Callable[[str], None] = lambda name: None) -> dict[str, str]:
+def render(
+    paths: Iterable[Path], announce: Callable[[str], None] = lambda name: None, max_seconds: float = MAX_SECONDS
+) -> dict[str, str]:
     """Everything that derivation files lead to.
 
     Parameters
     ----------
     announce
         Told the name of each problem once it is derived.
+    max_seconds
+        For each of them.
 
     Returns
     -------
@@ -46,17 +56,23 @@ def render(paths: Iterable[Path], announce: Callable[[str], None] = lambda name:
     """
     from satsym.symbolic import loader
 
-    return _derived([(path, problem.name) for path in paths for problem in loader.load(path)], announce)
+    jobs = [(path, problem.name, max_seconds) for path in paths for problem in loader.load(path)]
+    return _derived(jobs, announce)
 
 
 def renew(
-    paths: Sequence[Path], folder: Path, announce: Callable[[str], None] = lambda name: None, *, fresh: bool = False
+    paths: Sequence[Path],
+    folder: Path,
+    announce: Callable[[str], None] = lambda name: None,
+    *,
+    fresh: bool = False,
+    max_seconds: float = MAX_SECONDS,
 ) -> dict[str, str | None]:
     """As :func:`render`, but nothing is derived that a folder holds already, as the stamps of earlier runs tell.
 
     Parameters
     ----------
-    paths, announce
+    paths, announce, max_seconds
         As there.
     fresh
         Derive everything, and keep stamps of it.
@@ -74,9 +90,9 @@ def renew(
     engine = stamps.engine()
     known = {path: None if fresh else stamps.read(path, engine) for path in paths}
     done = {path for path, stamp in known.items() if stamp and stamps.holds(stamp, folder)}
-    stated = {path: _stated(path) for path in paths if path not in done}
+    stated = {path: _stated(path, max_seconds) for path in paths if path not in done}
     jobs = [
-        (path, name)
+        (path, name, max_seconds)
         for path, identities in stated.items()
         for name, identity in identities.items()
         if not stamps.spares(known[path], name, identity, folder)
@@ -88,15 +104,17 @@ def renew(
     return {f"{name}{suffix}": texts.get(f"{name}{suffix}") for name in names for suffix in SUFFIXES}
 
 
-def _stated(path: Path) -> dict[str, str]:
+def _stated(path: Path, seconds: float) -> dict[str, str]:
     """Name of each problem of a derivation file -> its identity."""
     from satsym.symbolic import loader
     from satsym.symbolic.identity import identity
+    from satsym.symbolic.time_limit import within
 
-    return {problem.name: identity(problem) for problem in loader.load(path)}
+    with loader.explained(), within(seconds, str(path)):
+        return {problem.name: identity(problem) for problem in loader.load(path)}
 
 
-def _derived(jobs: Sequence[tuple[Path, str]], announce: Callable[[str], None]) -> dict[str, str]:
+def _derived(jobs: Sequence[Job], announce: Callable[[str], None]) -> dict[str, str]:
     """File name -> text, for problems of derivation files."""
     rendered: dict[str, str] = {}
     if not jobs:
@@ -104,7 +122,7 @@ def _derived(jobs: Sequence[tuple[Path, str]], announce: Callable[[str], None]) 
     from satsym.symbolic import loader
 
     with loader.explained(), _workers(len(jobs)) as each:
-        for (_, name), texts in zip(jobs, each(_rendered, jobs), strict=True):
+        for (_, name, _), texts in zip(jobs, each(_rendered, jobs), strict=True):
             announce(name)
             rendered |= texts
     return rendered
@@ -120,18 +138,20 @@ def _workers(jobs: int) -> Iterator[Callable[..., Iterator[Any]]]:
         yield pool.map
 
 
-def _rendered(job: tuple[Path, str]) -> dict[str, str]:
+def _rendered(job: Job) -> dict[str, str]:
     """The two files of one problem."""
     from satsym.report.latex import document as latex
     from satsym.symbolic import derive, loader
     from satsym.symbolic.convention import in_convention, is_minimum
+    from satsym.symbolic.time_limit import within
 
-    path, name = job
+    path, name, seconds = job
     problem = next(problem for problem in loader.load(path) if problem.name == name)
-    derivation = derive(problem)
-    in_minimum_form = derivation if is_minimum(derivation) else derive(in_convention(problem, "minimum"))
-    text, _ = generated(in_minimum_form, source_of(path))
-    return {f"{name}.py": text, f"{name}.tex": latex.render(derivation)}
+    with loader.explained(path, problem), within(seconds, name):
+        derivation = derive(problem)
+        in_minimum_form = derivation if is_minimum(derivation) else derive(in_convention(problem, "minimum"))
+        text, _ = generated(in_minimum_form, source_of(path))
+        return {f"{name}.py": text, f"{name}.tex": latex.render(derivation)}
 
 
 def generated(derivation: Derivation, source: str) -> tuple[str, Kernels]:
@@ -149,8 +169,11 @@ def generated(derivation: Derivation, source: str) -> tuple[str, Kernels]:
     """
     from satsym import kernels
     from satsym.codegen import module, verify
+    from satsym.symbolic.time_limit import entering
 
+    entering(derivation.name, "of writing its functions")
     text = module.render(derivation, source)
+    entering(derivation.name, "of verifying its functions")
     found = kernels.from_text(text, f"{derivation.name}.py")
     verify.verify(derivation, found)
     return text, found

@@ -47,6 +47,36 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         raise BadInput(f"{instance.name}: model {spec.name} has no cost, so there is nothing to solve; try simulate")
     if refusal := methods.refusal(name, instance):
         raise BadInput(f"{instance.name}: {refusal}")
+    return _solved_in_steps(instance, progress) if instance.continuation else _with_free(instance, progress)
+
+
+def _solved_in_steps(instance: Instance, progress: Progress | None) -> Solution:
+    """By continuation."""
+    from satsym.solvers import continued
+
+    quick = _with_free if instance.free else _uncertified
+    return continued.solve(instance, progress, quick, _with_free)
+
+
+def _with_free(instance: Instance, progress: Progress | None) -> Solution:
+    """With what the instance leaves free besides its end, if it does."""
+    if not instance.free:
+        return _found(instance, progress)
+    from satsym.solvers.unknowns import solving
+
+    return solving.solve(instance, progress, _uncertified, _found)
+
+
+def _uncertified(instance: Instance, progress: Progress | None) -> Solution:
+    """By the method alone."""
+    name = instance.solver.method
+    method = methods.automatic(instance.model.spec) if name == methods.AUTO else methods.METHODS[name]
+    return _in_time(method)(instance, progress)
+
+
+def _found(instance: Instance, progress: Progress | None) -> Solution:
+    """What the method finds, or the sweep in its place."""
+    spec, name = instance.model.spec, instance.solver.method
     automatic = name == methods.AUTO
     method = methods.automatic(spec) if automatic else methods.METHODS[name]
     solution = _solved(method, instance, progress)
@@ -99,4 +129,5 @@ def simulate(instance: Instance, law: Law | None = None) -> Simulation:
     """Simulate an instance under a control law; see :func:`satsym.solvers.simulation.simulating.simulate`."""
     from satsym.solvers.simulation import simulating
 
+    instance.require_numbers()
     return simulating.simulate(instance, law)

@@ -60,13 +60,17 @@ def improved(solver: Solver, instance: Instance, progress: Progress | None) -> S
 def bottomless(solution: Solution) -> Solution | None:
     """No answer, where what was found is stationary and other controls cost ever less; ``None`` where none shows."""
     endless = None if solution.instance.model.spec.switching else fall(solution)
-    if endless is None:
-        return None
+    advice = "weigh the control or time more, shorten the time, or bound the control"
+    return None if endless is None else without_minimiser(solution, f"{endless.message}; {advice}")
+
+
+def without_minimiser(solution: Solution, message: str) -> Solution:
+    """No answer in place of a solution, because there is always a cheaper one."""
     x, u, lam = (np.full_like(row, np.nan) for row in (solution.x, solution.u, solution.lam))
     return replace(
         solution,
         status=Status.NO_MINIMISER,
-        message=f"{endless.message}; weigh the control or time more, shorten the time, or bound the control",
+        message=message,
         objective=float("nan"),
         x=x,
         u=u,

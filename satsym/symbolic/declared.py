@@ -29,7 +29,7 @@ def refuse_misfits(model: Model, problem: Problem | None) -> None:
     """
     for subject in (problem, model) if problem else (model,):
         if not is_name(subject.name):
-            raise DerivationError(f"name: got {shown(subject.name)}; a model's name is {NAMES}")
+            raise DerivationError(f"name: got {shown(subject.name)}; a model's name is {NAMES}", ("name",))
     for complaint in model.misfits():
         raise DerivationError(f"{model.name}: {complaint}")
     states = symbols_of(model.states)
@@ -40,9 +40,19 @@ def refuse_misfits(model: Model, problem: Problem | None) -> None:
         )
     if problem and problem.control_set not in get_args(ControlSetKind):
         kinds = " or ".join(f'"{kind}"' for kind in get_args(ControlSetKind))
-        raise DerivationError(f"{problem.name}: control_set: got {shown(problem.control_set)}; write {kinds}")
+        raise DerivationError(
+            f"{problem.name}: control_set: got {shown(problem.control_set)}; write {kinds}", ("control_set",)
+        )
     if problem and problem.control_sets and problem.control_set != "free":
-        raise DerivationError(f"{problem.name}: control_set: the control sets are stated one by one; leave it out")
+        raise DerivationError(
+            f"{problem.name}: control_set: the control sets are stated one by one; leave it out", ("control_set",)
+        )
+    if problem and not isinstance(problem.maximise, bool):
+        raise DerivationError(
+            f"{problem.name}: maximise: got {shown(problem.maximise)}; write True or False", ("maximise",)
+        )
+    if problem and problem.running_cost == 0 and problem.terminal_cost == 0:
+        raise DerivationError(f"{problem.name}: no objective; state a running_cost or a terminal_cost")
     if problem and not model.controls:
         raise DerivationError(f"{problem.name}: the model has no controls, so there is nothing to optimise")
 
@@ -60,25 +70,27 @@ def refuse_foreign_symbols(derivation: Derivation) -> None:
     motion = constants | set(symbols_of(model.states))
     everything = motion | set(symbols_of(model.controls))
 
-    def refuse(what: str, expressions: Iterable[Any], allowed: set[sp.Symbol]) -> None:
+    def refuse(what: str, expressions: Iterable[Any], allowed: set[sp.Symbol], field: str = "") -> None:
         if any(sp.sympify(e).has(sp.nan, sp.oo, -sp.oo, sp.zoo) for e in expressions):
-            raise DerivationError(f"{derivation.name}: {what} is not finite; something in it is divided by zero")
+            message = f"{derivation.name}: {what} is not finite; something in it is divided by zero"
+            raise DerivationError(message, (field,))
         foreign = set().union(*(sp.sympify(e).free_symbols for e in expressions)) - allowed
         if foreign:
-            raise DerivationError(f"{derivation.name}: {what} {_complaint(foreign, everything)}")
+            message = f"{derivation.name}: {what} {_complaint(foreign, everything)}"
+            raise DerivationError(message, (field, *sorted(s.name for s in foreign)))
 
     for definition in model.definitions:
-        refuse(f"the value of {definition.variable.symbol}", [definition.value], parameters)
+        refuse(f"the value of {definition.variable.symbol}", [definition.value], parameters, "definitions")
     for what, expressions, allowed in model.stated():
         refuse(what, expressions, allowed)
-    refuse("an output", [o.value for o in model.outputs], constants | set(symbols_of(model.measured())))
+    refuse("an output", [o.value for o in model.outputs], constants | set(symbols_of(model.measured())), "outputs")
     for state, curve in model.reference.items():
-        refuse(f"the reference of {state}", [curve], constants)
+        refuse(f"the reference of {state}", [curve], constants, "reference")
     if problem:
         derived = set(symbols_of(o.variable for o in model.carried()))
-        refuse("the running cost", [problem.running_cost], everything | derived)
-        refuse("the terminal cost", [problem.terminal_cost], motion)
-        refuse("a terminal constraint", problem.terminal_constraints, motion)
+        refuse("the running cost", [problem.running_cost], everything | derived, "running_cost")
+        refuse("the terminal cost", [problem.terminal_cost], motion, "terminal_cost")
+        refuse("a terminal constraint", problem.terminal_constraints, motion, "terminal_constraints")
 
 
 def _complaint(foreign: set[sp.Symbol], everything: set[sp.Symbol]) -> str:
@@ -144,7 +156,7 @@ def _refuse_clashes(variables: Iterable[Variable], derived: Collection[str]) -> 
     seen: set[str] = set()
     for name in (v.symbol for v in variables):
         if name in seen:
-            raise DerivationError(f"the name {name!r} is used twice; choose another for one of the two")
+            raise DerivationError(f"the name {name!r} is used twice; choose another for one of the two", (name,))
         if name in derived:
-            raise DerivationError(f"the name {name!r} is given to something that is derived; choose another")
+            raise DerivationError(f"the name {name!r} is given to something that is derived; choose another", (name,))
         seen.add(name)

@@ -11,7 +11,19 @@ from satsym.symbolic.model import Model, Problem
 
 
 class DerivationError(Exception):
-    """What a derivation file states cannot be derived from, or a machine check failed; one line says why."""
+    """What a derivation file states cannot be derived from, or a machine check failed; one line says why.
+
+    Parameters
+    ----------
+    message
+        That line.
+    named
+        Fields of the statement, or symbols, that it is about, by which its line in the file is found.
+    """
+
+    def __init__(self, message: str, named: tuple[str, ...] = ()) -> None:
+        super().__init__(message)
+        self.named = named
 
 
 @dataclass(frozen=True)

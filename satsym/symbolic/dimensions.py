@@ -6,6 +6,8 @@ so that its time is a plain number, too.
 
 from __future__ import annotations
 
+import itertools
+import re
 from typing import Any
 
 import sympy as sp
@@ -117,6 +119,10 @@ def _enter_cost(known: dict[str, Dimension | None], problem: Problem, require: R
     running = over(final, second) if running is None else running
     total = product((running, second))
     require("the terminal cost, beside the integral of the running cost,", problem.terminal_cost, total)
+    if problem.unit and total is not None and total != (needed := _units_dimension(problem)):
+        raise DerivationError(
+            f"unit: the objective has the dimension {written(total)}, not {written(needed)}", ("unit",)
+        )
     known.update({s.name: running for s in (n.RUNNING_COST, n.HAMILTONIAN, n.MINIMISED)})
     known[n.TERMINAL_COST.name] = total
     for state in symbols_of(problem.model.states):
@@ -137,6 +143,14 @@ def _enter_cost(known: dict[str, Dimension | None], problem: Problem, require: R
     for a in problem.model.controls:
         for b in problem.model.controls:
             known[f"H_{a.symbol}_{b.symbol}"] = over(over(running, known[a.symbol]), known[b.symbol])
+
+
+def _units_dimension(problem: Problem) -> Dimension:
+    """Dimension of the unit that is stated of the objective."""
+    try:
+        return of_unit(problem.unit)
+    except BadInput as error:
+        raise DerivationError(f"unit: {error}", ("unit",)) from None
 
 
 def _of_variables(derivation: Derivation) -> dict[str, Dimension | None]:
@@ -171,13 +185,21 @@ def _right_side(step: Step, rhs: sp.Expr) -> sp.Expr:
     return rhs.replace(sp.log, lambda _: sp.Integer(1)) if step.name == "conserved" else rhs
 
 
+def _words(what: str) -> tuple[str, ...]:
+    """Fields and symbols that a message may be about: "the rate of x" is about the field rates, and x."""
+    words = re.findall(r"\w+", what.partition(": ")[2])
+    both = [*words, *(f"{first}_{second}" for first, second in itertools.pairwise(words))]
+    return (*both, *(f"{word}s" for word in both))
+
+
 def _require(what: str, expression: Any, known: Known, needed: Dimension | None) -> Dimension | None:
     try:
         found = dimension_of(expression, known)
     except Disagreement as error:
-        raise DerivationError(f"{what} {error}") from None
+        raise DerivationError(f"{what} {error}", _words(what)) from None
     if found is None or needed is None:
         return needed if found is None else found
     if found != needed:
-        raise DerivationError(f"{what} has the dimension {written(found)}, but needs {written(needed)}")
+        message = f"{what} has the dimension {written(found)}, but needs {written(needed)}"
+        raise DerivationError(message, _words(what))
     return found

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import importlib.util
 import sys
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -16,6 +17,7 @@ from satsym.sources import digest_of, shipped
 from satsym.status import BadInput
 from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.model import Model, Problem
+from satsym.symbolic.places import line_of
 from satsym.wording import printable, suggestion
 
 __all__ = ["explained", "find", "load", "problem", "reached", "shipped"]
@@ -115,12 +117,22 @@ def problem(name: str) -> tuple[Problem | Model, Path]:
 
 
 @contextmanager
-def explained() -> Iterator[None]:
-    """Turns what is wrong with a derivation into bad input: one line, no traceback."""
+def explained(path: Path | None = None, subject: Problem | Model | None = None) -> Iterator[None]:
+    """Turns what is wrong with a derivation into bad input: one line, no traceback.
+
+    Parameters
+    ----------
+    path, subject
+        The file and what of it is derived, where they are known: the message then begins with file and line.
+    """
     try:
         yield
     except DerivationError as error:
-        raise BadInput(" ".join(str(error).split())) from error
+        message = " ".join(str(error).split())
+        if path is not None and subject is not None:
+            line = line_of(path, subject, error.named)
+            message = f"{path}{'' if line is None else f':{line}'}: {message}"
+        raise BadInput(message) from error
 
 
 def _module(path: Path) -> ModuleType:
@@ -144,7 +156,9 @@ def _execute(path: Path, name: str) -> None:
     _REACHED[resolved] = {resolved: digest_of(resolved)}
     _EXECUTING.append(resolved)
     try:
-        spec.loader.exec_module(module)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", SyntaxWarning)  # the error that follows says the same, with its line
+            spec.loader.exec_module(module)
     except Exception as error:
         del sys.modules[name]
         line = _line_in(resolved, error)

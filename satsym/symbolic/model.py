@@ -277,6 +277,11 @@ class Problem:
         In which of the two conventions of Pontryagin's principle the derivation is printed: ``"minimum"`` or
         ``"maximum"``. The controls are the same, the costates change their sign; kernels always have those of
         the minimum convention.
+    maximise
+        Whether the objective, the integral of `running_cost` plus `terminal_cost`, is to be as large as it can be.
+        What is derived and generated minimises its negative, whose costates they are; reports state the objective.
+    unit
+        Of the objective, such as ``"km"``; refused where its terms come out in another one.
     """
 
     name: str
@@ -288,6 +293,8 @@ class Problem:
     control_set: ControlSetKind = "free"
     control_sets: Mapping[str, AdmissibleSet] = field(default_factory=dict)
     convention: Convention = "minimum"
+    maximise: bool = False
+    unit: str = ""
 
 
 def variables_of(model: Model) -> tuple[Variable, ...]:

@@ -12,6 +12,7 @@ import sympy as sp
 from satsym.symbolic import dimensions
 from satsym.symbolic import notation as n
 from satsym.symbolic.checks import drawn_from
+from satsym.symbolic.convention import as_cost
 from satsym.symbolic.declared import begin, refuse_foreign_symbols, refuse_misfits
 from satsym.symbolic.derivation import Derivation, DerivationError, resolved
 from satsym.symbolic.linear import regulator, stability, structure
@@ -21,6 +22,7 @@ from satsym.symbolic.principle import effort, pontryagin, product, transversalit
 from satsym.symbolic.switching import curve as switching_curve
 from satsym.symbolic.switching import functions as switching
 from satsym.symbolic.switching import singular
+from satsym.symbolic.time_limit import entering
 
 OUTPUTS: tuple[MaybeStep, ...] = (steps.output_matrix, steps.output_equations)
 
@@ -102,11 +104,12 @@ def derive(subject: Problem | Model) -> Derivation:
     problem, model = (subject, subject.model) if isinstance(subject, Problem) else (None, subject)
     try:
         with drawn_from(variables_of(model)):
-            return _derived(model, problem)
+            return _derived(model, problem and as_cost(problem))
     except DerivationError as error:
         # what is refused far down, by a control set for instance, does not know of whom it speaks
         known = str(error).startswith((f"{subject.name}:", f"{model.name}:"))
-        raise DerivationError(str(error) if known else f"{subject.name}: {error}") from error.__cause__
+        message = str(error) if known else f"{subject.name}: {error}"
+        raise DerivationError(message, error.named) from error.__cause__
 
 
 def _derived(model: Model, problem: Problem | None) -> Derivation:
@@ -196,6 +199,7 @@ def _taken(
 ) -> tuple[Derivation, dimensions.Known]:
     """The derivation and the dimensions after some more steps."""
     for step_function in steps:
+        entering(derivation.name, step_function.__name__.replace("_", " "))
         step = step_function(derivation)
         if step is not None:
             derivation = derivation.extended(step, dimensions.agreement(known, step))

@@ -24,6 +24,9 @@ Examples:
 
 A derivation file is Python and is executed: derive only files that you trust."""
 
+MAX_SECONDS = 900.0
+"""As of :mod:`satsym.report.artefacts`; here once more, because ``--help`` loads none of it."""
+
 SIGNATURE = "Written by satsym from "
 """What the machine writes says so, and nothing else is ever removed."""
 
@@ -33,7 +36,15 @@ SIGNATURE = "Written by satsym from "
 @place_option("--out", metavar="DIR", help="Write there instead of to the checkout's generated/.")
 @click.option("--check", is_flag=True, help="Write nothing; print what would change, and exit with 6 if anything does.")
 @click.option("--fresh", is_flag=True, help="Derive everything anew, also what has not changed since it was derived.")
-def derive(files: tuple[str, ...], out: Path | None, check: bool, fresh: bool) -> ExitCode:
+@click.option(
+    "--max-seconds",
+    type=click.FloatRange(min=0.0, min_open=True),
+    metavar="S",
+    default=MAX_SECONDS,
+    show_default=True,
+    help="Time that deriving one problem may take.",
+)
+def derive(files: tuple[str, ...], out: Path | None, check: bool, fresh: bool, max_seconds: float) -> ExitCode:
     """Derive kernels and LaTeX from derivation files.
 
     Takes the FILEs, or where none is named all that come with satsym, and writes NAME.py and NAME.tex for each
@@ -50,10 +61,10 @@ def derive(files: tuple[str, ...], out: Path | None, check: bool, fresh: bool) -
         check_writable(folder)
     with live() as line:
         if check:
-            rendered = artefacts.render(paths, _announcing(line))
+            rendered = artefacts.render(paths, _announcing(line), max_seconds)
             differences = artefacts.differences(rendered, folder, whole)
             return _compare(differences, folder, _command(files, out))
-        renewed = artefacts.renew(paths, folder, _announcing(line), fresh=fresh)
+        renewed = artefacts.renew(paths, folder, _announcing(line), fresh=fresh, max_seconds=max_seconds)
     changed = {name: text for name, text in renewed.items() if text is not None and not _holds(folder / name, text)}
     artefacts.write(changed, folder)
     done = [f"{folder / name}  {'written' if name in changed else 'unchanged'}" for name in renewed]

@@ -42,9 +42,10 @@ def latex(name: str, output: Path | None, language: str, fragment: bool, convent
     from satsym.symbolic import derive, loader
     from satsym.symbolic.convention import in_convention
 
-    with live() as line, loader.explained():
+    subject, path = loader.problem(name)
+    with live() as line, loader.explained(path, subject):
         line.show(f"deriving {name} ...")
-        derivation = derive(in_convention(loader.problem(name)[0], convention))
+        derivation = derive(in_convention(subject, convention))
     text = typesetting.render(derivation, language=language, standalone=not fragment)
     if output is None:
         emit(text)

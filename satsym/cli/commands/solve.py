@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -28,6 +29,7 @@ Methods, instead of the instance's (auto is the one that fits):
 Examples:
   satsym solve soft-return --plot       results and pictures into results/soft-return/solve
   satsym solve my_case.toml --json      the numbers alone, for another program
+  satsym solve soft-return --continue c1=1:1e-2   from a problem that is easier
 
 Exit codes: 0 converged, 3 the instance cannot be used, 4 there is no answer (its status says why),
 5 an answer whose certificate fails."""
@@ -51,6 +53,13 @@ def _positive(_context: click.Context, _option: click.Parameter, value: float | 
     help=f"Instead of the instance's: {', '.join(methods.names())}.",
 )
 @click.option("--steps", type=click.IntRange(2, 10**7), metavar="N", help="Steps of the grid.")
+@click.option(
+    "--continue",
+    "varied",
+    multiple=True,
+    metavar="KEY=FROM:TO",
+    help="Begin with another value of KEY, and follow the answers; a parameter, tf, t0, initial.STATE or final.STATE.",
+)
 @click.option("--tolerance", type=float, callback=_positive, metavar="EPS", help="Largest residual of an answer.")
 def solve(
     subject: str,
@@ -59,6 +68,7 @@ def solve(
     plot: bool,
     method: str | None,
     steps: int | None,
+    varied: tuple[str, ...],
     tolerance: float | None,
 ) -> ExitCode:
     """Find the control of minimum cost.
@@ -71,10 +81,12 @@ def solve(
     from satsym.report.results.objects import solution_object
     from satsym.report.terminal.solution import progress_line, solution_text, with_files
 
-    case = _changed(instance.load(subject), method=method, steps=steps, tolerance=tolerance)
+    written = instance.read(subject)
+    written = replace(written, tree=_continued(written.tree, varied))
+    case = _changed(written.instance(), method=method, steps=steps, tolerance=tolerance)
     folder = folder_for(case.name, "solve", out, plot)
     with live() as line:
-        solution = solvers.solve(case, progress=lambda iteration: line.show(progress_line(iteration)))
+        solution = solvers.solve(case, progress=lambda iteration: line.show(progress_line(iteration, case)))
     if case.limits:
         from satsym.analysis.comparison import limits_noted
 
@@ -86,6 +98,27 @@ def solve(
         return ExitCode.NO_ANSWER
     failed = solution.certificate is not None and solution.certificate.verdict is Verdict.FAILED
     return ExitCode.CERTIFICATE_FAILED if failed else ExitCode.DONE
+
+
+def _continued(tree: Mapping[str, Any], varied: Sequence[str]) -> Mapping[str, Any]:
+    """The tables of an instance with the continuation that the command line gave."""
+    found: dict[str, list[float | str]] = {}
+    for text in varied:
+        key, equals, values = text.partition("=")
+        ends = values.split(":")
+        if not (equals and key and len(ends) == 2 and all(ends)):
+            raise click.BadParameter(f"{text} is not KEY=FROM:TO, such as c1=1:1e-6.", param_hint="--continue")
+        found[key] = [_number(end) for end in ends]
+    before = tree.get("continuation", {})
+    return {**tree, "continuation": {**before, **found}} if found and isinstance(before, Mapping) else tree
+
+
+def _number(text: str) -> float | str:
+    """A number, or a quantity with its unit."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 def _changed(case: Instance, **options: Any) -> Instance:

@@ -12,6 +12,7 @@ from satsym.report.texts import Texts
 from satsym.spec import PRODUCT, Variable
 from satsym.symbolic import Derivation
 from satsym.symbolic import notation as n
+from satsym.symbolic.convention import worded
 from satsym.symbolic.latex.terms import Term, joined, plain
 from satsym.symbolic.latex.typeset import Typesetter
 from satsym.symbolic.model import Line
@@ -51,16 +52,19 @@ def _cost(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
         return Part()
     terminal = not typeset.is_zero(problem.terminal_cost)
     controls = [v.latex for v in problem.model.controls]
-    functional = (r"S\bigl(\mathbf{x}(t_f), t_f\bigr) + " if terminal else "") + r"\int_{t_0}^{t_f} L \,dt"
+    end, lead = r"S\bigl(\mathbf{x}(t_f), t_f\bigr)", "-" if problem.maximise else ""
+    functional = (f"{lead}{end} {lead or '+'} " if terminal else lead) + r"\int_{t_0}^{t_f} L \,dt"
     costs = {n.RUNNING_COST: problem.running_cost} | ({n.TERMINAL_COST: problem.terminal_cost} if terminal else {})
     rows = [
         Row(_address(derivation, symbol.name), typeset.terms(symbol), typeset.terms(cost))
         for symbol, cost in costs.items()
     ]
     whole = Row(_address(derivation, "J"), plain("J"), plain(functional))
-    task = texts.get("statement", "minimise" if len(controls) > 1 else "minimise_one", controls=r",\, ".join(controls))
+    wanted = ("maximise" if problem.maximise else "minimise") + ("" if len(controls) > 1 else "_one")
+    task = texts.get("statement", wanted, controls=r",\, ".join(controls))
     where = texts.get("statement", "where_terminal" if terminal else "where")
     paragraphs = [f"{task}\n{display([whole])}\n{where}\n{display(rows)}"]
+    paragraphs += [texts.get("statement", worded("negative", problem))] if problem.maximise else []
     if "first_order" in derivation:
         equations = derivation.step("first_order").equations
         first, last = (tex.label(f"{derivation.name}:first_order.{e.name}") for e in (equations[0], equations[-1]))

@@ -136,7 +136,8 @@ def _facts(scene: Scene) -> list[str]:
     if isinstance(result, Solution):
         found.append(f"by {result.method}, {counted(result.iterations, 'iteration')}")
         if math.isfinite(result.objective):
-            found.append(f"$J$ = {number(result.objective, 7)}")
+            value = number(scene.spec.objective(result.objective), 7)
+            found.append(f"$J$ = {value} {unit_text(scene.spec.objective_unit)}".rstrip())
     elif scene.spec.controls:
         found.append(scene.name)
     if np.isfinite(scene.times[-1]):
@@ -156,13 +157,14 @@ def convergence(scene: Scene) -> Figure | None:
     page = style.titled(scene.title, style.WIDTH, 4.1)
     left, right = page.subplots(1, 2)
     at = np.array([entry.number for entry in history], dtype=float)
-    costs = clean(np.array([entry.objective for entry in history]))
+    costs = clean(np.array([scene.spec.objective(entry.objective) for entry in history]))
     residuals = clean(np.array([entry.residual for entry in history]))
     known = costs[np.isfinite(costs)]
     last = float(known[-1]) if known.size else 0.0
     _decades(left, at, np.abs(costs - last), style.PURPLE)
     left.set_ylabel(r"$|J - J_{\mathrm{last}}|$")
-    left.set_title(f"final cost {number(last, 10)}" if known.size else "cost")
+    word = "objective" if scene.spec.maximise else "cost"
+    left.set_title(f"final {word} {number(last, 10)}" if known.size else word)
     _decades(right, at, np.abs(residuals), style.GREEN)
     right.set_ylabel("residual")
     # Solved without bounds first, then within them, say: each phase begins with a residual of its own.

@@ -129,7 +129,7 @@ def costates(scene: Scene) -> list[Series]:
         Series(
             rf"\lambda_{{{v.latex}}}",
             f"lambda_{v.symbol}",
-            "1" if v.unit == "1" else cost_per(v.unit),
+            "1" if v.unit == "1" else cost_per(v.unit, scene.spec),
             f"costate of {formula(v.latex, v.symbol)}",
             values,
             size=worth / width,
@@ -141,7 +141,7 @@ def costates(scene: Scene) -> list[Series]:
         terms = np.abs(scene.lam * model.dynamics_batch(scene.nodes, scene.x, scene.u, p))
     meaning = "Hamiltonian" + (", constant on an extremal" if scene.spec.autonomous else "")
     time = time_unit(scene.spec)
-    rate = cost_per(time) if time else "1"
+    rate = cost_per(time, scene.spec) if time else "1"
     return [*found, Series("H", "H", rate, meaning, along, size=_largest(curves.clean(terms)))]
 
 

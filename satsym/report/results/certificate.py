@@ -12,6 +12,7 @@ import msgspec
 import numpy as np
 
 from satsym.solution import Certificate, Check, Competitors, Kind
+from satsym.spec import ProblemSpec
 from satsym.status import Verdict
 
 
@@ -42,7 +43,7 @@ class Stored(msgspec.Struct):
     competitors: list[_Competitors] = []
     not_checked: list[Kind] = []
 
-    def certificate(self) -> Certificate:
+    def certificate(self, spec: ProblemSpec) -> Certificate:
         """The same as solving handed it back, but for infinite numbers, which JSON lacks."""
         return Certificate(
             verdict=self.verdict,
@@ -53,15 +54,18 @@ class Stored(msgspec.Struct):
             legendre_clebsch=absent(self.legendre_clebsch),
             conjugate_time=self.conjugate_time,
             checks=tuple(Check(c.name, absent(c.value), absent(c.limit)) for c in self.checks),
-            competitors=tuple(Competitors(c.kind, c.tried, c.solved, absent(c.cheapest)) for c in self.competitors),
+            competitors=tuple(
+                Competitors(c.kind, c.tried, c.solved, spec.objective(absent(c.cheapest))) for c in self.competitors
+            ),
             not_checked=tuple(self.not_checked),
         )
 
 
-def certificate_object(certificate: Certificate) -> dict[str, Any]:
-    """The certificate of a solution, as JSON has it."""
+def certificate_object(certificate: Certificate, spec: ProblemSpec) -> dict[str, Any]:
+    """The certificate of a solution, as JSON has it; costs in the sense of the model's author."""
     compared = [
-        {"kind": c.kind, "tried": c.tried, "solved": c.solved, "unanswered": c.unanswered, "cheapest": c.cheapest}
+        {"kind": c.kind, "tried": c.tried, "solved": c.solved, "unanswered": c.unanswered}
+        | {"cheapest": spec.objective(c.cheapest)}
         for c in certificate.competitors
     ]
     checks = [plain(c) | {"passed": c.passed} for c in certificate.checks]

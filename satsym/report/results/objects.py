@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from satsym import __version__
+from satsym.instance.unknowns import Place
 from satsym.report.results.certificate import certificate_object, plain
 from satsym.report.results.unit_names import units
 from satsym.spec import ControlPart, ProblemSpec, Variable
@@ -64,15 +65,34 @@ def solution_object(solution: Solution) -> dict[str, Any]:
         "method": solution.method,
         "message": solution.status.explain(solution.message),
         "boundary_type": solution.instance.boundary_type,
-        "objective": plain(solution.objective),
+        "objective": plain(spec.objective(solution.objective)),
         "t_final": _at(solution.times, -1),
         "x_final": _each(states, solution.x, -1),
         "costate_initial": _each(states, solution.lam, 0),
         "switching_times": sorted(switches),
         "iterations": solution.iterations,
         "wall_s": plain(solution.wall_s),
-        "certificate": certificate_object(solution.certificate) if solution.certificate else None,
+        "certificate": certificate_object(solution.certificate, spec) if solution.certificate else None,
+        "x_initial": _each(states, solution.x, 0),
+        "t_initial": _at(solution.times, 0),
+        "parameters_found": _found(solution),
+        **_continuation(solution),
     }
+
+
+def _continuation(solution: Solution) -> dict[str, list[dict[str, Any]]]:
+    """The answers before it of a continuation, with what had changed by then; no key where there are none."""
+    spec = solution.instance.model.spec
+    rows = [
+        {
+            **{one.key: plain(one.of(answer.instance)) for one in solution.instance.continuation},
+            "objective": plain(spec.objective(answer.objective)),
+            "t_final": _at(answer.times, -1),
+            "costate_initial": _each(spec.state_names, answer.lam, 0),
+        }
+        for answer in solution.intermediate
+    ]
+    return {"continuation": rows} if rows else {}
 
 
 def simulation_object(simulation: Simulation) -> dict[str, Any]:
@@ -128,6 +148,13 @@ def _set(part: ControlPart) -> dict[str, Any]:
 
 def _variable(variable: Variable) -> dict[str, Any]:
     return {"name": variable.symbol, "unit": variable.unit, "meaning": variable.meaning}
+
+
+def _found(solution: Solution) -> dict[str, float | None]:
+    """Parameters that were free, where there is an answer."""
+    instance, answered = solution.instance, solution.status.answered
+    free = (unknown for unknown in instance.free if unknown.place is Place.PARAMETER)
+    return {unknown.name: plain(unknown.of(instance)) if answered else None for unknown in free}
 
 
 def _each(names: Sequence[str], rows: Array, place: int) -> dict[str, float | None]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +11,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.instance.unknowns import Place
 from satsym.report.results import arrays, sets
 from satsym.report.results.certificate import Stored as StoredCertificate
 from satsym.report.results.certificate import absent
@@ -56,6 +57,7 @@ class _Result(msgspec.Struct):
     iterations: int = 0
     wall_s: float | None = None
     certificate: StoredCertificate | None = None
+    parameters_found: dict[str, float | None] = {}
     feedback: str = ""
     invariants: dict[str, _Kept] = {}
     metrics: dict[str, float | None] = {}
@@ -83,7 +85,9 @@ def contents(found: Solution | Simulation) -> dict[str, Content]:
         arrays["lam"] = found.lam
         header += [f"lambda_{name}" for name in spec.state_names]
         met = [(i, time) for i, times in enumerate(found.switching_times) for time in times]
-        more["history"] = np.array([(one.objective, one.residual) for one in found.history]).reshape(-1, 2).T
+        more["history"] = (
+            np.array([(spec.objective(one.objective), one.residual) for one in found.history]).reshape(-1, 2).T
+        )
         more["switching"] = np.array(met, dtype=float).reshape(-1, 2).T
 
     def lines() -> Iterator[bytes]:
@@ -91,10 +95,13 @@ def contents(found: Solution | Simulation) -> dict[str, Content]:
         for row in np.vstack(list(arrays.values())).T:
             yield (",".join(map(repr, row.tolist())) + "\n").encode()
 
-    return {
+    files: dict[str, Content] = {
         "trajectory.npz": lambda stream: np.savez(stream, **arrays, **more),
         "trajectory.csv": lambda stream: stream.writelines(lines()),
     }
+    for k, one in enumerate(found.intermediate if isinstance(found, Solution) else ()):
+        files |= {f"step-{k:03d}.csv": contents(one)["trajectory.csv"]}
+    return files
 
 
 def read(instance: Instance, folder: Path) -> tuple[Solution | Simulation, sets.Found]:
@@ -132,29 +139,44 @@ def read(instance: Instance, folder: Path) -> tuple[Solution | Simulation, sets.
         raise unusable(place, f"cannot be read ({printable(str(error), 120)})") from None
     if not _fits(stored, spec, result.command == "solve"):
         raise unusable(place, f"does not hold what a trajectory of {spec.name} has")
+    instance = _with_found(instance, result.parameters_found, stored)
     if not _starts_at(stored["x"], instance.initial):
         raise unusable(place, f"starts elsewhere than {instance.name}, which has changed since")
     make = _solution if result.command == "solve" else _flight
     return make(instance, result, stored), found
 
 
+def _with_found(instance: Instance, parameters: Mapping[str, float | None], stored: Stored) -> Instance:
+    """The instance with what it leaves free as it was found; as it is where there is no answer."""
+    for unknown in instance.free:
+        if unknown.place is Place.PARAMETER:
+            values = np.array([absent(parameters.get(unknown.name))])
+        else:
+            values = (stored["times"] if unknown.place is Place.TIME else stored["x"][unknown.index])[:1]
+        if len(values) and np.isfinite(values).all():
+            instance = unknown.at(instance, float(values[0]))
+    return instance
+
+
 def _solution(instance: Instance, result: _Result, stored: Stored) -> Solution:
     controls, met = stored["switching"]
+    spec = instance.model.spec
+    history = [(spec.objective(float(value)), float(left)) for value, left in stored["history"].T]
     return Solution(
         instance=instance,
         method=result.method,
         status=Status(str(stored["status"])),
         message=result.message,
-        objective=absent(result.objective),
+        objective=spec.objective(absent(result.objective)),
         times=stored["times"],
         x=stored["x"],
         u=stored["u"],
         lam=stored["lam"],
         switching_times=tuple(tuple(met[controls == i].tolist()) for i in range(len(stored["u"]))),
         iterations=result.iterations,
-        history=tuple(Iteration(k, float(cost), float(left)) for k, (cost, left) in enumerate(stored["history"].T)),
+        history=tuple(Iteration(k, cost, left) for k, (cost, left) in enumerate(history)),
         wall_s=absent(result.wall_s),
-        certificate=result.certificate.certificate() if result.certificate else None,
+        certificate=result.certificate.certificate(spec) if result.certificate else None,
     )
 
 

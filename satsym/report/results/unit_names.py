@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from satsym.spec import ProblemSpec
 
 COST = "cost"
-"""The unit of J: weights decide what that is, and models do not state it."""
+"""The unit of J where the model does not state it: weights decide what that is."""
 
 _TIMES = frozenset({"s", "second", "min", "minute", "h", "hour", "day", "year"})
 
@@ -24,11 +24,12 @@ def time_unit(spec: ProblemSpec) -> str:
     return found.pop() if len(found) == 1 else ""
 
 
-def cost_per(unit: str) -> str:
+def cost_per(unit: str, spec: ProblemSpec) -> str:
     """The unit of a costate: of the cost, per unit of the state."""
+    cost = spec.objective_unit or COST
     if unit == "1":
-        return COST
-    return f"{COST}/({unit})" if re.search(r"[*/^]", unit) else f"{COST}/{unit}"
+        return cost
+    return f"{cost}/({unit})" if re.search(r"[*/^]", unit) else f"{cost}/{unit}"
 
 
 def units(spec: ProblemSpec) -> dict[str, str | None]:
@@ -40,5 +41,6 @@ def units(spec: ProblemSpec) -> dict[str, str | None]:
     found: dict[str, str | None] = {"t": time_unit(spec) or ("1" if plain else None)}
     found |= {v.symbol: v.unit for v in (*spec.states, *spec.controls)}
     if spec.has_cost:
-        found |= {f"lambda_{v.symbol}": cost_per(v.unit) for v in spec.states} | {"objective": COST}
+        found |= {f"lambda_{v.symbol}": cost_per(v.unit, spec) for v in spec.states}
+        found["objective"] = spec.objective_unit or COST
     return found

@@ -11,6 +11,7 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.instance import Instance
+from satsym.instance.unknowns import Place
 from satsym.report.results.unit_names import cost_per, time_unit
 from satsym.report.terminal.table import figure, table
 from satsym.solution import Certificate, Iteration, Simulation, Solution
@@ -36,7 +37,8 @@ def solution_text(solution: Solution, colour: bool = False) -> str:
     instance = solution.instance
     unit = time_unit(instance.model.spec)
     facts = [
-        ("cost J", figure(solution.objective, 10)),
+        _objective(instance, solution.objective),
+        *_found(instance, unit),
         ("final time", f"{figure(_last(solution.times), 10)} {unit}".rstrip()),
         ("boundary type", f"{instance.boundary_type}, {_BOUNDARY[instance.boundary_type]}"),
     ]
@@ -51,7 +53,7 @@ def solution_text(solution: Solution, colour: bool = False) -> str:
         _states(solution.instance, solution.times, solution.x, solution.lam),
         _controls(instance, solution.times, solution.u),
         _switching(solution, unit),
-        _certificate(solution.certificate) if solution.certificate else [],
+        _certificate(solution.certificate, instance) if solution.certificate else [],
     ]
     return joined(blocks)
 
@@ -85,23 +87,50 @@ def with_files(text: str, saved: Sequence[Path]) -> str:
     return joined([text.splitlines(), *lines])
 
 
-def progress_line(iteration: Iteration) -> str:
+def _objective(instance: Instance, cost: float) -> tuple[str, str]:
+    """The objective in its author's sense and unit; costates keep the sign of a cost, which is said."""
+    spec = instance.model.spec
+    text = f"{figure(spec.objective(cost), 10)} {spec.objective_unit}".rstrip()
+    return (
+        ("objective J, maximised", f"{text} (costs and costates are those of -J)")
+        if spec.maximise
+        else ("cost J", text)
+    )
+
+
+def _found(instance: Instance, time: str) -> list[tuple[str, str]]:
+    """What was free at the start and among the parameters."""
+    spec = instance.model.spec
+    groups = {Place.INITIAL: ("initial", spec.states), Place.PARAMETER: ("parameter", spec.parameters)}
+    rows = []
+    for one in instance.free:
+        word, variables = groups.get(one.place, ("initial time", ()))
+        unit = variables[one.index].unit if variables else time
+        name = f"{word} {one.name}" if variables else word
+        rows.append((name, f"{figure(one.of(instance), 10)} {'' if unit == '1' else unit}".rstrip() + ", found"))
+    return rows
+
+
+def progress_line(iteration: Iteration, instance: Instance) -> str:
     """One iteration of a solver, for the live line."""
-    return f"iteration {iteration.number}   J {figure(iteration.objective, 8)}   residual {iteration.residual:.1e}"
+    value = figure(instance.model.spec.objective(iteration.objective), 8)
+    return f"iteration {iteration.number}   J {value}   residual {iteration.residual:.1e}"
 
 
-def _certificate(certificate: Certificate) -> list[str]:
+def _certificate(certificate: Certificate, instance: Instance) -> list[str]:
     """The verdict, what it was compared with, and each check with its limit; a failed one says so."""
+    spec = instance.model.spec
     rows = [
         (c.name, figure(abs(c.value), 2), "ok" if c.passed else f"FAILED, limit {figure(c.limit, 2)}")
         for c in certificate.checks
     ]
     compared = [
-        (c.kind.value, str(c.tried), str(c.unanswered), figure(c.cheapest, 10))
+        (c.kind.value, str(c.tried), str(c.unanswered), figure(spec.objective(c.cheapest), 10))
         for c in certificate.competitors
         if c.tried
     ]
-    header = ("competitors", "tried", "unanswered", "cheapest costs")
+    best = "highest objective" if spec.maximise else "cheapest costs"
+    header = ("competitors", "tried", "unanswered", best)
     return [
         *_wrapped(f"certificate: {_verdict(certificate)}"),
         *table([("", "", ""), *rows], right=(1,))[1:],
@@ -159,7 +188,7 @@ def _states(instance: Instance, times: Array, x: Array, lam: Array | None) -> li
                 off,
                 "" if state.unit == "1" else state.unit,
                 "" if lam is None else figure(float(lam[i][0]) if len(lam[i]) else math.nan, 10),
-                "" if lam is None or state.unit == "1" else cost_per(state.unit),
+                "" if lam is None or state.unit == "1" else cost_per(state.unit, spec),
             )
         )
     return table(rows, right=(*range(1, 6), 7))

@@ -17,6 +17,7 @@ from satsym.solvers.certificate.jacobi import Conjugate, conjugate
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
 from satsym.solvers.certificate.neighbours import Neighbours, neighbours
 from satsym.solvers.certificate.segments import Segments, segments
+from satsym.solvers.certificate.start import UNRESOLVED, settled, with_start
 from satsym.status import Verdict
 
 RESIDUAL, DEFECT, STATIONARY, DRIFT, COST = 1e-9, 1e-7, 1e-8, 1e-9, 1e-8
@@ -51,8 +52,11 @@ def examined(solution: Solution, deadline: float, seed: int = 0) -> tuple[Certif
     """
     if not solution.status.answered:
         return None, None
-    certificate, competitor = _judged(solution, deadline, seed)
-    return with_kernels_examined(certificate, solution), competitor
+    given = settled(solution)
+    certificate, competitor = _judged(given, deadline, seed)
+    certificate = with_kernels_examined(certificate, given)
+    # how the least cost is curved in what is free tells only who solves beside it
+    return with_start(certificate, solution, UNRESOLVED.checks) if solution.instance.free else certificate, competitor
 
 
 def _judged(solution: Solution, deadline: float, seed: int) -> tuple[Certificate, Competitor | None]:

@@ -82,6 +82,7 @@ class Repeated:
             raise BadInput(
                 f"{instance.name}: model {instance.model.spec.name} has no cost, so there is nothing to solve"
             )
+        instance.require_numbers()
         if instance.model.spec.switching:
             raise BadInput(
                 f"{instance.name}: the controls of {instance.model.spec.name} switch, which cannot be solved again "

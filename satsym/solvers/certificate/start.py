@@ -1,0 +1,165 @@
+"""What is free at the start and among the parameters: the slope of the minimum cost by it, and what certificates say.
+
+The minimum cost V of the problem with all these given changes by the costate of an initial state, by -H of the initial
+time, and by the integral of H_p with what the end adds of a parameter (Bryson and Ho, Applied Optimal Control, 2.8 and
+3.3; it is the costate of p as a state with p' = 0). Where these vanish the start is stationary. The accessory problem
+with a free start is positive exactly where that with a given one is, and so is the second derivative of V: it is what
+is left of the whole form when the motion has been minimised over.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.instance.unknowns import Place, Unknown
+from satsym.solution import Certificate, Check, Solution
+from satsym.solvers.certificate.end_form import final_values, multipliers
+from satsym.solvers.certificate.jacobi import NOT_STRICT
+from satsym.solvers.collocation.scaling import final_argument
+from satsym.status import Verdict
+
+STATIONARY = 1e-8
+"""Largest slope of the minimum cost by what is free, relative."""
+
+FLAT = 1e-5
+"""Relative curvature of the minimum cost below which nobody can tell whether there is any."""
+
+COMPLEX_STEP = 1e-30
+
+
+@dataclass(frozen=True)
+class Slope:
+    """The slope of the minimum cost by something that is free."""
+
+    value: float
+    size: float
+    """Of the terms that it consists of."""
+
+    @property
+    def relative(self) -> float:
+        """Infinite where numbers fail."""
+        found = abs(self.value) / max(self.size, 1e-300)
+        return float(found) if np.isfinite(found) else float("inf")
+
+
+def slope(solution: Solution, unknown: Unknown) -> Slope:
+    """The slope of the minimum cost by what is free, at a solution with that given."""
+    if unknown.place is Place.INITIAL:
+        lam, x = np.abs(solution.lam).max(axis=1), np.abs(solution.x).max(axis=1)
+        i = unknown.index
+        energy = float(lam @ x) + abs(solution.objective)
+        return Slope(float(solution.lam[i, 0]), max(float(lam[i]), energy / max(float(x[i]), 1e-300)))
+    if unknown.place is Place.TIME:
+        instance = solution.instance
+        t, starts = float(solution.times[0]), (solution.x, solution.u, solution.lam)
+        x, u, lam = (tuple(row[:, 0].tolist()) for row in starts)
+        h = float(instance.model.hamiltonian(t, x, u, lam, instance.parameters))
+        rates = np.array(instance.model.dynamics(t, x, u, instance.parameters))
+        terms = np.abs(np.array(lam) * rates)
+        return Slope(-h, float(terms.sum()) + abs(h - float(np.array(lam) @ rates)))
+    along, its_size = _along(solution, unknown.index)
+    end, end_size = _at_the_end(solution, unknown.index)
+    return Slope(along + end, its_size + end_size)
+
+
+def _along(solution: Solution, index: int) -> tuple[float, float]:
+    """The integral of H_p, and of its terms' magnitudes, by Simpson's rule with Hermite's midpoints."""
+    instance, model, p = solution.instance, solution.instance.model, solution.instance.parameters
+    t, x, u, lam = solution.times, solution.x, solution.u, solution.lam
+    h = np.diff(t)
+    middle = (t[1:] + t[:-1]) / 2.0
+    rates = np.asarray(model.dynamics_batch(t, x, u, p)), np.asarray(model.costate_rate_batch(t, x, u, lam, p))
+    state, costate = (
+        np.asarray((row[:, 1:] + row[:, :-1]) / 2.0 + h / 8.0 * (rate[:, :-1] - rate[:, 1:]))
+        for row, rate in zip((x, lam), rates, strict=True)
+    )
+    if model.spec.switching:  # between switching times controls are constant, or as smooth as on singular arcs
+        control = (u[:, 1:] + u[:, :-1]) / 2.0
+    else:
+        control = np.asarray(model.control_law_batch(middle, state, costate, p, instance.control_set.arguments))
+    moved = _stepped(p, index)
+
+    def terms(*at: Array) -> Array:
+        """Those of H_p: each costate times the slope of a rate, and the slope of the running cost."""
+        found = np.zeros((len(x) + 1, len(at[0])))
+        found[:-1] = at[3] * np.imag(model.dynamics_batch(at[0], at[1], at[2], moved)) / COMPLEX_STEP
+        found[-1] = np.imag(model.running_cost_batch(at[0], at[1], at[2], moved)) / COMPLEX_STEP
+        return found
+
+    nodes, inside = terms(t, x, u, lam), terms(middle, state, control, costate)
+    value = h / 6.0 * (nodes[:, :-1] + 4.0 * inside + nodes[:, 1:])
+    return float(value.sum()), float(np.abs(value).sum())
+
+
+def _at_the_end(solution: Solution, index: int) -> tuple[float, float]:
+    """What terminal cost, terminal constraints and a moving reference add, and the size of that."""
+    instance, model, n = solution.instance, solution.instance.model, len(solution.x)
+    tf, x, lam = final_values(solution)
+    nu, _ = multipliers(instance, tf, x, lam)
+    bounds, p = instance.control_set.arguments, instance.parameters
+    moved = _stepped(p, index)
+    time, end, costate = solution.times[-1:], solution.x[:, -1:], solution.lam[:, -1:]
+    parts = [float(np.imag(model.terminal_cost_batch(time, end, moved)).sum()) / COMPLEX_STEP]
+
+    def rows(final: tuple[float, ...], parameters: tuple[Any, ...]) -> Array:
+        return np.asarray(model.boundary_batch(time, end, costate, nu, parameters, bounds, final))[:, 0]
+
+    # what holds the end on the reference: lambda - S_x - nu' psi_x, which is what a free state's residual is
+    force = rows((0.0,) * (3 * n), p)[:n]
+    final = final_argument(instance)
+    shifted = np.imag(rows(final, moved)) / COMPLEX_STEP
+    held = np.array(final).reshape(3, n)[1] > 0
+    parts += (force * shifted[:n])[held].tolist() + (np.array(nu) * shifted[n : n + len(nu)]).tolist()
+    return float(sum(parts)), float(np.abs(parts).sum())
+
+
+def _stepped(parameters: tuple[float, ...], index: int) -> tuple[Any, ...]:
+    """Parameters, one of them with a complex step."""
+    return tuple(p + 1j * COMPLEX_STEP * (k == index) for k, p in enumerate(parameters))
+
+
+@dataclass(frozen=True)
+class Curvature:
+    """Of the minimum cost in what is free."""
+
+    smallest: float
+    """Relative; NaN where it was not resolved."""
+
+    @property
+    def checks(self) -> list[Check]:
+        """Each is a deficit that must not be positive."""
+        if not np.isfinite(self.smallest):
+            return [Check("second-order condition at the free start not resolved", 1.0, 0.0)]
+        found = [Check("second-order condition at the free start", float(not self.smallest > -FLAT), 0.0)]
+        return [*found, Check(NOT_STRICT, 1.0, 0.0)] if abs(self.smallest) <= FLAT else found
+
+
+UNRESOLVED = Curvature(float("nan"))
+
+
+def with_start(certificate: Certificate, solution: Solution, sufficient: Sequence[Check]) -> Certificate:
+    """The certificate of a solution with its start given, and what must hold besides where it is free.
+
+    Parameters
+    ----------
+    sufficient
+        What was found of solutions beside it, where the necessary conditions hold.
+    """
+    first = [
+        Check(f"transversality at the start: {unknown.name}", slope(solution, unknown).relative, STATIONARY)
+        for unknown in solution.instance.free
+    ]
+    second = sufficient if all(c.passed for c in first) else ()
+    necessary = certificate.verdict is not Verdict.FAILED and all(c.passed for c in first)
+    strict = certificate.verdict is Verdict.CERTIFIED and all(c.passed for c in second)
+    return replace(certificate, verdict=Verdict.of(necessary, strict), checks=(*certificate.checks, *first, *second))
+
+
+def settled(solution: Solution) -> Solution:
+    """The same, of an instance with everything given as it was found."""
+    return replace(solution, instance=replace(solution.instance, free=()))

@@ -1,0 +1,1 @@
+"""What an instance leaves free besides its end."""

@@ -1,0 +1,115 @@
+"""Free initial states, a free initial time and free parameters: where the minimum cost with them given is least.
+
+The problem with these given is solved by the instance's method, whatever that is. Its minimum cost has a slope that the
+solution itself tells (:mod:`satsym.solvers.certificate.start`); the way down along it is that of
+:mod:`satsym.solvers.unknowns.descent`.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import replace
+
+import numpy as np
+
+from satsym.instance import Instance
+from satsym.solution import Check, Competitors, Kind, Progress, Solution
+from satsym.solvers.certificate.start import STATIONARY, Curvature, with_start
+from satsym.solvers.iteration import unsolved
+from satsym.solvers.unknowns.descent import NOISE, met_beside, minimum_from
+from satsym.solvers.unknowns.trials import Late, Solver, Trial, Trials, unit_of
+from satsym.status import Status
+from satsym.wording import counted
+
+ELSEWHERE = (1.0, -1.0, 3.0, -3.0, 0.3, -0.3)
+"""Units by which unknowns are changed where the first guess has no answer."""
+
+
+SAME = 1e-9
+"""Relative margin by which another choice may seem cheaper: its own error."""
+
+
+def solve(instance: Instance, progress: Progress | None, solver: Solver, certified: Solver) -> Solution:
+    """Solve an instance that leaves initial states, the initial time or parameters free.
+
+    Parameters
+    ----------
+    instance
+        With numbers to begin with in their place.
+    solver
+        Of the problem with everything given.
+    certified
+        The same with a certificate; what it improves on is taken up.
+
+    Raises
+    ------
+    BadInput
+        If neither the cost nor an end depends on one of them.
+    """
+    began = time.perf_counter()
+    units = np.array([unit_of(unknown, instance) for unknown in instance.free])
+    trials = Trials(instance, solver, progress, began + instance.solver.max_seconds, units)
+    try:
+        found = _solved(trials, certified)
+    except Late:
+        found = _unanswered(trials, Status.TIME_LIMIT, f"time was up after {trials.count}")
+    found = replace(found, instance=replace(found.instance, free=instance.free, solver=instance.solver))
+    return replace(found, wall_s=time.perf_counter() - began, iterations=max(trials.iterations, found.iterations))
+
+
+def _solved(trials: Trials, certified: Solver) -> Solution:
+    """The search, and the answer with its certificate; once more where the latter knows a cheaper one."""
+    here = _begin(trials)
+    if isinstance(here, Solution):
+        return here
+    curvature = Curvature(math.nan)
+    for again in (True, False):
+        reached = minimum_from(trials, here)
+        if isinstance(reached, Solution):
+            return reached
+        here, curvature = reached
+        if here.residual > STATIONARY:
+            beside = met_beside(trials, here) or f"has a slope of {here.residual:.0e} still, after {trials.count},"
+            return _unanswered(trials, Status.NOT_CONVERGED, f"the minimum cost {beside} at {trials.values(here.at)}")
+        chosen = trials.chosen(here.at)
+        assert chosen is not None
+        final = certified(chosen, trials.progress)
+        if not final.status.answered:
+            return final
+        cheaper = here.cost - final.objective > NOISE * here.size
+        if not (cheaper and again):
+            break
+        trials.solver = certified  # which knows what the method alone does not find
+        moved = trials(here.at)
+        here = here if moved is None else moved
+    message = f"{final.message}; {trials.values(here.at)} from {trials.count}"
+    final = replace(final, message=message, instance=replace(final.instance, free=trials.unknowns))
+    if final.certificate is None:
+        return final
+    others = Competitors(Kind.UNKNOWNS, trials.tried, len(trials.costs), min(trials.costs))
+    less = float(max(0.0, final.objective - others.cheapest) / here.size)
+    cheaper_by = Check(f"cheaper by: {others.kind.value}", less, SAME)
+    certificate = with_start(final.certificate, final, [*curvature.checks, cheaper_by])
+    return replace(final, certificate=replace(certificate, competitors=(*certificate.competitors, others)))
+
+
+def _begin(trials: Trials) -> Trial | Solution:
+    """The first trial that has an answer, with units that fit it."""
+    count = len(trials.unknowns)
+    here = trials(np.zeros(count))
+    for step in ELSEWHERE:
+        for axis in np.eye(count):
+            here = here or trials(step * axis)
+    if here is None:
+        names = ", ".join(unknown.name for unknown in trials.unknowns)
+        message = f"no answer with any of {counted(trials.tried, 'choice')} of {names}; guess them"
+        return _unanswered(trials, Status.NOT_CONVERGED, message)
+    return here
+
+
+def _unanswered(trials: Trials, status: Status, message: str) -> Solution:
+    """No answer, and why."""
+    last = trials.last or unsolved(trials.instance, trials.instance.solver.method, 0.0)
+    reason = "" if last.status.answered or last.status is status else f": {last.message}"
+    return replace(last, status=status, message=message + reason, objective=float("nan"), certificate=None)

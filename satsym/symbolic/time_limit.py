@@ -1,0 +1,83 @@
+"""A limit of the time that a derivation takes: algebra may go on for ever, and says so nowhere."""
+
+from __future__ import annotations
+
+import signal
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+
+from satsym.symbolic.derivation import DerivationError
+
+AGAIN = 0.5
+"""Seconds after which what swallowed the end of the time is told again."""
+
+_at: list[tuple[str, str]] = []
+"""What is being derived, and the step it is in."""
+
+_deadlines: list[float] = []
+
+
+class _TimeUp(BaseException):
+    """Nothing that handles errors of algebra handles it."""
+
+
+def entering(subject: str, step: str) -> None:
+    """Note what is being done; where no signal can come, this is where the time is looked at."""
+    _at[:] = [(subject, step)]
+    if _deadlines and time.monotonic() > _deadlines[-1]:
+        raise _TimeUp
+
+
+@contextmanager
+def within(seconds: float | None, subject: str) -> Iterator[None]:
+    """Whatever is derived in here ends in time.
+
+    Parameters
+    ----------
+    seconds
+        The limit; ``None`` for none. In a thread, and where the system has no timers, it ends the step it falls into.
+    subject
+        What messages call it until a step has begun.
+
+    Raises
+    ------
+    DerivationError
+        Where the time is over, with the model and the step.
+    """
+    if seconds is None or _deadlines:  # the outer one holds
+        yield
+        return
+    _at[:] = [(subject, "reading the file")]
+    _deadlines.append(time.monotonic() + seconds)
+    try:
+        with _timer(seconds):
+            yield
+    except _TimeUp:
+        model, step = _at[0]
+        advice = "state it more simply, name parts as definitions, or give it more time with --max-seconds"
+        raise DerivationError(f"{model}: not derived within {seconds:g} s, in the step {step}; {advice}") from None
+    finally:
+        _deadlines.clear()
+
+
+@contextmanager
+def _timer(seconds: float) -> Iterator[None]:
+    """A signal that comes when the time is over, and again until it is heard."""
+    alone = threading.current_thread() is threading.main_thread() and hasattr(signal, "setitimer")
+    if not alone or signal.getsignal(signal.SIGALRM) is not signal.SIG_DFL:
+        yield
+        return
+    signal.signal(signal.SIGALRM, _over)
+    signal.setitimer(signal.ITIMER_REAL, seconds, AGAIN)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, signal.SIG_DFL)
+
+
+def _over(_sign: int, _frame: FrameType | None) -> None:
+    raise _TimeUp
