@@ -44,6 +44,9 @@ BESIDE, COMPARED_BESIDE = (0.02, 0.05, 0.12, 0.3, 0.7), (0.035, 0.08, 0.2, 0.45,
 ADOPTED = 3
 """Times that something cheaper is looked for, as long as there is."""
 
+GIVEN = np.sqrt(2.0) ** np.arange(-8.0, 5.0)
+"""Durations that are given in turn where a free one is not found, as shares of the motion's own time scale."""
+
 STEADY = 0.5
 """Share of the time off the bounds that is left after smoothing less, where that time is a singular arc's."""
 
@@ -185,7 +188,23 @@ def _by_effort(instance: Instance, limits: Limits) -> Exact | homotopy.Stopped:
                 others = _beside(instance, exact.refined.at.end - instance.t0, BESIDE, limits)
                 best = min([exact, *others], key=lambda one: one.trajectory.cost(instance))
                 return replace(best, origin=Origin.EFFORT)
-    return _smoothed(instance, limits)
+    found = _smoothed(instance, limits)
+    stuck = isinstance(found, homotopy.Stopped) and found.status is Status.NOT_CONVERGED and instance.tf is None
+    return (_in_given_durations(instance, limits) if stuck else None) or found
+
+
+def _in_given_durations(instance: Instance, limits: Limits) -> Exact | None:
+    """The extremal of a free duration to which one of a given duration leads, the shortest in which there is one."""
+    for share in (minimum_effort.first_duration(instance) * GIVEN).tolist():
+        near = _smoothed(replace(instance, tf=instance.t0 + share, tf_guess=None), limits, thorough=False)
+        if not isinstance(near, homotopy.Stopped):
+            at = near.refined.at
+            freed = attempt(instance, Guess(near.refined.structure, at.times, at.costates, at.end), limits)
+            if freed is not None:
+                return replace(freed, origin=near.origin, smoothing=near.smoothing)
+        if limits.expired:
+            break
+    return None
 
 
 def _beside(instance: Instance, duration: float, fractions: Sequence[float], limits: Limits) -> list[Exact]:
