@@ -26,7 +26,7 @@ from satsym.symbolic.model import Problem, symbols_of
 from satsym.symbolic.principle import control_sets
 from satsym.symbolic.principle import notation as pn
 from satsym.symbolic.principle.branches import Minimum, by_circle, minima, norm_of, with_norms
-from satsym.symbolic.principle.parts import FRACTION, SMOOTHING, limits_of, parts_of
+from satsym.symbolic.principle.parts import FRACTION, SMOOTHING, least_of, limits_of, parts_of
 from satsym.symbolic.principle.pontryagin import COMPETITORS, costates
 
 STEP = "control_parts"
@@ -123,6 +123,8 @@ def smoothed_law(so_far: Derivation) -> Step | None:
         margin = []
         for scale in SCALES:
             here = {**point, **{c: scale * point[c] for c in costates(so_far)}}
+            for one in directions:
+                here = _ordered(one, here)
             law = chosen(here)
             best = value({**here, **dict(zip(short, law, strict=True))})[0]
             for _ in range(COMPETITORS):
@@ -131,7 +133,10 @@ def smoothed_law(so_far: Derivation) -> Step | None:
                     limit = here[one.part.bounds[-1]]
                     bounds = {sp.Symbol("radius"): limit}
                     size = len(pn.components_of(one.part))
-                    other += control_sets.admissible("ball", bounds, list(bounds), size, rng, 1)[0]
+                    if one.branch == "throttled":
+                        other += _drawn(one, here, rng).values()
+                    else:
+                        other += control_sets.admissible("ball", bounds, list(bounds), size, rng, 1)[0]
                 margin.append(sign(problem) * (value({**here, **dict(zip(short, other, strict=True))})[0] - best))
         return margin
 
@@ -168,7 +173,31 @@ def regularised_law(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
                 laws[norm_of(one.part)] = FACTOR * _size(problem, one)
         else:
             laws |= dict(zip(one.part.symbols, _law(problem, one), strict=True))
-    return dict(zip(laws, written_out(so_far, laws.values()), strict=True))
+    return dict(zip(laws, with_least_norms(so_far, written_out(so_far, laws.values())), strict=True))
+
+
+def throttled(so_far: Derivation) -> tuple[Minimum, ...]:
+    """The sets of vectors that may be none, or as short as they may be."""
+    return tuple(one for one in found(so_far) if one.branch == "throttled")
+
+
+def with_least_norms(so_far: Derivation, expressions: Iterable[sp.Expr]) -> list[sp.Expr]:
+    """Laws in which vectors in balls have a least norm, by which they can be kept at any."""
+    least = {one.part.bounds[-1]: symbols_of((least_of(one.part),))[0] for one in throttled(so_far)}
+
+    def raised(value: sp.Expr, lower: sp.Expr, upper: sp.Expr) -> sp.Expr:
+        return Clip(value, least[upper] if lower == 0 and upper in least else lower, upper)
+
+    return [e.replace(Clip, raised) for e in expressions]
+
+
+def throttle_slopes(so_far: Derivation) -> list[sp.Expr]:
+    """How H changes with the norm of each of these vectors, in the direction in which it changes least."""
+    slopes = []
+    for one in throttled(so_far):
+        length = sp.sqrt(sum((s**2 for s in pn.slopes_of(one)), sp.Integer(0)))
+        slopes.append(pn.weight_of(one.part.symbols[0]) - sign(_problem(so_far)) * length)
+    return written_out(so_far, slopes)
 
 
 def effort(so_far: Derivation) -> sp.Expr:
@@ -219,7 +248,7 @@ def _size(problem: Problem, one: Minimum) -> sp.Expr:
     """The norm of that minimiser, where H depends on the norm."""
     length = sp.sqrt(sum((s**2 for s in pn.slopes_of(one)), sp.Integer(0)))
     margin = length - sign(problem) * FACTOR * pn.weight_of(one.part.symbols[0])
-    return Clip(margin / EPSILON, sp.Integer(0), one.part.bounds[-1])
+    return Clip(margin / EPSILON, one.part.bounds[0] if one.part.kind == "annulus" else 0, one.part.bounds[-1])
 
 
 def _adds_up(so_far: Derivation, h: sp.Expr, every: Sequence[Minimum]) -> Any:
@@ -338,11 +367,14 @@ def minimised_hamiltonian(so_far: Derivation) -> Step:
             continue
         least |= dict.fromkeys(pn.components_of(one.part), sp.Integer(0))
         length = sp.Integer(1) if one.part.kind == "angle" else one.part.bounds[-1]
+        shortest = one.part.bounds[0] if one.part.kind == "annulus" else 0
         slope = sp.sqrt(sp.factor(sum((s**2 for s in one.vector), sp.Integer(0))))
         if one.weight != 0:
             least[norm_of(one.part)] = sp.Integer(0)
-            slope = sp.Max(slope - sign(problem) * one.weight, 0)
-        gained += sign(problem) * length * slope
+            margin = slope - sign(problem) * one.weight
+            gained += sign(problem) * sp.Max(length * margin, shortest * margin)
+        else:
+            gained += sign(problem) * length * slope
     (plain,) = relaxed(so_far, [h])
     h_star = tidy(plain.xreplace(least), ()) - gained
     value, at_minimum = numeric([h]), numeric([h_star])
