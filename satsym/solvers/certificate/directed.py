@@ -39,14 +39,14 @@ def led(
     fractions
         Of the duration, from which others are looked for where it is free.
     """
-    from satsym.solvers.cold_start.directions import bent, directed
+    from satsym.solvers.cold_start.directions import bent, directed, full_length
     from satsym.solvers.collocation.extremal import Extremal
 
     plain = replace(instance, guess=Guess())
-    starts: list[Callable[..., object]] = [partial(bent, plain, rng, amplitude) for amplitude in amplitudes]
+    starts: list[Callable[..., object]] = [partial(bent, plain, rng, amplitude, sharpened=full_length) for amplitude in amplitudes]
     if instance.tf is None:
         beside = [replace(plain, tf_guess=instance.t0 + fraction * lasting) for fraction in fractions]
-        starts = [partial(directed, one, effort=False) for one in beside]
+        starts = [partial(directed, one, effort=False, sharpened=full_length) for one in beside]
 
     def attempt(start: Callable[..., object], limits: Limits) -> Found | None:
         found = tried(partial(start, limits=limits))

@@ -13,19 +13,19 @@ from numpy.typing import NDArray
 
 from satsym.instance import Instance
 from satsym.solution import Progress, Solution
+from satsym.solvers import two_point
 from satsym.solvers.failures import FAILURES, tried, unbroken
 from satsym.solvers.iteration import Limits, watched
 from satsym.solvers.nearest_end import nearest
 from satsym.solvers.switching.answers import answered, without
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
-from satsym.solvers.switching.cold_start import by_scouts, homotopy, minimum_effort
+from satsym.solvers.switching.cold_start import by_scouts, by_throttle, homotopy, minimum_effort
 from satsym.solvers.switching.cold_start import saturated as held
 from satsym.solvers.switching.cold_start.recognition import Sample, guess, inside, sample
 from satsym.solvers.switching.linear import by_reach
 from satsym.solvers.switching.minimum_time import minimum_time
-from satsym.solvers.switching.newton import switching
-from satsym.solvers.switching.refusals import refuse
-from satsym.solvers.switching.structure import REST, Guess, Structure
+from satsym.solvers.switching.refusals import refuse, refuse_angles
+from satsym.solvers.switching.structure import REST, UPPER, Guess, Structure
 from satsym.solvers.switching.variants import neighbours
 from satsym.status import Status
 
@@ -71,6 +71,8 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     BadInput
         If a bound is missing, or the motion starts where it is to end.
     """
+    if instance.model.spec.throttled:
+        return _throttled(instance, progress)
     refuse(instance)
     began = time.perf_counter()
     limits, history = watched(instance, progress)
@@ -81,6 +83,20 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         if isinstance(found, homotopy.Stopped):
             return without(instance, _out_of_reach(found, limits), tuple(history), began)
         return answered(instance, found, tuple(history), began)
+
+
+def _throttled(instance: Instance, progress: Progress | None) -> Solution:
+    """Solve a problem of vectors that are throttled; by collocation, if they have their full norms all the time."""
+    refuse_angles(instance)
+    began = time.perf_counter()
+    limits, history = watched(instance, progress)
+    with np.errstate(all="ignore"):
+        found = by_throttle.best(instance, limits)
+    if isinstance(found, homotopy.Stopped):
+        return without(instance, found, tuple(history), began)
+    if all(row == (UPPER,) for row in found.refined.structure.levels):
+        return two_point.solve(instance, progress)
+    return answered(instance, found, tuple(history), began)
 
 
 def _by_least_time(instance: Instance, stopped: homotopy.Stopped, limits: Limits) -> Exact | homotopy.Stopped:
@@ -271,7 +287,7 @@ def _with_coasts(instance: Instance, hurried: Exact) -> Guess:
     weights = instance.model.magnitude_weight(instance.t0, instance.initial, instance.parameters)
     for arc in hurried.refined.arcs:
         if arc.event is not None:
-            _, rate = switching(arc.field, arc.end, arc.after.tolist(), arc.event.control)
+            _, rate = arc.field.switching(arc.end, arc.after.tolist(), arc.event.control)
             rates.append(2.0 * weights[arc.event.control] / max(abs(rate) * spare, 1e-300))
     for row, own, weight in zip(structure.levels, structure.by_control(at.times), weights, strict=True):
         if weight > 0.0:

@@ -19,8 +19,8 @@ from satsym.solvers.certificate.switching.stated_arcs import decided_by_none
 from satsym.solvers.certificate.switching.variation import convex, variation
 from satsym.solvers.iteration import MOST, Limits
 from satsym.solvers.switching.linear.linear_motion import linear_motion
-from satsym.solvers.switching.newton import switching
 from satsym.solvers.switching.structure import SINGULAR
+from satsym.solvers.switching.throttled import signs
 from satsym.status import Verdict
 
 RESIDUAL, DEFECT, STATIONARY, DRIFT, TIMES, COST = 1e-9, 1e-7, 1e-8, 1e-9, 1e-9, 1e-8
@@ -154,7 +154,7 @@ def _off_singular(again: Replay) -> float:
         if control is not None:
             inside = (again.times >= piece.start) & (again.times <= piece.end)
             x, lam = again.z[: field.n, inside], again.z[field.n :, inside]
-            sigma = field.model.switching_function_batch(again.times[inside], x, lam, field.p)[control]
+            sigma = signs(field.instance, again.times[inside], x, lam)[0][control]
             worst = max(worst, float(np.abs(sigma).max(initial=0.0)) / sizes[control])
     return worst
 
@@ -196,7 +196,7 @@ def _strictness(again: Replay, extended: Replay, free: list[bool]) -> tuple[floa
         if free[control] or SINGULAR in (piece.field.levels[control], pieces[k + 1].field.levels[control]):
             continue
         for field in (piece.field, pieces[k + 1].field):
-            _, rate = switching(field, piece.end, piece.after.tolist(), control)
+            _, rate = field.switching(piece.end, piece.after.tolist(), control)
             rates.append(abs(rate) * lasting / sizes[control])
     # In a convex problem switches of different controls may coincide: each of them is decided by its own sign.
     each = [None] if linear_motion(again.pieces[0].field.instance) is None else range(len(free))
@@ -216,9 +216,9 @@ def _strictness(again: Replay, extended: Replay, free: list[bool]) -> tuple[floa
 def _along(again: Replay) -> tuple[list[float], list[tuple[Array, Array]]]:
     """Sizes of the switching functions, and their distances from the values at which they would switch."""
     pieces = again.pieces
-    n, model, p = pieces[0].field.n, pieces[0].field.model, pieces[0].field.p
-    sigma = model.switching_function_batch(again.times, again.z[:n], again.z[n:], p)
-    weight = np.broadcast_to(model.magnitude_weight_batch(again.times, again.z[:n], p), sigma.shape)
+    n, instance = pieces[0].field.n, pieces[0].field.instance
+    sigma, weight = signs(instance, again.times, again.z[:n], again.z[n:])
+    low, high = instance.control_set.switching
     sizes = [max(float((np.abs(s) + w).max()), 1e-300) for s, w in zip(sigma, weight, strict=True)]
     singular = np.zeros(sigma.shape, bool)
     for piece in pieces:
@@ -226,7 +226,6 @@ def _along(again: Replay) -> tuple[list[float], list[tuple[Array, Array]]]:
             singular[piece.field.singular] |= (again.times >= piece.start) & (again.times <= piece.end)
     marks = []
     for i, (s, w) in enumerate(zip(sigma, weight, strict=True)):
-        equal = pieces[0].field.instance.lower[i] == pieces[0].field.instance.upper[i]
         margin = np.abs(np.abs(s) - w)
-        marks.append((again.times, np.where(singular[i] | equal, np.inf, margin)))
+        marks.append((again.times, np.where(singular[i] | (low[i] == high[i]), np.inf, margin)))
     return sizes, marks
