@@ -14,6 +14,10 @@ from satsym.instance import Instance
 from satsym.solvers.switching.field import NUDGE, Field
 
 
+NOTHING = 1e-300
+"""A norm that is none: right at a switch the margin that decides it is zero as well, and must not be equal to it."""
+
+
 class ThrottledField(Field):
     """Rates of states and costates while every vector that is throttled keeps its norm; see :class:`Field`."""
 
@@ -21,7 +25,8 @@ class ThrottledField(Field):
         super().__init__(instance, levels)
         if self.singular is not None:
             raise ArithmeticError("no law is known for a vector whose norm nothing decides")
-        self.arguments = instance.control_set.saturated(self.saturated).arguments
+        norms = tuple(max(norm, NOTHING) for norm in self.saturated)
+        self.arguments = instance.control_set.saturated(norms).arguments
 
     def kept_at(self, t: float, z: list[float]) -> Row:
         return self.arguments
