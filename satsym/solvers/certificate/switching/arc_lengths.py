@@ -22,12 +22,12 @@ from satsym.solvers.certificate.switching.integration import Integration, Span
 from satsym.solvers.certificate.switching.replay import Piece, Replay
 from satsym.solvers.collocation.scaling import final_argument
 
-PIECES, STEPS = 40, 6
+PIECES, STEPS = 20, 240
 """On which changes of the continuous controls are constant, over all arcs; and steps of the classical Runge-Kutta
-method in each."""
+method over all."""
 
-ERRORS = 10.0
-"""So many times its change, when twice as many steps are taken, the least curvature has to be."""
+CHANGED = 0.5
+"""Share of the least curvature by which it may change when twice as many pieces are taken."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,7 @@ class _Along:
 
 
 def curvature(solution: Solution, again: Replay, by: Integration) -> float:
-    """The least eigenvalue of the form on what keeps the end, relative to its diagonal; NaN where it is not resolved.
+    """The least eigenvalue of the form on what keeps the end, in units of its diagonal; NaN where it is not resolved.
 
     Parameters
     ----------
@@ -59,15 +59,15 @@ def curvature(solution: Solution, again: Replay, by: Integration) -> float:
     """
     if not solution.instance.model.spec.autonomous:
         return float("nan")
-    coarse, fine = (_least(solution, again, by, steps) for steps in (STEPS, 2 * STEPS))
-    return fine if abs(fine - coarse) * ERRORS <= abs(fine) else float("nan")
+    coarse, fine = (_least(solution, again, by, pieces) for pieces in (PIECES, 2 * PIECES))
+    return fine if abs(fine - coarse) <= CHANGED * abs(fine) else float("nan")
 
 
-def _least(solution: Solution, again: Replay, by: Integration, steps: int) -> float:
+def _least(solution: Solution, again: Replay, by: Integration, most: int) -> float:
     state, n = typical(solution)[0], len(solution.x)
     pieces, lasting = again.pieces, float(solution.times[-1] - solution.times[0])
     cost = max(float((state * np.abs(solution.lam).max(axis=1)).sum()), 1e-300)
-    counts = [int(np.ceil(PIECES * (piece.end - piece.start) / lasting)) for piece in pieces]
+    counts = [int(np.ceil(most * (piece.end - piece.start) / lasting)) for piece in pieces]
     total = len(pieces) + n * sum(counts)
     form, x, own = np.zeros((total, total)), np.zeros((n, total)), len(pieces)
     for k, (piece, count) in enumerate(zip(pieces, counts, strict=True)):
@@ -78,13 +78,13 @@ def _least(solution: Solution, again: Replay, by: Integration, steps: int) -> fl
             form += np.outer(column, slope @ (x + 0.5 * np.outer(jump, column)))
             x = x + np.outer(jump, column)
             continue
-        along = _along(piece, state, cost, count * steps, by)
+        along = _along(piece, state, cost, count * (STEPS // most), by)
         form, x = _added(along, form, x, column / along.lasting, own, count)
         own += n * count
     duration = np.zeros(total)
     duration[: len(pieces)] = lasting
     ties = _ended(solution, form, x, duration, state, cost)
-    return _smallest((form + form.T) / 2.0, ties)
+    return _smallest((form + form.T) / 2.0, ties, len(pieces))
 
 
 def _at_once(piece: Piece, state: Array, cost: float) -> tuple[Array, Array]:
@@ -169,8 +169,10 @@ def _ended(solution: Solution, form: Array, x: Array, duration: Array, state: Ar
     return ties if instance.tf is None else np.concatenate([ties, duration[None]])
 
 
-def _smallest(form: Array, ties: Array) -> float:
-    """The least eigenvalue where the ties vanish, relative to the form's diagonal."""
-    size = np.sqrt(np.maximum(np.abs(np.diag(form)), 1e-12 * np.abs(np.diag(form)).max()))
+def _smallest(form: Array, ties: Array, lengths: int) -> float:
+    """The least eigenvalue where the ties vanish, relative to the diagonal of changes on arcs, and of all lengths."""
+    size = np.sqrt(np.abs(np.diag(form)))
+    size[:lengths] = max(size[:lengths].max(), 1e-300)
+    size[lengths:] = np.maximum(size[lengths:], 1e-6 * size[lengths:].max(initial=0.0) + 1e-300)
     free = kernel(ties / size / np.maximum(np.abs(ties / size).max(axis=1, keepdims=True), 1e-300))
     return float(np.linalg.eigvalsh(free.T @ (form / size / size[:, None]) @ free).min()) if free.shape[1] else np.inf
