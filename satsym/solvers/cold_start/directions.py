@@ -67,9 +67,7 @@ Sharpened = Callable[[TwoPoint, Instance, Curve, Start, Limits], Exact | Extrema
 """From an extremal within the bounds that is smoothed to one that is not."""
 
 
-def directed(
-    instance: Instance, limits: Limits, effort: bool, sharpened: Sharpened[Exact]
-) -> Exact | Extremal:
+def directed(instance: Instance, limits: Limits, effort: bool, sharpened: Sharpened[Exact]) -> Exact | Extremal:
     """An extremal of the problem itself within the bounds, or how far one got.
 
     Parameters
@@ -253,7 +251,8 @@ def full_length(
 ) -> tuple[TwoPoint, Start] | Extremal:
     """An extremal of low order with directions of full length all the time, and its problem, from a smoothed one."""
     exact, count = _exact(problem, instance), 0
-    for count, (problem, curve) in enumerate(levels(problem, instance, curve, limits)):
+    for near in levels(problem, instance, curve, limits):
+        (problem, curve), count = near, count + 1
         if _share_short(problem, curve) <= BRIEF:
             outcome = newton(System(exact, curve.mesh, STAGES), curve.on(curve.mesh, STAGES))
             if outcome is not None and outcome.solved:
@@ -261,7 +260,7 @@ def full_length(
                 found = Attempt(outcome.curve, Reason.MINIMUM, 1, cost)
                 return exact, replace(start, found=found, steps=start.steps + outcome.iterations)
     message = "the slope of H by a direction vanishes for some time, and no law is known there"
-    if count < LEVELS:
+    if count <= LEVELS:
         message = f"a regularisation below {problem.control_set.smoothing:.1e} was not reached"
         if 0.0 < _share_short(problem, curve) < 1.0:
             message = f"a direction seems to turn round where the slope of H passes through zero; {message}"

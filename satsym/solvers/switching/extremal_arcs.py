@@ -11,8 +11,8 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.simulation.extrapolation import integrate
 from satsym.solvers.switching.field import Field
-from satsym.solvers.switching.throttled import equations
 from satsym.solvers.switching.structure import Event, Structure
+from satsym.solvers.switching.throttled import equations
 
 TOLERANCE = 3e-14
 """Error of a step, relative to the size of each component."""

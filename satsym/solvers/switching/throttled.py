@@ -13,7 +13,6 @@ from satsym.control_set import Row
 from satsym.instance import Instance
 from satsym.solvers.switching.field import NUDGE, Field
 
-
 NOTHING = 1e-300
 """A norm that is none: right at a switch the margin that decides it is zero as well, and must not be equal to it."""
 

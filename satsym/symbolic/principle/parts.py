@@ -23,7 +23,8 @@ def least_of(part: Part) -> Variable:
 
     With that and the largest norm the same, the law gives a vector of this norm.
     """
-    return Variable(f"{part.name}_least", rf"u_{{\mathrm{{{part.name}}}}}^{{\min}}", part.controls[0].unit, positive=True)
+    latex = rf"u_{{\mathrm{{{part.name}}}}}^{{\min}}"
+    return Variable(f"{part.name}_least", latex, part.controls[0].unit, positive=True)
 
 
 SINGLE = "control"

@@ -69,7 +69,9 @@ def _least(solution: Solution, again: Replay, by: Integration, most: int) -> flo
     cost = max(float((state * np.abs(solution.lam).max(axis=1)).sum()), 1e-300)
     counts = [int(np.ceil(most * (piece.end - piece.start) / lasting)) for piece in pieces]
     total = len(pieces) + n * sum(counts)
-    form, x, own = np.zeros((total, total)), np.zeros((n, total)), len(pieces)
+    own = len(pieces)
+    form: Array = np.zeros((total, total))
+    x: Array = np.zeros((n, total))
     for k, (piece, count) in enumerate(zip(pieces, counts, strict=True)):
         column = np.zeros(total)
         column[k] = lasting
@@ -107,12 +109,12 @@ def _along(piece: Piece, state: Array, cost: float, steps: int, by: Integration)
     restoring = -slopes[:, n:, :n] * state[:, None] * state / cost
     motion = slopes[:, :n, :n] * state / state[:, None]
     lasting = piece.end - piece.start
-    return _Along(lasting, motion, push, restoring, (rates[:n] / state[:, None]).T, (-rates[n:] * state[:, None] / cost).T)
+    return _Along(
+        lasting, motion, push, restoring, (rates[:n] / state[:, None]).T, (-rates[n:] * state[:, None] / cost).T
+    )
 
 
-def _added(
-    along: _Along, form: Array, x: Array, share: Array, own: int, count: int
-) -> tuple[Array, Array]:
+def _added(along: _Along, form: Array, x: Array, share: Array, own: int, count: int) -> tuple[Array, Array]:
     """The form with what an arc adds, and the states at its end, by all changes.
 
     Parameters

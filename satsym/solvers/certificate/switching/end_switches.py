@@ -13,8 +13,8 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.solvers.certificate.switching.replay import Piece, Replay
 from satsym.solvers.switching.field import Field
-from satsym.solvers.switching.throttled import equations
 from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER
+from satsym.solvers.switching.throttled import equations
 
 AT_SWITCH = 1e-9
 """Distance of a switching function from where it switches, relative to its size, that is none."""

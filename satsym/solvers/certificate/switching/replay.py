@@ -22,8 +22,8 @@ from satsym.solvers.failures import FAILURES
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.cold_start.recognition import levels as best_levels
 from satsym.solvers.switching.field import Field
-from satsym.solvers.switching.throttled import equations
 from satsym.solvers.switching.structure import REST, SINGULAR
+from satsym.solvers.switching.throttled import equations
 
 MOST_SWITCHES = 200
 

@@ -61,7 +61,8 @@ def others(
 
 def arcs(problem: TwoPoint, instance: Instance, curve: Curve, _start: Start, limits: Limits) -> Exact | Extremal:
     """Exact arcs as smoothed extremals show them, the first that satisfy the minimum principle."""
-    for problem, curve in levels(problem, instance, curve, limits):
+    for near in levels(problem, instance, curve, limits):
+        problem, curve = near
         if share_between(problem, curve) <= SWITCHED:
             exact = attempt(instance, guess(instance, sample(problem, curve)), limits)
             if exact is not None:
@@ -76,4 +77,3 @@ def arcs(problem: TwoPoint, instance: Instance, curve: Curve, _start: Start, lim
 
 def _guessed(instance: Instance, duration: float) -> Instance:
     return replace(instance, tf_guess=instance.t0 + duration)
-
