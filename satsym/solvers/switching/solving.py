@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from satsym.instance import Instance
 from satsym.solution import Progress, Solution
-from satsym.solvers import two_point
 from satsym.solvers.failures import FAILURES, tried, unbroken
 from satsym.solvers.iteration import Limits, watched
 from satsym.solvers.nearest_end import nearest
@@ -86,16 +85,16 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
 
 
 def _throttled(instance: Instance, progress: Progress | None) -> Solution:
-    """Solve a problem of vectors that are throttled; by collocation, if they have their full norms all the time."""
+    """Solve a problem of vectors that are throttled, unless they have their full norms all the time."""
     refuse_angles(instance)
     began = time.perf_counter()
     limits, history = watched(instance, progress)
     with np.errstate(all="ignore"):
         found = by_throttle.best(instance, limits)
+    if not isinstance(found, homotopy.Stopped) and all(row == (UPPER,) for row in found.refined.structure.levels):
+        found = homotopy.Stopped(Status.NOT_CONVERGED, 'nothing switches: use method "collocation"')
     if isinstance(found, homotopy.Stopped):
         return without(instance, found, tuple(history), began)
-    if all(row == (UPPER,) for row in found.refined.structure.levels):
-        return two_point.solve(instance, progress)
     return answered(instance, found, tuple(history), began)
 
 
