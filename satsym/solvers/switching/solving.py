@@ -91,6 +91,7 @@ def _throttled(instance: Instance, progress: Progress | None) -> Solution:
     limits, history = watched(instance, progress)
     with np.errstate(all="ignore"):
         found = by_throttle.best(instance, limits)
+        found = _out_of_reach(found, limits) if isinstance(found, homotopy.Stopped) else found
     if not isinstance(found, homotopy.Stopped) and all(row == (UPPER,) for row in found.refined.structure.levels):
         found = homotopy.Stopped(Status.NOT_CONVERGED, 'nothing switches: use method "collocation"')
     if isinstance(found, homotopy.Stopped):

@@ -384,6 +384,8 @@ def minimised_hamiltonian(so_far: Derivation) -> Step:
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
         here = {**point, **wide}
+        for one in every:
+            here = _ordered(one, here) if one.branch == "throttled" else here
         law = dict(zip(symbols_of(problem.model.controls), chosen(here), strict=True))
         return at_minimum(here), value({**here, **law})
 

@@ -37,7 +37,7 @@ def best(instance: Instance, limits: Limits) -> Exact | Stopped:
     """The cheapest extremal that a cold start and a few others lead to, or why there is none."""
     found = directed(instance, limits, True, arcs)
     if isinstance(found, Extremal):
-        return Stopped(found.status, found.message)
+        return Stopped(found.status, found.message, found.problem, found.path)
     for other in others(instance, found.refined.at.end - instance.t0, limits, np.random.default_rng(SEED), BESIDE):
         cost, least = (one.trajectory.cost(instance) for one in (other, found))
         if cost < least - CHEAPER * abs(least):
