@@ -40,6 +40,10 @@ class ThrottledField(Field):
         slopes = self.model.canonical_jacobian(t, z[: self.n], z[self.n :], self.p, self.arguments)
         return np.array(self.rates(t, z)), np.array(slopes).reshape(2 * self.n, 2 * self.n)
 
+    def drift(self, t: float, z: list[float]) -> tuple[float, ...]:
+        """The rates of states and costates by explicit time."""
+        return tuple(self.model.canonical_drift(t, z[: self.n], z[self.n :], self.p, self.arguments))
+
     def along(self, t: Array, z: Array) -> tuple[Array, Array]:
         x, lam = z[: self.n], z[self.n :]
         u = np.empty((len(self.model.spec.controls), z.shape[1]))

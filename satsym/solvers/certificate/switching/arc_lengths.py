@@ -21,10 +21,15 @@ from satsym.solvers.certificate.jacobi import kernel
 from satsym.solvers.certificate.switching.integration import Integration, Span
 from satsym.solvers.certificate.switching.replay import Piece, Replay
 from satsym.solvers.collocation.scaling import final_argument
+from satsym.solvers.switching.field import NUDGE
+from satsym.solvers.switching.throttled import ThrottledField
 
 PIECES, STEPS = 20, 240
 """On which changes of the continuous controls are constant, over all arcs; and steps of the classical Runge-Kutta
 method over all."""
+
+SHIFT = 1e-4
+"""Difference over which H by explicit time is differentiated once more, as a share of an arc."""
 
 CHANGED = 0.5
 """Share of the least curvature by which it may change when twice as many pieces are taken."""
@@ -32,7 +37,7 @@ CHANGED = 0.5
 
 @dataclass(frozen=True, eq=False)
 class _Along:
-    """An arc at the ends and in the middle of each of its steps, shapes (2 K + 1, ...), in units of the states.
+    """An arc at the ends and in the middle of each of its steps, shapes (2 K + 1, ...), in units of states and time.
 
     Changes follow x' = motion x + push w + f / T dT and cost (x' restoring x + w'w) / 2 + H_x x / T dT.
     """
@@ -46,27 +51,27 @@ class _Along:
 
 
 def curvature(solution: Solution, again: Replay, by: Integration) -> float:
-    """The least eigenvalue of the form on what keeps the end, in units of its diagonal; NaN where it is not resolved.
+    """The smallest eigenvalue of the form on what keeps the end, in units of its diagonal; NaN if it is not resolved.
 
     Parameters
     ----------
     solution
-        With throttled vectors, of a problem without explicit time.
+        With throttled vectors.
     again
         The solution again.
     by
         How arcs are integrated.
     """
-    if not solution.instance.model.spec.autonomous:
-        return float("nan")
     coarse, fine = (_least(solution, again, by, pieces) for pieces in (PIECES, 2 * PIECES))
     return fine if abs(fine - coarse) <= CHANGED * abs(fine) else float("nan")
 
 
 def _least(solution: Solution, again: Replay, by: Integration, most: int) -> float:
-    state, n = typical(solution)[0], len(solution.x)
     pieces, lasting = again.pieces, float(solution.times[-1] - solution.times[0])
+    state = typical(solution)[0]
     cost = max(float((state * np.abs(solution.lam).max(axis=1)).sum()), 1e-300)
+    state = np.append(state, lasting)  # time is a state
+    n = len(state)
     counts = [int(np.ceil(most * (piece.end - piece.start) / lasting)) for piece in pieces]
     total = len(pieces) + n * sum(counts)
     own = len(pieces)
@@ -89,29 +94,59 @@ def _least(solution: Solution, again: Replay, by: Integration, most: int) -> flo
     return _smallest((form + form.T) / 2.0, ties, len(pieces))
 
 
+def _of(piece: Piece) -> ThrottledField:
+    assert isinstance(piece.field, ThrottledField)
+    return piece.field
+
+
 def _at_once(piece: Piece, state: Array, cost: float) -> tuple[Array, Array]:
     """Rates and H_x of an arc of no length."""
-    rates = np.array(piece.field.rates(piece.start, piece.before.tolist()))
-    n = len(state)
-    return rates[:n] / state, -rates[n:] * state / cost
+    times, z = np.array([piece.start]), piece.before[:, None]
+    rates, slope = _rates(_of(piece), times, z, state, cost)
+    return rates[0], slope[0]
+
+
+def _rates(field: ThrottledField, times: Array, z: Array, state: Array, cost: float) -> tuple[Array, Array]:
+    """Rates of states and time, and H by these, shapes (N, n + 1)."""
+    n, (u, rates) = field.n, field.along(times, z)
+    by_time = _by_time(field, times, z, u)
+    every = np.concatenate([rates[:n], np.ones((1, len(times)))]) / state[:, None]
+    return every.T, (np.concatenate([-rates[n:], by_time[None]]) * state[:, None] / cost).T
+
+
+def _by_time(field: ThrottledField, times: Array, z: Array, u: Array) -> Array:
+    """H by explicit time, shape (N,)."""
+    if field.model.spec.autonomous:
+        return np.zeros(len(times))
+    ahead = times + 1j * NUDGE
+    value = field.model.hamiltonian_batch(ahead, z[: field.n], u, z[field.n :], field.p)
+    return np.asarray(np.imag(value) / NUDGE)
 
 
 def _along(piece: Piece, state: Array, cost: float, steps: int, by: Integration) -> _Along:
-    field, n = piece.field, len(state)
+    field, n, lasting = _of(piece), piece.field.n, piece.end - piece.start
     times = np.linspace(piece.start, piece.end, 2 * steps + 1)
     span = Span(field, piece.start, piece.end, piece.before)
     z = by.solved(lambda t, y: field.rates(t, y.tolist()), span, piece.before, by.sizes, t_eval=times).y
-    rates = field.along(times, z)[1]
-    slopes = np.stack([field.linearised(t, y)[1] for t, y in zip(times.tolist(), z.T.tolist(), strict=True)])
-    follow = -slopes[:, :n, n:] / state[:, None] / state * cost
+    each = list(zip(times.tolist(), z.T.tolist(), strict=True))
+    slopes = np.stack([field.linearised(t, y)[1] for t, y in each])
+    motion, follow, restoring = np.zeros((3, len(times), n + 1, n + 1))
+    motion[:, :n, :n], follow[:, :n, :n], restoring[:, :n, :n] = (
+        slopes[:, :n, :n],
+        -slopes[:, :n, n:],
+        -slopes[:, n:, :n],
+    )
+    if not field.model.spec.autonomous:
+        drift = np.array([field.drift(t, y) for t, y in each])
+        motion[:, :n, n], restoring[:, :n, n], restoring[:, n, :n] = drift[:, :n], -drift[:, n:], -drift[:, n:]
+        step = SHIFT * lasting
+        beside = [_by_time(field, times + k, z, field.along(times + k, z)[0]) for k in (-step, step)]
+        restoring[:, n, n] = (beside[1] - beside[0]) / (2.0 * step)
+    follow = follow / state[:, None] / state * cost
     values, axes = np.linalg.eigh((follow + follow.transpose(0, 2, 1)) / 2.0)
     push = (axes * np.sqrt(np.maximum(values, 0.0))[:, None, :]) @ axes.transpose(0, 2, 1)
-    restoring = -slopes[:, n:, :n] * state[:, None] * state / cost
-    motion = slopes[:, :n, :n] * state / state[:, None]
-    lasting = piece.end - piece.start
-    return _Along(
-        lasting, motion, push, restoring, (rates[:n] / state[:, None]).T, (-rates[n:] * state[:, None] / cost).T
-    )
+    restoring, motion = restoring * state[:, None] * state / cost, motion * state / state[:, None]
+    return _Along(lasting, motion, push, restoring, *_rates(field, times, z, state, cost))
 
 
 def _added(along: _Along, form: Array, x: Array, share: Array, own: int, count: int) -> tuple[Array, Array]:
@@ -153,7 +188,7 @@ def _added(along: _Along, form: Array, x: Array, share: Array, own: int, count: 
 
 def _ended(solution: Solution, form: Array, x: Array, duration: Array, state: Array, cost: float) -> Array:
     """Adds to the form what the end does, and returns the rows that vanish."""
-    instance, n = solution.instance, len(state)
+    instance, n = solution.instance, len(solution.x)
     tf, end, lam = float(solution.times[-1]), tuple(solution.x[:, -1].tolist()), tuple(solution.lam[:, -1].tolist())
     nu, _ = multipliers(instance, tf, end, lam)
     table = instance.model.boundary_jacobian(
@@ -161,7 +196,7 @@ def _ended(solution: Solution, form: Array, x: Array, duration: Array, state: Ar
     )
     slopes = np.array(table).reshape(n + len(nu) + 1, -1)
     fixed = fixed_states(instance)
-    both = np.concatenate([state[:, None] * x, duration[None]])
+    both = np.concatenate([(state[:, None] * x)[:n], duration[None]])
     by = np.column_stack([slopes[:, :n], slopes[:, -1]])
     curved = np.zeros((n + 1, n + 1))
     curved[:n][~fixed] = -by[:n][~fixed]
