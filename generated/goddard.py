@@ -1,8 +1,8 @@
-"""Ascent of a rocket to the greatest height.
+"""Ascent of a rocket to the maximum height.
 
 Written by satsym from derivations/examples/goddard.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/goddard.py
-Digest: 803f9a48ad00117a9233b259e9923344fd1fac0ace049e99052aef5a9ec2df45
+Digest: 68948421624839e48569f3ef5c4893fdf68b5320ce8a317c0c81e2be4df4c8ac
 """
 
 import math
@@ -13,7 +13,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'goddard',
-    'title': 'Ascent of a rocket to the greatest height',
+    'title': 'Ascent of a rocket to the maximum height',
     'source': 'derivations/examples/goddard.py',
     'states': (
         {'symbol': 'h', 'latex': 'h', 'meaning': 'distance from the centre', 'positive': True, 'typical': (1.0, 1.02)},

@@ -1,8 +1,8 @@
-"""Transfer between circular orbits with least fuel.
+"""Transfer between circular orbits with minimum fuel.
 
 Written by satsym from derivations/examples/transfer_fuel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/transfer_fuel.py
-Digest: 4d22df942f3c934fed68bb9d64951e69b626161135c502d738281130288263fa
+Digest: fcf52a0b1cf657925463f6fb2c9b4527b250b6580b0cb435414bb1c99a7b6d80
 """
 
 import math
@@ -13,7 +13,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'transfer_fuel',
-    'title': 'Transfer between circular orbits with least fuel',
+    'title': 'Transfer between circular orbits with minimum fuel',
     'source': 'derivations/examples/transfer_fuel.py',
     'states': (
         {'symbol': 'r', 'latex': 'r', 'meaning': 'distance from the centre', 'positive': True},

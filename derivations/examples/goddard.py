@@ -28,7 +28,7 @@ D0, beta, g0, c = symbols_of(PARAMETERS)
 
 goddard = Problem(
     name="goddard",
-    title="Ascent of a rocket to the greatest height",
+    title="Ascent of a rocket to the maximum height",
     model=FirstOrder(
         name="rocket",
         title="A rocket in vertical flight",

@@ -1,4 +1,4 @@
-"""From one circular orbit to another with least fuel, in a given time, with a thrust of bounded magnitude.
+"""From one circular orbit to another with minimum fuel, in a given time, with a thrust of bounded magnitude.
 
 Mass flows out as the thrust asks for. What is left over is a maximum where arcs of full thrust and coasts alternate, as
 the primer vector says (Lawden, Optimal Trajectories for Space Navigation, 1963). Units are those of the first orbit:
@@ -31,7 +31,7 @@ thrust = sqrt(T_r**2 + T_t**2)
 
 transfer_fuel = Problem(
     name="transfer_fuel",
-    title="Transfer between circular orbits with least fuel",
+    title="Transfer between circular orbits with minimum fuel",
     model=FirstOrder(
         name="throttled_satellite",
         title="A satellite whose thrust can be turned and throttled",

@@ -16,7 +16,7 @@ from satsym.symbolic.linear.notation import matrix_symbols
 from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.notation import costate_of, given, multipliers, on_reference, target
 from satsym.symbolic.principle import product
-from satsym.symbolic.principle.parts import FRACTION, SMOOTHING, least_of, limits_of
+from satsym.symbolic.principle.parts import FRACTION, SMOOTHING, limits_of, minimum_norm_of
 from satsym.symbolic.switching.notation import REGULARISED
 
 ARGUMENTS = tuple("t x original u lam nu gain riccati state_weight control_weight p bounds final".split())
@@ -130,7 +130,7 @@ def _bounds(derivation: Derivation) -> tuple[Variable, ...]:
     found = limits_of(problem) if problem else ()
     if "smoothed_law" in derivation and product.STEP in derivation:
         parts = [one.part for one in product.throttled(derivation)]
-        least = (least_of(part) for part in parts if part.kind == "ball")
+        least = (minimum_norm_of(part) for part in parts if part.kind == "ball")
         return (*found, SMOOTHING, *((FRACTION,) if parts else ()), *least)
     return found + (REGULARISED if switching.switches(derivation) else ())
 
@@ -198,7 +198,7 @@ def _regular_law(derivation: Derivation) -> list[Function]:
     if product.STEP in derivation:
         h = derivation.equation("hamiltonian.H").rhs
         h_u, law = [tidy(g, controls) for g in gradient(h, controls)], product.written_out(derivation, law)
-        law = sp.Matrix(product.with_least_norms(derivation, law))
+        law = sp.Matrix(product.with_minimum_norms(derivation, law))
     else:
         h_u = [e.rhs for e in derivation.step("stationarity").equations if e.lhs == 0]
     found = [

@@ -44,7 +44,7 @@ def cartesian(t: float, y: np.ndarray, thrust: float) -> np.ndarray:
     return np.concatenate([speed, push, [-thrust], turn, -pull, [-thrust * size / mass**2]])
 
 
-def test_the_transfer_of_least_fuel_agrees_with_shooting_in_cartesian_coordinates():
+def test_the_transfer_of_minimum_fuel_agrees_with_shooting_in_cartesian_coordinates():
     """Coast, burn, coast, burn, coast, burn: ten conditions on five costates and five switching times."""
     radius, angle = 1.5, 8.5
     across, along = np.array([-math.sin(angle), math.cos(angle)]), np.array([math.cos(angle), math.sin(angle)])
@@ -70,7 +70,7 @@ def test_the_transfer_of_least_fuel_agrees_with_shooting_in_cartesian_coordinate
     assert found.switching_times == (pytest.approx(expected.x[5:], abs=1e-10),) * 2
 
 
-def test_the_transfer_of_least_fuel_is_a_strict_minimum():
+def test_the_transfer_of_minimum_fuel_is_a_strict_minimum():
     found = shipped("transfer-fuel")
     assert found.certificate is not None
     assert found.certificate.verdict is Verdict.CERTIFIED, failed(found)

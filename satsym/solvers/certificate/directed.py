@@ -49,7 +49,7 @@ def led(
         starts = [partial(directed, one, effort=False) for one in beside]
 
     def attempt(start: Callable[..., object], limits: Limits) -> Found | None:
-        found = tried(partial(start, limits=limits, sharpened=full_length))
+        found = tried(partial(start, limits=limits, unsmoothed=full_length))
         if not isinstance(found, tuple) or isinstance(found, Extremal):
             return None
         problem, begun = found

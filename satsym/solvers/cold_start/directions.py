@@ -63,11 +63,11 @@ slope of H vanishes for an instant only, such as at an end that leaves velocitie
 
 Exact = TypeVar("Exact")
 
-Sharpened = Callable[[TwoPoint, Instance, Curve, Start, Limits], Exact | Extremal]
+Unsmoothed = Callable[[TwoPoint, Instance, Curve, Start, Limits], Exact | Extremal]
 """From an extremal within the bounds that is smoothed to one that is not."""
 
 
-def directed(instance: Instance, limits: Limits, effort: bool, sharpened: Sharpened[Exact]) -> Exact | Extremal:
+def directed(instance: Instance, limits: Limits, effort: bool, unsmoothed: Unsmoothed[Exact]) -> Exact | Extremal:
     """An extremal of the problem itself within the bounds, or how far one got.
 
     Parameters
@@ -76,7 +76,7 @@ def directed(instance: Instance, limits: Limits, effort: bool, sharpened: Sharpe
         Of a problem in which some controls are directions.
     limits, effort
         When to stop, and whether free durations are looked for with great effort.
-    sharpened
+    unsmoothed
         What makes a smoothed extremal one of the problem.
     """
     found: Exact | Extremal | None = None
@@ -84,7 +84,7 @@ def directed(instance: Instance, limits: Limits, effort: bool, sharpened: Sharpe
         if limits.expired:
             break
         smoothing = factor * full_length_smoothing(instance)
-        again = tried(partial(_directed, one, instance, smoothing, limits, much, sharpened))
+        again = tried(partial(_directed, one, instance, smoothing, limits, much, unsmoothed))
         if again is not None and not isinstance(again, Extremal):
             return again
         found = found or again
@@ -110,7 +110,7 @@ def _begun(instance: Instance, effort: bool) -> Iterator[tuple[Instance, bool, f
 
 
 def _directed(
-    started: Instance, instance: Instance, smoothing: float, limits: Limits, effort: bool, sharpened: Sharpened[Exact]
+    started: Instance, instance: Instance, smoothing: float, limits: Limits, effort: bool, unsmoothed: Unsmoothed[Exact]
 ) -> Exact | Extremal:
     """The same from what one instance guesses, and this smoothing."""
     eased = regularised(started, smoothing, _first_share(instance))
@@ -124,7 +124,7 @@ def _directed(
         start = cold_start(problem, limits, quick=not effort)
         if not start.found.minimum:
             return stopped(problem, instance, start.found.curve, f"no extremal found: {start.found.message}", limits)
-    return directed_from(problem, start, instance, limits, sharpened)
+    return directed_from(problem, start, instance, limits, unsmoothed)
 
 
 def steered(instance: Instance) -> Instance | None:
@@ -180,7 +180,7 @@ def _in_direction(instance: Instance, direction: float) -> Array:
 
 
 def bent(
-    instance: Instance, rng: np.random.Generator, amplitude: float, limits: Limits, sharpened: Sharpened[Exact]
+    instance: Instance, rng: np.random.Generator, amplitude: float, limits: Limits, unsmoothed: Unsmoothed[Exact]
 ) -> Exact | Extremal:
     """The same from a path that is drawn, for a final time that is given."""
     assert instance.tf is not None
@@ -191,12 +191,12 @@ def bent(
         path = paths.bent(problem, np.random.default_rng(waves), amplitude)
         found = from_path(problem.relaxed(float("inf")), path, limits)
         if found.minimum:
-            return directed_from(problem, Start(found, Origin.DRAWN, found.iterations), instance, limits, sharpened)
+            return directed_from(problem, Start(found, Origin.DRAWN, found.iterations), instance, limits, unsmoothed)
     return stopped(problem, instance, found.curve, found.message, limits)
 
 
 def directed_from(
-    problem: TwoPoint, start: Start, instance: Instance, limits: Limits, sharpened: Sharpened[Exact]
+    problem: TwoPoint, start: Start, instance: Instance, limits: Limits, unsmoothed: Unsmoothed[Exact]
 ) -> Exact | Extremal:
     """The same from a minimum of the regularised problem without bounds."""
     curve = start.found.curve
@@ -220,7 +220,7 @@ def directed_from(
             message = f"what the norm of a vector costs could be brought in only {reached:.0%}"
             return stopped(problem, instance, curve, message, limits)
         problem = weighed(1.0)
-    return sharpened(problem, instance, curve, replace(start, bounded=True), limits)
+    return unsmoothed(problem, instance, curve, replace(start, bounded=True), limits)
 
 
 def _first_share(instance: Instance) -> float:
@@ -297,7 +297,7 @@ def _longest(problem: TwoPoint, curve: Curve) -> float:
     return max(float(length.max()) - limit for limit, length in _lengths(problem.relaxed(float("inf")), curve))
 
 
-def share_between(problem: TwoPoint, curve: Curve) -> float:
+def fraction_between(problem: TwoPoint, curve: Curve) -> float:
     """The largest share of the time for which the norm of a direction is far from both of its bounds."""
     least = (part.inner for _, part in problem.control_set.parts if part.directed)
     shares = []

@@ -18,7 +18,7 @@ FRACTION = Variable("norm_factor", r"\kappa", meaning="factor of what norms add 
 """What follows that where H depends on norms of such vectors."""
 
 
-def least_of(part: Part) -> Variable:
+def minimum_norm_of(part: Part) -> Variable:
     """What follows these for each ball in which a vector may be none: the norm that it has at least, which is none.
 
     With that and the largest norm the same, the law gives a vector of this norm.

@@ -26,7 +26,7 @@ from satsym.symbolic.model import Problem, symbols_of
 from satsym.symbolic.principle import control_sets
 from satsym.symbolic.principle import notation as pn
 from satsym.symbolic.principle.branches import Minimum, by_circle, minima, norm_of, with_norms
-from satsym.symbolic.principle.parts import FRACTION, SMOOTHING, least_of, limits_of, parts_of
+from satsym.symbolic.principle.parts import FRACTION, SMOOTHING, limits_of, minimum_norm_of, parts_of
 from satsym.symbolic.principle.pontryagin import COMPETITORS, costates
 
 STEP = "control_parts"
@@ -173,7 +173,7 @@ def regularised_law(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
                 laws[norm_of(one.part)] = FACTOR * _size(problem, one)
         else:
             laws |= dict(zip(one.part.symbols, _law(problem, one), strict=True))
-    return dict(zip(laws, with_least_norms(so_far, written_out(so_far, laws.values())), strict=True))
+    return dict(zip(laws, with_minimum_norms(so_far, written_out(so_far, laws.values())), strict=True))
 
 
 def throttled(so_far: Derivation) -> tuple[Minimum, ...]:
@@ -181,9 +181,9 @@ def throttled(so_far: Derivation) -> tuple[Minimum, ...]:
     return tuple(one for one in found(so_far) if one.branch == "throttled")
 
 
-def with_least_norms(so_far: Derivation, expressions: Iterable[sp.Expr]) -> list[sp.Expr]:
+def with_minimum_norms(so_far: Derivation, expressions: Iterable[sp.Expr]) -> list[sp.Expr]:
     """Laws in which vectors in balls have a least norm, by which they can be kept at any."""
-    least = {one.part.bounds[-1]: symbols_of((least_of(one.part),))[0] for one in throttled(so_far)}
+    least = {one.part.bounds[-1]: symbols_of((minimum_norm_of(one.part),))[0] for one in throttled(so_far)}
 
     def raised(value: sp.Expr, lower: sp.Expr, upper: sp.Expr) -> sp.Expr:
         return Clip(value, least[upper] if lower == 0 and upper in least else lower, upper)

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from satsym.instance import Guess, Instance
-from satsym.solvers.cold_start.directions import bent, directed, levels, share_between, stopped
+from satsym.solvers.cold_start.directions import bent, directed, fraction_between, levels, stopped
 from satsym.solvers.cold_start.origin import Start
 from satsym.solvers.collocation.curve import Curve
 from satsym.solvers.collocation.extremal import Extremal
@@ -54,7 +54,7 @@ def others(
     if instance.tf is None:
         starts = [partial(directed, _guessed(plain, share * duration), effort=False) for share in shares]
     for start in starts:
-        found = None if limits.expired else tried(partial(start, limits=limits, sharpened=arcs))
+        found = None if limits.expired else tried(partial(start, limits=limits, unsmoothed=arcs))
         if isinstance(found, Exact):
             yield found
 
@@ -63,14 +63,14 @@ def arcs(problem: TwoPoint, instance: Instance, curve: Curve, _start: Start, lim
     """Exact arcs as smoothed extremals show them, the first that satisfy the minimum principle."""
     for near in levels(problem, instance, curve, limits):
         problem, curve = near
-        if share_between(problem, curve) <= SWITCHED:
+        if fraction_between(problem, curve) <= SWITCHED:
             exact = attempt(instance, guess(instance, sample(problem, curve)), limits)
             if exact is not None:
                 return replace(exact, origin=Origin.SMOOTHED, smoothing=problem.control_set.smoothing)
         if limits.expired:
             break
     message = "no structure recognised in regularised solutions satisfies Pontryagin's minimum principle"
-    if share_between(problem, curve) > SWITCHED:
+    if fraction_between(problem, curve) > SWITCHED:
         message = "for some time nothing decides the norm of a vector, and no law is known there"
     return stopped(problem, instance, curve, message, limits)
 
