@@ -18,6 +18,7 @@ from satsym import instance
 from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solvers import solve
+from satsym.solvers.certificate import certify
 from satsym.status import Status, Verdict
 from satsym.symbolic import Annulus, Ball, FirstOrder, Problem, Variable, symbols_of
 from tests.support.models import build
@@ -81,8 +82,6 @@ def test_the_transfer_of_minimum_fuel_is_a_strict_minimum():
 def test_switching_times_that_are_wrong_fail():
     found = shipped("transfer-fuel")
     moved = tuple((row[0] + 1e-6, *row[1:]) for row in found.switching_times)
-    from satsym.solvers.certificate import certify
-
     again = certify(replace(found, switching_times=moved))
     assert again is not None
     assert again.verdict is Verdict.FAILED
@@ -227,3 +226,41 @@ def test_full_thrust_all_the_time_needs_no_switches(tmp_path: Path):
     assert found.method == "collocation"
     assert found.objective == pytest.approx(1.01 * found.times[-1], rel=1e-10)
     assert failed(found) == []
+
+
+def critical_gain() -> float:
+    """The weight of y^2 from which on leaving the straight line pays: the smallest eigenvalue, by piecewise constants.
+
+    From rest to rest over 2 in a time 4: |primer| = |t - 2| / (2 - b) weighs turns w on the burns, and y'' = w there.
+    """
+    burn, pieces = 2.0 - math.sqrt(2.0), 200
+    h = burn / pieces
+    middles = (np.arange(pieces) + 0.5) * h
+    middles = np.concatenate([middles, 4.0 - burn + middles])
+    times = np.linspace(0.0, 4.0, 2001)
+    moved = np.maximum(times[:, None] - middles, 0.0) * h
+    free = np.linalg.svd([moved[-1], np.full(len(middles), h)])[2][2:].T
+    cost = free.T * (np.abs(middles - 2.0) / (2.0 - burn) * h) @ free
+    gained = (moved @ free).T @ (moved @ free) * (times[1] - times[0])
+    return 1.0 / float(np.linalg.eigvals(np.linalg.solve(cost, gained)).real.max())
+
+
+def test_a_minimum_ends_where_leaving_the_straight_line_pays(tmp_path: Path):
+    """The straight way satisfies the minimum principle whatever y^2 earns."""
+    gain = Variable("q", "q", default=0.0)
+    straight = pushed("straight", FREELY)
+    problem = replace(
+        straight,
+        model=replace(straight.model, parameters=(gain,)),
+        running_cost=straight.running_cost - symbols_of((gain,))[0] * y**2 / 2,
+    )
+    text = BETWEEN.replace("x = 1.0\ny = 2.0", "x = 2.0\ny = 0.0").replace("t0 = 3.0\ntf = 10.0", "tf = 4.0")
+    found = solve(build(tmp_path, problem, text))
+    assert failed(found) == []
+    critical = critical_gain()
+    for share in (0.97, 1.03):
+        again = certify(replace(found, instance=replace(found.instance, parameters=(share * critical,))))
+        assert again is not None
+        passed = {check.name: check.passed for check in again.checks}
+        assert passed["stationarity"]
+        assert passed["second variation in lengths of arcs and directions"] == (share < 1.0)
