@@ -24,6 +24,8 @@ class ThrottledField(Field):
         super().__init__(instance, levels)
         if self.singular is not None:
             raise ArithmeticError("no law is known for a vector whose norm nothing decides")
+        throttled = [places for places, part in instance.control_set.parts if part.throttled]
+        self.none = [i for places, norm in zip(throttled, self.saturated, strict=True) for i in places if not norm]
         norms = tuple(max(norm, NOTHING) for norm in self.saturated)
         self.arguments = instance.control_set.saturated(norms).arguments
 
@@ -31,7 +33,8 @@ class ThrottledField(Field):
         return self.arguments
 
     def control(self, t: float, z: list[float]) -> tuple[float, ...]:
-        return tuple(self.model.control_law(t, z[: self.n], z[self.n :], self.p, self.arguments))
+        u = self.model.control_law(t, z[: self.n], z[self.n :], self.p, self.arguments)
+        return tuple(0.0 if i in self.none else value for i, value in enumerate(u))
 
     def rates(self, t: float, z: list[float]) -> list[float]:
         return list(self.model.canonical(t, z[: self.n], z[self.n :], self.p, self.arguments))
@@ -50,6 +53,7 @@ class ThrottledField(Field):
         found = np.empty_like(z)
         self.model.control_law_batch(t, x, lam, self.p, self.arguments, out=u)
         self.model.canonical_batch(t, x, lam, self.p, self.arguments, out=found)
+        u[self.none] = 0.0
         return u, found
 
     def sigma(self, t: float, z: list[float], control: int) -> float:
