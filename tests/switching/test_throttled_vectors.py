@@ -19,6 +19,11 @@ from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solvers import solve
 from satsym.solvers.certificate import certify
+from satsym.solvers.certificate.flow import typical
+from satsym.solvers.certificate.switching.arc_lengths import quadratic
+from satsym.solvers.certificate.switching.integration import Integration
+from satsym.solvers.certificate.switching.replay import replay
+from satsym.solvers.iteration import Limits
 from satsym.status import Status, Verdict
 from satsym.symbolic import Annulus, Ball, FirstOrder, Problem, Variable, symbols_of
 from tests.support.models import build
@@ -264,3 +269,31 @@ def test_a_minimum_ends_where_leaving_the_straight_line_pays(tmp_path: Path):
         passed = {check.name: check.passed for check in again.checks}
         assert passed["stationarity"]
         assert passed["second variation in lengths of arcs and directions"] == (share < 1.0)
+
+
+def test_the_form_in_the_lengths_of_arcs_is_that_of_differences(tmp_path: Path):
+    """A spring along the way; costs and what the end misses, weighed with its costates, over other lengths."""
+    sprung = pushed("sprung", {**FREELY, vx: ux - x / 2, vy: uy - y / 2})
+    text = BETWEEN.replace("x = 1.0\ny = 2.0", "x = 2.0\ny = 0.0").replace("t0 = 3.0\ntf = 10.0", "tf = 4.0")
+    found = solve(build(tmp_path, sprung, text.replace("max_norm = 1.0", "max_norm = 1.5")))
+    again = replay(found)
+    assert again is not None
+    lengths = np.array([piece.end - piece.start for piece in again.pieces])
+    thrusts = [float(piece.field.control(piece.start, piece.before.tolist())[0]) for piece in again.pieces]
+
+    def merit(change: np.ndarray) -> float:
+        z = np.zeros(2)
+        for thrust, length in zip(thrusts, lengths + change, strict=True):
+            z = solve_ivp(lambda t, s, u=thrust: [s[1], u - s[0] / 2.0], (0.0, length), z, **PRECISE).y[:, -1]
+        burned = sum(abs(u) * length for u, length in zip(thrusts, lengths + change, strict=True))
+        return float(burned + found.lam[[0, 2], -1] @ z)
+
+    step, unit = 1e-3, np.eye(len(lengths))
+    hessian = [
+        [sum(s * r * merit(step * (s * a + r * b)) for s in (-1, 1) for r in (-1, 1)) / (2.0 * step) ** 2 for a in unit]
+        for b in unit
+    ]
+    by = Integration(np.concatenate(typical(found)), Limits(10**6, math.inf))
+    form, _, cost = quadratic(found, again, by, 20)
+    in_lengths = 2.0 * cost * form[: len(lengths), : len(lengths)] / 4.0**2
+    assert in_lengths == pytest.approx(np.array(hessian), rel=1e-4, abs=1e-4)

@@ -67,6 +67,15 @@ def curvature(solution: Solution, again: Replay, by: Integration) -> float:
 
 
 def _least(solution: Solution, again: Replay, by: Integration, most: int) -> float:
+    form, ties, _ = quadratic(solution, again, by, most)
+    return _smallest(form, ties, len(again.pieces))
+
+
+def quadratic(solution: Solution, again: Replay, by: Integration, most: int) -> tuple[Array, Array, float]:
+    """The form, rows that vanish where the end is kept, and the unit of the cost.
+
+    Changes are first those of the lengths of arcs, in units of the duration.
+    """
     pieces, lasting = again.pieces, float(solution.times[-1] - solution.times[0])
     state = typical(solution)[0]
     cost = max(float((state * np.abs(solution.lam).max(axis=1)).sum()), 1e-300)
@@ -91,7 +100,7 @@ def _least(solution: Solution, again: Replay, by: Integration, most: int) -> flo
     duration = np.zeros(total)
     duration[: len(pieces)] = lasting
     ties = _ended(solution, form, x, duration, state, cost)
-    return _smallest((form + form.T) / 2.0, ties, len(pieces))
+    return (form + form.T) / 2.0, ties, cost
 
 
 def _of(piece: Piece) -> ThrottledField:
