@@ -41,7 +41,7 @@ class ControlSet:
     fraction: float = 1.0
     """Of the weight of |u| that counts there, 0 to 1."""
     inner: float = 0.0
-    """Of an annulus: the least norm."""
+    """The least norm of an annulus, or of a vector in a ball that is kept at it."""
     directed: bool = False
     """Whether the control is a direction: it has full length always, but for that of a regularised problem."""
     throttled: bool = False
@@ -83,7 +83,11 @@ class ControlSet:
                 return cls(part.kind, radius=radius, inner=inner, directed=directed, throttled=throttled)
 
             parts = _placed(spec, one)
-            smoothing, fraction = left + [0.0, 1.0][len(left) :]
+            smoothing, fraction = (left + [0.0, 1.0][len(left) :])[:2]
+            least = left[2:]
+            for k, (at, part) in enumerate(parts):
+                if part.throttled and part.kind == "ball" and least:
+                    parts = (*parts[:k], (at, replace(part, inner=least.pop(0))), *parts[k + 1 :])
             return cls("product", smoothing=smoothing, fraction=fraction, parts=parts)
         if spec.control_set == "ball":
             return cls("ball", radius=bounds[0])
@@ -96,8 +100,9 @@ class ControlSet:
         """The argument ``bounds`` of generated functions: bounds or radius, then what regularises."""
         if self.kind == "product":
             own = tuple(value for _, part in self.parts for value in part.arguments)
-            throttled = any(part.throttled for _, part in self.parts)
-            return own + ((self.smoothing,) if self.smoothing else ()) + ((self.fraction,) if throttled else ())
+            throttled = [part for _, part in self.parts if part.throttled]
+            regular = ((self.smoothing,) if self.smoothing else ()) + ((self.fraction,) if throttled else ())
+            return own + regular + tuple(part.inner for part in throttled if part.kind == "ball")
         if self.kind == "box":
             return self.lower + self.upper + ((self.smoothing, self.fraction) if self.smoothing else ())
         if self.kind == "annulus":
@@ -134,8 +139,24 @@ class ControlSet:
         return replace(self, smoothing=smoothing, fraction=fraction)
 
     def saturated(self, u: Row) -> ControlSet:
-        """That in which only this control is admissible."""
+        """That in which only this control is admissible; or these norms, of vectors that may be none."""
+        if self.kind == "product":
+            norms = iter(u)
+
+            def kept(part: ControlSet) -> ControlSet:
+                norm = next(norms)
+                return replace(part, inner=norm, radius=norm)
+
+            return replace(self, parts=tuple((at, kept(one) if one.throttled else one) for at, one in self.parts))
         return replace(self, lower=u, upper=u)
+
+    @cached_property
+    def switching(self) -> tuple[Row, Row]:
+        """Bounds of what switches: of the controls in a box, or of the norms of vectors that may be none."""
+        if self.kind != "product":
+            return self.lower, self.upper
+        switched = [part for _, part in self.parts if part.throttled]
+        return tuple(part.inner for part in switched), tuple(part.radius for part in switched)
 
     @cached_property
     def box(self) -> tuple[Array, Array]:

@@ -137,7 +137,8 @@ def possible(name: str) -> list[Method]:
 
 def automatic(spec: ProblemSpec) -> Method:
     """The method that ``"auto"`` begins with."""
-    return next(method for method in METHODS.values() if method.automatic and method.switching == spec.switching)
+    switches = spec.switching or spec.throttled
+    return next(method for method in METHODS.values() if method.automatic and method.switching == switches)
 
 
 def refusal(name: str, asked: Asked) -> str:
@@ -154,6 +155,6 @@ def refusal(name: str, asked: Asked) -> str:
             f'solver.method: the controls enter without a square and switch, which "{name}" cannot find; '
             f'use "{instead}"'
         )
-    if method.switching and not spec.switching:
+    if method.switching and not (spec.switching or spec.throttled):
         return f'solver.method: "{name}" is for controls that enter without a square; use "{instead}"'
     return method.refusal(asked)

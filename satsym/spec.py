@@ -260,7 +260,8 @@ class ProblemSpec:
     @property
     def regularising(self) -> int:
         """How many numbers at the end of the argument ``bounds`` say what is regularised."""
-        return 2 * self.switching + self.directional + self.throttled
+        balls = sum(part.branch == "throttled" and part.kind == "ball" for part in self.control_parts)
+        return 2 * self.switching + self.directional + self.throttled + balls
 
     @property
     def lower_bounds(self) -> frozenset[int]:
@@ -276,10 +277,14 @@ class ProblemSpec:
         return frozenset(found)
 
     @property
-    def rings(self) -> tuple[int, ...]:
-        """Places in the argument ``bounds`` of least norms; the largest ones follow them."""
-        at = [sum(part.bounds for part in self.control_parts[:k]) for k in range(len(self.control_parts))]
-        return tuple(i for i, part in zip(at, self.control_parts, strict=True) if part.kind == "annulus")
+    def rings(self) -> tuple[tuple[int, int], ...]:
+        """Places in the argument ``bounds`` of least norms, each with that of the largest."""
+        at = [sum(part.bounds for part in self.control_parts[:k]) for k in range(len(self.control_parts) + 1)]
+        each = list(zip(at, self.control_parts, strict=False))
+        balls = [i for i, part in each if part.kind == "ball" and part.branch == "throttled"]
+        after = at[-1] + self.regularising - len(balls)
+        found = [(i, i + 1) for i, part in each if part.kind == "annulus"]
+        return (*found, *((after + k, i) for k, i in enumerate(balls)))
 
     @property
     def separable(self) -> bool:

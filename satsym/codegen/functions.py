@@ -16,7 +16,7 @@ from satsym.symbolic.linear.notation import matrix_symbols
 from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.notation import costate_of, given, multipliers, on_reference, target
 from satsym.symbolic.principle import product
-from satsym.symbolic.principle.parts import FRACTION, SMOOTHING, limits_of
+from satsym.symbolic.principle.parts import FRACTION, SMOOTHING, limits_of, minimum_norm_of
 from satsym.symbolic.switching.notation import REGULARISED
 
 ARGUMENTS = tuple("t x original u lam nu gain riccati state_weight control_weight p bounds final".split())
@@ -129,8 +129,9 @@ def _bounds(derivation: Derivation) -> tuple[Variable, ...]:
     problem = derivation.problem
     found = limits_of(problem) if problem else ()
     if "smoothed_law" in derivation and product.STEP in derivation:
-        throttled = any(one.branch == "throttled" for one in product.found(derivation))
-        return (*found, SMOOTHING, *((FRACTION,) if throttled else ()))
+        parts = [one.part for one in product.throttled(derivation)]
+        least = (minimum_norm_of(part) for part in parts if part.kind == "ball")
+        return (*found, SMOOTHING, *((FRACTION,) if parts else ()), *least)
     return found + (REGULARISED if switching.switches(derivation) else ())
 
 
@@ -196,7 +197,8 @@ def _regular_law(derivation: Derivation) -> list[Function]:
     controls, law = symbols_of(derivation.model.controls), derivation.rhs("control_law")
     if product.STEP in derivation:
         h = derivation.equation("hamiltonian.H").rhs
-        h_u, law = [tidy(g, controls) for g in gradient(h, controls)], sp.Matrix(product.written_out(derivation, law))
+        h_u, law = [tidy(g, controls) for g in gradient(h, controls)], product.written_out(derivation, law)
+        law = sp.Matrix(product.with_minimum_norms(derivation, law))
     else:
         h_u = [e.rhs for e in derivation.step("stationarity").equations if e.lhs == 0]
     found = [
@@ -218,6 +220,9 @@ def _regular_law(derivation: Derivation) -> list[Function]:
     ]
     if product.STEP in derivation and "smoothed_law" in derivation:
         found.append(_regularised_cost(derivation))
+        if slopes := product.throttle_slopes(derivation):
+            summary = "How H changes with the norm of each vector that may be none, along its best direction."
+            found.append(_vector("throttle_slope", summary, "t x lam p", sp.Matrix(slopes)))
     return found
 
 

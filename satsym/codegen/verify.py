@@ -123,7 +123,10 @@ def _arguments(known: Symbols, spec: ProblemSpec, rng: random.Random) -> Argumen
         return random_number(symbol, rng)
 
     place: Arguments = {a: tuple(map(draw, known.of(a))) for a in ARGUMENTS if a != "t"}
-    place["bounds"] = tuple(-abs(b) if i in spec.lower_bounds else abs(b) for i, b in enumerate(place["bounds"]))
+    bounds = [-abs(b) if i in spec.lower_bounds else abs(b) for i, b in enumerate(place["bounds"])]
+    for ring in spec.rings:
+        bounds[ring[0]], bounds[ring[1]] = sorted(bounds[i] for i in ring)
+    place["bounds"] = tuple(bounds)
     return place | {"t": draw(known.t)}
 
 

@@ -50,7 +50,7 @@ def bounds(table: Mapping[str, Any], spec: ProblemSpec) -> tuple[Row, Row, Norms
 def _refuse_endless(spec: ProblemSpec, norms: Norms) -> None:
     """Refuse a vector on which H depends linearly and whose length nothing limits."""
     for part in spec.control_parts:
-        if part.branch == "direction" and part.normed and part.name not in norms:
+        if part.branch != "quadratic" and part.normed and part.name not in norms:
             raise BadInput(
                 f"[control.{part.name}]: nothing limits {', '.join(part.controls)}, which cost no square; "
                 f"write {MAX_NORM} = a number"

@@ -117,8 +117,8 @@ def random_places(kernels: Kernels, seed: int = SEED) -> dict[str, Any]:
         if name in ("lam", "bounds"):  # so that some bounds hold nearly every control, and some hold none
             varied = table[: b - spec.regularising] if name == "bounds" else table
             varied *= 10.0 ** np.array(rng.sample([-1.5 + 2.0 * k / PLACES for k in range(PLACES)], PLACES))
-        for i in spec.rings if name == "bounds" else ():
-            table[i : i + 2] = np.sort(table[i : i + 2], axis=0)
+        for ring in spec.rings if name == "bounds" else ():
+            table[list(ring)] = np.sort(table[list(ring)], axis=0)
         found[name] = tuple(table) if name in TUPLES else table
     if spec.has_cost and spec.control_set == "box" and not spec.switching:
         found["bounds"] = about_the_law(kernels, found)

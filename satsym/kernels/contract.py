@@ -80,6 +80,9 @@ DIRECTIONS = {"regularised_cost": _signature("t x lam p bounds")}
 """What a problem has besides in which some controls are directions: its ``canonical`` functions and ``boundary`` are
 those of the regularised problem, see :mod:`satsym.symbolic.principle.product`."""
 
+THROTTLES = {"throttle_slope": _signature("t x lam p", "r")}
+"""What such a problem has besides in which vectors may be none: their norms switch by its sign."""
+
 CURVE = {
     "beyond_switching_curve": _signature("t x p bounds final"),
     "feedback_law": _signature("t x p bounds final", "m"),
@@ -112,7 +115,7 @@ Eigenvalues are rows of a real and an imaginary part.
 
 POINTWISE = {
     **(_MOTION | _REFERENCE | _INVARIANTS | _POSITION | _QUANTITIES | _BALANCES | _KEPLERIAN | _COST),
-    **(_SWITCHING | DIRECTIONS | CURVE | LINEAR),
+    **(_SWITCHING | DIRECTIONS | THROTTLES | CURVE | LINEAR),
 }
 """All functions of one point in time that any model has."""
 
@@ -136,6 +139,7 @@ def pointwise(spec: ProblemSpec) -> dict[str, Signature]:
     found |= {name: LINEAR[name] for name in spec.linear}
     found |= _COST if spec.has_cost else {}
     found |= DIRECTIONS if spec.directional else {}
+    found |= THROTTLES if spec.throttled else {}
     if spec.switching:
         found = {name: signature for name, signature in found.items() if name not in _OF_REGULAR_LAWS} | _SWITCHING
         found |= CURVE if spec.switching_curve else {}
@@ -154,12 +158,13 @@ def sizes(spec: ProblemSpec) -> dict[str, int]:
     invariants (i), position components (q), constraints at the final time (c), choices and targets there (f), states
     and costates (z), residuals at the final time (e) and unknowns there (v); outputs (o), coefficients of the
     characteristic polynomial (g), parts of a complex number (w); position, velocity and gravitational parameter in
-    space (s); quantities (a), balances with their rates (y).
+    space (s); quantities (a), balances with their rates (y); vectors that may be none (r).
     """
     n, m, c = len(spec.states), len(spec.controls), len(spec.multipliers)
     counts = {"n": n, "m": m, "k": len(spec.parameters), "i": len(spec.invariants), "q": len(spec.position), "c": c}
     counts["b"] = {"box": 2 * m, "ball": 1}.get(spec.control_set or "free", 0) + spec.regularising
     counts["b"] += sum(part.bounds for part in spec.control_parts)
+    counts["r"] = sum(part.branch == "throttled" for part in spec.control_parts)
     counts |= {"o": len(spec.outputs), "g": n + 1, "w": 2, "s": 7}
     counts |= {"a": len(spec.quantities), "y": 2 * len(spec.balances)}
     return counts | {"f": 3 * n, "z": 2 * n, "e": n + c + 1, "v": 2 * n + c + 1}

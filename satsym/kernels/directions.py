@@ -56,7 +56,8 @@ def _longest(of: Evaluation, rows: list[int], part: ControlSet, within: ControlS
     ahead, back = (of("stationarity", u=side * unit)[rows] for side in (1.0, -1.0))
     slope, weight = (ahead + back) / 2.0, np.asarray(within.fraction) * (ahead - back)[0] / 2.0
     size = np.maximum(np.linalg.norm(slope, axis=0), 1e-300)
-    return np.asarray(-slope / size * np.clip((size - weight) / np.asarray(within.smoothing), 0.0, part.radius))
+    shortest = part.inner if part.throttled else 0.0
+    return np.asarray(-slope / size * np.clip((size - weight) / np.asarray(within.smoothing), shortest, part.radius))
 
 
 def outside_box(slope: Array, law: Array, low: Array, high: Array, curved: Array) -> Array:

@@ -26,7 +26,8 @@ Solver: TypeAlias = Callable[[Instance, Progress | None], Solution]
 def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     """Solve an instance by the method it names and certify the answer.
 
-    By default that is collocation, or exact arcs where controls switch between their bounds. Where collocation
+    By default that is collocation, or exact arcs where controls switch between their bounds; collocation again where
+    vectors might do so that have their full norms all the time. Where collocation
     finds nothing and no final state is given, the sweep is tried as well. The sweep is as accurate as its steps
     allow; a certificate asks for more, so its answers have none.
 
@@ -80,6 +81,9 @@ def _found(instance: Instance, progress: Progress | None) -> Solution:
     automatic = name == methods.AUTO
     method = methods.automatic(spec) if automatic else methods.METHODS[name]
     solution = _solved(method, instance, progress)
+    if automatic and spec.throttled and solution.status is Status.NOT_CONVERGED:
+        steady = _solved(methods.METHODS["collocation"], instance, progress)
+        return steady if steady.status.answered else solution
     if automatic and solution.status is Status.NOT_CONVERGED and not methods.refusal(methods.SWEEP.name, instance):
         return _confirmed(_solved(methods.SWEEP, instance, progress), method, progress)
     return solution

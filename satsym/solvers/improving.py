@@ -59,7 +59,7 @@ def improved(solver: Solver, instance: Instance, progress: Progress | None) -> S
 
 def bottomless(solution: Solution) -> Solution | None:
     """No answer, where what was found is stationary and other controls cost ever less; ``None`` where none shows."""
-    endless = None if solution.instance.model.spec.switching else fall(solution)
+    endless = None if solution.method == "bang-bang" else fall(solution)
     advice = "weigh the control or time more, shorten the time, or bound the control"
     return None if endless is None else without_minimiser(solution, f"{endless.message}; {advice}")
 
@@ -92,7 +92,7 @@ def starting_from(solution: Solution) -> Instance:
 
 def _departed(solver: Solver, solution: Solution, progress: Progress | None, deadline: float) -> Solution | None:
     """What a saddle's descents lead to; ``None`` where that is not cheaper."""
-    if solution.instance.model.spec.switching:
+    if solution.method == "bang-bang":
         return None
     for start in departures(solution):
         found = _again(replace(solution.instance, guess=start), solver, solution, progress, deadline)

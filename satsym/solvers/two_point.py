@@ -10,7 +10,7 @@ import numpy as np
 from satsym.instance import Instance
 from satsym.solution import Progress, Solution
 from satsym.solvers.cold_start import paths
-from satsym.solvers.cold_start.directions import directed
+from satsym.solvers.cold_start.directions import directed, full_length
 from satsym.solvers.cold_start.durations import free_duration
 from satsym.solvers.cold_start.first_minimum import cold_start
 from satsym.solvers.cold_start.origin import Origin, Start
@@ -80,7 +80,7 @@ def from_cold_start(instance: Instance, limits: Limits, effort: bool, accurate: 
         Whether free durations are looked for with great effort.
     """
     if instance.model.spec.directional:
-        led = directed(instance, limits, effort)
+        led = directed(instance, limits, effort, full_length)
         if isinstance(led, Extremal):
             return led
         (problem, start), duration = led, ""

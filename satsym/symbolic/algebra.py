@@ -71,10 +71,19 @@ def tidy(expression: sp.Expr, by: Sequence[sp.Symbol] = ()) -> sp.Expr:
 
 
 def _steep_named(expression: sp.Expr) -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]]:
-    """The expression with symbols for steep exponentials, and these: to sympy e^(500 h) is a 500th power of e^h."""
-    exponentials = [e for e in expression.atoms(sp.exp) if any(abs(c) > STEEP for c in _coefficients(e))]
+    """The expression with symbols for steep exponentials, and these: to sympy e^(500 h) is a 500th power of e^h.
+
+    So are those that scale a difference, such as e^(-k (h - 1)): their factors have no moderate numbers of their own.
+    """
+    scaled = (e for e in expression.atoms(sp.exp) if not e.args[0].is_number)
+    exponentials = [e for e in scaled if _scales_a_difference(e) or any(abs(c) > STEEP for c in _coefficients(e))]
     named = {e: sp.Dummy(f"e{k}", positive=True) for k, e in enumerate(sorted(exponentials, key=sp.default_sort_key))}
     return expression.xreplace(named), {dummy: e for e, dummy in named.items()}
+
+
+def _scales_a_difference(exponential: sp.exp) -> bool:
+    terms = sp.Add.make_args(sp.expand(exponential.args[0]))
+    return len(terms) > 1 and bool(set.intersection(*(term.free_symbols for term in terms)))
 
 
 def _coefficients(exponential: sp.exp) -> Iterable[sp.Expr]:

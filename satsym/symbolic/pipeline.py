@@ -18,7 +18,7 @@ from satsym.symbolic.derivation import Derivation, DerivationError, resolved
 from satsym.symbolic.linear import regulator, stability, structure
 from satsym.symbolic.model import MaybeStep, Model, Problem, variables_of
 from satsym.symbolic.motion import steps
-from satsym.symbolic.principle import effort, pontryagin, product, transversality
+from satsym.symbolic.principle import effort, minimised, pontryagin, product, transversality
 from satsym.symbolic.switching import curve as switching_curve
 from satsym.symbolic.switching import functions as switching
 from satsym.symbolic.switching import singular
@@ -45,7 +45,7 @@ PRODUCT_PRINCIPLE: tuple[MaybeStep, ...] = (
     product.control_parts,
     product.control_law,
     product.smoothed_law,
-    product.minimised_hamiltonian,
+    minimised.minimised_hamiltonian,
     pontryagin.state_equations,
     pontryagin.costate_equations,
     pontryagin.boundary_conditions,

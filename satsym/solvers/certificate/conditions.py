@@ -45,7 +45,8 @@ def boundary_residual(solution: Solution, flow: Flow) -> float:
     A given state is compared with its own size or, where the control moves the end by less, with that, down to a
     share of its size that rounding allows; a costate with its size and with that of the terms of the gradient
     of the terminal cost, which may cancel almost: an error of the state then counts alike in both. A terminal
-    constraint is compared with what the states contribute to it.
+    constraint is compared with what the states contribute to it, and H with its terms for costates of that size: at
+    the top of an ascent each of them vanishes.
     """
     instance, model = solution.instance, solution.instance.model
     n = len(instance.initial)
@@ -66,7 +67,7 @@ def boundary_residual(solution: Solution, flow: Flow) -> float:
     parts = [*found, *constraints]
     if instance.tf is None:
         rates = np.array(model.canonical(tf, x, lam, instance.parameters, instance.control_set.arguments))
-        parts.append(abs(residual[-1]) / max(float(np.abs(flow.lam[:, -1] * rates[:n]).sum()), 1e-300))
+        parts.append(abs(residual[-1]) / max(float(costate @ np.abs(rates[:n])), 1e-300))
     return float(max(parts))
 
 

@@ -39,7 +39,7 @@ def led(
     fractions
         Of the duration, from which others are looked for where it is free.
     """
-    from satsym.solvers.cold_start.directions import bent, directed
+    from satsym.solvers.cold_start.directions import bent, directed, full_length
     from satsym.solvers.collocation.extremal import Extremal
 
     plain = replace(instance, guess=Guess())
@@ -49,7 +49,7 @@ def led(
         starts = [partial(directed, one, effort=False) for one in beside]
 
     def attempt(start: Callable[..., object], limits: Limits) -> Found | None:
-        found = tried(partial(start, limits=limits))
+        found = tried(partial(start, limits=limits, unsmoothed=full_length))
         if not isinstance(found, tuple) or isinstance(found, Extremal):
             return None
         problem, begun = found

@@ -113,4 +113,6 @@ def _bounds_of_sets(instance: Instance, at: dict[str, Any]) -> tuple[Array, ...]
         found.append(np.full(u.shape[-1], max(float(np.mean(met)), 1e-300)))
     if spec.throttled:
         found.append(np.full(u.shape[-1], NARROW))
+        balls = sum(part.throttled and part.kind == "ball" for _, part in instance.control_set.parts)
+        found += [np.zeros(u.shape[-1])] * balls
     return tuple(found)

@@ -61,7 +61,7 @@ def examined(solution: Solution, deadline: float, seed: int = 0) -> tuple[Certif
 
 def _judged(solution: Solution, deadline: float, seed: int) -> tuple[Certificate, Competitor | None]:
     """The certificate that the kernels give, whatever they are worth, and the cheapest competitor."""
-    if solution.instance.model.spec.switching:
+    if solution.method == "bang-bang":
         from satsym.solvers.certificate.switching import conditions as switching
 
         with np.errstate(all="ignore"):

@@ -8,9 +8,10 @@ solution, until every direction has its full length: that is an extremal of the 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
+from typing import TypeVar
 
 import numpy as np
 
@@ -52,13 +53,22 @@ DIRECTIONS, TIMES = 24, (1e-3, 1e3)
 NEARER = 1e-6
 """By this share a motion has to come nearer to the end than one that is known, to be taken instead."""
 
+FAR = 0.03
+"""Share of the width of its range by which a norm is far from a bound."""
+
 FULL, BRIEF = 1e-9, 0.03
 """By this share a direction may be short of its length, and for this share of the time it may be shorter: where the
 slope of H vanishes for an instant only, such as at an end that leaves velocities free, smoothing never ends to show."""
 
 
-def directed(instance: Instance, limits: Limits, effort: bool) -> tuple[TwoPoint, Start] | Extremal:
-    """An extremal of low order within the bounds, and its problem; or how far one got.
+Exact = TypeVar("Exact")
+
+Unsmoothed = Callable[[TwoPoint, Instance, Curve, Start, Limits], Exact | Extremal]
+"""From an extremal within the bounds that is smoothed to one that is not."""
+
+
+def directed(instance: Instance, limits: Limits, effort: bool, unsmoothed: Unsmoothed[Exact]) -> Exact | Extremal:
+    """An extremal of the problem itself within the bounds, or how far one got.
 
     Parameters
     ----------
@@ -66,12 +76,15 @@ def directed(instance: Instance, limits: Limits, effort: bool) -> tuple[TwoPoint
         Of a problem in which some controls are directions.
     limits, effort
         When to stop, and whether free durations are looked for with great effort.
+    unsmoothed
+        What makes a smoothed extremal one of the problem.
     """
-    found: tuple[TwoPoint, Start] | Extremal | None = None
+    found: Exact | Extremal | None = None
     for one, much, factor in _begun(instance, effort):
         if limits.expired:
             break
-        again = tried(partial(_directed, one, instance, factor * full_length_smoothing(instance), limits, much))
+        smoothing = factor * full_length_smoothing(instance)
+        again = tried(partial(_directed, one, instance, smoothing, limits, much, unsmoothed))
         if again is not None and not isinstance(again, Extremal):
             return again
         found = found or again
@@ -97,8 +110,8 @@ def _begun(instance: Instance, effort: bool) -> Iterator[tuple[Instance, bool, f
 
 
 def _directed(
-    started: Instance, instance: Instance, smoothing: float, limits: Limits, effort: bool
-) -> tuple[TwoPoint, Start] | Extremal:
+    started: Instance, instance: Instance, smoothing: float, limits: Limits, effort: bool, unsmoothed: Unsmoothed[Exact]
+) -> Exact | Extremal:
     """The same from what one instance guesses, and this smoothing."""
     eased = regularised(started, smoothing, _first_share(instance))
     if eased.tf is None:
@@ -110,8 +123,8 @@ def _directed(
         problem = two_point(eased, eased.tf - eased.t0)
         start = cold_start(problem, limits, quick=not effort)
         if not start.found.minimum:
-            return _stopped(problem, instance, start.found.curve, f"no extremal found: {start.found.message}", limits)
-    return directed_from(problem, start, instance, limits)
+            return stopped(problem, instance, start.found.curve, f"no extremal found: {start.found.message}", limits)
+    return directed_from(problem, start, instance, limits, unsmoothed)
 
 
 def steered(instance: Instance) -> Instance | None:
@@ -167,8 +180,8 @@ def _in_direction(instance: Instance, direction: float) -> Array:
 
 
 def bent(
-    instance: Instance, rng: np.random.Generator, amplitude: float, limits: Limits
-) -> tuple[TwoPoint, Start] | Extremal:
+    instance: Instance, rng: np.random.Generator, amplitude: float, limits: Limits, unsmoothed: Unsmoothed[Exact]
+) -> Exact | Extremal:
     """The same from a path that is drawn, for a final time that is given."""
     assert instance.tf is not None
     waves = rng.integers(2**32)
@@ -178,13 +191,13 @@ def bent(
         path = paths.bent(problem, np.random.default_rng(waves), amplitude)
         found = from_path(problem.relaxed(float("inf")), path, limits)
         if found.minimum:
-            return directed_from(problem, Start(found, Origin.DRAWN, found.iterations), instance, limits)
-    return _stopped(problem, instance, found.curve, found.message, limits)
+            return directed_from(problem, Start(found, Origin.DRAWN, found.iterations), instance, limits, unsmoothed)
+    return stopped(problem, instance, found.curve, found.message, limits)
 
 
 def directed_from(
-    problem: TwoPoint, start: Start, instance: Instance, limits: Limits
-) -> tuple[TwoPoint, Start] | Extremal:
+    problem: TwoPoint, start: Start, instance: Instance, limits: Limits, unsmoothed: Unsmoothed[Exact]
+) -> Exact | Extremal:
     """The same from a minimum of the regularised problem without bounds."""
     curve = start.found.curve
     longest = max(_longest(problem, curve), 0.0)
@@ -194,7 +207,7 @@ def directed_from(
 
     curve, reached = follow(bounded, curve, limits)
     if reached < 1.0:
-        return _stopped(problem, instance, curve, Reason.BLOCKED.value.format(min(reached, 0.99)), limits)
+        return stopped(problem, instance, curve, Reason.BLOCKED.value.format(min(reached, 0.99)), limits)
     problem = problem.relaxed(0.0)
     smoothing = problem.control_set.smoothing
 
@@ -205,9 +218,9 @@ def directed_from(
         curve, reached = follow(weighed, curve, limits)
         if reached < 1.0:
             message = f"what the norm of a vector costs could be brought in only {reached:.0%}"
-            return _stopped(problem, instance, curve, message, limits)
+            return stopped(problem, instance, curve, message, limits)
         problem = weighed(1.0)
-    return _sharpened(problem, instance, curve, replace(start, bounded=True), limits)
+    return unsmoothed(problem, instance, curve, replace(start, bounded=True), limits)
 
 
 def _first_share(instance: Instance) -> float:
@@ -215,18 +228,11 @@ def _first_share(instance: Instance) -> float:
     return 0.0 if instance.model.spec.throttled else 1.0
 
 
-def _sharpened(
-    problem: TwoPoint, instance: Instance, curve: Curve, start: Start, limits: Limits
-) -> tuple[TwoPoint, Start] | Extremal:
-    """The extremal of the problem itself, from one that is smoothed."""
-    smoothing, exact = problem.control_set.smoothing, _exact(problem, instance)
+def levels(problem: TwoPoint, instance: Instance, curve: Curve, limits: Limits) -> Iterator[tuple[TwoPoint, Curve]]:
+    """Extremals that are smoothed less and less, from one that is smoothed, as far as that leads."""
+    yield problem, curve
+    smoothing = problem.control_set.smoothing
     for _ in range(LEVELS):
-        if _share_short(problem, curve) <= BRIEF:
-            outcome = newton(System(exact, curve.mesh, STAGES), curve.on(curve.mesh, STAGES))
-            if outcome is not None and outcome.solved:
-                cost = System(exact, curve.mesh, STAGES).cost(outcome.curve)
-                found = Attempt(outcome.curve, Reason.MINIMUM, 1, cost)
-                return exact, replace(start, found=found, steps=start.steps + outcome.iterations)
         before = smoothing
 
         def sharper(fraction: float, before: float = before, problem: TwoPoint = problem) -> TwoPoint:
@@ -234,20 +240,33 @@ def _sharpened(
 
         curve, reached = follow(sharper, curve, limits)
         if reached == 0.0:
-            message = f"a regularisation below {smoothing:.1e} was not reached"
-            if 0.0 < _share_short(problem, curve) < 1.0:
-                message = f"a direction seems to turn round where the slope of H passes through zero; {message}"
-            return _stopped(problem, instance, curve, message, limits)
+            return
         smoothing *= TIGHTER**-reached
         problem = replace(problem, instance=regularised(instance, smoothing, 1.0))
+        yield problem, curve
+
+
+def full_length(
+    problem: TwoPoint, instance: Instance, curve: Curve, start: Start, limits: Limits
+) -> tuple[TwoPoint, Start] | Extremal:
+    """An extremal of low order with directions of full length all the time, and its problem, from a smoothed one."""
+    exact, count = _exact(problem, instance), 0
+    for near in levels(problem, instance, curve, limits):
+        (problem, curve), count = near, count + 1
+        if _share_short(problem, curve) <= BRIEF:
+            outcome = newton(System(exact, curve.mesh, STAGES), curve.on(curve.mesh, STAGES))
+            if outcome is not None and outcome.solved:
+                cost = System(exact, curve.mesh, STAGES).cost(outcome.curve)
+                found = Attempt(outcome.curve, Reason.MINIMUM, 1, cost)
+                return exact, replace(start, found=found, steps=start.steps + outcome.iterations)
     message = "the slope of H by a direction vanishes for some time, and no law is known there"
+    if count <= LEVELS:
+        message = f"a regularisation below {problem.control_set.smoothing:.1e} was not reached"
+        if 0.0 < _share_short(problem, curve) < 1.0:
+            message = f"a direction seems to turn round where the slope of H passes through zero; {message}"
     if instance.model.spec.throttled:
-        cost = System(problem, curve.mesh, curve.order).cost(curve) * problem.scale.cost
-        message = (
-            f"a vector is none for some time, and when it switches is not found exactly; smoothed by {smoothing:.1e} "
-        )
-        message += f"the cost is {cost:.8g}"
-    return _stopped(problem, instance, curve, message, limits)
+        message = 'a vector has not its full length all the time: use method "bang-bang"'
+    return stopped(problem, instance, curve, message, limits)
 
 
 def _exact(problem: TwoPoint, instance: Instance) -> TwoPoint:
@@ -268,7 +287,7 @@ def _lengths(problem: TwoPoint, curve: Curve) -> list[tuple[float, Array]]:
         if not part.directed:
             continue
         longer = gain(problem.instance, places, t, z[:n], z[n:])
-        length = np.clip(longer / stated.smoothing, 0.0, part.radius)
+        length = np.clip(longer / stated.smoothing, part.inner if part.throttled else 0.0, part.radius)
         found.append((stated.parts[k][1].radius, length))
     return found
 
@@ -278,13 +297,23 @@ def _longest(problem: TwoPoint, curve: Curve) -> float:
     return max(float(length.max()) - limit for limit, length in _lengths(problem.relaxed(float("inf")), curve))
 
 
+def fraction_between(problem: TwoPoint, curve: Curve) -> float:
+    """The largest share of the time for which the norm of a direction is far from both of its bounds."""
+    least = (part.inner for _, part in problem.control_set.parts if part.directed)
+    shares = []
+    for low, (limit, length) in zip(least, _lengths(problem, curve), strict=True):
+        off = FAR * (limit - low)
+        shares.append(float(((length > low + off) & (length < limit - off)).mean()))
+    return max(shares, default=0.0)
+
+
 def _share_short(problem: TwoPoint, curve: Curve) -> float:
     """The largest share of the time for which a direction has not its full length."""
     found = (float((length < (1.0 - FULL) * limit).mean()) for limit, length in _lengths(problem, curve))
     return max(found, default=0.0)
 
 
-def _stopped(problem: TwoPoint, instance: Instance, curve: Curve, message: str, limits: Limits) -> Extremal:
+def stopped(problem: TwoPoint, instance: Instance, curve: Curve, message: str, limits: Limits) -> Extremal:
     """No extremal, and why."""
     status = Status.TIME_LIMIT if limits.expired else Status.NOT_CONVERGED
     words = f"time was up: {message}" if limits.expired else message

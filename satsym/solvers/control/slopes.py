@@ -29,7 +29,8 @@ def slope(instance: Instance, places: Sequence[int], t: Array, x: Array, lam: Ar
     u = np.zeros((len(model.spec.controls), len(t)))
 
     def slopes() -> Array:
-        return np.array(np.broadcast_to(model.stationarity_batch(t, x, u, lam, p), u.shape))[list(places)]
+        with np.errstate(all="ignore"):  # the norm of another vector has no slope where that is none
+            return np.array(np.broadcast_to(model.stationarity_batch(t, x, u, lam, p), u.shape))[list(places)]
 
     if places[0] in instance.control_set.angles:
         across = slopes()
@@ -50,7 +51,8 @@ def gain(instance: Instance, places: Sequence[int], t: Array, x: Array, lam: Arr
         return np.asarray(size)
     u = np.zeros((len(model.spec.controls), len(t)))
     u[list(places)] = -against / np.maximum(size, 1e-300)
-    along = np.broadcast_to(model.stationarity_batch(t, x, u, lam, p), u.shape)[list(places)]
+    with np.errstate(all="ignore"):
+        along = np.broadcast_to(model.stationarity_batch(t, x, u, lam, p), u.shape)[list(places)]
     return np.asarray(-(along * u[list(places)]).sum(axis=0))
 
 

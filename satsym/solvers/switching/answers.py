@@ -12,6 +12,7 @@ from satsym.solution import Iteration, Solution
 from satsym.solvers import iteration
 from satsym.solvers.switching.attempt import Exact
 from satsym.solvers.switching.cold_start.homotopy import Stopped
+from satsym.solvers.switching.throttled import by_control
 from satsym.status import Status
 
 
@@ -37,7 +38,7 @@ def answered(instance: Instance, exact: Exact, history: tuple[Iteration, ...], b
         x=z[:n],
         u=u,
         lam=z[n:],
-        switching_times=tuple(tuple(own.tolist()) for own in structure.by_control(at.times)),
+        switching_times=by_control(instance, [tuple(own.tolist()) for own in structure.by_control(at.times)]),
         iterations=exact.iterations,
         history=history,
         wall_s=time.perf_counter() - began,

@@ -28,6 +28,9 @@ SOLVED = 1e-10
 SIZED = 1e-6
 """Share of its size in a guess that a state has at least in the extremal."""
 
+FAINT = 1e-40
+"""Share of the largest size below which another is none: what moves only because costates have no exact zeros."""
+
 EVALUATED = 250
 """Evaluations of an arc, roughly: how the work of corrections is counted."""
 
@@ -158,7 +161,7 @@ def sizes(instance: Instance, at: Guess) -> Array:
             states = np.maximum(states, np.abs(arc.after[:n]))
     except FAILURES:
         pass
-    states = np.where(states > 0.0, states, 1.0)
+    states = np.where(states > FAINT * states.max(), states, 1.0)
     costates = np.abs(at.costates)
     cost = float((states * costates).max())
     return np.concatenate([states, np.maximum(costates, 1e-3 * cost / states if cost > 0.0 else 1.0)])

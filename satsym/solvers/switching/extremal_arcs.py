@@ -12,6 +12,7 @@ from satsym.instance import Instance
 from satsym.solvers.simulation.extrapolation import integrate
 from satsym.solvers.switching.field import Field
 from satsym.solvers.switching.structure import Event, Structure
+from satsym.solvers.switching.throttled import equations
 
 TOLERANCE = 3e-14
 """Error of a step, relative to the size of each component."""
@@ -103,7 +104,7 @@ def extremal(instance: Instance, structure: Structure, at: Unknowns, accuracy: A
     arcs: list[Arc] = []
     for event in (*structure.events(at.times), None):
         levels = tuple(row[k] for row, k in zip(structure.levels, number, strict=True))
-        field = Field(instance, levels)
+        field = equations(instance, levels)
         end = at.end if event is None else event.time
         after, matrix = _piece(field, begin, end, z, accuracy)
         if accuracy.slopes:

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.control_set import Row
 from satsym.instance import Instance
 from satsym.solvers.switching.structure import LOWER, SINGULAR, UPPER
 
@@ -34,9 +35,13 @@ class Field:
         self.model, self.p, self.n = instance.model, instance.parameters, len(instance.initial)
         self.saturated = tuple(
             high if level == UPPER else low if level == LOWER else min(max(0.0, low), high)
-            for level, low, high in zip(levels, instance.lower, instance.upper, strict=True)
+            for level, low, high in zip(levels, *instance.control_set.switching, strict=True)
         )
         self.singular = levels.index(SINGULAR) if SINGULAR in levels else None
+
+    def kept_at(self, t: float, z: list[float]) -> Row:
+        """The argument ``bounds`` of kernels that keep what switches as it is there."""
+        return self.instance.control_set.saturated(self.control(t, z)).arguments
 
     def control(self, t: float, z: list[float]) -> tuple[float, ...]:
         """The controls, shape (m,)."""
@@ -72,6 +77,16 @@ class Field:
         self.model.dynamics_batch(t, x, u, self.p, out=found[: self.n])
         self.model.costate_rate_batch(t, x, u, lam, self.p, out=found[self.n :])
         return u, found
+
+    def sigma(self, t: float, z: list[float], control: int) -> float:
+        """A switching function."""
+        return float(self.model.switching_function(t, z[: self.n], z[self.n :], self.p)[control])
+
+    def switching(self, t: float, z: list[float], control: int) -> tuple[float, float]:
+        """A switching function and its rate."""
+        x, lam = z[: self.n], z[self.n :]
+        rate = self.model.switching_rate(t, x, self.control(t, z), lam, self.p)[control]
+        return self.sigma(t, z, control), float(rate)
 
     def gradient(self, t: float, z: list[float], control: int) -> Array:
         """A switching function by states and costates, shape (2n,).

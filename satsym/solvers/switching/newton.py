@@ -117,10 +117,8 @@ class Equations:
         """Rows of the generated boundary function, with the control of the last arc kept."""
         instance, n = self.instance, len(self.instance.initial)
         model, z = instance.model, last.after.tolist()
-        u = last.field.control(at.end, z)
-        kept = instance.control_set.saturated(u).arguments
         point = (at.end, tuple(z[:n]), tuple(z[n:]), tuple(at.multipliers))
-        arguments = (*point, instance.parameters, kept, final_argument(instance))
+        arguments = (*point, instance.parameters, last.field.kept_at(at.end, z), final_argument(instance))
         residual = np.array(model.boundary(*arguments))
         by = np.array(model.boundary_jacobian(*arguments)).reshape(len(residual), -1)
         count = len(at.multipliers)
@@ -180,7 +178,7 @@ class _Switch:
         field, place = self.field, (self.t, self.z, self.control)
         gradient = field.gradient(*place)
         target = switching_value(field, *place, levels)
-        sigma, rate = switching(field, *place)
+        sigma, rate = field.switching(*place)
         size = max(float(np.abs(gradient) @ sizes), abs(target), 1e-300)
         if target:
             by_state, along = field.weight_gradient(*place)
@@ -191,7 +189,7 @@ class _Switch:
         """The same for the rate of the switching function."""
         field, place = self.field, (self.t, self.z, self.control)
         gradient = field.rate_gradient(*place)
-        _, rate = switching(field, *place)
+        _, rate = field.switching(*place)
         size = max(float(np.abs(gradient) @ sizes), 1e-300)
         return rate / size, self._moving(gradient, 0.0) / size
 
@@ -202,13 +200,6 @@ class _Switch:
             place = len(self.z) // 2 + self.column
             row[place] += rate - gradient @ np.array(self.field.rates(self.t, self.z))
         return np.asarray(row)
-
-
-def switching(field: Field, t: float, z: list[float], control: int) -> tuple[float, float]:
-    """A switching function and its rate."""
-    x, lam = z[: field.n], z[field.n :]
-    sigma = field.model.switching_function(t, x, lam, field.p)[control]
-    return sigma, field.model.switching_rate(t, x, field.control(t, z), lam, field.p)[control]
 
 
 def switching_value(field: Field, t: float, z: list[float], control: int, levels: tuple[int, int]) -> float:

@@ -18,14 +18,13 @@ from satsym.solvers.iteration import Limits, watched
 from satsym.solvers.nearest_end import nearest
 from satsym.solvers.switching.answers import answered, without
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
-from satsym.solvers.switching.cold_start import by_scouts, homotopy, minimum_effort
+from satsym.solvers.switching.cold_start import by_scouts, by_throttle, homotopy, minimum_effort
 from satsym.solvers.switching.cold_start import saturated as held
 from satsym.solvers.switching.cold_start.recognition import Sample, guess, inside, sample
 from satsym.solvers.switching.linear import by_reach
 from satsym.solvers.switching.minimum_time import minimum_time
-from satsym.solvers.switching.newton import switching
-from satsym.solvers.switching.refusals import refuse
-from satsym.solvers.switching.structure import REST, Guess, Structure
+from satsym.solvers.switching.refusals import refuse, refuse_angles
+from satsym.solvers.switching.structure import REST, UPPER, Guess, Structure
 from satsym.solvers.switching.variants import neighbours
 from satsym.status import Status
 
@@ -43,6 +42,9 @@ BESIDE, COMPARED_BESIDE = (0.02, 0.05, 0.12, 0.3, 0.7), (0.035, 0.08, 0.2, 0.45,
 
 ADOPTED = 3
 """Times that something cheaper is looked for, as long as there is."""
+
+GIVEN = np.sqrt(2.0) ** np.arange(-8.0, 5.0)
+"""Durations that are given in turn where a free one is not found, as shares of the motion's own time scale."""
 
 STEADY = 0.5
 """Share of the time off the bounds that is left after smoothing less, where that time is a singular arc's."""
@@ -68,6 +70,8 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     BadInput
         If a bound is missing, or the motion starts where it is to end.
     """
+    if instance.model.spec.throttled:
+        return _throttled(instance, progress)
     refuse(instance)
     began = time.perf_counter()
     limits, history = watched(instance, progress)
@@ -78,6 +82,21 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         if isinstance(found, homotopy.Stopped):
             return without(instance, _out_of_reach(found, limits), tuple(history), began)
         return answered(instance, found, tuple(history), began)
+
+
+def _throttled(instance: Instance, progress: Progress | None) -> Solution:
+    """Solve a problem of vectors that are throttled, unless they have their full norms all the time."""
+    refuse_angles(instance)
+    began = time.perf_counter()
+    limits, history = watched(instance, progress)
+    with np.errstate(all="ignore"):
+        found = by_throttle.best(instance, limits)
+        found = _out_of_reach(found, limits) if isinstance(found, homotopy.Stopped) else found
+    if not isinstance(found, homotopy.Stopped) and all(row == (UPPER,) for row in found.refined.structure.levels):
+        found = homotopy.Stopped(Status.NOT_CONVERGED, 'nothing switches: use method "collocation"')
+    if isinstance(found, homotopy.Stopped):
+        return without(instance, found, tuple(history), began)
+    return answered(instance, found, tuple(history), began)
 
 
 def _by_least_time(instance: Instance, stopped: homotopy.Stopped, limits: Limits) -> Exact | homotopy.Stopped:
@@ -185,7 +204,23 @@ def _by_effort(instance: Instance, limits: Limits) -> Exact | homotopy.Stopped:
                 others = _beside(instance, exact.refined.at.end - instance.t0, BESIDE, limits)
                 best = min([exact, *others], key=lambda one: one.trajectory.cost(instance))
                 return replace(best, origin=Origin.EFFORT)
-    return _smoothed(instance, limits)
+    found = _smoothed(instance, limits)
+    stuck = isinstance(found, homotopy.Stopped) and found.status is Status.NOT_CONVERGED and instance.tf is None
+    return (_in_given_durations(instance, limits) if stuck else None) or found
+
+
+def _in_given_durations(instance: Instance, limits: Limits) -> Exact | None:
+    """The extremal of a free duration to which one of a given duration leads, the shortest in which there is one."""
+    for share in (minimum_effort.first_duration(instance) * GIVEN).tolist():
+        near = _smoothed(replace(instance, tf=instance.t0 + share, tf_guess=None), limits, thorough=False)
+        if not isinstance(near, homotopy.Stopped):
+            at = near.refined.at
+            freed = attempt(instance, Guess(near.refined.structure, at.times, at.costates, at.end), limits)
+            if freed is not None:
+                return replace(freed, origin=near.origin, smoothing=near.smoothing)
+        if limits.expired:
+            break
+    return None
 
 
 def _beside(instance: Instance, duration: float, fractions: Sequence[float], limits: Limits) -> list[Exact]:
@@ -252,7 +287,7 @@ def _with_coasts(instance: Instance, hurried: Exact) -> Guess:
     weights = instance.model.magnitude_weight(instance.t0, instance.initial, instance.parameters)
     for arc in hurried.refined.arcs:
         if arc.event is not None:
-            _, rate = switching(arc.field, arc.end, arc.after.tolist(), arc.event.control)
+            _, rate = arc.field.switching(arc.end, arc.after.tolist(), arc.event.control)
             rates.append(2.0 * weights[arc.event.control] / max(abs(rate) * spare, 1e-300))
     for row, own, weight in zip(structure.levels, structure.by_control(at.times), weights, strict=True):
         if weight > 0.0:

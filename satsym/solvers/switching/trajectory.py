@@ -13,6 +13,7 @@ from satsym.solvers.collocation.gauss import scheme
 from satsym.solvers.simulation.extrapolation import integrate, leap
 from satsym.solvers.switching.extremal_arcs import TOLERANCE, WHOLE, Arc
 from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER
+from satsym.solvers.switching.throttled import signs
 
 PANELS, POINTS = 20, 8
 """Of a whole trajectory, and Gauss points in each: where its cost and its switching functions are looked at."""
@@ -116,7 +117,7 @@ def violations(trajectory: Trajectory, slack: float = 1e-9) -> list[Violation]:
         z = np.concatenate([arc.before[:, None], values, arc.after[:, None], trajectory.at(which, ends)[0]], axis=1)
         order = np.argsort(times, kind="stable")
         times, z = times[order], z[:, order]
-        tables.append((times, z, *switching_functions(arc, times, z)))
+        tables.append((times, z, *signs(arc.field.instance, times, z[: arc.field.n], z[arc.field.n :])))
     largest = np.max([np.abs(sigma).max(axis=1) + weight.max(axis=1) for *_, sigma, weight in tables], axis=0)
     instance = trajectory.arcs[0].field.instance
     largest = np.maximum(largest, DECIDING * deciding(instance, largest))
@@ -145,7 +146,8 @@ def deciding(instance: Instance, sizes: Array) -> Array:
     sizes
         Of all switching functions, shape (m,).
     """
-    room = np.maximum(np.array(instance.upper) - np.array(instance.lower), 1e-300)
+    low, high = map(np.array, instance.control_set.switching)
+    room = np.maximum(high - low, 1e-300)
     return np.asarray((sizes * room).max() / room)
 
 
@@ -162,15 +164,6 @@ def _beyond(arc: Arc, times: Array, z: Array, control: int) -> tuple[NDArray[np.
     u = arc.field.along(times, z)[0][control]
     excess = np.maximum(low - u, u - high) / (high - low)
     return np.where(u < (low + high) / 2.0, LOWER, UPPER), np.where(np.isfinite(u), excess, np.inf)
-
-
-def switching_functions(arc: Arc, times: Array, z: Array) -> tuple[Array, Array]:
-    """Switching functions and weights of |u| along an arc, shapes (m, N)."""
-    field = arc.field
-    x, lam = z[: field.n], z[field.n :]
-    sigma = field.model.switching_function_batch(times, x, lam, field.p)
-    weight = field.model.magnitude_weight_batch(times, x, field.p)
-    return sigma, np.broadcast_to(weight, sigma.shape)
 
 
 def runs(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:

@@ -50,7 +50,8 @@ def _with_one_more(instance: Instance, guess: Guess) -> list[Guess]:
     """The same with one more short arc at the start or at the end of a control."""
     found = []
     for control, row in enumerate(guess.structure.levels):
-        if instance.lower[control] == instance.upper[control]:
+        low, high = instance.control_set.switching
+        if low[control] == high[control]:
             continue
         own = guess.structure.by_control(guess.times)
         begin, end = min([*own[control], guess.end]), max([instance.t0, *own[control]])

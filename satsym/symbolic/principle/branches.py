@@ -131,8 +131,6 @@ def _of_vector(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr]) -> Mini
     if weight != 0:
         if weight.has(norm, *part.symbols) or any(slope.has(norm, *part.symbols) for slope in slopes):
             raise DerivationError(f"{name}: H is not linear in {controls} and in their norm, which is not supported")
-        if part.kind != "ball":
-            raise DerivationError(f"{name}: the norm of {controls} in H is supported for a ball only")
         if len(slopes) == 1:
             raise DerivationError(
                 f"{name}: the norm of {controls} alone is its magnitude; state a box, and |{controls}|"

@@ -17,6 +17,16 @@ SMOOTHING = Variable("smoothing", r"\varepsilon", meaning="weight of half the sq
 FRACTION = Variable("norm_factor", r"\kappa", meaning="factor of what norms add to H in it", positive=True)
 """What follows that where H depends on norms of such vectors."""
 
+
+def minimum_norm_of(part: Part) -> Variable:
+    """What follows these for each ball in which a vector may be none: the norm that it has at least, which is none.
+
+    With that and the largest norm the same, the law gives a vector of this norm.
+    """
+    latex = rf"u_{{\mathrm{{{part.name}}}}}^{{\min}}"
+    return Variable(f"{part.name}_least", latex, part.controls[0].unit, positive=True)
+
+
 SINGLE = "control"
 """The name of the one set of a problem that was stated in short."""
 

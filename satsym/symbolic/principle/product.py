@@ -17,7 +17,6 @@ import sympy as sp
 
 from satsym.spec import ControlSetKind, PartKind
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import tidy
 from satsym.symbolic.checks import Point, compare, never_below, numeric
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Conclusion, Derivation, DerivationError, Equation, Step
@@ -26,7 +25,7 @@ from satsym.symbolic.model import Problem, symbols_of
 from satsym.symbolic.principle import control_sets
 from satsym.symbolic.principle import notation as pn
 from satsym.symbolic.principle.branches import Minimum, by_circle, minima, norm_of, with_norms
-from satsym.symbolic.principle.parts import FRACTION, SMOOTHING, limits_of, parts_of
+from satsym.symbolic.principle.parts import FRACTION, SMOOTHING, limits_of, minimum_norm_of, parts_of
 from satsym.symbolic.principle.pontryagin import COMPETITORS, costates
 
 STEP = "control_parts"
@@ -59,12 +58,12 @@ def applies(so_far: Derivation) -> bool:
 def found(so_far: Derivation) -> tuple[Minimum, ...]:
     """The branches of a derivation that has its Hamiltonian."""
     h = so_far.equation("hamiltonian.H").rhs
-    return minima(so_far.name, h, parts_of(_problem(so_far)))
+    return minima(so_far.name, h, parts_of(stated(so_far)))
 
 
 def control_parts(so_far: Derivation) -> Step:
     """What H is of the controls of each set."""
-    problem, h = _problem(so_far), so_far.equation("hamiltonian.H").rhs
+    problem, h = stated(so_far), so_far.equation("hamiltonian.H").rhs
     every = found(so_far)
     equations: list[Equation] = []
     for one in every:
@@ -86,7 +85,7 @@ def control_parts(so_far: Derivation) -> Step:
 
 def control_law(so_far: Derivation) -> Step:
     """The control that minimises H over the product of the sets: the minimiser over each."""
-    problem, every = _problem(so_far), found(so_far)
+    problem, every = stated(so_far), found(so_far)
     laws = {u: law for one in every for u, law in zip(one.part.symbols, _law(problem, one), strict=True)}
     equations = tuple(Equation(u.name, n.optimal(u), laws[u]) for u in symbols_of(problem.model.controls))
     h = so_far.equation("hamiltonian.H").rhs
@@ -102,7 +101,7 @@ def control_law(so_far: Derivation) -> Step:
 
 def smoothed_law(so_far: Derivation) -> Step | None:
     """Where controls are directions: H of the problem in which half their squares cost a little, and its law."""
-    problem = _problem(so_far)
+    problem = stated(so_far)
     directions = [one for one in found(so_far) if one.branch != "quadratic"]
     if not directions:
         return None
@@ -123,6 +122,8 @@ def smoothed_law(so_far: Derivation) -> Step | None:
         margin = []
         for scale in SCALES:
             here = {**point, **{c: scale * point[c] for c in costates(so_far)}}
+            for one in directions:
+                here = ordered(one, here)
             law = chosen(here)
             best = value({**here, **dict(zip(short, law, strict=True))})[0]
             for _ in range(COMPETITORS):
@@ -131,7 +132,10 @@ def smoothed_law(so_far: Derivation) -> Step | None:
                     limit = here[one.part.bounds[-1]]
                     bounds = {sp.Symbol("radius"): limit}
                     size = len(pn.components_of(one.part))
-                    other += control_sets.admissible("ball", bounds, list(bounds), size, rng, 1)[0]
+                    if one.branch == "throttled":
+                        other += _drawn(one, here, rng).values()
+                    else:
+                        other += control_sets.admissible("ball", bounds, list(bounds), size, rng, 1)[0]
                 margin.append(sign(problem) * (value({**here, **dict(zip(short, other, strict=True))})[0] - best))
         return margin
 
@@ -144,8 +148,8 @@ def smoothed_law(so_far: Derivation) -> Step | None:
 
 def relaxed(so_far: Derivation, expressions: Iterable[sp.Expr]) -> list[sp.Expr]:
     """Expressions with directions as vectors that may be shorter: what the regularised problem has in place of them."""
-    values = [with_norms(e, parts_of(_problem(so_far))) for e in expressions]
-    for part in parts_of(_problem(so_far)):
+    values = [with_norms(e, parts_of(stated(so_far))) for e in expressions]
+    for part in parts_of(stated(so_far)):
         if part.kind != "angle":
             continue
         (angle,), (along, across) = part.symbols, pn.components_of(part)
@@ -159,7 +163,7 @@ def relaxed(so_far: Derivation, expressions: Iterable[sp.Expr]) -> list[sp.Expr]
 
 def regularised_law(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
     """What takes the place of controls, or of the components of directions, in the regularised problem."""
-    problem, every = _problem(so_far), found(so_far)
+    problem, every = stated(so_far), found(so_far)
     laws: dict[sp.Symbol, sp.Expr] = {}
     for one in every:
         if one.branch != "quadratic":
@@ -168,7 +172,31 @@ def regularised_law(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
                 laws[norm_of(one.part)] = FACTOR * _size(problem, one)
         else:
             laws |= dict(zip(one.part.symbols, _law(problem, one), strict=True))
-    return dict(zip(laws, written_out(so_far, laws.values()), strict=True))
+    return dict(zip(laws, with_minimum_norms(so_far, written_out(so_far, laws.values())), strict=True))
+
+
+def throttled(so_far: Derivation) -> tuple[Minimum, ...]:
+    """The sets of vectors that may be none, or as short as they may be."""
+    return tuple(one for one in found(so_far) if one.branch == "throttled")
+
+
+def with_minimum_norms(so_far: Derivation, expressions: Iterable[sp.Expr]) -> list[sp.Expr]:
+    """Laws in which vectors in balls have a least norm, by which they can be kept at any."""
+    least = {one.part.bounds[-1]: symbols_of((minimum_norm_of(one.part),))[0] for one in throttled(so_far)}
+
+    def raised(value: sp.Expr, lower: sp.Expr, upper: sp.Expr) -> sp.Expr:
+        return Clip(value, least[upper] if lower == 0 and upper in least else lower, upper)
+
+    return [e.replace(Clip, raised) for e in expressions]
+
+
+def throttle_slopes(so_far: Derivation) -> list[sp.Expr]:
+    """How H changes with the norm of each of these vectors, in the direction in which it changes least."""
+    slopes = []
+    for one in throttled(so_far):
+        length = sp.sqrt(sum((s**2 for s in pn.slopes_of(one)), sp.Integer(0)))
+        slopes.append(pn.weight_of(one.part.symbols[0]) - sign(stated(so_far)) * length)
+    return written_out(so_far, slopes)
 
 
 def effort(so_far: Derivation) -> sp.Expr:
@@ -219,7 +247,7 @@ def _size(problem: Problem, one: Minimum) -> sp.Expr:
     """The norm of that minimiser, where H depends on the norm."""
     length = sp.sqrt(sum((s**2 for s in pn.slopes_of(one)), sp.Integer(0)))
     margin = length - sign(problem) * FACTOR * pn.weight_of(one.part.symbols[0])
-    return Clip(margin / EPSILON, sp.Integer(0), one.part.bounds[-1])
+    return Clip(margin / EPSILON, one.part.bounds[0] if one.part.kind == "annulus" else 0, one.part.bounds[-1])
 
 
 def _adds_up(so_far: Derivation, h: sp.Expr, every: Sequence[Minimum]) -> Any:
@@ -252,7 +280,7 @@ def _adds_up(so_far: Derivation, h: sp.Expr, every: Sequence[Minimum]) -> Any:
 
 def _convex(so_far: Derivation, one: Minimum) -> Any:
     """Check that H_uu of one set is positive definite."""
-    problem, h = _problem(so_far), so_far.equation("hamiltonian.H").rhs
+    problem, h = stated(so_far), so_far.equation("hamiltonian.H").rhs
     assert one.hessian is not None
     minors = [(sign(problem) * one.hessian[:k, :k]).det() for k in range(1, one.hessian.rows + 1)]
     leading = numeric(minors)
@@ -267,7 +295,7 @@ def _convex(so_far: Derivation, one: Minimum) -> Any:
 
 def _cheapest(so_far: Derivation, h: sp.Expr, laws: Sequence[sp.Expr]) -> Any:
     """Check that no admissible control makes H better, set by set and all together."""
-    problem, every = _problem(so_far), found(so_far)
+    problem, every = stated(so_far), found(so_far)
     controls = symbols_of(problem.model.controls)
     value, chosen, limits = numeric([h]), numeric(list(laws)), symbols_of(limits_of(problem))
 
@@ -276,7 +304,7 @@ def _cheapest(so_far: Derivation, h: sp.Expr, laws: Sequence[sp.Expr]) -> Any:
         for scale in SCALES:
             here = {**point, **{c: scale * point[c] for c in costates(so_far)}}
             for one in every:
-                here = _ordered(one, here)
+                here = ordered(one, here)
             law = dict(zip(controls, chosen(here), strict=True))
             best = value({**here, **law})[0]
             for one in every:
@@ -295,7 +323,8 @@ def _bare(kind: PartKind) -> ControlSetKind:
     return "free" if kind == "angle" else "ball" if kind == "annulus" else kind
 
 
-def _ordered(one: Minimum, point: Point) -> Point:
+def ordered(one: Minimum, point: Point) -> Point:
+    """A point with bounds that leave something between them."""
     if one.part.kind == "angle":
         return {**point, one.part.bounds[0]: mp.mpf(1)}
     if one.part.kind == "annulus":
@@ -326,56 +355,14 @@ def _drawn(one: Minimum, point: Point, rng: random.Random) -> dict[sp.Symbol, An
     return dict(zip(symbols, shown, strict=True))
 
 
-def minimised_hamiltonian(so_far: Derivation) -> Step:
-    """H* = H with the law in it, where no bound of a box or on a square is active."""
-    problem, every = _problem(so_far), found(so_far)
-    h = so_far.equation("hamiltonian.H").rhs
-    least: dict[sp.Symbol, sp.Expr] = {}
-    gained = sp.Integer(0)
-    for one in every:
-        if one.branch == "quadratic":
-            least |= dict(zip(one.part.symbols, one.hats, strict=True))
-            continue
-        least |= dict.fromkeys(pn.components_of(one.part), sp.Integer(0))
-        length = sp.Integer(1) if one.part.kind == "angle" else one.part.bounds[-1]
-        slope = sp.sqrt(sp.factor(sum((s**2 for s in one.vector), sp.Integer(0))))
-        if one.weight != 0:
-            least[norm_of(one.part)] = sp.Integer(0)
-            slope = sp.Max(slope - sign(problem) * one.weight, 0)
-        gained += sign(problem) * length * slope
-    (plain,) = relaxed(so_far, [h])
-    h_star = tidy(plain.xreplace(least), ()) - gained
-    value, at_minimum = numeric([h]), numeric([h_star])
-    laws = [so_far.equation(f"control_law.{u.name}").rhs for u in symbols_of(problem.model.controls)]
-    wide = _wide(every)
-    chosen = numeric(written_out(so_far, [law.xreplace(EXACT) for law in laws]))
+def stated(so_far: Derivation) -> Problem:
+    """The problem that is derived from.
 
-    def sides(point: Point) -> tuple[list[Any], list[Any]]:
-        here = {**point, **wide}
-        law = dict(zip(symbols_of(problem.model.controls), chosen(here), strict=True))
-        return at_minimum(here), value({**here, **law})
-
-    everything = h.free_symbols.union(h_star.free_symbols, symbols_of(limits_of(problem)), costates(so_far))
-    check = compare("H at the minimiser", everything, sides)
-    name = "minimised_hamiltonian" if problem.convention == "minimum" else "maximised_hamiltonian"
-    equation = Equation("H_star", n.MINIMISED, h_star)
-    return Step(name, worded("substitute controls", problem), (equation,), ("hamiltonian", "control_law"), (check,))
-
-
-def _wide(every: Sequence[Minimum]) -> dict[sp.Symbol, Any]:
-    """Bounds that are not active, of the sets on which H is quadratic."""
-    found: dict[sp.Symbol, Any] = {}
-    for one in every:
-        if one.branch == "quadratic" and one.part.kind == "box":
-            half = len(one.part.bounds) // 2
-            found |= dict.fromkeys(one.part.bounds[:half], mp.mpf(-(10**9)))
-            found |= dict.fromkeys(one.part.bounds[half:], mp.mpf(10**9))
-        elif one.branch == "quadratic":
-            found |= dict(zip(one.part.bounds[::-1], (mp.mpf(10**9), mp.mpf(10) ** -9), strict=False))
-    return found
-
-
-def _problem(so_far: Derivation) -> Problem:
+    Raises
+    ------
+    TypeError
+        If there is none.
+    """
     if so_far.problem is None:
         raise TypeError(f"{so_far.name} has no cost")
     return so_far.problem

@@ -20,6 +20,9 @@ COST_MARGIN = 1e-9
 COARSE = {Kind.NEIGHBOURS: 1e-11, Kind.DURATIONS: 1e-6}
 """Relative difference of costs that is none: where it is not ``COST_MARGIN``."""
 
+DRAWN, BESIDE = 20012, (0.75, 1.3)
+"""Seed of other starts where vectors are throttled, and other durations as shares of the solution's."""
+
 WORK = 400_000
 """Columns that smoothing may take."""
 
@@ -39,6 +42,8 @@ class Comparison:
 def allowed(instance: Instance) -> list[Kind]:
     """Kinds of competitors that a problem has."""
     durations = [Kind.DURATIONS] if instance.tf is None else []
+    if instance.model.spec.throttled:
+        return durations or [Kind.STARTS]
     return [Kind.NEIGHBOURS, Kind.SIGNS, *durations, Kind.STARTS]
 
 
@@ -49,6 +54,8 @@ def compared(solution: Solution, limits: Limits) -> Comparison:
         lambda: switching_competitors.compared(solution, limits),
         lambda: [_smoothed(solution, limits)],
     )
+    if solution.instance.model.spec.throttled:
+        sources = (lambda: [_drawn(solution, limits)],)
     found: dict[Kind, Competitors] = {}
     with np.errstate(all="ignore"):
         for source in sources:
@@ -74,6 +81,17 @@ def _both(one: Competitors, other: Competitors) -> Competitors:
     return Competitors(
         one.kind, one.tried + other.tried, one.solved + other.solved, min(cheapest, default=float("nan"))
     )
+
+
+def _drawn(solution: Solution, limits: Limits) -> Competitors:
+    """Extremals with throttled vectors from other starts, or in other durations."""
+    from satsym.solvers.switching.cold_start import by_throttle
+
+    instance, rng = solution.instance, np.random.default_rng(DRAWN)
+    found = by_throttle.others(instance, float(solution.times[-1]) - instance.t0, limits, rng, BESIDE)
+    costs = [exact.trajectory.cost(instance) for exact in found]
+    kind = allowed(instance)[0]
+    return Competitors(kind, len(by_throttle.AMPLITUDES), len(costs), min(costs, default=float("nan")))
 
 
 def _smoothed(solution: Solution, limits: Limits) -> Competitors | None:

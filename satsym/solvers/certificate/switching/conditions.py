@@ -10,17 +10,18 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Certificate, Check, Kind, Solution
 from satsym.solvers.certificate import conditions
-from satsym.solvers.certificate.flow import Flow
+from satsym.solvers.certificate.flow import Flow, typical
+from satsym.solvers.certificate.switching.arc_lengths import curvature
 from satsym.solvers.certificate.switching.comparison import Comparison, allowed, compared
 from satsym.solvers.certificate.switching.end_switches import with_end_switches
-from satsym.solvers.certificate.switching.integration import OutOfTime, TooMuchWork
+from satsym.solvers.certificate.switching.integration import Integration, OutOfTime, TooMuchWork
 from satsym.solvers.certificate.switching.replay import EVALUATIONS, Replay, replay
 from satsym.solvers.certificate.switching.stated_arcs import decided_by_none
 from satsym.solvers.certificate.switching.variation import convex, variation
 from satsym.solvers.iteration import MOST, Limits
 from satsym.solvers.switching.linear.linear_motion import linear_motion
-from satsym.solvers.switching.newton import switching
 from satsym.solvers.switching.structure import SINGULAR
+from satsym.solvers.switching.throttled import shown_by, signs
 from satsym.status import Verdict
 
 RESIDUAL, DEFECT, STATIONARY, DRIFT, TIMES, COST = 1e-9, 1e-7, 1e-8, 1e-9, 1e-9, 1e-8
@@ -56,7 +57,7 @@ def certify(solution: Solution) -> Certificate:
     comparison = Comparison()
     if all(c.passed for c in first):
         comparison = compared(solution, limits)
-        second = [*_sufficient(solution, again), *comparison.checks]
+        second = [*_sufficient(solution, again, limits), *comparison.checks]
     verdict = Verdict.of(all(c.passed for c in first), all(c.passed for c in second))
     return Certificate(
         verdict=verdict,
@@ -92,9 +93,9 @@ def _first_order(solution: Solution, again: Replay) -> list[Check]:
     return checks
 
 
-def _sufficient(solution: Solution, again: Replay) -> list[Check]:
+def _sufficient(solution: Solution, again: Replay, limits: Limits) -> list[Check]:
     """Each is a deficit that must not be positive."""
-    free = [decided_by_none(solution, control) for control in range(len(solution.u))]
+    free = [decided_by_none(solution, control) for control in range(len(shown_by(solution.instance)))]
     extended = with_end_switches(again, _along(again)[0])
     rates, gap, distance = _strictness(again, extended, free)
     checks = [Check("not strict: other controls cost the same", 1.0, 0.0)] if any(free) else []
@@ -106,6 +107,10 @@ def _sufficient(solution: Solution, again: Replay) -> list[Check]:
     if any(SINGULAR in piece.field.levels for piece in again.pieces):
         checks.append(Check("generalised legendre-clebsch", float(not _legendre(again) > 0.0), 0.0))
         checks.append(Check("no proof of a minimum along singular arcs: not convex", float(not convex(solution)), 0.0))
+    elif solution.instance.model.spec.throttled:
+        by = Integration(np.concatenate(typical(solution)), limits)
+        flat = not curvature(solution, extended, by) > CURVED
+        checks.append(Check("second variation in lengths of arcs and directions", float(flat), 0.0))
     elif not any(free):
         second = variation(solution.instance, extended)
         flat = second is None or not second.curvature > CURVED
@@ -117,7 +122,8 @@ def _moved(solution: Solution, again: Replay) -> float:
     """Largest change of a switching time relative to the duration; infinite where their numbers differ."""
     lasting = float(solution.times[-1] - solution.times[0])
     worst = 0.0
-    for control, times in enumerate(solution.switching_times):
+    for control, shown in enumerate(shown_by(solution.instance)):
+        times = solution.switching_times[shown]
         found = again.switching_times(control)
         if len(found) != len(times):
             return float("inf")
@@ -129,6 +135,8 @@ def _excess(solution: Solution) -> float:
     """By how much H exceeds its minimum over the box at most, relative to its terms, or a control its box."""
     instance, model = solution.instance, solution.instance.model
     p, u = instance.parameters, solution.u
+    if model.spec.throttled:
+        return _excess_by_law(solution)
     sigma = model.switching_function_batch(solution.times, solution.x, solution.lam, p)
     weight = model.magnitude_weight_batch(solution.times, solution.x, p)
     low, high = instance.control_set.box
@@ -137,6 +145,17 @@ def _excess(solution: Solution) -> float:
     outside = (np.maximum(np.maximum(low - u, u - high), 0.0) / np.maximum(high - low, 1e-300)).max(initial=0.0)
     excess = (sigma * u + weight * np.abs(u) - least).max(initial=0.0)
     return float(excess / max(_terms(instance, solution.times, solution.x, solution.lam, u), 1e-300) + outside)
+
+
+def _excess_by_law(solution: Solution) -> float:
+    """The same where vectors are throttled, by the law that minimises H."""
+    instance, model = solution.instance, solution.instance.model
+    t, x, lam, p = solution.times, solution.x, solution.lam, instance.parameters
+    law = model.control_law_batch(t, x, lam, p, instance.control_set.arguments)
+    above = [model.hamiltonian_batch(t, x, u, lam, p) for u in (solution.u, law)]
+    size = max(float(np.abs(law).max()), float(np.abs(solution.u).max()), 1e-300)
+    outside = max(instance.control_set.violation(solution.u), 0.0) / size
+    return float((above[0] - above[1]).max() / max(_terms(instance, t, x, lam, solution.u), 1e-300) + outside)
 
 
 def _terms(instance: Instance, t: Array, x: Array, lam: Array, u: Array) -> float:
@@ -154,7 +173,7 @@ def _off_singular(again: Replay) -> float:
         if control is not None:
             inside = (again.times >= piece.start) & (again.times <= piece.end)
             x, lam = again.z[: field.n, inside], again.z[field.n :, inside]
-            sigma = field.model.switching_function_batch(again.times[inside], x, lam, field.p)[control]
+            sigma = signs(field.instance, again.times[inside], x, lam)[0][control]
             worst = max(worst, float(np.abs(sigma).max(initial=0.0)) / sizes[control])
     return worst
 
@@ -196,7 +215,7 @@ def _strictness(again: Replay, extended: Replay, free: list[bool]) -> tuple[floa
         if free[control] or SINGULAR in (piece.field.levels[control], pieces[k + 1].field.levels[control]):
             continue
         for field in (piece.field, pieces[k + 1].field):
-            _, rate = switching(field, piece.end, piece.after.tolist(), control)
+            _, rate = field.switching(piece.end, piece.after.tolist(), control)
             rates.append(abs(rate) * lasting / sizes[control])
     # In a convex problem switches of different controls may coincide: each of them is decided by its own sign.
     each = [None] if linear_motion(again.pieces[0].field.instance) is None else range(len(free))
@@ -216,9 +235,9 @@ def _strictness(again: Replay, extended: Replay, free: list[bool]) -> tuple[floa
 def _along(again: Replay) -> tuple[list[float], list[tuple[Array, Array]]]:
     """Sizes of the switching functions, and their distances from the values at which they would switch."""
     pieces = again.pieces
-    n, model, p = pieces[0].field.n, pieces[0].field.model, pieces[0].field.p
-    sigma = model.switching_function_batch(again.times, again.z[:n], again.z[n:], p)
-    weight = np.broadcast_to(model.magnitude_weight_batch(again.times, again.z[:n], p), sigma.shape)
+    n, instance = pieces[0].field.n, pieces[0].field.instance
+    sigma, weight = signs(instance, again.times, again.z[:n], again.z[n:])
+    low, high = instance.control_set.switching
     sizes = [max(float((np.abs(s) + w).max()), 1e-300) for s, w in zip(sigma, weight, strict=True)]
     singular = np.zeros(sigma.shape, bool)
     for piece in pieces:
@@ -226,7 +245,6 @@ def _along(again: Replay) -> tuple[list[float], list[tuple[Array, Array]]]:
             singular[piece.field.singular] |= (again.times >= piece.start) & (again.times <= piece.end)
     marks = []
     for i, (s, w) in enumerate(zip(sigma, weight, strict=True)):
-        equal = pieces[0].field.instance.lower[i] == pieces[0].field.instance.upper[i]
         margin = np.abs(np.abs(s) - w)
-        marks.append((again.times, np.where(singular[i] | equal, np.inf, margin)))
+        marks.append((again.times, np.where(singular[i] | (low[i] == high[i]), np.inf, margin)))
     return sizes, marks

@@ -13,8 +13,8 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.solvers.certificate.switching.replay import Piece, Replay
 from satsym.solvers.switching.field import Field
-from satsym.solvers.switching.newton import switching
 from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER
+from satsym.solvers.switching.throttled import equations
 
 AT_SWITCH = 1e-9
 """Distance of a switching function from where it switches, relative to its size, that is none."""
@@ -45,9 +45,10 @@ def with_end_switches(again: Replay, sizes: list[float]) -> Replay:
 def _beyond(field: Field, t: float, z: Array, control: int, size: float) -> int | None:
     """The level on the other side of the switch that a control is at; ``None`` where it is at none."""
     here, level = z.tolist(), field.levels[control]
-    if level == SINGULAR or field.instance.lower[control] == field.instance.upper[control]:
+    low, high = field.instance.control_set.switching
+    if level == SINGULAR or low[control] == high[control]:
         return None
-    sigma, weight = switching(field, t, here, control)[0], field.weight(t, here, control)
+    sigma, weight = field.switching(t, here, control)[0], field.weight(t, here, control)
     if abs(abs(sigma) - weight) > AT_SWITCH * size:
         return None
     if weight == 0.0:
@@ -57,4 +58,4 @@ def _beyond(field: Field, t: float, z: Array, control: int, size: float) -> int 
 
 def _at(field: Field, control: int, level: int) -> Field:
     levels = (*field.levels[:control], level, *field.levels[control + 1 :])
-    return Field(field.instance, levels)
+    return equations(field.instance, levels)

@@ -11,7 +11,6 @@ from satsym.arrays import Array
 from satsym.solvers.certificate.switching.integration import Integration, Span
 from satsym.solvers.switching.cold_start.recognition import levels
 from satsym.solvers.switching.field import Field
-from satsym.solvers.switching.newton import switching
 from satsym.solvers.switching.structure import SINGULAR
 
 POLISHED = 6
@@ -43,7 +42,7 @@ class Mark:
 
     def gap(self, t: float, y: list[float]) -> tuple[float, float]:
         """How far the switching function is from it, and the rate of that."""
-        sigma, rate = switching(self.field, t, y, self.control)
+        sigma, rate = self.field.switching(t, y, self.control)
         if self.side == 0.0:
             return sigma, rate
         weight, (_, growth) = self.field.weight(t, y, self.control), self.field.weight_gradient(t, y, self.control)
@@ -60,13 +59,13 @@ class Mark:
 
     def event(self, span: Span, sign: float) -> Any:
         """For SciPy: a change of sign, away from the switch that began the arc."""
-        field, n, side, control = self.field, self.field.n, self.side, self.control
+        field, side, control = self.field, self.side, self.control
 
         def value(t: float, y: Array) -> float:
             if t - span.start < AT_ONCE * span.lasting:
                 return sign
-            sigma = field.model.switching_function(t, y[:n].tolist(), y[n:].tolist(), field.p)[control]
-            return float(sigma - side * field.weight(t, y.tolist(), control) if side else sigma)
+            sigma = field.sigma(t, y.tolist(), control)
+            return sigma - side * field.weight(t, y.tolist(), control) if side else sigma
 
         value.terminal = True  # type: ignore[attr-defined]
         return value
@@ -125,7 +124,7 @@ def at_once(span: Span, settled: list[bool], sizes: Array) -> tuple[int, int] | 
         size = mark.size(start, span.z, sizes)
         if abs(now) > AT_ONCE * size or abs(rate) * span.lasting <= TURNING * size:
             continue
-        sigma, growth = switching(field, start, here, mark.control)
+        sigma, growth = field.switching(start, here, mark.control)
         ahead = np.array([sigma + growth * AHEAD * span.lasting])
         weight = np.array([field.weight(start, here, mark.control)])
         level = int(levels(field.instance, mark.control, ahead, weight)[0])
@@ -137,8 +136,9 @@ def at_once(span: Span, settled: list[bool], sizes: Array) -> tuple[int, int] | 
 def _marks(span: Span, settled: list[bool]) -> list[Mark]:
     """All values that a switch may be at, of the controls that are neither settled nor singular."""
     field, marks = span.field, []
+    low, high = field.instance.control_set.switching
     for i, level in enumerate(field.levels):
-        if settled[i] or level == SINGULAR or field.instance.lower[i] == field.instance.upper[i]:
+        if settled[i] or level == SINGULAR or low[i] == high[i]:
             continue
         weighs = field.weight(span.start, span.z.tolist(), i) > 0.0
         marks += [Mark(field, i, side) for side in ((-1.0, 1.0) if weighs else (0.0,))]

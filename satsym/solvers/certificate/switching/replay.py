@@ -22,8 +22,8 @@ from satsym.solvers.failures import FAILURES
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.cold_start.recognition import levels as best_levels
 from satsym.solvers.switching.field import Field
-from satsym.solvers.switching.newton import switching
 from satsym.solvers.switching.structure import REST, SINGULAR
+from satsym.solvers.switching.throttled import equations
 
 MOST_SWITCHES = 200
 
@@ -80,7 +80,7 @@ def replay(solution: Solution, within: Limits | None = None) -> Replay | None:
     """
     within = within or Limits(MOST_SWITCHES, float("inf"))
     limits = replace(within, work=within.meter.spent + EVALUATIONS)
-    controls = range(len(solution.instance.lower))
+    controls = range(len(solution.instance.control_set.switching[0]))
     again = _Again(
         solution,
         [arcs(solution, control) for control in controls],
@@ -123,7 +123,7 @@ class _Again:
         rows: list[tuple[Array, Array, Array]] = []
         cost = 0.0
         while len(pieces) <= MOST_SWITCHES:
-            piece, levels = self._piece(Span(Field(instance, levels), t, end, z))
+            piece, levels = self._piece(Span(equations(instance, levels), t, end, z))
             pieces.append(piece)
             row, added = self._stations(piece, stations)
             rows.append(row)
@@ -137,12 +137,12 @@ class _Again:
     def _first_levels(self, z: Array, t: float, end: float) -> tuple[int, ...]:
         """Levels at the start: where a switching function vanishes, its rate decides."""
         instance, found = self.instance, []
-        resting = Field(instance, (REST,) * len(self.stated))
+        resting = equations(instance, (REST,) * len(self.stated))
         for i, own in enumerate(self.stated):
             if self.settled[i] or own[0][2] == SINGULAR:
                 found.append(own[0][2])
                 continue
-            sigma, rate = switching(resting, t, z.tolist(), i)
+            sigma, rate = resting.switching(t, z.tolist(), i)
             weight = resting.weight(t, z.tolist(), i)
             size = max(abs(sigma), weight, abs(rate) * (end - t))
             if min(abs(abs(sigma) - weight), abs(sigma)) <= 1e-10 * size:
@@ -174,7 +174,7 @@ class _Again:
         if switched is None:
             return piece, field.levels
         if level is None:
-            sigma, rate = switching(field, until, after.tolist(), switched)
+            sigma, rate = field.switching(until, after.tolist(), switched)
             ahead = sigma + rate * 1e-6 * span.lasting
             weight = field.weight(until, after.tolist(), switched)
             level = int(best_levels(field.instance, switched, np.array([ahead]), np.array([weight]))[0])

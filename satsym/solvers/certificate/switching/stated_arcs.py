@@ -9,6 +9,7 @@ import numpy as np
 from satsym.solution import Solution
 from satsym.solvers.switching.field import Field
 from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER
+from satsym.solvers.switching.throttled import shown_by, signs, switched, weights
 from satsym.solvers.switching.trajectory import deciding
 
 UNDECIDED = 1e-9
@@ -27,15 +28,16 @@ Stated = list[list[tuple[float, float, int]]]
 def arcs(solution: Solution, control: int) -> list[tuple[float, float, int]]:
     """Start, end and level of each arc of a control, read from a solution: what matters is which are singular."""
     instance = solution.instance
-    low, high = instance.lower[control], instance.upper[control]
-    times = [instance.t0, *solution.switching_times[control], float(solution.times[-1])]
-    weighs = instance.model.magnitude_weight(instance.t0, instance.initial, instance.parameters)[control] > 0.0
+    low, high = (bounds[control] for bounds in instance.control_set.switching)
+    switches = solution.switching_times[shown_by(instance)[control]]
+    times = [instance.t0, *switches, float(solution.times[-1])]
+    weighs = weights(instance)[control] > 0.0
     resting = weighs or indifferent(solution, control)
     near = {LOWER: low, UPPER: high} | ({REST: min(max(0.0, low), high)} if resting else {})
     found = []
     for start, end in pairwise(times):
         inside = (solution.times > start) & (solution.times < end)
-        values = solution.u[control, inside]
+        values = switched(instance, solution.u[:, inside])[control]
         on = {k: float((np.abs(values - v) <= OFF * (high - low)).mean()) for k, v in near.items() if len(values)}
         likeliest = max(on, key=lambda k: on[k], default=REST if resting else LOWER)
         found.append((start, end, likeliest if resting or on.get(likeliest, 1.0) >= MOSTLY else SINGULAR))
@@ -44,14 +46,15 @@ def arcs(solution: Solution, control: int) -> list[tuple[float, float, int]]:
 
 def decided_by_none(solution: Solution, control: int) -> bool:
     """Whether no sign tells where a control switches, although none of its arcs is singular."""
-    if solution.instance.lower[control] == solution.instance.upper[control]:
+    low, high = solution.instance.control_set.switching
+    if low[control] == high[control]:
         return False
     return undecided(solution, control) > 1.0 - MOSTLY and all(k != SINGULAR for *_, k in arcs(solution, control))
 
 
 def indifferent(solution: Solution, control: int) -> bool:
     """Whether a control may do what it likes all along, as far as H shows, with no singular arc to follow."""
-    if undecided(solution, control) < MOSTLY:
+    if solution.instance.model.spec.throttled or undecided(solution, control) < MOSTLY:
         return False
     instance, k = solution.instance, len(solution.times) // 2
     levels = tuple(SINGULAR if i == control else LOWER for i in range(len(instance.lower)))
@@ -65,8 +68,6 @@ def indifferent(solution: Solution, control: int) -> bool:
 def undecided(solution: Solution, control: int) -> float:
     """The share of nodes at which a switching function is at the very value at which the control switches."""
     instance = solution.instance
-    model, p = instance.model, instance.parameters
-    sigma = model.switching_function_batch(solution.times, solution.x, solution.lam, p)
-    weight = np.broadcast_to(model.magnitude_weight_batch(solution.times, solution.x, p), sigma.shape)
+    sigma, weight = signs(instance, solution.times, solution.x, solution.lam)
     margin, sizes = np.abs(np.abs(sigma) - weight), (np.abs(sigma) + weight).max(axis=1)
     return float((margin[control] <= UNDECIDED * deciding(instance, sizes)[control]).mean())

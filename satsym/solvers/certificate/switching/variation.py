@@ -17,7 +17,6 @@ from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solvers.certificate.switching.replay import Replay
 from satsym.solvers.collocation.scaling import final_argument
-from satsym.solvers.switching.newton import switching
 
 RANK = 1e-9
 """Smallest singular value, relative to the largest, of a derivative that counts."""
@@ -100,7 +99,7 @@ def _jump_row(again: Replay, k: int, total: Array, column: int) -> Array:
     assert control is not None
     u, v = before.field.control(t, z)[control], after.field.control(t, z)[control]
     by_weight, weight_rate = before.field.weight_gradient(t, z, control)
-    _, rate = switching(before.field, t, z, control)
+    _, rate = before.field.switching(t, z, control)
     gradient = (u - v) * before.field.gradient(t, z, control) + (abs(u) - abs(v)) * by_weight
     row = gradient @ total
     row[column] += (u - v) * rate + (abs(u) - abs(v)) * weight_rate - gradient @ np.array(before.field.rates(t, z))

@@ -12,6 +12,7 @@ from satsym.instance import Instance
 from satsym.solvers.collocation.curve import Path
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER, Guess, Structure
+from satsym.solvers.switching.throttled import signs
 
 SAMPLES = 12
 """Points in each interval of a mesh at which switching functions are looked at."""
@@ -43,10 +44,8 @@ def sample(problem: TwoPoint, path: Path) -> Sample:
     scaled = path(tau)
     z, n, instance = scaled * problem.scale.both, problem.states, problem.instance
     times = instance.t0 + problem.elapsed(path.theta) * tau
-    sigma = instance.model.switching_function_batch(times, z[:n], z[n:], instance.parameters)
-    weight = instance.model.magnitude_weight_batch(times, z[:n], instance.parameters)
     u = problem.control(tau, scaled, path.theta)
-    return Sample(times, z, u, sigma, np.broadcast_to(weight, sigma.shape))
+    return Sample(times, z, u, *signs(instance, times, z[:n], z[n:]))
 
 
 def guess(instance: Instance, seen: Sample, singular: NDArray[np.bool_] | None = None) -> Guess:
@@ -72,7 +71,7 @@ def guess(instance: Instance, seen: Sample, singular: NDArray[np.bool_] | None =
 
 def levels(instance: Instance, control: int, sigma: Array, weight: Array) -> NDArray[np.int64]:
     """The level that minimises H for values of a switching function."""
-    low, high = instance.lower[control], instance.upper[control]
+    low, high = (bounds[control] for bounds in instance.control_set.switching)
     if low == high:
         return np.full(len(sigma), LOWER)
     found = np.where(sigma > weight, LOWER, np.where(sigma < -weight, UPPER, REST))

@@ -1,0 +1,45 @@
+"""Goddard's rocket: a vertical ascent that rises as high as its fuel allows.
+
+Thrust is limited, drag grows with the square of the velocity and falls exponentially with height: full thrust, then
+a singular arc on which drag balances what gravity costs, then a coast to the top. Data are those of Dolan, More and
+Munson (Benchmarking optimization software with COPS 3.0, 2004), whose units are the initial radius, the gravity there
+and the initial mass.
+"""
+
+from sympy import exp
+
+from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
+
+STATES = (
+    Variable("h", "h", meaning="distance from the centre", positive=True, typical=(1.0, 1.02)),
+    Variable("v", "v", meaning="velocity", typical=(0.01, 0.15)),
+    Variable("m", "m", meaning="mass", positive=True, typical=(0.6, 1.0)),
+)
+CONTROLS = (Variable("T", "T", meaning="thrust", typical=(0.0, 3.5)),)
+PARAMETERS = (
+    Variable("D0", "D_0", meaning="drag at velocity one and the initial height", default=310.0, positive=True),
+    Variable("beta", r"\beta", meaning="how fast drag falls with height", default=500.0, positive=True),
+    Variable("g0", "g_0", meaning="gravity at the initial height", default=1.0, positive=True),
+    Variable("c", "c", meaning="exhaust velocity", default=0.5, positive=True),
+)
+h, v, m = symbols_of(STATES)
+(T,) = symbols_of(CONTROLS)
+D0, beta, g0, c = symbols_of(PARAMETERS)
+
+goddard = Problem(
+    name="goddard",
+    title="Ascent of a rocket to the maximum height",
+    model=FirstOrder(
+        name="rocket",
+        title="A rocket in vertical flight",
+        states=STATES,
+        controls=CONTROLS,
+        parameters=PARAMETERS,
+        rates={h: v, v: (T - D0 * v**2 * exp(-beta * (h - 1))) / m - g0 / h**2, m: -T / c},
+    ),
+    running_cost=0,
+    terminal_cost=-h,
+    control_set="box",
+)
+
+PROBLEMS = (goddard,)

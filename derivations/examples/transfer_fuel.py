@@ -1,0 +1,47 @@
+"""From one circular orbit to another with minimum fuel, in a given time, with a thrust of bounded magnitude.
+
+Mass flows out as the thrust asks for. What is left over is a maximum where arcs of full thrust and coasts alternate, as
+the primer vector says (Lawden, Optimal Trajectories for Space Navigation, 1963). Units are those of the first orbit:
+its radius, and the time in which an angle of one is passed on it; the initial mass is one.
+"""
+
+from sympy import sqrt
+
+from satsym.symbolic import Ball, FirstOrder, Problem, Variable, symbols_of
+
+STATES = (
+    Variable("r", "r", meaning="distance from the centre", positive=True),
+    Variable("theta", r"\theta", meaning="polar angle", kind="angle"),
+    Variable("u", "u", meaning="radial velocity"),
+    Variable("v", "v", meaning="transverse velocity"),
+    Variable("m", "m", meaning="mass over the initial mass", positive=True),
+)
+CONTROLS = (
+    Variable("T_r", "T_r", meaning="radial thrust over the initial mass"),
+    Variable("T_t", r"T_\theta", meaning="transverse thrust over the initial mass"),
+)
+PARAMETERS = (
+    Variable("mu", r"\mu", meaning="gravitational parameter", default=1.0, positive=True),
+    Variable("c", "c", meaning="exhaust velocity", default=1.0, positive=True),
+)
+r, theta, u, v, m = symbols_of(STATES)
+T_r, T_t = symbols_of(CONTROLS)
+mu, c = symbols_of(PARAMETERS)
+thrust = sqrt(T_r**2 + T_t**2)
+
+transfer_fuel = Problem(
+    name="transfer_fuel",
+    title="Transfer between circular orbits with minimum fuel",
+    model=FirstOrder(
+        name="throttled_satellite",
+        title="A satellite whose thrust can be turned and throttled",
+        states=STATES,
+        controls=CONTROLS,
+        parameters=PARAMETERS,
+        rates={r: u, theta: v / r, u: v**2 / r - mu / r**2 + T_r / m, v: -u * v / r + T_t / m, m: -thrust / c},
+    ),
+    running_cost=thrust / c,
+    control_sets={"thrust": Ball("T_r", "T_t")},
+)
+
+PROBLEMS = (transfer_fuel,)
