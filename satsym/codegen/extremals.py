@@ -13,7 +13,7 @@ from satsym.codegen.functions import Function, Symbols, functions, symbols
 from satsym.codegen.linear import linear_functions
 from satsym.symbolic import notation as n
 from satsym.symbolic.derivation import Derivation
-from satsym.symbolic.principle import product
+from satsym.symbolic.principle import product, set_laws
 
 
 def all_functions(derivation: Derivation) -> list[Function]:
@@ -82,7 +82,7 @@ def _under_the_law(derivation: Derivation, s: Symbols) -> tuple[sp.Matrix, sp.Ex
 
 def _under_the_law_of_sets(derivation: Derivation) -> tuple[sp.Matrix, sp.Expr]:
     """The same where the control set is a product of sets: of the regularised problem, where that differs."""
-    *rates, h = product.relaxed(
+    *rates, h = set_laws.relaxed(
         derivation,
         [
             *derivation.rhs("first_order"),
@@ -90,8 +90,8 @@ def _under_the_law_of_sets(derivation: Derivation) -> tuple[sp.Matrix, sp.Expr]:
             derivation.equation("hamiltonian.H").rhs,
         ],
     )
-    law = product.regularised_law(derivation)
-    return sp.Matrix(rates).xreplace(law), (h + product.effort(derivation)).xreplace(law)
+    law = set_laws.regularised_law(derivation)
+    return sp.Matrix(rates).xreplace(law), (h + set_laws.effort(derivation)).xreplace(law)
 
 
 def _ends(derivation: Derivation, states: int) -> sp.Matrix:

@@ -15,7 +15,7 @@ from satsym.symbolic.kepler.central_force import inertial_state, strength_of
 from satsym.symbolic.linear.notation import matrix_symbols
 from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.notation import costate_of, given, multipliers, on_reference, target
-from satsym.symbolic.principle import product
+from satsym.symbolic.principle import product, set_laws
 from satsym.symbolic.principle.parts import FRACTION, SMOOTHING, limits_of
 from satsym.symbolic.switching.notation import REGULARISED
 
@@ -129,7 +129,7 @@ def _bounds(derivation: Derivation) -> tuple[Variable, ...]:
     problem = derivation.problem
     found = limits_of(problem) if problem else ()
     if "smoothed_law" in derivation and product.STEP in derivation:
-        throttled = any(one.branch == "throttled" for one in product.found(derivation))
+        throttled = any(one.branch == "throttled" for one in set_laws.found(derivation))
         return (*found, SMOOTHING, *((FRACTION,) if throttled else ()))
     return found + (REGULARISED if switching.switches(derivation) else ())
 
@@ -196,7 +196,7 @@ def _regular_law(derivation: Derivation) -> list[Function]:
     controls, law = symbols_of(derivation.model.controls), derivation.rhs("control_law")
     if product.STEP in derivation:
         h = derivation.equation("hamiltonian.H").rhs
-        h_u, law = [tidy(g, controls) for g in gradient(h, controls)], sp.Matrix(product.written_out(derivation, law))
+        h_u, law = [tidy(g, controls) for g in gradient(h, controls)], sp.Matrix(set_laws.written_out(derivation, law))
     else:
         h_u = [e.rhs for e in derivation.step("stationarity").equations if e.lhs == 0]
     found = [
@@ -224,8 +224,8 @@ def _regular_law(derivation: Derivation) -> list[Function]:
 def _regularised_cost(derivation: Derivation) -> Function:
     """What the problem costs in which directions may be shorter, under its law."""
     assert derivation.problem is not None
-    (cost,) = product.relaxed(derivation, [sp.sympify(derivation.problem.running_cost)])
-    value = (cost + product.effort(derivation)).xreplace(product.regularised_law(derivation))
+    (cost,) = set_laws.relaxed(derivation, [sp.sympify(derivation.problem.running_cost)])
+    value = (cost + set_laws.effort(derivation)).xreplace(set_laws.regularised_law(derivation))
     return _scalar("regularised_cost", "Integrand of the cost of the regularised problem.", "t x lam p bounds", value)
 
 

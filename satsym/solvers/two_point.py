@@ -10,6 +10,7 @@ import numpy as np
 from satsym.instance import Instance
 from satsym.solution import Progress, Solution
 from satsym.solvers.cold_start import paths
+from satsym.solvers.cold_start.direct import direct
 from satsym.solvers.cold_start.directions import directed
 from satsym.solvers.cold_start.durations import free_duration
 from satsym.solvers.cold_start.first_minimum import cold_start
@@ -79,11 +80,13 @@ def from_cold_start(instance: Instance, limits: Limits, effort: bool, accurate: 
     effort
         Whether free durations are looked for with great effort.
     """
-    if instance.model.spec.directional:
-        led = directed(instance, limits, effort)
-        if isinstance(led, Extremal):
-            return led
+    if (led := stationary(instance, limits)) is not None:
         (problem, start), duration = led, ""
+    elif instance.model.spec.directional:
+        eased = directed(instance, limits, effort)
+        if isinstance(eased, Extremal):
+            return eased
+        (problem, start), duration = eased, ""
     elif instance.tf is not None:
         problem = two_point(instance, instance.tf - instance.t0)
         start, duration = guessed(problem, limits) or cold_start(problem, limits), ""
@@ -103,6 +106,14 @@ def from_cold_start(instance: Instance, limits: Limits, effort: bool, accurate: 
     if not found.status.answered:
         return found
     return replace(found, message=f"{found.message}, from the {start.named}{duration}")
+
+
+def stationary(instance: Instance, limits: Limits) -> tuple[TwoPoint, Start] | None:
+    """Where H depends on controls in another way than quadratically: the extremal to which a direct method leads."""
+    spec = instance.model.spec
+    if not spec.stationary or spec.directional or instance.guess:
+        return None
+    return direct(instance, limits)
 
 
 def unfinished(problem: TwoPoint, path: Path, message: str, steps: int, limits: Limits) -> Extremal:
