@@ -14,6 +14,7 @@ from satsym.codegen.linear import linear_functions
 from satsym.symbolic import notation as n
 from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.principle import product, set_laws
+from satsym.symbolic.roots import turned_inwards
 
 
 def all_functions(derivation: Derivation) -> list[Function]:
@@ -91,7 +92,8 @@ def _under_the_law_of_sets(derivation: Derivation) -> tuple[sp.Matrix, sp.Expr]:
         ],
     )
     law = set_laws.regularised_law(derivation)
-    return sp.Matrix(rates).xreplace(law), (h + set_laws.effort(derivation)).xreplace(law)
+    under = sp.Matrix([*rates, h + set_laws.effort(derivation)]).xreplace(law).applyfunc(turned_inwards)
+    return under[:-1, :], under[-1]
 
 
 def _ends(derivation: Derivation, states: int) -> sp.Matrix:

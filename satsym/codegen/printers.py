@@ -146,6 +146,9 @@ class ScalarPrinter(_Printer):
         excess, one, other = (self._print(a) for a in expr.args)
         return f"({one} if {excess} <= 0.0 else {other}) + 0.0*{excess}"
 
+    def _print_Bearing(self, expr: Any) -> str:
+        return f"math.atan2({', '.join(self._print(a) for a in expr.args)})"
+
     def _print_Middle(self, expr: Any) -> str:
         lower, upper = (self._print(a) for a in expr.args)
         least = f"({upper} if {upper} < math.pi else math.pi) - 2.0*math.pi"
@@ -234,6 +237,12 @@ class BatchPrinter(_Printer):
     def _print_Choice(self, expr: Any) -> str:
         excess, one, other = (self._print(a) for a in expr.args)
         return f"np.where({excess} <= 0.0, {one}, {other}) + 0.0*{excess}"
+
+    def _print_Bearing(self, expr: Any) -> str:
+        across, along = (self._print(a) for a in expr.args)
+        angle = f"np.arctan2(np.real({across}), np.real({along}))"  # and what a complex step turns it by
+        turned = f"{across}*np.cos({angle}) - {along}*np.sin({angle})", f"{along}*np.cos({angle}) + {across}*np.sin({angle})"
+        return f"{angle} + np.arctan(({turned[0]})/({turned[1]}))"
 
     def _print_Middle(self, expr: Any) -> str:
         lower, upper = (self._print(a) for a in expr.args)

@@ -21,7 +21,7 @@ _KEPT = {"math", "np", "len", "range", "float", "out", "shape"}
 _UNARY = ("sqrt", "sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log")
 _FUNCTIONS = {
     "math": dict.fromkeys((*_UNARY, "asin", "acos", "atan", "fabs"), 1) | {"atan2": 2},
-    "np": dict.fromkeys((*_UNARY, "arcsin", "arccos", "arctan", "abs"), 1)
+    "np": dict.fromkeys((*_UNARY, "arcsin", "arccos", "arctan", "abs", "real"), 1)
     | dict.fromkeys(("arctan2", "heaviside", "minimum", "maximum"), 2),
 }
 

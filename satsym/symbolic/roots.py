@@ -36,6 +36,10 @@ class Root(sp.Function):
         values = {self.unknown: self, **dict(zip(self.letters, self.args[2:], strict=True))}
         return Interior(self, *self.args[:2]) * ratio.xreplace(values)
 
+    def __reduce_ex__(self, protocol: Any) -> tuple[Any, ...]:
+        """The class is made anew where this is read."""
+        return _again, (self.unknown, self.slope, self.letters, self.args)
+
     def at(self) -> sp.Expr:
         """The slope, its coefficients being what they are here."""
         return self.slope.xreplace(dict(zip(self.letters, self.args[2:], strict=True)))
@@ -91,6 +95,28 @@ class Middle(sp.Function):
         return sp.Integer(0)
 
 
+class Bearing(sp.Function):
+    """``Bearing(across, along)``: the angle of a direction, as atan2, for what goes on with it."""
+
+    nargs = 2
+    is_real = True
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """By either component: the other one over the square of the length."""
+        across, along = self.args
+        return (along if argindex == 1 else -across) / (across**2 + along**2)
+
+
+def turned_inwards(expression: sp.Expr) -> sp.Expr:
+    """An expression with the cosine and sine of what is chosen as the choice of these."""
+
+    def inside(e: sp.Expr) -> sp.Expr:
+        excess, one, other = e.args[0].args
+        return Choice(excess, e.func(one), e.func(other))
+
+    return expression.replace(lambda e: isinstance(e, sp.sin | sp.cos) and isinstance(e.args[0], Choice), inside)
+
+
 @lru_cache(maxsize=256)
 def root_of(unknown: sp.Symbol, slope: sp.Expr, letters: tuple[sp.Symbol, ...]) -> type[Root]:
     """The class of the minimisers of convex functions with this slope."""
@@ -105,6 +131,10 @@ def root_of(unknown: sp.Symbol, slope: sp.Expr, letters: tuple[sp.Symbol, ...]) 
 
     shared = {"unknown": plain[unknown], "slope": stated, "letters": tuple(values), "nargs": len(letters) + 2}
     return type(f"Root_{mark}", (Root,), shared | {"_imp_": staticmethod(value)})
+
+
+def _again(unknown: sp.Symbol, slope: sp.Expr, letters: tuple[sp.Symbol, ...], args: tuple[sp.Expr, ...]) -> sp.Expr:
+    return root_of(unknown, slope, letters)(*args)
 
 
 def least_between(slopes: Callable[[Any], Sequence[Any]], lower: Any, upper: Any) -> Any:
@@ -151,5 +181,5 @@ def _middle(lower: Any, upper: Any) -> Any:
     return (low + min(upper, max(lower, -mp.pi) + 2 * mp.pi)) / 2
 
 
-CONSTRUCTED = (Root, Interior, Convex, Choice, Middle)
-MPMATH = {"Interior": _interior, "Convex": _convex, "Choice": _choice, "Middle": _middle}
+CONSTRUCTED = (Root, Interior, Convex, Choice, Middle, Bearing)
+MPMATH = {"Interior": _interior, "Convex": _convex, "Choice": _choice, "Middle": _middle, "Bearing": mp.atan2}

@@ -38,6 +38,9 @@ LONGEST, LOOKED = 30.0, 400
 PROGRAMMES, SATISFIED = 300, 1e-6
 """Steps of the programme at most, and by how much of their size ends may be missed after it."""
 
+FLAT = 1e-8
+"""Relative change of the cost at which it ends."""
+
 MESHES = (30, 60, 120)
 """Intervals with which Newton's method is tried."""
 
@@ -136,28 +139,32 @@ class Programme:
         return found + ([(LEAST, None)] if self.instance.tf is None else [])
 
 
-def direct(instance: Instance, limits: Limits) -> tuple[TwoPoint, Start] | None:
-    """The cheapest extremal to which a direct method leads, and its problem; ``None`` where there is none.
+def direct(instance: Instance, limits: Limits, seed: int = 0) -> tuple[TwoPoint, Start] | None:
+    """An extremal to which a direct method leads, and its problem; ``None`` where there is none.
 
     Also where ends are asked for that are neither numbers nor free.
+
+    Parameters
+    ----------
+    seed
+        For the controls that are drawn.
     """
     if instance.model.spec.multipliers or any(isinstance(v, str) for v in instance.final.values()):
         return None
-    found: list[tuple[float, TwoPoint, Start]] = []
-    for programme, start in _starts(instance):
+    for programme, start in _starts(instance, seed):
         if limits.expired:
             break
         limits.spend(KNOTS * STEPS * PROGRAMMES)
         solved = _solved(programme, start)
         extremal = None if solved is None else _extremal(programme, solved)
         if extremal is not None:
-            found.append(extremal)
-    return min(found, key=lambda one: one[0])[1:] if found else None
+            return extremal
+    return None
 
 
-def _starts(instance: Instance) -> Iterator[tuple[Programme, Array]]:
+def _starts(instance: Instance, seed: int) -> Iterator[tuple[Programme, Array]]:
     """Controls that are drawn, with a duration; nearest to the end first."""
-    rng, tau = np.random.default_rng(0), np.linspace(0.0, 1.0, KNOTS)
+    rng, tau = np.random.default_rng(seed), np.linspace(0.0, 1.0, KNOTS)
     low, high = _ends(instance)
     found: list[tuple[float, Programme, Array]] = []
     for _ in range(DRAWN):
@@ -216,34 +223,33 @@ def _solved(programme: Programme, start: Array) -> Array | None:
             known[key] = programme.costates(unknown)[-1]
         return known[key]
 
-    ends = {
-        "type": "eq",
-        "fun": lambda v: programme.values(v)[1:],
-        "jac": lambda v: slopes(v)[1:],
-    }
     unit = np.ones(len(start))
     if programme.instance.tf is None:
         unit[-1] = start[-1]
+    ends = {
+        "type": "eq",
+        "fun": lambda v: programme.values(v * unit)[1:],
+        "jac": lambda v: slopes(v * unit)[1:] * unit,
+    }
     answer = minimize(
         lambda v: programme.values(v * unit)[0] / cost,
         start / unit,
         jac=lambda v: slopes(v * unit)[0] * unit / cost,
-        bounds=[tuple(None if b is None else b / u for b in pair) for pair, u in zip(programme.bounds(), unit, strict=True)],
-        constraints=[
-            {**ends, "fun": lambda v: programme.values(v * unit)[1:], "jac": lambda v: slopes(v * unit)[1:] * unit}
-        ]
-        if programme.fixed
-        else [],
+        bounds=[
+            tuple(None if b is None else b / one for b in pair)
+            for pair, one in zip(programme.bounds(), unit, strict=True)
+        ],
+        constraints=[ends] if programme.fixed else [],
         method="SLSQP",
-        options={"maxiter": PROGRAMMES, "ftol": 1e-10},
+        options={"maxiter": PROGRAMMES, "ftol": FLAT},
     )
     found = np.asarray(answer.x) * unit
     values = programme.values(found)
     return found if np.isfinite(values).all() and np.abs(values[1:]).max(initial=0.0) < SATISFIED else None
 
 
-def _extremal(programme: Programme, unknown: Array) -> tuple[float, TwoPoint, Start] | None:
-    """What Newton's method finds from there, with its cost."""
+def _extremal(programme: Programme, unknown: Array) -> tuple[TwoPoint, Start] | None:
+    """What Newton's method finds from there."""
     instance = programme.instance
     times, x, lam, slopes = programme.costates(unknown)
     inside = [
@@ -264,7 +270,7 @@ def _extremal(programme: Programme, unknown: Array) -> tuple[float, TwoPoint, St
         if outcome is not None and outcome.solved and outcome.curve.in_domain(problem.positive):
             cost = system.cost(outcome.curve)
             attempt = Attempt(outcome.curve, Reason.MINIMUM, outcome.iterations, cost)
-            return cost * scale.cost, problem, Start(attempt, Origin.DIRECT, outcome.iterations, bounded=True)
+            return problem, Start(attempt, Origin.DIRECT, outcome.iterations, bounded=True)
     return None
 
 

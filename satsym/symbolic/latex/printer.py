@@ -291,6 +291,8 @@ class Printer(LatexPrinter):
         across, along = map(self._print, expr.args)
         return rf"\operatorname{{atan2}}({across},\, {along})"
 
+    _print_Bearing = _print_atan2
+
     # sizes
 
     def _parentheses(self, content: str) -> tuple[str, str]:

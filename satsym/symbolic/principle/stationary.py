@@ -17,7 +17,7 @@ from satsym.symbolic.checks import DIGITS, moderate, numeric, points
 from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.minimisers import Clip
 from satsym.symbolic.principle.circle import by_circle
-from satsym.symbolic.roots import Choice, Convex, Middle, root_of
+from satsym.symbolic.roots import Bearing, Choice, Convex, Middle, root_of
 
 SAMPLES, CONTROLS = 10, 12
 """Random points at which H is looked at, and controls at each."""
@@ -96,7 +96,7 @@ def _turned(cosine: sp.Expr, sine: sp.Expr, ends: Ends) -> sp.Expr:
     middle = Middle(*ends)
     along = -cosine * sp.cos(middle) - sine * sp.sin(middle)
     across = cosine * sp.sin(middle) - sine * sp.cos(middle)
-    return Clip(middle + sp.atan2(across, along), *ends)
+    return Clip(middle + Bearing(across, along), *ends)
 
 
 def _terms(slope: sp.Expr, u: sp.Symbol) -> dict[sp.Expr, sp.Expr]:
