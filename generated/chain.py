@@ -2,7 +2,7 @@
 
 Written by satsym from derivations/examples/chain.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/chain.py
-Digest: 8885cc1cc6c3e62a2563a68125a2479c59210919fbc561bbd651039119eb977c
+Digest: d9bb055ff6dfab07568d7f3b77404578fbbc27d070e82a5f239b2bf8b7970777
 """
 
 import math
@@ -140,17 +140,17 @@ def control_law(t, x, lam, p, bounds):
     """The controls that minimise H over the control set."""
     height, length = x
     lambda_height, lambda_length = lam
-    w = height + lambda_length
-    inv_w = 1.0/w
-    w_2 = inv_w*inv_w*lambda_height*lambda_height - 1.0
-    inv_w_2 = 1.0/w_2
-    w_3 = -inv_w_2
-    sqrt_w_3 = math.sqrt(w_3)
-    w_4 = -inv_w*lambda_height*sqrt_w_3
-    w_5 = sqrt_w_3*w*w_2*w_2
-    slope = w_4 + 0.0*math.sqrt(w_5)
+    law_part_1 = height + lambda_length
+    inv_law_part_1 = 1.0/law_part_1
+    law_part_2 = inv_law_part_1*inv_law_part_1*lambda_height*lambda_height - 1.0
+    inv_law_part_2 = 1.0/law_part_2
+    w = -inv_law_part_2
+    sqrt_w = math.sqrt(w)
+    w_2 = -inv_law_part_1*lambda_height*sqrt_w
+    w_3 = law_part_1*law_part_2*law_part_2*sqrt_w
+    w_4 = w_2 + 0.0*math.sqrt(w_3)
     return (
-        slope,
+        w_4,
     )
 
 
@@ -171,21 +171,21 @@ def canonical(t, x, lam, p, bounds):
     """Rates of change of states and costates under the control law."""
     height, length = x
     lambda_height, lambda_length = lam
-    w = height + lambda_length
-    inv_w = 1.0/w
-    w_2 = inv_w*inv_w*lambda_height*lambda_height - 1.0
-    inv_w_2 = 1.0/w_2
-    w_3 = -inv_w_2
-    sqrt_w_3 = math.sqrt(w_3)
-    w_4 = -inv_w*lambda_height*sqrt_w_3
-    w_5 = sqrt_w_3*w*w_2*w_2
-    w_6 = w_4 + 0.0*math.sqrt(w_5)
-    w_7 = w_6*w_6 + 1.0
-    sqrt_w_7 = math.sqrt(w_7)
+    law_part_1 = height + lambda_length
+    inv_law_part_1 = 1.0/law_part_1
+    law_part_2 = inv_law_part_1*inv_law_part_1*lambda_height*lambda_height - 1.0
+    inv_law_part_2 = 1.0/law_part_2
+    w = -inv_law_part_2
+    sqrt_w = math.sqrt(w)
+    w_2 = -inv_law_part_1*lambda_height*sqrt_w
+    w_3 = law_part_1*law_part_2*law_part_2*sqrt_w
+    w_4 = w_2 + 0.0*math.sqrt(w_3)
+    w_5 = w_4*w_4 + 1.0
+    sqrt_w_5 = math.sqrt(w_5)
     return (
-        w_6,
-        sqrt_w_7,
-        -sqrt_w_7,
+        w_4,
+        sqrt_w_5,
+        -sqrt_w_5,
         0.0,
     )
 
@@ -194,43 +194,47 @@ def canonical_jacobian(t, x, lam, p, bounds):
     """The canonical rates by states and costates, row by row."""
     height, length = x
     lambda_height, lambda_length = lam
-    w = height + lambda_length
-    inv_w = 1.0/w
-    inv_w_sq = inv_w*inv_w
+    law_part_1 = height + lambda_length
+    inv_law_part_1 = 1.0/law_part_1
+    w = inv_law_part_1*lambda_height
+    inv_law_part_1_sq = inv_law_part_1*inv_law_part_1
+    w_2 = inv_law_part_1_sq*lambda_height
     lambda_height_sq = lambda_height*lambda_height
-    w_2 = inv_w_sq*lambda_height_sq - 1.0
-    inv_w_2 = 1.0/w_2
-    w_3 = -inv_w_2
+    law_part_2 = inv_law_part_1_sq*lambda_height_sq - 1.0
+    inv_law_part_2 = 1.0/law_part_2
+    w_3 = -inv_law_part_2
     sqrt_w_3 = math.sqrt(w_3)
-    w_4 = inv_w_sq*lambda_height*sqrt_w_3
-    w_5 = -inv_w_2*inv_w_2*sqrt_w_3*w_2
-    w_6 = inv_w*inv_w*inv_w*inv_w*lambda_height*lambda_height*lambda_height*w_5
-    w_7 = w_4 + w_6
-    inv_w_sqrt_w_3 = inv_w*sqrt_w_3
-    w_8 = inv_w*inv_w*inv_w*lambda_height_sq*w_5
-    w_9 = -inv_w_sqrt_w_3*lambda_height
-    w_10 = sqrt_w_3*w*w_2*w_2
-    w_11 = w_9 + 0.0*math.sqrt(w_10)
-    w_12 = w_11*w_11 + 1.0
-    sqrt_w_12 = math.sqrt(w_12)
-    inv_sqrt_w_12 = 1.0/sqrt_w_12
-    w_13 = 0.5*inv_sqrt_w_12*w_11
-    w_14 = w_13*(2.0*w_4 + 2.0*w_6)
-    w_15 = w_13*(-2.0*inv_w_sqrt_w_3 - 2.0*w_8)
-    w_16 = -w_14
+    sqrt_w_3_w_2 = sqrt_w_3*w_2
+    w_4 = 0.5*inv_law_part_2*sqrt_w_3
+    w_5 = -2.0*inv_law_part_1*inv_law_part_1*inv_law_part_1*lambda_height_sq
+    d_law_part_3_by_height = -w_4*w_5
+    d_law_of_slope_by_height = sqrt_w_3_w_2 - d_law_part_3_by_height*w
+    inv_law_part_1_sqrt_w_3 = inv_law_part_1*sqrt_w_3
+    d_law_part_2_by_lambda_height = 2.0*w_2
+    d_law_part_3_by_lambda_height = -d_law_part_2_by_lambda_height*w_4
+    d_law_of_slope_by_lambda_height = -d_law_part_3_by_lambda_height*w - inv_law_part_1_sqrt_w_3
+    w_6 = -inv_law_part_1_sqrt_w_3*lambda_height
+    w_7 = law_part_1*law_part_2*law_part_2*sqrt_w_3
+    w_8 = w_6 + 0.0*math.sqrt(w_7)
+    w_9 = w_8*w_8 + 1.0
+    sqrt_w_9 = math.sqrt(w_9)
+    inv_sqrt_w_9 = 1.0/sqrt_w_9
+    inv_sqrt_w_9_w_8 = inv_sqrt_w_9*w_8
+    w_10 = d_law_of_slope_by_height*inv_sqrt_w_9_w_8
+    w_11 = d_law_of_slope_by_lambda_height*inv_sqrt_w_9_w_8
     return (
-        w_7,
+        d_law_of_slope_by_height,
         0.0,
-        -inv_w_sqrt_w_3 - w_8,
-        w_7,
-        w_14,
+        d_law_of_slope_by_lambda_height,
+        d_law_of_slope_by_height,
+        w_10,
         0.0,
-        w_15,
-        w_14,
-        w_16,
+        w_11,
+        w_10,
+        -w_10,
         0.0,
-        -w_15,
-        w_16,
+        -w_11,
+        -w_10,
         0.0,
         0.0,
         0.0,
@@ -255,21 +259,21 @@ def boundary(t, x, lam, nu, p, bounds, final):
     height, length = x
     lambda_height, lambda_length = lam
     given_height, given_length, on_reference_height, on_reference_length, target_height, target_length = final
-    w = height + lambda_length
-    inv_w = 1.0/w
-    w_2 = inv_w*inv_w*lambda_height*lambda_height - 1.0
-    inv_w_2 = 1.0/w_2
-    w_3 = -inv_w_2
-    sqrt_w_3 = math.sqrt(w_3)
-    w_4 = -inv_w*lambda_height*sqrt_w_3
-    w_5 = sqrt_w_3*w*w_2*w_2
-    w_6 = w_4 + 0.0*math.sqrt(w_5)
-    w_7 = w_6*w_6 + 1.0
-    sqrt_w_7 = math.sqrt(w_7)
+    law_part_1 = height + lambda_length
+    inv_law_part_1 = 1.0/law_part_1
+    law_part_2 = inv_law_part_1*inv_law_part_1*lambda_height*lambda_height - 1.0
+    inv_law_part_2 = 1.0/law_part_2
+    w = -inv_law_part_2
+    sqrt_w = math.sqrt(w)
+    w_2 = -inv_law_part_1*lambda_height*sqrt_w
+    w_3 = law_part_1*law_part_2*law_part_2*sqrt_w
+    w_4 = w_2 + 0.0*math.sqrt(w_3)
+    w_5 = w_4*w_4 + 1.0
+    sqrt_w_5 = math.sqrt(w_5)
     return (
         given_height*(height - target_height) + height*on_reference_height + lambda_height*(1.0 - given_height - on_reference_height),
         given_length*(length - target_length) + lambda_length*(1.0 - given_length - on_reference_length) + length*on_reference_length,
-        height*sqrt_w_7 + lambda_height*w_6 + lambda_length*sqrt_w_7,
+        height*sqrt_w_5 + lambda_height*w_4 + lambda_length*sqrt_w_5,
     )
 
 
@@ -280,29 +284,33 @@ def boundary_jacobian(t, x, lam, nu, p, bounds, final):
     given_height, given_length, on_reference_height, on_reference_length, target_height, target_length = final
     w = given_height + on_reference_height
     w_2 = given_length + on_reference_length
-    w_3 = height + lambda_length
-    inv_w_3 = 1.0/w_3
-    inv_w_3_sq = inv_w_3*inv_w_3
+    law_part_1 = height + lambda_length
+    inv_law_part_1 = 1.0/law_part_1
+    inv_law_part_1_sq = inv_law_part_1*inv_law_part_1
     lambda_height_sq = lambda_height*lambda_height
-    w_4 = inv_w_3_sq*lambda_height_sq - 1.0
-    inv_w_4 = 1.0/w_4
-    w_5 = -inv_w_4
-    sqrt_w_5 = math.sqrt(w_5)
-    inv_w_3_sqrt_w_5 = inv_w_3*sqrt_w_5
-    w_6 = -inv_w_3_sqrt_w_5*lambda_height
-    w_7 = sqrt_w_5*w_3*w_4*w_4
-    w_8 = w_6 + 0.0*math.sqrt(w_7)
-    w_9 = w_8*w_8 + 1.0
-    sqrt_w_9 = math.sqrt(w_9)
-    inv_sqrt_w_9 = 1.0/sqrt_w_9
-    w_10 = 0.5*inv_sqrt_w_9*w_8
-    w_11 = inv_w_3_sq*lambda_height*sqrt_w_5
-    w_12 = -inv_w_4*inv_w_4*sqrt_w_5*w_4
-    w_13 = inv_w_3*inv_w_3*inv_w_3*inv_w_3*lambda_height*lambda_height*lambda_height*w_12
-    w_14 = w_10*(2.0*w_11 + 2.0*w_13)
-    w_15 = height*w_14 + lambda_height*(w_11 + w_13) + lambda_length*w_14 + sqrt_w_9
-    w_16 = inv_w_3*inv_w_3*inv_w_3*lambda_height_sq*w_12
-    w_17 = w_10*(-2.0*inv_w_3_sqrt_w_5 - 2.0*w_16)
+    law_part_2 = inv_law_part_1_sq*lambda_height_sq - 1.0
+    inv_law_part_2 = 1.0/law_part_2
+    w_3 = -inv_law_part_2
+    sqrt_w_3 = math.sqrt(w_3)
+    inv_law_part_1_sqrt_w_3 = inv_law_part_1*sqrt_w_3
+    w_4 = -inv_law_part_1_sqrt_w_3*lambda_height
+    w_5 = law_part_1*law_part_2*law_part_2*sqrt_w_3
+    w_6 = w_4 + 0.0*math.sqrt(w_5)
+    w_7 = w_6*w_6 + 1.0
+    sqrt_w_7 = math.sqrt(w_7)
+    inv_sqrt_w_7 = 1.0/sqrt_w_7
+    inv_sqrt_w_7_w_6 = inv_sqrt_w_7*w_6
+    w_8 = height*inv_sqrt_w_7_w_6 + inv_sqrt_w_7_w_6*lambda_length + lambda_height
+    w_9 = inv_law_part_1*lambda_height
+    w_10 = inv_law_part_1_sq*lambda_height
+    sqrt_w_3_w_10 = sqrt_w_3*w_10
+    w_11 = 0.5*inv_law_part_2*sqrt_w_3
+    w_12 = -2.0*inv_law_part_1*inv_law_part_1*inv_law_part_1*lambda_height_sq
+    d_law_part_3_by_height = -w_11*w_12
+    d_law_of_slope_by_height = sqrt_w_3_w_10 - d_law_part_3_by_height*w_9
+    d_law_part_2_by_lambda_height = 2.0*w_10
+    d_law_part_3_by_lambda_height = -d_law_part_2_by_lambda_height*w_11
+    d_law_of_slope_by_lambda_height = -d_law_part_3_by_lambda_height*w_9 - inv_law_part_1_sqrt_w_3
     return (
         w,
         0.0,
@@ -314,10 +322,10 @@ def boundary_jacobian(t, x, lam, nu, p, bounds, final):
         0.0,
         1.0 - w_2,
         0.0,
-        w_15,
+        d_law_of_slope_by_height*w_8 + sqrt_w_7,
         0.0,
-        height*w_17 + lambda_height*(-inv_w_3_sqrt_w_5 - w_16) + lambda_length*w_17 + w_8,
-        w_15,
+        d_law_of_slope_by_lambda_height*w_8 + w_6,
+        d_law_of_slope_by_height*w_8 + sqrt_w_7,
         0.0,
     )
 
@@ -547,16 +555,16 @@ def control_law_batch(t, x, lam, p, bounds, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((1, *shape), np.result_type(float, t, x, lam, *p, *bounds))
-    w = height + lambda_length
-    inv_w = 1.0/w
-    w_2 = inv_w*inv_w*lambda_height*lambda_height - 1.0
-    inv_w_2 = 1.0/w_2
-    w_3 = -inv_w_2
-    sqrt_w_3 = np.sqrt(w_3)
-    w_4 = -inv_w*lambda_height*sqrt_w_3
-    w_5 = sqrt_w_3*w*w_2*w_2
-    slope = w_4 + 0.0*np.sqrt(w_5)
-    out[0] = slope
+    law_part_1 = height + lambda_length
+    inv_law_part_1 = 1.0/law_part_1
+    law_part_2 = inv_law_part_1*inv_law_part_1*lambda_height*lambda_height - 1.0
+    inv_law_part_2 = 1.0/law_part_2
+    w = -inv_law_part_2
+    sqrt_w = np.sqrt(w)
+    w_2 = -inv_law_part_1*lambda_height*sqrt_w
+    w_3 = law_part_1*law_part_2*law_part_2*sqrt_w
+    w_4 = w_2 + 0.0*np.sqrt(w_3)
+    out[0] = w_4
     return out
 
 
@@ -582,20 +590,20 @@ def canonical_batch(t, x, lam, p, bounds, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((4, *shape), np.result_type(float, t, x, lam, *p, *bounds))
-    w = height + lambda_length
-    inv_w = 1.0/w
-    w_2 = inv_w*inv_w*lambda_height*lambda_height - 1.0
-    inv_w_2 = 1.0/w_2
-    w_3 = -inv_w_2
-    sqrt_w_3 = np.sqrt(w_3)
-    w_4 = -inv_w*lambda_height*sqrt_w_3
-    w_5 = sqrt_w_3*w*w_2*w_2
-    w_6 = w_4 + 0.0*np.sqrt(w_5)
-    w_7 = w_6*w_6 + 1.0
-    sqrt_w_7 = np.sqrt(w_7)
-    out[0] = w_6
-    out[1] = sqrt_w_7
-    out[2] = -sqrt_w_7
+    law_part_1 = height + lambda_length
+    inv_law_part_1 = 1.0/law_part_1
+    law_part_2 = inv_law_part_1*inv_law_part_1*lambda_height*lambda_height - 1.0
+    inv_law_part_2 = 1.0/law_part_2
+    w = -inv_law_part_2
+    sqrt_w = np.sqrt(w)
+    w_2 = -inv_law_part_1*lambda_height*sqrt_w
+    w_3 = law_part_1*law_part_2*law_part_2*sqrt_w
+    w_4 = w_2 + 0.0*np.sqrt(w_3)
+    w_5 = w_4*w_4 + 1.0
+    sqrt_w_5 = np.sqrt(w_5)
+    out[0] = w_4
+    out[1] = sqrt_w_5
+    out[2] = -sqrt_w_5
     out[3] = 0.0
     return out
 
@@ -607,42 +615,46 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, lam, *p, *bounds))
-    w = height + lambda_length
-    inv_w = 1.0/w
-    inv_w_sq = inv_w*inv_w
+    law_part_1 = height + lambda_length
+    inv_law_part_1 = 1.0/law_part_1
+    w = inv_law_part_1*lambda_height
+    inv_law_part_1_sq = inv_law_part_1*inv_law_part_1
+    w_2 = inv_law_part_1_sq*lambda_height
     lambda_height_sq = lambda_height*lambda_height
-    w_2 = inv_w_sq*lambda_height_sq - 1.0
-    inv_w_2 = 1.0/w_2
-    w_3 = -inv_w_2
+    law_part_2 = inv_law_part_1_sq*lambda_height_sq - 1.0
+    inv_law_part_2 = 1.0/law_part_2
+    w_3 = -inv_law_part_2
     sqrt_w_3 = np.sqrt(w_3)
-    w_4 = inv_w_sq*lambda_height*sqrt_w_3
-    w_5 = -inv_w_2*inv_w_2*sqrt_w_3*w_2
-    w_6 = inv_w*inv_w*inv_w*inv_w*lambda_height*lambda_height*lambda_height*w_5
-    w_7 = w_4 + w_6
-    inv_w_sqrt_w_3 = inv_w*sqrt_w_3
-    w_8 = inv_w*inv_w*inv_w*lambda_height_sq*w_5
-    w_9 = -inv_w_sqrt_w_3*lambda_height
-    w_10 = sqrt_w_3*w*w_2*w_2
-    w_11 = w_9 + 0.0*np.sqrt(w_10)
-    w_12 = w_11*w_11 + 1.0
-    sqrt_w_12 = np.sqrt(w_12)
-    inv_sqrt_w_12 = 1.0/sqrt_w_12
-    w_13 = 0.5*inv_sqrt_w_12*w_11
-    w_14 = w_13*(2.0*w_4 + 2.0*w_6)
-    w_15 = w_13*(-2.0*inv_w_sqrt_w_3 - 2.0*w_8)
-    w_16 = -w_14
-    out[0, 0] = w_7
+    sqrt_w_3_w_2 = sqrt_w_3*w_2
+    w_4 = 0.5*inv_law_part_2*sqrt_w_3
+    w_5 = -2.0*inv_law_part_1*inv_law_part_1*inv_law_part_1*lambda_height_sq
+    d_law_part_3_by_height = -w_4*w_5
+    d_law_of_slope_by_height = sqrt_w_3_w_2 - d_law_part_3_by_height*w
+    inv_law_part_1_sqrt_w_3 = inv_law_part_1*sqrt_w_3
+    d_law_part_2_by_lambda_height = 2.0*w_2
+    d_law_part_3_by_lambda_height = -d_law_part_2_by_lambda_height*w_4
+    d_law_of_slope_by_lambda_height = -d_law_part_3_by_lambda_height*w - inv_law_part_1_sqrt_w_3
+    w_6 = -inv_law_part_1_sqrt_w_3*lambda_height
+    w_7 = law_part_1*law_part_2*law_part_2*sqrt_w_3
+    w_8 = w_6 + 0.0*np.sqrt(w_7)
+    w_9 = w_8*w_8 + 1.0
+    sqrt_w_9 = np.sqrt(w_9)
+    inv_sqrt_w_9 = 1.0/sqrt_w_9
+    inv_sqrt_w_9_w_8 = inv_sqrt_w_9*w_8
+    w_10 = d_law_of_slope_by_height*inv_sqrt_w_9_w_8
+    w_11 = d_law_of_slope_by_lambda_height*inv_sqrt_w_9_w_8
+    out[0, 0] = d_law_of_slope_by_height
     out[0, 1] = 0.0
-    out[0, 2] = -inv_w_sqrt_w_3 - w_8
-    out[0, 3] = w_7
-    out[1, 0] = w_14
+    out[0, 2] = d_law_of_slope_by_lambda_height
+    out[0, 3] = d_law_of_slope_by_height
+    out[1, 0] = w_10
     out[1, 1] = 0.0
-    out[1, 2] = w_15
-    out[1, 3] = w_14
-    out[2, 0] = w_16
+    out[1, 2] = w_11
+    out[1, 3] = w_10
+    out[2, 0] = -w_10
     out[2, 1] = 0.0
-    out[2, 2] = -w_15
-    out[2, 3] = w_16
+    out[2, 2] = -w_11
+    out[2, 3] = -w_10
     out[3, 0] = 0.0
     out[3, 1] = 0.0
     out[3, 2] = 0.0
@@ -672,20 +684,20 @@ def boundary_batch(t, x, lam, nu, p, bounds, final, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((3, *shape), np.result_type(float, t, x, lam, *nu, *p, *bounds, *final))
-    w = height + lambda_length
-    inv_w = 1.0/w
-    w_2 = inv_w*inv_w*lambda_height*lambda_height - 1.0
-    inv_w_2 = 1.0/w_2
-    w_3 = -inv_w_2
-    sqrt_w_3 = np.sqrt(w_3)
-    w_4 = -inv_w*lambda_height*sqrt_w_3
-    w_5 = sqrt_w_3*w*w_2*w_2
-    w_6 = w_4 + 0.0*np.sqrt(w_5)
-    w_7 = w_6*w_6 + 1.0
-    sqrt_w_7 = np.sqrt(w_7)
+    law_part_1 = height + lambda_length
+    inv_law_part_1 = 1.0/law_part_1
+    law_part_2 = inv_law_part_1*inv_law_part_1*lambda_height*lambda_height - 1.0
+    inv_law_part_2 = 1.0/law_part_2
+    w = -inv_law_part_2
+    sqrt_w = np.sqrt(w)
+    w_2 = -inv_law_part_1*lambda_height*sqrt_w
+    w_3 = law_part_1*law_part_2*law_part_2*sqrt_w
+    w_4 = w_2 + 0.0*np.sqrt(w_3)
+    w_5 = w_4*w_4 + 1.0
+    sqrt_w_5 = np.sqrt(w_5)
     out[0] = given_height*(height - target_height) + height*on_reference_height + lambda_height*(1.0 - given_height - on_reference_height)
     out[1] = given_length*(length - target_length) + lambda_length*(1.0 - given_length - on_reference_length) + length*on_reference_length
-    out[2] = height*sqrt_w_7 + lambda_height*w_6 + lambda_length*sqrt_w_7
+    out[2] = height*sqrt_w_5 + lambda_height*w_4 + lambda_length*sqrt_w_5
     return out
 
 
@@ -699,29 +711,33 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
         out = np.empty((3, 5, *shape), np.result_type(float, t, x, lam, *nu, *p, *bounds, *final))
     w = given_height + on_reference_height
     w_2 = given_length + on_reference_length
-    w_3 = height + lambda_length
-    inv_w_3 = 1.0/w_3
-    inv_w_3_sq = inv_w_3*inv_w_3
+    law_part_1 = height + lambda_length
+    inv_law_part_1 = 1.0/law_part_1
+    inv_law_part_1_sq = inv_law_part_1*inv_law_part_1
     lambda_height_sq = lambda_height*lambda_height
-    w_4 = inv_w_3_sq*lambda_height_sq - 1.0
-    inv_w_4 = 1.0/w_4
-    w_5 = -inv_w_4
-    sqrt_w_5 = np.sqrt(w_5)
-    inv_w_3_sqrt_w_5 = inv_w_3*sqrt_w_5
-    w_6 = -inv_w_3_sqrt_w_5*lambda_height
-    w_7 = sqrt_w_5*w_3*w_4*w_4
-    w_8 = w_6 + 0.0*np.sqrt(w_7)
-    w_9 = w_8*w_8 + 1.0
-    sqrt_w_9 = np.sqrt(w_9)
-    inv_sqrt_w_9 = 1.0/sqrt_w_9
-    w_10 = 0.5*inv_sqrt_w_9*w_8
-    w_11 = inv_w_3_sq*lambda_height*sqrt_w_5
-    w_12 = -inv_w_4*inv_w_4*sqrt_w_5*w_4
-    w_13 = inv_w_3*inv_w_3*inv_w_3*inv_w_3*lambda_height*lambda_height*lambda_height*w_12
-    w_14 = w_10*(2.0*w_11 + 2.0*w_13)
-    w_15 = height*w_14 + lambda_height*(w_11 + w_13) + lambda_length*w_14 + sqrt_w_9
-    w_16 = inv_w_3*inv_w_3*inv_w_3*lambda_height_sq*w_12
-    w_17 = w_10*(-2.0*inv_w_3_sqrt_w_5 - 2.0*w_16)
+    law_part_2 = inv_law_part_1_sq*lambda_height_sq - 1.0
+    inv_law_part_2 = 1.0/law_part_2
+    w_3 = -inv_law_part_2
+    sqrt_w_3 = np.sqrt(w_3)
+    inv_law_part_1_sqrt_w_3 = inv_law_part_1*sqrt_w_3
+    w_4 = -inv_law_part_1_sqrt_w_3*lambda_height
+    w_5 = law_part_1*law_part_2*law_part_2*sqrt_w_3
+    w_6 = w_4 + 0.0*np.sqrt(w_5)
+    w_7 = w_6*w_6 + 1.0
+    sqrt_w_7 = np.sqrt(w_7)
+    inv_sqrt_w_7 = 1.0/sqrt_w_7
+    inv_sqrt_w_7_w_6 = inv_sqrt_w_7*w_6
+    w_8 = height*inv_sqrt_w_7_w_6 + inv_sqrt_w_7_w_6*lambda_length + lambda_height
+    w_9 = inv_law_part_1*lambda_height
+    w_10 = inv_law_part_1_sq*lambda_height
+    sqrt_w_3_w_10 = sqrt_w_3*w_10
+    w_11 = 0.5*inv_law_part_2*sqrt_w_3
+    w_12 = -2.0*inv_law_part_1*inv_law_part_1*inv_law_part_1*lambda_height_sq
+    d_law_part_3_by_height = -w_11*w_12
+    d_law_of_slope_by_height = sqrt_w_3_w_10 - d_law_part_3_by_height*w_9
+    d_law_part_2_by_lambda_height = 2.0*w_10
+    d_law_part_3_by_lambda_height = -d_law_part_2_by_lambda_height*w_11
+    d_law_of_slope_by_lambda_height = -d_law_part_3_by_lambda_height*w_9 - inv_law_part_1_sqrt_w_3
     out[0, 0] = w
     out[0, 1] = 0.0
     out[0, 2] = 1.0 - w
@@ -732,9 +748,9 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     out[1, 2] = 0.0
     out[1, 3] = 1.0 - w_2
     out[1, 4] = 0.0
-    out[2, 0] = w_15
+    out[2, 0] = d_law_of_slope_by_height*w_8 + sqrt_w_7
     out[2, 1] = 0.0
-    out[2, 2] = height*w_17 + lambda_height*(-inv_w_3_sqrt_w_5 - w_16) + lambda_length*w_17 + w_8
-    out[2, 3] = w_15
+    out[2, 2] = d_law_of_slope_by_lambda_height*w_8 + w_6
+    out[2, 3] = d_law_of_slope_by_height*w_8 + sqrt_w_7
     out[2, 4] = 0.0
     return out

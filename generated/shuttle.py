@@ -2,7 +2,7 @@
 
 Written by satsym from derivations/examples/shuttle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/shuttle.py
-Digest: 88a03281cdcf2eec4c24a74850fa8a38b5f66f400a80093cb96fa61bebbd930c
+Digest: 1bfff1b5deb518952dd8bd45c2916ea2e682df95eba24b5b7e45ff4439d6460a
 """
 
 import math
@@ -50,7 +50,7 @@ MODEL = {
     'multipliers': (),
     'control_parts': (
         {'name': 'attack', 'kind': 'box', 'controls': ('alpha',), 'branch': 'stationary'},
-        {'name': 'bank', 'kind': 'angle', 'controls': ('beta',), 'branch': 'stationary'},
+        {'name': 'bank', 'kind': 'box', 'controls': ('beta',), 'branch': 'stationary'},
     ),
 }
 
@@ -331,47 +331,57 @@ def control_law(t, x, lam, p, bounds):
     h, phi, theta, v, gamma, psi = x
     lambda_h, lambda_phi, lambda_theta, lambda_v, lambda_gamma, lambda_psi = lam
     mu, r_e, rho_0, h_r, area, m, a_0, a_1, b_0, b_1, b_2 = p
-    alpha_min, alpha_max, beta_reach = bounds
-    inv_h_r = 1.0/h_r
-    inv_m = 1.0/m
-    w = area*inv_m*rho_0*math.exp(-h*inv_h_r)
-    w_2 = v*v*w
-    w_3 = -b_2*lambda_v*w_2
+    alpha_min, alpha_max, beta_min, beta_max = bounds
     cos_gamma = math.cos(gamma)
-    Abs_cos_gamma = math.fabs(cos_gamma)
-    inv_Abs_cos_gamma = 1.0/Abs_cos_gamma
-    inv_b_2 = 1.0/b_2
-    half_inv_b_2 = 0.5*inv_b_2
-    b_1_half_inv_b_2 = b_1*half_inv_b_2
-    inv_lambda_v = 1.0/lambda_v
-    inv_v = 1.0/v
-    w_4 = cos_gamma*cos_gamma*lambda_gamma*lambda_gamma + lambda_psi*lambda_psi
-    sqrt_w_4 = math.sqrt(w_4)
-    w_5 = a_1*half_inv_b_2*inv_lambda_v*inv_v*sqrt_w_4
-    w_6 = -b_1_half_inv_b_2 - inv_Abs_cos_gamma*w_5
-    w_7 = w_6 + 0.0*math.sqrt(w_3)
-    w_8 = alpha_min if w_7 < alpha_min else alpha_max if w_7 > alpha_max else w_7
-    w_9 = -b_1_half_inv_b_2
-    w_10 = inv_Abs_cos_gamma*w_5 + w_9
-    w_11 = w_10 + 0.0*math.sqrt(w_3)
-    w_12 = alpha_min if w_11 < alpha_min else alpha_max if w_11 > alpha_max else w_11
-    half_w_2 = 0.5*w_2
-    w_13 = 0.5*v*w
-    sqrt_w_4_w_13 = sqrt_w_4*w_13
-    w_14 = h + r_e
-    inv_w_14 = 1.0/w_14
-    w_15 = inv_w_14*inv_w_14*mu*math.sin(gamma)
-    w_16 = inv_Abs_cos_gamma*sqrt_w_4_w_13*(-a_0 - a_1*w_12) + lambda_v*(-half_w_2*(b_0 + b_1*w_8 + b_2*w_8*w_8) - w_15) - inv_Abs_cos_gamma*sqrt_w_4_w_13*(a_0 + a_1*w_8) - lambda_v*(-half_w_2*(b_0 + b_1*w_12 + b_2*w_12*w_12) - w_15)
-    alpha = (w_8 if w_16 <= 0.0 else w_12) + 0.0*w_16
     inv_cos_gamma = 1.0/cos_gamma
-    w_17 = inv_cos_gamma*lambda_psi*w_13
-    lambda_gamma_w_13 = lambda_gamma*w_13
-    w_18 = math.atan2(-w_17, -lambda_gamma_w_13)
-    w_19 = math.atan2(w_17, lambda_gamma_w_13)
-    beta = (w_18 if w_16 <= 0.0 else w_19) + 0.0*w_16
+    inv_m = 1.0/m
+    inv_h_r = 1.0/h_r
+    law_part_6 = h*inv_h_r
+    law_part_7 = area*inv_m*rho_0*math.exp(-law_part_6)
+    law_part_8 = 0.5*law_part_7*v
+    law_part_11 = inv_cos_gamma*lambda_psi*law_part_8
+    w = 0.5*((beta_min if beta_min > (beta_max if beta_max < math.pi else math.pi) - 2.0*math.pi else (beta_max if beta_max < math.pi else math.pi) - 2.0*math.pi) + (beta_max if beta_max < (beta_min if beta_min > -math.pi else -math.pi) + 2.0*math.pi else (beta_min if beta_min > -math.pi else -math.pi) + 2.0*math.pi))
+    law_part_10 = math.cos(w)
+    law_part_5 = math.sin(w)
+    law_part_9 = lambda_gamma*law_part_8
+    law_part_12 = law_part_5*law_part_9 - law_part_10*law_part_11
+    w_2 = -law_part_12
+    law_part_13 = law_part_10*law_part_9 + law_part_11*law_part_5
+    w_3 = math.atan2(w_2, law_part_13) + 0.0/(w_2*w_2 + law_part_13*law_part_13)
+    w_4 = w + w_3
+    w_5 = beta_min if w_4 < beta_min else beta_max if w_4 > beta_max else w_4
+    law_part_15 = law_part_11*math.sin(w_5) + law_part_9*math.cos(w_5)
+    inv_lambda_v = 1.0/lambda_v
+    law_part_16 = v*v
+    inv_law_part_16 = 1.0/law_part_16
+    inv_area = 1.0/area
+    inv_rho_0 = 1.0/rho_0
+    inv_b_2 = 1.0/b_2
+    law_part_17 = a_1*inv_area*inv_b_2*inv_lambda_v*inv_law_part_16*inv_rho_0*m*math.exp(law_part_6)
+    law_part_2 = 0.5*b_1
+    law_part_3 = -inv_b_2*law_part_2
+    w_6 = law_part_15*law_part_17 + law_part_3
+    law_part_18 = lambda_v*law_part_16*law_part_7
+    law_part_19 = b_2*law_part_18
+    law_part_20 = -law_part_19
+    w_7 = w_6 + 0.0*math.sqrt(law_part_20)
+    w_8 = alpha_min if w_7 < alpha_min else alpha_max if w_7 > alpha_max else w_7
+    w_9 = -law_part_13
+    w_10 = math.atan2(law_part_12, w_9) + 0.0/(law_part_12*law_part_12 + w_9*w_9)
+    w_11 = w + w_10
+    w_12 = beta_min if w_11 < beta_min else beta_max if w_11 > beta_max else w_11
+    law_part_24 = law_part_11*math.sin(w_12) + law_part_9*math.cos(w_12)
+    w_13 = law_part_17*law_part_24 + law_part_3
+    w_14 = w_13 + 0.0*math.sqrt(law_part_20)
+    w_15 = alpha_min if w_14 < alpha_min else alpha_max if w_14 > alpha_max else w_14
+    law_part_22 = law_part_18*law_part_2
+    law_part_26 = 0.5*law_part_19
+    law_part_27 = law_part_22*w_8 + law_part_24*(a_0 + a_1*w_15) + law_part_26*w_8*w_8 - law_part_15*(a_0 + a_1*w_8) - law_part_22*w_15 - law_part_26*w_15*w_15
+    w_16 = (w_15 if law_part_27 <= 0.0 else w_8) + 0.0*law_part_27
+    w_17 = (w_12 if law_part_27 <= 0.0 else w_5) + 0.0*law_part_27
     return (
-        alpha,
-        beta,
+        w_16,
+        w_17,
     )
 
 
@@ -462,7 +472,7 @@ def canonical(t, x, lam, p, bounds):
     h, phi, theta, v, gamma, psi = x
     lambda_h, lambda_phi, lambda_theta, lambda_v, lambda_gamma, lambda_psi = lam
     mu, r_e, rho_0, h_r, area, m, a_0, a_1, b_0, b_1, b_2 = p
-    alpha_min, alpha_max, beta_reach = bounds
+    alpha_min, alpha_max, beta_min, beta_max = bounds
     sin_gamma = math.sin(gamma)
     sin_gamma_v = sin_gamma*v
     w = h + r_e
@@ -475,60 +485,72 @@ def canonical(t, x, lam, p, bounds):
     inv_cos_theta_sin_psi = inv_cos_theta*sin_psi
     cos_psi = math.cos(psi)
     w_2 = cos_gamma_inv_w_v*cos_psi
-    Abs_cos_gamma = math.fabs(cos_gamma)
-    inv_Abs_cos_gamma = 1.0/Abs_cos_gamma
-    inv_b_2 = 1.0/b_2
-    half_inv_b_2 = 0.5*inv_b_2
-    b_1_half_inv_b_2 = b_1*half_inv_b_2
-    w_3 = -b_1_half_inv_b_2
-    lambda_psi_sq = lambda_psi*lambda_psi
-    lambda_gamma_sq = lambda_gamma*lambda_gamma
-    w_4 = cos_gamma*cos_gamma*lambda_gamma_sq + lambda_psi_sq
-    sqrt_w_4 = math.sqrt(w_4)
-    inv_lambda_v = 1.0/lambda_v
-    inv_v = 1.0/v
-    w_5 = a_1*half_inv_b_2*inv_lambda_v*inv_v*sqrt_w_4
-    w_6 = inv_Abs_cos_gamma*w_5 + w_3
-    inv_m = 1.0/m
-    inv_h_r = 1.0/h_r
-    h_inv_h_r = h*inv_h_r
-    w_7 = math.exp(-h_inv_h_r)
-    area_inv_m_rho_0_w_7 = area*inv_m*rho_0*w_7
-    v_sq = v*v
-    w_8 = area_inv_m_rho_0_w_7*v_sq
-    b_2_w_8 = b_2*w_8
-    w_9 = -b_2_w_8*lambda_v
-    w_10 = w_6 + 0.0*math.sqrt(w_9)
-    w_11 = alpha_min if w_10 < alpha_min else alpha_max if w_10 > alpha_max else w_10
-    w_12 = -b_1_half_inv_b_2 - inv_Abs_cos_gamma*w_5
-    w_13 = w_12 + 0.0*math.sqrt(w_9)
-    w_14 = alpha_min if w_13 < alpha_min else alpha_max if w_13 > alpha_max else w_13
-    w_15 = 0.5*area_inv_m_rho_0_w_7
-    v_w_15 = v*w_15
-    sqrt_w_4_v_w_15 = sqrt_w_4*v_w_15
     inv_w_sq = inv_w*inv_w
     inv_w_sq_mu = inv_w_sq*mu
-    inv_w_sq_mu_sin_gamma = inv_w_sq_mu*sin_gamma
-    half_w_8 = 0.5*w_8
-    w_16 = inv_Abs_cos_gamma*sqrt_w_4_v_w_15*(-a_0 - a_1*w_11) + lambda_v*(-half_w_8*(b_0 + b_1*w_14 + b_2*w_14*w_14) - inv_w_sq_mu_sin_gamma) - inv_Abs_cos_gamma*sqrt_w_4_v_w_15*(a_0 + a_1*w_14) - lambda_v*(-half_w_8*(b_0 + b_1*w_11 + b_2*w_11*w_11) - inv_w_sq_mu_sin_gamma)
-    w_17 = (w_14 if w_16 <= 0.0 else w_11) + 0.0*w_16
-    w_18 = 0.25*area*area*inv_m*inv_m*rho_0*rho_0*v_sq*math.exp(-2.0*h_inv_h_r)
     inv_cos_gamma = 1.0/cos_gamma
-    inv_cos_gamma_sq = inv_cos_gamma*inv_cos_gamma
-    w_19 = inv_cos_gamma_sq*lambda_psi_sq*w_18 + lambda_gamma_sq*w_18
-    sqrt_w_19 = math.sqrt(w_19)
-    inv_sqrt_w_19 = 1.0/sqrt_w_19
-    inv_sqrt_w_19_v_w_15 = inv_sqrt_w_19*v_w_15
-    w_20 = inv_sqrt_w_19_v_w_15*lambda_gamma
-    w_21 = -w_20
-    w_22 = (w_21 if w_16 <= 0.0 else w_20) + 0.0*w_16
-    w_23 = inv_cos_gamma*inv_sqrt_w_19_v_w_15*lambda_psi
-    w_24 = -w_23
-    w_25 = (w_24 if w_16 <= 0.0 else w_23) + 0.0*w_16
+    half_v = 0.5*v
+    inv_m = 1.0/m
+    area_inv_m_rho_0 = area*inv_m*rho_0
+    inv_h_r = 1.0/h_r
+    h_inv_h_r = h*inv_h_r
+    law_part_7 = area_inv_m_rho_0*math.exp(-h_inv_h_r)
+    law_part_8 = half_v*law_part_7
+    law_part_11 = inv_cos_gamma*lambda_psi*law_part_8
+    w_3 = 0.5*((beta_min if beta_min > (beta_max if beta_max < math.pi else math.pi) - 2.0*math.pi else (beta_max if beta_max < math.pi else math.pi) - 2.0*math.pi) + (beta_max if beta_max < (beta_min if beta_min > -math.pi else -math.pi) + 2.0*math.pi else (beta_min if beta_min > -math.pi else -math.pi) + 2.0*math.pi))
+    law_part_10 = math.cos(w_3)
+    law_part_5 = math.sin(w_3)
+    law_part_9 = lambda_gamma*law_part_8
+    law_part_12 = law_part_5*law_part_9 - law_part_10*law_part_11
+    w_4 = -law_part_12
+    law_part_13 = law_part_10*law_part_9 + law_part_11*law_part_5
+    w_5 = math.atan2(w_4, law_part_13) + 0.0/(w_4*w_4 + law_part_13*law_part_13)
+    w_6 = w_3 + w_5
+    w_7 = beta_min if w_6 < beta_min else beta_max if w_6 > beta_max else w_6
+    law_part_15 = law_part_11*math.sin(w_7) + law_part_9*math.cos(w_7)
+    inv_lambda_v = 1.0/lambda_v
+    v_sq = v*v
+    inv_v_sq = 1.0/v_sq
+    inv_area = 1.0/area
+    inv_rho_0 = 1.0/rho_0
+    inv_b_2 = 1.0/b_2
+    law_part_17 = a_1*inv_area*inv_b_2*inv_lambda_v*inv_rho_0*inv_v_sq*m*math.exp(h_inv_h_r)
+    half_b_1 = 0.5*b_1
+    law_part_3 = -half_b_1*inv_b_2
+    w_8 = law_part_15*law_part_17 + law_part_3
+    law_part_18 = lambda_v*law_part_7*v_sq
+    law_part_19 = b_2*law_part_18
+    law_part_20 = -law_part_19
+    w_9 = w_8 + 0.0*math.sqrt(law_part_20)
+    w_10 = alpha_min if w_9 < alpha_min else alpha_max if w_9 > alpha_max else w_9
+    w_11 = -law_part_13
+    w_12 = math.atan2(law_part_12, w_11) + 0.0/(law_part_12*law_part_12 + w_11*w_11)
+    w_13 = w_12 + w_3
+    w_14 = beta_min if w_13 < beta_min else beta_max if w_13 > beta_max else w_13
+    law_part_24 = law_part_11*math.sin(w_14) + law_part_9*math.cos(w_14)
+    w_15 = law_part_17*law_part_24 + law_part_3
+    w_16 = w_15 + 0.0*math.sqrt(law_part_20)
+    w_17 = alpha_min if w_16 < alpha_min else alpha_max if w_16 > alpha_max else w_16
+    law_part_22 = half_b_1*law_part_18
+    law_part_26 = 0.5*law_part_19
+    law_part_27 = law_part_22*w_10 + law_part_24*(a_0 + a_1*w_17) + law_part_26*w_10*w_10 - law_part_15*(a_0 + a_1*w_10) - law_part_22*w_17 - law_part_26*w_17*w_17
+    w_18 = (w_17 if law_part_27 <= 0.0 else w_10) + 0.0*law_part_27
+    w_19 = b_2*w_18*w_18
+    w_20 = b_0 + b_1*w_18 + w_19
+    w_21 = math.exp(-h_inv_h_r)
+    area_inv_m_rho_0_w_21 = area_inv_m_rho_0*w_21
+    w_22 = 0.5*area_inv_m_rho_0_w_21
+    v_sq_w_22 = v_sq*w_22
+    inv_v = 1.0/v
+    w_23 = (w_14 if law_part_27 <= 0.0 else w_7) + 0.0*law_part_27
+    cos_w_23 = math.cos(w_23)
+    a_1_w_18 = a_1*w_18
+    w_24 = area_inv_m_rho_0_w_21*half_v
+    w_25 = w_24*(a_0 + a_1_w_18)
     sin_theta = math.sin(theta)
     sin_psi_sin_theta = sin_psi*sin_theta
     w_26 = cos_gamma_inv_w_v*sin_psi_sin_theta
-    inv_cos_gamma_v_w_15 = inv_cos_gamma*v_w_15
+    sin_w_23 = math.sin(w_23)
+    inv_cos_gamma_sin_w_23 = inv_cos_gamma*sin_w_23
     h_sq = h*h
     r_e_sq = r_e*r_e
     twice_r_e = 2.0*r_e
@@ -550,34 +572,34 @@ def canonical(t, x, lam, p, bounds):
     cos_gamma_v_inv_w_sq = cos_gamma_v*inv_w_sq
     w_33 = inv_cos_theta_sin_psi*lambda_phi
     cos_gamma_mu = cos_gamma*mu
-    a_0_w_15 = a_0*w_15
-    inv_h_r_v = inv_h_r*v
-    a_1_inv_h_r = a_1*inv_h_r
-    a_0_w_15_inv_cos_gamma = a_0_w_15*inv_cos_gamma
-    half_w_8_inv_h_r = half_w_8*inv_h_r
+    inv_h_r_w_24 = inv_h_r*w_24
+    cos_w_23_inv_h_r_w_24 = cos_w_23*inv_h_r_w_24
+    w_34 = inv_cos_gamma_sin_w_23*inv_h_r_w_24
+    inv_h_r_v_sq_w_22 = inv_h_r*v_sq_w_22
     inv_cos_theta_sq = inv_cos_theta*inv_cos_theta
     h_v_sq = h*v_sq
-    w_34 = h_sq*v_sq + h_v_sq*twice_r_e + r_e_sq*v_sq
-    inv_w_34 = 1.0/w_34
-    w_35 = cos_theta*r_e + cos_theta_h
+    w_35 = h_sq*v_sq + h_v_sq*twice_r_e + r_e_sq*v_sq
     inv_w_35 = 1.0/w_35
+    w_36 = cos_theta*r_e + cos_theta_h
+    inv_w_36 = 1.0/w_36
     cos_gamma_inv_w = cos_gamma*inv_w
-    a_1_w_15 = a_1*w_15
+    cos_w_23_w_22 = cos_w_23*w_22
+    w_37 = inv_cos_gamma_sin_w_23*w_22
     inv_w_sin_gamma_v = inv_w*sin_gamma_v
-    w_36 = inv_cos_gamma_sq*sin_gamma_v
+    w_38 = inv_cos_gamma*inv_cos_gamma*sin_gamma_v*sin_w_23*w_22
     inv_cos_theta_w_2 = inv_cos_theta*w_2
     return (
         sin_gamma_v,
         cos_gamma_inv_w_v*inv_cos_theta_sin_psi,
         w_2,
-        -half_w_8*(b_0 + b_1*w_17 + b_2*w_17*w_17) - inv_w_sq_mu_sin_gamma,
-        cos_gamma*(inv_w*v - inv_v*inv_w_sq_mu) + v_w_15*w_22*(a_0 + a_1*w_17),
-        inv_cos_gamma_v_w_15*w_25*(a_0 + a_1*w_17) + inv_cos_theta*w_26,
-        cos_gamma_v_inv_w_sq*cos_psi_lambda_theta + cos_gamma_v_inv_w_sq*w_33 + lambda_gamma*(a_0_w_15*inv_h_r_v*w_22 + a_1_inv_h_r*v_w_15*w_17*w_22 + cos_gamma_v*inv_w_27 - 2.0*cos_gamma_mu*inv_w_30) + lambda_psi*(a_0_w_15_inv_cos_gamma*inv_h_r_v*w_25 + a_1_inv_h_r*inv_cos_gamma_v_w_15*w_17*w_25 + cos_gamma_v*inv_w_31*sin_psi_sin_theta) + lambda_v*(-b_0*half_w_8_inv_h_r - b_1*half_w_8_inv_h_r*w_17 - 0.5*b_2_w_8*inv_h_r*w_17*w_17 - 2.0*inv_w_32*mu*sin_gamma),
+        -inv_w_sq_mu*sin_gamma - v_sq_w_22*w_20,
+        cos_gamma*(inv_w*v - inv_v*inv_w_sq_mu) + cos_w_23*w_25,
+        inv_cos_gamma_sin_w_23*w_25 + inv_cos_theta*w_26,
+        cos_gamma_v_inv_w_sq*cos_psi_lambda_theta + cos_gamma_v_inv_w_sq*w_33 + lambda_gamma*(a_0*cos_w_23_inv_h_r_w_24 + a_1_w_18*cos_w_23_inv_h_r_w_24 + cos_gamma_v*inv_w_27 - 2.0*cos_gamma_mu*inv_w_30) + lambda_psi*(a_0*w_34 + a_1_w_18*w_34 + cos_gamma_v*inv_w_31*sin_psi_sin_theta) + lambda_v*(-area_inv_m_rho_0_w_21*half_b_1*inv_h_r*v_sq*w_18 - b_0*inv_h_r_v_sq_w_22 - inv_h_r_v_sq_w_22*w_19 - 2.0*inv_w_32*mu*sin_gamma),
         0.0,
         -cos_gamma_inv_w_v*inv_cos_theta_sq*lambda_psi*sin_psi*(cos_theta*cos_theta + sin_theta*sin_theta) - inv_cos_theta_sq*lambda_phi*w_26,
-        area*inv_m*lambda_v*rho_0*v*w_7*(b_0 + b_1*w_17 + b_2*w_17*w_17) + lambda_gamma*(-a_0_w_15*w_22 - a_1_w_15*w_17*w_22 - cos_gamma_inv_w - cos_gamma_mu*inv_w_34) + lambda_psi*(-a_0_w_15_inv_cos_gamma*w_25 - a_1_w_15*inv_cos_gamma*w_17*w_25 - cos_gamma*inv_w_35*sin_psi_sin_theta) - cos_gamma_inv_w*cos_psi_lambda_theta - cos_gamma_inv_w*w_33 - lambda_h*sin_gamma,
-        cos_gamma*inv_w_sq_mu*lambda_v + cos_psi_lambda_theta*inv_w_sin_gamma_v + inv_v*inv_w_sq*lambda_gamma*sin_gamma*(h_v_sq + r_e*v_sq - mu) + inv_w_sin_gamma_v*w_33 + lambda_psi*(inv_w_35*sin_gamma*sin_psi*sin_theta*v - a_0_w_15*w_25*w_36 - a_1_w_15*w_17*w_25*w_36) - cos_gamma_v*lambda_h,
+        area*inv_m*lambda_v*rho_0*v*w_20*w_21 + lambda_gamma*(-a_0*cos_w_23_w_22 - a_1_w_18*cos_w_23_w_22 - cos_gamma_inv_w - cos_gamma_mu*inv_w_35) + lambda_psi*(-a_0*w_37 - a_1_w_18*w_37 - cos_gamma*inv_w_36*sin_psi_sin_theta) - cos_gamma_inv_w*cos_psi_lambda_theta - cos_gamma_inv_w*w_33 - lambda_h*sin_gamma,
+        cos_gamma*inv_w_sq_mu*lambda_v + cos_psi_lambda_theta*inv_w_sin_gamma_v + inv_v*inv_w_sq*lambda_gamma*sin_gamma*(h_v_sq + r_e*v_sq - mu) + inv_w_sin_gamma_v*w_33 + lambda_psi*(inv_w_36*sin_gamma*sin_psi*sin_theta*v - a_0*w_38 - a_1_w_18*w_38) - cos_gamma_v*lambda_h,
         cos_gamma*inv_w*lambda_theta*sin_psi*v - inv_cos_theta_w_2*lambda_phi - inv_cos_theta_w_2*lambda_psi*sin_theta,
     )
 
@@ -587,7 +609,7 @@ def canonical_jacobian(t, x, lam, p, bounds):
     h, phi, theta, v, gamma, psi = x
     lambda_h, lambda_phi, lambda_theta, lambda_v, lambda_gamma, lambda_psi = lam
     mu, r_e, rho_0, h_r, area, m, a_0, a_1, b_0, b_1, b_2 = p
-    alpha_min, alpha_max, beta_reach = bounds
+    alpha_min, alpha_max, beta_min, beta_max = bounds
     sin_gamma = math.sin(gamma)
     cos_gamma = math.cos(gamma)
     cos_gamma_v = cos_gamma*v
@@ -609,254 +631,318 @@ def canonical_jacobian(t, x, lam, p, bounds):
     cos_gamma_inv_w = cos_gamma*inv_w
     cos_gamma_inv_w_sin_psi = cos_gamma_inv_w*sin_psi
     w_5 = cos_gamma_inv_w_sin_psi*inv_cos_theta
-    inv_w_sin_gamma_v = inv_w*sin_gamma*v
-    w_6 = inv_cos_theta_sin_psi*inv_w_sin_gamma_v
+    inv_w_v = inv_w*v
+    inv_w_v_sin_gamma = inv_w_v*sin_gamma
+    w_6 = inv_cos_theta_sin_psi*inv_w_v_sin_gamma
     cos_psi = math.cos(psi)
     w_7 = cos_gamma_v_inv_w*cos_psi
     inv_cos_theta_w_7 = inv_cos_theta*w_7
     w_8 = cos_gamma_v_inv_w_sq*cos_psi
     cos_gamma_inv_w_cos_psi = cos_gamma_inv_w*cos_psi
-    w_9 = cos_psi*inv_w_sin_gamma_v
-    Abs_cos_gamma = math.fabs(cos_gamma)
-    inv_Abs_cos_gamma = 1.0/Abs_cos_gamma
-    inv_b_2 = 1.0/b_2
-    half_inv_b_2 = 0.5*inv_b_2
-    b_1_half_inv_b_2 = b_1*half_inv_b_2
-    w_10 = -b_1_half_inv_b_2
-    inv_v = 1.0/v
-    lambda_psi_sq = lambda_psi*lambda_psi
-    cos_gamma_sq = cos_gamma*cos_gamma
-    lambda_gamma_sq = lambda_gamma*lambda_gamma
-    w_11 = cos_gamma_sq*lambda_gamma_sq + lambda_psi_sq
-    sqrt_w_11 = math.sqrt(w_11)
-    inv_lambda_v = 1.0/lambda_v
-    w_12 = a_1*inv_lambda_v*sqrt_w_11
-    half_inv_b_2_w_12 = half_inv_b_2*w_12
-    half_inv_b_2_w_12_inv_v = half_inv_b_2_w_12*inv_v
-    w_13 = half_inv_b_2_w_12_inv_v*inv_Abs_cos_gamma + w_10
-    inv_m = 1.0/m
-    inv_h_r = 1.0/h_r
-    h_inv_h_r = h*inv_h_r
-    w_14 = math.exp(-h_inv_h_r)
-    area_inv_m_rho_0_w_14 = area*inv_m*rho_0*w_14
-    w_15 = area_inv_m_rho_0_w_14*lambda_v
-    v_sq = v*v
-    b_2_v_sq = b_2*v_sq
-    w_16 = -b_2_v_sq*w_15
-    w_17 = w_13 + 0.0*math.sqrt(w_16)
-    w_18 = alpha_min if w_17 < alpha_min else alpha_max if w_17 > alpha_max else w_17
-    w_19 = -b_1_half_inv_b_2 - half_inv_b_2_w_12_inv_v*inv_Abs_cos_gamma
-    w_20 = w_19 + 0.0*math.sqrt(w_16)
-    w_21 = alpha_min if w_20 < alpha_min else alpha_max if w_20 > alpha_max else w_20
-    area_inv_m_rho_0_w_14_v = area_inv_m_rho_0_w_14*v
-    w_22 = 0.5*area_inv_m_rho_0_w_14_v
-    sqrt_w_11_w_22 = sqrt_w_11*w_22
-    inv_w_sq_mu = inv_w_sq*mu
-    inv_w_sq_mu_sin_gamma = inv_w_sq_mu*sin_gamma
-    w_23 = 0.5*area_inv_m_rho_0_w_14
-    v_sq_w_23 = v_sq*w_23
-    w_24 = inv_Abs_cos_gamma*sqrt_w_11_w_22*(-a_0 - a_1*w_18) + lambda_v*(-inv_w_sq_mu_sin_gamma - v_sq_w_23*(b_0 + b_1*w_21 + b_2*w_21*w_21)) - inv_Abs_cos_gamma*sqrt_w_11_w_22*(a_0 + a_1*w_21) - lambda_v*(-inv_w_sq_mu_sin_gamma - v_sq_w_23*(b_0 + b_1*w_18 + b_2*w_18*w_18))
-    w_25 = (w_21 if w_24 <= 0.0 else w_18) + 0.0*w_24
+    w_9 = cos_psi*inv_w_v_sin_gamma
     inv_w_cubed = inv_w*inv_w*inv_w
     twice_mu = 2.0*mu
     inv_w_cubed_twice_mu = inv_w_cubed*twice_mu
-    inv_h_r_v_sq_w_23 = inv_h_r*v_sq_w_23
-    w_26 = (1.0 if w_24 <= 0.0 else 0.0) + 0.0*w_24
-    w_27 = 0.0 if w_20 < alpha_min else 0.0 if w_20 > alpha_max else 1.0
-    w_28 = (0.0 if w_24 <= 0.0 else 1.0) + 0.0*w_24
-    w_29 = 0.0 if w_17 < alpha_min else 0.0 if w_17 > alpha_max else 1.0
-    inv_v_sq = inv_v*inv_v
-    w_30 = half_inv_b_2_w_12*inv_v_sq
-    inv_b_2_inv_v_sq_w_12 = inv_b_2*inv_v_sq*w_12
-    inv_sqrt_w_11 = 1.0/sqrt_w_11
+    w_10 = 0.5*((beta_min if beta_min > (beta_max if beta_max < math.pi else math.pi) - 2.0*math.pi else (beta_max if beta_max < math.pi else math.pi) - 2.0*math.pi) + (beta_max if beta_max < (beta_min if beta_min > -math.pi else -math.pi) + 2.0*math.pi else (beta_min if beta_min > -math.pi else -math.pi) + 2.0*math.pi))
+    law_part_10 = math.cos(w_10)
+    inv_cos_gamma = 1.0/cos_gamma
+    inv_m = 1.0/m
+    area_inv_m_rho_0 = area*inv_m*rho_0
+    inv_h_r = 1.0/h_r
+    h_inv_h_r = h*inv_h_r
+    w_11 = area_inv_m_rho_0*math.exp(-h_inv_h_r)
+    half_w_11 = 0.5*w_11
+    law_part_8 = half_w_11*v
+    inv_cos_gamma_law_part_8 = inv_cos_gamma*law_part_8
+    law_part_11 = inv_cos_gamma_law_part_8*lambda_psi
+    law_part_5 = math.sin(w_10)
+    law_part_9 = lambda_gamma*law_part_8
+    law_part_12 = law_part_5*law_part_9 - law_part_10*law_part_11
+    w_12 = -law_part_12
+    law_part_13 = law_part_10*law_part_9 + law_part_11*law_part_5
+    w_13 = math.atan2(w_12, law_part_13) + 0.0/(w_12*w_12 + law_part_13*law_part_13)
+    w_14 = w_10 + w_13
+    w_15 = beta_min if w_14 < beta_min else beta_max if w_14 > beta_max else w_14
+    sin_w_15 = math.sin(w_15)
+    cos_w_15 = math.cos(w_15)
+    law_part_15 = cos_w_15*law_part_9 + law_part_11*sin_w_15
+    inv_lambda_v = 1.0/lambda_v
+    v_sq = v*v
+    inv_v_sq = 1.0/v_sq
+    inv_area = 1.0/area
+    inv_rho_0 = 1.0/rho_0
+    exp_h_inv_h_r = math.exp(h_inv_h_r)
+    inv_b_2 = 1.0/b_2
+    w_16 = a_1*exp_h_inv_h_r*inv_area*inv_b_2*inv_rho_0*inv_v_sq*m
+    inv_lambda_v_w_16 = inv_lambda_v*w_16
+    half_b_1 = 0.5*b_1
+    law_part_3 = -half_b_1*inv_b_2
+    w_17 = inv_lambda_v_w_16*law_part_15 + law_part_3
+    law_part_18 = lambda_v*v_sq*w_11
+    law_part_19 = b_2*law_part_18
+    law_part_20 = -law_part_19
+    w_18 = w_17 + 0.0*math.sqrt(law_part_20)
+    w_19 = alpha_min if w_18 < alpha_min else alpha_max if w_18 > alpha_max else w_18
+    w_20 = -law_part_13
+    w_21 = math.atan2(law_part_12, w_20) + 0.0/(law_part_12*law_part_12 + w_20*w_20)
+    w_22 = w_10 + w_21
+    w_23 = beta_min if w_22 < beta_min else beta_max if w_22 > beta_max else w_22
+    sin_w_23 = math.sin(w_23)
+    cos_w_23 = math.cos(w_23)
+    law_part_24 = cos_w_23*law_part_9 + law_part_11*sin_w_23
+    w_24 = inv_lambda_v_w_16*law_part_24 + law_part_3
+    w_25 = w_24 + 0.0*math.sqrt(law_part_20)
+    w_26 = alpha_min if w_25 < alpha_min else alpha_max if w_25 > alpha_max else w_25
+    law_part_22 = half_b_1*law_part_18
+    law_part_26 = 0.5*law_part_19
+    law_part_27 = law_part_22*w_19 + law_part_24*(a_0 + a_1*w_26) + law_part_26*w_19*w_19 - law_part_15*(a_0 + a_1*w_19) - law_part_22*w_26 - law_part_26*w_26*w_26
+    w_27 = (w_26 if law_part_27 <= 0.0 else w_19) + 0.0*law_part_27
+    b_2_w_27 = b_2*w_27
+    w_28 = b_1 + 2.0*b_2_w_27
+    w_29 = math.exp(-h_inv_h_r)
+    area_inv_m_rho_0_w_29 = area_inv_m_rho_0*w_29
+    w_30 = 0.5*area_inv_m_rho_0_w_29
+    v_sq_w_30 = v_sq*w_30
+    v_sq_w_30_w_28 = v_sq_w_30*w_28
+    b_1_w_27 = b_1*w_27
+    w_31 = b_2*w_27*w_27
+    w_32 = area_inv_m_rho_0_w_29*(b_0 + b_1_w_27 + w_31)
+    inv_h_r_v_sq = inv_h_r*v_sq
+    w_33 = (0.0 if law_part_27 <= 0.0 else 1.0) + 0.0*law_part_27
+    w_34 = (1.0 if law_part_27 <= 0.0 else 0.0) + 0.0*law_part_27
+    w_35 = 0.0 if w_18 < alpha_min else 0.0 if w_18 > alpha_max else 1.0
+    inv_lambda_v_w_16_w_35 = inv_lambda_v_w_16*w_35
+    law_part_15_w_35 = law_part_15*w_35
+    w_36 = cos_w_15*law_part_11 - law_part_9*sin_w_15
+    inv_cos_gamma_lambda_psi = inv_cos_gamma*lambda_psi
+    half_v = 0.5*v
+    d_law_part_7_by_h = -inv_h_r*w_11
+    d_law_part_8_by_h = d_law_part_7_by_h*half_v
+    d_law_part_11_by_h = d_law_part_8_by_h*inv_cos_gamma_lambda_psi
+    w_37 = law_part_12*law_part_12 + law_part_13*law_part_13
+    inv_w_37 = 1.0/w_37
+    w_38 = 0.0 if w_14 < beta_min else 0.0 if w_14 > beta_max else 1.0
+    inv_w_37_w_38 = inv_w_37*w_38
+    d_law_part_9_by_h = d_law_part_8_by_h*lambda_gamma
+    d_law_part_12_by_h = d_law_part_9_by_h*law_part_5 - d_law_part_11_by_h*law_part_10
+    w_39 = d_law_part_12_by_h*law_part_13
+    d_law_part_13_by_h = d_law_part_11_by_h*law_part_5 + d_law_part_9_by_h*law_part_10
+    d_law_part_14_by_h = d_law_part_13_by_h*inv_w_37*law_part_12*w_38 - inv_w_37_w_38*w_39
+    d_law_part_15_by_h = cos_w_15*d_law_part_9_by_h + d_law_part_11_by_h*sin_w_15 + d_law_part_14_by_h*w_36
+    d_law_part_17_by_h = inv_h_r*inv_lambda_v_w_16
+    d_law_part_21_by_h = d_law_part_15_by_h*inv_lambda_v_w_16_w_35 + d_law_part_17_by_h*law_part_15_w_35
+    w_40 = 0.0 if w_25 < alpha_min else 0.0 if w_25 > alpha_max else 1.0
+    law_part_24_w_40 = law_part_24*w_40
+    inv_lambda_v_w_16_w_40 = inv_lambda_v_w_16*w_40
+    w_41 = cos_w_23*law_part_11 - law_part_9*sin_w_23
+    w_42 = 0.0 if w_22 < beta_min else 0.0 if w_22 > beta_max else 1.0
+    inv_w_37_w_42 = inv_w_37*w_42
+    d_law_part_23_by_h = d_law_part_13_by_h*inv_w_37*law_part_12*w_42 - inv_w_37_w_42*w_39
+    d_law_part_24_by_h = cos_w_23*d_law_part_9_by_h + d_law_part_11_by_h*sin_w_23 + d_law_part_23_by_h*w_41
+    d_law_part_25_by_h = d_law_part_17_by_h*law_part_24_w_40 + d_law_part_24_by_h*inv_lambda_v_w_16_w_40
+    d_law_of_alpha_by_h = d_law_part_21_by_h*w_33 + d_law_part_25_by_h*w_34
+    v_w_32 = v*w_32
+    d_law_part_11_by_v = half_w_11*inv_cos_gamma_lambda_psi
+    d_law_part_9_by_v = half_w_11*lambda_gamma
+    d_law_part_12_by_v = d_law_part_9_by_v*law_part_5 - d_law_part_11_by_v*law_part_10
+    w_43 = d_law_part_12_by_v*law_part_13
+    d_law_part_13_by_v = d_law_part_11_by_v*law_part_5 + d_law_part_9_by_v*law_part_10
+    d_law_part_14_by_v = d_law_part_13_by_v*inv_w_37*law_part_12*w_38 - inv_w_37_w_38*w_43
+    d_law_part_15_by_v = cos_w_15*d_law_part_9_by_v + d_law_part_11_by_v*sin_w_15 + d_law_part_14_by_v*w_36
+    twice_v = 2.0*v
+    d_law_part_17_by_v = -a_1*exp_h_inv_h_r*inv_area*inv_b_2*inv_lambda_v*inv_rho_0*inv_v_sq*inv_v_sq*m*twice_v
+    d_law_part_21_by_v = d_law_part_15_by_v*inv_lambda_v_w_16_w_35 + d_law_part_17_by_v*law_part_15_w_35
+    d_law_part_23_by_v = d_law_part_13_by_v*inv_w_37*law_part_12*w_42 - inv_w_37_w_42*w_43
+    d_law_part_24_by_v = cos_w_23*d_law_part_9_by_v + d_law_part_11_by_v*sin_w_23 + d_law_part_23_by_v*w_41
+    d_law_part_25_by_v = d_law_part_17_by_v*law_part_24_w_40 + d_law_part_24_by_v*inv_lambda_v_w_16_w_40
+    d_law_of_alpha_by_v = d_law_part_21_by_v*w_33 + d_law_part_25_by_v*w_34
     cos_gamma_inv_w_sq = cos_gamma*inv_w_sq
     cos_gamma_inv_w_sq_mu = cos_gamma_inv_w_sq*mu
-    w_31 = 1.0 if cos_gamma > 0.0 else -1.0 if cos_gamma < 0.0 else 0.0
-    inv_cos_gamma = 1.0/cos_gamma
     inv_cos_gamma_sq = inv_cos_gamma*inv_cos_gamma
-    w_32 = inv_cos_gamma_sq*sin_gamma
-    w_33 = half_inv_b_2_w_12_inv_v*w_31*w_32
-    a_1_inv_v = a_1*inv_v
-    a_1_inv_v_half_inv_b_2 = a_1_inv_v*half_inv_b_2
-    w_34 = inv_lambda_v*inv_sqrt_w_11
-    w_35 = a_1_inv_v_half_inv_b_2*w_34
-    w_36 = cos_gamma*lambda_gamma_sq*sin_gamma*w_35
-    w_37 = inv_lambda_v*inv_lambda_v*sqrt_w_11
-    w_38 = a_1_inv_v_half_inv_b_2*w_37
-    a_1_inv_v_inv_b_2 = a_1_inv_v*inv_b_2
-    a_1_inv_v_inv_b_2_w_37 = a_1_inv_v_inv_b_2*w_37
-    w_39 = cos_gamma_sq*lambda_gamma
-    w_35_w_39 = w_35*w_39
-    a_1_inv_v_inv_b_2_w_34 = a_1_inv_v_inv_b_2*w_34
-    w_40 = a_1_inv_v_inv_b_2_w_34*w_39
-    lambda_psi_w_35 = lambda_psi*w_35
-    w_41 = a_1_inv_v_inv_b_2_w_34*lambda_psi
-    w_42 = 0.25*area*area*inv_m*inv_m*rho_0*rho_0*math.exp(-2.0*h_inv_h_r)
-    lambda_gamma_sq_w_42 = lambda_gamma_sq*w_42
-    w_43 = lambda_gamma_sq_w_42*v_sq
-    w_44 = inv_cos_gamma_sq*lambda_psi_sq*w_42
-    v_sq_w_44 = v_sq*w_44
-    w_45 = v_sq_w_44 + w_43
-    sqrt_w_45 = math.sqrt(w_45)
-    inv_sqrt_w_45 = 1.0/sqrt_w_45
-    w_46 = inv_sqrt_w_45*lambda_gamma
-    w_22_w_46 = w_22*w_46
-    w_47 = -w_22_w_46
-    w_48 = (w_47 if w_24 <= 0.0 else w_22_w_46) + 0.0*w_24
-    inv_sqrt_w_45_cubed = inv_sqrt_w_45*inv_sqrt_w_45*inv_sqrt_w_45
-    inv_sqrt_w_45_cubed_w_22 = inv_sqrt_w_45_cubed*w_22
-    w_49 = inv_sqrt_w_45_cubed_w_22*lambda_gamma
-    w_50 = inv_h_r*v_sq_w_44 + inv_h_r*w_43
-    w_51 = w_49*w_50 - 0.5*area*inv_h_r*inv_m*inv_sqrt_w_45*lambda_gamma*rho_0*v*w_14
-    w_52 = -w_51
+    lambda_psi_sin_gamma = lambda_psi*sin_gamma
+    w_44 = inv_cos_gamma_sq*lambda_psi_sin_gamma
+    d_law_part_11_by_gamma = law_part_8*w_44
+    d_law_part_12_by_gamma = -d_law_part_11_by_gamma*law_part_10
+    w_45 = d_law_part_12_by_gamma*law_part_13
+    d_law_part_13_by_gamma = d_law_part_11_by_gamma*law_part_5
+    d_law_part_14_by_gamma = d_law_part_13_by_gamma*inv_w_37*law_part_12*w_38 - inv_w_37_w_38*w_45
+    d_law_part_15_by_gamma = d_law_part_11_by_gamma*sin_w_15 + d_law_part_14_by_gamma*w_36
+    d_law_part_21_by_gamma = d_law_part_15_by_gamma*inv_lambda_v_w_16_w_35
+    d_law_part_23_by_gamma = d_law_part_13_by_gamma*inv_w_37*law_part_12*w_42 - inv_w_37_w_42*w_45
+    d_law_part_24_by_gamma = d_law_part_11_by_gamma*sin_w_23 + d_law_part_23_by_gamma*w_41
+    d_law_part_25_by_gamma = d_law_part_24_by_gamma*inv_lambda_v_w_16_w_40
+    d_law_of_alpha_by_gamma = d_law_part_21_by_gamma*w_33 + d_law_part_25_by_gamma*w_34
+    d_law_part_17_by_lambda_v = -inv_lambda_v*inv_lambda_v*w_16
+    d_law_part_21_by_lambda_v = d_law_part_17_by_lambda_v*law_part_15_w_35
+    d_law_part_25_by_lambda_v = d_law_part_17_by_lambda_v*law_part_24_w_40
+    d_law_of_alpha_by_lambda_v = d_law_part_21_by_lambda_v*w_33 + d_law_part_25_by_lambda_v*w_34
+    d_law_part_12_by_lambda_gamma = law_part_5*law_part_8
+    w_46 = d_law_part_12_by_lambda_gamma*law_part_13
+    d_law_part_13_by_lambda_gamma = law_part_10*law_part_8
+    d_law_part_14_by_lambda_gamma = d_law_part_13_by_lambda_gamma*inv_w_37*law_part_12*w_38 - inv_w_37_w_38*w_46
+    d_law_part_15_by_lambda_gamma = cos_w_15*law_part_8 + d_law_part_14_by_lambda_gamma*w_36
+    d_law_part_21_by_lambda_gamma = d_law_part_15_by_lambda_gamma*inv_lambda_v_w_16_w_35
+    d_law_part_23_by_lambda_gamma = d_law_part_13_by_lambda_gamma*inv_w_37*law_part_12*w_42 - inv_w_37_w_42*w_46
+    d_law_part_24_by_lambda_gamma = cos_w_23*law_part_8 + d_law_part_23_by_lambda_gamma*w_41
+    d_law_part_25_by_lambda_gamma = d_law_part_24_by_lambda_gamma*inv_lambda_v_w_16_w_40
+    d_law_of_alpha_by_lambda_gamma = d_law_part_21_by_lambda_gamma*w_33 + d_law_part_25_by_lambda_gamma*w_34
+    d_law_part_12_by_lambda_psi = -inv_cos_gamma_law_part_8*law_part_10
+    w_47 = d_law_part_12_by_lambda_psi*law_part_13
+    d_law_part_13_by_lambda_psi = inv_cos_gamma_law_part_8*law_part_5
+    d_law_part_14_by_lambda_psi = d_law_part_13_by_lambda_psi*inv_w_37*law_part_12*w_38 - inv_w_37_w_38*w_47
+    d_law_part_15_by_lambda_psi = d_law_part_14_by_lambda_psi*w_36 + inv_cos_gamma_law_part_8*sin_w_15
+    d_law_part_21_by_lambda_psi = d_law_part_15_by_lambda_psi*inv_lambda_v_w_16_w_35
+    d_law_part_23_by_lambda_psi = d_law_part_13_by_lambda_psi*inv_w_37*law_part_12*w_42 - inv_w_37_w_42*w_47
+    d_law_part_24_by_lambda_psi = d_law_part_23_by_lambda_psi*w_41 + inv_cos_gamma_law_part_8*sin_w_23
+    d_law_part_25_by_lambda_psi = d_law_part_24_by_lambda_psi*inv_lambda_v_w_16_w_40
+    d_law_of_alpha_by_lambda_psi = d_law_part_21_by_lambda_psi*w_33 + d_law_part_25_by_lambda_psi*w_34
+    inv_v = 1.0/v
+    w_48 = (w_23 if law_part_27 <= 0.0 else w_15) + 0.0*law_part_27
+    cos_w_48 = math.cos(w_48)
     inv_w_sq_v = inv_w_sq*v
-    inv_h_r_w_22 = inv_h_r*w_22
-    a_1_w_22 = a_1*w_22
-    w_53 = -lambda_gamma_sq_w_42*v - v*w_44
-    w_54 = w_23*w_46 + w_49*w_53
-    w_55 = -w_54
-    inv_cos_gamma_cubed = inv_cos_gamma*inv_cos_gamma*inv_cos_gamma
-    inv_m_cubed = inv_m*inv_m*inv_m
-    area_cubed = area*area*area
-    rho_0_cubed = rho_0*rho_0*rho_0
-    v_cubed = v*v*v
-    w_56 = math.exp(-3.0*h_inv_h_r)
-    w_57 = 0.125*area_cubed*inv_m_cubed*inv_sqrt_w_45_cubed*rho_0_cubed*v_cubed*w_56
-    w_58 = inv_cos_gamma_cubed*lambda_psi_sq*w_57
-    w_59 = lambda_gamma*sin_gamma*w_58
-    w_60 = lambda_gamma_sq*w_57 - 0.5*area*inv_m*inv_sqrt_w_45*rho_0*v*w_14
-    w_61 = -w_60
-    lambda_gamma_w_57 = lambda_gamma*w_57
-    w_62 = inv_cos_gamma_sq*lambda_gamma_w_57*lambda_psi
-    w_63 = inv_cos_gamma*inv_sqrt_w_45*lambda_psi*w_22
-    w_64 = -w_63
-    w_65 = (w_64 if w_24 <= 0.0 else w_63) + 0.0*w_24
-    w_66 = inv_cos_gamma*inv_h_r_w_22
-    inv_cos_gamma_lambda_psi = inv_cos_gamma*lambda_psi
-    w_67 = inv_cos_gamma_lambda_psi*inv_sqrt_w_45_cubed_w_22
-    w_68 = w_50*w_67 - 0.5*area*inv_cos_gamma*inv_h_r*inv_m*inv_sqrt_w_45*lambda_psi*rho_0*v*w_14
-    w_69 = -w_68
+    a_1_w_27 = a_1*w_27
+    w_49 = a_0 + a_1_w_27
+    w_50 = area_inv_m_rho_0_w_29*half_v
+    cos_w_48_w_50 = cos_w_48*w_50
+    cos_w_48_w_50_inv_h_r = cos_w_48_w_50*inv_h_r
+    sin_w_48 = math.sin(w_48)
+    sin_w_48_w_50 = sin_w_48*w_50
+    d_law_of_beta_by_h = d_law_part_14_by_h*w_33 + d_law_part_23_by_h*w_34
+    inv_v_sq_2 = inv_v*inv_v
+    inv_w_sq_mu = inv_w_sq*mu
+    a_1_cos_w_48_w_50 = a_1*cos_w_48_w_50
+    cos_w_48_w_30 = cos_w_48*w_30
+    sin_w_48_w_50_w_49 = sin_w_48_w_50*w_49
+    d_law_of_beta_by_v = d_law_part_14_by_v*w_33 + d_law_part_23_by_v*w_34
+    d_law_of_beta_by_gamma = d_law_part_14_by_gamma*w_33 + d_law_part_23_by_gamma*w_34
+    d_law_of_beta_by_lambda_gamma = d_law_part_14_by_lambda_gamma*w_33 + d_law_part_23_by_lambda_gamma*w_34
+    d_law_of_beta_by_lambda_psi = d_law_part_14_by_lambda_psi*w_33 + d_law_part_23_by_lambda_psi*w_34
     sin_theta_sq = sin_theta*sin_theta
-    inv_cos_gamma_w_23 = inv_cos_gamma*w_23
-    a_1_w_22_inv_cos_gamma = a_1_w_22*inv_cos_gamma
-    w_70 = inv_cos_gamma_w_23*inv_sqrt_w_45*lambda_psi + w_53*w_67
-    w_71 = -w_70
-    inv_cos_gamma_w_22 = inv_cos_gamma*w_22
-    sin_gamma_v = sin_gamma*v
-    w_72 = inv_cos_gamma_sq*sin_gamma_v
-    w_73 = inv_cos_gamma*inv_cos_gamma*inv_cos_gamma*inv_cos_gamma*lambda_psi*lambda_psi*lambda_psi*sin_gamma*w_57 - 0.5*area*inv_cos_gamma_sq*inv_m*inv_sqrt_w_45*lambda_psi*rho_0*sin_gamma*v*w_14
-    w_74 = -w_73
-    w_75 = inv_cos_theta_w_7*sin_theta
-    w_76 = inv_cos_gamma_lambda_psi*lambda_gamma_w_57
-    w_77 = w_58 - 0.5*area*inv_cos_gamma*inv_m*inv_sqrt_w_45*rho_0*v*w_14
-    w_78 = -w_77
+    w_51 = inv_cos_gamma*sin_w_48_w_50
+    a_1_w_51 = a_1*w_51
+    sin_w_48_w_30 = sin_w_48*w_30
+    w_52 = inv_cos_gamma*sin_w_48_w_30
+    w_53 = cos_w_48_w_50*inv_cos_gamma*w_49
+    w_54 = inv_cos_gamma_sq*sin_gamma
+    w_55 = inv_cos_theta_w_7*sin_theta
     h_sq = h*h
     r_e_sq = r_e*r_e
     twice_h = 2.0*h
-    w_79 = h_sq + r_e*twice_h + r_e_sq
-    inv_w_79 = 1.0/w_79
+    w_56 = h_sq + r_e*twice_h + r_e_sq
+    inv_w_56 = 1.0/w_56
     h_cubed = h*h*h
     r_e_cubed = r_e*r_e*r_e
-    w_80 = 3.0*r_e_sq
-    h_w_80 = h*w_80
-    w_81 = 3.0*h_sq
-    r_e_w_81 = r_e*w_81
-    w_82 = h_cubed + h_w_80 + r_e_cubed + r_e_w_81
-    inv_w_82 = 1.0/w_82
+    w_57 = 3.0*r_e_sq
+    h_w_57 = h*w_57
+    w_58 = 3.0*h_sq
+    r_e_w_58 = r_e*w_58
+    w_59 = h_cubed + h_w_57 + r_e_cubed + r_e_w_58
+    inv_w_59 = 1.0/w_59
     cos_psi_lambda_theta = cos_psi*lambda_theta
-    twice_inv_w_cubed = 2.0*inv_w_cubed
-    w_83 = cos_gamma_v*twice_inv_w_cubed
-    w_84 = inv_cos_theta_sin_psi*lambda_phi
+    inv_w_cubed_twice_v = inv_w_cubed*twice_v
+    cos_gamma_sin_psi = cos_gamma*sin_psi
+    inv_cos_theta_lambda_phi = inv_cos_theta*lambda_phi
     inv_h_r_sq = inv_h_r*inv_h_r
-    inv_h_r_sq_v_sq_w_23 = inv_h_r_sq*v_sq_w_23
-    b_2_v_sq_w_23 = b_2_v_sq*w_23
-    h_r_e = h*r_e
-    w_85 = 6.0*h_r_e
-    sin_gamma_twice_mu = sin_gamma*twice_mu
-    a_0_inv_h_r_sq = a_0*inv_h_r_sq
+    a_0_sin_w_48_w_50 = a_0*sin_w_48_w_50
+    w_60 = a_0_sin_w_48_w_50*inv_cos_gamma
+    a_1_w_27_w_51 = a_1_w_27*w_51
     cos_theta_h = cos_theta*h
     twice_r_e = 2.0*r_e
-    w_86 = cos_theta*h_sq + cos_theta*r_e_sq + cos_theta_h*twice_r_e
-    inv_w_86 = 1.0/w_86
-    cos_gamma_v_sin_psi = cos_gamma_v*sin_psi
-    w_87 = cos_gamma_v_sin_psi*inv_w_86*inv_w_86*sin_theta
-    a_0_inv_h_r_w_22 = a_0*inv_h_r_w_22
-    w_88 = a_0_inv_h_r_w_22*inv_cos_gamma
-    a_1_w_66 = a_1*w_66
-    w_89 = h_cubed*v + h_w_80*v + r_e_cubed*v + r_e_w_81*v
-    inv_w_89 = 1.0/w_89
+    w_61 = cos_theta*h_sq + cos_theta*r_e_sq + cos_theta_h*twice_r_e
+    inv_w_61 = 1.0/w_61
+    inv_w_61_sq = inv_w_61*inv_w_61
+    a_1_lambda_gamma = a_1*lambda_gamma
+    w_62 = a_1*inv_cos_gamma_lambda_psi
+    inv_h_r_sin_w_48_w_50 = inv_h_r*sin_w_48_w_50
+    w_63 = area_inv_m_rho_0_w_29*inv_h_r_v_sq
+    half_b_1_w_63 = half_b_1*w_63
+    w_64 = a_1_lambda_gamma*cos_w_48_w_50_inv_h_r + inv_h_r_sin_w_48_w_50*w_62 + lambda_v*(-b_2_w_27*w_63 - half_b_1_w_63)
+    w_65 = a_0_sin_w_48_w_50*inv_h_r
+    w_66 = a_1_w_27*inv_h_r_sin_w_48_w_50
+    w_67 = a_0*cos_w_48_w_50_inv_h_r
+    w_68 = a_1_w_27*cos_w_48_w_50_inv_h_r
+    w_69 = lambda_gamma*(-w_65 - w_66) + lambda_psi*(inv_cos_gamma*w_67 + inv_cos_gamma*w_68)
+    cos_w_48_w_50_inv_h_r_sq = cos_w_48_w_50*inv_h_r_sq
+    h_r_e = h*r_e
+    w_70 = 6.0*h_r_e
+    w_71 = h_cubed*v + h_w_57*v + r_e_cubed*v + r_e_w_58*v
+    inv_w_71 = 1.0/w_71
     cos_gamma_twice_mu = cos_gamma*twice_mu
-    w_90 = cos_gamma_twice_mu*inv_w_89*inv_w_89
+    w_72 = cos_gamma_twice_mu*inv_w_71*inv_w_71
+    inv_h_r_sq_v_sq_w_30 = inv_h_r_sq*v_sq_w_30
+    sin_gamma_twice_mu = sin_gamma*twice_mu
     cos_theta_r_e = cos_theta*r_e
     lambda_phi_sin_theta = lambda_phi*sin_theta
     inv_cos_theta_sq_sin_psi = inv_cos_theta_sq*sin_psi
-    w_91 = cos_gamma_v_inv_w_sq*inv_cos_theta_sq_sin_psi
-    w_92 = lambda_phi_sin_theta*w_91
+    w_73 = cos_gamma_v_inv_w_sq*inv_cos_theta_sq_sin_psi
+    w_74 = lambda_phi_sin_theta*w_73
+    cos_gamma_v_sin_psi = cos_gamma_v*sin_psi
     r_e_sin_theta = r_e*sin_theta
-    a_0_w_23 = a_0*w_23
-    a_0_w_23_inv_h_r = a_0_w_23*inv_h_r
-    a_1_w_23 = a_1*w_23
-    a_1_w_23_inv_h_r = a_1_w_23*inv_h_r
-    a_1_inv_h_r_w_22 = a_1*inv_h_r_w_22
-    cos_gamma_sin_psi = cos_gamma*sin_psi
-    inv_w_86_sin_theta = inv_w_86*sin_theta
-    w_93 = a_0_w_23_inv_h_r*inv_cos_gamma
-    a_1_inv_cos_gamma_w_23 = a_1*inv_cos_gamma_w_23
-    w_94 = a_1_inv_cos_gamma_w_23*inv_h_r
-    w_95 = area_inv_m_rho_0_w_14_v*inv_h_r
-    b_1_inv_h_r_v_sq_w_23 = b_1*inv_h_r_v_sq_w_23
-    b_2_v_sq_w_23_inv_h_r = b_2_v_sq_w_23*inv_h_r
-    w_96 = cos_gamma_inv_w_sq*cos_psi_lambda_theta + cos_gamma_inv_w_sq*w_84
-    w_97 = cos_psi_lambda_theta*inv_w_sq_v*sin_gamma
-    inv_cos_theta_lambda_phi = inv_cos_theta*lambda_phi
-    w_98 = inv_cos_theta_lambda_phi*inv_w_sq_v*sin_gamma*sin_psi
+    a_0_cos_w_48_w_30 = a_0*cos_w_48_w_30
+    a_1_w_27_cos_w_48_w_30 = a_1_w_27*cos_w_48_w_30
+    w_75 = a_0_cos_w_48_w_30*inv_h_r + a_1_w_27_cos_w_48_w_30*inv_h_r
+    inv_w_61_sin_theta = inv_w_61*sin_theta
+    a_0_sin_w_48_w_30 = a_0*sin_w_48_w_30
+    w_76 = a_0_sin_w_48_w_30*inv_cos_gamma
+    a_1_w_27_w_52 = a_1_w_27*w_52
+    w_77 = a_1_w_27_w_52*inv_h_r + inv_h_r*w_76
+    area_inv_m_rho_0_w_29_v = area_inv_m_rho_0_w_29*v
+    b_0_inv_h_r = b_0*inv_h_r
+    w_78 = area_inv_m_rho_0_w_29_v*inv_h_r
+    w_79 = inv_cos_theta_sin_psi*lambda_phi
+    w_80 = cos_gamma_inv_w_sq*cos_psi_lambda_theta + cos_gamma_inv_w_sq*w_79
+    w_81 = cos_psi_lambda_theta*inv_w_sq_v*sin_gamma
+    w_82 = inv_cos_theta_lambda_phi*inv_w_sq_v*sin_gamma*sin_psi
+    sin_gamma_v = sin_gamma*v
     sin_gamma_v_sin_psi = sin_gamma_v*sin_psi
+    w_83 = w_54*w_65 + w_54*w_66
     cos_psi_lambda_psi = cos_psi*lambda_psi
     lambda_theta_sin_psi = lambda_theta*sin_psi
-    w_99 = inv_cos_theta_lambda_phi*w_8 - cos_gamma_v_inv_w_sq*lambda_theta_sin_psi
-    w_100 = cos_theta*cos_theta + sin_theta_sq
-    lambda_psi_w_100 = lambda_psi*w_100
-    w_101 = inv_cos_theta_lambda_phi*w_3
-    w_102 = 2.0*inv_cos_theta*inv_cos_theta*inv_cos_theta*w_3
-    w_103 = cos_gamma_inv_w_sin_psi*inv_cos_theta_sq
-    w_104 = lambda_phi_sin_theta*w_103
-    w_105 = inv_cos_theta_sq_sin_psi*inv_w_sin_gamma_v
-    w_106 = lambda_phi_sin_theta*w_105
-    w_107 = inv_cos_theta_sq*lambda_phi_sin_theta*w_7
+    w_84 = inv_cos_theta_lambda_phi*w_8 - cos_gamma_v_inv_w_sq*lambda_theta_sin_psi
+    w_85 = cos_theta*cos_theta + sin_theta_sq
+    lambda_psi_w_85 = lambda_psi*w_85
+    w_86 = inv_cos_theta_lambda_phi*w_3
+    w_87 = cos_gamma_inv_w_sin_psi*inv_cos_theta*inv_cos_theta*inv_cos_theta*twice_v
+    w_88 = cos_gamma_inv_w_sin_psi*inv_cos_theta_sq
+    w_89 = lambda_phi_sin_theta*w_88
+    w_90 = inv_cos_theta_sq_sin_psi*inv_w_v_sin_gamma*lambda_phi_sin_theta
+    w_91 = inv_w_v*lambda_psi_sin_gamma
+    w_92 = inv_cos_theta_sq*lambda_phi_sin_theta*w_7
     lambda_psi_w_7 = lambda_psi*w_7
-    w_108 = inv_cos_theta_sq*lambda_psi_w_7
+    w_93 = inv_cos_theta_sq*lambda_psi_w_7
+    w_94 = area*inv_m*lambda_v*rho_0*v*w_28*w_29 - a_1_lambda_gamma*cos_w_48_w_30 - sin_w_48_w_30*w_62
+    a_1_w_27_sin_w_48_w_30 = a_1_w_27*sin_w_48_w_30
+    w_95 = lambda_gamma*(a_0_sin_w_48_w_30 + a_1_w_27_sin_w_48_w_30) + lambda_psi*(-a_0_cos_w_48_w_30*inv_cos_gamma - a_1_w_27_cos_w_48_w_30*inv_cos_gamma)
     r_e_v_sq = r_e*v_sq
-    w_109 = h_sq*v_sq + r_e_sq*v_sq + r_e_v_sq*twice_h
-    inv_w_109 = 1.0/w_109
-    w_110 = cos_gamma*inv_w_109*inv_w_109*mu
-    w_111 = cos_theta_h + cos_theta_r_e
-    inv_w_111 = 1.0/w_111
-    w_112 = inv_w_111*inv_w_111*sin_theta
-    cos_gamma_sin_psi_w_112 = cos_gamma_sin_psi*w_112
-    a_0_w_23_inv_cos_gamma = a_0_w_23*inv_cos_gamma
-    w_113 = cos_gamma_sin_psi*inv_w_111
-    w_114 = h*sin_theta + r_e_sin_theta
-    w_115 = area_inv_m_rho_0_w_14_v*lambda_v
-    twice_v = 2.0*v
-    w_116 = -inv_w_111*sin_gamma*sin_psi*sin_theta
-    a_0_w_23_w_32 = a_0_w_23*w_32
-    a_1_w_23_w_32 = a_1_w_23*w_32
+    w_96 = h_sq*v_sq + r_e_sq*v_sq + r_e_v_sq*twice_h
+    inv_w_96 = 1.0/w_96
+    w_97 = cos_gamma*inv_w_96*inv_w_96*mu
+    w_98 = cos_theta_h + cos_theta_r_e
+    inv_w_98 = 1.0/w_98
+    w_99 = inv_w_98*inv_w_98*sin_theta
+    cos_gamma_sin_psi_w_99 = cos_gamma_sin_psi*w_99
+    w_100 = cos_gamma_sin_psi*inv_w_98
+    w_101 = h*sin_theta + r_e_sin_theta
     inv_w_sin_gamma = inv_w*sin_gamma
-    w_117 = cos_psi_lambda_theta*inv_w_sin_gamma + inv_w_sin_gamma*w_84 - cos_gamma*lambda_h
-    w_118 = cos_psi_lambda_psi*inv_w_111*sin_theta
-    w_119 = cos_gamma_inv_w_cos_psi*inv_cos_theta_lambda_phi - cos_gamma*inv_w*lambda_theta*sin_psi
-    w_120 = h*v_sq + r_e_v_sq - mu
-    inv_v_w_120 = inv_v*w_120
-    inv_v_w_120_lambda_gamma = inv_v_w_120*lambda_gamma
-    w_121 = cos_theta*sin_gamma_v_sin_psi
-    a_0_w_23_w_72 = a_0_w_23*w_72
-    a_1_w_23_w_72 = a_1_w_23*w_72
+    inv_w_96_mu = inv_w_96*mu
+    w_102 = cos_psi_lambda_theta*inv_w_sin_gamma + inv_w_sin_gamma*w_79 + lambda_psi*(inv_w_98*sin_gamma*sin_psi*sin_theta - a_0_sin_w_48_w_30*w_54 - a_1_w_27_sin_w_48_w_30*w_54) - cos_gamma*lambda_h
+    w_103 = cos_psi_lambda_psi*inv_w_98*sin_theta
+    w_104 = cos_gamma_inv_w_cos_psi*inv_cos_theta_lambda_phi - cos_gamma*inv_w*lambda_theta*sin_psi
+    a_1_sin_w_48_w_50_w_44 = a_1*sin_w_48_w_50*w_44
+    w_105 = h*v_sq + r_e_v_sq - mu
+    inv_v_w_105 = inv_v*w_105
+    inv_v_w_105_lambda_gamma = inv_v_w_105*lambda_gamma
+    cos_w_48_w_50_w_54 = cos_w_48_w_50*w_54
+    w_106 = -a_0*cos_w_48_w_50_w_54 - a_1_w_27*cos_w_48_w_50_w_54
+    w_107 = cos_theta*sin_gamma_v_sin_psi
+    lambda_psi_w_106 = lambda_psi*w_106
     inv_w_sq_sin_gamma = inv_w_sq*sin_gamma
-    w_122 = inv_w_sq_sin_gamma*lambda_gamma
-    w_123 = area_inv_m_rho_0_w_14_v*inv_cos_gamma_cubed*sin_gamma*sin_gamma
-    w_124 = cos_gamma_v_inv_w*cos_psi_lambda_theta + w_101
-    w_125 = inv_cos_theta_lambda_phi*w_9 - inv_w_sin_gamma_v*lambda_theta_sin_psi
-    w_126 = inv_cos_theta*lambda_psi*sin_theta
+    w_108 = inv_w_sq_sin_gamma*lambda_gamma
+    w_109 = area_inv_m_rho_0_w_29_v*inv_cos_gamma*inv_cos_gamma*inv_cos_gamma*sin_gamma*sin_gamma*sin_w_48
+    w_110 = cos_gamma_v_inv_w*cos_psi_lambda_theta + w_86
+    w_111 = inv_cos_theta_lambda_phi*w_9 - inv_w_v_sin_gamma*lambda_theta_sin_psi
+    inv_cos_theta_sin_theta = inv_cos_theta*sin_theta
+    w_112 = inv_cos_theta_sin_theta*lambda_psi
     return (
         0.0,
         0.0,
@@ -894,54 +980,54 @@ def canonical_jacobian(t, x, lam, p, bounds):
         0.0,
         0.0,
         0.0,
-        inv_h_r_v_sq_w_23*(b_0 + b_1*w_25 + b_2*w_25*w_25) + inv_w_cubed_twice_mu*sin_gamma,
+        0.5*inv_h_r_v_sq*w_32 + inv_w_cubed_twice_mu*sin_gamma - d_law_of_alpha_by_h*v_sq_w_30_w_28,
         0.0,
         0.0,
-        -area_inv_m_rho_0_w_14_v*(b_0 + b_1*w_25 + b_2*w_25*w_25) - v_sq_w_23*(b_1*(inv_Abs_cos_gamma*w_26*w_27*w_30 - inv_Abs_cos_gamma*w_28*w_29*w_30) + b_2*w_25*(inv_Abs_cos_gamma*inv_b_2_inv_v_sq_w_12*w_26*w_27 - inv_Abs_cos_gamma*inv_b_2_inv_v_sq_w_12*w_28*w_29)),
-        -cos_gamma_inv_w_sq_mu - v_sq_w_23*(b_1*(w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36)) + b_2*w_25*(2.0*w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + 2.0*w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36))),
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -v_sq_w_23*(b_1*(inv_Abs_cos_gamma*w_26*w_27*w_38 - inv_Abs_cos_gamma*w_28*w_29*w_38) + b_2*w_25*(a_1_inv_v_inv_b_2_w_37*inv_Abs_cos_gamma*w_26*w_27 - a_1_inv_v_inv_b_2_w_37*inv_Abs_cos_gamma*w_28*w_29)),
-        -v_sq_w_23*(b_1*(inv_Abs_cos_gamma*w_28*w_29*w_35_w_39 - inv_Abs_cos_gamma*w_26*w_27*w_35_w_39) + b_2*w_25*(a_1*cos_gamma_sq*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma*w_28*w_29 - inv_Abs_cos_gamma*w_26*w_27*w_40)),
-        -v_sq_w_23*(b_1*(inv_Abs_cos_gamma*lambda_psi_w_35*w_28*w_29 - inv_Abs_cos_gamma*lambda_psi_w_35*w_26*w_27) + b_2*w_25*(inv_Abs_cos_gamma*w_28*w_29*w_41 - inv_Abs_cos_gamma*w_26*w_27*w_41)),
-        cos_gamma*(inv_v*inv_w_cubed_twice_mu - inv_w_sq_v) + w_22*(a_0 + a_1*w_25)*(w_26*w_52 + w_28*w_51) - inv_h_r_w_22*w_48*(a_0 + a_1*w_25),
-        0.0,
-        0.0,
-        a_1_w_22*w_48*(inv_Abs_cos_gamma*w_26*w_27*w_30 - inv_Abs_cos_gamma*w_28*w_29*w_30) + cos_gamma*(inv_v_sq*inv_w_sq_mu + inv_w) + w_22*(a_0 + a_1*w_25)*(w_26*w_55 + w_28*w_54) + w_23*w_48*(a_0 + a_1*w_25),
-        a_1_w_22*w_48*(w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36)) + w_22*(a_0 + a_1*w_25)*(0.125*area_cubed*inv_cos_gamma_cubed*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi_sq*rho_0_cubed*sin_gamma*v_cubed*w_26*w_56 - w_28*w_59) - sin_gamma*(inv_w*v - inv_v*inv_w_sq_mu),
+        -d_law_of_alpha_by_v*v_sq_w_30_w_28 - v_w_32,
+        -cos_gamma_inv_w_sq_mu - d_law_of_alpha_by_gamma*v_sq_w_30_w_28,
         0.0,
         0.0,
         0.0,
         0.0,
-        a_1_w_22*w_48*(inv_Abs_cos_gamma*w_26*w_27*w_38 - inv_Abs_cos_gamma*w_28*w_29*w_38),
-        a_1_w_22*w_48*(inv_Abs_cos_gamma*w_28*w_29*w_35_w_39 - inv_Abs_cos_gamma*w_26*w_27*w_35_w_39) + w_22*(a_0 + a_1*w_25)*(w_26*w_60 + w_28*w_61),
-        a_1_w_22*w_48*(inv_Abs_cos_gamma*lambda_psi_w_35*w_28*w_29 - inv_Abs_cos_gamma*lambda_psi_w_35*w_26*w_27) + w_22*(a_0 + a_1*w_25)*(0.125*area_cubed*inv_cos_gamma_sq*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_26*w_56 - w_28*w_62),
-        0.5*area*inv_cos_gamma*inv_m*rho_0*v*w_14*(a_0 + a_1*w_25)*(w_26*w_69 + w_28*w_68) - sin_theta*w_2 - w_65*w_66*(a_0 + a_1*w_25),
+        -d_law_of_alpha_by_lambda_v*v_sq_w_30_w_28,
+        -d_law_of_alpha_by_lambda_gamma*v_sq_w_30_w_28,
+        -d_law_of_alpha_by_lambda_psi*v_sq_w_30_w_28,
+        0.5*a_1*area*cos_w_48*d_law_of_alpha_by_h*inv_m*rho_0*v*w_29 + cos_gamma*(inv_v*inv_w_cubed_twice_mu - inv_w_sq_v) - cos_w_48_w_50_inv_h_r*w_49 - d_law_of_beta_by_h*sin_w_48_w_50*w_49,
+        0.0,
+        0.0,
+        a_1_cos_w_48_w_50*d_law_of_alpha_by_v + cos_gamma*(inv_v_sq_2*inv_w_sq_mu + inv_w) + cos_w_48_w_30*w_49 - d_law_of_beta_by_v*sin_w_48_w_50_w_49,
+        0.5*a_1*area*cos_w_48*d_law_of_alpha_by_gamma*inv_m*rho_0*v*w_29 - d_law_of_beta_by_gamma*sin_w_48_w_50_w_49 - sin_gamma*(inv_w*v - inv_v*inv_w_sq_mu),
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        a_1_cos_w_48_w_50*d_law_of_alpha_by_lambda_v,
+        a_1_cos_w_48_w_50*d_law_of_alpha_by_lambda_gamma - d_law_of_beta_by_lambda_gamma*sin_w_48_w_50_w_49,
+        a_1_cos_w_48_w_50*d_law_of_alpha_by_lambda_psi - d_law_of_beta_by_lambda_psi*sin_w_48_w_50_w_49,
+        0.5*a_1*area*d_law_of_alpha_by_h*inv_cos_gamma*inv_m*rho_0*sin_w_48*v*w_29 + 0.5*area*cos_w_48*d_law_of_beta_by_h*inv_cos_gamma*inv_m*rho_0*v*w_29*w_49 - inv_cos_gamma*inv_h_r*sin_w_48_w_50_w_49 - sin_theta*w_2,
         0.0,
         inv_cos_theta_sq_w_3*sin_theta_sq + w_3,
-        a_1_w_22_inv_cos_gamma*w_65*(inv_Abs_cos_gamma*w_26*w_27*w_30 - inv_Abs_cos_gamma*w_28*w_29*w_30) + inv_cos_gamma_w_22*(a_0 + a_1*w_25)*(w_26*w_71 + w_28*w_70) + inv_cos_gamma_w_23*w_65*(a_0 + a_1*w_25) + sin_theta*w_5,
-        a_1_w_22_inv_cos_gamma*w_65*(w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36)) + inv_cos_gamma_w_22*(a_0 + a_1*w_25)*(w_26*w_73 + w_28*w_74) + w_23*w_65*w_72*(a_0 + a_1*w_25) - sin_theta*w_6,
-        w_75,
+        a_1_w_51*d_law_of_alpha_by_v + d_law_of_beta_by_v*w_53 + sin_theta*w_5 + w_49*w_52,
+        a_1_w_51*d_law_of_alpha_by_gamma + d_law_of_beta_by_gamma*w_53 + sin_w_48_w_50_w_49*w_54 - sin_theta*w_6,
+        w_55,
         0.0,
         0.0,
         0.0,
-        a_1_w_22_inv_cos_gamma*w_65*(inv_Abs_cos_gamma*w_26*w_27*w_38 - inv_Abs_cos_gamma*w_28*w_29*w_38),
-        a_1_w_22_inv_cos_gamma*w_65*(inv_Abs_cos_gamma*w_28*w_29*w_35_w_39 - inv_Abs_cos_gamma*w_26*w_27*w_35_w_39) + inv_cos_gamma_w_22*(a_0 + a_1*w_25)*(0.125*area_cubed*inv_cos_gamma*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_26*w_56 - w_28*w_76),
-        a_1_w_22_inv_cos_gamma*w_65*(inv_Abs_cos_gamma*lambda_psi_w_35*w_28*w_29 - inv_Abs_cos_gamma*lambda_psi_w_35*w_26*w_27) + inv_cos_gamma_w_22*(a_0 + a_1*w_25)*(w_26*w_77 + w_28*w_78),
-        lambda_gamma*(0.5*a_0*area*inv_h_r*inv_m*rho_0*v*w_14*(w_26*w_52 + w_28*w_51) + 0.5*a_1*area*inv_h_r*inv_m*rho_0*v*w_14*w_25*(w_26*w_52 + w_28*w_51) + cos_gamma*inv_w_79*inv_w_79*v*(-twice_h - twice_r_e) - a_0_inv_h_r_sq*w_22*w_48 - a_1_w_22*inv_h_r_sq*w_25*w_48 - w_90*(-v*w_80 - v*w_81 - v*w_85)) + lambda_psi*(a_1_w_66*w_25*(w_26*w_69 + w_28*w_68) + w_87*(-2.0*cos_theta_h - 2.0*cos_theta_r_e) + w_88*(w_26*w_69 + w_28*w_68) - a_0_inv_h_r_sq*inv_cos_gamma_w_22*w_65 - a_1_w_22_inv_cos_gamma*inv_h_r_sq*w_25*w_65) + lambda_v*(b_0*inv_h_r_sq_v_sq_w_23 + b_1*inv_h_r_sq_v_sq_w_23*w_25 + b_2_v_sq_w_23*inv_h_r_sq*w_25*w_25 - inv_w_82*inv_w_82*sin_gamma_twice_mu*(-w_80 - w_81 - w_85)) - cos_psi_lambda_theta*w_83 - w_83*w_84,
+        a_1_w_51*d_law_of_alpha_by_lambda_v,
+        a_1_w_51*d_law_of_alpha_by_lambda_gamma + d_law_of_beta_by_lambda_gamma*w_53,
+        a_1_w_51*d_law_of_alpha_by_lambda_psi + d_law_of_beta_by_lambda_psi*w_53,
+        d_law_of_alpha_by_h*w_64 + d_law_of_beta_by_h*w_69 + lambda_gamma*(cos_gamma*inv_w_56*inv_w_56*v*(-twice_h - twice_r_e) - a_0*cos_w_48_w_50_inv_h_r_sq - a_1_w_27*cos_w_48_w_50_inv_h_r_sq - w_72*(-v*w_57 - v*w_58 - v*w_70)) + lambda_psi*(cos_gamma*inv_w_61_sq*sin_psi*sin_theta*v*(-2.0*cos_theta_h - 2.0*cos_theta_r_e) - a_1_w_27_w_51*inv_h_r_sq - inv_h_r_sq*w_60) + lambda_v*(area_inv_m_rho_0_w_29*half_b_1*inv_h_r_sq*v_sq*w_27 + b_0*inv_h_r_sq_v_sq_w_30 + inv_h_r_sq_v_sq_w_30*w_31 - inv_w_59*inv_w_59*sin_gamma_twice_mu*(-w_57 - w_58 - w_70)) - cos_gamma*cos_psi_lambda_theta*inv_w_cubed_twice_v - cos_gamma_sin_psi*inv_cos_theta_lambda_phi*inv_w_cubed_twice_v,
         0.0,
-        lambda_psi*(cos_gamma_v_sin_psi*cos_theta*inv_w_86 + w_87*(h_sq*sin_theta + r_e_sin_theta*twice_h + r_e_sq*sin_theta)) + w_92,
-        lambda_gamma*(a_0_inv_h_r_w_22*(w_26*w_55 + w_28*w_54) + a_0_w_23_inv_h_r*w_48 + a_1_inv_h_r_w_22*w_25*(w_26*w_55 + w_28*w_54) + a_1_inv_h_r_w_22*w_48*(inv_Abs_cos_gamma*w_26*w_27*w_30 - inv_Abs_cos_gamma*w_28*w_29*w_30) + a_1_w_23_inv_h_r*w_25*w_48 + cos_gamma*inv_w_79 + w_82*w_90) + lambda_psi*(a_1_w_66*w_25*(w_26*w_71 + w_28*w_70) + a_1_w_66*w_65*(inv_Abs_cos_gamma*w_26*w_27*w_30 - inv_Abs_cos_gamma*w_28*w_29*w_30) + cos_gamma_sin_psi*inv_w_86_sin_theta + w_25*w_65*w_94 + w_65*w_93 + w_88*(w_26*w_71 + w_28*w_70)) + lambda_v*(-b_0*w_95 - b_1*w_25*w_95 - b_1_inv_h_r_v_sq_w_23*(inv_Abs_cos_gamma*w_26*w_27*w_30 - inv_Abs_cos_gamma*w_28*w_29*w_30) - b_2*w_25*w_25*w_95 - b_2_v_sq_w_23_inv_h_r*w_25*(inv_Abs_cos_gamma*inv_b_2_inv_v_sq_w_12*w_26*w_27 - inv_Abs_cos_gamma*inv_b_2_inv_v_sq_w_12*w_28*w_29)) + w_96,
-        lambda_gamma*(a_0_inv_h_r_w_22*(0.125*area_cubed*inv_cos_gamma_cubed*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi_sq*rho_0_cubed*sin_gamma*v_cubed*w_26*w_56 - w_28*w_59) + a_1_inv_h_r_w_22*w_25*(0.125*area_cubed*inv_cos_gamma_cubed*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi_sq*rho_0_cubed*sin_gamma*v_cubed*w_26*w_56 - w_28*w_59) + a_1_inv_h_r_w_22*w_48*(w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36)) + inv_w_89*sin_gamma_twice_mu - inv_w_79*sin_gamma_v) + lambda_psi*(a_0_w_23_inv_h_r*w_65*w_72 + a_1_w_23_inv_h_r*w_25*w_65*w_72 + a_1_w_66*w_25*(w_26*w_73 + w_28*w_74) + a_1_w_66*w_65*(w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36)) + w_88*(w_26*w_73 + w_28*w_74) - inv_w_86_sin_theta*sin_gamma_v_sin_psi) + lambda_v*(-b_1_inv_h_r_v_sq_w_23*(w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36)) - b_2_v_sq_w_23_inv_h_r*w_25*(2.0*w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + 2.0*w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36)) - cos_gamma_twice_mu*inv_w_82) - w_97 - w_98,
-        cos_gamma_v*cos_psi_lambda_psi*inv_w_86_sin_theta + w_99,
+        lambda_psi*(cos_gamma_v_sin_psi*cos_theta*inv_w_61 + cos_gamma_v_sin_psi*inv_w_61_sq*sin_theta*(h_sq*sin_theta + r_e_sin_theta*twice_h + r_e_sq*sin_theta)) + w_74,
+        d_law_of_alpha_by_v*w_64 + d_law_of_beta_by_v*w_69 + lambda_gamma*(cos_gamma*inv_w_56 + w_59*w_72 + w_75) + lambda_psi*(cos_gamma_sin_psi*inv_w_61_sin_theta + w_77) + lambda_v*(-area_inv_m_rho_0_w_29_v*b_0_inv_h_r - b_1_w_27*w_78 - w_31*w_78) + w_80,
+        d_law_of_alpha_by_gamma*w_64 + d_law_of_beta_by_gamma*w_69 + lambda_gamma*(2.0*inv_w_71*mu*sin_gamma - inv_w_56*sin_gamma_v) + lambda_psi*(w_83 - inv_w_61_sin_theta*sin_gamma_v_sin_psi) - cos_gamma_twice_mu*inv_w_59*lambda_v - w_81 - w_82,
+        cos_gamma_v*cos_psi_lambda_psi*inv_w_61_sin_theta + w_84,
         0.0,
         w_2,
         w_8,
-        0.5*a_1*area*inv_cos_gamma*inv_h_r*inv_m*lambda_psi*rho_0*v*w_14*w_65*(inv_Abs_cos_gamma*w_26*w_27*w_38 - inv_Abs_cos_gamma*w_28*w_29*w_38) + 0.5*a_1*area*inv_h_r*inv_m*lambda_gamma*rho_0*v*w_14*w_48*(inv_Abs_cos_gamma*w_26*w_27*w_38 - inv_Abs_cos_gamma*w_28*w_29*w_38) + lambda_v*(-b_1_inv_h_r_v_sq_w_23*(inv_Abs_cos_gamma*w_26*w_27*w_38 - inv_Abs_cos_gamma*w_28*w_29*w_38) - b_2_v_sq_w_23_inv_h_r*w_25*(a_1_inv_v_inv_b_2_w_37*inv_Abs_cos_gamma*w_26*w_27 - a_1_inv_v_inv_b_2_w_37*inv_Abs_cos_gamma*w_28*w_29)) - b_0*inv_h_r_v_sq_w_23 - b_1_inv_h_r_v_sq_w_23*w_25 - b_2_v_sq_w_23_inv_h_r*w_25*w_25 - inv_w_82*sin_gamma_twice_mu,
-        a_0_inv_h_r_w_22*w_48 + a_1_inv_h_r_w_22*w_25*w_48 + cos_gamma_v*inv_w_79 + lambda_gamma*(a_0_inv_h_r_w_22*(w_26*w_60 + w_28*w_61) + a_1_inv_h_r_w_22*w_25*(w_26*w_60 + w_28*w_61) + a_1_inv_h_r_w_22*w_48*(inv_Abs_cos_gamma*w_28*w_29*w_35_w_39 - inv_Abs_cos_gamma*w_26*w_27*w_35_w_39)) + lambda_psi*(a_1_w_66*w_25*(0.125*area_cubed*inv_cos_gamma*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_26*w_56 - w_28*w_76) + a_1_w_66*w_65*(inv_Abs_cos_gamma*w_28*w_29*w_35_w_39 - inv_Abs_cos_gamma*w_26*w_27*w_35_w_39) + w_88*(0.125*area_cubed*inv_cos_gamma*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_26*w_56 - w_28*w_76)) + lambda_v*(-b_1_inv_h_r_v_sq_w_23*(inv_Abs_cos_gamma*w_28*w_29*w_35_w_39 - inv_Abs_cos_gamma*w_26*w_27*w_35_w_39) - b_2_v_sq_w_23_inv_h_r*w_25*(inv_Abs_cos_gamma*w_28*w_29*w_40 - inv_Abs_cos_gamma*w_26*w_27*w_40)) - cos_gamma_twice_mu*inv_w_89,
-        a_1_w_66*w_25*w_65 + cos_gamma_v_sin_psi*inv_w_86_sin_theta + lambda_gamma*(a_0_inv_h_r_w_22*(0.125*area_cubed*inv_cos_gamma_sq*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_26*w_56 - w_28*w_62) + a_1_inv_h_r_w_22*w_25*(0.125*area_cubed*inv_cos_gamma_sq*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_26*w_56 - w_28*w_62) + a_1_inv_h_r_w_22*w_48*(inv_Abs_cos_gamma*lambda_psi_w_35*w_28*w_29 - inv_Abs_cos_gamma*lambda_psi_w_35*w_26*w_27)) + lambda_psi*(a_1_w_66*w_25*(w_26*w_77 + w_28*w_78) + a_1_w_66*w_65*(inv_Abs_cos_gamma*lambda_psi_w_35*w_28*w_29 - inv_Abs_cos_gamma*lambda_psi_w_35*w_26*w_27) + w_88*(w_26*w_77 + w_28*w_78)) + lambda_v*(-b_1_inv_h_r_v_sq_w_23*(inv_Abs_cos_gamma*lambda_psi_w_35*w_28*w_29 - inv_Abs_cos_gamma*lambda_psi_w_35*w_26*w_27) - b_2_v_sq_w_23_inv_h_r*w_25*(inv_Abs_cos_gamma*w_28*w_29*w_41 - inv_Abs_cos_gamma*w_26*w_27*w_41)) + w_65*w_88,
+        d_law_of_alpha_by_lambda_v*w_64 - b_0_inv_h_r*v_sq_w_30 - half_b_1_w_63*w_27 - inv_h_r_v_sq*w_30*w_31 - inv_w_59*sin_gamma_twice_mu,
+        cos_gamma_v*inv_w_56 + d_law_of_alpha_by_lambda_gamma*w_64 + d_law_of_beta_by_lambda_gamma*w_69 + w_67 + w_68 - cos_gamma_twice_mu*inv_w_71,
+        a_1_w_27_w_51*inv_h_r + cos_gamma_v_sin_psi*inv_w_61_sin_theta + d_law_of_alpha_by_lambda_psi*w_64 + d_law_of_beta_by_lambda_psi*w_69 + inv_cos_gamma*w_65,
         0.0,
         0.0,
         0.0,
@@ -954,54 +1040,54 @@ def canonical_jacobian(t, x, lam, p, bounds):
         0.0,
         0.0,
         0.0,
-        lambda_psi_w_100*w_91 + w_92,
+        lambda_psi_w_85*w_73 + w_74,
         0.0,
-        -lambda_phi*sin_theta_sq*w_102 - lambda_psi_w_100*sin_theta*w_102 - w_101,
-        -lambda_psi_w_100*w_103 - w_104,
-        lambda_psi_w_100*w_105 + w_106,
-        -w_100*w_108 - w_107,
+        -lambda_phi*sin_theta_sq*w_87 - lambda_psi_w_85*sin_theta*w_87 - w_86,
+        -lambda_psi_w_85*w_88 - w_89,
+        inv_cos_theta_sq_sin_psi*w_85*w_91 + w_90,
+        -w_85*w_93 - w_92,
         0.0,
         -w_4,
         0.0,
         0.0,
         0.0,
-        -inv_cos_theta_sq_w_3*w_100,
-        lambda_gamma*(a_0_w_23_inv_h_r*w_48 + a_1_w_23_inv_h_r*w_25*w_48 + cos_gamma_inv_w_sq - a_0_w_23*(w_26*w_52 + w_28*w_51) - a_1_w_23*w_25*(w_26*w_52 + w_28*w_51) - w_110*(-twice_h*v_sq - twice_r_e*v_sq)) + lambda_psi*(cos_gamma_sin_psi_w_112*cos_theta + w_25*w_65*w_94 + w_65*w_93 - a_0_w_23_inv_cos_gamma*(w_26*w_69 + w_28*w_68) - a_1_inv_cos_gamma_w_23*w_25*(w_26*w_69 + w_28*w_68)) + w_96 - lambda_v*w_95*(b_0 + b_1*w_25 + b_2*w_25*w_25),
+        -inv_cos_theta_sq_w_3*w_85,
+        d_law_of_alpha_by_h*w_94 + d_law_of_beta_by_h*w_95 + lambda_gamma*(cos_gamma_inv_w_sq + w_75 - w_97*(-twice_h*v_sq - twice_r_e*v_sq)) + lambda_psi*(cos_gamma_sin_psi_w_99*cos_theta + w_77) + w_80 - inv_h_r*lambda_v*v_w_32,
         0.0,
-        lambda_psi*(-cos_gamma_sin_psi_w_112*w_114 - cos_theta*w_113) - w_104,
-        lambda_gamma*(-a_0_w_23*(w_26*w_55 + w_28*w_54) - a_1_w_23*w_25*(w_26*w_55 + w_28*w_54) - a_1_w_23*w_48*(inv_Abs_cos_gamma*w_26*w_27*w_30 - inv_Abs_cos_gamma*w_28*w_29*w_30) - w_110*(-4.0*h_r_e*v - h_sq*twice_v - r_e_sq*twice_v)) + lambda_psi*(-a_0_w_23_inv_cos_gamma*(w_26*w_71 + w_28*w_70) - a_1_inv_cos_gamma_w_23*w_25*(w_26*w_71 + w_28*w_70) - a_1_inv_cos_gamma_w_23*w_65*(inv_Abs_cos_gamma*w_26*w_27*w_30 - inv_Abs_cos_gamma*w_28*w_29*w_30)) + w_115*(b_1*(inv_Abs_cos_gamma*w_26*w_27*w_30 - inv_Abs_cos_gamma*w_28*w_29*w_30) + b_2*w_25*(inv_Abs_cos_gamma*inv_b_2_inv_v_sq_w_12*w_26*w_27 - inv_Abs_cos_gamma*inv_b_2_inv_v_sq_w_12*w_28*w_29)) + w_15*(b_0 + b_1*w_25 + b_2*w_25*w_25),
-        lambda_gamma*(inv_w*sin_gamma + inv_w_109*mu*sin_gamma - a_0_w_23*(0.125*area_cubed*inv_cos_gamma_cubed*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi_sq*rho_0_cubed*sin_gamma*v_cubed*w_26*w_56 - w_28*w_59) - a_1_w_23*w_25*(0.125*area_cubed*inv_cos_gamma_cubed*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi_sq*rho_0_cubed*sin_gamma*v_cubed*w_26*w_56 - w_28*w_59) - a_1_w_23*w_48*(w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36))) + lambda_psi*(-a_0_w_23_inv_cos_gamma*(w_26*w_73 + w_28*w_74) - a_0_w_23_w_32*w_65 - a_1_inv_cos_gamma_w_23*w_25*(w_26*w_73 + w_28*w_74) - a_1_inv_cos_gamma_w_23*w_65*(w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36)) - a_1_w_23_w_32*w_25*w_65 - w_116) + w_115*(b_1*(w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36)) + b_2*w_25*(2.0*w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + 2.0*w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36))) + w_117,
-        -cos_gamma*w_118 - w_119,
+        lambda_psi*(-cos_gamma_sin_psi_w_99*w_101 - cos_theta*w_100) - w_89,
+        d_law_of_alpha_by_v*w_94 + d_law_of_beta_by_v*w_95 + lambda_v*w_32 - lambda_gamma*w_97*(-4.0*h_r_e*v - h_sq*twice_v - r_e_sq*twice_v),
+        d_law_of_alpha_by_gamma*w_94 + d_law_of_beta_by_gamma*w_95 + lambda_gamma*(inv_w_96_mu*sin_gamma + inv_w_sin_gamma) + w_102,
+        -cos_gamma*w_103 - w_104,
         -sin_gamma,
         -w_5,
         -cos_gamma_inv_w_cos_psi,
-        area*inv_m*lambda_v*rho_0*v*w_14*(b_1*(inv_Abs_cos_gamma*w_26*w_27*w_38 - inv_Abs_cos_gamma*w_28*w_29*w_38) + b_2*w_25*(a_1_inv_v_inv_b_2_w_37*inv_Abs_cos_gamma*w_26*w_27 - a_1_inv_v_inv_b_2_w_37*inv_Abs_cos_gamma*w_28*w_29)) + area*inv_m*rho_0*v*w_14*(b_0 + b_1*w_25 + b_2*w_25*w_25) - a_1_inv_cos_gamma_w_23*lambda_psi*w_65*(inv_Abs_cos_gamma*w_26*w_27*w_38 - inv_Abs_cos_gamma*w_28*w_29*w_38) - a_1_w_23*lambda_gamma*w_48*(inv_Abs_cos_gamma*w_26*w_27*w_38 - inv_Abs_cos_gamma*w_28*w_29*w_38),
-        area*inv_m*lambda_v*rho_0*v*w_14*(b_1*(inv_Abs_cos_gamma*w_28*w_29*w_35_w_39 - inv_Abs_cos_gamma*w_26*w_27*w_35_w_39) + b_2*w_25*(inv_Abs_cos_gamma*w_28*w_29*w_40 - inv_Abs_cos_gamma*w_26*w_27*w_40)) + lambda_gamma*(-a_0_w_23*(w_26*w_60 + w_28*w_61) - a_1_w_23*w_25*(w_26*w_60 + w_28*w_61) - a_1_w_23*w_48*(inv_Abs_cos_gamma*w_28*w_29*w_35_w_39 - inv_Abs_cos_gamma*w_26*w_27*w_35_w_39)) + lambda_psi*(-a_0_w_23_inv_cos_gamma*(0.125*area_cubed*inv_cos_gamma*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_26*w_56 - w_28*w_76) - a_1_inv_cos_gamma_w_23*w_25*(0.125*area_cubed*inv_cos_gamma*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_26*w_56 - w_28*w_76) - a_1_inv_cos_gamma_w_23*w_65*(inv_Abs_cos_gamma*w_28*w_29*w_35_w_39 - inv_Abs_cos_gamma*w_26*w_27*w_35_w_39)) - a_0_w_23*w_48 - a_1_w_23*w_25*w_48 - cos_gamma*inv_w_109*mu - cos_gamma_inv_w,
-        area*inv_m*lambda_v*rho_0*v*w_14*(b_1*(inv_Abs_cos_gamma*lambda_psi_w_35*w_28*w_29 - inv_Abs_cos_gamma*lambda_psi_w_35*w_26*w_27) + b_2*w_25*(inv_Abs_cos_gamma*w_28*w_29*w_41 - inv_Abs_cos_gamma*w_26*w_27*w_41)) + lambda_gamma*(-a_0_w_23*(0.125*area_cubed*inv_cos_gamma_sq*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_26*w_56 - w_28*w_62) - a_1_w_23*w_25*(0.125*area_cubed*inv_cos_gamma_sq*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_26*w_56 - w_28*w_62) - a_1_w_23*w_48*(inv_Abs_cos_gamma*lambda_psi_w_35*w_28*w_29 - inv_Abs_cos_gamma*lambda_psi_w_35*w_26*w_27)) + lambda_psi*(-a_0_w_23_inv_cos_gamma*(w_26*w_77 + w_28*w_78) - a_1_inv_cos_gamma_w_23*w_25*(w_26*w_77 + w_28*w_78) - a_1_inv_cos_gamma_w_23*w_65*(inv_Abs_cos_gamma*lambda_psi_w_35*w_28*w_29 - inv_Abs_cos_gamma*lambda_psi_w_35*w_26*w_27)) - a_0_w_23_inv_cos_gamma*w_65 - a_1_inv_cos_gamma_w_23*w_25*w_65 - sin_theta*w_113,
-        inv_w_sq*lambda_gamma*sin_gamma*v + lambda_psi*(0.5*a_0*area*inv_cos_gamma_sq*inv_h_r*inv_m*rho_0*sin_gamma*v*w_14*w_65 + 0.5*a_1*area*inv_cos_gamma_sq*inv_h_r*inv_m*rho_0*sin_gamma*v*w_14*w_25*w_65 - a_0_w_23_w_72*(w_26*w_69 + w_28*w_68) - a_1_w_23_w_72*w_25*(w_26*w_69 + w_28*w_68) - w_112*w_121) - cos_gamma*inv_w_cubed_twice_mu*lambda_v - inv_v_w_120_lambda_gamma*sin_gamma*twice_inv_w_cubed - w_97 - w_98,
+        d_law_of_alpha_by_lambda_v*w_94 + v_w_32,
+        d_law_of_alpha_by_lambda_gamma*w_94 + d_law_of_beta_by_lambda_gamma*w_95 - a_0_cos_w_48_w_30 - a_1_w_27_cos_w_48_w_30 - cos_gamma*inv_w_96_mu - cos_gamma_inv_w,
+        d_law_of_alpha_by_lambda_psi*w_94 + d_law_of_beta_by_lambda_psi*w_95 - a_1_w_27_w_52 - sin_theta*w_100 - w_76,
+        d_law_of_beta_by_h*lambda_psi*w_106 + inv_w_sq*lambda_gamma*sin_gamma*v + lambda_psi*(w_83 - w_107*w_99) - a_1_sin_w_48_w_50_w_44*d_law_of_alpha_by_h - cos_gamma*inv_w_cubed_twice_mu*lambda_v - 2.0*inv_v_w_105_lambda_gamma*inv_w_cubed*sin_gamma - w_81 - w_82,
         0.0,
-        lambda_psi*(inv_w_111*w_121 + sin_gamma_v_sin_psi*w_112*w_114) + w_106,
-        inv_v*w_122*(twice_h*v + twice_r_e*v) + lambda_psi*(-a_0_w_23_w_32*w_65 - a_0_w_23_w_72*(w_26*w_71 + w_28*w_70) - a_1_w_23_w_32*w_25*w_65 - a_1_w_23_w_72*w_25*(w_26*w_71 + w_28*w_70) - a_1_w_23_w_72*w_65*(inv_Abs_cos_gamma*w_26*w_27*w_30 - inv_Abs_cos_gamma*w_28*w_29*w_30) - w_116) + w_117 - inv_v_sq*w_120*w_122,
-        cos_gamma_inv_w_sq*inv_v_w_120_lambda_gamma + lambda_h*sin_gamma_v + lambda_psi*(cos_gamma*inv_w_111*sin_psi*sin_theta*v - a_0*inv_cos_gamma_w_22*w_65 - a_0*w_123*w_65 - a_0_w_23_w_72*(w_26*w_73 + w_28*w_74) - a_1*w_123*w_25*w_65 - a_1_w_22_inv_cos_gamma*w_25*w_65 - a_1_w_23_w_72*w_25*(w_26*w_73 + w_28*w_74) - a_1_w_23_w_72*w_65*(w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36))) + w_124 - inv_w_sq_mu_sin_gamma*lambda_v,
-        sin_gamma_v*w_118 + w_125,
+        lambda_psi*(inv_w_98*w_107 + sin_gamma_v_sin_psi*w_101*w_99) + w_90,
+        d_law_of_beta_by_v*lambda_psi_w_106 + inv_v*w_108*(h*twice_v + r_e*twice_v) + w_102 - a_1_sin_w_48_w_50_w_44*d_law_of_alpha_by_v - inv_v_sq_2*w_105*w_108,
+        cos_gamma_inv_w_sq*inv_v_w_105_lambda_gamma + d_law_of_beta_by_gamma*lambda_psi_w_106 + lambda_h*sin_gamma_v + lambda_psi*(cos_gamma*inv_w_98*sin_psi*sin_theta*v - a_0*w_109 - a_1_w_27*w_109 - a_1_w_27_w_51 - w_60) + w_110 - a_1_sin_w_48_w_50_w_44*d_law_of_alpha_by_gamma - inv_w_sq_mu*lambda_v*sin_gamma,
+        sin_gamma_v*w_103 + w_111,
         -cos_gamma_v,
         w_6,
         w_9,
-        cos_gamma_inv_w_sq_mu - a_1_w_23_w_72*lambda_psi*w_65*(inv_Abs_cos_gamma*w_26*w_27*w_38 - inv_Abs_cos_gamma*w_28*w_29*w_38),
-        inv_v_w_120*inv_w_sq_sin_gamma + lambda_psi*(-a_0_w_23_w_72*(0.125*area_cubed*inv_cos_gamma*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_26*w_56 - w_28*w_76) - a_1_w_23_w_72*w_25*(0.125*area_cubed*inv_cos_gamma*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_26*w_56 - w_28*w_76) - a_1_w_23_w_72*w_65*(inv_Abs_cos_gamma*w_28*w_29*w_35_w_39 - inv_Abs_cos_gamma*w_26*w_27*w_35_w_39)),
-        inv_w_111*sin_gamma*sin_psi*sin_theta*v + lambda_psi*(-a_0_w_23_w_72*(w_26*w_77 + w_28*w_78) - a_1_w_23_w_72*w_25*(w_26*w_77 + w_28*w_78) - a_1_w_23_w_72*w_65*(inv_Abs_cos_gamma*lambda_psi_w_35*w_28*w_29 - inv_Abs_cos_gamma*lambda_psi_w_35*w_26*w_27)) - a_0_w_23_w_72*w_65 - a_1_w_23_w_72*w_25*w_65,
-        w_126*w_8 + w_99,
+        cos_gamma_inv_w_sq_mu - a_1_sin_w_48_w_50_w_44*d_law_of_alpha_by_lambda_v,
+        d_law_of_beta_by_lambda_gamma*lambda_psi_w_106 + inv_v_w_105*inv_w_sq_sin_gamma - a_1_sin_w_48_w_50_w_44*d_law_of_alpha_by_lambda_gamma,
+        d_law_of_beta_by_lambda_psi*lambda_psi*w_106 + inv_w_98*sin_gamma*sin_psi*sin_theta*v - a_0_sin_w_48_w_50*w_54 - a_1_sin_w_48_w_50_w_44*d_law_of_alpha_by_lambda_psi - a_1_w_27*sin_w_48_w_50*w_54,
+        w_112*w_8 + w_84,
         0.0,
-        -lambda_psi_w_7 - sin_theta_sq*w_108 - w_107,
-        -cos_gamma_inv_w_cos_psi*w_126 - w_119,
-        w_125 + w_126*w_9,
-        w_124 + w_126*w_3,
+        -lambda_psi_w_7 - sin_theta_sq*w_93 - w_92,
+        -cos_gamma_inv_w_cos_psi*w_112 - w_104,
+        cos_psi*inv_cos_theta_sin_theta*w_91 + w_111,
+        w_110 + w_112*w_3,
         0.0,
         -inv_cos_theta_w_7,
         w_3,
         0.0,
         0.0,
-        -w_75,
+        -w_55,
     )
 
 
@@ -1010,7 +1096,7 @@ def canonical_drift(t, x, lam, p, bounds):
     h, phi, theta, v, gamma, psi = x
     lambda_h, lambda_phi, lambda_theta, lambda_v, lambda_gamma, lambda_psi = lam
     mu, r_e, rho_0, h_r, area, m, a_0, a_1, b_0, b_1, b_2 = p
-    alpha_min, alpha_max, beta_reach = bounds
+    alpha_min, alpha_max, beta_min, beta_max = bounds
     return (
         0.0,
         0.0,
@@ -1032,61 +1118,67 @@ def boundary(t, x, lam, nu, p, bounds, final):
     h, phi, theta, v, gamma, psi = x
     lambda_h, lambda_phi, lambda_theta, lambda_v, lambda_gamma, lambda_psi = lam
     mu, r_e, rho_0, h_r, area, m, a_0, a_1, b_0, b_1, b_2 = p
-    alpha_min, alpha_max, beta_reach = bounds
+    alpha_min, alpha_max, beta_min, beta_max = bounds
     given_h, given_phi, given_theta, given_v, given_gamma, given_psi, on_reference_h, on_reference_phi, on_reference_theta, on_reference_v, on_reference_gamma, on_reference_psi, target_h, target_phi, target_theta, target_v, target_gamma, target_psi = final
     w = h + r_e
     inv_w = 1.0/w
-    v_sq = v*v
-    inv_m = 1.0/m
-    inv_h_r = 1.0/h_r
-    h_inv_h_r = h*inv_h_r
-    w_2 = area*inv_m*rho_0*math.exp(-h_inv_h_r)
-    v_sq_w_2 = v_sq*w_2
-    w_3 = -b_2*lambda_v*v_sq_w_2
-    cos_gamma = math.cos(gamma)
-    Abs_cos_gamma = math.fabs(cos_gamma)
-    inv_Abs_cos_gamma = 1.0/Abs_cos_gamma
-    inv_b_2 = 1.0/b_2
-    half_inv_b_2 = 0.5*inv_b_2
-    b_1_half_inv_b_2 = b_1*half_inv_b_2
     inv_v = 1.0/v
-    inv_lambda_v = 1.0/lambda_v
-    lambda_psi_sq = lambda_psi*lambda_psi
-    lambda_gamma_sq = lambda_gamma*lambda_gamma
-    w_4 = cos_gamma*cos_gamma*lambda_gamma_sq + lambda_psi_sq
-    sqrt_w_4 = math.sqrt(w_4)
-    w_5 = a_1*half_inv_b_2*inv_lambda_v*inv_v*sqrt_w_4
-    w_6 = -b_1_half_inv_b_2 - inv_Abs_cos_gamma*w_5
-    w_7 = w_6 + 0.0*math.sqrt(w_3)
-    w_8 = alpha_min if w_7 < alpha_min else alpha_max if w_7 > alpha_max else w_7
-    w_9 = -b_1_half_inv_b_2
-    w_10 = inv_Abs_cos_gamma*w_5 + w_9
-    w_11 = w_10 + 0.0*math.sqrt(w_3)
-    w_12 = alpha_min if w_11 < alpha_min else alpha_max if w_11 > alpha_max else w_11
-    w_13 = 0.5*v*w_2
-    sqrt_w_4_w_13 = sqrt_w_4*w_13
-    sin_gamma = math.sin(gamma)
-    w_14 = inv_w*inv_w*mu
-    sin_gamma_w_14 = sin_gamma*w_14
-    half_v_sq_w_2 = 0.5*v_sq_w_2
-    w_15 = inv_Abs_cos_gamma*sqrt_w_4_w_13*(-a_0 - a_1*w_12) + lambda_v*(-half_v_sq_w_2*(b_0 + b_1*w_8 + b_2*w_8*w_8) - sin_gamma_w_14) - inv_Abs_cos_gamma*sqrt_w_4_w_13*(a_0 + a_1*w_8) - lambda_v*(-half_v_sq_w_2*(b_0 + b_1*w_12 + b_2*w_12*w_12) - sin_gamma_w_14)
-    w_16 = (w_8 if w_15 <= 0.0 else w_12) + 0.0*w_15
+    cos_gamma = math.cos(gamma)
     inv_cos_gamma = 1.0/cos_gamma
-    w_17 = 0.25*area*area*inv_m*inv_m*rho_0*rho_0*v_sq*math.exp(-2.0*h_inv_h_r)
-    w_18 = inv_cos_gamma*inv_cos_gamma*lambda_psi_sq*w_17 + lambda_gamma_sq*w_17
-    sqrt_w_18 = math.sqrt(w_18)
-    inv_sqrt_w_18 = 1.0/sqrt_w_18
-    inv_sqrt_w_18_w_13 = inv_sqrt_w_18*w_13
-    w_19 = inv_cos_gamma*inv_sqrt_w_18_w_13*lambda_psi
-    w_20 = -w_19
-    w_21 = (w_20 if w_15 <= 0.0 else w_19) + 0.0*w_15
-    w_22 = inv_sqrt_w_18_w_13*lambda_gamma
-    w_23 = -w_22
-    w_24 = (w_23 if w_15 <= 0.0 else w_22) + 0.0*w_15
+    w_2 = inv_w*inv_w*mu
+    v_sq = v*v
+    sin_gamma = math.sin(gamma)
     cos_gamma_inv_w_v = cos_gamma*inv_w*v
     cos_theta = math.cos(theta)
     inv_cos_theta = 1.0/cos_theta
-    w_25 = cos_gamma_inv_w_v*inv_cos_theta*math.sin(psi)
+    w_3 = cos_gamma_inv_w_v*inv_cos_theta*math.sin(psi)
+    inv_h_r = 1.0/h_r
+    h_inv_h_r = h*inv_h_r
+    inv_m = 1.0/m
+    area_inv_m_rho_0 = area*inv_m*rho_0
+    w_4 = area_inv_m_rho_0*math.exp(-h_inv_h_r)
+    half_v = 0.5*v
+    law_part_8 = half_v*w_4
+    law_part_11 = inv_cos_gamma*lambda_psi*law_part_8
+    w_5 = 0.5*((beta_min if beta_min > (beta_max if beta_max < math.pi else math.pi) - 2.0*math.pi else (beta_max if beta_max < math.pi else math.pi) - 2.0*math.pi) + (beta_max if beta_max < (beta_min if beta_min > -math.pi else -math.pi) + 2.0*math.pi else (beta_min if beta_min > -math.pi else -math.pi) + 2.0*math.pi))
+    law_part_10 = math.cos(w_5)
+    law_part_5 = math.sin(w_5)
+    law_part_9 = lambda_gamma*law_part_8
+    law_part_12 = law_part_5*law_part_9 - law_part_10*law_part_11
+    w_6 = -law_part_12
+    law_part_13 = law_part_10*law_part_9 + law_part_11*law_part_5
+    w_7 = math.atan2(w_6, law_part_13) + 0.0/(w_6*w_6 + law_part_13*law_part_13)
+    w_8 = w_5 + w_7
+    w_9 = beta_min if w_8 < beta_min else beta_max if w_8 > beta_max else w_8
+    law_part_15 = law_part_11*math.sin(w_9) + law_part_9*math.cos(w_9)
+    inv_lambda_v = 1.0/lambda_v
+    inv_v_sq = 1.0/v_sq
+    inv_area = 1.0/area
+    inv_rho_0 = 1.0/rho_0
+    inv_b_2 = 1.0/b_2
+    law_part_17 = a_1*inv_area*inv_b_2*inv_lambda_v*inv_rho_0*inv_v_sq*m*math.exp(h_inv_h_r)
+    law_part_2 = 0.5*b_1
+    law_part_3 = -inv_b_2*law_part_2
+    w_10 = law_part_15*law_part_17 + law_part_3
+    law_part_18 = lambda_v*v_sq*w_4
+    law_part_19 = b_2*law_part_18
+    law_part_20 = -law_part_19
+    w_11 = w_10 + 0.0*math.sqrt(law_part_20)
+    w_12 = alpha_min if w_11 < alpha_min else alpha_max if w_11 > alpha_max else w_11
+    w_13 = -law_part_13
+    w_14 = math.atan2(law_part_12, w_13) + 0.0/(law_part_12*law_part_12 + w_13*w_13)
+    w_15 = w_14 + w_5
+    w_16 = beta_min if w_15 < beta_min else beta_max if w_15 > beta_max else w_15
+    law_part_24 = law_part_11*math.sin(w_16) + law_part_9*math.cos(w_16)
+    w_17 = law_part_17*law_part_24 + law_part_3
+    w_18 = w_17 + 0.0*math.sqrt(law_part_20)
+    w_19 = alpha_min if w_18 < alpha_min else alpha_max if w_18 > alpha_max else w_18
+    law_part_22 = law_part_18*law_part_2
+    law_part_26 = 0.5*law_part_19
+    law_part_27 = law_part_22*w_12 + law_part_24*(a_0 + a_1*w_19) + law_part_26*w_12*w_12 - law_part_15*(a_0 + a_1*w_12) - law_part_22*w_19 - law_part_26*w_19*w_19
+    w_20 = (w_19 if law_part_27 <= 0.0 else w_12) + 0.0*law_part_27
+    w_21 = half_v*w_4*(a_0 + a_1*w_20)
+    w_22 = (w_16 if law_part_27 <= 0.0 else w_9) + 0.0*law_part_27
     return (
         given_h*(h - target_h) + h*on_reference_h + lambda_h*(1.0 - given_h - on_reference_h),
         given_phi*(phi - target_phi) + lambda_phi*(1.0 - given_phi - on_reference_phi) + on_reference_phi*phi,
@@ -1094,7 +1186,7 @@ def boundary(t, x, lam, nu, p, bounds, final):
         given_v*(v - target_v) + lambda_v*(1.0 - given_v - on_reference_v) + on_reference_v*v,
         gamma*on_reference_gamma + given_gamma*(gamma - target_gamma) + lambda_gamma*(1.0 - given_gamma - on_reference_gamma),
         given_psi*(psi - target_psi) + lambda_psi*(1.0 - given_psi - on_reference_psi) + on_reference_psi*psi,
-        cos_gamma_inv_w_v*lambda_theta*math.cos(psi) + lambda_gamma*(cos_gamma*(inv_w*v - inv_v*w_14) + w_13*w_24*(a_0 + a_1*w_16)) + lambda_h*sin_gamma*v + lambda_phi*w_25 + lambda_psi*(inv_cos_gamma*w_13*w_21*(a_0 + a_1*w_16) + w_25*math.sin(theta)) + lambda_v*(-half_v_sq_w_2*(b_0 + b_1*w_16 + b_2*w_16*w_16) - sin_gamma_w_14),
+        cos_gamma_inv_w_v*lambda_theta*math.cos(psi) + lambda_gamma*(cos_gamma*(inv_w*v - inv_v*w_2) + w_21*math.cos(w_22)) + lambda_h*sin_gamma*v + lambda_phi*w_3 + lambda_psi*(inv_cos_gamma*w_21*math.sin(w_22) + w_3*math.sin(theta)) + lambda_v*(-sin_gamma*w_2 - 0.5*v_sq*w_4*(b_0 + b_1*w_20 + b_2*w_20*w_20)),
     )
 
 
@@ -1103,7 +1195,7 @@ def boundary_jacobian(t, x, lam, nu, p, bounds, final):
     h, phi, theta, v, gamma, psi = x
     lambda_h, lambda_phi, lambda_theta, lambda_v, lambda_gamma, lambda_psi = lam
     mu, r_e, rho_0, h_r, area, m, a_0, a_1, b_0, b_1, b_2 = p
-    alpha_min, alpha_max, beta_reach = bounds
+    alpha_min, alpha_max, beta_min, beta_max = bounds
     given_h, given_phi, given_theta, given_v, given_gamma, given_psi, on_reference_h, on_reference_phi, on_reference_theta, on_reference_v, on_reference_gamma, on_reference_psi, target_h, target_phi, target_theta, target_v, target_gamma, target_psi = final
     w = given_h + on_reference_h
     w_2 = given_phi + on_reference_phi
@@ -1112,144 +1204,194 @@ def boundary_jacobian(t, x, lam, nu, p, bounds, final):
     w_5 = given_gamma + on_reference_gamma
     w_6 = given_psi + on_reference_psi
     inv_h_r = 1.0/h_r
-    inv_m = 1.0/m
-    h_inv_h_r = h*inv_h_r
-    w_7 = math.exp(-h_inv_h_r)
-    area_inv_m_rho_0_w_7 = area*inv_m*rho_0*w_7
-    v_sq = v*v
-    w_8 = area_inv_m_rho_0_w_7*v_sq
-    lambda_v_w_8 = lambda_v*w_8
-    w_9 = -b_2*lambda_v_w_8
-    cos_gamma = math.cos(gamma)
-    Abs_cos_gamma = math.fabs(cos_gamma)
-    inv_Abs_cos_gamma = 1.0/Abs_cos_gamma
-    inv_b_2 = 1.0/b_2
-    half_inv_b_2 = 0.5*inv_b_2
-    b_1_half_inv_b_2 = b_1*half_inv_b_2
     inv_v = 1.0/v
-    inv_lambda_v = 1.0/lambda_v
-    lambda_psi_sq = lambda_psi*lambda_psi
-    cos_gamma_sq = cos_gamma*cos_gamma
-    lambda_gamma_sq = lambda_gamma*lambda_gamma
-    w_10 = cos_gamma_sq*lambda_gamma_sq + lambda_psi_sq
-    sqrt_w_10 = math.sqrt(w_10)
-    w_11 = a_1*inv_lambda_v*sqrt_w_10
-    half_inv_b_2_w_11 = half_inv_b_2*w_11
-    half_inv_b_2_w_11_inv_v = half_inv_b_2_w_11*inv_v
-    w_12 = -b_1_half_inv_b_2 - half_inv_b_2_w_11_inv_v*inv_Abs_cos_gamma
-    w_13 = w_12 + 0.0*math.sqrt(w_9)
-    w_14 = alpha_min if w_13 < alpha_min else alpha_max if w_13 > alpha_max else w_13
-    w_15 = -b_1_half_inv_b_2
-    w_16 = half_inv_b_2_w_11_inv_v*inv_Abs_cos_gamma + w_15
-    w_17 = w_16 + 0.0*math.sqrt(w_9)
-    w_18 = alpha_min if w_17 < alpha_min else alpha_max if w_17 > alpha_max else w_17
-    area_inv_m_rho_0_w_7_v = area_inv_m_rho_0_w_7*v
-    w_19 = 0.5*area_inv_m_rho_0_w_7_v
-    sqrt_w_10_w_19 = sqrt_w_10*w_19
     sin_gamma = math.sin(gamma)
-    w_20 = h + r_e
-    inv_w_20 = 1.0/w_20
-    inv_w_20_sq = inv_w_20*inv_w_20
-    inv_w_20_sq_mu = inv_w_20_sq*mu
-    inv_w_20_sq_mu_sin_gamma = inv_w_20_sq_mu*sin_gamma
-    half_w_8 = 0.5*w_8
-    w_21 = inv_Abs_cos_gamma*sqrt_w_10_w_19*(-a_0 - a_1*w_18) + lambda_v*(-half_w_8*(b_0 + b_1*w_14 + b_2*w_14*w_14) - inv_w_20_sq_mu_sin_gamma) - inv_Abs_cos_gamma*sqrt_w_10_w_19*(a_0 + a_1*w_14) - lambda_v*(-half_w_8*(b_0 + b_1*w_18 + b_2*w_18*w_18) - inv_w_20_sq_mu_sin_gamma)
-    w_22 = (0.0 if w_21 <= 0.0 else 1.0) + 0.0*w_21
-    w_23 = (w_14 if w_21 <= 0.0 else w_18) + 0.0*w_21
-    w_24 = 0.25*area*area*inv_m*inv_m*rho_0*rho_0*math.exp(-2.0*h_inv_h_r)
-    lambda_gamma_sq_w_24 = lambda_gamma_sq*w_24
-    w_25 = lambda_gamma_sq_w_24*v_sq
-    inv_cos_gamma = 1.0/cos_gamma
-    inv_cos_gamma_sq = inv_cos_gamma*inv_cos_gamma
-    w_26 = inv_cos_gamma_sq*lambda_psi_sq*w_24
-    v_sq_w_26 = v_sq*w_26
-    w_27 = v_sq_w_26 + w_25
-    sqrt_w_27 = math.sqrt(w_27)
-    inv_sqrt_w_27 = 1.0/sqrt_w_27
-    w_28 = inv_sqrt_w_27*lambda_gamma
-    w_19_w_28 = w_19*w_28
-    w_29 = -w_19_w_28
-    w_30 = (w_29 if w_21 <= 0.0 else w_19_w_28) + 0.0*w_21
-    w_31 = (1.0 if w_21 <= 0.0 else 0.0) + 0.0*w_21
-    w_32 = inv_cos_gamma*inv_sqrt_w_27*lambda_psi*w_19
-    w_33 = -w_32
-    w_34 = (w_33 if w_21 <= 0.0 else w_32) + 0.0*w_21
+    cos_gamma = math.cos(gamma)
     sin_theta = math.sin(theta)
     cos_psi = math.cos(psi)
     cos_psi_lambda_theta = cos_psi*lambda_theta
-    inv_w_20_sq_v = inv_w_20_sq*v
-    cos_gamma_inv_w_20_sq_v = cos_gamma*inv_w_20_sq_v
+    w_7 = h + r_e
+    inv_w_7 = 1.0/w_7
+    inv_w_7_sq = inv_w_7*inv_w_7
+    inv_w_7_sq_v = inv_w_7_sq*v
+    cos_gamma_inv_w_7_sq_v = cos_gamma*inv_w_7_sq_v
     cos_theta = math.cos(theta)
     inv_cos_theta = 1.0/cos_theta
     sin_psi = math.sin(psi)
     inv_cos_theta_sin_psi = inv_cos_theta*sin_psi
-    w_35 = cos_gamma_inv_w_20_sq_v*inv_cos_theta_sin_psi
-    w_36 = 2.0*inv_w_20*inv_w_20*inv_w_20*mu
-    inv_h_r_w_19 = inv_h_r*w_19
-    inv_sqrt_w_27_cubed = inv_sqrt_w_27*inv_sqrt_w_27*inv_sqrt_w_27
-    w_37 = inv_h_r*v_sq_w_26 + inv_h_r*w_25
-    w_38 = inv_h_r*w_19_w_28 - 0.5*area*inv_m*inv_sqrt_w_27_cubed*lambda_gamma*rho_0*v*w_37*w_7
-    inv_sqrt_w_27_cubed_w_19 = inv_sqrt_w_27_cubed*w_19
+    w_8 = cos_gamma_inv_w_7_sq_v*inv_cos_theta_sin_psi
+    w_9 = 2.0*inv_w_7*inv_w_7*inv_w_7*mu
+    w_10 = 0.5*((beta_min if beta_min > (beta_max if beta_max < math.pi else math.pi) - 2.0*math.pi else (beta_max if beta_max < math.pi else math.pi) - 2.0*math.pi) + (beta_max if beta_max < (beta_min if beta_min > -math.pi else -math.pi) + 2.0*math.pi else (beta_min if beta_min > -math.pi else -math.pi) + 2.0*math.pi))
+    law_part_10 = math.cos(w_10)
+    inv_cos_gamma = 1.0/cos_gamma
+    inv_m = 1.0/m
+    area_inv_m_rho_0 = area*inv_m*rho_0
+    h_inv_h_r = h*inv_h_r
+    w_11 = area_inv_m_rho_0*math.exp(-h_inv_h_r)
+    half_w_11 = 0.5*w_11
+    law_part_8 = half_w_11*v
+    inv_cos_gamma_law_part_8 = inv_cos_gamma*law_part_8
+    law_part_11 = inv_cos_gamma_law_part_8*lambda_psi
+    law_part_5 = math.sin(w_10)
+    law_part_9 = lambda_gamma*law_part_8
+    law_part_12 = law_part_5*law_part_9 - law_part_10*law_part_11
+    w_12 = -law_part_12
+    law_part_13 = law_part_10*law_part_9 + law_part_11*law_part_5
+    w_13 = math.atan2(w_12, law_part_13) + 0.0/(w_12*w_12 + law_part_13*law_part_13)
+    w_14 = w_10 + w_13
+    w_15 = beta_min if w_14 < beta_min else beta_max if w_14 > beta_max else w_14
+    sin_w_15 = math.sin(w_15)
+    cos_w_15 = math.cos(w_15)
+    law_part_15 = cos_w_15*law_part_9 + law_part_11*sin_w_15
+    inv_lambda_v = 1.0/lambda_v
+    v_sq = v*v
+    inv_v_sq = 1.0/v_sq
+    inv_area = 1.0/area
+    inv_rho_0 = 1.0/rho_0
+    exp_h_inv_h_r = math.exp(h_inv_h_r)
+    inv_b_2 = 1.0/b_2
+    w_16 = a_1*exp_h_inv_h_r*inv_area*inv_b_2*inv_rho_0*inv_v_sq*m
+    inv_lambda_v_w_16 = inv_lambda_v*w_16
+    law_part_2 = 0.5*b_1
+    law_part_3 = -inv_b_2*law_part_2
+    w_17 = inv_lambda_v_w_16*law_part_15 + law_part_3
+    law_part_18 = lambda_v*v_sq*w_11
+    law_part_19 = b_2*law_part_18
+    law_part_20 = -law_part_19
+    w_18 = w_17 + 0.0*math.sqrt(law_part_20)
+    w_19 = alpha_min if w_18 < alpha_min else alpha_max if w_18 > alpha_max else w_18
+    w_20 = -law_part_13
+    w_21 = math.atan2(law_part_12, w_20) + 0.0/(law_part_12*law_part_12 + w_20*w_20)
+    w_22 = w_10 + w_21
+    w_23 = beta_min if w_22 < beta_min else beta_max if w_22 > beta_max else w_22
+    sin_w_23 = math.sin(w_23)
+    cos_w_23 = math.cos(w_23)
+    law_part_24 = cos_w_23*law_part_9 + law_part_11*sin_w_23
+    w_24 = inv_lambda_v_w_16*law_part_24 + law_part_3
+    w_25 = w_24 + 0.0*math.sqrt(law_part_20)
+    w_26 = alpha_min if w_25 < alpha_min else alpha_max if w_25 > alpha_max else w_25
+    law_part_22 = law_part_18*law_part_2
+    law_part_26 = 0.5*law_part_19
+    law_part_27 = law_part_22*w_19 + law_part_24*(a_0 + a_1*w_26) + law_part_26*w_19*w_19 - law_part_15*(a_0 + a_1*w_19) - law_part_22*w_26 - law_part_26*w_26*w_26
+    w_27 = (w_26 if law_part_27 <= 0.0 else w_19) + 0.0*law_part_27
+    w_28 = b_0 + b_1*w_27 + b_2*w_27*w_27
+    half_w_11_v_sq = half_w_11*v_sq
+    half_w_11_v_sq_w_28 = half_w_11_v_sq*w_28
+    w_29 = (w_23 if law_part_27 <= 0.0 else w_15) + 0.0*law_part_27
+    sin_w_29 = math.sin(w_29)
+    inv_cos_gamma_sin_w_29 = inv_cos_gamma*sin_w_29
+    w_30 = a_0 + a_1*w_27
+    half_v = 0.5*v
+    half_v_w_11 = half_v*w_11
+    half_v_w_11_w_30 = half_v_w_11*w_30
+    w_31 = half_v_w_11_w_30*inv_cos_gamma_sin_w_29
+    cos_w_29 = math.cos(w_29)
+    cos_w_29_half_v_w_11 = cos_w_29*half_v_w_11
+    w_32 = cos_w_29_half_v_w_11*w_30
     inv_cos_gamma_lambda_psi = inv_cos_gamma*lambda_psi
-    w_39 = inv_cos_gamma_lambda_psi*inv_sqrt_w_27_cubed_w_19
-    w_40 = inv_h_r*w_32 - w_37*w_39
-    inv_w_20_v = inv_w_20*v
-    cos_gamma_inv_w_20_v = cos_gamma*inv_w_20_v
-    w_41 = cos_gamma_inv_w_20_v*sin_psi
-    w_42 = inv_cos_theta*inv_cos_theta*w_41
-    w_43 = 0.0 if w_13 < alpha_min else 0.0 if w_13 > alpha_max else 1.0
-    w_44 = 0.0 if w_17 < alpha_min else 0.0 if w_17 > alpha_max else 1.0
-    cos_gamma_inv_w_20 = cos_gamma*inv_w_20
-    w_45 = cos_gamma_inv_w_20*inv_cos_theta_sin_psi
-    inv_v_sq = inv_v*inv_v
-    w_46 = half_inv_b_2_w_11*inv_v_sq
-    inv_b_2_inv_v_sq_w_11 = inv_b_2*inv_v_sq*w_11
-    w_47 = 0.5*area_inv_m_rho_0_w_7
-    a_1_w_19 = a_1*w_19
-    w_48 = -lambda_gamma_sq_w_24*v - v*w_26
-    w_49 = inv_sqrt_w_27_cubed_w_19*lambda_gamma*w_48 + w_28*w_47
-    inv_cos_gamma_w_47 = inv_cos_gamma*w_47
-    inv_cos_gamma_w_19 = inv_cos_gamma*w_19
-    a_1_inv_cos_gamma_w_19 = a_1*inv_cos_gamma_w_19
-    w_50 = inv_cos_gamma_w_47*inv_sqrt_w_27*lambda_psi + w_39*w_48
-    inv_sqrt_w_10 = 1.0/sqrt_w_10
-    inv_w_20_v_sin_gamma = inv_w_20_v*sin_gamma
-    w_51 = inv_cos_theta_sin_psi*inv_w_20_v_sin_gamma
-    w_52 = 1.0 if cos_gamma > 0.0 else -1.0 if cos_gamma < 0.0 else 0.0
-    w_53 = half_inv_b_2_w_11_inv_v*inv_cos_gamma_sq*sin_gamma*w_52
-    a_1_inv_v = a_1*inv_v
-    a_1_inv_v_half_inv_b_2 = a_1_inv_v*half_inv_b_2
-    w_54 = inv_lambda_v*inv_sqrt_w_10
-    w_55 = a_1_inv_v_half_inv_b_2*w_54
-    w_56 = cos_gamma*lambda_gamma_sq*sin_gamma*w_55
-    w_57 = inv_w_20*v - inv_v*inv_w_20_sq_mu
-    inv_cos_gamma_cubed = inv_cos_gamma*inv_cos_gamma*inv_cos_gamma
-    inv_m_cubed = inv_m*inv_m*inv_m
-    area_cubed = area*area*area
-    rho_0_cubed = rho_0*rho_0*rho_0
-    v_cubed = v*v*v
-    w_58 = math.exp(-3.0*h_inv_h_r)
-    w_59 = 0.125*area_cubed*inv_m_cubed*inv_sqrt_w_27_cubed*rho_0_cubed*v_cubed*w_58
-    w_60 = inv_cos_gamma_cubed*lambda_psi_sq*w_59
+    w_33 = inv_cos_gamma_lambda_psi*w_32 - half_v_w_11_w_30*lambda_gamma*sin_w_29
+    w_34 = a_1*cos_w_29_half_v_w_11*lambda_gamma + a_1*half_v_w_11*inv_cos_gamma_lambda_psi*sin_w_29 - half_w_11_v_sq*lambda_v*(b_1 + 2.0*b_2*w_27)
+    w_35 = (0.0 if law_part_27 <= 0.0 else 1.0) + 0.0*law_part_27
+    w_36 = (1.0 if law_part_27 <= 0.0 else 0.0) + 0.0*law_part_27
+    w_37 = 0.0 if w_18 < alpha_min else 0.0 if w_18 > alpha_max else 1.0
+    inv_lambda_v_w_16_w_37 = inv_lambda_v_w_16*w_37
+    law_part_15_w_37 = law_part_15*w_37
+    w_38 = cos_w_15*law_part_11 - law_part_9*sin_w_15
+    d_law_part_7_by_h = -inv_h_r*w_11
+    d_law_part_8_by_h = d_law_part_7_by_h*half_v
+    d_law_part_11_by_h = d_law_part_8_by_h*inv_cos_gamma_lambda_psi
+    w_39 = law_part_12*law_part_12 + law_part_13*law_part_13
+    inv_w_39 = 1.0/w_39
+    w_40 = 0.0 if w_14 < beta_min else 0.0 if w_14 > beta_max else 1.0
+    inv_w_39_w_40 = inv_w_39*w_40
+    d_law_part_9_by_h = d_law_part_8_by_h*lambda_gamma
+    d_law_part_12_by_h = d_law_part_9_by_h*law_part_5 - d_law_part_11_by_h*law_part_10
+    w_41 = d_law_part_12_by_h*law_part_13
+    d_law_part_13_by_h = d_law_part_11_by_h*law_part_5 + d_law_part_9_by_h*law_part_10
+    d_law_part_14_by_h = d_law_part_13_by_h*inv_w_39*law_part_12*w_40 - inv_w_39_w_40*w_41
+    d_law_part_15_by_h = cos_w_15*d_law_part_9_by_h + d_law_part_11_by_h*sin_w_15 + d_law_part_14_by_h*w_38
+    d_law_part_17_by_h = inv_h_r*inv_lambda_v_w_16
+    d_law_part_21_by_h = d_law_part_15_by_h*inv_lambda_v_w_16_w_37 + d_law_part_17_by_h*law_part_15_w_37
+    w_42 = 0.0 if w_25 < alpha_min else 0.0 if w_25 > alpha_max else 1.0
+    law_part_24_w_42 = law_part_24*w_42
+    inv_lambda_v_w_16_w_42 = inv_lambda_v_w_16*w_42
+    w_43 = cos_w_23*law_part_11 - law_part_9*sin_w_23
+    w_44 = 0.0 if w_22 < beta_min else 0.0 if w_22 > beta_max else 1.0
+    inv_w_39_w_44 = inv_w_39*w_44
+    d_law_part_23_by_h = d_law_part_13_by_h*inv_w_39*law_part_12*w_44 - inv_w_39_w_44*w_41
+    d_law_part_24_by_h = cos_w_23*d_law_part_9_by_h + d_law_part_11_by_h*sin_w_23 + d_law_part_23_by_h*w_43
+    d_law_part_25_by_h = d_law_part_17_by_h*law_part_24_w_42 + d_law_part_24_by_h*inv_lambda_v_w_16_w_42
+    d_law_of_alpha_by_h = d_law_part_21_by_h*w_35 + d_law_part_25_by_h*w_36
+    d_law_of_beta_by_h = d_law_part_14_by_h*w_35 + d_law_part_23_by_h*w_36
+    inv_w_7_v = inv_w_7*v
+    cos_gamma_inv_w_7_v = cos_gamma*inv_w_7_v
+    w_45 = cos_gamma_inv_w_7_v*sin_psi
+    w_46 = inv_cos_theta*inv_cos_theta*w_45
+    cos_gamma_inv_w_7 = cos_gamma*inv_w_7
+    w_47 = cos_gamma_inv_w_7*inv_cos_theta_sin_psi
+    half_w_11_w_30 = half_w_11*w_30
+    inv_w_7_sq_mu = inv_w_7_sq*mu
+    d_law_part_11_by_v = half_w_11*inv_cos_gamma_lambda_psi
+    d_law_part_9_by_v = half_w_11*lambda_gamma
+    d_law_part_12_by_v = d_law_part_9_by_v*law_part_5 - d_law_part_11_by_v*law_part_10
+    w_48 = d_law_part_12_by_v*law_part_13
+    d_law_part_13_by_v = d_law_part_11_by_v*law_part_5 + d_law_part_9_by_v*law_part_10
+    d_law_part_14_by_v = d_law_part_13_by_v*inv_w_39*law_part_12*w_40 - inv_w_39_w_40*w_48
+    d_law_part_15_by_v = cos_w_15*d_law_part_9_by_v + d_law_part_11_by_v*sin_w_15 + d_law_part_14_by_v*w_38
+    d_law_part_16_by_v = 2.0*v
+    d_law_part_17_by_v = -a_1*d_law_part_16_by_v*exp_h_inv_h_r*inv_area*inv_b_2*inv_lambda_v*inv_rho_0*inv_v_sq*inv_v_sq*m
+    d_law_part_21_by_v = d_law_part_15_by_v*inv_lambda_v_w_16_w_37 + d_law_part_17_by_v*law_part_15_w_37
+    d_law_part_23_by_v = d_law_part_13_by_v*inv_w_39*law_part_12*w_44 - inv_w_39_w_44*w_48
+    d_law_part_24_by_v = cos_w_23*d_law_part_9_by_v + d_law_part_11_by_v*sin_w_23 + d_law_part_23_by_v*w_43
+    d_law_part_25_by_v = d_law_part_17_by_v*law_part_24_w_42 + d_law_part_24_by_v*inv_lambda_v_w_16_w_42
+    d_law_of_alpha_by_v = d_law_part_21_by_v*w_35 + d_law_part_25_by_v*w_36
+    d_law_of_beta_by_v = d_law_part_14_by_v*w_35 + d_law_part_23_by_v*w_36
+    inv_cos_gamma_sq = inv_cos_gamma*inv_cos_gamma
+    inv_w_7_v_sin_gamma = inv_w_7_v*sin_gamma
+    w_49 = inv_cos_theta_sin_psi*inv_w_7_v_sin_gamma
+    w_50 = inv_w_7*v - inv_v*inv_w_7_sq_mu
     sin_gamma_v = sin_gamma*v
-    w_61 = inv_cos_gamma*inv_cos_gamma*inv_cos_gamma*inv_cos_gamma*lambda_psi*lambda_psi*lambda_psi*sin_gamma*w_59 - 0.5*area*inv_cos_gamma_sq*inv_m*inv_sqrt_w_27*lambda_psi*rho_0*sin_gamma*v*w_7
-    w_62 = cos_gamma_inv_w_20_v*cos_psi
-    inv_cos_theta_w_62 = inv_cos_theta*w_62
-    inv_cos_theta_w_41 = inv_cos_theta*w_41
-    w_63 = inv_lambda_v*inv_lambda_v*sqrt_w_10
-    w_64 = a_1_inv_v_half_inv_b_2*w_63
-    a_1_inv_v_inv_b_2 = a_1_inv_v*inv_b_2
-    a_1_inv_v_inv_b_2_w_63 = a_1_inv_v_inv_b_2*w_63
-    half_lambda_v_w_8 = 0.5*lambda_v_w_8
-    w_65 = cos_gamma_sq*lambda_gamma
-    w_55_w_65 = w_55*w_65
-    a_1_inv_v_inv_b_2_w_54 = a_1_inv_v_inv_b_2*w_54
-    w_66 = a_1_inv_v_inv_b_2_w_54*w_65
-    lambda_gamma_w_59 = lambda_gamma*w_59
-    w_67 = lambda_gamma_sq*w_59 - 0.5*area*inv_m*inv_sqrt_w_27*rho_0*v*w_7
-    lambda_psi_w_55 = lambda_psi*w_55
-    w_68 = a_1_inv_v_inv_b_2_w_54*lambda_psi
-    w_69 = w_60 - 0.5*area*inv_cos_gamma*inv_m*inv_sqrt_w_27*rho_0*v*w_7
+    d_law_part_11_by_gamma = inv_cos_gamma_sq*lambda_psi*law_part_8*sin_gamma
+    d_law_part_12_by_gamma = -d_law_part_11_by_gamma*law_part_10
+    w_51 = d_law_part_12_by_gamma*law_part_13
+    d_law_part_13_by_gamma = d_law_part_11_by_gamma*law_part_5
+    d_law_part_14_by_gamma = d_law_part_13_by_gamma*inv_w_39*law_part_12*w_40 - inv_w_39_w_40*w_51
+    d_law_part_15_by_gamma = d_law_part_11_by_gamma*sin_w_15 + d_law_part_14_by_gamma*w_38
+    d_law_part_21_by_gamma = d_law_part_15_by_gamma*inv_lambda_v_w_16_w_37
+    d_law_part_23_by_gamma = d_law_part_13_by_gamma*inv_w_39*law_part_12*w_44 - inv_w_39_w_44*w_51
+    d_law_part_24_by_gamma = d_law_part_11_by_gamma*sin_w_23 + d_law_part_23_by_gamma*w_43
+    d_law_part_25_by_gamma = d_law_part_24_by_gamma*inv_lambda_v_w_16_w_42
+    d_law_of_alpha_by_gamma = d_law_part_21_by_gamma*w_35 + d_law_part_25_by_gamma*w_36
+    d_law_of_beta_by_gamma = d_law_part_14_by_gamma*w_35 + d_law_part_23_by_gamma*w_36
+    w_52 = cos_gamma_inv_w_7_v*cos_psi
+    inv_cos_theta_w_52 = inv_cos_theta*w_52
+    inv_cos_theta_w_45 = inv_cos_theta*w_45
+    d_law_part_17_by_lambda_v = -inv_lambda_v*inv_lambda_v*w_16
+    d_law_part_21_by_lambda_v = d_law_part_17_by_lambda_v*law_part_15_w_37
+    d_law_part_25_by_lambda_v = d_law_part_17_by_lambda_v*law_part_24_w_42
+    d_law_of_alpha_by_lambda_v = d_law_part_21_by_lambda_v*w_35 + d_law_part_25_by_lambda_v*w_36
+    d_law_part_12_by_lambda_gamma = law_part_5*law_part_8
+    w_53 = d_law_part_12_by_lambda_gamma*law_part_13
+    d_law_part_13_by_lambda_gamma = law_part_10*law_part_8
+    d_law_part_14_by_lambda_gamma = d_law_part_13_by_lambda_gamma*inv_w_39*law_part_12*w_40 - inv_w_39_w_40*w_53
+    d_law_part_15_by_lambda_gamma = cos_w_15*law_part_8 + d_law_part_14_by_lambda_gamma*w_38
+    d_law_part_21_by_lambda_gamma = d_law_part_15_by_lambda_gamma*inv_lambda_v_w_16_w_37
+    d_law_part_23_by_lambda_gamma = d_law_part_13_by_lambda_gamma*inv_w_39*law_part_12*w_44 - inv_w_39_w_44*w_53
+    d_law_part_24_by_lambda_gamma = cos_w_23*law_part_8 + d_law_part_23_by_lambda_gamma*w_43
+    d_law_part_25_by_lambda_gamma = d_law_part_24_by_lambda_gamma*inv_lambda_v_w_16_w_42
+    d_law_of_alpha_by_lambda_gamma = d_law_part_21_by_lambda_gamma*w_35 + d_law_part_25_by_lambda_gamma*w_36
+    d_law_of_beta_by_lambda_gamma = d_law_part_14_by_lambda_gamma*w_35 + d_law_part_23_by_lambda_gamma*w_36
+    d_law_part_12_by_lambda_psi = -inv_cos_gamma_law_part_8*law_part_10
+    w_54 = d_law_part_12_by_lambda_psi*law_part_13
+    d_law_part_13_by_lambda_psi = inv_cos_gamma_law_part_8*law_part_5
+    d_law_part_14_by_lambda_psi = d_law_part_13_by_lambda_psi*inv_w_39*law_part_12*w_40 - inv_w_39_w_40*w_54
+    d_law_part_15_by_lambda_psi = d_law_part_14_by_lambda_psi*w_38 + inv_cos_gamma_law_part_8*sin_w_15
+    d_law_part_21_by_lambda_psi = d_law_part_15_by_lambda_psi*inv_lambda_v_w_16_w_37
+    d_law_part_23_by_lambda_psi = d_law_part_13_by_lambda_psi*inv_w_39*law_part_12*w_44 - inv_w_39_w_44*w_54
+    d_law_part_24_by_lambda_psi = d_law_part_23_by_lambda_psi*w_43 + inv_cos_gamma_law_part_8*sin_w_23
+    d_law_part_25_by_lambda_psi = d_law_part_24_by_lambda_psi*inv_lambda_v_w_16_w_42
+    d_law_of_alpha_by_lambda_psi = d_law_part_21_by_lambda_psi*w_35 + d_law_part_25_by_lambda_psi*w_36
+    d_law_of_beta_by_lambda_psi = d_law_part_14_by_lambda_psi*w_35 + d_law_part_23_by_lambda_psi*w_36
     return (
         w,
         0.0,
@@ -1329,18 +1471,18 @@ def boundary_jacobian(t, x, lam, nu, p, bounds, final):
         0.0,
         1.0 - w_6,
         0.0,
-        lambda_gamma*(cos_gamma*(inv_v*w_36 - inv_w_20_sq_v) + w_19*(a_0 + a_1*w_23)*(w_31*w_38 - w_22*w_38) - inv_h_r_w_19*w_30*(a_0 + a_1*w_23)) + lambda_psi*(0.5*area*inv_cos_gamma*inv_m*rho_0*v*w_7*(a_0 + a_1*w_23)*(w_31*w_40 - w_22*w_40) - inv_cos_gamma*inv_h_r_w_19*w_34*(a_0 + a_1*w_23) - sin_theta*w_35) + lambda_v*(half_w_8*inv_h_r*(b_0 + b_1*w_23 + b_2*w_23*w_23) + sin_gamma*w_36) - cos_gamma_inv_w_20_sq_v*cos_psi_lambda_theta - lambda_phi*w_35,
+        d_law_of_alpha_by_h*w_34 + d_law_of_beta_by_h*w_33 + lambda_gamma*(cos_gamma*(inv_v*w_9 - inv_w_7_sq_v) - inv_h_r*w_32) + lambda_psi*(-inv_h_r*w_31 - sin_theta*w_8) + lambda_v*(half_w_11_v_sq_w_28*inv_h_r + sin_gamma*w_9) - cos_gamma_inv_w_7_sq_v*cos_psi_lambda_theta - lambda_phi*w_8,
         0.0,
-        lambda_phi*sin_theta*w_42 + lambda_psi*(sin_theta*sin_theta*w_42 + w_41),
-        cos_gamma_inv_w_20*cos_psi_lambda_theta + lambda_gamma*(a_1_w_19*w_30*(inv_Abs_cos_gamma*w_31*w_43*w_46 - inv_Abs_cos_gamma*w_22*w_44*w_46) + cos_gamma*(inv_v_sq*inv_w_20_sq_mu + inv_w_20) + w_19*(a_0 + a_1*w_23)*(w_22*w_49 - w_31*w_49) + w_30*w_47*(a_0 + a_1*w_23)) + lambda_h*sin_gamma + lambda_phi*w_45 + lambda_psi*(a_1_inv_cos_gamma_w_19*w_34*(inv_Abs_cos_gamma*w_31*w_43*w_46 - inv_Abs_cos_gamma*w_22*w_44*w_46) + inv_cos_gamma_w_19*(a_0 + a_1*w_23)*(w_22*w_50 - w_31*w_50) + inv_cos_gamma_w_47*w_34*(a_0 + a_1*w_23) + sin_theta*w_45) + lambda_v*(-area_inv_m_rho_0_w_7_v*(b_0 + b_1*w_23 + b_2*w_23*w_23) - half_w_8*(b_1*(inv_Abs_cos_gamma*w_31*w_43*w_46 - inv_Abs_cos_gamma*w_22*w_44*w_46) + b_2*w_23*(inv_Abs_cos_gamma*inv_b_2_inv_v_sq_w_11*w_31*w_43 - inv_Abs_cos_gamma*inv_b_2_inv_v_sq_w_11*w_22*w_44))),
-        cos_gamma*lambda_h*v + lambda_gamma*(a_1_w_19*w_30*(w_22*w_44*(w_53 - inv_Abs_cos_gamma*w_56) + w_31*w_43*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_10*inv_v*lambda_gamma_sq*sin_gamma - w_53)) + w_19*(a_0 + a_1*w_23)*(0.125*area_cubed*inv_cos_gamma_cubed*inv_m_cubed*inv_sqrt_w_27_cubed*lambda_gamma*lambda_psi_sq*rho_0_cubed*sin_gamma*v_cubed*w_31*w_58 - lambda_gamma*sin_gamma*w_22*w_60) - sin_gamma*w_57) + lambda_psi*(a_1_inv_cos_gamma_w_19*w_34*(w_22*w_44*(w_53 - inv_Abs_cos_gamma*w_56) + w_31*w_43*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_10*inv_v*lambda_gamma_sq*sin_gamma - w_53)) + inv_cos_gamma_sq*sin_gamma_v*w_34*w_47*(a_0 + a_1*w_23) + inv_cos_gamma_w_19*(a_0 + a_1*w_23)*(w_31*w_61 - w_22*w_61) - sin_theta*w_51) + lambda_v*(-cos_gamma*inv_w_20_sq_mu - half_w_8*(b_1*(w_22*w_44*(w_53 - inv_Abs_cos_gamma*w_56) + w_31*w_43*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_10*inv_v*lambda_gamma_sq*sin_gamma - w_53)) + b_2*w_23*(2.0*w_22*w_44*(w_53 - inv_Abs_cos_gamma*w_56) + 2.0*w_31*w_43*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_10*inv_v*lambda_gamma_sq*sin_gamma - w_53)))) - cos_psi_lambda_theta*inv_w_20_v_sin_gamma - lambda_phi*w_51,
-        inv_cos_theta_w_62*lambda_phi + inv_cos_theta_w_62*lambda_psi*sin_theta - lambda_theta*w_41,
+        lambda_phi*sin_theta*w_46 + lambda_psi*(sin_theta*sin_theta*w_46 + w_45),
+        cos_gamma_inv_w_7*cos_psi_lambda_theta + d_law_of_alpha_by_v*w_34 + d_law_of_beta_by_v*w_33 + lambda_gamma*(cos_gamma*(inv_v*inv_v*inv_w_7_sq_mu + inv_w_7) + cos_w_29*half_w_11_w_30) + lambda_h*sin_gamma + lambda_phi*w_47 + lambda_psi*(half_w_11_w_30*inv_cos_gamma_sin_w_29 + sin_theta*w_47) - lambda_v*v*w_11*w_28,
+        cos_gamma*lambda_h*v + d_law_of_alpha_by_gamma*w_34 + d_law_of_beta_by_gamma*w_33 + lambda_psi*(half_w_11_w_30*inv_cos_gamma_sq*sin_gamma_v*sin_w_29 - sin_theta*w_49) - cos_gamma*inv_w_7_sq_mu*lambda_v - cos_psi_lambda_theta*inv_w_7_v_sin_gamma - lambda_gamma*sin_gamma*w_50 - lambda_phi*w_49,
+        inv_cos_theta_w_52*lambda_phi + inv_cos_theta_w_52*lambda_psi*sin_theta - lambda_theta*w_45,
         sin_gamma_v,
-        inv_cos_theta_w_41,
-        w_62,
-        0.5*a_1*area*inv_cos_gamma*inv_m*lambda_psi*rho_0*v*w_34*w_7*(inv_Abs_cos_gamma*w_31*w_43*w_64 - inv_Abs_cos_gamma*w_22*w_44*w_64) + 0.5*a_1*area*inv_m*lambda_gamma*rho_0*v*w_30*w_7*(inv_Abs_cos_gamma*w_31*w_43*w_64 - inv_Abs_cos_gamma*w_22*w_44*w_64) - half_lambda_v_w_8*(b_1*(inv_Abs_cos_gamma*w_31*w_43*w_64 - inv_Abs_cos_gamma*w_22*w_44*w_64) + b_2*w_23*(a_1_inv_v_inv_b_2_w_63*inv_Abs_cos_gamma*w_31*w_43 - a_1_inv_v_inv_b_2_w_63*inv_Abs_cos_gamma*w_22*w_44)) - half_w_8*(b_0 + b_1*w_23 + b_2*w_23*w_23) - inv_w_20_sq_mu_sin_gamma,
-        cos_gamma*w_57 + lambda_gamma*(a_1_w_19*w_30*(inv_Abs_cos_gamma*w_22*w_44*w_55_w_65 - inv_Abs_cos_gamma*w_31*w_43*w_55_w_65) + w_19*(a_0 + a_1*w_23)*(w_31*w_67 - w_22*w_67)) + lambda_psi*(a_1_inv_cos_gamma_w_19*w_34*(inv_Abs_cos_gamma*w_22*w_44*w_55_w_65 - inv_Abs_cos_gamma*w_31*w_43*w_55_w_65) + inv_cos_gamma_w_19*(a_0 + a_1*w_23)*(0.125*area_cubed*inv_cos_gamma*inv_m_cubed*inv_sqrt_w_27_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_31*w_58 - inv_cos_gamma_lambda_psi*lambda_gamma_w_59*w_22)) + w_19*w_30*(a_0 + a_1*w_23) - half_lambda_v_w_8*(b_1*(inv_Abs_cos_gamma*w_22*w_44*w_55_w_65 - inv_Abs_cos_gamma*w_31*w_43*w_55_w_65) + b_2*w_23*(inv_Abs_cos_gamma*w_22*w_44*w_66 - inv_Abs_cos_gamma*w_31*w_43*w_66)),
-        inv_cos_gamma_w_19*w_34*(a_0 + a_1*w_23) + inv_cos_theta_w_41*sin_theta + lambda_gamma*(a_1_w_19*w_30*(inv_Abs_cos_gamma*lambda_psi_w_55*w_22*w_44 - inv_Abs_cos_gamma*lambda_psi_w_55*w_31*w_43) + w_19*(a_0 + a_1*w_23)*(0.125*area_cubed*inv_cos_gamma_sq*inv_m_cubed*inv_sqrt_w_27_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_31*w_58 - inv_cos_gamma_sq*lambda_gamma_w_59*lambda_psi*w_22)) + lambda_psi*(a_1_inv_cos_gamma_w_19*w_34*(inv_Abs_cos_gamma*lambda_psi_w_55*w_22*w_44 - inv_Abs_cos_gamma*lambda_psi_w_55*w_31*w_43) + inv_cos_gamma_w_19*(a_0 + a_1*w_23)*(w_31*w_69 - w_22*w_69)) - half_lambda_v_w_8*(b_1*(inv_Abs_cos_gamma*lambda_psi_w_55*w_22*w_44 - inv_Abs_cos_gamma*lambda_psi_w_55*w_31*w_43) + b_2*w_23*(inv_Abs_cos_gamma*w_22*w_44*w_68 - inv_Abs_cos_gamma*w_31*w_43*w_68)),
+        inv_cos_theta_w_45,
+        w_52,
+        d_law_of_alpha_by_lambda_v*w_34 - half_w_11_v_sq_w_28 - inv_w_7_sq_mu*sin_gamma,
+        cos_gamma*w_50 + d_law_of_alpha_by_lambda_gamma*w_34 + d_law_of_beta_by_lambda_gamma*w_33 + w_32,
+        d_law_of_alpha_by_lambda_psi*w_34 + d_law_of_beta_by_lambda_psi*w_33 + inv_cos_theta_w_45*sin_theta + w_31,
         0.0,
     )
 
@@ -2173,49 +2315,59 @@ def control_law_batch(t, x, lam, p, bounds, out=None):
     h, phi, theta, v, gamma, psi = x
     lambda_h, lambda_phi, lambda_theta, lambda_v, lambda_gamma, lambda_psi = lam
     mu, r_e, rho_0, h_r, area, m, a_0, a_1, b_0, b_1, b_2 = p
-    alpha_min, alpha_max, beta_reach = bounds
+    alpha_min, alpha_max, beta_min, beta_max = bounds
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((2, *shape), np.result_type(float, t, x, lam, *p, *bounds))
-    inv_h_r = 1.0/h_r
-    inv_m = 1.0/m
-    w = area*inv_m*rho_0*np.exp(-h*inv_h_r)
-    w_2 = v*v*w
-    w_3 = -b_2*lambda_v*w_2
     cos_gamma = np.cos(gamma)
-    Abs_cos_gamma = np.maximum(cos_gamma, -cos_gamma)
-    inv_Abs_cos_gamma = 1.0/Abs_cos_gamma
-    inv_b_2 = 1.0/b_2
-    half_inv_b_2 = 0.5*inv_b_2
-    b_1_half_inv_b_2 = b_1*half_inv_b_2
-    inv_lambda_v = 1.0/lambda_v
-    inv_v = 1.0/v
-    w_4 = cos_gamma*cos_gamma*lambda_gamma*lambda_gamma + lambda_psi*lambda_psi
-    sqrt_w_4 = np.sqrt(w_4)
-    w_5 = a_1*half_inv_b_2*inv_lambda_v*inv_v*sqrt_w_4
-    w_6 = -b_1_half_inv_b_2 - inv_Abs_cos_gamma*w_5
-    w_7 = w_6 + 0.0*np.sqrt(w_3)
-    w_8 = np.minimum(np.maximum(w_7, alpha_min), alpha_max)
-    w_9 = -b_1_half_inv_b_2
-    w_10 = inv_Abs_cos_gamma*w_5 + w_9
-    w_11 = w_10 + 0.0*np.sqrt(w_3)
-    w_12 = np.minimum(np.maximum(w_11, alpha_min), alpha_max)
-    half_w_2 = 0.5*w_2
-    w_13 = 0.5*v*w
-    sqrt_w_4_w_13 = sqrt_w_4*w_13
-    w_14 = h + r_e
-    inv_w_14 = 1.0/w_14
-    w_15 = inv_w_14*inv_w_14*mu*np.sin(gamma)
-    w_16 = inv_Abs_cos_gamma*sqrt_w_4_w_13*(-a_0 - a_1*w_12) + lambda_v*(-half_w_2*(b_0 + b_1*w_8 + b_2*w_8*w_8) - w_15) - inv_Abs_cos_gamma*sqrt_w_4_w_13*(a_0 + a_1*w_8) - lambda_v*(-half_w_2*(b_0 + b_1*w_12 + b_2*w_12*w_12) - w_15)
-    alpha = np.where(w_16 <= 0.0, w_8, w_12) + 0.0*w_16
     inv_cos_gamma = 1.0/cos_gamma
-    w_17 = inv_cos_gamma*lambda_psi*w_13
-    lambda_gamma_w_13 = lambda_gamma*w_13
-    w_18 = np.arctan2(-w_17, -lambda_gamma_w_13)
-    w_19 = np.arctan2(w_17, lambda_gamma_w_13)
-    beta = np.where(w_16 <= 0.0, w_18, w_19) + 0.0*w_16
-    out[0] = alpha
-    out[1] = beta
+    inv_m = 1.0/m
+    inv_h_r = 1.0/h_r
+    law_part_6 = h*inv_h_r
+    law_part_7 = area*inv_m*rho_0*np.exp(-law_part_6)
+    law_part_8 = 0.5*law_part_7*v
+    law_part_11 = inv_cos_gamma*lambda_psi*law_part_8
+    w = 0.5*(np.maximum(beta_min, np.minimum(beta_max, np.pi) - 2.0*np.pi) + np.minimum(beta_max, np.maximum(beta_min, -np.pi) + 2.0*np.pi))
+    law_part_10 = np.cos(w)
+    law_part_5 = np.sin(w)
+    law_part_9 = lambda_gamma*law_part_8
+    law_part_12 = law_part_5*law_part_9 - law_part_10*law_part_11
+    w_2 = -law_part_12
+    law_part_13 = law_part_10*law_part_9 + law_part_11*law_part_5
+    w_3 = np.arctan2(np.real(w_2), np.real(law_part_13)) + np.arctan((w_2*np.cos(np.arctan2(np.real(w_2), np.real(law_part_13))) - law_part_13*np.sin(np.arctan2(np.real(w_2), np.real(law_part_13))))/(law_part_13*np.cos(np.arctan2(np.real(w_2), np.real(law_part_13))) + w_2*np.sin(np.arctan2(np.real(w_2), np.real(law_part_13)))))
+    w_4 = w + w_3
+    w_5 = np.minimum(np.maximum(w_4, beta_min), beta_max)
+    law_part_15 = law_part_11*np.sin(w_5) + law_part_9*np.cos(w_5)
+    inv_lambda_v = 1.0/lambda_v
+    law_part_16 = v*v
+    inv_law_part_16 = 1.0/law_part_16
+    inv_area = 1.0/area
+    inv_rho_0 = 1.0/rho_0
+    inv_b_2 = 1.0/b_2
+    law_part_17 = a_1*inv_area*inv_b_2*inv_lambda_v*inv_law_part_16*inv_rho_0*m*np.exp(law_part_6)
+    law_part_2 = 0.5*b_1
+    law_part_3 = -inv_b_2*law_part_2
+    w_6 = law_part_15*law_part_17 + law_part_3
+    law_part_18 = lambda_v*law_part_16*law_part_7
+    law_part_19 = b_2*law_part_18
+    law_part_20 = -law_part_19
+    w_7 = w_6 + 0.0*np.sqrt(law_part_20)
+    w_8 = np.minimum(np.maximum(w_7, alpha_min), alpha_max)
+    w_9 = -law_part_13
+    w_10 = np.arctan2(np.real(law_part_12), np.real(w_9)) + np.arctan((law_part_12*np.cos(np.arctan2(np.real(law_part_12), np.real(w_9))) - w_9*np.sin(np.arctan2(np.real(law_part_12), np.real(w_9))))/(w_9*np.cos(np.arctan2(np.real(law_part_12), np.real(w_9))) + law_part_12*np.sin(np.arctan2(np.real(law_part_12), np.real(w_9)))))
+    w_11 = w + w_10
+    w_12 = np.minimum(np.maximum(w_11, beta_min), beta_max)
+    law_part_24 = law_part_11*np.sin(w_12) + law_part_9*np.cos(w_12)
+    w_13 = law_part_17*law_part_24 + law_part_3
+    w_14 = w_13 + 0.0*np.sqrt(law_part_20)
+    w_15 = np.minimum(np.maximum(w_14, alpha_min), alpha_max)
+    law_part_22 = law_part_18*law_part_2
+    law_part_26 = 0.5*law_part_19
+    law_part_27 = law_part_22*w_8 + law_part_24*(a_0 + a_1*w_15) + law_part_26*w_8*w_8 - law_part_15*(a_0 + a_1*w_8) - law_part_22*w_15 - law_part_26*w_15*w_15
+    w_16 = np.where(law_part_27 <= 0.0, w_15, w_8) + 0.0*law_part_27
+    w_17 = np.where(law_part_27 <= 0.0, w_12, w_5) + 0.0*law_part_27
+    out[0] = w_16
+    out[1] = w_17
     return out
 
 
@@ -2308,7 +2460,7 @@ def canonical_batch(t, x, lam, p, bounds, out=None):
     h, phi, theta, v, gamma, psi = x
     lambda_h, lambda_phi, lambda_theta, lambda_v, lambda_gamma, lambda_psi = lam
     mu, r_e, rho_0, h_r, area, m, a_0, a_1, b_0, b_1, b_2 = p
-    alpha_min, alpha_max, beta_reach = bounds
+    alpha_min, alpha_max, beta_min, beta_max = bounds
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((12, *shape), np.result_type(float, t, x, lam, *p, *bounds))
@@ -2324,60 +2476,72 @@ def canonical_batch(t, x, lam, p, bounds, out=None):
     inv_cos_theta_sin_psi = inv_cos_theta*sin_psi
     cos_psi = np.cos(psi)
     w_2 = cos_gamma_inv_w_v*cos_psi
-    Abs_cos_gamma = np.maximum(cos_gamma, -cos_gamma)
-    inv_Abs_cos_gamma = 1.0/Abs_cos_gamma
-    inv_b_2 = 1.0/b_2
-    half_inv_b_2 = 0.5*inv_b_2
-    b_1_half_inv_b_2 = b_1*half_inv_b_2
-    w_3 = -b_1_half_inv_b_2
-    lambda_psi_sq = lambda_psi*lambda_psi
-    lambda_gamma_sq = lambda_gamma*lambda_gamma
-    w_4 = cos_gamma*cos_gamma*lambda_gamma_sq + lambda_psi_sq
-    sqrt_w_4 = np.sqrt(w_4)
-    inv_lambda_v = 1.0/lambda_v
-    inv_v = 1.0/v
-    w_5 = a_1*half_inv_b_2*inv_lambda_v*inv_v*sqrt_w_4
-    w_6 = inv_Abs_cos_gamma*w_5 + w_3
-    inv_m = 1.0/m
-    inv_h_r = 1.0/h_r
-    h_inv_h_r = h*inv_h_r
-    w_7 = np.exp(-h_inv_h_r)
-    area_inv_m_rho_0_w_7 = area*inv_m*rho_0*w_7
-    v_sq = v*v
-    w_8 = area_inv_m_rho_0_w_7*v_sq
-    b_2_w_8 = b_2*w_8
-    w_9 = -b_2_w_8*lambda_v
-    w_10 = w_6 + 0.0*np.sqrt(w_9)
-    w_11 = np.minimum(np.maximum(w_10, alpha_min), alpha_max)
-    w_12 = -b_1_half_inv_b_2 - inv_Abs_cos_gamma*w_5
-    w_13 = w_12 + 0.0*np.sqrt(w_9)
-    w_14 = np.minimum(np.maximum(w_13, alpha_min), alpha_max)
-    w_15 = 0.5*area_inv_m_rho_0_w_7
-    v_w_15 = v*w_15
-    sqrt_w_4_v_w_15 = sqrt_w_4*v_w_15
     inv_w_sq = inv_w*inv_w
     inv_w_sq_mu = inv_w_sq*mu
-    inv_w_sq_mu_sin_gamma = inv_w_sq_mu*sin_gamma
-    half_w_8 = 0.5*w_8
-    w_16 = inv_Abs_cos_gamma*sqrt_w_4_v_w_15*(-a_0 - a_1*w_11) + lambda_v*(-half_w_8*(b_0 + b_1*w_14 + b_2*w_14*w_14) - inv_w_sq_mu_sin_gamma) - inv_Abs_cos_gamma*sqrt_w_4_v_w_15*(a_0 + a_1*w_14) - lambda_v*(-half_w_8*(b_0 + b_1*w_11 + b_2*w_11*w_11) - inv_w_sq_mu_sin_gamma)
-    w_17 = np.where(w_16 <= 0.0, w_14, w_11) + 0.0*w_16
-    w_18 = 0.25*area*area*inv_m*inv_m*rho_0*rho_0*v_sq*np.exp(-2.0*h_inv_h_r)
     inv_cos_gamma = 1.0/cos_gamma
-    inv_cos_gamma_sq = inv_cos_gamma*inv_cos_gamma
-    w_19 = inv_cos_gamma_sq*lambda_psi_sq*w_18 + lambda_gamma_sq*w_18
-    sqrt_w_19 = np.sqrt(w_19)
-    inv_sqrt_w_19 = 1.0/sqrt_w_19
-    inv_sqrt_w_19_v_w_15 = inv_sqrt_w_19*v_w_15
-    w_20 = inv_sqrt_w_19_v_w_15*lambda_gamma
-    w_21 = -w_20
-    w_22 = np.where(w_16 <= 0.0, w_21, w_20) + 0.0*w_16
-    w_23 = inv_cos_gamma*inv_sqrt_w_19_v_w_15*lambda_psi
-    w_24 = -w_23
-    w_25 = np.where(w_16 <= 0.0, w_24, w_23) + 0.0*w_16
+    half_v = 0.5*v
+    inv_m = 1.0/m
+    area_inv_m_rho_0 = area*inv_m*rho_0
+    inv_h_r = 1.0/h_r
+    h_inv_h_r = h*inv_h_r
+    law_part_7 = area_inv_m_rho_0*np.exp(-h_inv_h_r)
+    law_part_8 = half_v*law_part_7
+    law_part_11 = inv_cos_gamma*lambda_psi*law_part_8
+    w_3 = 0.5*(np.maximum(beta_min, np.minimum(beta_max, np.pi) - 2.0*np.pi) + np.minimum(beta_max, np.maximum(beta_min, -np.pi) + 2.0*np.pi))
+    law_part_10 = np.cos(w_3)
+    law_part_5 = np.sin(w_3)
+    law_part_9 = lambda_gamma*law_part_8
+    law_part_12 = law_part_5*law_part_9 - law_part_10*law_part_11
+    w_4 = -law_part_12
+    law_part_13 = law_part_10*law_part_9 + law_part_11*law_part_5
+    w_5 = np.arctan2(np.real(w_4), np.real(law_part_13)) + np.arctan((w_4*np.cos(np.arctan2(np.real(w_4), np.real(law_part_13))) - law_part_13*np.sin(np.arctan2(np.real(w_4), np.real(law_part_13))))/(law_part_13*np.cos(np.arctan2(np.real(w_4), np.real(law_part_13))) + w_4*np.sin(np.arctan2(np.real(w_4), np.real(law_part_13)))))
+    w_6 = w_3 + w_5
+    w_7 = np.minimum(np.maximum(w_6, beta_min), beta_max)
+    law_part_15 = law_part_11*np.sin(w_7) + law_part_9*np.cos(w_7)
+    inv_lambda_v = 1.0/lambda_v
+    v_sq = v*v
+    inv_v_sq = 1.0/v_sq
+    inv_area = 1.0/area
+    inv_rho_0 = 1.0/rho_0
+    inv_b_2 = 1.0/b_2
+    law_part_17 = a_1*inv_area*inv_b_2*inv_lambda_v*inv_rho_0*inv_v_sq*m*np.exp(h_inv_h_r)
+    half_b_1 = 0.5*b_1
+    law_part_3 = -half_b_1*inv_b_2
+    w_8 = law_part_15*law_part_17 + law_part_3
+    law_part_18 = lambda_v*law_part_7*v_sq
+    law_part_19 = b_2*law_part_18
+    law_part_20 = -law_part_19
+    w_9 = w_8 + 0.0*np.sqrt(law_part_20)
+    w_10 = np.minimum(np.maximum(w_9, alpha_min), alpha_max)
+    w_11 = -law_part_13
+    w_12 = np.arctan2(np.real(law_part_12), np.real(w_11)) + np.arctan((law_part_12*np.cos(np.arctan2(np.real(law_part_12), np.real(w_11))) - w_11*np.sin(np.arctan2(np.real(law_part_12), np.real(w_11))))/(w_11*np.cos(np.arctan2(np.real(law_part_12), np.real(w_11))) + law_part_12*np.sin(np.arctan2(np.real(law_part_12), np.real(w_11)))))
+    w_13 = w_12 + w_3
+    w_14 = np.minimum(np.maximum(w_13, beta_min), beta_max)
+    law_part_24 = law_part_11*np.sin(w_14) + law_part_9*np.cos(w_14)
+    w_15 = law_part_17*law_part_24 + law_part_3
+    w_16 = w_15 + 0.0*np.sqrt(law_part_20)
+    w_17 = np.minimum(np.maximum(w_16, alpha_min), alpha_max)
+    law_part_22 = half_b_1*law_part_18
+    law_part_26 = 0.5*law_part_19
+    law_part_27 = law_part_22*w_10 + law_part_24*(a_0 + a_1*w_17) + law_part_26*w_10*w_10 - law_part_15*(a_0 + a_1*w_10) - law_part_22*w_17 - law_part_26*w_17*w_17
+    w_18 = np.where(law_part_27 <= 0.0, w_17, w_10) + 0.0*law_part_27
+    w_19 = b_2*w_18*w_18
+    w_20 = b_0 + b_1*w_18 + w_19
+    w_21 = np.exp(-h_inv_h_r)
+    area_inv_m_rho_0_w_21 = area_inv_m_rho_0*w_21
+    w_22 = 0.5*area_inv_m_rho_0_w_21
+    v_sq_w_22 = v_sq*w_22
+    inv_v = 1.0/v
+    w_23 = np.where(law_part_27 <= 0.0, w_14, w_7) + 0.0*law_part_27
+    cos_w_23 = np.cos(w_23)
+    a_1_w_18 = a_1*w_18
+    w_24 = area_inv_m_rho_0_w_21*half_v
+    w_25 = w_24*(a_0 + a_1_w_18)
     sin_theta = np.sin(theta)
     sin_psi_sin_theta = sin_psi*sin_theta
     w_26 = cos_gamma_inv_w_v*sin_psi_sin_theta
-    inv_cos_gamma_v_w_15 = inv_cos_gamma*v_w_15
+    sin_w_23 = np.sin(w_23)
+    inv_cos_gamma_sin_w_23 = inv_cos_gamma*sin_w_23
     h_sq = h*h
     r_e_sq = r_e*r_e
     twice_r_e = 2.0*r_e
@@ -2399,33 +2563,33 @@ def canonical_batch(t, x, lam, p, bounds, out=None):
     cos_gamma_v_inv_w_sq = cos_gamma_v*inv_w_sq
     w_33 = inv_cos_theta_sin_psi*lambda_phi
     cos_gamma_mu = cos_gamma*mu
-    a_0_w_15 = a_0*w_15
-    inv_h_r_v = inv_h_r*v
-    a_1_inv_h_r = a_1*inv_h_r
-    a_0_w_15_inv_cos_gamma = a_0_w_15*inv_cos_gamma
-    half_w_8_inv_h_r = half_w_8*inv_h_r
+    inv_h_r_w_24 = inv_h_r*w_24
+    cos_w_23_inv_h_r_w_24 = cos_w_23*inv_h_r_w_24
+    w_34 = inv_cos_gamma_sin_w_23*inv_h_r_w_24
+    inv_h_r_v_sq_w_22 = inv_h_r*v_sq_w_22
     inv_cos_theta_sq = inv_cos_theta*inv_cos_theta
     h_v_sq = h*v_sq
-    w_34 = h_sq*v_sq + h_v_sq*twice_r_e + r_e_sq*v_sq
-    inv_w_34 = 1.0/w_34
-    w_35 = cos_theta*r_e + cos_theta_h
+    w_35 = h_sq*v_sq + h_v_sq*twice_r_e + r_e_sq*v_sq
     inv_w_35 = 1.0/w_35
+    w_36 = cos_theta*r_e + cos_theta_h
+    inv_w_36 = 1.0/w_36
     cos_gamma_inv_w = cos_gamma*inv_w
-    a_1_w_15 = a_1*w_15
+    cos_w_23_w_22 = cos_w_23*w_22
+    w_37 = inv_cos_gamma_sin_w_23*w_22
     inv_w_sin_gamma_v = inv_w*sin_gamma_v
-    w_36 = inv_cos_gamma_sq*sin_gamma_v
+    w_38 = inv_cos_gamma*inv_cos_gamma*sin_gamma_v*sin_w_23*w_22
     inv_cos_theta_w_2 = inv_cos_theta*w_2
     out[0] = sin_gamma_v
     out[1] = cos_gamma_inv_w_v*inv_cos_theta_sin_psi
     out[2] = w_2
-    out[3] = -half_w_8*(b_0 + b_1*w_17 + b_2*w_17*w_17) - inv_w_sq_mu_sin_gamma
-    out[4] = cos_gamma*(inv_w*v - inv_v*inv_w_sq_mu) + v_w_15*w_22*(a_0 + a_1*w_17)
-    out[5] = inv_cos_gamma_v_w_15*w_25*(a_0 + a_1*w_17) + inv_cos_theta*w_26
-    out[6] = cos_gamma_v_inv_w_sq*cos_psi_lambda_theta + cos_gamma_v_inv_w_sq*w_33 + lambda_gamma*(a_0_w_15*inv_h_r_v*w_22 + a_1_inv_h_r*v_w_15*w_17*w_22 + cos_gamma_v*inv_w_27 - 2.0*cos_gamma_mu*inv_w_30) + lambda_psi*(a_0_w_15_inv_cos_gamma*inv_h_r_v*w_25 + a_1_inv_h_r*inv_cos_gamma_v_w_15*w_17*w_25 + cos_gamma_v*inv_w_31*sin_psi_sin_theta) + lambda_v*(-b_0*half_w_8_inv_h_r - b_1*half_w_8_inv_h_r*w_17 - 0.5*b_2_w_8*inv_h_r*w_17*w_17 - 2.0*inv_w_32*mu*sin_gamma)
+    out[3] = -inv_w_sq_mu*sin_gamma - v_sq_w_22*w_20
+    out[4] = cos_gamma*(inv_w*v - inv_v*inv_w_sq_mu) + cos_w_23*w_25
+    out[5] = inv_cos_gamma_sin_w_23*w_25 + inv_cos_theta*w_26
+    out[6] = cos_gamma_v_inv_w_sq*cos_psi_lambda_theta + cos_gamma_v_inv_w_sq*w_33 + lambda_gamma*(a_0*cos_w_23_inv_h_r_w_24 + a_1_w_18*cos_w_23_inv_h_r_w_24 + cos_gamma_v*inv_w_27 - 2.0*cos_gamma_mu*inv_w_30) + lambda_psi*(a_0*w_34 + a_1_w_18*w_34 + cos_gamma_v*inv_w_31*sin_psi_sin_theta) + lambda_v*(-area_inv_m_rho_0_w_21*half_b_1*inv_h_r*v_sq*w_18 - b_0*inv_h_r_v_sq_w_22 - inv_h_r_v_sq_w_22*w_19 - 2.0*inv_w_32*mu*sin_gamma)
     out[7] = 0.0
     out[8] = -cos_gamma_inv_w_v*inv_cos_theta_sq*lambda_psi*sin_psi*(cos_theta*cos_theta + sin_theta*sin_theta) - inv_cos_theta_sq*lambda_phi*w_26
-    out[9] = area*inv_m*lambda_v*rho_0*v*w_7*(b_0 + b_1*w_17 + b_2*w_17*w_17) + lambda_gamma*(-a_0_w_15*w_22 - a_1_w_15*w_17*w_22 - cos_gamma_inv_w - cos_gamma_mu*inv_w_34) + lambda_psi*(-a_0_w_15_inv_cos_gamma*w_25 - a_1_w_15*inv_cos_gamma*w_17*w_25 - cos_gamma*inv_w_35*sin_psi_sin_theta) - cos_gamma_inv_w*cos_psi_lambda_theta - cos_gamma_inv_w*w_33 - lambda_h*sin_gamma
-    out[10] = cos_gamma*inv_w_sq_mu*lambda_v + cos_psi_lambda_theta*inv_w_sin_gamma_v + inv_v*inv_w_sq*lambda_gamma*sin_gamma*(h_v_sq + r_e*v_sq - mu) + inv_w_sin_gamma_v*w_33 + lambda_psi*(inv_w_35*sin_gamma*sin_psi*sin_theta*v - a_0_w_15*w_25*w_36 - a_1_w_15*w_17*w_25*w_36) - cos_gamma_v*lambda_h
+    out[9] = area*inv_m*lambda_v*rho_0*v*w_20*w_21 + lambda_gamma*(-a_0*cos_w_23_w_22 - a_1_w_18*cos_w_23_w_22 - cos_gamma_inv_w - cos_gamma_mu*inv_w_35) + lambda_psi*(-a_0*w_37 - a_1_w_18*w_37 - cos_gamma*inv_w_36*sin_psi_sin_theta) - cos_gamma_inv_w*cos_psi_lambda_theta - cos_gamma_inv_w*w_33 - lambda_h*sin_gamma
+    out[10] = cos_gamma*inv_w_sq_mu*lambda_v + cos_psi_lambda_theta*inv_w_sin_gamma_v + inv_v*inv_w_sq*lambda_gamma*sin_gamma*(h_v_sq + r_e*v_sq - mu) + inv_w_sin_gamma_v*w_33 + lambda_psi*(inv_w_36*sin_gamma*sin_psi*sin_theta*v - a_0*w_38 - a_1_w_18*w_38) - cos_gamma_v*lambda_h
     out[11] = cos_gamma*inv_w*lambda_theta*sin_psi*v - inv_cos_theta_w_2*lambda_phi - inv_cos_theta_w_2*lambda_psi*sin_theta
     return out
 
@@ -2435,7 +2599,7 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     h, phi, theta, v, gamma, psi = x
     lambda_h, lambda_phi, lambda_theta, lambda_v, lambda_gamma, lambda_psi = lam
     mu, r_e, rho_0, h_r, area, m, a_0, a_1, b_0, b_1, b_2 = p
-    alpha_min, alpha_max, beta_reach = bounds
+    alpha_min, alpha_max, beta_min, beta_max = bounds
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((12, 12, *shape), np.result_type(float, t, x, lam, *p, *bounds))
@@ -2460,254 +2624,318 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     cos_gamma_inv_w = cos_gamma*inv_w
     cos_gamma_inv_w_sin_psi = cos_gamma_inv_w*sin_psi
     w_5 = cos_gamma_inv_w_sin_psi*inv_cos_theta
-    inv_w_sin_gamma_v = inv_w*sin_gamma*v
-    w_6 = inv_cos_theta_sin_psi*inv_w_sin_gamma_v
+    inv_w_v = inv_w*v
+    inv_w_v_sin_gamma = inv_w_v*sin_gamma
+    w_6 = inv_cos_theta_sin_psi*inv_w_v_sin_gamma
     cos_psi = np.cos(psi)
     w_7 = cos_gamma_v_inv_w*cos_psi
     inv_cos_theta_w_7 = inv_cos_theta*w_7
     w_8 = cos_gamma_v_inv_w_sq*cos_psi
     cos_gamma_inv_w_cos_psi = cos_gamma_inv_w*cos_psi
-    w_9 = cos_psi*inv_w_sin_gamma_v
-    Abs_cos_gamma = np.maximum(cos_gamma, -cos_gamma)
-    inv_Abs_cos_gamma = 1.0/Abs_cos_gamma
-    inv_b_2 = 1.0/b_2
-    half_inv_b_2 = 0.5*inv_b_2
-    b_1_half_inv_b_2 = b_1*half_inv_b_2
-    w_10 = -b_1_half_inv_b_2
-    inv_v = 1.0/v
-    lambda_psi_sq = lambda_psi*lambda_psi
-    cos_gamma_sq = cos_gamma*cos_gamma
-    lambda_gamma_sq = lambda_gamma*lambda_gamma
-    w_11 = cos_gamma_sq*lambda_gamma_sq + lambda_psi_sq
-    sqrt_w_11 = np.sqrt(w_11)
-    inv_lambda_v = 1.0/lambda_v
-    w_12 = a_1*inv_lambda_v*sqrt_w_11
-    half_inv_b_2_w_12 = half_inv_b_2*w_12
-    half_inv_b_2_w_12_inv_v = half_inv_b_2_w_12*inv_v
-    w_13 = half_inv_b_2_w_12_inv_v*inv_Abs_cos_gamma + w_10
-    inv_m = 1.0/m
-    inv_h_r = 1.0/h_r
-    h_inv_h_r = h*inv_h_r
-    w_14 = np.exp(-h_inv_h_r)
-    area_inv_m_rho_0_w_14 = area*inv_m*rho_0*w_14
-    w_15 = area_inv_m_rho_0_w_14*lambda_v
-    v_sq = v*v
-    b_2_v_sq = b_2*v_sq
-    w_16 = -b_2_v_sq*w_15
-    w_17 = w_13 + 0.0*np.sqrt(w_16)
-    w_18 = np.minimum(np.maximum(w_17, alpha_min), alpha_max)
-    w_19 = -b_1_half_inv_b_2 - half_inv_b_2_w_12_inv_v*inv_Abs_cos_gamma
-    w_20 = w_19 + 0.0*np.sqrt(w_16)
-    w_21 = np.minimum(np.maximum(w_20, alpha_min), alpha_max)
-    area_inv_m_rho_0_w_14_v = area_inv_m_rho_0_w_14*v
-    w_22 = 0.5*area_inv_m_rho_0_w_14_v
-    sqrt_w_11_w_22 = sqrt_w_11*w_22
-    inv_w_sq_mu = inv_w_sq*mu
-    inv_w_sq_mu_sin_gamma = inv_w_sq_mu*sin_gamma
-    w_23 = 0.5*area_inv_m_rho_0_w_14
-    v_sq_w_23 = v_sq*w_23
-    w_24 = inv_Abs_cos_gamma*sqrt_w_11_w_22*(-a_0 - a_1*w_18) + lambda_v*(-inv_w_sq_mu_sin_gamma - v_sq_w_23*(b_0 + b_1*w_21 + b_2*w_21*w_21)) - inv_Abs_cos_gamma*sqrt_w_11_w_22*(a_0 + a_1*w_21) - lambda_v*(-inv_w_sq_mu_sin_gamma - v_sq_w_23*(b_0 + b_1*w_18 + b_2*w_18*w_18))
-    w_25 = np.where(w_24 <= 0.0, w_21, w_18) + 0.0*w_24
+    w_9 = cos_psi*inv_w_v_sin_gamma
     inv_w_cubed = inv_w*inv_w*inv_w
     twice_mu = 2.0*mu
     inv_w_cubed_twice_mu = inv_w_cubed*twice_mu
-    inv_h_r_v_sq_w_23 = inv_h_r*v_sq_w_23
-    w_26 = np.where(w_24 <= 0.0, 1.0, 0.0) + 0.0*w_24
-    w_27 = np.heaviside(w_20 - alpha_min, 1.0)*np.heaviside(alpha_max - w_20, 1.0)
-    w_28 = np.where(w_24 <= 0.0, 0.0, 1.0) + 0.0*w_24
-    w_29 = np.heaviside(w_17 - alpha_min, 1.0)*np.heaviside(alpha_max - w_17, 1.0)
-    inv_v_sq = inv_v*inv_v
-    w_30 = half_inv_b_2_w_12*inv_v_sq
-    inv_b_2_inv_v_sq_w_12 = inv_b_2*inv_v_sq*w_12
-    inv_sqrt_w_11 = 1.0/sqrt_w_11
+    w_10 = 0.5*(np.maximum(beta_min, np.minimum(beta_max, np.pi) - 2.0*np.pi) + np.minimum(beta_max, np.maximum(beta_min, -np.pi) + 2.0*np.pi))
+    law_part_10 = np.cos(w_10)
+    inv_cos_gamma = 1.0/cos_gamma
+    inv_m = 1.0/m
+    area_inv_m_rho_0 = area*inv_m*rho_0
+    inv_h_r = 1.0/h_r
+    h_inv_h_r = h*inv_h_r
+    w_11 = area_inv_m_rho_0*np.exp(-h_inv_h_r)
+    half_w_11 = 0.5*w_11
+    law_part_8 = half_w_11*v
+    inv_cos_gamma_law_part_8 = inv_cos_gamma*law_part_8
+    law_part_11 = inv_cos_gamma_law_part_8*lambda_psi
+    law_part_5 = np.sin(w_10)
+    law_part_9 = lambda_gamma*law_part_8
+    law_part_12 = law_part_5*law_part_9 - law_part_10*law_part_11
+    w_12 = -law_part_12
+    law_part_13 = law_part_10*law_part_9 + law_part_11*law_part_5
+    w_13 = np.arctan2(np.real(w_12), np.real(law_part_13)) + np.arctan((w_12*np.cos(np.arctan2(np.real(w_12), np.real(law_part_13))) - law_part_13*np.sin(np.arctan2(np.real(w_12), np.real(law_part_13))))/(law_part_13*np.cos(np.arctan2(np.real(w_12), np.real(law_part_13))) + w_12*np.sin(np.arctan2(np.real(w_12), np.real(law_part_13)))))
+    w_14 = w_10 + w_13
+    w_15 = np.minimum(np.maximum(w_14, beta_min), beta_max)
+    sin_w_15 = np.sin(w_15)
+    cos_w_15 = np.cos(w_15)
+    law_part_15 = cos_w_15*law_part_9 + law_part_11*sin_w_15
+    inv_lambda_v = 1.0/lambda_v
+    v_sq = v*v
+    inv_v_sq = 1.0/v_sq
+    inv_area = 1.0/area
+    inv_rho_0 = 1.0/rho_0
+    exp_h_inv_h_r = np.exp(h_inv_h_r)
+    inv_b_2 = 1.0/b_2
+    w_16 = a_1*exp_h_inv_h_r*inv_area*inv_b_2*inv_rho_0*inv_v_sq*m
+    inv_lambda_v_w_16 = inv_lambda_v*w_16
+    half_b_1 = 0.5*b_1
+    law_part_3 = -half_b_1*inv_b_2
+    w_17 = inv_lambda_v_w_16*law_part_15 + law_part_3
+    law_part_18 = lambda_v*v_sq*w_11
+    law_part_19 = b_2*law_part_18
+    law_part_20 = -law_part_19
+    w_18 = w_17 + 0.0*np.sqrt(law_part_20)
+    w_19 = np.minimum(np.maximum(w_18, alpha_min), alpha_max)
+    w_20 = -law_part_13
+    w_21 = np.arctan2(np.real(law_part_12), np.real(w_20)) + np.arctan((law_part_12*np.cos(np.arctan2(np.real(law_part_12), np.real(w_20))) - w_20*np.sin(np.arctan2(np.real(law_part_12), np.real(w_20))))/(w_20*np.cos(np.arctan2(np.real(law_part_12), np.real(w_20))) + law_part_12*np.sin(np.arctan2(np.real(law_part_12), np.real(w_20)))))
+    w_22 = w_10 + w_21
+    w_23 = np.minimum(np.maximum(w_22, beta_min), beta_max)
+    sin_w_23 = np.sin(w_23)
+    cos_w_23 = np.cos(w_23)
+    law_part_24 = cos_w_23*law_part_9 + law_part_11*sin_w_23
+    w_24 = inv_lambda_v_w_16*law_part_24 + law_part_3
+    w_25 = w_24 + 0.0*np.sqrt(law_part_20)
+    w_26 = np.minimum(np.maximum(w_25, alpha_min), alpha_max)
+    law_part_22 = half_b_1*law_part_18
+    law_part_26 = 0.5*law_part_19
+    law_part_27 = law_part_22*w_19 + law_part_24*(a_0 + a_1*w_26) + law_part_26*w_19*w_19 - law_part_15*(a_0 + a_1*w_19) - law_part_22*w_26 - law_part_26*w_26*w_26
+    w_27 = np.where(law_part_27 <= 0.0, w_26, w_19) + 0.0*law_part_27
+    b_2_w_27 = b_2*w_27
+    w_28 = b_1 + 2.0*b_2_w_27
+    w_29 = np.exp(-h_inv_h_r)
+    area_inv_m_rho_0_w_29 = area_inv_m_rho_0*w_29
+    w_30 = 0.5*area_inv_m_rho_0_w_29
+    v_sq_w_30 = v_sq*w_30
+    v_sq_w_30_w_28 = v_sq_w_30*w_28
+    b_1_w_27 = b_1*w_27
+    w_31 = b_2*w_27*w_27
+    w_32 = area_inv_m_rho_0_w_29*(b_0 + b_1_w_27 + w_31)
+    inv_h_r_v_sq = inv_h_r*v_sq
+    w_33 = np.where(law_part_27 <= 0.0, 0.0, 1.0) + 0.0*law_part_27
+    w_34 = np.where(law_part_27 <= 0.0, 1.0, 0.0) + 0.0*law_part_27
+    w_35 = np.heaviside(w_18 - alpha_min, 1.0)*np.heaviside(alpha_max - w_18, 1.0)
+    inv_lambda_v_w_16_w_35 = inv_lambda_v_w_16*w_35
+    law_part_15_w_35 = law_part_15*w_35
+    w_36 = cos_w_15*law_part_11 - law_part_9*sin_w_15
+    inv_cos_gamma_lambda_psi = inv_cos_gamma*lambda_psi
+    half_v = 0.5*v
+    d_law_part_7_by_h = -inv_h_r*w_11
+    d_law_part_8_by_h = d_law_part_7_by_h*half_v
+    d_law_part_11_by_h = d_law_part_8_by_h*inv_cos_gamma_lambda_psi
+    w_37 = law_part_12*law_part_12 + law_part_13*law_part_13
+    inv_w_37 = 1.0/w_37
+    w_38 = np.heaviside(w_14 - beta_min, 1.0)*np.heaviside(beta_max - w_14, 1.0)
+    inv_w_37_w_38 = inv_w_37*w_38
+    d_law_part_9_by_h = d_law_part_8_by_h*lambda_gamma
+    d_law_part_12_by_h = d_law_part_9_by_h*law_part_5 - d_law_part_11_by_h*law_part_10
+    w_39 = d_law_part_12_by_h*law_part_13
+    d_law_part_13_by_h = d_law_part_11_by_h*law_part_5 + d_law_part_9_by_h*law_part_10
+    d_law_part_14_by_h = d_law_part_13_by_h*inv_w_37*law_part_12*w_38 - inv_w_37_w_38*w_39
+    d_law_part_15_by_h = cos_w_15*d_law_part_9_by_h + d_law_part_11_by_h*sin_w_15 + d_law_part_14_by_h*w_36
+    d_law_part_17_by_h = inv_h_r*inv_lambda_v_w_16
+    d_law_part_21_by_h = d_law_part_15_by_h*inv_lambda_v_w_16_w_35 + d_law_part_17_by_h*law_part_15_w_35
+    w_40 = np.heaviside(w_25 - alpha_min, 1.0)*np.heaviside(alpha_max - w_25, 1.0)
+    law_part_24_w_40 = law_part_24*w_40
+    inv_lambda_v_w_16_w_40 = inv_lambda_v_w_16*w_40
+    w_41 = cos_w_23*law_part_11 - law_part_9*sin_w_23
+    w_42 = np.heaviside(w_22 - beta_min, 1.0)*np.heaviside(beta_max - w_22, 1.0)
+    inv_w_37_w_42 = inv_w_37*w_42
+    d_law_part_23_by_h = d_law_part_13_by_h*inv_w_37*law_part_12*w_42 - inv_w_37_w_42*w_39
+    d_law_part_24_by_h = cos_w_23*d_law_part_9_by_h + d_law_part_11_by_h*sin_w_23 + d_law_part_23_by_h*w_41
+    d_law_part_25_by_h = d_law_part_17_by_h*law_part_24_w_40 + d_law_part_24_by_h*inv_lambda_v_w_16_w_40
+    d_law_of_alpha_by_h = d_law_part_21_by_h*w_33 + d_law_part_25_by_h*w_34
+    v_w_32 = v*w_32
+    d_law_part_11_by_v = half_w_11*inv_cos_gamma_lambda_psi
+    d_law_part_9_by_v = half_w_11*lambda_gamma
+    d_law_part_12_by_v = d_law_part_9_by_v*law_part_5 - d_law_part_11_by_v*law_part_10
+    w_43 = d_law_part_12_by_v*law_part_13
+    d_law_part_13_by_v = d_law_part_11_by_v*law_part_5 + d_law_part_9_by_v*law_part_10
+    d_law_part_14_by_v = d_law_part_13_by_v*inv_w_37*law_part_12*w_38 - inv_w_37_w_38*w_43
+    d_law_part_15_by_v = cos_w_15*d_law_part_9_by_v + d_law_part_11_by_v*sin_w_15 + d_law_part_14_by_v*w_36
+    twice_v = 2.0*v
+    d_law_part_17_by_v = -a_1*exp_h_inv_h_r*inv_area*inv_b_2*inv_lambda_v*inv_rho_0*inv_v_sq*inv_v_sq*m*twice_v
+    d_law_part_21_by_v = d_law_part_15_by_v*inv_lambda_v_w_16_w_35 + d_law_part_17_by_v*law_part_15_w_35
+    d_law_part_23_by_v = d_law_part_13_by_v*inv_w_37*law_part_12*w_42 - inv_w_37_w_42*w_43
+    d_law_part_24_by_v = cos_w_23*d_law_part_9_by_v + d_law_part_11_by_v*sin_w_23 + d_law_part_23_by_v*w_41
+    d_law_part_25_by_v = d_law_part_17_by_v*law_part_24_w_40 + d_law_part_24_by_v*inv_lambda_v_w_16_w_40
+    d_law_of_alpha_by_v = d_law_part_21_by_v*w_33 + d_law_part_25_by_v*w_34
     cos_gamma_inv_w_sq = cos_gamma*inv_w_sq
     cos_gamma_inv_w_sq_mu = cos_gamma_inv_w_sq*mu
-    w_31 = np.heaviside(cos_gamma, 0.0) - np.heaviside(-cos_gamma, 0.0)
-    inv_cos_gamma = 1.0/cos_gamma
     inv_cos_gamma_sq = inv_cos_gamma*inv_cos_gamma
-    w_32 = inv_cos_gamma_sq*sin_gamma
-    w_33 = half_inv_b_2_w_12_inv_v*w_31*w_32
-    a_1_inv_v = a_1*inv_v
-    a_1_inv_v_half_inv_b_2 = a_1_inv_v*half_inv_b_2
-    w_34 = inv_lambda_v*inv_sqrt_w_11
-    w_35 = a_1_inv_v_half_inv_b_2*w_34
-    w_36 = cos_gamma*lambda_gamma_sq*sin_gamma*w_35
-    w_37 = inv_lambda_v*inv_lambda_v*sqrt_w_11
-    w_38 = a_1_inv_v_half_inv_b_2*w_37
-    a_1_inv_v_inv_b_2 = a_1_inv_v*inv_b_2
-    a_1_inv_v_inv_b_2_w_37 = a_1_inv_v_inv_b_2*w_37
-    w_39 = cos_gamma_sq*lambda_gamma
-    w_35_w_39 = w_35*w_39
-    a_1_inv_v_inv_b_2_w_34 = a_1_inv_v_inv_b_2*w_34
-    w_40 = a_1_inv_v_inv_b_2_w_34*w_39
-    lambda_psi_w_35 = lambda_psi*w_35
-    w_41 = a_1_inv_v_inv_b_2_w_34*lambda_psi
-    w_42 = 0.25*area*area*inv_m*inv_m*rho_0*rho_0*np.exp(-2.0*h_inv_h_r)
-    lambda_gamma_sq_w_42 = lambda_gamma_sq*w_42
-    w_43 = lambda_gamma_sq_w_42*v_sq
-    w_44 = inv_cos_gamma_sq*lambda_psi_sq*w_42
-    v_sq_w_44 = v_sq*w_44
-    w_45 = v_sq_w_44 + w_43
-    sqrt_w_45 = np.sqrt(w_45)
-    inv_sqrt_w_45 = 1.0/sqrt_w_45
-    w_46 = inv_sqrt_w_45*lambda_gamma
-    w_22_w_46 = w_22*w_46
-    w_47 = -w_22_w_46
-    w_48 = np.where(w_24 <= 0.0, w_47, w_22_w_46) + 0.0*w_24
-    inv_sqrt_w_45_cubed = inv_sqrt_w_45*inv_sqrt_w_45*inv_sqrt_w_45
-    inv_sqrt_w_45_cubed_w_22 = inv_sqrt_w_45_cubed*w_22
-    w_49 = inv_sqrt_w_45_cubed_w_22*lambda_gamma
-    w_50 = inv_h_r*v_sq_w_44 + inv_h_r*w_43
-    w_51 = w_49*w_50 - 0.5*area*inv_h_r*inv_m*inv_sqrt_w_45*lambda_gamma*rho_0*v*w_14
-    w_52 = -w_51
+    lambda_psi_sin_gamma = lambda_psi*sin_gamma
+    w_44 = inv_cos_gamma_sq*lambda_psi_sin_gamma
+    d_law_part_11_by_gamma = law_part_8*w_44
+    d_law_part_12_by_gamma = -d_law_part_11_by_gamma*law_part_10
+    w_45 = d_law_part_12_by_gamma*law_part_13
+    d_law_part_13_by_gamma = d_law_part_11_by_gamma*law_part_5
+    d_law_part_14_by_gamma = d_law_part_13_by_gamma*inv_w_37*law_part_12*w_38 - inv_w_37_w_38*w_45
+    d_law_part_15_by_gamma = d_law_part_11_by_gamma*sin_w_15 + d_law_part_14_by_gamma*w_36
+    d_law_part_21_by_gamma = d_law_part_15_by_gamma*inv_lambda_v_w_16_w_35
+    d_law_part_23_by_gamma = d_law_part_13_by_gamma*inv_w_37*law_part_12*w_42 - inv_w_37_w_42*w_45
+    d_law_part_24_by_gamma = d_law_part_11_by_gamma*sin_w_23 + d_law_part_23_by_gamma*w_41
+    d_law_part_25_by_gamma = d_law_part_24_by_gamma*inv_lambda_v_w_16_w_40
+    d_law_of_alpha_by_gamma = d_law_part_21_by_gamma*w_33 + d_law_part_25_by_gamma*w_34
+    d_law_part_17_by_lambda_v = -inv_lambda_v*inv_lambda_v*w_16
+    d_law_part_21_by_lambda_v = d_law_part_17_by_lambda_v*law_part_15_w_35
+    d_law_part_25_by_lambda_v = d_law_part_17_by_lambda_v*law_part_24_w_40
+    d_law_of_alpha_by_lambda_v = d_law_part_21_by_lambda_v*w_33 + d_law_part_25_by_lambda_v*w_34
+    d_law_part_12_by_lambda_gamma = law_part_5*law_part_8
+    w_46 = d_law_part_12_by_lambda_gamma*law_part_13
+    d_law_part_13_by_lambda_gamma = law_part_10*law_part_8
+    d_law_part_14_by_lambda_gamma = d_law_part_13_by_lambda_gamma*inv_w_37*law_part_12*w_38 - inv_w_37_w_38*w_46
+    d_law_part_15_by_lambda_gamma = cos_w_15*law_part_8 + d_law_part_14_by_lambda_gamma*w_36
+    d_law_part_21_by_lambda_gamma = d_law_part_15_by_lambda_gamma*inv_lambda_v_w_16_w_35
+    d_law_part_23_by_lambda_gamma = d_law_part_13_by_lambda_gamma*inv_w_37*law_part_12*w_42 - inv_w_37_w_42*w_46
+    d_law_part_24_by_lambda_gamma = cos_w_23*law_part_8 + d_law_part_23_by_lambda_gamma*w_41
+    d_law_part_25_by_lambda_gamma = d_law_part_24_by_lambda_gamma*inv_lambda_v_w_16_w_40
+    d_law_of_alpha_by_lambda_gamma = d_law_part_21_by_lambda_gamma*w_33 + d_law_part_25_by_lambda_gamma*w_34
+    d_law_part_12_by_lambda_psi = -inv_cos_gamma_law_part_8*law_part_10
+    w_47 = d_law_part_12_by_lambda_psi*law_part_13
+    d_law_part_13_by_lambda_psi = inv_cos_gamma_law_part_8*law_part_5
+    d_law_part_14_by_lambda_psi = d_law_part_13_by_lambda_psi*inv_w_37*law_part_12*w_38 - inv_w_37_w_38*w_47
+    d_law_part_15_by_lambda_psi = d_law_part_14_by_lambda_psi*w_36 + inv_cos_gamma_law_part_8*sin_w_15
+    d_law_part_21_by_lambda_psi = d_law_part_15_by_lambda_psi*inv_lambda_v_w_16_w_35
+    d_law_part_23_by_lambda_psi = d_law_part_13_by_lambda_psi*inv_w_37*law_part_12*w_42 - inv_w_37_w_42*w_47
+    d_law_part_24_by_lambda_psi = d_law_part_23_by_lambda_psi*w_41 + inv_cos_gamma_law_part_8*sin_w_23
+    d_law_part_25_by_lambda_psi = d_law_part_24_by_lambda_psi*inv_lambda_v_w_16_w_40
+    d_law_of_alpha_by_lambda_psi = d_law_part_21_by_lambda_psi*w_33 + d_law_part_25_by_lambda_psi*w_34
+    inv_v = 1.0/v
+    w_48 = np.where(law_part_27 <= 0.0, w_23, w_15) + 0.0*law_part_27
+    cos_w_48 = np.cos(w_48)
     inv_w_sq_v = inv_w_sq*v
-    inv_h_r_w_22 = inv_h_r*w_22
-    a_1_w_22 = a_1*w_22
-    w_53 = -lambda_gamma_sq_w_42*v - v*w_44
-    w_54 = w_23*w_46 + w_49*w_53
-    w_55 = -w_54
-    inv_cos_gamma_cubed = inv_cos_gamma*inv_cos_gamma*inv_cos_gamma
-    inv_m_cubed = inv_m*inv_m*inv_m
-    area_cubed = area*area*area
-    rho_0_cubed = rho_0*rho_0*rho_0
-    v_cubed = v*v*v
-    w_56 = np.exp(-3.0*h_inv_h_r)
-    w_57 = 0.125*area_cubed*inv_m_cubed*inv_sqrt_w_45_cubed*rho_0_cubed*v_cubed*w_56
-    w_58 = inv_cos_gamma_cubed*lambda_psi_sq*w_57
-    w_59 = lambda_gamma*sin_gamma*w_58
-    w_60 = lambda_gamma_sq*w_57 - 0.5*area*inv_m*inv_sqrt_w_45*rho_0*v*w_14
-    w_61 = -w_60
-    lambda_gamma_w_57 = lambda_gamma*w_57
-    w_62 = inv_cos_gamma_sq*lambda_gamma_w_57*lambda_psi
-    w_63 = inv_cos_gamma*inv_sqrt_w_45*lambda_psi*w_22
-    w_64 = -w_63
-    w_65 = np.where(w_24 <= 0.0, w_64, w_63) + 0.0*w_24
-    w_66 = inv_cos_gamma*inv_h_r_w_22
-    inv_cos_gamma_lambda_psi = inv_cos_gamma*lambda_psi
-    w_67 = inv_cos_gamma_lambda_psi*inv_sqrt_w_45_cubed_w_22
-    w_68 = w_50*w_67 - 0.5*area*inv_cos_gamma*inv_h_r*inv_m*inv_sqrt_w_45*lambda_psi*rho_0*v*w_14
-    w_69 = -w_68
+    a_1_w_27 = a_1*w_27
+    w_49 = a_0 + a_1_w_27
+    w_50 = area_inv_m_rho_0_w_29*half_v
+    cos_w_48_w_50 = cos_w_48*w_50
+    cos_w_48_w_50_inv_h_r = cos_w_48_w_50*inv_h_r
+    sin_w_48 = np.sin(w_48)
+    sin_w_48_w_50 = sin_w_48*w_50
+    d_law_of_beta_by_h = d_law_part_14_by_h*w_33 + d_law_part_23_by_h*w_34
+    inv_v_sq_2 = inv_v*inv_v
+    inv_w_sq_mu = inv_w_sq*mu
+    a_1_cos_w_48_w_50 = a_1*cos_w_48_w_50
+    cos_w_48_w_30 = cos_w_48*w_30
+    sin_w_48_w_50_w_49 = sin_w_48_w_50*w_49
+    d_law_of_beta_by_v = d_law_part_14_by_v*w_33 + d_law_part_23_by_v*w_34
+    d_law_of_beta_by_gamma = d_law_part_14_by_gamma*w_33 + d_law_part_23_by_gamma*w_34
+    d_law_of_beta_by_lambda_gamma = d_law_part_14_by_lambda_gamma*w_33 + d_law_part_23_by_lambda_gamma*w_34
+    d_law_of_beta_by_lambda_psi = d_law_part_14_by_lambda_psi*w_33 + d_law_part_23_by_lambda_psi*w_34
     sin_theta_sq = sin_theta*sin_theta
-    inv_cos_gamma_w_23 = inv_cos_gamma*w_23
-    a_1_w_22_inv_cos_gamma = a_1_w_22*inv_cos_gamma
-    w_70 = inv_cos_gamma_w_23*inv_sqrt_w_45*lambda_psi + w_53*w_67
-    w_71 = -w_70
-    inv_cos_gamma_w_22 = inv_cos_gamma*w_22
-    sin_gamma_v = sin_gamma*v
-    w_72 = inv_cos_gamma_sq*sin_gamma_v
-    w_73 = inv_cos_gamma*inv_cos_gamma*inv_cos_gamma*inv_cos_gamma*lambda_psi*lambda_psi*lambda_psi*sin_gamma*w_57 - 0.5*area*inv_cos_gamma_sq*inv_m*inv_sqrt_w_45*lambda_psi*rho_0*sin_gamma*v*w_14
-    w_74 = -w_73
-    w_75 = inv_cos_theta_w_7*sin_theta
-    w_76 = inv_cos_gamma_lambda_psi*lambda_gamma_w_57
-    w_77 = w_58 - 0.5*area*inv_cos_gamma*inv_m*inv_sqrt_w_45*rho_0*v*w_14
-    w_78 = -w_77
+    w_51 = inv_cos_gamma*sin_w_48_w_50
+    a_1_w_51 = a_1*w_51
+    sin_w_48_w_30 = sin_w_48*w_30
+    w_52 = inv_cos_gamma*sin_w_48_w_30
+    w_53 = cos_w_48_w_50*inv_cos_gamma*w_49
+    w_54 = inv_cos_gamma_sq*sin_gamma
+    w_55 = inv_cos_theta_w_7*sin_theta
     h_sq = h*h
     r_e_sq = r_e*r_e
     twice_h = 2.0*h
-    w_79 = h_sq + r_e*twice_h + r_e_sq
-    inv_w_79 = 1.0/w_79
+    w_56 = h_sq + r_e*twice_h + r_e_sq
+    inv_w_56 = 1.0/w_56
     h_cubed = h*h*h
     r_e_cubed = r_e*r_e*r_e
-    w_80 = 3.0*r_e_sq
-    h_w_80 = h*w_80
-    w_81 = 3.0*h_sq
-    r_e_w_81 = r_e*w_81
-    w_82 = h_cubed + h_w_80 + r_e_cubed + r_e_w_81
-    inv_w_82 = 1.0/w_82
+    w_57 = 3.0*r_e_sq
+    h_w_57 = h*w_57
+    w_58 = 3.0*h_sq
+    r_e_w_58 = r_e*w_58
+    w_59 = h_cubed + h_w_57 + r_e_cubed + r_e_w_58
+    inv_w_59 = 1.0/w_59
     cos_psi_lambda_theta = cos_psi*lambda_theta
-    twice_inv_w_cubed = 2.0*inv_w_cubed
-    w_83 = cos_gamma_v*twice_inv_w_cubed
-    w_84 = inv_cos_theta_sin_psi*lambda_phi
+    inv_w_cubed_twice_v = inv_w_cubed*twice_v
+    cos_gamma_sin_psi = cos_gamma*sin_psi
+    inv_cos_theta_lambda_phi = inv_cos_theta*lambda_phi
     inv_h_r_sq = inv_h_r*inv_h_r
-    inv_h_r_sq_v_sq_w_23 = inv_h_r_sq*v_sq_w_23
-    b_2_v_sq_w_23 = b_2_v_sq*w_23
-    h_r_e = h*r_e
-    w_85 = 6.0*h_r_e
-    sin_gamma_twice_mu = sin_gamma*twice_mu
-    a_0_inv_h_r_sq = a_0*inv_h_r_sq
+    a_0_sin_w_48_w_50 = a_0*sin_w_48_w_50
+    w_60 = a_0_sin_w_48_w_50*inv_cos_gamma
+    a_1_w_27_w_51 = a_1_w_27*w_51
     cos_theta_h = cos_theta*h
     twice_r_e = 2.0*r_e
-    w_86 = cos_theta*h_sq + cos_theta*r_e_sq + cos_theta_h*twice_r_e
-    inv_w_86 = 1.0/w_86
-    cos_gamma_v_sin_psi = cos_gamma_v*sin_psi
-    w_87 = cos_gamma_v_sin_psi*inv_w_86*inv_w_86*sin_theta
-    a_0_inv_h_r_w_22 = a_0*inv_h_r_w_22
-    w_88 = a_0_inv_h_r_w_22*inv_cos_gamma
-    a_1_w_66 = a_1*w_66
-    w_89 = h_cubed*v + h_w_80*v + r_e_cubed*v + r_e_w_81*v
-    inv_w_89 = 1.0/w_89
+    w_61 = cos_theta*h_sq + cos_theta*r_e_sq + cos_theta_h*twice_r_e
+    inv_w_61 = 1.0/w_61
+    inv_w_61_sq = inv_w_61*inv_w_61
+    a_1_lambda_gamma = a_1*lambda_gamma
+    w_62 = a_1*inv_cos_gamma_lambda_psi
+    inv_h_r_sin_w_48_w_50 = inv_h_r*sin_w_48_w_50
+    w_63 = area_inv_m_rho_0_w_29*inv_h_r_v_sq
+    half_b_1_w_63 = half_b_1*w_63
+    w_64 = a_1_lambda_gamma*cos_w_48_w_50_inv_h_r + inv_h_r_sin_w_48_w_50*w_62 + lambda_v*(-b_2_w_27*w_63 - half_b_1_w_63)
+    w_65 = a_0_sin_w_48_w_50*inv_h_r
+    w_66 = a_1_w_27*inv_h_r_sin_w_48_w_50
+    w_67 = a_0*cos_w_48_w_50_inv_h_r
+    w_68 = a_1_w_27*cos_w_48_w_50_inv_h_r
+    w_69 = lambda_gamma*(-w_65 - w_66) + lambda_psi*(inv_cos_gamma*w_67 + inv_cos_gamma*w_68)
+    cos_w_48_w_50_inv_h_r_sq = cos_w_48_w_50*inv_h_r_sq
+    h_r_e = h*r_e
+    w_70 = 6.0*h_r_e
+    w_71 = h_cubed*v + h_w_57*v + r_e_cubed*v + r_e_w_58*v
+    inv_w_71 = 1.0/w_71
     cos_gamma_twice_mu = cos_gamma*twice_mu
-    w_90 = cos_gamma_twice_mu*inv_w_89*inv_w_89
+    w_72 = cos_gamma_twice_mu*inv_w_71*inv_w_71
+    inv_h_r_sq_v_sq_w_30 = inv_h_r_sq*v_sq_w_30
+    sin_gamma_twice_mu = sin_gamma*twice_mu
     cos_theta_r_e = cos_theta*r_e
     lambda_phi_sin_theta = lambda_phi*sin_theta
     inv_cos_theta_sq_sin_psi = inv_cos_theta_sq*sin_psi
-    w_91 = cos_gamma_v_inv_w_sq*inv_cos_theta_sq_sin_psi
-    w_92 = lambda_phi_sin_theta*w_91
+    w_73 = cos_gamma_v_inv_w_sq*inv_cos_theta_sq_sin_psi
+    w_74 = lambda_phi_sin_theta*w_73
+    cos_gamma_v_sin_psi = cos_gamma_v*sin_psi
     r_e_sin_theta = r_e*sin_theta
-    a_0_w_23 = a_0*w_23
-    a_0_w_23_inv_h_r = a_0_w_23*inv_h_r
-    a_1_w_23 = a_1*w_23
-    a_1_w_23_inv_h_r = a_1_w_23*inv_h_r
-    a_1_inv_h_r_w_22 = a_1*inv_h_r_w_22
-    cos_gamma_sin_psi = cos_gamma*sin_psi
-    inv_w_86_sin_theta = inv_w_86*sin_theta
-    w_93 = a_0_w_23_inv_h_r*inv_cos_gamma
-    a_1_inv_cos_gamma_w_23 = a_1*inv_cos_gamma_w_23
-    w_94 = a_1_inv_cos_gamma_w_23*inv_h_r
-    w_95 = area_inv_m_rho_0_w_14_v*inv_h_r
-    b_1_inv_h_r_v_sq_w_23 = b_1*inv_h_r_v_sq_w_23
-    b_2_v_sq_w_23_inv_h_r = b_2_v_sq_w_23*inv_h_r
-    w_96 = cos_gamma_inv_w_sq*cos_psi_lambda_theta + cos_gamma_inv_w_sq*w_84
-    w_97 = cos_psi_lambda_theta*inv_w_sq_v*sin_gamma
-    inv_cos_theta_lambda_phi = inv_cos_theta*lambda_phi
-    w_98 = inv_cos_theta_lambda_phi*inv_w_sq_v*sin_gamma*sin_psi
+    a_0_cos_w_48_w_30 = a_0*cos_w_48_w_30
+    a_1_w_27_cos_w_48_w_30 = a_1_w_27*cos_w_48_w_30
+    w_75 = a_0_cos_w_48_w_30*inv_h_r + a_1_w_27_cos_w_48_w_30*inv_h_r
+    inv_w_61_sin_theta = inv_w_61*sin_theta
+    a_0_sin_w_48_w_30 = a_0*sin_w_48_w_30
+    w_76 = a_0_sin_w_48_w_30*inv_cos_gamma
+    a_1_w_27_w_52 = a_1_w_27*w_52
+    w_77 = a_1_w_27_w_52*inv_h_r + inv_h_r*w_76
+    area_inv_m_rho_0_w_29_v = area_inv_m_rho_0_w_29*v
+    b_0_inv_h_r = b_0*inv_h_r
+    w_78 = area_inv_m_rho_0_w_29_v*inv_h_r
+    w_79 = inv_cos_theta_sin_psi*lambda_phi
+    w_80 = cos_gamma_inv_w_sq*cos_psi_lambda_theta + cos_gamma_inv_w_sq*w_79
+    w_81 = cos_psi_lambda_theta*inv_w_sq_v*sin_gamma
+    w_82 = inv_cos_theta_lambda_phi*inv_w_sq_v*sin_gamma*sin_psi
+    sin_gamma_v = sin_gamma*v
     sin_gamma_v_sin_psi = sin_gamma_v*sin_psi
+    w_83 = w_54*w_65 + w_54*w_66
     cos_psi_lambda_psi = cos_psi*lambda_psi
     lambda_theta_sin_psi = lambda_theta*sin_psi
-    w_99 = inv_cos_theta_lambda_phi*w_8 - cos_gamma_v_inv_w_sq*lambda_theta_sin_psi
-    w_100 = cos_theta*cos_theta + sin_theta_sq
-    lambda_psi_w_100 = lambda_psi*w_100
-    w_101 = inv_cos_theta_lambda_phi*w_3
-    w_102 = 2.0*inv_cos_theta*inv_cos_theta*inv_cos_theta*w_3
-    w_103 = cos_gamma_inv_w_sin_psi*inv_cos_theta_sq
-    w_104 = lambda_phi_sin_theta*w_103
-    w_105 = inv_cos_theta_sq_sin_psi*inv_w_sin_gamma_v
-    w_106 = lambda_phi_sin_theta*w_105
-    w_107 = inv_cos_theta_sq*lambda_phi_sin_theta*w_7
+    w_84 = inv_cos_theta_lambda_phi*w_8 - cos_gamma_v_inv_w_sq*lambda_theta_sin_psi
+    w_85 = cos_theta*cos_theta + sin_theta_sq
+    lambda_psi_w_85 = lambda_psi*w_85
+    w_86 = inv_cos_theta_lambda_phi*w_3
+    w_87 = cos_gamma_inv_w_sin_psi*inv_cos_theta*inv_cos_theta*inv_cos_theta*twice_v
+    w_88 = cos_gamma_inv_w_sin_psi*inv_cos_theta_sq
+    w_89 = lambda_phi_sin_theta*w_88
+    w_90 = inv_cos_theta_sq_sin_psi*inv_w_v_sin_gamma*lambda_phi_sin_theta
+    w_91 = inv_w_v*lambda_psi_sin_gamma
+    w_92 = inv_cos_theta_sq*lambda_phi_sin_theta*w_7
     lambda_psi_w_7 = lambda_psi*w_7
-    w_108 = inv_cos_theta_sq*lambda_psi_w_7
+    w_93 = inv_cos_theta_sq*lambda_psi_w_7
+    w_94 = area*inv_m*lambda_v*rho_0*v*w_28*w_29 - a_1_lambda_gamma*cos_w_48_w_30 - sin_w_48_w_30*w_62
+    a_1_w_27_sin_w_48_w_30 = a_1_w_27*sin_w_48_w_30
+    w_95 = lambda_gamma*(a_0_sin_w_48_w_30 + a_1_w_27_sin_w_48_w_30) + lambda_psi*(-a_0_cos_w_48_w_30*inv_cos_gamma - a_1_w_27_cos_w_48_w_30*inv_cos_gamma)
     r_e_v_sq = r_e*v_sq
-    w_109 = h_sq*v_sq + r_e_sq*v_sq + r_e_v_sq*twice_h
-    inv_w_109 = 1.0/w_109
-    w_110 = cos_gamma*inv_w_109*inv_w_109*mu
-    w_111 = cos_theta_h + cos_theta_r_e
-    inv_w_111 = 1.0/w_111
-    w_112 = inv_w_111*inv_w_111*sin_theta
-    cos_gamma_sin_psi_w_112 = cos_gamma_sin_psi*w_112
-    a_0_w_23_inv_cos_gamma = a_0_w_23*inv_cos_gamma
-    w_113 = cos_gamma_sin_psi*inv_w_111
-    w_114 = h*sin_theta + r_e_sin_theta
-    w_115 = area_inv_m_rho_0_w_14_v*lambda_v
-    twice_v = 2.0*v
-    w_116 = -inv_w_111*sin_gamma*sin_psi*sin_theta
-    a_0_w_23_w_32 = a_0_w_23*w_32
-    a_1_w_23_w_32 = a_1_w_23*w_32
+    w_96 = h_sq*v_sq + r_e_sq*v_sq + r_e_v_sq*twice_h
+    inv_w_96 = 1.0/w_96
+    w_97 = cos_gamma*inv_w_96*inv_w_96*mu
+    w_98 = cos_theta_h + cos_theta_r_e
+    inv_w_98 = 1.0/w_98
+    w_99 = inv_w_98*inv_w_98*sin_theta
+    cos_gamma_sin_psi_w_99 = cos_gamma_sin_psi*w_99
+    w_100 = cos_gamma_sin_psi*inv_w_98
+    w_101 = h*sin_theta + r_e_sin_theta
     inv_w_sin_gamma = inv_w*sin_gamma
-    w_117 = cos_psi_lambda_theta*inv_w_sin_gamma + inv_w_sin_gamma*w_84 - cos_gamma*lambda_h
-    w_118 = cos_psi_lambda_psi*inv_w_111*sin_theta
-    w_119 = cos_gamma_inv_w_cos_psi*inv_cos_theta_lambda_phi - cos_gamma*inv_w*lambda_theta*sin_psi
-    w_120 = h*v_sq + r_e_v_sq - mu
-    inv_v_w_120 = inv_v*w_120
-    inv_v_w_120_lambda_gamma = inv_v_w_120*lambda_gamma
-    w_121 = cos_theta*sin_gamma_v_sin_psi
-    a_0_w_23_w_72 = a_0_w_23*w_72
-    a_1_w_23_w_72 = a_1_w_23*w_72
+    inv_w_96_mu = inv_w_96*mu
+    w_102 = cos_psi_lambda_theta*inv_w_sin_gamma + inv_w_sin_gamma*w_79 + lambda_psi*(inv_w_98*sin_gamma*sin_psi*sin_theta - a_0_sin_w_48_w_30*w_54 - a_1_w_27_sin_w_48_w_30*w_54) - cos_gamma*lambda_h
+    w_103 = cos_psi_lambda_psi*inv_w_98*sin_theta
+    w_104 = cos_gamma_inv_w_cos_psi*inv_cos_theta_lambda_phi - cos_gamma*inv_w*lambda_theta*sin_psi
+    a_1_sin_w_48_w_50_w_44 = a_1*sin_w_48_w_50*w_44
+    w_105 = h*v_sq + r_e_v_sq - mu
+    inv_v_w_105 = inv_v*w_105
+    inv_v_w_105_lambda_gamma = inv_v_w_105*lambda_gamma
+    cos_w_48_w_50_w_54 = cos_w_48_w_50*w_54
+    w_106 = -a_0*cos_w_48_w_50_w_54 - a_1_w_27*cos_w_48_w_50_w_54
+    w_107 = cos_theta*sin_gamma_v_sin_psi
+    lambda_psi_w_106 = lambda_psi*w_106
     inv_w_sq_sin_gamma = inv_w_sq*sin_gamma
-    w_122 = inv_w_sq_sin_gamma*lambda_gamma
-    w_123 = area_inv_m_rho_0_w_14_v*inv_cos_gamma_cubed*sin_gamma*sin_gamma
-    w_124 = cos_gamma_v_inv_w*cos_psi_lambda_theta + w_101
-    w_125 = inv_cos_theta_lambda_phi*w_9 - inv_w_sin_gamma_v*lambda_theta_sin_psi
-    w_126 = inv_cos_theta*lambda_psi*sin_theta
+    w_108 = inv_w_sq_sin_gamma*lambda_gamma
+    w_109 = area_inv_m_rho_0_w_29_v*inv_cos_gamma*inv_cos_gamma*inv_cos_gamma*sin_gamma*sin_gamma*sin_w_48
+    w_110 = cos_gamma_v_inv_w*cos_psi_lambda_theta + w_86
+    w_111 = inv_cos_theta_lambda_phi*w_9 - inv_w_v_sin_gamma*lambda_theta_sin_psi
+    inv_cos_theta_sin_theta = inv_cos_theta*sin_theta
+    w_112 = inv_cos_theta_sin_theta*lambda_psi
     out[0, 0] = 0.0
     out[0, 1] = 0.0
     out[0, 2] = 0.0
@@ -2744,54 +2972,54 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     out[2, 9] = 0.0
     out[2, 10] = 0.0
     out[2, 11] = 0.0
-    out[3, 0] = inv_h_r_v_sq_w_23*(b_0 + b_1*w_25 + b_2*w_25*w_25) + inv_w_cubed_twice_mu*sin_gamma
+    out[3, 0] = 0.5*inv_h_r_v_sq*w_32 + inv_w_cubed_twice_mu*sin_gamma - d_law_of_alpha_by_h*v_sq_w_30_w_28
     out[3, 1] = 0.0
     out[3, 2] = 0.0
-    out[3, 3] = -area_inv_m_rho_0_w_14_v*(b_0 + b_1*w_25 + b_2*w_25*w_25) - v_sq_w_23*(b_1*(inv_Abs_cos_gamma*w_26*w_27*w_30 - inv_Abs_cos_gamma*w_28*w_29*w_30) + b_2*w_25*(inv_Abs_cos_gamma*inv_b_2_inv_v_sq_w_12*w_26*w_27 - inv_Abs_cos_gamma*inv_b_2_inv_v_sq_w_12*w_28*w_29))
-    out[3, 4] = -cos_gamma_inv_w_sq_mu - v_sq_w_23*(b_1*(w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36)) + b_2*w_25*(2.0*w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + 2.0*w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36)))
+    out[3, 3] = -d_law_of_alpha_by_v*v_sq_w_30_w_28 - v_w_32
+    out[3, 4] = -cos_gamma_inv_w_sq_mu - d_law_of_alpha_by_gamma*v_sq_w_30_w_28
     out[3, 5] = 0.0
     out[3, 6] = 0.0
     out[3, 7] = 0.0
     out[3, 8] = 0.0
-    out[3, 9] = -v_sq_w_23*(b_1*(inv_Abs_cos_gamma*w_26*w_27*w_38 - inv_Abs_cos_gamma*w_28*w_29*w_38) + b_2*w_25*(a_1_inv_v_inv_b_2_w_37*inv_Abs_cos_gamma*w_26*w_27 - a_1_inv_v_inv_b_2_w_37*inv_Abs_cos_gamma*w_28*w_29))
-    out[3, 10] = -v_sq_w_23*(b_1*(inv_Abs_cos_gamma*w_28*w_29*w_35_w_39 - inv_Abs_cos_gamma*w_26*w_27*w_35_w_39) + b_2*w_25*(a_1*cos_gamma_sq*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma*w_28*w_29 - inv_Abs_cos_gamma*w_26*w_27*w_40))
-    out[3, 11] = -v_sq_w_23*(b_1*(inv_Abs_cos_gamma*lambda_psi_w_35*w_28*w_29 - inv_Abs_cos_gamma*lambda_psi_w_35*w_26*w_27) + b_2*w_25*(inv_Abs_cos_gamma*w_28*w_29*w_41 - inv_Abs_cos_gamma*w_26*w_27*w_41))
-    out[4, 0] = cos_gamma*(inv_v*inv_w_cubed_twice_mu - inv_w_sq_v) + w_22*(a_0 + a_1*w_25)*(w_26*w_52 + w_28*w_51) - inv_h_r_w_22*w_48*(a_0 + a_1*w_25)
+    out[3, 9] = -d_law_of_alpha_by_lambda_v*v_sq_w_30_w_28
+    out[3, 10] = -d_law_of_alpha_by_lambda_gamma*v_sq_w_30_w_28
+    out[3, 11] = -d_law_of_alpha_by_lambda_psi*v_sq_w_30_w_28
+    out[4, 0] = 0.5*a_1*area*cos_w_48*d_law_of_alpha_by_h*inv_m*rho_0*v*w_29 + cos_gamma*(inv_v*inv_w_cubed_twice_mu - inv_w_sq_v) - cos_w_48_w_50_inv_h_r*w_49 - d_law_of_beta_by_h*sin_w_48_w_50*w_49
     out[4, 1] = 0.0
     out[4, 2] = 0.0
-    out[4, 3] = a_1_w_22*w_48*(inv_Abs_cos_gamma*w_26*w_27*w_30 - inv_Abs_cos_gamma*w_28*w_29*w_30) + cos_gamma*(inv_v_sq*inv_w_sq_mu + inv_w) + w_22*(a_0 + a_1*w_25)*(w_26*w_55 + w_28*w_54) + w_23*w_48*(a_0 + a_1*w_25)
-    out[4, 4] = a_1_w_22*w_48*(w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36)) + w_22*(a_0 + a_1*w_25)*(0.125*area_cubed*inv_cos_gamma_cubed*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi_sq*rho_0_cubed*sin_gamma*v_cubed*w_26*w_56 - w_28*w_59) - sin_gamma*(inv_w*v - inv_v*inv_w_sq_mu)
+    out[4, 3] = a_1_cos_w_48_w_50*d_law_of_alpha_by_v + cos_gamma*(inv_v_sq_2*inv_w_sq_mu + inv_w) + cos_w_48_w_30*w_49 - d_law_of_beta_by_v*sin_w_48_w_50_w_49
+    out[4, 4] = 0.5*a_1*area*cos_w_48*d_law_of_alpha_by_gamma*inv_m*rho_0*v*w_29 - d_law_of_beta_by_gamma*sin_w_48_w_50_w_49 - sin_gamma*(inv_w*v - inv_v*inv_w_sq_mu)
     out[4, 5] = 0.0
     out[4, 6] = 0.0
     out[4, 7] = 0.0
     out[4, 8] = 0.0
-    out[4, 9] = a_1_w_22*w_48*(inv_Abs_cos_gamma*w_26*w_27*w_38 - inv_Abs_cos_gamma*w_28*w_29*w_38)
-    out[4, 10] = a_1_w_22*w_48*(inv_Abs_cos_gamma*w_28*w_29*w_35_w_39 - inv_Abs_cos_gamma*w_26*w_27*w_35_w_39) + w_22*(a_0 + a_1*w_25)*(w_26*w_60 + w_28*w_61)
-    out[4, 11] = a_1_w_22*w_48*(inv_Abs_cos_gamma*lambda_psi_w_35*w_28*w_29 - inv_Abs_cos_gamma*lambda_psi_w_35*w_26*w_27) + w_22*(a_0 + a_1*w_25)*(0.125*area_cubed*inv_cos_gamma_sq*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_26*w_56 - w_28*w_62)
-    out[5, 0] = 0.5*area*inv_cos_gamma*inv_m*rho_0*v*w_14*(a_0 + a_1*w_25)*(w_26*w_69 + w_28*w_68) - sin_theta*w_2 - w_65*w_66*(a_0 + a_1*w_25)
+    out[4, 9] = a_1_cos_w_48_w_50*d_law_of_alpha_by_lambda_v
+    out[4, 10] = a_1_cos_w_48_w_50*d_law_of_alpha_by_lambda_gamma - d_law_of_beta_by_lambda_gamma*sin_w_48_w_50_w_49
+    out[4, 11] = a_1_cos_w_48_w_50*d_law_of_alpha_by_lambda_psi - d_law_of_beta_by_lambda_psi*sin_w_48_w_50_w_49
+    out[5, 0] = 0.5*a_1*area*d_law_of_alpha_by_h*inv_cos_gamma*inv_m*rho_0*sin_w_48*v*w_29 + 0.5*area*cos_w_48*d_law_of_beta_by_h*inv_cos_gamma*inv_m*rho_0*v*w_29*w_49 - inv_cos_gamma*inv_h_r*sin_w_48_w_50_w_49 - sin_theta*w_2
     out[5, 1] = 0.0
     out[5, 2] = inv_cos_theta_sq_w_3*sin_theta_sq + w_3
-    out[5, 3] = a_1_w_22_inv_cos_gamma*w_65*(inv_Abs_cos_gamma*w_26*w_27*w_30 - inv_Abs_cos_gamma*w_28*w_29*w_30) + inv_cos_gamma_w_22*(a_0 + a_1*w_25)*(w_26*w_71 + w_28*w_70) + inv_cos_gamma_w_23*w_65*(a_0 + a_1*w_25) + sin_theta*w_5
-    out[5, 4] = a_1_w_22_inv_cos_gamma*w_65*(w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36)) + inv_cos_gamma_w_22*(a_0 + a_1*w_25)*(w_26*w_73 + w_28*w_74) + w_23*w_65*w_72*(a_0 + a_1*w_25) - sin_theta*w_6
-    out[5, 5] = w_75
+    out[5, 3] = a_1_w_51*d_law_of_alpha_by_v + d_law_of_beta_by_v*w_53 + sin_theta*w_5 + w_49*w_52
+    out[5, 4] = a_1_w_51*d_law_of_alpha_by_gamma + d_law_of_beta_by_gamma*w_53 + sin_w_48_w_50_w_49*w_54 - sin_theta*w_6
+    out[5, 5] = w_55
     out[5, 6] = 0.0
     out[5, 7] = 0.0
     out[5, 8] = 0.0
-    out[5, 9] = a_1_w_22_inv_cos_gamma*w_65*(inv_Abs_cos_gamma*w_26*w_27*w_38 - inv_Abs_cos_gamma*w_28*w_29*w_38)
-    out[5, 10] = a_1_w_22_inv_cos_gamma*w_65*(inv_Abs_cos_gamma*w_28*w_29*w_35_w_39 - inv_Abs_cos_gamma*w_26*w_27*w_35_w_39) + inv_cos_gamma_w_22*(a_0 + a_1*w_25)*(0.125*area_cubed*inv_cos_gamma*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_26*w_56 - w_28*w_76)
-    out[5, 11] = a_1_w_22_inv_cos_gamma*w_65*(inv_Abs_cos_gamma*lambda_psi_w_35*w_28*w_29 - inv_Abs_cos_gamma*lambda_psi_w_35*w_26*w_27) + inv_cos_gamma_w_22*(a_0 + a_1*w_25)*(w_26*w_77 + w_28*w_78)
-    out[6, 0] = lambda_gamma*(0.5*a_0*area*inv_h_r*inv_m*rho_0*v*w_14*(w_26*w_52 + w_28*w_51) + 0.5*a_1*area*inv_h_r*inv_m*rho_0*v*w_14*w_25*(w_26*w_52 + w_28*w_51) + cos_gamma*inv_w_79*inv_w_79*v*(-twice_h - twice_r_e) - a_0_inv_h_r_sq*w_22*w_48 - a_1_w_22*inv_h_r_sq*w_25*w_48 - w_90*(-v*w_80 - v*w_81 - v*w_85)) + lambda_psi*(a_1_w_66*w_25*(w_26*w_69 + w_28*w_68) + w_87*(-2.0*cos_theta_h - 2.0*cos_theta_r_e) + w_88*(w_26*w_69 + w_28*w_68) - a_0_inv_h_r_sq*inv_cos_gamma_w_22*w_65 - a_1_w_22_inv_cos_gamma*inv_h_r_sq*w_25*w_65) + lambda_v*(b_0*inv_h_r_sq_v_sq_w_23 + b_1*inv_h_r_sq_v_sq_w_23*w_25 + b_2_v_sq_w_23*inv_h_r_sq*w_25*w_25 - inv_w_82*inv_w_82*sin_gamma_twice_mu*(-w_80 - w_81 - w_85)) - cos_psi_lambda_theta*w_83 - w_83*w_84
+    out[5, 9] = a_1_w_51*d_law_of_alpha_by_lambda_v
+    out[5, 10] = a_1_w_51*d_law_of_alpha_by_lambda_gamma + d_law_of_beta_by_lambda_gamma*w_53
+    out[5, 11] = a_1_w_51*d_law_of_alpha_by_lambda_psi + d_law_of_beta_by_lambda_psi*w_53
+    out[6, 0] = d_law_of_alpha_by_h*w_64 + d_law_of_beta_by_h*w_69 + lambda_gamma*(cos_gamma*inv_w_56*inv_w_56*v*(-twice_h - twice_r_e) - a_0*cos_w_48_w_50_inv_h_r_sq - a_1_w_27*cos_w_48_w_50_inv_h_r_sq - w_72*(-v*w_57 - v*w_58 - v*w_70)) + lambda_psi*(cos_gamma*inv_w_61_sq*sin_psi*sin_theta*v*(-2.0*cos_theta_h - 2.0*cos_theta_r_e) - a_1_w_27_w_51*inv_h_r_sq - inv_h_r_sq*w_60) + lambda_v*(area_inv_m_rho_0_w_29*half_b_1*inv_h_r_sq*v_sq*w_27 + b_0*inv_h_r_sq_v_sq_w_30 + inv_h_r_sq_v_sq_w_30*w_31 - inv_w_59*inv_w_59*sin_gamma_twice_mu*(-w_57 - w_58 - w_70)) - cos_gamma*cos_psi_lambda_theta*inv_w_cubed_twice_v - cos_gamma_sin_psi*inv_cos_theta_lambda_phi*inv_w_cubed_twice_v
     out[6, 1] = 0.0
-    out[6, 2] = lambda_psi*(cos_gamma_v_sin_psi*cos_theta*inv_w_86 + w_87*(h_sq*sin_theta + r_e_sin_theta*twice_h + r_e_sq*sin_theta)) + w_92
-    out[6, 3] = lambda_gamma*(a_0_inv_h_r_w_22*(w_26*w_55 + w_28*w_54) + a_0_w_23_inv_h_r*w_48 + a_1_inv_h_r_w_22*w_25*(w_26*w_55 + w_28*w_54) + a_1_inv_h_r_w_22*w_48*(inv_Abs_cos_gamma*w_26*w_27*w_30 - inv_Abs_cos_gamma*w_28*w_29*w_30) + a_1_w_23_inv_h_r*w_25*w_48 + cos_gamma*inv_w_79 + w_82*w_90) + lambda_psi*(a_1_w_66*w_25*(w_26*w_71 + w_28*w_70) + a_1_w_66*w_65*(inv_Abs_cos_gamma*w_26*w_27*w_30 - inv_Abs_cos_gamma*w_28*w_29*w_30) + cos_gamma_sin_psi*inv_w_86_sin_theta + w_25*w_65*w_94 + w_65*w_93 + w_88*(w_26*w_71 + w_28*w_70)) + lambda_v*(-b_0*w_95 - b_1*w_25*w_95 - b_1_inv_h_r_v_sq_w_23*(inv_Abs_cos_gamma*w_26*w_27*w_30 - inv_Abs_cos_gamma*w_28*w_29*w_30) - b_2*w_25*w_25*w_95 - b_2_v_sq_w_23_inv_h_r*w_25*(inv_Abs_cos_gamma*inv_b_2_inv_v_sq_w_12*w_26*w_27 - inv_Abs_cos_gamma*inv_b_2_inv_v_sq_w_12*w_28*w_29)) + w_96
-    out[6, 4] = lambda_gamma*(a_0_inv_h_r_w_22*(0.125*area_cubed*inv_cos_gamma_cubed*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi_sq*rho_0_cubed*sin_gamma*v_cubed*w_26*w_56 - w_28*w_59) + a_1_inv_h_r_w_22*w_25*(0.125*area_cubed*inv_cos_gamma_cubed*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi_sq*rho_0_cubed*sin_gamma*v_cubed*w_26*w_56 - w_28*w_59) + a_1_inv_h_r_w_22*w_48*(w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36)) + inv_w_89*sin_gamma_twice_mu - inv_w_79*sin_gamma_v) + lambda_psi*(a_0_w_23_inv_h_r*w_65*w_72 + a_1_w_23_inv_h_r*w_25*w_65*w_72 + a_1_w_66*w_25*(w_26*w_73 + w_28*w_74) + a_1_w_66*w_65*(w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36)) + w_88*(w_26*w_73 + w_28*w_74) - inv_w_86_sin_theta*sin_gamma_v_sin_psi) + lambda_v*(-b_1_inv_h_r_v_sq_w_23*(w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36)) - b_2_v_sq_w_23_inv_h_r*w_25*(2.0*w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + 2.0*w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36)) - cos_gamma_twice_mu*inv_w_82) - w_97 - w_98
-    out[6, 5] = cos_gamma_v*cos_psi_lambda_psi*inv_w_86_sin_theta + w_99
+    out[6, 2] = lambda_psi*(cos_gamma_v_sin_psi*cos_theta*inv_w_61 + cos_gamma_v_sin_psi*inv_w_61_sq*sin_theta*(h_sq*sin_theta + r_e_sin_theta*twice_h + r_e_sq*sin_theta)) + w_74
+    out[6, 3] = d_law_of_alpha_by_v*w_64 + d_law_of_beta_by_v*w_69 + lambda_gamma*(cos_gamma*inv_w_56 + w_59*w_72 + w_75) + lambda_psi*(cos_gamma_sin_psi*inv_w_61_sin_theta + w_77) + lambda_v*(-area_inv_m_rho_0_w_29_v*b_0_inv_h_r - b_1_w_27*w_78 - w_31*w_78) + w_80
+    out[6, 4] = d_law_of_alpha_by_gamma*w_64 + d_law_of_beta_by_gamma*w_69 + lambda_gamma*(2.0*inv_w_71*mu*sin_gamma - inv_w_56*sin_gamma_v) + lambda_psi*(w_83 - inv_w_61_sin_theta*sin_gamma_v_sin_psi) - cos_gamma_twice_mu*inv_w_59*lambda_v - w_81 - w_82
+    out[6, 5] = cos_gamma_v*cos_psi_lambda_psi*inv_w_61_sin_theta + w_84
     out[6, 6] = 0.0
     out[6, 7] = w_2
     out[6, 8] = w_8
-    out[6, 9] = 0.5*a_1*area*inv_cos_gamma*inv_h_r*inv_m*lambda_psi*rho_0*v*w_14*w_65*(inv_Abs_cos_gamma*w_26*w_27*w_38 - inv_Abs_cos_gamma*w_28*w_29*w_38) + 0.5*a_1*area*inv_h_r*inv_m*lambda_gamma*rho_0*v*w_14*w_48*(inv_Abs_cos_gamma*w_26*w_27*w_38 - inv_Abs_cos_gamma*w_28*w_29*w_38) + lambda_v*(-b_1_inv_h_r_v_sq_w_23*(inv_Abs_cos_gamma*w_26*w_27*w_38 - inv_Abs_cos_gamma*w_28*w_29*w_38) - b_2_v_sq_w_23_inv_h_r*w_25*(a_1_inv_v_inv_b_2_w_37*inv_Abs_cos_gamma*w_26*w_27 - a_1_inv_v_inv_b_2_w_37*inv_Abs_cos_gamma*w_28*w_29)) - b_0*inv_h_r_v_sq_w_23 - b_1_inv_h_r_v_sq_w_23*w_25 - b_2_v_sq_w_23_inv_h_r*w_25*w_25 - inv_w_82*sin_gamma_twice_mu
-    out[6, 10] = a_0_inv_h_r_w_22*w_48 + a_1_inv_h_r_w_22*w_25*w_48 + cos_gamma_v*inv_w_79 + lambda_gamma*(a_0_inv_h_r_w_22*(w_26*w_60 + w_28*w_61) + a_1_inv_h_r_w_22*w_25*(w_26*w_60 + w_28*w_61) + a_1_inv_h_r_w_22*w_48*(inv_Abs_cos_gamma*w_28*w_29*w_35_w_39 - inv_Abs_cos_gamma*w_26*w_27*w_35_w_39)) + lambda_psi*(a_1_w_66*w_25*(0.125*area_cubed*inv_cos_gamma*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_26*w_56 - w_28*w_76) + a_1_w_66*w_65*(inv_Abs_cos_gamma*w_28*w_29*w_35_w_39 - inv_Abs_cos_gamma*w_26*w_27*w_35_w_39) + w_88*(0.125*area_cubed*inv_cos_gamma*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_26*w_56 - w_28*w_76)) + lambda_v*(-b_1_inv_h_r_v_sq_w_23*(inv_Abs_cos_gamma*w_28*w_29*w_35_w_39 - inv_Abs_cos_gamma*w_26*w_27*w_35_w_39) - b_2_v_sq_w_23_inv_h_r*w_25*(inv_Abs_cos_gamma*w_28*w_29*w_40 - inv_Abs_cos_gamma*w_26*w_27*w_40)) - cos_gamma_twice_mu*inv_w_89
-    out[6, 11] = a_1_w_66*w_25*w_65 + cos_gamma_v_sin_psi*inv_w_86_sin_theta + lambda_gamma*(a_0_inv_h_r_w_22*(0.125*area_cubed*inv_cos_gamma_sq*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_26*w_56 - w_28*w_62) + a_1_inv_h_r_w_22*w_25*(0.125*area_cubed*inv_cos_gamma_sq*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_26*w_56 - w_28*w_62) + a_1_inv_h_r_w_22*w_48*(inv_Abs_cos_gamma*lambda_psi_w_35*w_28*w_29 - inv_Abs_cos_gamma*lambda_psi_w_35*w_26*w_27)) + lambda_psi*(a_1_w_66*w_25*(w_26*w_77 + w_28*w_78) + a_1_w_66*w_65*(inv_Abs_cos_gamma*lambda_psi_w_35*w_28*w_29 - inv_Abs_cos_gamma*lambda_psi_w_35*w_26*w_27) + w_88*(w_26*w_77 + w_28*w_78)) + lambda_v*(-b_1_inv_h_r_v_sq_w_23*(inv_Abs_cos_gamma*lambda_psi_w_35*w_28*w_29 - inv_Abs_cos_gamma*lambda_psi_w_35*w_26*w_27) - b_2_v_sq_w_23_inv_h_r*w_25*(inv_Abs_cos_gamma*w_28*w_29*w_41 - inv_Abs_cos_gamma*w_26*w_27*w_41)) + w_65*w_88
+    out[6, 9] = d_law_of_alpha_by_lambda_v*w_64 - b_0_inv_h_r*v_sq_w_30 - half_b_1_w_63*w_27 - inv_h_r_v_sq*w_30*w_31 - inv_w_59*sin_gamma_twice_mu
+    out[6, 10] = cos_gamma_v*inv_w_56 + d_law_of_alpha_by_lambda_gamma*w_64 + d_law_of_beta_by_lambda_gamma*w_69 + w_67 + w_68 - cos_gamma_twice_mu*inv_w_71
+    out[6, 11] = a_1_w_27_w_51*inv_h_r + cos_gamma_v_sin_psi*inv_w_61_sin_theta + d_law_of_alpha_by_lambda_psi*w_64 + d_law_of_beta_by_lambda_psi*w_69 + inv_cos_gamma*w_65
     out[7, 0] = 0.0
     out[7, 1] = 0.0
     out[7, 2] = 0.0
@@ -2804,54 +3032,54 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     out[7, 9] = 0.0
     out[7, 10] = 0.0
     out[7, 11] = 0.0
-    out[8, 0] = lambda_psi_w_100*w_91 + w_92
+    out[8, 0] = lambda_psi_w_85*w_73 + w_74
     out[8, 1] = 0.0
-    out[8, 2] = -lambda_phi*sin_theta_sq*w_102 - lambda_psi_w_100*sin_theta*w_102 - w_101
-    out[8, 3] = -lambda_psi_w_100*w_103 - w_104
-    out[8, 4] = lambda_psi_w_100*w_105 + w_106
-    out[8, 5] = -w_100*w_108 - w_107
+    out[8, 2] = -lambda_phi*sin_theta_sq*w_87 - lambda_psi_w_85*sin_theta*w_87 - w_86
+    out[8, 3] = -lambda_psi_w_85*w_88 - w_89
+    out[8, 4] = inv_cos_theta_sq_sin_psi*w_85*w_91 + w_90
+    out[8, 5] = -w_85*w_93 - w_92
     out[8, 6] = 0.0
     out[8, 7] = -w_4
     out[8, 8] = 0.0
     out[8, 9] = 0.0
     out[8, 10] = 0.0
-    out[8, 11] = -inv_cos_theta_sq_w_3*w_100
-    out[9, 0] = lambda_gamma*(a_0_w_23_inv_h_r*w_48 + a_1_w_23_inv_h_r*w_25*w_48 + cos_gamma_inv_w_sq - a_0_w_23*(w_26*w_52 + w_28*w_51) - a_1_w_23*w_25*(w_26*w_52 + w_28*w_51) - w_110*(-twice_h*v_sq - twice_r_e*v_sq)) + lambda_psi*(cos_gamma_sin_psi_w_112*cos_theta + w_25*w_65*w_94 + w_65*w_93 - a_0_w_23_inv_cos_gamma*(w_26*w_69 + w_28*w_68) - a_1_inv_cos_gamma_w_23*w_25*(w_26*w_69 + w_28*w_68)) + w_96 - lambda_v*w_95*(b_0 + b_1*w_25 + b_2*w_25*w_25)
+    out[8, 11] = -inv_cos_theta_sq_w_3*w_85
+    out[9, 0] = d_law_of_alpha_by_h*w_94 + d_law_of_beta_by_h*w_95 + lambda_gamma*(cos_gamma_inv_w_sq + w_75 - w_97*(-twice_h*v_sq - twice_r_e*v_sq)) + lambda_psi*(cos_gamma_sin_psi_w_99*cos_theta + w_77) + w_80 - inv_h_r*lambda_v*v_w_32
     out[9, 1] = 0.0
-    out[9, 2] = lambda_psi*(-cos_gamma_sin_psi_w_112*w_114 - cos_theta*w_113) - w_104
-    out[9, 3] = lambda_gamma*(-a_0_w_23*(w_26*w_55 + w_28*w_54) - a_1_w_23*w_25*(w_26*w_55 + w_28*w_54) - a_1_w_23*w_48*(inv_Abs_cos_gamma*w_26*w_27*w_30 - inv_Abs_cos_gamma*w_28*w_29*w_30) - w_110*(-4.0*h_r_e*v - h_sq*twice_v - r_e_sq*twice_v)) + lambda_psi*(-a_0_w_23_inv_cos_gamma*(w_26*w_71 + w_28*w_70) - a_1_inv_cos_gamma_w_23*w_25*(w_26*w_71 + w_28*w_70) - a_1_inv_cos_gamma_w_23*w_65*(inv_Abs_cos_gamma*w_26*w_27*w_30 - inv_Abs_cos_gamma*w_28*w_29*w_30)) + w_115*(b_1*(inv_Abs_cos_gamma*w_26*w_27*w_30 - inv_Abs_cos_gamma*w_28*w_29*w_30) + b_2*w_25*(inv_Abs_cos_gamma*inv_b_2_inv_v_sq_w_12*w_26*w_27 - inv_Abs_cos_gamma*inv_b_2_inv_v_sq_w_12*w_28*w_29)) + w_15*(b_0 + b_1*w_25 + b_2*w_25*w_25)
-    out[9, 4] = lambda_gamma*(inv_w*sin_gamma + inv_w_109*mu*sin_gamma - a_0_w_23*(0.125*area_cubed*inv_cos_gamma_cubed*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi_sq*rho_0_cubed*sin_gamma*v_cubed*w_26*w_56 - w_28*w_59) - a_1_w_23*w_25*(0.125*area_cubed*inv_cos_gamma_cubed*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi_sq*rho_0_cubed*sin_gamma*v_cubed*w_26*w_56 - w_28*w_59) - a_1_w_23*w_48*(w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36))) + lambda_psi*(-a_0_w_23_inv_cos_gamma*(w_26*w_73 + w_28*w_74) - a_0_w_23_w_32*w_65 - a_1_inv_cos_gamma_w_23*w_25*(w_26*w_73 + w_28*w_74) - a_1_inv_cos_gamma_w_23*w_65*(w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36)) - a_1_w_23_w_32*w_25*w_65 - w_116) + w_115*(b_1*(w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36)) + b_2*w_25*(2.0*w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + 2.0*w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36))) + w_117
-    out[9, 5] = -cos_gamma*w_118 - w_119
+    out[9, 2] = lambda_psi*(-cos_gamma_sin_psi_w_99*w_101 - cos_theta*w_100) - w_89
+    out[9, 3] = d_law_of_alpha_by_v*w_94 + d_law_of_beta_by_v*w_95 + lambda_v*w_32 - lambda_gamma*w_97*(-4.0*h_r_e*v - h_sq*twice_v - r_e_sq*twice_v)
+    out[9, 4] = d_law_of_alpha_by_gamma*w_94 + d_law_of_beta_by_gamma*w_95 + lambda_gamma*(inv_w_96_mu*sin_gamma + inv_w_sin_gamma) + w_102
+    out[9, 5] = -cos_gamma*w_103 - w_104
     out[9, 6] = -sin_gamma
     out[9, 7] = -w_5
     out[9, 8] = -cos_gamma_inv_w_cos_psi
-    out[9, 9] = area*inv_m*lambda_v*rho_0*v*w_14*(b_1*(inv_Abs_cos_gamma*w_26*w_27*w_38 - inv_Abs_cos_gamma*w_28*w_29*w_38) + b_2*w_25*(a_1_inv_v_inv_b_2_w_37*inv_Abs_cos_gamma*w_26*w_27 - a_1_inv_v_inv_b_2_w_37*inv_Abs_cos_gamma*w_28*w_29)) + area*inv_m*rho_0*v*w_14*(b_0 + b_1*w_25 + b_2*w_25*w_25) - a_1_inv_cos_gamma_w_23*lambda_psi*w_65*(inv_Abs_cos_gamma*w_26*w_27*w_38 - inv_Abs_cos_gamma*w_28*w_29*w_38) - a_1_w_23*lambda_gamma*w_48*(inv_Abs_cos_gamma*w_26*w_27*w_38 - inv_Abs_cos_gamma*w_28*w_29*w_38)
-    out[9, 10] = area*inv_m*lambda_v*rho_0*v*w_14*(b_1*(inv_Abs_cos_gamma*w_28*w_29*w_35_w_39 - inv_Abs_cos_gamma*w_26*w_27*w_35_w_39) + b_2*w_25*(inv_Abs_cos_gamma*w_28*w_29*w_40 - inv_Abs_cos_gamma*w_26*w_27*w_40)) + lambda_gamma*(-a_0_w_23*(w_26*w_60 + w_28*w_61) - a_1_w_23*w_25*(w_26*w_60 + w_28*w_61) - a_1_w_23*w_48*(inv_Abs_cos_gamma*w_28*w_29*w_35_w_39 - inv_Abs_cos_gamma*w_26*w_27*w_35_w_39)) + lambda_psi*(-a_0_w_23_inv_cos_gamma*(0.125*area_cubed*inv_cos_gamma*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_26*w_56 - w_28*w_76) - a_1_inv_cos_gamma_w_23*w_25*(0.125*area_cubed*inv_cos_gamma*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_26*w_56 - w_28*w_76) - a_1_inv_cos_gamma_w_23*w_65*(inv_Abs_cos_gamma*w_28*w_29*w_35_w_39 - inv_Abs_cos_gamma*w_26*w_27*w_35_w_39)) - a_0_w_23*w_48 - a_1_w_23*w_25*w_48 - cos_gamma*inv_w_109*mu - cos_gamma_inv_w
-    out[9, 11] = area*inv_m*lambda_v*rho_0*v*w_14*(b_1*(inv_Abs_cos_gamma*lambda_psi_w_35*w_28*w_29 - inv_Abs_cos_gamma*lambda_psi_w_35*w_26*w_27) + b_2*w_25*(inv_Abs_cos_gamma*w_28*w_29*w_41 - inv_Abs_cos_gamma*w_26*w_27*w_41)) + lambda_gamma*(-a_0_w_23*(0.125*area_cubed*inv_cos_gamma_sq*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_26*w_56 - w_28*w_62) - a_1_w_23*w_25*(0.125*area_cubed*inv_cos_gamma_sq*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_26*w_56 - w_28*w_62) - a_1_w_23*w_48*(inv_Abs_cos_gamma*lambda_psi_w_35*w_28*w_29 - inv_Abs_cos_gamma*lambda_psi_w_35*w_26*w_27)) + lambda_psi*(-a_0_w_23_inv_cos_gamma*(w_26*w_77 + w_28*w_78) - a_1_inv_cos_gamma_w_23*w_25*(w_26*w_77 + w_28*w_78) - a_1_inv_cos_gamma_w_23*w_65*(inv_Abs_cos_gamma*lambda_psi_w_35*w_28*w_29 - inv_Abs_cos_gamma*lambda_psi_w_35*w_26*w_27)) - a_0_w_23_inv_cos_gamma*w_65 - a_1_inv_cos_gamma_w_23*w_25*w_65 - sin_theta*w_113
-    out[10, 0] = inv_w_sq*lambda_gamma*sin_gamma*v + lambda_psi*(0.5*a_0*area*inv_cos_gamma_sq*inv_h_r*inv_m*rho_0*sin_gamma*v*w_14*w_65 + 0.5*a_1*area*inv_cos_gamma_sq*inv_h_r*inv_m*rho_0*sin_gamma*v*w_14*w_25*w_65 - a_0_w_23_w_72*(w_26*w_69 + w_28*w_68) - a_1_w_23_w_72*w_25*(w_26*w_69 + w_28*w_68) - w_112*w_121) - cos_gamma*inv_w_cubed_twice_mu*lambda_v - inv_v_w_120_lambda_gamma*sin_gamma*twice_inv_w_cubed - w_97 - w_98
+    out[9, 9] = d_law_of_alpha_by_lambda_v*w_94 + v_w_32
+    out[9, 10] = d_law_of_alpha_by_lambda_gamma*w_94 + d_law_of_beta_by_lambda_gamma*w_95 - a_0_cos_w_48_w_30 - a_1_w_27_cos_w_48_w_30 - cos_gamma*inv_w_96_mu - cos_gamma_inv_w
+    out[9, 11] = d_law_of_alpha_by_lambda_psi*w_94 + d_law_of_beta_by_lambda_psi*w_95 - a_1_w_27_w_52 - sin_theta*w_100 - w_76
+    out[10, 0] = d_law_of_beta_by_h*lambda_psi*w_106 + inv_w_sq*lambda_gamma*sin_gamma*v + lambda_psi*(w_83 - w_107*w_99) - a_1_sin_w_48_w_50_w_44*d_law_of_alpha_by_h - cos_gamma*inv_w_cubed_twice_mu*lambda_v - 2.0*inv_v_w_105_lambda_gamma*inv_w_cubed*sin_gamma - w_81 - w_82
     out[10, 1] = 0.0
-    out[10, 2] = lambda_psi*(inv_w_111*w_121 + sin_gamma_v_sin_psi*w_112*w_114) + w_106
-    out[10, 3] = inv_v*w_122*(twice_h*v + twice_r_e*v) + lambda_psi*(-a_0_w_23_w_32*w_65 - a_0_w_23_w_72*(w_26*w_71 + w_28*w_70) - a_1_w_23_w_32*w_25*w_65 - a_1_w_23_w_72*w_25*(w_26*w_71 + w_28*w_70) - a_1_w_23_w_72*w_65*(inv_Abs_cos_gamma*w_26*w_27*w_30 - inv_Abs_cos_gamma*w_28*w_29*w_30) - w_116) + w_117 - inv_v_sq*w_120*w_122
-    out[10, 4] = cos_gamma_inv_w_sq*inv_v_w_120_lambda_gamma + lambda_h*sin_gamma_v + lambda_psi*(cos_gamma*inv_w_111*sin_psi*sin_theta*v - a_0*inv_cos_gamma_w_22*w_65 - a_0*w_123*w_65 - a_0_w_23_w_72*(w_26*w_73 + w_28*w_74) - a_1*w_123*w_25*w_65 - a_1_w_22_inv_cos_gamma*w_25*w_65 - a_1_w_23_w_72*w_25*(w_26*w_73 + w_28*w_74) - a_1_w_23_w_72*w_65*(w_26*w_27*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_11*inv_v*lambda_gamma_sq*sin_gamma - w_33) + w_28*w_29*(w_33 - inv_Abs_cos_gamma*w_36))) + w_124 - inv_w_sq_mu_sin_gamma*lambda_v
-    out[10, 5] = sin_gamma_v*w_118 + w_125
+    out[10, 2] = lambda_psi*(inv_w_98*w_107 + sin_gamma_v_sin_psi*w_101*w_99) + w_90
+    out[10, 3] = d_law_of_beta_by_v*lambda_psi_w_106 + inv_v*w_108*(h*twice_v + r_e*twice_v) + w_102 - a_1_sin_w_48_w_50_w_44*d_law_of_alpha_by_v - inv_v_sq_2*w_105*w_108
+    out[10, 4] = cos_gamma_inv_w_sq*inv_v_w_105_lambda_gamma + d_law_of_beta_by_gamma*lambda_psi_w_106 + lambda_h*sin_gamma_v + lambda_psi*(cos_gamma*inv_w_98*sin_psi*sin_theta*v - a_0*w_109 - a_1_w_27*w_109 - a_1_w_27_w_51 - w_60) + w_110 - a_1_sin_w_48_w_50_w_44*d_law_of_alpha_by_gamma - inv_w_sq_mu*lambda_v*sin_gamma
+    out[10, 5] = sin_gamma_v*w_103 + w_111
     out[10, 6] = -cos_gamma_v
     out[10, 7] = w_6
     out[10, 8] = w_9
-    out[10, 9] = cos_gamma_inv_w_sq_mu - a_1_w_23_w_72*lambda_psi*w_65*(inv_Abs_cos_gamma*w_26*w_27*w_38 - inv_Abs_cos_gamma*w_28*w_29*w_38)
-    out[10, 10] = inv_v_w_120*inv_w_sq_sin_gamma + lambda_psi*(-a_0_w_23_w_72*(0.125*area_cubed*inv_cos_gamma*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_26*w_56 - w_28*w_76) - a_1_w_23_w_72*w_25*(0.125*area_cubed*inv_cos_gamma*inv_m_cubed*inv_sqrt_w_45_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_26*w_56 - w_28*w_76) - a_1_w_23_w_72*w_65*(inv_Abs_cos_gamma*w_28*w_29*w_35_w_39 - inv_Abs_cos_gamma*w_26*w_27*w_35_w_39))
-    out[10, 11] = inv_w_111*sin_gamma*sin_psi*sin_theta*v + lambda_psi*(-a_0_w_23_w_72*(w_26*w_77 + w_28*w_78) - a_1_w_23_w_72*w_25*(w_26*w_77 + w_28*w_78) - a_1_w_23_w_72*w_65*(inv_Abs_cos_gamma*lambda_psi_w_35*w_28*w_29 - inv_Abs_cos_gamma*lambda_psi_w_35*w_26*w_27)) - a_0_w_23_w_72*w_65 - a_1_w_23_w_72*w_25*w_65
-    out[11, 0] = w_126*w_8 + w_99
+    out[10, 9] = cos_gamma_inv_w_sq_mu - a_1_sin_w_48_w_50_w_44*d_law_of_alpha_by_lambda_v
+    out[10, 10] = d_law_of_beta_by_lambda_gamma*lambda_psi_w_106 + inv_v_w_105*inv_w_sq_sin_gamma - a_1_sin_w_48_w_50_w_44*d_law_of_alpha_by_lambda_gamma
+    out[10, 11] = d_law_of_beta_by_lambda_psi*lambda_psi*w_106 + inv_w_98*sin_gamma*sin_psi*sin_theta*v - a_0_sin_w_48_w_50*w_54 - a_1_sin_w_48_w_50_w_44*d_law_of_alpha_by_lambda_psi - a_1_w_27*sin_w_48_w_50*w_54
+    out[11, 0] = w_112*w_8 + w_84
     out[11, 1] = 0.0
-    out[11, 2] = -lambda_psi_w_7 - sin_theta_sq*w_108 - w_107
-    out[11, 3] = -cos_gamma_inv_w_cos_psi*w_126 - w_119
-    out[11, 4] = w_125 + w_126*w_9
-    out[11, 5] = w_124 + w_126*w_3
+    out[11, 2] = -lambda_psi_w_7 - sin_theta_sq*w_93 - w_92
+    out[11, 3] = -cos_gamma_inv_w_cos_psi*w_112 - w_104
+    out[11, 4] = cos_psi*inv_cos_theta_sin_theta*w_91 + w_111
+    out[11, 5] = w_110 + w_112*w_3
     out[11, 6] = 0.0
     out[11, 7] = -inv_cos_theta_w_7
     out[11, 8] = w_3
     out[11, 9] = 0.0
     out[11, 10] = 0.0
-    out[11, 11] = -w_75
+    out[11, 11] = -w_55
     return out
 
 
@@ -2860,7 +3088,7 @@ def canonical_drift_batch(t, x, lam, p, bounds, out=None):
     h, phi, theta, v, gamma, psi = x
     lambda_h, lambda_phi, lambda_theta, lambda_v, lambda_gamma, lambda_psi = lam
     mu, r_e, rho_0, h_r, area, m, a_0, a_1, b_0, b_1, b_2 = p
-    alpha_min, alpha_max, beta_reach = bounds
+    alpha_min, alpha_max, beta_min, beta_max = bounds
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((12, *shape), np.result_type(float, t, x, lam, *p, *bounds))
@@ -2884,71 +3112,77 @@ def boundary_batch(t, x, lam, nu, p, bounds, final, out=None):
     h, phi, theta, v, gamma, psi = x
     lambda_h, lambda_phi, lambda_theta, lambda_v, lambda_gamma, lambda_psi = lam
     mu, r_e, rho_0, h_r, area, m, a_0, a_1, b_0, b_1, b_2 = p
-    alpha_min, alpha_max, beta_reach = bounds
+    alpha_min, alpha_max, beta_min, beta_max = bounds
     given_h, given_phi, given_theta, given_v, given_gamma, given_psi, on_reference_h, on_reference_phi, on_reference_theta, on_reference_v, on_reference_gamma, on_reference_psi, target_h, target_phi, target_theta, target_v, target_gamma, target_psi = final
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((7, *shape), np.result_type(float, t, x, lam, *nu, *p, *bounds, *final))
     w = h + r_e
     inv_w = 1.0/w
-    v_sq = v*v
-    inv_m = 1.0/m
-    inv_h_r = 1.0/h_r
-    h_inv_h_r = h*inv_h_r
-    w_2 = area*inv_m*rho_0*np.exp(-h_inv_h_r)
-    v_sq_w_2 = v_sq*w_2
-    w_3 = -b_2*lambda_v*v_sq_w_2
-    cos_gamma = np.cos(gamma)
-    Abs_cos_gamma = np.maximum(cos_gamma, -cos_gamma)
-    inv_Abs_cos_gamma = 1.0/Abs_cos_gamma
-    inv_b_2 = 1.0/b_2
-    half_inv_b_2 = 0.5*inv_b_2
-    b_1_half_inv_b_2 = b_1*half_inv_b_2
     inv_v = 1.0/v
-    inv_lambda_v = 1.0/lambda_v
-    lambda_psi_sq = lambda_psi*lambda_psi
-    lambda_gamma_sq = lambda_gamma*lambda_gamma
-    w_4 = cos_gamma*cos_gamma*lambda_gamma_sq + lambda_psi_sq
-    sqrt_w_4 = np.sqrt(w_4)
-    w_5 = a_1*half_inv_b_2*inv_lambda_v*inv_v*sqrt_w_4
-    w_6 = -b_1_half_inv_b_2 - inv_Abs_cos_gamma*w_5
-    w_7 = w_6 + 0.0*np.sqrt(w_3)
-    w_8 = np.minimum(np.maximum(w_7, alpha_min), alpha_max)
-    w_9 = -b_1_half_inv_b_2
-    w_10 = inv_Abs_cos_gamma*w_5 + w_9
-    w_11 = w_10 + 0.0*np.sqrt(w_3)
-    w_12 = np.minimum(np.maximum(w_11, alpha_min), alpha_max)
-    w_13 = 0.5*v*w_2
-    sqrt_w_4_w_13 = sqrt_w_4*w_13
-    sin_gamma = np.sin(gamma)
-    w_14 = inv_w*inv_w*mu
-    sin_gamma_w_14 = sin_gamma*w_14
-    half_v_sq_w_2 = 0.5*v_sq_w_2
-    w_15 = inv_Abs_cos_gamma*sqrt_w_4_w_13*(-a_0 - a_1*w_12) + lambda_v*(-half_v_sq_w_2*(b_0 + b_1*w_8 + b_2*w_8*w_8) - sin_gamma_w_14) - inv_Abs_cos_gamma*sqrt_w_4_w_13*(a_0 + a_1*w_8) - lambda_v*(-half_v_sq_w_2*(b_0 + b_1*w_12 + b_2*w_12*w_12) - sin_gamma_w_14)
-    w_16 = np.where(w_15 <= 0.0, w_8, w_12) + 0.0*w_15
+    cos_gamma = np.cos(gamma)
     inv_cos_gamma = 1.0/cos_gamma
-    w_17 = 0.25*area*area*inv_m*inv_m*rho_0*rho_0*v_sq*np.exp(-2.0*h_inv_h_r)
-    w_18 = inv_cos_gamma*inv_cos_gamma*lambda_psi_sq*w_17 + lambda_gamma_sq*w_17
-    sqrt_w_18 = np.sqrt(w_18)
-    inv_sqrt_w_18 = 1.0/sqrt_w_18
-    inv_sqrt_w_18_w_13 = inv_sqrt_w_18*w_13
-    w_19 = inv_cos_gamma*inv_sqrt_w_18_w_13*lambda_psi
-    w_20 = -w_19
-    w_21 = np.where(w_15 <= 0.0, w_20, w_19) + 0.0*w_15
-    w_22 = inv_sqrt_w_18_w_13*lambda_gamma
-    w_23 = -w_22
-    w_24 = np.where(w_15 <= 0.0, w_23, w_22) + 0.0*w_15
+    w_2 = inv_w*inv_w*mu
+    v_sq = v*v
+    sin_gamma = np.sin(gamma)
     cos_gamma_inv_w_v = cos_gamma*inv_w*v
     cos_theta = np.cos(theta)
     inv_cos_theta = 1.0/cos_theta
-    w_25 = cos_gamma_inv_w_v*inv_cos_theta*np.sin(psi)
+    w_3 = cos_gamma_inv_w_v*inv_cos_theta*np.sin(psi)
+    inv_h_r = 1.0/h_r
+    h_inv_h_r = h*inv_h_r
+    inv_m = 1.0/m
+    area_inv_m_rho_0 = area*inv_m*rho_0
+    w_4 = area_inv_m_rho_0*np.exp(-h_inv_h_r)
+    half_v = 0.5*v
+    law_part_8 = half_v*w_4
+    law_part_11 = inv_cos_gamma*lambda_psi*law_part_8
+    w_5 = 0.5*(np.maximum(beta_min, np.minimum(beta_max, np.pi) - 2.0*np.pi) + np.minimum(beta_max, np.maximum(beta_min, -np.pi) + 2.0*np.pi))
+    law_part_10 = np.cos(w_5)
+    law_part_5 = np.sin(w_5)
+    law_part_9 = lambda_gamma*law_part_8
+    law_part_12 = law_part_5*law_part_9 - law_part_10*law_part_11
+    w_6 = -law_part_12
+    law_part_13 = law_part_10*law_part_9 + law_part_11*law_part_5
+    w_7 = np.arctan2(np.real(w_6), np.real(law_part_13)) + np.arctan((w_6*np.cos(np.arctan2(np.real(w_6), np.real(law_part_13))) - law_part_13*np.sin(np.arctan2(np.real(w_6), np.real(law_part_13))))/(law_part_13*np.cos(np.arctan2(np.real(w_6), np.real(law_part_13))) + w_6*np.sin(np.arctan2(np.real(w_6), np.real(law_part_13)))))
+    w_8 = w_5 + w_7
+    w_9 = np.minimum(np.maximum(w_8, beta_min), beta_max)
+    law_part_15 = law_part_11*np.sin(w_9) + law_part_9*np.cos(w_9)
+    inv_lambda_v = 1.0/lambda_v
+    inv_v_sq = 1.0/v_sq
+    inv_area = 1.0/area
+    inv_rho_0 = 1.0/rho_0
+    inv_b_2 = 1.0/b_2
+    law_part_17 = a_1*inv_area*inv_b_2*inv_lambda_v*inv_rho_0*inv_v_sq*m*np.exp(h_inv_h_r)
+    law_part_2 = 0.5*b_1
+    law_part_3 = -inv_b_2*law_part_2
+    w_10 = law_part_15*law_part_17 + law_part_3
+    law_part_18 = lambda_v*v_sq*w_4
+    law_part_19 = b_2*law_part_18
+    law_part_20 = -law_part_19
+    w_11 = w_10 + 0.0*np.sqrt(law_part_20)
+    w_12 = np.minimum(np.maximum(w_11, alpha_min), alpha_max)
+    w_13 = -law_part_13
+    w_14 = np.arctan2(np.real(law_part_12), np.real(w_13)) + np.arctan((law_part_12*np.cos(np.arctan2(np.real(law_part_12), np.real(w_13))) - w_13*np.sin(np.arctan2(np.real(law_part_12), np.real(w_13))))/(w_13*np.cos(np.arctan2(np.real(law_part_12), np.real(w_13))) + law_part_12*np.sin(np.arctan2(np.real(law_part_12), np.real(w_13)))))
+    w_15 = w_14 + w_5
+    w_16 = np.minimum(np.maximum(w_15, beta_min), beta_max)
+    law_part_24 = law_part_11*np.sin(w_16) + law_part_9*np.cos(w_16)
+    w_17 = law_part_17*law_part_24 + law_part_3
+    w_18 = w_17 + 0.0*np.sqrt(law_part_20)
+    w_19 = np.minimum(np.maximum(w_18, alpha_min), alpha_max)
+    law_part_22 = law_part_18*law_part_2
+    law_part_26 = 0.5*law_part_19
+    law_part_27 = law_part_22*w_12 + law_part_24*(a_0 + a_1*w_19) + law_part_26*w_12*w_12 - law_part_15*(a_0 + a_1*w_12) - law_part_22*w_19 - law_part_26*w_19*w_19
+    w_20 = np.where(law_part_27 <= 0.0, w_19, w_12) + 0.0*law_part_27
+    w_21 = half_v*w_4*(a_0 + a_1*w_20)
+    w_22 = np.where(law_part_27 <= 0.0, w_16, w_9) + 0.0*law_part_27
     out[0] = given_h*(h - target_h) + h*on_reference_h + lambda_h*(1.0 - given_h - on_reference_h)
     out[1] = given_phi*(phi - target_phi) + lambda_phi*(1.0 - given_phi - on_reference_phi) + on_reference_phi*phi
     out[2] = given_theta*(theta - target_theta) + on_reference_theta*theta - (-lambda_theta - 1.0)*(1.0 - given_theta - on_reference_theta)
     out[3] = given_v*(v - target_v) + lambda_v*(1.0 - given_v - on_reference_v) + on_reference_v*v
     out[4] = gamma*on_reference_gamma + given_gamma*(gamma - target_gamma) + lambda_gamma*(1.0 - given_gamma - on_reference_gamma)
     out[5] = given_psi*(psi - target_psi) + lambda_psi*(1.0 - given_psi - on_reference_psi) + on_reference_psi*psi
-    out[6] = cos_gamma_inv_w_v*lambda_theta*np.cos(psi) + lambda_gamma*(cos_gamma*(inv_w*v - inv_v*w_14) + w_13*w_24*(a_0 + a_1*w_16)) + lambda_h*sin_gamma*v + lambda_phi*w_25 + lambda_psi*(inv_cos_gamma*w_13*w_21*(a_0 + a_1*w_16) + w_25*np.sin(theta)) + lambda_v*(-half_v_sq_w_2*(b_0 + b_1*w_16 + b_2*w_16*w_16) - sin_gamma_w_14)
+    out[6] = cos_gamma_inv_w_v*lambda_theta*np.cos(psi) + lambda_gamma*(cos_gamma*(inv_w*v - inv_v*w_2) + w_21*np.cos(w_22)) + lambda_h*sin_gamma*v + lambda_phi*w_3 + lambda_psi*(inv_cos_gamma*w_21*np.sin(w_22) + w_3*np.sin(theta)) + lambda_v*(-sin_gamma*w_2 - 0.5*v_sq*w_4*(b_0 + b_1*w_20 + b_2*w_20*w_20))
     return out
 
 
@@ -2957,7 +3191,7 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     h, phi, theta, v, gamma, psi = x
     lambda_h, lambda_phi, lambda_theta, lambda_v, lambda_gamma, lambda_psi = lam
     mu, r_e, rho_0, h_r, area, m, a_0, a_1, b_0, b_1, b_2 = p
-    alpha_min, alpha_max, beta_reach = bounds
+    alpha_min, alpha_max, beta_min, beta_max = bounds
     given_h, given_phi, given_theta, given_v, given_gamma, given_psi, on_reference_h, on_reference_phi, on_reference_theta, on_reference_v, on_reference_gamma, on_reference_psi, target_h, target_phi, target_theta, target_v, target_gamma, target_psi = final
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
@@ -2969,144 +3203,194 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     w_5 = given_gamma + on_reference_gamma
     w_6 = given_psi + on_reference_psi
     inv_h_r = 1.0/h_r
-    inv_m = 1.0/m
-    h_inv_h_r = h*inv_h_r
-    w_7 = np.exp(-h_inv_h_r)
-    area_inv_m_rho_0_w_7 = area*inv_m*rho_0*w_7
-    v_sq = v*v
-    w_8 = area_inv_m_rho_0_w_7*v_sq
-    lambda_v_w_8 = lambda_v*w_8
-    w_9 = -b_2*lambda_v_w_8
-    cos_gamma = np.cos(gamma)
-    Abs_cos_gamma = np.maximum(cos_gamma, -cos_gamma)
-    inv_Abs_cos_gamma = 1.0/Abs_cos_gamma
-    inv_b_2 = 1.0/b_2
-    half_inv_b_2 = 0.5*inv_b_2
-    b_1_half_inv_b_2 = b_1*half_inv_b_2
     inv_v = 1.0/v
-    inv_lambda_v = 1.0/lambda_v
-    lambda_psi_sq = lambda_psi*lambda_psi
-    cos_gamma_sq = cos_gamma*cos_gamma
-    lambda_gamma_sq = lambda_gamma*lambda_gamma
-    w_10 = cos_gamma_sq*lambda_gamma_sq + lambda_psi_sq
-    sqrt_w_10 = np.sqrt(w_10)
-    w_11 = a_1*inv_lambda_v*sqrt_w_10
-    half_inv_b_2_w_11 = half_inv_b_2*w_11
-    half_inv_b_2_w_11_inv_v = half_inv_b_2_w_11*inv_v
-    w_12 = -b_1_half_inv_b_2 - half_inv_b_2_w_11_inv_v*inv_Abs_cos_gamma
-    w_13 = w_12 + 0.0*np.sqrt(w_9)
-    w_14 = np.minimum(np.maximum(w_13, alpha_min), alpha_max)
-    w_15 = -b_1_half_inv_b_2
-    w_16 = half_inv_b_2_w_11_inv_v*inv_Abs_cos_gamma + w_15
-    w_17 = w_16 + 0.0*np.sqrt(w_9)
-    w_18 = np.minimum(np.maximum(w_17, alpha_min), alpha_max)
-    area_inv_m_rho_0_w_7_v = area_inv_m_rho_0_w_7*v
-    w_19 = 0.5*area_inv_m_rho_0_w_7_v
-    sqrt_w_10_w_19 = sqrt_w_10*w_19
     sin_gamma = np.sin(gamma)
-    w_20 = h + r_e
-    inv_w_20 = 1.0/w_20
-    inv_w_20_sq = inv_w_20*inv_w_20
-    inv_w_20_sq_mu = inv_w_20_sq*mu
-    inv_w_20_sq_mu_sin_gamma = inv_w_20_sq_mu*sin_gamma
-    half_w_8 = 0.5*w_8
-    w_21 = inv_Abs_cos_gamma*sqrt_w_10_w_19*(-a_0 - a_1*w_18) + lambda_v*(-half_w_8*(b_0 + b_1*w_14 + b_2*w_14*w_14) - inv_w_20_sq_mu_sin_gamma) - inv_Abs_cos_gamma*sqrt_w_10_w_19*(a_0 + a_1*w_14) - lambda_v*(-half_w_8*(b_0 + b_1*w_18 + b_2*w_18*w_18) - inv_w_20_sq_mu_sin_gamma)
-    w_22 = np.where(w_21 <= 0.0, 0.0, 1.0) + 0.0*w_21
-    w_23 = np.where(w_21 <= 0.0, w_14, w_18) + 0.0*w_21
-    w_24 = 0.25*area*area*inv_m*inv_m*rho_0*rho_0*np.exp(-2.0*h_inv_h_r)
-    lambda_gamma_sq_w_24 = lambda_gamma_sq*w_24
-    w_25 = lambda_gamma_sq_w_24*v_sq
-    inv_cos_gamma = 1.0/cos_gamma
-    inv_cos_gamma_sq = inv_cos_gamma*inv_cos_gamma
-    w_26 = inv_cos_gamma_sq*lambda_psi_sq*w_24
-    v_sq_w_26 = v_sq*w_26
-    w_27 = v_sq_w_26 + w_25
-    sqrt_w_27 = np.sqrt(w_27)
-    inv_sqrt_w_27 = 1.0/sqrt_w_27
-    w_28 = inv_sqrt_w_27*lambda_gamma
-    w_19_w_28 = w_19*w_28
-    w_29 = -w_19_w_28
-    w_30 = np.where(w_21 <= 0.0, w_29, w_19_w_28) + 0.0*w_21
-    w_31 = np.where(w_21 <= 0.0, 1.0, 0.0) + 0.0*w_21
-    w_32 = inv_cos_gamma*inv_sqrt_w_27*lambda_psi*w_19
-    w_33 = -w_32
-    w_34 = np.where(w_21 <= 0.0, w_33, w_32) + 0.0*w_21
+    cos_gamma = np.cos(gamma)
     sin_theta = np.sin(theta)
     cos_psi = np.cos(psi)
     cos_psi_lambda_theta = cos_psi*lambda_theta
-    inv_w_20_sq_v = inv_w_20_sq*v
-    cos_gamma_inv_w_20_sq_v = cos_gamma*inv_w_20_sq_v
+    w_7 = h + r_e
+    inv_w_7 = 1.0/w_7
+    inv_w_7_sq = inv_w_7*inv_w_7
+    inv_w_7_sq_v = inv_w_7_sq*v
+    cos_gamma_inv_w_7_sq_v = cos_gamma*inv_w_7_sq_v
     cos_theta = np.cos(theta)
     inv_cos_theta = 1.0/cos_theta
     sin_psi = np.sin(psi)
     inv_cos_theta_sin_psi = inv_cos_theta*sin_psi
-    w_35 = cos_gamma_inv_w_20_sq_v*inv_cos_theta_sin_psi
-    w_36 = 2.0*inv_w_20*inv_w_20*inv_w_20*mu
-    inv_h_r_w_19 = inv_h_r*w_19
-    inv_sqrt_w_27_cubed = inv_sqrt_w_27*inv_sqrt_w_27*inv_sqrt_w_27
-    w_37 = inv_h_r*v_sq_w_26 + inv_h_r*w_25
-    w_38 = inv_h_r*w_19_w_28 - 0.5*area*inv_m*inv_sqrt_w_27_cubed*lambda_gamma*rho_0*v*w_37*w_7
-    inv_sqrt_w_27_cubed_w_19 = inv_sqrt_w_27_cubed*w_19
+    w_8 = cos_gamma_inv_w_7_sq_v*inv_cos_theta_sin_psi
+    w_9 = 2.0*inv_w_7*inv_w_7*inv_w_7*mu
+    w_10 = 0.5*(np.maximum(beta_min, np.minimum(beta_max, np.pi) - 2.0*np.pi) + np.minimum(beta_max, np.maximum(beta_min, -np.pi) + 2.0*np.pi))
+    law_part_10 = np.cos(w_10)
+    inv_cos_gamma = 1.0/cos_gamma
+    inv_m = 1.0/m
+    area_inv_m_rho_0 = area*inv_m*rho_0
+    h_inv_h_r = h*inv_h_r
+    w_11 = area_inv_m_rho_0*np.exp(-h_inv_h_r)
+    half_w_11 = 0.5*w_11
+    law_part_8 = half_w_11*v
+    inv_cos_gamma_law_part_8 = inv_cos_gamma*law_part_8
+    law_part_11 = inv_cos_gamma_law_part_8*lambda_psi
+    law_part_5 = np.sin(w_10)
+    law_part_9 = lambda_gamma*law_part_8
+    law_part_12 = law_part_5*law_part_9 - law_part_10*law_part_11
+    w_12 = -law_part_12
+    law_part_13 = law_part_10*law_part_9 + law_part_11*law_part_5
+    w_13 = np.arctan2(np.real(w_12), np.real(law_part_13)) + np.arctan((w_12*np.cos(np.arctan2(np.real(w_12), np.real(law_part_13))) - law_part_13*np.sin(np.arctan2(np.real(w_12), np.real(law_part_13))))/(law_part_13*np.cos(np.arctan2(np.real(w_12), np.real(law_part_13))) + w_12*np.sin(np.arctan2(np.real(w_12), np.real(law_part_13)))))
+    w_14 = w_10 + w_13
+    w_15 = np.minimum(np.maximum(w_14, beta_min), beta_max)
+    sin_w_15 = np.sin(w_15)
+    cos_w_15 = np.cos(w_15)
+    law_part_15 = cos_w_15*law_part_9 + law_part_11*sin_w_15
+    inv_lambda_v = 1.0/lambda_v
+    v_sq = v*v
+    inv_v_sq = 1.0/v_sq
+    inv_area = 1.0/area
+    inv_rho_0 = 1.0/rho_0
+    exp_h_inv_h_r = np.exp(h_inv_h_r)
+    inv_b_2 = 1.0/b_2
+    w_16 = a_1*exp_h_inv_h_r*inv_area*inv_b_2*inv_rho_0*inv_v_sq*m
+    inv_lambda_v_w_16 = inv_lambda_v*w_16
+    law_part_2 = 0.5*b_1
+    law_part_3 = -inv_b_2*law_part_2
+    w_17 = inv_lambda_v_w_16*law_part_15 + law_part_3
+    law_part_18 = lambda_v*v_sq*w_11
+    law_part_19 = b_2*law_part_18
+    law_part_20 = -law_part_19
+    w_18 = w_17 + 0.0*np.sqrt(law_part_20)
+    w_19 = np.minimum(np.maximum(w_18, alpha_min), alpha_max)
+    w_20 = -law_part_13
+    w_21 = np.arctan2(np.real(law_part_12), np.real(w_20)) + np.arctan((law_part_12*np.cos(np.arctan2(np.real(law_part_12), np.real(w_20))) - w_20*np.sin(np.arctan2(np.real(law_part_12), np.real(w_20))))/(w_20*np.cos(np.arctan2(np.real(law_part_12), np.real(w_20))) + law_part_12*np.sin(np.arctan2(np.real(law_part_12), np.real(w_20)))))
+    w_22 = w_10 + w_21
+    w_23 = np.minimum(np.maximum(w_22, beta_min), beta_max)
+    sin_w_23 = np.sin(w_23)
+    cos_w_23 = np.cos(w_23)
+    law_part_24 = cos_w_23*law_part_9 + law_part_11*sin_w_23
+    w_24 = inv_lambda_v_w_16*law_part_24 + law_part_3
+    w_25 = w_24 + 0.0*np.sqrt(law_part_20)
+    w_26 = np.minimum(np.maximum(w_25, alpha_min), alpha_max)
+    law_part_22 = law_part_18*law_part_2
+    law_part_26 = 0.5*law_part_19
+    law_part_27 = law_part_22*w_19 + law_part_24*(a_0 + a_1*w_26) + law_part_26*w_19*w_19 - law_part_15*(a_0 + a_1*w_19) - law_part_22*w_26 - law_part_26*w_26*w_26
+    w_27 = np.where(law_part_27 <= 0.0, w_26, w_19) + 0.0*law_part_27
+    w_28 = b_0 + b_1*w_27 + b_2*w_27*w_27
+    half_w_11_v_sq = half_w_11*v_sq
+    half_w_11_v_sq_w_28 = half_w_11_v_sq*w_28
+    w_29 = np.where(law_part_27 <= 0.0, w_23, w_15) + 0.0*law_part_27
+    sin_w_29 = np.sin(w_29)
+    inv_cos_gamma_sin_w_29 = inv_cos_gamma*sin_w_29
+    w_30 = a_0 + a_1*w_27
+    half_v = 0.5*v
+    half_v_w_11 = half_v*w_11
+    half_v_w_11_w_30 = half_v_w_11*w_30
+    w_31 = half_v_w_11_w_30*inv_cos_gamma_sin_w_29
+    cos_w_29 = np.cos(w_29)
+    cos_w_29_half_v_w_11 = cos_w_29*half_v_w_11
+    w_32 = cos_w_29_half_v_w_11*w_30
     inv_cos_gamma_lambda_psi = inv_cos_gamma*lambda_psi
-    w_39 = inv_cos_gamma_lambda_psi*inv_sqrt_w_27_cubed_w_19
-    w_40 = inv_h_r*w_32 - w_37*w_39
-    inv_w_20_v = inv_w_20*v
-    cos_gamma_inv_w_20_v = cos_gamma*inv_w_20_v
-    w_41 = cos_gamma_inv_w_20_v*sin_psi
-    w_42 = inv_cos_theta*inv_cos_theta*w_41
-    w_43 = np.heaviside(w_13 - alpha_min, 1.0)*np.heaviside(alpha_max - w_13, 1.0)
-    w_44 = np.heaviside(w_17 - alpha_min, 1.0)*np.heaviside(alpha_max - w_17, 1.0)
-    cos_gamma_inv_w_20 = cos_gamma*inv_w_20
-    w_45 = cos_gamma_inv_w_20*inv_cos_theta_sin_psi
-    inv_v_sq = inv_v*inv_v
-    w_46 = half_inv_b_2_w_11*inv_v_sq
-    inv_b_2_inv_v_sq_w_11 = inv_b_2*inv_v_sq*w_11
-    w_47 = 0.5*area_inv_m_rho_0_w_7
-    a_1_w_19 = a_1*w_19
-    w_48 = -lambda_gamma_sq_w_24*v - v*w_26
-    w_49 = inv_sqrt_w_27_cubed_w_19*lambda_gamma*w_48 + w_28*w_47
-    inv_cos_gamma_w_47 = inv_cos_gamma*w_47
-    inv_cos_gamma_w_19 = inv_cos_gamma*w_19
-    a_1_inv_cos_gamma_w_19 = a_1*inv_cos_gamma_w_19
-    w_50 = inv_cos_gamma_w_47*inv_sqrt_w_27*lambda_psi + w_39*w_48
-    inv_sqrt_w_10 = 1.0/sqrt_w_10
-    inv_w_20_v_sin_gamma = inv_w_20_v*sin_gamma
-    w_51 = inv_cos_theta_sin_psi*inv_w_20_v_sin_gamma
-    w_52 = np.heaviside(cos_gamma, 0.0) - np.heaviside(-cos_gamma, 0.0)
-    w_53 = half_inv_b_2_w_11_inv_v*inv_cos_gamma_sq*sin_gamma*w_52
-    a_1_inv_v = a_1*inv_v
-    a_1_inv_v_half_inv_b_2 = a_1_inv_v*half_inv_b_2
-    w_54 = inv_lambda_v*inv_sqrt_w_10
-    w_55 = a_1_inv_v_half_inv_b_2*w_54
-    w_56 = cos_gamma*lambda_gamma_sq*sin_gamma*w_55
-    w_57 = inv_w_20*v - inv_v*inv_w_20_sq_mu
-    inv_cos_gamma_cubed = inv_cos_gamma*inv_cos_gamma*inv_cos_gamma
-    inv_m_cubed = inv_m*inv_m*inv_m
-    area_cubed = area*area*area
-    rho_0_cubed = rho_0*rho_0*rho_0
-    v_cubed = v*v*v
-    w_58 = np.exp(-3.0*h_inv_h_r)
-    w_59 = 0.125*area_cubed*inv_m_cubed*inv_sqrt_w_27_cubed*rho_0_cubed*v_cubed*w_58
-    w_60 = inv_cos_gamma_cubed*lambda_psi_sq*w_59
+    w_33 = inv_cos_gamma_lambda_psi*w_32 - half_v_w_11_w_30*lambda_gamma*sin_w_29
+    w_34 = a_1*cos_w_29_half_v_w_11*lambda_gamma + a_1*half_v_w_11*inv_cos_gamma_lambda_psi*sin_w_29 - half_w_11_v_sq*lambda_v*(b_1 + 2.0*b_2*w_27)
+    w_35 = np.where(law_part_27 <= 0.0, 0.0, 1.0) + 0.0*law_part_27
+    w_36 = np.where(law_part_27 <= 0.0, 1.0, 0.0) + 0.0*law_part_27
+    w_37 = np.heaviside(w_18 - alpha_min, 1.0)*np.heaviside(alpha_max - w_18, 1.0)
+    inv_lambda_v_w_16_w_37 = inv_lambda_v_w_16*w_37
+    law_part_15_w_37 = law_part_15*w_37
+    w_38 = cos_w_15*law_part_11 - law_part_9*sin_w_15
+    d_law_part_7_by_h = -inv_h_r*w_11
+    d_law_part_8_by_h = d_law_part_7_by_h*half_v
+    d_law_part_11_by_h = d_law_part_8_by_h*inv_cos_gamma_lambda_psi
+    w_39 = law_part_12*law_part_12 + law_part_13*law_part_13
+    inv_w_39 = 1.0/w_39
+    w_40 = np.heaviside(w_14 - beta_min, 1.0)*np.heaviside(beta_max - w_14, 1.0)
+    inv_w_39_w_40 = inv_w_39*w_40
+    d_law_part_9_by_h = d_law_part_8_by_h*lambda_gamma
+    d_law_part_12_by_h = d_law_part_9_by_h*law_part_5 - d_law_part_11_by_h*law_part_10
+    w_41 = d_law_part_12_by_h*law_part_13
+    d_law_part_13_by_h = d_law_part_11_by_h*law_part_5 + d_law_part_9_by_h*law_part_10
+    d_law_part_14_by_h = d_law_part_13_by_h*inv_w_39*law_part_12*w_40 - inv_w_39_w_40*w_41
+    d_law_part_15_by_h = cos_w_15*d_law_part_9_by_h + d_law_part_11_by_h*sin_w_15 + d_law_part_14_by_h*w_38
+    d_law_part_17_by_h = inv_h_r*inv_lambda_v_w_16
+    d_law_part_21_by_h = d_law_part_15_by_h*inv_lambda_v_w_16_w_37 + d_law_part_17_by_h*law_part_15_w_37
+    w_42 = np.heaviside(w_25 - alpha_min, 1.0)*np.heaviside(alpha_max - w_25, 1.0)
+    law_part_24_w_42 = law_part_24*w_42
+    inv_lambda_v_w_16_w_42 = inv_lambda_v_w_16*w_42
+    w_43 = cos_w_23*law_part_11 - law_part_9*sin_w_23
+    w_44 = np.heaviside(w_22 - beta_min, 1.0)*np.heaviside(beta_max - w_22, 1.0)
+    inv_w_39_w_44 = inv_w_39*w_44
+    d_law_part_23_by_h = d_law_part_13_by_h*inv_w_39*law_part_12*w_44 - inv_w_39_w_44*w_41
+    d_law_part_24_by_h = cos_w_23*d_law_part_9_by_h + d_law_part_11_by_h*sin_w_23 + d_law_part_23_by_h*w_43
+    d_law_part_25_by_h = d_law_part_17_by_h*law_part_24_w_42 + d_law_part_24_by_h*inv_lambda_v_w_16_w_42
+    d_law_of_alpha_by_h = d_law_part_21_by_h*w_35 + d_law_part_25_by_h*w_36
+    d_law_of_beta_by_h = d_law_part_14_by_h*w_35 + d_law_part_23_by_h*w_36
+    inv_w_7_v = inv_w_7*v
+    cos_gamma_inv_w_7_v = cos_gamma*inv_w_7_v
+    w_45 = cos_gamma_inv_w_7_v*sin_psi
+    w_46 = inv_cos_theta*inv_cos_theta*w_45
+    cos_gamma_inv_w_7 = cos_gamma*inv_w_7
+    w_47 = cos_gamma_inv_w_7*inv_cos_theta_sin_psi
+    half_w_11_w_30 = half_w_11*w_30
+    inv_w_7_sq_mu = inv_w_7_sq*mu
+    d_law_part_11_by_v = half_w_11*inv_cos_gamma_lambda_psi
+    d_law_part_9_by_v = half_w_11*lambda_gamma
+    d_law_part_12_by_v = d_law_part_9_by_v*law_part_5 - d_law_part_11_by_v*law_part_10
+    w_48 = d_law_part_12_by_v*law_part_13
+    d_law_part_13_by_v = d_law_part_11_by_v*law_part_5 + d_law_part_9_by_v*law_part_10
+    d_law_part_14_by_v = d_law_part_13_by_v*inv_w_39*law_part_12*w_40 - inv_w_39_w_40*w_48
+    d_law_part_15_by_v = cos_w_15*d_law_part_9_by_v + d_law_part_11_by_v*sin_w_15 + d_law_part_14_by_v*w_38
+    d_law_part_16_by_v = 2.0*v
+    d_law_part_17_by_v = -a_1*d_law_part_16_by_v*exp_h_inv_h_r*inv_area*inv_b_2*inv_lambda_v*inv_rho_0*inv_v_sq*inv_v_sq*m
+    d_law_part_21_by_v = d_law_part_15_by_v*inv_lambda_v_w_16_w_37 + d_law_part_17_by_v*law_part_15_w_37
+    d_law_part_23_by_v = d_law_part_13_by_v*inv_w_39*law_part_12*w_44 - inv_w_39_w_44*w_48
+    d_law_part_24_by_v = cos_w_23*d_law_part_9_by_v + d_law_part_11_by_v*sin_w_23 + d_law_part_23_by_v*w_43
+    d_law_part_25_by_v = d_law_part_17_by_v*law_part_24_w_42 + d_law_part_24_by_v*inv_lambda_v_w_16_w_42
+    d_law_of_alpha_by_v = d_law_part_21_by_v*w_35 + d_law_part_25_by_v*w_36
+    d_law_of_beta_by_v = d_law_part_14_by_v*w_35 + d_law_part_23_by_v*w_36
+    inv_cos_gamma_sq = inv_cos_gamma*inv_cos_gamma
+    inv_w_7_v_sin_gamma = inv_w_7_v*sin_gamma
+    w_49 = inv_cos_theta_sin_psi*inv_w_7_v_sin_gamma
+    w_50 = inv_w_7*v - inv_v*inv_w_7_sq_mu
     sin_gamma_v = sin_gamma*v
-    w_61 = inv_cos_gamma*inv_cos_gamma*inv_cos_gamma*inv_cos_gamma*lambda_psi*lambda_psi*lambda_psi*sin_gamma*w_59 - 0.5*area*inv_cos_gamma_sq*inv_m*inv_sqrt_w_27*lambda_psi*rho_0*sin_gamma*v*w_7
-    w_62 = cos_gamma_inv_w_20_v*cos_psi
-    inv_cos_theta_w_62 = inv_cos_theta*w_62
-    inv_cos_theta_w_41 = inv_cos_theta*w_41
-    w_63 = inv_lambda_v*inv_lambda_v*sqrt_w_10
-    w_64 = a_1_inv_v_half_inv_b_2*w_63
-    a_1_inv_v_inv_b_2 = a_1_inv_v*inv_b_2
-    a_1_inv_v_inv_b_2_w_63 = a_1_inv_v_inv_b_2*w_63
-    half_lambda_v_w_8 = 0.5*lambda_v_w_8
-    w_65 = cos_gamma_sq*lambda_gamma
-    w_55_w_65 = w_55*w_65
-    a_1_inv_v_inv_b_2_w_54 = a_1_inv_v_inv_b_2*w_54
-    w_66 = a_1_inv_v_inv_b_2_w_54*w_65
-    lambda_gamma_w_59 = lambda_gamma*w_59
-    w_67 = lambda_gamma_sq*w_59 - 0.5*area*inv_m*inv_sqrt_w_27*rho_0*v*w_7
-    lambda_psi_w_55 = lambda_psi*w_55
-    w_68 = a_1_inv_v_inv_b_2_w_54*lambda_psi
-    w_69 = w_60 - 0.5*area*inv_cos_gamma*inv_m*inv_sqrt_w_27*rho_0*v*w_7
+    d_law_part_11_by_gamma = inv_cos_gamma_sq*lambda_psi*law_part_8*sin_gamma
+    d_law_part_12_by_gamma = -d_law_part_11_by_gamma*law_part_10
+    w_51 = d_law_part_12_by_gamma*law_part_13
+    d_law_part_13_by_gamma = d_law_part_11_by_gamma*law_part_5
+    d_law_part_14_by_gamma = d_law_part_13_by_gamma*inv_w_39*law_part_12*w_40 - inv_w_39_w_40*w_51
+    d_law_part_15_by_gamma = d_law_part_11_by_gamma*sin_w_15 + d_law_part_14_by_gamma*w_38
+    d_law_part_21_by_gamma = d_law_part_15_by_gamma*inv_lambda_v_w_16_w_37
+    d_law_part_23_by_gamma = d_law_part_13_by_gamma*inv_w_39*law_part_12*w_44 - inv_w_39_w_44*w_51
+    d_law_part_24_by_gamma = d_law_part_11_by_gamma*sin_w_23 + d_law_part_23_by_gamma*w_43
+    d_law_part_25_by_gamma = d_law_part_24_by_gamma*inv_lambda_v_w_16_w_42
+    d_law_of_alpha_by_gamma = d_law_part_21_by_gamma*w_35 + d_law_part_25_by_gamma*w_36
+    d_law_of_beta_by_gamma = d_law_part_14_by_gamma*w_35 + d_law_part_23_by_gamma*w_36
+    w_52 = cos_gamma_inv_w_7_v*cos_psi
+    inv_cos_theta_w_52 = inv_cos_theta*w_52
+    inv_cos_theta_w_45 = inv_cos_theta*w_45
+    d_law_part_17_by_lambda_v = -inv_lambda_v*inv_lambda_v*w_16
+    d_law_part_21_by_lambda_v = d_law_part_17_by_lambda_v*law_part_15_w_37
+    d_law_part_25_by_lambda_v = d_law_part_17_by_lambda_v*law_part_24_w_42
+    d_law_of_alpha_by_lambda_v = d_law_part_21_by_lambda_v*w_35 + d_law_part_25_by_lambda_v*w_36
+    d_law_part_12_by_lambda_gamma = law_part_5*law_part_8
+    w_53 = d_law_part_12_by_lambda_gamma*law_part_13
+    d_law_part_13_by_lambda_gamma = law_part_10*law_part_8
+    d_law_part_14_by_lambda_gamma = d_law_part_13_by_lambda_gamma*inv_w_39*law_part_12*w_40 - inv_w_39_w_40*w_53
+    d_law_part_15_by_lambda_gamma = cos_w_15*law_part_8 + d_law_part_14_by_lambda_gamma*w_38
+    d_law_part_21_by_lambda_gamma = d_law_part_15_by_lambda_gamma*inv_lambda_v_w_16_w_37
+    d_law_part_23_by_lambda_gamma = d_law_part_13_by_lambda_gamma*inv_w_39*law_part_12*w_44 - inv_w_39_w_44*w_53
+    d_law_part_24_by_lambda_gamma = cos_w_23*law_part_8 + d_law_part_23_by_lambda_gamma*w_43
+    d_law_part_25_by_lambda_gamma = d_law_part_24_by_lambda_gamma*inv_lambda_v_w_16_w_42
+    d_law_of_alpha_by_lambda_gamma = d_law_part_21_by_lambda_gamma*w_35 + d_law_part_25_by_lambda_gamma*w_36
+    d_law_of_beta_by_lambda_gamma = d_law_part_14_by_lambda_gamma*w_35 + d_law_part_23_by_lambda_gamma*w_36
+    d_law_part_12_by_lambda_psi = -inv_cos_gamma_law_part_8*law_part_10
+    w_54 = d_law_part_12_by_lambda_psi*law_part_13
+    d_law_part_13_by_lambda_psi = inv_cos_gamma_law_part_8*law_part_5
+    d_law_part_14_by_lambda_psi = d_law_part_13_by_lambda_psi*inv_w_39*law_part_12*w_40 - inv_w_39_w_40*w_54
+    d_law_part_15_by_lambda_psi = d_law_part_14_by_lambda_psi*w_38 + inv_cos_gamma_law_part_8*sin_w_15
+    d_law_part_21_by_lambda_psi = d_law_part_15_by_lambda_psi*inv_lambda_v_w_16_w_37
+    d_law_part_23_by_lambda_psi = d_law_part_13_by_lambda_psi*inv_w_39*law_part_12*w_44 - inv_w_39_w_44*w_54
+    d_law_part_24_by_lambda_psi = d_law_part_23_by_lambda_psi*w_43 + inv_cos_gamma_law_part_8*sin_w_23
+    d_law_part_25_by_lambda_psi = d_law_part_24_by_lambda_psi*inv_lambda_v_w_16_w_42
+    d_law_of_alpha_by_lambda_psi = d_law_part_21_by_lambda_psi*w_35 + d_law_part_25_by_lambda_psi*w_36
+    d_law_of_beta_by_lambda_psi = d_law_part_14_by_lambda_psi*w_35 + d_law_part_23_by_lambda_psi*w_36
     out[0, 0] = w
     out[0, 1] = 0.0
     out[0, 2] = 0.0
@@ -3185,17 +3469,17 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     out[5, 10] = 0.0
     out[5, 11] = 1.0 - w_6
     out[5, 12] = 0.0
-    out[6, 0] = lambda_gamma*(cos_gamma*(inv_v*w_36 - inv_w_20_sq_v) + w_19*(a_0 + a_1*w_23)*(w_31*w_38 - w_22*w_38) - inv_h_r_w_19*w_30*(a_0 + a_1*w_23)) + lambda_psi*(0.5*area*inv_cos_gamma*inv_m*rho_0*v*w_7*(a_0 + a_1*w_23)*(w_31*w_40 - w_22*w_40) - inv_cos_gamma*inv_h_r_w_19*w_34*(a_0 + a_1*w_23) - sin_theta*w_35) + lambda_v*(half_w_8*inv_h_r*(b_0 + b_1*w_23 + b_2*w_23*w_23) + sin_gamma*w_36) - cos_gamma_inv_w_20_sq_v*cos_psi_lambda_theta - lambda_phi*w_35
+    out[6, 0] = d_law_of_alpha_by_h*w_34 + d_law_of_beta_by_h*w_33 + lambda_gamma*(cos_gamma*(inv_v*w_9 - inv_w_7_sq_v) - inv_h_r*w_32) + lambda_psi*(-inv_h_r*w_31 - sin_theta*w_8) + lambda_v*(half_w_11_v_sq_w_28*inv_h_r + sin_gamma*w_9) - cos_gamma_inv_w_7_sq_v*cos_psi_lambda_theta - lambda_phi*w_8
     out[6, 1] = 0.0
-    out[6, 2] = lambda_phi*sin_theta*w_42 + lambda_psi*(sin_theta*sin_theta*w_42 + w_41)
-    out[6, 3] = cos_gamma_inv_w_20*cos_psi_lambda_theta + lambda_gamma*(a_1_w_19*w_30*(inv_Abs_cos_gamma*w_31*w_43*w_46 - inv_Abs_cos_gamma*w_22*w_44*w_46) + cos_gamma*(inv_v_sq*inv_w_20_sq_mu + inv_w_20) + w_19*(a_0 + a_1*w_23)*(w_22*w_49 - w_31*w_49) + w_30*w_47*(a_0 + a_1*w_23)) + lambda_h*sin_gamma + lambda_phi*w_45 + lambda_psi*(a_1_inv_cos_gamma_w_19*w_34*(inv_Abs_cos_gamma*w_31*w_43*w_46 - inv_Abs_cos_gamma*w_22*w_44*w_46) + inv_cos_gamma_w_19*(a_0 + a_1*w_23)*(w_22*w_50 - w_31*w_50) + inv_cos_gamma_w_47*w_34*(a_0 + a_1*w_23) + sin_theta*w_45) + lambda_v*(-area_inv_m_rho_0_w_7_v*(b_0 + b_1*w_23 + b_2*w_23*w_23) - half_w_8*(b_1*(inv_Abs_cos_gamma*w_31*w_43*w_46 - inv_Abs_cos_gamma*w_22*w_44*w_46) + b_2*w_23*(inv_Abs_cos_gamma*inv_b_2_inv_v_sq_w_11*w_31*w_43 - inv_Abs_cos_gamma*inv_b_2_inv_v_sq_w_11*w_22*w_44)))
-    out[6, 4] = cos_gamma*lambda_h*v + lambda_gamma*(a_1_w_19*w_30*(w_22*w_44*(w_53 - inv_Abs_cos_gamma*w_56) + w_31*w_43*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_10*inv_v*lambda_gamma_sq*sin_gamma - w_53)) + w_19*(a_0 + a_1*w_23)*(0.125*area_cubed*inv_cos_gamma_cubed*inv_m_cubed*inv_sqrt_w_27_cubed*lambda_gamma*lambda_psi_sq*rho_0_cubed*sin_gamma*v_cubed*w_31*w_58 - lambda_gamma*sin_gamma*w_22*w_60) - sin_gamma*w_57) + lambda_psi*(a_1_inv_cos_gamma_w_19*w_34*(w_22*w_44*(w_53 - inv_Abs_cos_gamma*w_56) + w_31*w_43*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_10*inv_v*lambda_gamma_sq*sin_gamma - w_53)) + inv_cos_gamma_sq*sin_gamma_v*w_34*w_47*(a_0 + a_1*w_23) + inv_cos_gamma_w_19*(a_0 + a_1*w_23)*(w_31*w_61 - w_22*w_61) - sin_theta*w_51) + lambda_v*(-cos_gamma*inv_w_20_sq_mu - half_w_8*(b_1*(w_22*w_44*(w_53 - inv_Abs_cos_gamma*w_56) + w_31*w_43*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_10*inv_v*lambda_gamma_sq*sin_gamma - w_53)) + b_2*w_23*(2.0*w_22*w_44*(w_53 - inv_Abs_cos_gamma*w_56) + 2.0*w_31*w_43*(0.5*a_1*cos_gamma*inv_Abs_cos_gamma*inv_b_2*inv_lambda_v*inv_sqrt_w_10*inv_v*lambda_gamma_sq*sin_gamma - w_53)))) - cos_psi_lambda_theta*inv_w_20_v_sin_gamma - lambda_phi*w_51
-    out[6, 5] = inv_cos_theta_w_62*lambda_phi + inv_cos_theta_w_62*lambda_psi*sin_theta - lambda_theta*w_41
+    out[6, 2] = lambda_phi*sin_theta*w_46 + lambda_psi*(sin_theta*sin_theta*w_46 + w_45)
+    out[6, 3] = cos_gamma_inv_w_7*cos_psi_lambda_theta + d_law_of_alpha_by_v*w_34 + d_law_of_beta_by_v*w_33 + lambda_gamma*(cos_gamma*(inv_v*inv_v*inv_w_7_sq_mu + inv_w_7) + cos_w_29*half_w_11_w_30) + lambda_h*sin_gamma + lambda_phi*w_47 + lambda_psi*(half_w_11_w_30*inv_cos_gamma_sin_w_29 + sin_theta*w_47) - lambda_v*v*w_11*w_28
+    out[6, 4] = cos_gamma*lambda_h*v + d_law_of_alpha_by_gamma*w_34 + d_law_of_beta_by_gamma*w_33 + lambda_psi*(half_w_11_w_30*inv_cos_gamma_sq*sin_gamma_v*sin_w_29 - sin_theta*w_49) - cos_gamma*inv_w_7_sq_mu*lambda_v - cos_psi_lambda_theta*inv_w_7_v_sin_gamma - lambda_gamma*sin_gamma*w_50 - lambda_phi*w_49
+    out[6, 5] = inv_cos_theta_w_52*lambda_phi + inv_cos_theta_w_52*lambda_psi*sin_theta - lambda_theta*w_45
     out[6, 6] = sin_gamma_v
-    out[6, 7] = inv_cos_theta_w_41
-    out[6, 8] = w_62
-    out[6, 9] = 0.5*a_1*area*inv_cos_gamma*inv_m*lambda_psi*rho_0*v*w_34*w_7*(inv_Abs_cos_gamma*w_31*w_43*w_64 - inv_Abs_cos_gamma*w_22*w_44*w_64) + 0.5*a_1*area*inv_m*lambda_gamma*rho_0*v*w_30*w_7*(inv_Abs_cos_gamma*w_31*w_43*w_64 - inv_Abs_cos_gamma*w_22*w_44*w_64) - half_lambda_v_w_8*(b_1*(inv_Abs_cos_gamma*w_31*w_43*w_64 - inv_Abs_cos_gamma*w_22*w_44*w_64) + b_2*w_23*(a_1_inv_v_inv_b_2_w_63*inv_Abs_cos_gamma*w_31*w_43 - a_1_inv_v_inv_b_2_w_63*inv_Abs_cos_gamma*w_22*w_44)) - half_w_8*(b_0 + b_1*w_23 + b_2*w_23*w_23) - inv_w_20_sq_mu_sin_gamma
-    out[6, 10] = cos_gamma*w_57 + lambda_gamma*(a_1_w_19*w_30*(inv_Abs_cos_gamma*w_22*w_44*w_55_w_65 - inv_Abs_cos_gamma*w_31*w_43*w_55_w_65) + w_19*(a_0 + a_1*w_23)*(w_31*w_67 - w_22*w_67)) + lambda_psi*(a_1_inv_cos_gamma_w_19*w_34*(inv_Abs_cos_gamma*w_22*w_44*w_55_w_65 - inv_Abs_cos_gamma*w_31*w_43*w_55_w_65) + inv_cos_gamma_w_19*(a_0 + a_1*w_23)*(0.125*area_cubed*inv_cos_gamma*inv_m_cubed*inv_sqrt_w_27_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_31*w_58 - inv_cos_gamma_lambda_psi*lambda_gamma_w_59*w_22)) + w_19*w_30*(a_0 + a_1*w_23) - half_lambda_v_w_8*(b_1*(inv_Abs_cos_gamma*w_22*w_44*w_55_w_65 - inv_Abs_cos_gamma*w_31*w_43*w_55_w_65) + b_2*w_23*(inv_Abs_cos_gamma*w_22*w_44*w_66 - inv_Abs_cos_gamma*w_31*w_43*w_66))
-    out[6, 11] = inv_cos_gamma_w_19*w_34*(a_0 + a_1*w_23) + inv_cos_theta_w_41*sin_theta + lambda_gamma*(a_1_w_19*w_30*(inv_Abs_cos_gamma*lambda_psi_w_55*w_22*w_44 - inv_Abs_cos_gamma*lambda_psi_w_55*w_31*w_43) + w_19*(a_0 + a_1*w_23)*(0.125*area_cubed*inv_cos_gamma_sq*inv_m_cubed*inv_sqrt_w_27_cubed*lambda_gamma*lambda_psi*rho_0_cubed*v_cubed*w_31*w_58 - inv_cos_gamma_sq*lambda_gamma_w_59*lambda_psi*w_22)) + lambda_psi*(a_1_inv_cos_gamma_w_19*w_34*(inv_Abs_cos_gamma*lambda_psi_w_55*w_22*w_44 - inv_Abs_cos_gamma*lambda_psi_w_55*w_31*w_43) + inv_cos_gamma_w_19*(a_0 + a_1*w_23)*(w_31*w_69 - w_22*w_69)) - half_lambda_v_w_8*(b_1*(inv_Abs_cos_gamma*lambda_psi_w_55*w_22*w_44 - inv_Abs_cos_gamma*lambda_psi_w_55*w_31*w_43) + b_2*w_23*(inv_Abs_cos_gamma*w_22*w_44*w_68 - inv_Abs_cos_gamma*w_31*w_43*w_68))
+    out[6, 7] = inv_cos_theta_w_45
+    out[6, 8] = w_52
+    out[6, 9] = d_law_of_alpha_by_lambda_v*w_34 - half_w_11_v_sq_w_28 - inv_w_7_sq_mu*sin_gamma
+    out[6, 10] = cos_gamma*w_50 + d_law_of_alpha_by_lambda_gamma*w_34 + d_law_of_beta_by_lambda_gamma*w_33 + w_32
+    out[6, 11] = d_law_of_alpha_by_lambda_psi*w_34 + d_law_of_beta_by_lambda_psi*w_33 + inv_cos_theta_w_45*sin_theta + w_31
     out[6, 12] = 0.0
     return out

@@ -1,12 +1,13 @@
 """A space shuttle enters the atmosphere and glides as far to the side as it can (Betts 2010, section 6.1).
 
 Angle of attack and bank are the controls. The lift grows linearly with the angle of attack, the drag as its square,
-and the bank turns the lift. Without a limit on heating the largest latitude is 34.1411843 degrees.
+and the bank turns the lift. Without a limit on heating the largest latitude is 34.1411843 degrees. The bounds of the
+bank matter: on its back, with negative lift, the same polar would glide further.
 """
 
 from sympy import cos, exp, sin
 
-from satsym.symbolic import Angle, Box, FirstOrder, Problem, Variable, symbols_of
+from satsym.symbolic import Box, FirstOrder, Problem, Variable, symbols_of
 
 STATES = (
     Variable("h", "h", "ft", "altitude", typical=(80000.0, 260000.0)),
@@ -63,7 +64,7 @@ shuttle = Problem(
     ),
     running_cost=0,
     terminal_cost=-theta,
-    control_sets={"attack": Box("alpha"), "bank": Angle("beta")},
+    control_sets={"attack": Box("alpha"), "bank": Box("beta")},
 )
 
 PROBLEMS = (shuttle,)

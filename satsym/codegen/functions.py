@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from satsym.codegen import switching
+from satsym.codegen.laws import law_parts
 from satsym.spec import Variable, names
 from satsym.symbolic.algebra import gradient, tidy
 from satsym.symbolic.chain import Assignment, jacobians, parts_of
@@ -136,7 +137,7 @@ def _bounds(derivation: Derivation) -> tuple[Variable, ...]:
 
 def chain_of(derivation: Derivation) -> tuple[Assignment, ...]:
     """The named parts of functions that are not written in closed form, with those of their derivatives."""
-    return jacobians(derivation)[0] if parts_of(derivation) else ()
+    return jacobians(derivation)[0] if parts_of(derivation) else law_parts(derivation).parts
 
 
 def _jacobians(derivation: Derivation) -> tuple[sp.Matrix, sp.Matrix]:
@@ -197,6 +198,8 @@ def _regular_law(derivation: Derivation) -> list[Function]:
     if product.STEP in derivation:
         h = derivation.equation("hamiltonian.H").rhs
         h_u, law = [tidy(g, controls) for g in gradient(h, controls)], sp.Matrix(set_laws.written_out(derivation, law))
+        stated = law_parts(derivation).values
+        law = sp.Matrix([stated.get(u, value) for u, value in zip(controls, law, strict=True)])
     else:
         h_u = [e.rhs for e in derivation.step("stationarity").equations if e.lhs == 0]
     found = [

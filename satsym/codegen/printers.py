@@ -147,7 +147,9 @@ class ScalarPrinter(_Printer):
         return f"({one} if {excess} <= 0.0 else {other}) + 0.0*{excess}"
 
     def _print_Bearing(self, expr: Any) -> str:
-        return f"math.atan2({', '.join(self._print(a) for a in expr.args)})"
+        across, along = (self._print(a) for a in expr.args)
+        # no number where there is no direction, as on arrays
+        return f"math.atan2({across}, {along}) + 0.0/({across}*{across} + {along}*{along})"
 
     def _print_Middle(self, expr: Any) -> str:
         lower, upper = (self._print(a) for a in expr.args)

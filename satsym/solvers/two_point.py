@@ -26,7 +26,7 @@ from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.refinement import refine
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.system import System
-from satsym.solvers.extremal import solved
+from satsym.solvers.extremal import nothing, solved
 from satsym.solvers.iteration import Limits
 from satsym.solvers.nearest_end import nearest
 from satsym.solvers.switching.linear.by_reach import unreachable
@@ -80,8 +80,12 @@ def from_cold_start(instance: Instance, limits: Limits, effort: bool, accurate: 
     effort
         Whether free durations are looked for with great effort.
     """
-    if (led := stationary(instance, limits)) is not None:
-        (problem, start), duration = led, ""
+    if instance.model.spec.stationary and not instance.model.spec.directional and not instance.guess:
+        reached = direct(instance, limits)
+        if reached is None:
+            status = Status.TIME_LIMIT if limits.expired else Status.NOT_CONVERGED
+            return nothing(instance, status, "no extremal found by a direct method from controls that are drawn")
+        (problem, start), duration = reached, ""
     elif instance.model.spec.directional:
         eased = directed(instance, limits, effort)
         if isinstance(eased, Extremal):
@@ -106,14 +110,6 @@ def from_cold_start(instance: Instance, limits: Limits, effort: bool, accurate: 
     if not found.status.answered:
         return found
     return replace(found, message=f"{found.message}, from the {start.named}{duration}")
-
-
-def stationary(instance: Instance, limits: Limits) -> tuple[TwoPoint, Start] | None:
-    """Where H depends on controls in another way than quadratically: the extremal to which a direct method leads."""
-    spec = instance.model.spec
-    if not spec.stationary or spec.directional or instance.guess:
-        return None
-    return direct(instance, limits)
 
 
 def unfinished(problem: TwoPoint, path: Path, message: str, steps: int, limits: Limits) -> Extremal:

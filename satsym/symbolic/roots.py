@@ -107,16 +107,6 @@ class Bearing(sp.Function):
         return (along if argindex == 1 else -across) / (across**2 + along**2)
 
 
-def turned_inwards(expression: sp.Expr) -> sp.Expr:
-    """An expression with the cosine and sine of what is chosen as the choice of these."""
-
-    def inside(e: sp.Expr) -> sp.Expr:
-        excess, one, other = e.args[0].args
-        return Choice(excess, e.func(one), e.func(other))
-
-    return expression.replace(lambda e: isinstance(e, sp.sin | sp.cos) and isinstance(e.args[0], Choice), inside)
-
-
 @lru_cache(maxsize=256)
 def root_of(unknown: sp.Symbol, slope: sp.Expr, letters: tuple[sp.Symbol, ...]) -> type[Root]:
     """The class of the minimisers of convex functions with this slope."""

@@ -109,14 +109,18 @@ def _coupled(name: str, h: sp.Expr, parts: Sequence[Part], side: int) -> dict[st
     """The branches of an angle and of a control beside it that H has products of, by the names of their sets."""
     found: dict[str, Minimum] = {}
     for turned, beside in product(parts, repeat=2):
-        if turned.kind != "angle" or beside.kind not in ("free", "box") or len(beside.symbols) > 1:
+        if turned.kind not in ("angle", "box") or beside.kind not in ("free", "box"):
+            continue
+        if turned is beside or len(turned.symbols + beside.symbols) > 2:
             continue
         (angle,), (u,) = turned.symbols, beside.symbols
-        if sp.simplify(sp.diff(h, angle, u)) == 0:
+        circle = by_circle(h, angle)
+        if circle is None or not any(e.has(u) for e in circle[1:]) or by_circle(h, u):
             continue
+        arc = ends_of(turned, angle) if turned.kind == "box" else None
         others = {v for part in parts if part not in (turned, beside) for v in part.symbols}
         slopes = gradient(h, (u, angle))
-        laws = None if any(s.has(*others) for s in slopes) else with_angle(name, side * h, u, ends_of(beside, u), angle)
+        laws = None if any(s.has(*others) for s in slopes) else with_angle(name, side * h, u, ends_of(beside, u), angle, arc)
         if laws is not None:
             found[beside.name] = Minimum(beside, "stationary", gradient=tuple(slopes[:1]), laws=laws[:1])
             found[turned.name] = Minimum(turned, "stationary", gradient=tuple(slopes[1:]), laws=laws[1:])

@@ -63,29 +63,43 @@ def minimiser(name: str, h: sp.Expr, u: sp.Symbol, ends: Ends) -> sp.Expr:
     return _root(name, terms, constant, u, ends)
 
 
-def with_angle(name: str, h: sp.Expr, u: sp.Symbol, ends: Ends, angle: sp.Symbol) -> tuple[sp.Expr, sp.Expr] | None:
+def with_angle(
+    name: str, h: sp.Expr, u: sp.Symbol, ends: Ends, angle: sp.Symbol, arc: Ends | None
+) -> tuple[sp.Expr, sp.Expr] | None:
     """The control and the angle at which H is least, where the control multiplies what the angle turns.
 
-    ``None`` where H is not ``c(u) + l(u) (a cos + b sin)``. With the best angle it is ``c - |l| r``: the lesser of
-    ``c - l r`` and ``c + l r``, each of which has its own minimiser.
+    ``None`` where H is not ``c(u) + l(u) (a cos + b sin)``. With the best angle it is the lesser of ``c + l m`` and
+    ``c + l n``, m and n being the least and the largest of what l multiplies; each has its own minimiser.
+
+    Parameters
+    ----------
+    arc
+        Between which ends the angle lies; ``None`` where nothing limits it.
     """
     circle = by_circle(h, angle)
     if circle is None:
         return None
     rest, *pair = circle
+    moved = sp.Add(*(term for term in sp.Add.make_args(sp.expand(rest)) if term.has(u)))
     (cosine, one), (sine, other) = (sp.factor(e).as_independent(u, as_Add=False) for e in pair)
     ratio = sp.simplify(other / one)
     if ratio.has(u):
         return None
     sine *= ratio
-    radius, size = sp.Dummy("radius", positive=True), sp.sqrt(tidy(cosine**2 + sine**2))
-    both = [rest - side * one * radius for side in (1, -1)]
-    best = [minimiser(name, value, u, ends) for value in both]
-    values = [value.xreplace({u: at}).xreplace({radius: size}) for value, at in zip(both, best, strict=True)]
-    against, along = sp.atan2(-sine, -cosine), sp.atan2(sine, cosine)
-    laws = [law.xreplace({radius: size}) for law in best]
+    length = sp.Dummy("length", real=True)
+    laws, turns, values = [], [], []
+    for side in (1, -1):
+        turn = Bearing(-side * sine, -side * cosine) if arc is None else _turned(side * cosine, side * sine, arc)
+        size = -side * sp.sqrt(tidy(cosine**2 + sine**2))
+        if arc is not None:
+            size = cosine * sp.cos(turn) + sine * sp.sin(turn)
+        value = moved + one * length
+        law = minimiser(name, value, u, ends)
+        laws.append(law.xreplace({length: size}))
+        values.append(value.xreplace({u: law}).xreplace({length: size}))
+        turns.append(turn)
     excess = values[0] - values[1]
-    return Choice(excess, *laws), Choice(excess, against, along)
+    return Choice(excess, *laws), Choice(excess, *turns)
 
 
 def _turned(cosine: sp.Expr, sine: sp.Expr, ends: Ends) -> sp.Expr:
