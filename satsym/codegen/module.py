@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import sympy as sp
 
-from satsym.codegen import roots, rk4, symplectic
+from satsym.codegen import rk4, roots, symplectic
 from satsym.codegen.block import Assignment, build
 from satsym.codegen.emitter import Emitter
 from satsym.codegen.functions import Function, Symbols, symbols

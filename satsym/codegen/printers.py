@@ -133,7 +133,6 @@ class ScalarPrinter(_Printer):
         below = "0.0" if expr.args[1].is_zero else f"-{width}"
         return f"1.0 if {value} > {width} else -1.0 if {value} < {below} else 0.0"
 
-
     def _print_Interior(self, expr: Any) -> str:
         value, lower, upper = (self._print(a) for a in expr.args)
         return f"0.0 if {value} <= {lower} else 0.0 if {value} >= {upper} else 1.0"
@@ -243,7 +242,10 @@ class BatchPrinter(_Printer):
     def _print_Bearing(self, expr: Any) -> str:
         across, along = (self._print(a) for a in expr.args)
         angle = f"np.arctan2(np.real({across}), np.real({along}))"  # and what a complex step turns it by
-        turned = f"{across}*np.cos({angle}) - {along}*np.sin({angle})", f"{along}*np.cos({angle}) + {across}*np.sin({angle})"
+        turned = (
+            f"{across}*np.cos({angle}) - {along}*np.sin({angle})",
+            f"{along}*np.cos({angle}) + {across}*np.sin({angle})",
+        )
         return f"{angle} + np.arctan(({turned[0]})/({turned[1]}))"
 
     def _print_Middle(self, expr: Any) -> str:

@@ -37,7 +37,9 @@ def lines(name: str, root: Root, form: str, code: Callable[[sp.Expr], str]) -> l
 
     def chosen(left: str, right: str, one: str, other: str) -> str:
         """One where the left is less than the right, else the other."""
-        return f"np.where({left} < {right}, {one}, {other})" if form == "np" else f"{one} if {left} < {right} else {other}"
+        return (
+            f"np.where({left} < {right}, {one}, {other})" if form == "np" else f"{one} if {left} < {right} else {other}"
+        )
 
     absolute = "np.abs" if form == "np" else "math.fabs"
     low, high, step, last, longest, value, curved, ahead = (

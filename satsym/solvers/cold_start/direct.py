@@ -290,7 +290,7 @@ def _unit(low: float, high: float) -> tuple[float, float]:
 
 def _sizes(instance: Instance, x: Array) -> Array:
     """Of each state along a motion and at the end that is asked for."""
-    ends = [abs(float(v)) for v in (instance.final.get(s, 0.0) for s in instance.model.spec.state_names)]  # type: ignore[arg-type]
+    ends = [abs(float(v)) for v in (instance.final.get(s, 0.0) for s in instance.model.spec.state_names)]
     size = np.maximum(np.abs(x).max(axis=1, initial=0.0), ends)
     return np.where(size > 0.0, size, 1.0)
 

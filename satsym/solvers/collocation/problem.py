@@ -313,7 +313,7 @@ class TwoPoint:
         return np.concatenate([own, rest])
 
 
-def ended(instance: Instance, tf: float, x: Row, lam: Row, *others: Row, by: Literal["", "jacobian"] = "") -> Array:
+def ended(instance: Instance, tf: float, x: Row, lam: Row, *others: Any, by: Literal["", "jacobian"] = "") -> Array:
     """The boundary residuals of an instance, or their derivatives: no numbers where the law says nothing.
 
     On floats it may raise there.

@@ -120,7 +120,11 @@ def _coupled(name: str, h: sp.Expr, parts: Sequence[Part], side: int) -> dict[st
         arc = ends_of(turned, angle) if turned.kind == "box" else None
         others = {v for part in parts if part not in (turned, beside) for v in part.symbols}
         slopes = gradient(h, (u, angle))
-        laws = None if any(s.has(*others) for s in slopes) else with_angle(name, side * h, u, ends_of(beside, u), angle, arc)
+        laws = (
+            None
+            if any(s.has(*others) for s in slopes)
+            else with_angle(name, side * h, u, ends_of(beside, u), angle, arc)
+        )
         if laws is not None:
             found[beside.name] = Minimum(beside, "stationary", gradient=tuple(slopes[:1]), laws=laws[:1])
             found[turned.name] = Minimum(turned, "stationary", gradient=tuple(slopes[1:]), laws=laws[1:])
@@ -205,7 +209,9 @@ def _of_each(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr]) -> Minimu
     """Controls on which H depends neither linearly nor quadratically, each by itself."""
     controls = ", ".join(u.name for u in part.symbols)
     if part.kind not in ("free", "box"):
-        raise DerivationError(f"{name}: H is neither linear nor quadratic in {controls}, which needs a box, or no bounds")
+        raise DerivationError(
+            f"{name}: H is neither linear nor quadratic in {controls}, which needs a box, or no bounds"
+        )
     apart = all(not s.has(*(v for v in part.symbols if v != u)) for u, s in zip(part.symbols, slopes, strict=True))
     if not apart:
         raise DerivationError(f"{name}: H is not quadratic in {controls}, and has products of them: not supported")

@@ -84,7 +84,9 @@ def declare_product(known: dict[str, Dimension | None], problem: Problem, runnin
     efforts = []
     for part in parts.parts_of(problem):
         for v in part.controls:
-            known[f"slope_by_{v.symbol}"] = known[f"primer_{v.symbol}"] = known[f"norm_weight_{v.symbol}"] = over(running, known[v.symbol])
+            known[f"slope_by_{v.symbol}"] = known[f"primer_{v.symbol}"] = known[f"norm_weight_{v.symbol}"] = over(
+                running, known[v.symbol]
+            )
             known[f"norm_of_{part.name}"] = known[v.symbol]
             known[f"cosine_of_{v.symbol}"] = known[f"sine_of_{v.symbol}"] = running
             known[f"along_{v.symbol}"] = known[f"across_{v.symbol}"] = PLAIN

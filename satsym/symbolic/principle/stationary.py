@@ -8,7 +8,6 @@ multiplies what an angle turns, such as a lift, has two minimisers, one of eithe
 
 from __future__ import annotations
 
-
 import mpmath as mp
 import sympy as sp
 
@@ -180,4 +179,3 @@ def _refuse_several(name: str, u: sp.Symbol, slope: sp.Expr) -> None:
                     f"{name}: H is convex in {u} in some places and not in others, so that it may have several local "
                     "minima, which are not compared; state bounds and a model in which it is convex"
                 )
-
