@@ -1,9 +1,9 @@
 """Whether the body of a function is one that the generator writes.
 
 A body unpacks its arguments, assigns numbers to names, and returns numbers or stores them. A pointwise function
-is straight-line, but for iterations of a stated number of steps; a loop has one ``for`` over the steps. Whole numbers occur only as indices, in the few forms that
-stay within nodes and midpoints: compiled code does not check them again. Nothing calls a function of the file,
-so what passes takes time in proportion to its length and to the number of nodes.
+is straight-line, but for iterations of a stated number of steps; a loop has one ``for`` over the steps. Whole numbers
+occur only as indices, in the few forms that stay within nodes and midpoints: compiled code does not check them again.
+Nothing calls a function of the file, so what passes takes time in proportion to its length and to the number of nodes.
 """
 
 from __future__ import annotations

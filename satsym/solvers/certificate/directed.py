@@ -1,4 +1,4 @@
-"""Competitors where costates that vanish say nothing: regularised or direct problems from other starts, or durations."""
+"""Competitors where vanishing costates say nothing: regularised or direct problems, other starts or durations."""
 
 from __future__ import annotations
 

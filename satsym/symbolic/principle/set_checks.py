@@ -1,4 +1,4 @@
-"""Checks of the law over a product of sets: that H is a sum over the sets, and that no admissible control is cheaper."""
+"""Checks of the law over a product of sets: H is a sum over the sets, and no admissible control is cheaper."""
 
 from __future__ import annotations
 
