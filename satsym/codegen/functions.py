@@ -194,7 +194,7 @@ def _switching_laws(derivation: Derivation) -> list[Function]:
 
 
 def _regular_law(derivation: Derivation) -> list[Function]:
-    controls, law = symbols_of(derivation.model.controls), derivation.rhs("control_law")
+    controls, law = symbols_of(derivation.model.controls), _law(derivation)
     if product.STEP in derivation:
         h = derivation.equation("hamiltonian.H").rhs
         h_u, law = [tidy(g, controls) for g in gradient(h, controls)], sp.Matrix(set_laws.written_out(derivation, law))
@@ -222,6 +222,11 @@ def _regular_law(derivation: Derivation) -> list[Function]:
     if product.STEP in derivation and "smoothed_law" in derivation:
         found.append(_regularised_cost(derivation))
     return found
+
+
+def _law(derivation: Derivation) -> sp.Matrix:
+    """The law as it is stated, control by control, without named parts."""
+    return sp.Matrix([derivation.equation(f"control_law.{v.symbol}").rhs for v in derivation.model.controls])
 
 
 def _regularised_cost(derivation: Derivation) -> Function:

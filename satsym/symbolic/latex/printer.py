@@ -277,7 +277,7 @@ class Printer(LatexPrinter):
 
     def _print_Choice(self, expr: sp.Expr, exp: str | None = None) -> str:
         excess, one, other = map(self._print, expr.args)
-        return rf"\begin{{cases}} {one}, & {excess} \le 0 \\ {other}, & \text{{else}} \end{{cases}}"
+        return rf"\begin{{cases}} {one}, & {excess} \le 0 \\ {other}, & {excess} > 0 \end{{cases}}"
 
     def _print_Middle(self, expr: sp.Expr, exp: str | None = None) -> str:
         lower, upper = map(self._print, expr.args)

@@ -39,6 +39,15 @@ REGULARISED_H = sp.Symbol("H_regularised", real=True)
 
 slope_by = named("slope_by_{}")
 """H_u of a control on which H depends neither linearly nor quadratically."""
+MOST_PARTS = 200
+"""Named parts of laws, at most."""
+
+
+def part_of_law(number: int) -> sp.Symbol:
+    """The symbol for a part of laws."""
+    return sp.Symbol(f"law_part_{number}", real=True)
+
+
 primer_of = named("primer_{}")
 """The slope of H by a control on which it depends linearly, in a ball."""
 weight_of = named("norm_weight_{}")
@@ -67,6 +76,8 @@ def product_names(problem: Problem) -> dict[str, str]:
     """Name -> LaTeX of what the law over a product of sets introduces."""
     found = {REGULARISED_H.name: r"H_\varepsilon"}
     found |= {v.symbol: v.latex for v in (parts.SMOOTHING, parts.FRACTION)}
+    if problem.control_sets:
+        found |= {part_of_law(k).name: f"q_{{{k}}}" for k in range(1, MOST_PARTS + 1)}
     for v in problem.model.controls:
         found |= {f"slope_by_{v.symbol}": f"H_{{{v.latex}}}", f"primer_{v.symbol}": f"p_{{{v.latex}}}"}
         found |= {f"cosine_of_{v.symbol}": f"a_{{{v.latex}}}"}

@@ -38,6 +38,7 @@ from satsym.symbolic.principle.set_laws import (
     shortened,
     written_out,
 )
+from satsym.symbolic.roots import Choice
 
 STEP = "control_parts"
 """The step that only derivations of such problems have."""
@@ -90,10 +91,12 @@ def control_law(so_far: Derivation) -> Step:
     """The control that minimises H over the product of the sets: the minimiser over each."""
     problem, every = problem_of(so_far), found(so_far)
     laws = {u: law for one in every for u, law in zip(one.part.symbols, law_of(problem, one), strict=True)}
-    equations = tuple(Equation(u.name, n.optimal(u), laws[u]) for u in symbols_of(problem.model.controls))
+    controls = symbols_of(problem.model.controls)
+    parts, stated = _in_parts([laws[u] for u in controls])
+    equations = tuple(Equation(s.name, s, value) for s, value in parts)
+    equations += tuple(Equation(u.name, n.optimal(u), law) for u, law in zip(controls, stated, strict=True))
     h = so_far.equation("hamiltonian.H").rhs
-    exact = [e.rhs.xreplace(EXACT) for e in equations]
-    check = cheapest(so_far, h, written_out(so_far, exact))
+    check = cheapest(so_far, h, written_out(so_far, [laws[u].xreplace(EXACT) for u in controls]))
     said = tuple(
         Conclusion("no direction where it vanishes", {"slope": sp.Tuple(*pn.slopes_of(one))})
         for one in every
@@ -101,6 +104,15 @@ def control_law(so_far: Derivation) -> Step:
     )
     said += tuple(Conclusion(key, {}) for key in sorted({key for one in every for key in one.remarks}))
     return Step("control_law", worded("minimum set by set", problem), equations, (STEP,), (check,), said)
+
+
+def _in_parts(laws: Sequence[sp.Expr]) -> tuple[list[tuple[sp.Symbol, sp.Expr]], list[sp.Expr]]:
+    """Laws that compare minimisers, in named parts that people can read; others as they are."""
+    if not any(law.has(Choice) for law in laws):
+        return [], list(laws)
+    named = (pn.part_of_law(k) for k in range(1, pn.MOST_PARTS + 1))
+    parts, reduced = sp.cse([*laws], symbols=named, order="canonical")
+    return list(parts), list(reduced)
 
 
 def smoothed_law(so_far: Derivation) -> Step | None:
