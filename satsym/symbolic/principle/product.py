@@ -102,6 +102,8 @@ def control_law(so_far: Derivation) -> Step:
         for one in every
         if one.directed
     )
+    if any(one.branch == "stationary" for one in every):
+        said += (Conclusion("neither linear nor quadratic", {}),)
     said += tuple(Conclusion(key, {}) for key in sorted({key for one in every for key in one.remarks}))
     return Step("control_law", worded("minimum set by set", problem), equations, (STEP,), (check,), said)
 
