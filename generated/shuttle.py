@@ -2,7 +2,7 @@
 
 Written by satsym from derivations/examples/shuttle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/shuttle.py
-Digest: 1bfff1b5deb518952dd8bd45c2916ea2e682df95eba24b5b7e45ff4439d6460a
+Digest: 25213ea46afef20d910efe1759af6d0a0eed67dbe958b56d3d481638d5d098fe
 """
 
 import math
@@ -20,7 +20,7 @@ MODEL = {
         {'symbol': 'phi', 'latex': '\\phi', 'unit': 'rad', 'meaning': 'longitude', 'kind': 'angle', 'typical': (0.0, 1.0)},
         {'symbol': 'theta', 'latex': '\\theta', 'unit': 'rad', 'meaning': 'latitude', 'typical': (0.0, 1.0)},
         {'symbol': 'v', 'latex': 'v', 'unit': 'ft/s', 'meaning': 'speed', 'positive': True, 'typical': (2500.0, 26000.0)},
-        {'symbol': 'gamma', 'latex': '\\gamma', 'unit': 'rad', 'meaning': 'flight path angle', 'typical': (-0.1, 0.1)},
+        {'symbol': 'gamma', 'latex': '\\gamma', 'unit': 'rad', 'meaning': 'angle of the path above the horizontal', 'typical': (-0.1, 0.1)},
         {'symbol': 'psi', 'latex': '\\psi', 'unit': 'rad', 'meaning': 'azimuth', 'typical': (0.0, 1.6)},
     ),
     'controls': (

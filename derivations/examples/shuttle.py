@@ -14,7 +14,7 @@ STATES = (
     Variable("phi", r"\phi", "rad", "longitude", kind="angle", typical=(0.0, 1.0)),
     Variable("theta", r"\theta", "rad", "latitude", typical=(0.0, 1.0)),
     Variable("v", "v", "ft/s", "speed", positive=True, typical=(2500.0, 26000.0)),
-    Variable("gamma", r"\gamma", "rad", "flight path angle", typical=(-0.1, 0.1)),
+    Variable("gamma", r"\gamma", "rad", "angle of the path above the horizontal", typical=(-0.1, 0.1)),
     Variable("psi", r"\psi", "rad", "azimuth", typical=(0.0, 1.6)),
 )
 CONTROLS = (

@@ -15,7 +15,7 @@ from satsym.symbolic.roots import Root
 STEPS, POLISHED = 60, 3
 """Steps between ends, and steps of Newton's method after that."""
 
-FAR, LEAST = 1e150, 1e-100
+FAR, SMALLEST = 1e150, 1e-100
 """Beyond this nothing is looked for; a curvature below the other counts as that."""
 
 CLOSE = 1e-9
@@ -53,7 +53,7 @@ def lines(name: str, root: Root, form: str, code: Callable[[sp.Expr], str]) -> l
     )
     evaluated = [f"{s.name} = {code(e)}" for s, e in shared]
     evaluated += [f"{value} = {code(first)}", f"{curved} = {code(second)}"]
-    evaluated += [f"{curved} = {chosen(curved, repr(LEAST), repr(LEAST), curved)}"]
+    evaluated += [f"{curved} = {chosen(curved, repr(SMALLEST), repr(SMALLEST), curved)}"]
     return [
         f"{low} = {chosen(lower, repr(-FAR), repr(-FAR), lower)}",
         f"{high} = {chosen(repr(FAR), upper, repr(FAR), upper)}",

@@ -117,7 +117,7 @@ def root_of(unknown: sp.Symbol, slope: sp.Expr, letters: tuple[sp.Symbol, ...]) 
     function = sp.lambdify([plain[unknown], *values], [stated, sp.diff(stated, plain[unknown])], modules="mpmath")
 
     def value(lower: Any, upper: Any, *coefficients: Any) -> Any:
-        return least_between(lambda at: function(at, *coefficients), lower, upper)
+        return minimum_between(lambda at: function(at, *coefficients), lower, upper)
 
     shared = {"unknown": plain[unknown], "slope": stated, "letters": tuple(values), "nargs": len(letters) + 2}
     return type(f"Root_{mark}", (Root,), shared | {"_imp_": staticmethod(value)})
@@ -127,7 +127,7 @@ def _again(unknown: sp.Symbol, slope: sp.Expr, letters: tuple[sp.Symbol, ...], a
     return root_of(unknown, slope, letters)(*args)
 
 
-def least_between(slopes: Callable[[Any], Sequence[Any]], lower: Any, upper: Any) -> Any:
+def minimum_between(slopes: Callable[[Any], Sequence[Any]], lower: Any, upper: Any) -> Any:
     """Where a convex function is least on an interval, in the working precision; no number where it falls for ever.
 
     Parameters

@@ -44,7 +44,7 @@ FLAT = 1e-8
 MESHES = (30, 60, 120)
 """Intervals with which Newton's method is tried."""
 
-LEAST = 1e-9
+SMALLEST = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,7 +136,7 @@ class Programme:
             for *pair, scale in zip(*_ends(self.instance), self.scales, strict=True)
         ]
         found = [(low, high) for low, high in both for _ in range(KNOTS)]
-        return found + ([(LEAST, None)] if self.instance.tf is None else [])
+        return found + ([(SMALLEST, None)] if self.instance.tf is None else [])
 
 
 def direct(instance: Instance, limits: Limits, seed: int = 0) -> tuple[TwoPoint, Start] | None:
@@ -300,4 +300,4 @@ def _time_scale(instance: Instance, u: list[float]) -> float:
     n = len(instance.initial)
     slopes = instance.model.jacobian_x(instance.t0, instance.initial, tuple(u), instance.parameters)
     fastest = np.abs(np.linalg.eigvals(np.array(slopes).reshape(n, n))).max()
-    return 1.0 / float(fastest) if np.isfinite(fastest) and fastest > LEAST else 1.0
+    return 1.0 / float(fastest) if np.isfinite(fastest) and fastest > SMALLEST else 1.0
