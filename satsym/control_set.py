@@ -61,7 +61,7 @@ class ControlSet:
         def one(part: ControlPart, places: tuple[int, ...]) -> ControlSet:
             inner, outer = (norms or {}).get(part.name, (0.0, 1.0 if part.kind == "angle" else math.inf))
             low, high = (tuple(row[i] for i in places) for row in (lower, upper))
-            directed, throttled = part.branch != "quadratic", part.branch == "throttled"
+            directed, throttled = part.directed, part.branch == "throttled"
             return cls(part.kind, low, high, outer, 0.0, 1.0, inner, directed, throttled)
 
         return cls("product", smoothing=smoothing, parts=_placed(spec, one))
@@ -75,7 +75,7 @@ class ControlSet:
 
             def one(part: ControlPart, places: tuple[int, ...]) -> ControlSet:
                 own = [left.pop(0) for _ in range(part.bounds)]
-                directed, throttled = part.branch != "quadratic", part.branch == "throttled"
+                directed, throttled = part.directed, part.branch == "throttled"
                 if part.kind == "box":
                     return cls("box", tuple(own[: len(places)]), tuple(own[len(places) :]))
                 inner = own[0] if part.kind == "annulus" else 0.0

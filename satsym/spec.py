@@ -23,9 +23,11 @@ NAMES = "a small letter, then small letters, digits and underscores"
 """What names of models and problems are."""
 _MODEL = re.compile(r"[a-z][a-z0-9_]{0,99}\Z")
 PartKind = Literal["free", "box", "ball", "annulus", "angle"]
-Branch = Literal["quadratic", "direction", "throttled"]
-"""How H is minimised over one set of controls: where H_u vanishes; along a direction, whatever it is; or along one if
-that is worth more than the norm of the controls costs, and not at all elsewhere."""
+Branch = Literal["quadratic", "stationary", "direction", "throttled"]
+"""How H is minimised over one set of controls: where H_u vanishes, on which it depends linearly or not; along a
+direction, whatever it is; or along one if that is worth more than the norm of the controls costs, and not at all
+elsewhere."""
+DIRECTED = ("direction", "throttled")
 PRODUCT: Literal["product"] = "product"
 """The kind of a control set that is stated set by set."""
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
@@ -160,6 +162,11 @@ class ControlPart:
         return {"free": 0, "box": 2 * len(self.controls), "ball": 1, "annulus": 2, "angle": 1}[self.kind]
 
     @property
+    def directed(self) -> bool:
+        """Whether its controls are a direction."""
+        return self.branch in DIRECTED
+
+    @property
     def normed(self) -> bool:
         """Whether it limits a norm."""
         return self.kind in ("ball", "annulus")
@@ -250,7 +257,12 @@ class ProblemSpec:
     @property
     def directional(self) -> bool:
         """Whether some controls are directions, which nothing decides where H does not depend on them."""
-        return any(part.branch != "quadratic" for part in self.control_parts)
+        return any(part.directed for part in self.control_parts)
+
+    @property
+    def stationary(self) -> bool:
+        """Whether H depends on some controls neither linearly nor quadratically."""
+        return any(part.branch == "stationary" for part in self.control_parts)
 
     @property
     def throttled(self) -> bool:

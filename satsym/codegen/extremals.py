@@ -10,10 +10,11 @@ import sympy as sp
 
 from satsym.codegen import switching
 from satsym.codegen.functions import Function, Symbols, functions, symbols
+from satsym.codegen.laws import LawParts, law_parts
 from satsym.codegen.linear import linear_functions
 from satsym.symbolic import notation as n
 from satsym.symbolic.derivation import Derivation
-from satsym.symbolic.principle import product
+from satsym.symbolic.principle import product, set_laws
 
 
 def all_functions(derivation: Derivation) -> list[Function]:
@@ -25,9 +26,10 @@ def all_functions(derivation: Derivation) -> list[Function]:
 
 def extremal_functions(derivation: Derivation, s: Symbols) -> list[Function]:
     """The canonical system and the boundary residual, each with its derivatives."""
-    z, (rates, h) = sp.Matrix([*s.x, *s.lam]), _under_the_law(derivation, s)
+    z, law = (*s.x, *s.lam), law_parts(derivation)
+    rates, h = _under_the_law(derivation, s, law)
     ends = _ends(derivation, len(s.x)).xreplace({n.HAMILTONIAN: h})
-    unknown = sp.Matrix([*z, *s.nu, s.t])
+    unknown = (*z, *s.nu, s.t)
     smoothed = " of the regularised problem" if "smoothed_law" in derivation else ""
     return [
         Function(
@@ -41,14 +43,14 @@ def extremal_functions(derivation: Derivation, s: Symbols) -> list[Function]:
             "canonical_jacobian",
             "The canonical rates by states and costates, row by row.",
             ("t", "x", "lam", "p", "bounds"),
-            switching.printable(rates.jacobian(z)),
+            switching.printable(law.jacobian(rates, z)),
             "matrix",
         ),
         Function(
             "canonical_drift",
             "The canonical rates by explicit time.",
             ("t", "x", "lam", "p", "bounds"),
-            switching.printable(rates.diff(s.t)),
+            switching.printable(law.jacobian(rates, (s.t,))),
             "vector",
         ),
         Function(
@@ -62,27 +64,27 @@ def extremal_functions(derivation: Derivation, s: Symbols) -> list[Function]:
             "boundary_jacobian",
             "The boundary residuals by states, costates, multipliers and final time, row by row.",
             ("t", "x", "lam", "nu", "p", "bounds", "final"),
-            switching.printable(ends.jacobian(unknown)),
+            switching.printable(law.jacobian(ends, unknown)),
             "matrix",
         ),
     ]
 
 
-def _under_the_law(derivation: Derivation, s: Symbols) -> tuple[sp.Matrix, sp.Expr]:
+def _under_the_law(derivation: Derivation, s: Symbols, parts: LawParts) -> tuple[sp.Matrix, sp.Expr]:
     """Rates of states and costates, and H; those of the smoothed companion where the law itself jumps."""
     if switching.switches(derivation):
         regularised = switching.regularised(derivation)
         return regularised.rates, regularised.hamiltonian
     if product.STEP in derivation:
-        return _under_the_law_of_sets(derivation)
+        return _under_the_law_of_sets(derivation, parts)
     law = dict(zip(s.u, derivation.rhs("control_law"), strict=True))
     rates = sp.Matrix([*derivation.rhs("first_order"), *derivation.rhs("costate_equations")])
     return rates.xreplace(law), derivation.equation("hamiltonian.H").rhs.xreplace(law)
 
 
-def _under_the_law_of_sets(derivation: Derivation) -> tuple[sp.Matrix, sp.Expr]:
+def _under_the_law_of_sets(derivation: Derivation, parts: LawParts) -> tuple[sp.Matrix, sp.Expr]:
     """The same where the control set is a product of sets: of the regularised problem, where that differs."""
-    *rates, h = product.relaxed(
+    *rates, h = set_laws.relaxed(
         derivation,
         [
             *derivation.rhs("first_order"),
@@ -90,8 +92,8 @@ def _under_the_law_of_sets(derivation: Derivation) -> tuple[sp.Matrix, sp.Expr]:
             derivation.equation("hamiltonian.H").rhs,
         ],
     )
-    law = product.regularised_law(derivation)
-    return sp.Matrix(rates).xreplace(law), (h + product.effort(derivation)).xreplace(law)
+    law = set_laws.regularised_law(derivation) | dict(parts.values)
+    return sp.Matrix(rates).xreplace(law), (h + set_laws.effort(derivation)).xreplace(law)
 
 
 def _ends(derivation: Derivation, states: int) -> sp.Matrix:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from satsym.codegen import switching
+from satsym.codegen.laws import law_parts
 from satsym.spec import Variable, names
 from satsym.symbolic.algebra import gradient, tidy
 from satsym.symbolic.chain import Assignment, jacobians, parts_of
@@ -15,7 +16,7 @@ from satsym.symbolic.kepler.central_force import inertial_state, strength_of
 from satsym.symbolic.linear.notation import matrix_symbols
 from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.notation import costate_of, given, multipliers, on_reference, target
-from satsym.symbolic.principle import product
+from satsym.symbolic.principle import product, set_laws
 from satsym.symbolic.principle.parts import FRACTION, SMOOTHING, limits_of, minimum_norm_of
 from satsym.symbolic.switching.notation import REGULARISED
 
@@ -129,7 +130,7 @@ def _bounds(derivation: Derivation) -> tuple[Variable, ...]:
     problem = derivation.problem
     found = limits_of(problem) if problem else ()
     if "smoothed_law" in derivation and product.STEP in derivation:
-        parts = [one.part for one in product.throttled(derivation)]
+        parts = [one.part for one in set_laws.throttled(derivation)]
         least = (minimum_norm_of(part) for part in parts if part.kind == "ball")
         return (*found, SMOOTHING, *((FRACTION,) if parts else ()), *least)
     return found + (REGULARISED if switching.switches(derivation) else ())
@@ -137,7 +138,7 @@ def _bounds(derivation: Derivation) -> tuple[Variable, ...]:
 
 def chain_of(derivation: Derivation) -> tuple[Assignment, ...]:
     """The named parts of functions that are not written in closed form, with those of their derivatives."""
-    return jacobians(derivation)[0] if parts_of(derivation) else ()
+    return jacobians(derivation)[0] if parts_of(derivation) else law_parts(derivation).parts
 
 
 def _jacobians(derivation: Derivation) -> tuple[sp.Matrix, sp.Matrix]:
@@ -194,11 +195,13 @@ def _switching_laws(derivation: Derivation) -> list[Function]:
 
 
 def _regular_law(derivation: Derivation) -> list[Function]:
-    controls, law = symbols_of(derivation.model.controls), derivation.rhs("control_law")
+    controls, law = symbols_of(derivation.model.controls), _law(derivation)
     if product.STEP in derivation:
         h = derivation.equation("hamiltonian.H").rhs
-        h_u, law = [tidy(g, controls) for g in gradient(h, controls)], product.written_out(derivation, law)
-        law = sp.Matrix(product.with_minimum_norms(derivation, law))
+        h_u, law = [tidy(g, controls) for g in gradient(h, controls)], set_laws.written_out(derivation, law)
+        law = sp.Matrix(set_laws.with_minimum_norms(derivation, law))
+        stated = law_parts(derivation).values
+        law = sp.Matrix([stated.get(u, value) for u, value in zip(controls, law, strict=True)])
     else:
         h_u = [e.rhs for e in derivation.step("stationarity").equations if e.lhs == 0]
     found = [
@@ -220,17 +223,22 @@ def _regular_law(derivation: Derivation) -> list[Function]:
     ]
     if product.STEP in derivation and "smoothed_law" in derivation:
         found.append(_regularised_cost(derivation))
-        if slopes := product.throttle_slopes(derivation):
+        if slopes := set_laws.throttle_slopes(derivation):
             summary = "How H changes with the norm of each vector that may be none, along its best direction."
             found.append(_vector("throttle_slope", summary, "t x lam p", sp.Matrix(slopes)))
     return found
 
 
+def _law(derivation: Derivation) -> sp.Matrix:
+    """The law as it is stated, control by control, without named parts."""
+    return sp.Matrix([derivation.equation(f"control_law.{v.symbol}").rhs for v in derivation.model.controls])
+
+
 def _regularised_cost(derivation: Derivation) -> Function:
     """What the problem costs in which directions may be shorter, under its law."""
     assert derivation.problem is not None
-    (cost,) = product.relaxed(derivation, [sp.sympify(derivation.problem.running_cost)])
-    value = (cost + product.effort(derivation)).xreplace(product.regularised_law(derivation))
+    (cost,) = set_laws.relaxed(derivation, [sp.sympify(derivation.problem.running_cost)])
+    value = (cost + set_laws.effort(derivation)).xreplace(set_laws.regularised_law(derivation))
     return _scalar("regularised_cost", "Integrand of the cost of the regularised problem.", "t x lam p bounds", value)
 
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import sympy as sp
 
-from satsym.codegen import rk4, symplectic
+from satsym.codegen import rk4, roots, symplectic
 from satsym.codegen.block import Assignment, build
 from satsym.codegen.emitter import Emitter
 from satsym.codegen.functions import Function, Symbols, symbols
@@ -20,7 +20,8 @@ from satsym.spec import PRODUCT, Condition, ControlPart, ProblemSpec, Variable, 
 from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.kepler.central_force import strength_of
 from satsym.symbolic.model import Demand, t, variables_of
-from satsym.symbolic.principle import product
+from satsym.symbolic.principle import product, set_laws
+from satsym.symbolic.roots import Root
 from satsym.symbolic.switching.curve import states_of
 
 
@@ -101,7 +102,7 @@ def _parts(derivation: Derivation) -> tuple[ControlPart, ...]:
         return ()
     return tuple(
         ControlPart(one.part.name, one.part.kind, names(one.part.controls), one.branch)
-        for one in product.found(derivation)
+        for one in set_laws.found(derivation)
     )
 
 
@@ -159,11 +160,16 @@ def _straight_line(
     return emit.before + emit.lines, outputs
 
 
+def _lines(symbol: sp.Symbol, value: sp.Expr, form: str, code: Callable[[sp.Expr], str]) -> list[str]:
+    """The statements that assign a value."""
+    return roots.lines(symbol.name, value, form, code) if isinstance(value, Root) else [f"{symbol} = {code(value)}"]
+
+
 def _scalar_form(function: Function, s: Symbols, constants: Sequence[Assignment], chain: Sequence[Assignment]) -> str:
     code = ScalarPrinter().doprint
     assignments, outputs = _straight_line(function, s, constants, chain)
     results = [code(o) for o in outputs]
-    body = [*_unpack(function, s), *(f"{a} = {code(e)}" for a, e in assignments)]
+    body = [*_unpack(function, s), *(line for a, e in assignments for line in _lines(a, e, "math", code))]
     if function.kind == "scalar":
         body.append(f"return {results[0]}")
     else:
@@ -184,7 +190,7 @@ def _batch_form(function: Function, s: Symbols, constants: Sequence[Assignment],
         "if out is None:",
         f"    shape = np.broadcast_shapes({', '.join(f'np.shape({a})' for a in sizes)})",
         f"    out = np.empty({shape}, np.result_type(float, {', '.join(types)}))",
-        *(f"{a} = {code(e)}" for a, e in assignments),
+        *(line for a, e in assignments for line in _lines(a, e, "np", code)),
     ]
     for k, output in enumerate(outputs):
         place = {"scalar": "...", "vector": str(k), "matrix": f"{k // columns}, {k % columns}"}[function.kind]

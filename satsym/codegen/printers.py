@@ -133,6 +133,30 @@ class ScalarPrinter(_Printer):
         below = "0.0" if expr.args[1].is_zero else f"-{width}"
         return f"1.0 if {value} > {width} else -1.0 if {value} < {below} else 0.0"
 
+    def _print_Interior(self, expr: Any) -> str:
+        value, lower, upper = (self._print(a) for a in expr.args)
+        return f"0.0 if {value} <= {lower} else 0.0 if {value} >= {upper} else 1.0"
+
+    def _print_Convex(self, expr: Any) -> str:
+        value, curvature = (self._print(a) for a in expr.args)
+        return f"{value} + 0.0*math.sqrt({curvature})"  # no number of what is negative
+
+    def _print_Choice(self, expr: Any) -> str:
+        excess, one, other = (self._print(a) for a in expr.args)
+        return f"({one} if {excess} <= 0.0 else {other}) + 0.0*{excess}"
+
+    def _print_Bearing(self, expr: Any) -> str:
+        across, along = (self._print(a) for a in expr.args)
+        # no number where there is no direction, as on arrays
+        return f"math.atan2({across}, {along}) + 0.0/({across}*{across} + {along}*{along})"
+
+    def _print_Middle(self, expr: Any) -> str:
+        lower, upper = (self._print(a) for a in expr.args)
+        least = f"({upper} if {upper} < math.pi else math.pi) - 2.0*math.pi"
+        largest = f"({lower} if {lower} > -math.pi else -math.pi) + 2.0*math.pi"
+        ends = f"({lower} if {lower} > {least} else {least})", f"({upper} if {upper} < {largest} else {largest})"
+        return f"0.5*({ends[0]} + {ends[1]})"
+
 
 class BatchPrinter(_Printer):
     """Arrays and ``np``, real or complex."""
@@ -202,6 +226,33 @@ class BatchPrinter(_Printer):
         value, width = (self._print(a) for a in expr.args)
         beyond = "" if expr.args[1].is_zero else f" - {width}"
         return f"np.heaviside({value}{beyond}, 0.0) - np.heaviside(-{value}{beyond}, 0.0)"
+
+    def _print_Interior(self, expr: Any) -> str:
+        value, lower, upper = (self._print(a) for a in expr.args)
+        return f"np.heaviside({value} - {lower}, 0.0)*np.heaviside({upper} - {value}, 0.0)"
+
+    def _print_Convex(self, expr: Any) -> str:
+        value, curvature = (self._print(a) for a in expr.args)
+        return f"{value} + 0.0*np.sqrt({curvature})"
+
+    def _print_Choice(self, expr: Any) -> str:
+        excess, one, other = (self._print(a) for a in expr.args)
+        return f"np.where({excess} <= 0.0, {one}, {other}) + 0.0*{excess}"
+
+    def _print_Bearing(self, expr: Any) -> str:
+        across, along = (self._print(a) for a in expr.args)
+        angle = f"np.arctan2(np.real({across}), np.real({along}))"  # and what a complex step turns it by
+        turned = (
+            f"{across}*np.cos({angle}) - {along}*np.sin({angle})",
+            f"{along}*np.cos({angle}) + {across}*np.sin({angle})",
+        )
+        return f"{angle} + np.arctan(({turned[0]})/({turned[1]}))"
+
+    def _print_Middle(self, expr: Any) -> str:
+        lower, upper = (self._print(a) for a in expr.args)
+        least = f"np.minimum({upper}, np.pi) - 2.0*np.pi"
+        largest = f"np.maximum({lower}, -np.pi) + 2.0*np.pi"
+        return f"0.5*(np.maximum({lower}, {least}) + np.minimum({upper}, {largest}))"
 
     def _print_ShortenSlope(self, expr: Any) -> str:
         s, limit = (self._print(a) for a in expr.args)

@@ -1,9 +1,9 @@
 """Whether the body of a function is one that the generator writes.
 
 A body unpacks its arguments, assigns numbers to names, and returns numbers or stores them. A pointwise function
-is straight-line; a loop has one ``for`` over the steps. Whole numbers occur only as indices, in the few forms that
-stay within nodes and midpoints: compiled code does not check them again. Nothing calls a function of the file,
-so what passes takes time in proportion to its length and to the number of nodes.
+is straight-line, but for iterations of a stated number of steps; a loop has one ``for`` over the steps. Whole numbers
+occur only as indices, in the few forms that stay within nodes and midpoints: compiled code does not check them again.
+Nothing calls a function of the file, so what passes takes time in proportion to its length and to the number of nodes.
 """
 
 from __future__ import annotations
@@ -21,9 +21,13 @@ _KEPT = {"math", "np", "len", "range", "float", "out", "shape"}
 _UNARY = ("sqrt", "sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log")
 _FUNCTIONS = {
     "math": dict.fromkeys((*_UNARY, "asin", "acos", "atan", "fabs"), 1) | {"atan2": 2},
-    "np": dict.fromkeys((*_UNARY, "arcsin", "arccos", "arctan", "abs"), 1)
+    "np": dict.fromkeys((*_UNARY, "arcsin", "arccos", "arctan", "abs", "real"), 1)
     | dict.fromkeys(("arctan2", "heaviside", "minimum", "maximum"), 2),
 }
+
+
+MOST_REPEATED = 60
+"""Steps of an iteration at most."""
 
 
 class Unexpected(Exception):
@@ -81,7 +85,7 @@ class Body:
         self.stored: set[tuple[object, ...]] = set()
         self.taken = _KEPT | set(signature.arguments)
         self.steps = self.index = ""
-        self.looped = self.allocated = False
+        self.looped = self.allocated = self.repeated = False
 
     def check(self, statements: list[ast.stmt]) -> None:
         """Check the statements after the docstring."""
@@ -115,6 +119,8 @@ class Body:
                 self._element(target)
             case ast.For(target=ast.Name(id=name), orelse=[]) if self.form == "loop" and not self.index:
                 self._for(node, name)
+            case ast.For(target=ast.Name(id="_"), orelse=[]) if self.form != "loop" and not self.repeated:
+                self._repeat(node)
             case ast.If() if self.form == "np" and not self.allocated and text_of(node) == self._allocation():
                 self.allocated = True
             case _:
@@ -149,6 +155,21 @@ class Body:
         for statement in node.body:
             self._statement(statement)
         self.looped, self.index, self.numbers = True, "", before
+
+    def _repeat(self, node: ast.For) -> None:
+        """An iteration, in which numbers are given names and new values."""
+        match node.iter:
+            case ast.Call(func=ast.Name(id="range"), args=[ast.Constant(value=int() as steps)], keywords=[]):
+                if not 0 < steps <= MOST_REPEATED:
+                    refuse(node, f"repeats more than {MOST_REPEATED} times")
+            case _:
+                refuse(node, "has a loop other than one of a stated number of steps")
+        self.repeated = True
+        for statement in node.body:
+            if not (isinstance(statement, ast.Assign) and isinstance(statement.targets[0], ast.Name)):
+                refuse(statement, f"has a statement of another kind ({_kind(statement)})")
+            self._statement(statement)
+        self.repeated = False
 
     def _allocation(self) -> str:
         """How a batch form makes its result."""
@@ -213,6 +234,15 @@ class Body:
             ):
                 for argument in arguments:
                     self._number(argument)
+            case ast.Call(func=ast.Attribute(value=ast.Name(id="np"), attr="where"), args=arguments, keywords=[]) if (
+                self.form == "np" and len(arguments) == 3
+            ):
+                match arguments[0]:
+                    case ast.Compare(left=left, ops=[ast.Lt() | ast.LtE()], comparators=[right]):
+                        for part in (left, right, *arguments[1:]):
+                            self._number(part)
+                    case _:
+                        refuse(node, "compares something of another kind")
             case ast.IfExp(
                 test=ast.Compare(left=left, ops=[ast.Lt() | ast.LtE() | ast.Gt() | ast.GtE()], comparators=[right])
             ) if self.form != "np":

@@ -28,12 +28,16 @@ Method = Callable[[Instance, Limits, bool], Extremal]
 
 def without_numbers(instance: Instance, error: Exception) -> Extremal:
     """No answer, because arithmetic failed on the way."""
+    return nothing(instance, Status.NON_FINITE, f"arithmetic fails on the way ({error})")
+
+
+def nothing(instance: Instance, status: Status, message: str) -> Extremal:
+    """No answer, nor anything that led towards one."""
     n, duration = len(instance.initial), 1.0 if instance.tf is None else instance.tf - instance.t0
     problem = TwoPoint(instance, (0.0,) * 3 * n, duration, Scale(np.ones(n), 1.0))
-    nothing = np.full((2 * n, 2), np.nan)
-    path = Curve(np.array([0.0, 1.0]), nothing, nothing[:, :1, None], problem.theta)
-    message = f"arithmetic fails on the way ({error})"
-    return Extremal(problem, path, float("inf"), Status.NON_FINITE, message, 0)
+    empty = np.full((2 * n, 2), np.nan)
+    path = Curve(np.array([0.0, 1.0]), empty, empty[:, :1, None], problem.theta)
+    return Extremal(problem, path, float("inf"), status, message, 0)
 
 
 def solved(instance: Instance, progress: Progress | None, name: str, method: Method) -> Solution:

@@ -10,6 +10,7 @@ import numpy as np
 from satsym.instance import Instance
 from satsym.solution import Progress, Solution
 from satsym.solvers.cold_start import paths
+from satsym.solvers.cold_start.direct import direct
 from satsym.solvers.cold_start.directions import directed, full_length
 from satsym.solvers.cold_start.durations import free_duration
 from satsym.solvers.cold_start.first_minimum import cold_start
@@ -25,7 +26,7 @@ from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.refinement import refine
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.system import System
-from satsym.solvers.extremal import solved
+from satsym.solvers.extremal import nothing, solved
 from satsym.solvers.iteration import Limits
 from satsym.solvers.nearest_end import nearest
 from satsym.solvers.switching.linear.by_reach import unreachable
@@ -79,7 +80,13 @@ def from_cold_start(instance: Instance, limits: Limits, effort: bool, accurate: 
     effort
         Whether free durations are looked for with great effort.
     """
-    if instance.model.spec.directional:
+    if instance.model.spec.stationary and not instance.model.spec.directional and not instance.guess:
+        reached = direct(instance, limits)
+        if reached is None:
+            status = Status.TIME_LIMIT if limits.expired else Status.NOT_CONVERGED
+            return nothing(instance, status, "no extremal found by a direct method from controls that are drawn")
+        (problem, start), duration = reached, ""
+    elif instance.model.spec.directional:
         led = directed(instance, limits, effort, full_length)
         if isinstance(led, Extremal):
             return led

@@ -18,6 +18,7 @@ from satsym.spec import Variable
 from satsym.symbolic.algebra import vanishes
 from satsym.symbolic.derivation import Check, DerivationError
 from satsym.symbolic.minimisers import MPMATH_FUNCTIONS
+from satsym.symbolic.roots import Root
 
 DIGITS = 30
 LIMIT = 1e-15
@@ -95,7 +96,8 @@ def numeric_along(
     parts, values = list(chain), list(expressions)
     free = set().union(*(e.free_symbols for _, e in parts), *(e.free_symbols for e in values)) - {s for s, _ in parts}
     symbols = sorted(free, key=lambda s: s.name)
-    modules = [MPMATH_FUNCTIONS, "mpmath"]
+    roots = set().union(*(sp.sympify(e).atoms(Root) for _, e in parts))
+    modules = [{**MPMATH_FUNCTIONS, **{root.func.__name__: root.func._imp_ for root in roots}}, "mpmath"]
     function = sp.lambdify(symbols, values, modules=modules, cse=lambda _: (parts, values))
     return lambda point: function(*(point[s] for s in symbols)), symbols
 

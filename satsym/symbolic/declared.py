@@ -133,7 +133,7 @@ def begin(model: Model, problem: Problem | None) -> Derivation:
         notation[multiplier.name] = rf"\nu_{{{k}}}"
         notation[n.residual_of(multiplier).name] = rf"B_{{\psi_{{{k}}}}}"
     notation |= switching_notation.names(problem) if problem else {}
-    if problem and principle_notation.product_stated(problem):
+    if problem:
         notation |= principle_notation.product_names(problem)
     for control in model.controls:
         notation[f"{control.symbol}_star"] = rf"{control.latex}^*"

@@ -7,7 +7,7 @@ from typing import Any, TypeAlias
 
 import sympy as sp
 
-from satsym.symbolic import minimisers
+from satsym.symbolic import minimisers, roots
 
 Dimension: TypeAlias = Mapping[str, sp.Expr]
 """Exact exponents of base dimensions, without zeros; empty for plain numbers."""
@@ -64,6 +64,12 @@ def dimension_of(expression: Any, known: Known) -> Dimension | None:
         slope, weight, *limits = e.args
         _common((slope, weight), known)
         return _common(limits, known)
+    if isinstance(e, roots.Convex):
+        return dimension_of(e.args[0], known)
+    if isinstance(e, roots.Choice):
+        return _common(e.args[1:], known)
+    if isinstance(e, roots.Root):  # what it is a value of; nothing tells where it has no ends
+        return _common((end for end in e.args[:2] if not end.is_infinite), known)
     if isinstance(e, sp.Piecewise):
         for comparison in e.atoms(sp.core.relational.Relational):
             _common(comparison.args, known)
@@ -74,7 +80,7 @@ def dimension_of(expression: Any, known: Known) -> Dimension | None:
     if isinstance(e, minimisers.Shorten | minimisers.Within):
         norm_squared, *limits = e.args
         _common((norm_squared, *(limit**2 for limit in limits)), known)
-    elif isinstance(e, sp.atan2):
+    elif isinstance(e, sp.atan2 | roots.Bearing):
         _common(e.args, known)
     elif not isinstance(e, sp.sign):
         for argument in e.args:

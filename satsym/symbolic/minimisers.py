@@ -11,6 +11,8 @@ from typing import Any
 import mpmath as mp
 import sympy as sp
 
+from satsym.symbolic import roots
+
 
 class Clip(sp.Function):
     """``Clip(value, lower, upper)``: the nearest point of an interval."""
@@ -136,7 +138,10 @@ class Side(sp.Function):
         return sp.Integer(0)
 
 
-MINIMISERS = (Clip, Inside, Shorten, ShortenSlope, Stretch, StretchSlope, Within, WithinSlope, Switch, Shrink, Side)
+MINIMISERS: tuple[type[sp.Function], ...] = (
+    *(Clip, Inside, Shorten, ShortenSlope, Stretch, StretchSlope, Within, WithinSlope, Switch, Shrink, Side),
+    *roots.CONSTRUCTED,
+)
 
 
 def by_signs(expression: sp.Expr) -> sp.Expr:
@@ -157,7 +162,7 @@ def by_signs(expression: sp.Expr) -> sp.Expr:
 
 
 def _clip(value: Any, lower: Any, upper: Any) -> Any:
-    return max(lower, min(value, upper))
+    return value if value != value else max(lower, min(value, upper))
 
 
 def _shorten(norm_squared: Any, limit: Any) -> Any:
@@ -223,4 +228,4 @@ MPMATH_FUNCTIONS = {
     "Switch": _switch,
     "Shrink": _shrink,
     "Side": _side,
-}
+} | roots.MPMATH

@@ -289,12 +289,21 @@ def test_a_kind_of_model_without_steps_is_refused() -> None:
 
 
 @pytest.mark.parametrize(
-    "cost",
-    [u1**4 + u2**2, sp.Abs(u1) + u2**2, EFFORT + sp.exp(u1), sp.sqrt(1 + u1**2 + u2**2), EFFORT + u1**2 * u2],
+    ("cost", "reason"),
+    [
+        (sp.Abs(u1) + u2**2, "the controls, H_u = 0 not linear"),
+        (sp.sqrt(1 + u1**2 + u2**2), "u1, u2, and has products of them: not supported"),
+        (EFFORT + u1**2 * u2, "u1, u2, and has products of them: not supported"),
+    ],
     ids=str,
 )
-def test_hamiltonians_that_are_not_quadratic_are_refused(cost: sp.Expr) -> None:
-    assert complaint(problem(running_cost=cost)) == ("task: H is not quadratic in the controls, H_u = 0 not linear")
+def test_hamiltonians_that_are_not_quadratic_are_refused(cost: sp.Expr, reason: str) -> None:
+    assert complaint(problem(running_cost=cost)) == f"task: H is not quadratic in {reason}"
+
+
+@pytest.mark.parametrize("cost", [u1**4 + u2**2, EFFORT + sp.exp(u1)], ids=str)
+def test_hamiltonians_that_are_convex_in_each_control_have_a_law(cost: sp.Expr) -> None:
+    assert "control_law" in derive(problem(running_cost=cost))
 
 
 @pytest.mark.parametrize(

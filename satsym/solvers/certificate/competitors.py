@@ -186,7 +186,7 @@ def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Search
     def leading(paths: Any, softness: float = 1.0) -> list[Search]:
         return [_from_path(problem, path, softness, cost) for path in paths]
 
-    if instance.model.spec.directional:
+    if instance.model.spec.directional or instance.model.spec.stationary:
         bent = tuple(BENT[k % len(BENT)] for k in range(SEEDS))
         for kind, searches in led(instance, lasting, rng, bent, SHORTER_AND_LONGER):
             yield kind, [_rough(search, cost) for search in searches]

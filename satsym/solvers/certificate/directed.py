@@ -1,4 +1,4 @@
-"""Competitors where controls are directions: the regularised problem from other starts, or other durations."""
+"""Competitors where vanishing costates say nothing: regularised or direct problems, other starts or durations."""
 
 from __future__ import annotations
 
@@ -39,12 +39,15 @@ def led(
     fractions
         Of the duration, from which others are looked for where it is free.
     """
+    from satsym.solvers.cold_start.direct import direct
     from satsym.solvers.cold_start.directions import bent, directed, full_length
     from satsym.solvers.collocation.extremal import Extremal
 
     plain = replace(instance, guess=Guess())
     starts: list[Callable[..., object]] = [partial(bent, plain, rng, amplitude) for amplitude in amplitudes]
-    if instance.tf is None:
+    if not instance.model.spec.directional:
+        starts = [partial(direct, plain, seed=int(rng.integers(2**31))) for _ in amplitudes]
+    elif instance.tf is None:
         beside = [replace(plain, tf_guess=instance.t0 + fraction * lasting) for fraction in fractions]
         starts = [partial(directed, one, effort=False) for one in beside]
 
@@ -55,5 +58,6 @@ def led(
         problem, begun = found
         return problem, begun.found.curve
 
-    kind = Kind.DURATIONS if instance.tf is None else Kind.STARTS
+    directional = instance.model.spec.directional
+    kind = Kind.DURATIONS if instance.tf is None and directional else Kind.STARTS
     yield kind, [partial(attempt, start) for start in starts]

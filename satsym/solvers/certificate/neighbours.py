@@ -16,6 +16,7 @@ from satsym.solvers.certificate.accessory import Accessory, accessory
 from satsym.solvers.certificate.competitors import HIDDEN, hidden, margin
 from satsym.solvers.certificate.end_form import fixed_states
 from satsym.solvers.certificate.flow import products, typical
+from satsym.solvers.collocation.problem import ended
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.control.regularised import sloping
 
@@ -92,7 +93,7 @@ class Simulations:
         if instance.model.spec.throttled:
             none = tuple(sloping(instance, np.zeros((len(end), 1)))[:, 0].tolist())
         arguments = none, nu, instance.parameters, instance.control_set.arguments, final_argument(instance)
-        residual = np.array(instance.model.boundary(grid.tf, end, *arguments))
+        residual = ended(instance, grid.tf, end, *arguments)
         return running + terminal, residual[self.rows] / self.scale
 
     def motion(self, control: Array, grid: Grid) -> tuple[Array, float]:

@@ -65,13 +65,13 @@ def from_control(problem: TwoPoint, control: Mapping[str, Sequence[float]], limi
         return None
     z = np.concatenate([found.x, found.lam]) / problem.scale.both
     tau = (found.times - found.times[0]) / (found.times[-1] - found.times[0])
-    curve = _curve(problem, tau, z, meshes.along(problem, tau, z[: problem.states], problem.theta))
-    curve = _curve(problem, tau, z, through(corners(problem, curve), len(curve.mesh) - 1))
+    curve = on_mesh(problem, tau, z, meshes.along(problem, tau, z[: problem.states], problem.theta))
+    curve = on_mesh(problem, tau, z, through(corners(problem, curve), len(curve.mesh) - 1))
     bounded = settled(problem, curve, STAGES, len(curve.mesh) - 1, limits)
     return bounded.curve if bounded.solved and bounded.curve.in_domain(problem.positive) else None
 
 
-def _curve(problem: TwoPoint, tau: Array, z: Array, mesh: Array) -> Curve:
+def on_mesh(problem: TwoPoint, tau: Array, z: Array, mesh: Array) -> Curve:
     """States and costates at times (M,) on a mesh."""
     at = stage_times(mesh, STAGES)
     nodes, stages = (np.array([np.interp(where, tau, row) for row in z]) for where in (mesh, at.ravel()))

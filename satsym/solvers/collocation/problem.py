@@ -10,15 +10,18 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from satsym.arrays import Array
-from satsym.control_set import UNSMOOTHED, ControlSet
+from satsym.control_set import UNSMOOTHED, ControlSet, Row
 from satsym.instance import Instance
 from satsym.solvers.control.regularised import sloping, smoothed_cost, smoothed_law
+
+ROUNDING = 1e-10
+"""Share of a control by which rounding may seem to move it beyond a bound."""
 
 PLACES, SAME = 8, 1e-9
 """Times at which derivatives are compared, and the relative difference of numbers that may be rounding."""
@@ -214,8 +217,27 @@ class TwoPoint:
         if self.instance.model.spec.switching:
             t, x, lam, _ = self._arguments(tau, z, theta)
             return smoothed_law(self.instance, control_set, t, x, lam)
-        law: Array = self.instance.model.control_law_batch(*self._arguments(tau, z, theta), control_set.arguments)
+        arguments = self._arguments(tau, z, theta)
+        if self.instance.model.spec.stationary and not bounded:
+            return self._beyond(*arguments)
+        law: Array = self.instance.model.control_law_batch(*arguments, control_set.arguments)
         return law
+
+    def _beyond(self, t: Array, x: Array, lam: Array, p: Row) -> Array:
+        """The law within its bounds, moved by a step of Newton's method for H: beyond bounds that hold it.
+
+        Without bounds there may be no minimiser, and an angle may be a turn away.
+        """
+        model = self.instance.model
+        law = np.array(model.control_law_batch(t, x, lam, p, self.control_set.arguments))
+        curved = np.einsum("iik->ik", np.asarray(model.control_hessian_batch(t, x, law, lam, p)))
+        slope = np.broadcast_to(model.stationarity_batch(t, x, law, lam, p), law.shape)
+        step = slope / np.where(np.abs(curved) > 0.0, np.abs(curved), 1.0)
+        within = np.where(np.abs(step) > ROUNDING * np.abs(law), step, 0.0)
+        for places, part in self.instance.control_set.parts:
+            if part.kind not in ("free", "box"):
+                within[list(places)] = 0.0
+        return np.asarray(law - within)
 
     @cached_property
     def linear(self) -> bool:
@@ -240,13 +262,13 @@ class TwoPoint:
         theta
             Extra unknowns, shape (e,).
         """
-        residual = np.array(self.instance.model.boundary(*self._at_the_end(end, theta)))
+        residual = ended(self.instance, *self._at_the_end(end, theta))
         return residual[: len(self._row_scale)] / self._row_scale
 
     def boundary_slopes(self, end: Array, theta: Array) -> tuple[Array, Array]:
         """Derivatives of the former by ``end`` and ``theta``, shapes (n + e, 2n) and (n + e, e)."""
         n, e = self.states, self.unknowns
-        slopes = np.array(self.instance.model.boundary_jacobian(*self._at_the_end(end, theta)))
+        slopes = ended(self.instance, *self._at_the_end(end, theta), by="jacobian")
         # The kernel has a row and a column for the duration, free or not.
         shown = slopes.reshape(n + e + 1 - self.free_time, -1)[: n + e, : 2 * n + e]
         scaled = shown * self._slope_scale[:, : 2 * n + e]
@@ -289,3 +311,16 @@ class TwoPoint:
         if self.free_time:
             rest[-1] = self.scale.cost / self.duration
         return np.concatenate([own, rest])
+
+
+def ended(instance: Instance, tf: float, x: Row, lam: Row, *others: Any, by: Literal["", "jacobian"] = "") -> Array:
+    """The boundary residuals of an instance, or their derivatives: no numbers where the law says nothing.
+
+    On floats it may raise there.
+    """
+    model = instance.model
+    if not model.spec.stationary:
+        return np.array((model.boundary_jacobian if by else model.boundary)(tf, x, lam, *others))
+    kernel = model.boundary_jacobian_batch if by else model.boundary_batch
+    with np.errstate(all="ignore"):
+        return np.array(kernel(tf, np.array(x), np.array(lam), *others))

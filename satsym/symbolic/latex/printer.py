@@ -17,6 +17,7 @@ from sympy.printing.latex import LatexPrinter
 from satsym.symbolic.latex.levels import extreme, levels, size
 from satsym.symbolic.latex.products import Product, base, exponent, is_negative, spread, take_apart
 from satsym.symbolic.latex.terms import Piece, Term, joined
+from satsym.symbolic.roots import Root
 
 ELEMENTARY = frozenset("sin cos tan cot sec csc sinh cosh tanh log".split())
 """Functions that a symbol follows without parentheses."""
@@ -270,9 +271,27 @@ class Printer(LatexPrinter):
             least, largest = (rf"\frac{{{self._print(limit)}}}{{{root}}}" for limit in limits)
         return extreme(r"\min", largest, extreme(r"\max", "1", least))
 
+    def _print_Convex(self, expr: sp.Expr, exp: str | None = None) -> str:
+        value = self._print(expr.args[0])
+        return rf"{self._enclosed(value)}^{{{exp}}}" if exp else value
+
+    def _print_Choice(self, expr: sp.Expr, exp: str | None = None) -> str:
+        excess, one, other = map(self._print, expr.args)
+        return rf"\begin{{cases}} {one}, & {excess} \le 0 \\ {other}, & {excess} > 0 \end{{cases}}"
+
+    def _print_Middle(self, expr: sp.Expr, exp: str | None = None) -> str:
+        lower, upper = map(self._print, expr.args)
+        return rf"\tfrac{{1}}{{2}} ({lower} + {upper})"
+
+    def _print_Root(self, expr: Root, exp: str | None = None) -> str:
+        slope, unknown = self._print(expr.at()), self._print(expr.unknown)
+        return rf"\operatorname{{root}}_{{{unknown}}} {self._enclosed(slope)}"
+
     def _print_atan2(self, expr: sp.Expr, exp: str | None = None) -> str:
         across, along = map(self._print, expr.args)
         return rf"\operatorname{{atan2}}({across},\, {along})"
+
+    _print_Bearing = _print_atan2
 
     # sizes
 

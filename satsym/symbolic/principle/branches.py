@@ -2,21 +2,27 @@
 
 H must be a sum of functions of the controls of one set each. One that is quadratic in its controls has its minimum
 where its derivative vanishes, or nearest to that within the set; one that is linear in them has it in the direction
-against the slope, as far as the set goes; of ``a cos u + b sin u`` it is at the angle of ``(-a, -b)``.
+against the slope, as far as the set goes; of ``a cos u + b sin u`` it is at the angle of ``(-a, -b)``. What else
+depends on one control alone has its minimum where its slope vanishes, see :mod:`satsym.symbolic.principle.stationary`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from itertools import product
 
 import sympy as sp
 from sympy.solvers.solveset import NonlinearError
 
-from satsym.spec import Branch
+from satsym.spec import DIRECTED, Branch
 from satsym.symbolic.algebra import gradient, simplified, tidy
 from satsym.symbolic.derivation import DerivationError
+from satsym.symbolic.principle.circle import by_circle
 from satsym.symbolic.principle.parts import Part
+from satsym.symbolic.principle.stationary import minimiser, with_angle
+from satsym.symbolic.roots import Choice, Convex, Middle
 
 
 @dataclass(frozen=True)
@@ -44,9 +50,23 @@ class Minimum:
     hats: tuple[sp.Expr, ...] = ()
     hessian: sp.Matrix | None = None
     weight: sp.Expr = sp.Integer(0)
+    laws: tuple[sp.Expr, ...] = ()
+    """Of what is neither linear nor quadratic: the minimisers, within the bounds."""
+
+    @property
+    def directed(self) -> bool:
+        """Whether it is a direction."""
+        return self.branch in DIRECTED
+
+    @property
+    def remarks(self) -> set[str]:
+        """Keys of what is said of such a law."""
+        said = {Choice: "least of two minimisers", Middle: "nearer end of the angles", Convex: "only where convex"}
+        return {key for kind, key in said.items() for law in self.laws if law.has(kind)}
 
 
-def minima(name: str, h: sp.Expr, parts: Sequence[Part]) -> tuple[Minimum, ...]:
+@lru_cache(maxsize=64)  # every step asks again
+def minima(name: str, h: sp.Expr, parts: tuple[Part, ...], side: int = 1) -> tuple[Minimum, ...]:
     """The branch of each set.
 
     Parameters
@@ -55,6 +75,8 @@ def minima(name: str, h: sp.Expr, parts: Sequence[Part]) -> tuple[Minimum, ...]:
         Of what is derived, for messages.
     h
         The Hamiltonian.
+    side
+        Minus one where it is maximised.
 
     Raises
     ------
@@ -63,8 +85,12 @@ def minima(name: str, h: sp.Expr, parts: Sequence[Part]) -> tuple[Minimum, ...]:
     """
     found = []
     h = with_norms(h, parts)
+    coupled = _coupled(name, h, parts, side)
     for part in parts:
         others = {u for other in parts if other is not part for u in other.symbols}
+        if part.name in coupled:
+            found.append(coupled[part.name])
+            continue
         slopes = [tidy(g, part.symbols) for g in gradient(h, part.symbols)]
         for u, slope in zip(part.symbols, slopes, strict=True):
             norms = {norm_of(other) for other in parts if other is not part}
@@ -75,8 +101,42 @@ def minima(name: str, h: sp.Expr, parts: Sequence[Part]) -> tuple[Minimum, ...]:
                 )
             if slope == 0 and not h.has(norm_of(part)):
                 raise DerivationError(f"{name}: {u.name} enters neither the motion nor the cost; leave it out")
-        found.append(_of_angle(name, h, part) if part.kind == "angle" else _of_vector(name, h, part, slopes))
+        found.append(_of_angle(name, h, part) if part.kind == "angle" else _of_vector(name, h, part, slopes, side))
     return tuple(found)
+
+
+def _coupled(name: str, h: sp.Expr, parts: Sequence[Part], side: int) -> dict[str, Minimum]:
+    """The branches of an angle and of a control beside it that H has products of, by the names of their sets."""
+    found: dict[str, Minimum] = {}
+    for turned, beside in product(parts, repeat=2):
+        if turned.kind not in ("angle", "box") or beside.kind not in ("free", "box"):
+            continue
+        if turned is beside or len(turned.symbols + beside.symbols) > 2:
+            continue
+        (angle,), (u,) = turned.symbols, beside.symbols
+        circle = by_circle(h, angle)
+        if circle is None or not any(e.has(u) for e in circle[1:]) or by_circle(h, u):
+            continue
+        arc = ends_of(turned, angle) if turned.kind == "box" else None
+        others = {v for part in parts if part not in (turned, beside) for v in part.symbols}
+        slopes = gradient(h, (u, angle))
+        laws = (
+            None
+            if any(s.has(*others) for s in slopes)
+            else with_angle(name, side * h, u, ends_of(beside, u), angle, arc)
+        )
+        if laws is not None:
+            found[beside.name] = Minimum(beside, "stationary", gradient=tuple(slopes[:1]), laws=laws[:1])
+            found[turned.name] = Minimum(turned, "stationary", gradient=tuple(slopes[1:]), laws=laws[1:])
+    return found
+
+
+def ends_of(part: Part, u: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
+    """The bounds of one control of a box, or none."""
+    if part.kind != "box":
+        return -sp.oo, sp.oo
+    at, half = part.symbols.index(u), len(part.bounds) // 2
+    return part.bounds[at], part.bounds[half + at]
 
 
 def _of_angle(name: str, h: sp.Expr, part: Part) -> Minimum:
@@ -89,21 +149,6 @@ def _of_angle(name: str, h: sp.Expr, part: Part) -> Minimum:
         )
     _, cosine, sine = parts
     return Minimum(part, "direction", (tidy(cosine), tidy(sine)))
-
-
-def by_circle(expression: sp.Expr, angle: sp.Symbol) -> tuple[sp.Expr, sp.Expr, sp.Expr] | None:
-    """c, a and b of c + a cos(angle) + b sin(angle); ``None`` where an expression is no such sum."""
-    along, across = sp.Dummy("along", real=True), sp.Dummy("across", real=True)
-
-    def apart(e: sp.Expr) -> sp.Expr:
-        return sp.expand_trig(e).xreplace({sp.cos(angle): along, sp.sin(angle): across})
-
-    turned = sp.sympify(expression).replace(lambda e: e.func in (sp.sin, sp.cos, sp.tan) and e.has(angle), apart)
-    slopes = [sp.diff(turned, v) for v in (along, across)]
-    if turned.has(angle) or any(sp.simplify(s).has(along, across) for s in slopes if s.has(along, across)):
-        return None
-    none = {along: sp.Integer(0), across: sp.Integer(0)}
-    return (turned.xreplace(none), *(s.xreplace(none) for s in slopes))
 
 
 def norm_of(part: Part) -> sp.Symbol:
@@ -125,7 +170,7 @@ def with_norms(expression: sp.Expr, parts: Sequence[Part]) -> sp.Expr:
     return found
 
 
-def _of_vector(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr]) -> Minimum:
+def _of_vector(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr], side: int) -> Minimum:
     controls, norm = ", ".join(u.name for u in part.symbols), norm_of(part)
     weight = sp.diff(h, norm)
     if weight != 0:
@@ -139,8 +184,7 @@ def _of_vector(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr]) -> Mini
     try:
         rows, load = sp.linear_eq_to_matrix(slopes, part.symbols)
     except NonlinearError:
-        message = f"{name}: H is neither linear nor quadratic in {controls}, which is not supported"
-        raise DerivationError(message) from None
+        return _of_each(name, side * h, part, slopes)
     if all(entry == 0 for entry in rows):
         if part.kind not in ("ball", "annulus"):
             raise DerivationError(
@@ -157,3 +201,19 @@ def _of_vector(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr]) -> Mini
         raise DerivationError(f"{name}: H_uu of {controls} is singular, so H_u = 0 does not determine them")
     hats = tuple(tidy(simplified(u)) for u in rows.LUsolve(load))
     return Minimum(part, "quadratic", (), tuple(slopes), hats, rows.applyfunc(sp.simplify))
+
+
+def _of_each(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr]) -> Minimum:
+    """Controls on which H depends neither linearly nor quadratically, each by itself."""
+    controls = ", ".join(u.name for u in part.symbols)
+    if part.kind not in ("free", "box"):
+        raise DerivationError(
+            f"{name}: H is neither linear nor quadratic in {controls}, which needs a box, or no bounds"
+        )
+    apart = all(not s.has(*(v for v in part.symbols if v != u)) for u, s in zip(part.symbols, slopes, strict=True))
+    if not apart:
+        raise DerivationError(f"{name}: H is not quadratic in {controls}, and has products of them: not supported")
+    if part.kind == "free" and any(by_circle(h, u) for u in part.symbols):
+        raise DerivationError(f"{name}: {controls} is an angle that nothing limits; state Angle({controls!r})")
+    laws = tuple(minimiser(name, h, u, ends_of(part, u)) for u in part.symbols)
+    return Minimum(part, "stationary", gradient=tuple(slopes), laws=laws)

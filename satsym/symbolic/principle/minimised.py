@@ -18,12 +18,15 @@ from satsym.symbolic.principle import notation as pn
 from satsym.symbolic.principle.branches import Minimum, norm_of
 from satsym.symbolic.principle.parts import limits_of
 from satsym.symbolic.principle.pontryagin import costates
-from satsym.symbolic.principle.product import EXACT, found, ordered, relaxed, stated, written_out
+from satsym.symbolic.principle.set_checks import ordered
+from satsym.symbolic.principle.set_laws import EXACT, found, problem_of, relaxed, written_out
 
 
-def minimised_hamiltonian(so_far: Derivation) -> Step:
-    """H* = H with the law in it, where no bound of a box or on a square is active."""
-    problem, every = stated(so_far), found(so_far)
+def minimised_hamiltonian(so_far: Derivation) -> Step | None:
+    """H* = H with the law in it, where no bound of a box or on a square is active, and the law has no bounds in it."""
+    problem, every = problem_of(so_far), found(so_far)
+    if any(one.branch == "stationary" for one in every):
+        return None
     h = so_far.equation("hamiltonian.H").rhs
     least: dict[sp.Symbol, sp.Expr] = {}
     gained = sp.Integer(0)

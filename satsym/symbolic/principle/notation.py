@@ -37,6 +37,17 @@ def names(model: Model) -> dict[str, str]:
 REGULARISED_H = sp.Symbol("H_regularised", real=True)
 """H of the regularised problem of directions."""
 
+slope_by = named("slope_by_{}")
+"""H_u of a control on which H depends neither linearly nor quadratically."""
+MOST_PARTS = 200
+"""Named parts of laws, at most."""
+
+
+def part_of_law(number: int) -> sp.Symbol:
+    """The symbol for a part of laws."""
+    return sp.Symbol(f"law_part_{number}", real=True)
+
+
 primer_of = named("primer_{}")
 """The slope of H by a control on which it depends linearly, in a ball."""
 weight_of = named("norm_weight_{}")
@@ -65,8 +76,11 @@ def product_names(problem: Problem) -> dict[str, str]:
     """Name -> LaTeX of what the law over a product of sets introduces."""
     found = {REGULARISED_H.name: r"H_\varepsilon"}
     found |= {v.symbol: v.latex for v in (parts.SMOOTHING, parts.FRACTION)}
+    if problem.control_sets:
+        found |= {part_of_law(k).name: f"q_{{{k}}}" for k in range(1, MOST_PARTS + 1)}
     for v in problem.model.controls:
-        found |= {f"primer_{v.symbol}": f"p_{{{v.latex}}}", f"cosine_of_{v.symbol}": f"a_{{{v.latex}}}"}
+        found |= {f"slope_by_{v.symbol}": f"H_{{{v.latex}}}", f"primer_{v.symbol}": f"p_{{{v.latex}}}"}
+        found |= {f"cosine_of_{v.symbol}": f"a_{{{v.latex}}}"}
         found |= {f"sine_of_{v.symbol}": f"b_{{{v.latex}}}", f"along_{v.symbol}": f"c_{{{v.latex}}}"}
         found |= {f"across_{v.symbol}": f"s_{{{v.latex}}}", f"norm_weight_{v.symbol}": f"w_{{{v.latex}}}"}
     for part in parts.parts_of(problem):
@@ -77,13 +91,13 @@ def product_names(problem: Problem) -> dict[str, str]:
 
 def declare_product(known: dict[str, Dimension | None], problem: Problem, running: Dimension | None) -> None:
     """Enter the dimensions of these."""
-    if not product_stated(problem):
-        return
     known[REGULARISED_H.name], known[parts.FRACTION.symbol] = running, PLAIN
     efforts = []
     for part in parts.parts_of(problem):
         for v in part.controls:
-            known[f"primer_{v.symbol}"] = known[f"norm_weight_{v.symbol}"] = over(running, known[v.symbol])
+            known[f"slope_by_{v.symbol}"] = known[f"primer_{v.symbol}"] = known[f"norm_weight_{v.symbol}"] = over(
+                running, known[v.symbol]
+            )
             known[f"norm_of_{part.name}"] = known[v.symbol]
             known[f"cosine_of_{v.symbol}"] = known[f"sine_of_{v.symbol}"] = running
             known[f"along_{v.symbol}"] = known[f"across_{v.symbol}"] = PLAIN
@@ -92,8 +106,3 @@ def declare_product(known: dict[str, Dimension | None], problem: Problem, runnin
             efforts.append(over(over(running, unit), unit))
     # one number smooths all directions: where their units differ it has none that would suit them all
     known[parts.SMOOTHING.symbol] = efforts[0] if efforts and all(e == efforts[0] for e in efforts) else None
-
-
-def product_stated(problem: Problem) -> bool:
-    """Whether the law may be one over a product of sets."""
-    return bool(problem.control_sets) or problem.control_set == "ball"

@@ -1,0 +1,70 @@
+"""A space shuttle enters the atmosphere and glides as far to the side as it can (Betts 2010, section 6.1).
+
+Angle of attack and bank are the controls. The lift grows linearly with the angle of attack, the drag as its square,
+and the bank turns the lift. Without a limit on heating the largest latitude is 34.1411843 degrees. The bounds of the
+bank matter: on its back, with negative lift, the same polar would glide further.
+"""
+
+from sympy import cos, exp, sin
+
+from satsym.symbolic import Box, FirstOrder, Problem, Variable, symbols_of
+
+STATES = (
+    Variable("h", "h", "ft", "altitude", typical=(80000.0, 260000.0)),
+    Variable("phi", r"\phi", "rad", "longitude", kind="angle", typical=(0.0, 1.0)),
+    Variable("theta", r"\theta", "rad", "latitude", typical=(0.0, 1.0)),
+    Variable("v", "v", "ft/s", "speed", positive=True, typical=(2500.0, 26000.0)),
+    Variable("gamma", r"\gamma", "rad", "angle of the path above the horizontal", typical=(-0.1, 0.1)),
+    Variable("psi", r"\psi", "rad", "azimuth", typical=(0.0, 1.6)),
+)
+CONTROLS = (
+    Variable("alpha", r"\alpha", "deg", "angle of attack", typical=(0.0, 30.0)),
+    Variable("beta", r"\beta", "rad", "bank", kind="angle"),
+)
+PARAMETERS = (
+    Variable("mu", r"\mu", "ft^3/s^2", "gravitational parameter", 0.14076539e17, positive=True),
+    Variable("r_e", "r_e", "ft", "radius of the Earth", 20902900.0, positive=True),
+    Variable("rho_0", r"\rho_0", "slug/ft^3", "density at the ground", 0.002378, positive=True),
+    Variable("h_r", "h_r", "ft", "scale height", 23800.0, positive=True),
+    Variable("area", "A", "ft^2", "reference area", 2690.0, positive=True),
+    Variable("m", "m", "slug", "mass", 203000.0 / 32.174, positive=True),
+    Variable("a_0", "a_0", meaning="lift without angle of attack", default=-0.20704),
+    Variable("a_1", "a_1", "1/deg", "slope of the lift", 0.029244, positive=True),
+    Variable("b_0", "b_0", meaning="drag without angle of attack", default=0.07854, positive=True),
+    Variable("b_1", "b_1", "1/deg", "slope of the drag there", -0.61592e-2),
+    Variable("b_2", "b_2", "1/deg^2", "growth of the drag", 0.621408e-3, positive=True),
+)
+h, phi, theta, v, gamma, psi = symbols_of(STATES)
+alpha, beta = symbols_of(CONTROLS)
+mu, r_e, rho_0, h_r, area, m, a_0, a_1, b_0, b_1, b_2 = symbols_of(PARAMETERS)
+
+r = r_e + h
+pressure = rho_0 * exp(-h / h_r) * v**2 / 2
+lift = pressure * area * (a_0 + a_1 * alpha) / m
+drag = pressure * area * (b_0 + b_1 * alpha + b_2 * alpha**2) / m
+gravity = mu / r**2
+
+shuttle = Problem(
+    name="shuttle",
+    title="A shuttle glides to the largest latitude",
+    model=FirstOrder(
+        name="entry",
+        title="Gliding entry over a round Earth at rest",
+        states=STATES,
+        controls=CONTROLS,
+        parameters=PARAMETERS,
+        rates={
+            h: v * sin(gamma),
+            phi: v * cos(gamma) * sin(psi) / (r * cos(theta)),
+            theta: v * cos(gamma) * cos(psi) / r,
+            v: -drag - gravity * sin(gamma),
+            gamma: lift * cos(beta) / v + cos(gamma) * (v / r - gravity / v),
+            psi: lift * sin(beta) / (v * cos(gamma)) + v * cos(gamma) * sin(psi) * sin(theta) / (r * cos(theta)),
+        },
+    ),
+    running_cost=0,
+    terminal_cost=-theta,
+    control_sets={"attack": Box("alpha"), "bank": Box("beta")},
+)
+
+PROBLEMS = (shuttle,)

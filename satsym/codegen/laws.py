@@ -1,0 +1,54 @@
+"""Laws of controls on which H depends neither linearly nor quadratically, as a chain of named parts with derivatives.
+
+In one piece, what depends on such a law holds it many times over, and its derivatives more often still.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import sympy as sp
+
+from satsym.symbolic import notation as n
+from satsym.symbolic.chain import Assignment, Chain, along
+from satsym.symbolic.derivation import Derivation
+from satsym.symbolic.model import symbols_of, t
+from satsym.symbolic.principle import product, set_laws
+
+
+@dataclass(frozen=True)
+class LawParts:
+    """The chain, the symbols in it for the controls, and the derivatives of all its parts."""
+
+    parts: tuple[Assignment, ...] = ()
+    values: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    slopes: Mapping[sp.Symbol, Mapping[sp.Symbol, sp.Expr]] = field(default_factory=dict)
+
+    def jacobian(self, column: sp.Matrix, by: tuple[sp.Symbol, ...]) -> sp.Matrix:
+        """The derivatives of expressions in which such controls are those symbols."""
+        return sp.Matrix([[along(e, self.slopes.get(s, {s: sp.Integer(1)})) for s in by] for e in column])
+
+
+def law_parts(derivation: Derivation) -> LawParts:
+    """Those of a derivation; nothing where all its laws are written in closed form."""
+    if product.STEP not in derivation:
+        return LawParts()
+    laws = {
+        u: law
+        for one in set_laws.found(derivation)
+        if one.branch == "stationary"
+        for u, law in zip(one.part.symbols, one.laws, strict=True)
+    }
+    names = sp.utilities.numbered_symbols("law_part_", start=1, real=True)
+    parts, reduced = sp.cse(list(laws.values()), symbols=names, order="canonical")
+    chain = Chain(parts)
+    values = {u: chain.named(f"law_of_{u.name}", law) for u, law in zip(laws, reduced, strict=True)}
+    states = symbols_of(derivation.model.states)
+    plain = Chain(chain.parts)
+    slopes = {}
+    for by in (*states, *map(n.costate_of, states), t):
+        own = Chain(chain.parts)
+        slopes[by] = own.derivatives(by)
+        plain.parts += own.parts[len(chain.parts) :]
+    return LawParts(tuple(plain.parts), values, slopes)

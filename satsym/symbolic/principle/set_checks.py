@@ -1,0 +1,148 @@
+"""Checks of the law over a product of sets: H is a sum over the sets, and no admissible control is cheaper."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+from typing import Any
+
+import mpmath as mp
+import sympy as sp
+
+from satsym.symbolic.checks import Point, compare, never_below, numeric
+from satsym.symbolic.convention import sign, worded
+from satsym.symbolic.derivation import Derivation, DerivationError
+from satsym.symbolic.model import symbols_of
+from satsym.symbolic.principle import control_sets
+from satsym.symbolic.principle.branches import Minimum
+from satsym.symbolic.principle.parts import limits_of
+from satsym.symbolic.principle.pontryagin import COMPETITORS, costates
+from satsym.symbolic.principle.set_laws import bare, found, problem_of
+
+SCALES = (0.1, 1.0, 10.0)
+"""Factors on the costates at each random point."""
+
+TRIES = 60
+"""Costates at most that are tried until H has a minimum."""
+
+
+def adds_up(so_far: Derivation, h: sp.Expr, every: Sequence[Minimum]) -> Any:
+    """Check that the change of H from some controls to others is the sum of the changes in each set."""
+    value = numeric([h])
+    other = {u: sp.Dummy(f"other_{u.name}", real=True) for one in every for u in one.part.symbols}
+    changes = [_change(h, {u: other[u] for one in every if one.branch == "stationary" for u in one.part.symbols})]
+    for one in every:
+        symbols = one.part.symbols
+        if one.branch == "stationary":
+            continue
+        if one.part.kind == "angle":
+            (angle,) = symbols
+            moved = [f(other[angle]) - f(angle) for f in (sp.cos, sp.sin)]
+            changes += [s * m for s, m in zip(one.vector, moved, strict=True)]
+        elif one.directed:
+            changes += [s * (other[u] - u) for s, u in zip(one.vector, symbols, strict=True)]
+            before, after = (sp.sqrt(sum(v**2 for v in w)) for w in (symbols, [other[u] for u in symbols]))
+            changes.append(one.weight * (after - before))
+        else:
+            assert one.hessian is not None
+            move = sp.Matrix([other[u] - u for u in symbols])
+            changes += [(sp.Matrix(one.gradient).T * move)[0], (move.T * one.hessian * move)[0] / 2]
+    change = numeric([sum(changes, sp.Integer(0))])
+
+    def sides(point: Point) -> tuple[list[Any], list[Any]]:
+        there = {**point, **{u: point[v] for u, v in other.items()}}
+        return change(point), [value(there)[0] - value(point)[0]]
+
+    return compare("adds up to H", h.free_symbols.union(other, other.values(), costates(so_far)), sides)
+
+
+def _change(h: sp.Expr, others: dict[sp.Symbol, sp.Symbol]) -> sp.Expr:
+    """By how much H changes with some controls."""
+    return h.xreplace(others) - h if others else sp.Integer(0)
+
+
+def convex(so_far: Derivation, one: Minimum) -> Any:
+    """Check that H_uu of one set is positive definite."""
+    problem, h = problem_of(so_far), so_far.equation("hamiltonian.H").rhs
+    assert one.hessian is not None
+    minors = [(sign(problem) * one.hessian[:k, :k]).det() for k in range(1, one.hessian.rows + 1)]
+    leading = numeric(minors)
+    positive = never_below(worded("positive minors", problem), h.free_symbols, lambda point, rng: leading(point))
+    if not positive.passed or any(sp.simplify(m).is_positive is False for m in minors):
+        raise DerivationError(
+            f"{so_far.name}: H_uu of {one.part.name!r} is not definite, so H has no {problem.convention} in these "
+            "controls (weights have to be declared positive)"
+        )
+    return positive
+
+
+def cheapest(so_far: Derivation, h: sp.Expr, laws: Sequence[sp.Expr]) -> Any:
+    """Check that no admissible control makes H better, set by set and all together."""
+    problem, every = problem_of(so_far), found(so_far)
+    controls = symbols_of(problem.model.controls)
+    value, chosen, limits = numeric([h]), numeric(list(laws)), symbols_of(limits_of(problem))
+
+    def margins(point: Point, rng: random.Random) -> list[Any]:
+        margin = []
+        for scale in SCALES:
+            here = {**point, **{c: scale * point[c] for c in costates(so_far)}}
+            for one in every:
+                here = ordered(one, here)
+            if (decided := _decided(chosen, here, costates(so_far), rng)) is None:
+                continue
+            here, law = decided[0], dict(zip(controls, decided[1], strict=True))
+            best = value({**here, **law})[0]
+            for one in every:
+                margin += _slacks(one, here, law)
+            for _ in range(COMPETITORS):
+                other = {u: v for one in every for u, v in drawn(one, here, rng).items()}
+                margin.append(sign(problem) * (value({**here, **other})[0] - best))
+        return margin or [mp.nan]
+
+    everything = {*limits, *controls, *costates(so_far)} | h.free_symbols.union(*(e.free_symbols for e in laws))
+    return never_below(worded("cheapest admissible", problem), everything, margins)
+
+
+def _decided(
+    chosen: Any, here: Point, moved: Sequence[sp.Symbol], rng: random.Random
+) -> tuple[Point, list[Any]] | None:
+    """The point, or one with other costates, at which there is a minimiser, and that."""
+    there = here
+    for _ in range(TRIES):
+        law = chosen(there)
+        if not any(v != v or mp.im(v) for v in law):
+            return there, law
+        there = {s: v * rng.choice((-1, 1)) * 10 ** rng.uniform(-1, 2) if s in moved else v for s, v in here.items()}
+    return None
+
+
+def ordered(one: Minimum, point: Point) -> Point:
+    """A point with bounds that leave something between them."""
+    if one.part.kind == "angle":
+        return {**point, one.part.bounds[0]: mp.mpf(1)}
+    if one.part.kind == "annulus":
+        low, high = sorted(point[b] for b in one.part.bounds)
+        return {**point, one.part.bounds[0]: low, one.part.bounds[1]: high}
+    return control_sets.ordered(bare(one.part.kind), point, one.part.bounds)
+
+
+def _slacks(one: Minimum, point: Point, law: dict[sp.Symbol, Any]) -> list[Any]:
+    """How far the law stays within the set; rounding may bring it to the limit."""
+    values = [law[u] for u in one.part.symbols]
+    kind = bare(one.part.kind)
+    limits = one.part.bounds[-1:] if kind == "ball" else one.part.bounds
+    return [s + mp.mpf(10) ** -20 for s in control_sets.slacks(kind, point, limits, values)]
+
+
+def drawn(one: Minimum, point: Point, rng: random.Random) -> dict[sp.Symbol, Any]:
+    """A random admissible control of one set."""
+    symbols, limits = one.part.symbols, one.part.bounds
+    if one.part.kind == "angle":
+        return {symbols[0]: mp.mpf(rng.uniform(-4, 4))}
+    if one.part.kind == "annulus":
+        (shown,) = control_sets.admissible("ball", {limits[1]: mp.mpf(1)}, limits[1:], len(symbols), rng, 1)
+        norm = mp.sqrt(sum(v**2 for v in shown))
+        size = point[limits[0]] + norm * (point[limits[1]] - point[limits[0]])
+        return {u: v / norm * size for u, v in zip(symbols, shown, strict=True)}
+    (shown,) = control_sets.admissible(bare(one.part.kind), point, limits, len(symbols), rng, 1)
+    return dict(zip(symbols, shown, strict=True))

@@ -1,0 +1,147 @@
+"""The minimiser of H over each set of a product, and over the sets of the regularised problem, as expressions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import sympy as sp
+
+from satsym.spec import ControlSetKind, PartKind
+from satsym.symbolic.convention import sign
+from satsym.symbolic.derivation import Derivation, DerivationError
+from satsym.symbolic.minimisers import Clip, Stretch, Within
+from satsym.symbolic.model import Problem, symbols_of
+from satsym.symbolic.principle import control_sets
+from satsym.symbolic.principle import notation as pn
+from satsym.symbolic.principle.branches import Minimum, minima, norm_of, with_norms
+from satsym.symbolic.principle.circle import by_circle
+from satsym.symbolic.principle.parts import FRACTION, SMOOTHING, minimum_norm_of, parts_of
+
+EPSILON, FACTOR = symbols_of((SMOOTHING, FRACTION))
+
+EXACT = {EPSILON: sp.Float(1e-25, 30), FACTOR: sp.Integer(1)}
+"""With which the law of the regularised problem is that of the problem itself."""
+
+
+def found(so_far: Derivation) -> tuple[Minimum, ...]:
+    """The branches of a derivation that has its Hamiltonian."""
+    problem = problem_of(so_far)
+    return minima(so_far.name, so_far.equation("hamiltonian.H").rhs, parts_of(problem), sign(problem))
+
+
+def problem_of(so_far: Derivation) -> Problem:
+    """Its problem."""
+    if so_far.problem is None:
+        raise TypeError(f"{so_far.name} has no cost")
+    return so_far.problem
+
+
+def bare(kind: PartKind) -> ControlSetKind:
+    """The simple set that limits controls as this one does from outside; an angle is not limited."""
+    return "free" if kind == "angle" else "ball" if kind == "annulus" else kind
+
+
+def relaxed(so_far: Derivation, expressions: Iterable[sp.Expr]) -> list[sp.Expr]:
+    """Expressions with directions as vectors that may be shorter: what the regularised problem has in place of them."""
+    values = [with_norms(e, parts_of(problem_of(so_far))) for e in expressions]
+    for part in (one.part for one in found(so_far) if one.directed):
+        if part.kind != "angle":
+            continue
+        (angle,), (along, across) = part.symbols, pn.components_of(part)
+        taken = [by_circle(value, angle) for value in values]
+        if any(one is None for one in taken):
+            message = f"the motion or the cost is not linear in cos({angle.name}) and sin({angle.name})"
+            raise DerivationError(f"{so_far.name}: {message}")
+        values = [c + a * along + b * across for one in taken if one is not None for c, a, b in (one,)]
+    return values
+
+
+def regularised_law(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
+    """What takes the place of controls, or of the components of directions, in the regularised problem."""
+    problem, every = problem_of(so_far), found(so_far)
+    laws: dict[sp.Symbol, sp.Expr] = {}
+    for one in every:
+        if one.directed:
+            laws |= dict(zip(pn.components_of(one.part), shortened(problem, one), strict=True))
+            if one.weight != 0:
+                laws[norm_of(one.part)] = FACTOR * _size(problem, one)
+        else:
+            laws |= dict(zip(one.part.symbols, law_of(problem, one), strict=True))
+    return dict(zip(laws, with_minimum_norms(so_far, written_out(so_far, laws.values())), strict=True))
+
+
+def throttled(so_far: Derivation) -> tuple[Minimum, ...]:
+    """The sets of vectors that may be none, or as short as they may be."""
+    return tuple(one for one in found(so_far) if one.branch == "throttled")
+
+
+def with_minimum_norms(so_far: Derivation, expressions: Iterable[sp.Expr]) -> list[sp.Expr]:
+    """Laws in which vectors in balls have a least norm, by which they can be kept at any."""
+    least = {one.part.bounds[-1]: symbols_of((minimum_norm_of(one.part),))[0] for one in throttled(so_far)}
+
+    def raised(value: sp.Expr, lower: sp.Expr, upper: sp.Expr) -> sp.Expr:
+        return Clip(value, least[upper] if lower == 0 and upper in least else lower, upper)
+
+    return [e.replace(Clip, raised) for e in expressions]
+
+
+def throttle_slopes(so_far: Derivation) -> list[sp.Expr]:
+    """How H changes with the norm of each of these vectors, in the direction in which it changes least."""
+    slopes = []
+    for one in throttled(so_far):
+        length = sp.sqrt(sum((s**2 for s in pn.slopes_of(one)), sp.Integer(0)))
+        slopes.append(pn.weight_of(one.part.symbols[0]) - sign(problem_of(so_far)) * length)
+    return written_out(so_far, slopes)
+
+
+def effort(so_far: Derivation) -> sp.Expr:
+    """What the regularised problem costs besides, by its components."""
+    every = [one for one in found(so_far) if one.directed]
+    return EPSILON / 2 * sum((c**2 for one in every for c in pn.components_of(one.part)), sp.Integer(0))
+
+
+def written_out(so_far: Derivation, expressions: Iterable[sp.Expr]) -> list[sp.Expr]:
+    """Expressions with slopes as what they stand for."""
+    values = {
+        s: value
+        for one in found(so_far)
+        if one.directed
+        for s, value in zip(pn.slopes_of(one), one.vector, strict=True)
+    }
+    values |= {pn.weight_of(one.part.symbols[0]): one.weight for one in found(so_far) if one.weight != 0}
+    return [e.xreplace(values) for e in expressions]
+
+
+def law_of(problem: Problem, one: Minimum) -> list[sp.Expr]:
+    """The minimiser over one set."""
+    part = one.part
+    if one.branch == "stationary":
+        return list(one.laws)
+    if one.directed:
+        if part.kind != "angle":
+            return shortened(problem, one)
+        along, across = (-sign(problem) * s for s in pn.slopes_of(one))
+        return [sp.atan2(across, along)]
+    assert one.hessian is not None
+    if part.kind == "annulus":
+        control_sets.refuse_unequal(one.hessian)
+        factor = Within(sum((u**2 for u in one.hats), sp.Integer(0)), *part.bounds)
+        return [factor * u for u in one.hats]
+    return control_sets.project(bare(part.kind), one.hats, part.bounds, one.hessian)
+
+
+def shortened(problem: Problem, one: Minimum) -> list[sp.Expr]:
+    """The minimiser over a ball where half the square costs the smoothing, by the components of the slope."""
+    slopes = pn.slopes_of(one)
+    square = sum((s**2 for s in slopes), sp.Integer(0))
+    if one.weight != 0:
+        return [-sign(problem) * s / sp.sqrt(square) * _size(problem, one) for s in slopes]
+    factor = Stretch(square, EPSILON, one.part.bounds[-1])
+    return [-sign(problem) * s * factor for s in slopes]
+
+
+def _size(problem: Problem, one: Minimum) -> sp.Expr:
+    """The norm of that minimiser, where H depends on the norm."""
+    length = sp.sqrt(sum((s**2 for s in pn.slopes_of(one)), sp.Integer(0)))
+    margin = length - sign(problem) * FACTOR * pn.weight_of(one.part.symbols[0])
+    return Clip(margin / EPSILON, one.part.bounds[0] if one.part.kind == "annulus" else 0, one.part.bounds[-1])

@@ -1,0 +1,181 @@
+"""Controls on which H depends neither linearly nor quadratically: its minimiser, one control at a time.
+
+Where the slope of H is ``a f(u) + b`` with a function that can be inverted, the minimiser is stated in closed form;
+else it is the root of a slope that grows, found to the last digits where the law is evaluated. Of ``a cos u + b sin u``
+between bounds it is the direction of ``(-a, -b)``, or the end of the interval nearest to that. A control that
+multiplies what an angle turns, such as a lift, has two minimisers, one of either sign: they are compared.
+"""
+
+from __future__ import annotations
+
+import mpmath as mp
+import sympy as sp
+
+from satsym.symbolic.algebra import tidy
+from satsym.symbolic.checks import DIGITS, moderate, numeric, points
+from satsym.symbolic.derivation import DerivationError
+from satsym.symbolic.minimisers import Clip
+from satsym.symbolic.principle.circle import by_circle
+from satsym.symbolic.roots import Bearing, Choice, Convex, Middle, root_of
+
+SAMPLES, CONTROLS = 10, 12
+"""Random points at which H is looked at, and controls at each."""
+
+INVERTED = 8
+"""Operations of a function that sympy is asked to invert, at most."""
+
+ALIKE = 1e-15
+"""Controls that differ by less are the same."""
+
+PRINTED = (sp.sin, sp.cos, sp.tan, sp.asin, sp.acos, sp.atan, sp.sinh, sp.cosh, sp.tanh, sp.exp, sp.log)
+
+Ends = tuple[sp.Expr, sp.Expr]
+
+
+def minimiser(name: str, h: sp.Expr, u: sp.Symbol, ends: Ends) -> sp.Expr:
+    """The control between two ends at which H is least.
+
+    Parameters
+    ----------
+    name
+        Of what is derived, for messages.
+    h
+        What is minimised, of this control alone.
+    ends
+        Infinite where there is none.
+
+    Raises
+    ------
+    DerivationError
+        If H may have several local minima.
+    """
+    circle = by_circle(h, u)
+    if circle is not None and h.has(sp.sin, sp.cos):
+        return _turned(circle[1], circle[2], ends)
+    terms = _terms(sp.expand(sp.diff(h, u)), u)
+    constant = terms.pop(sp.Integer(1), sp.Integer(0))
+    if len(terms) == 1:
+        ((function, factor),) = terms.items()
+        if (inverse := _inverse(function, u)) is not None:
+            law = Convex(*_at(inverse, sp.diff(function, u), u, factor, constant))
+            return law if ends[1] is sp.oo else Clip(law, *ends)
+    return _root(name, terms, constant, u, ends)
+
+
+def with_angle(
+    name: str, h: sp.Expr, u: sp.Symbol, ends: Ends, angle: sp.Symbol, arc: Ends | None
+) -> tuple[sp.Expr, sp.Expr] | None:
+    """The control and the angle at which H is least, where the control multiplies what the angle turns.
+
+    ``None`` where H is not ``c(u) + l(u) (a cos + b sin)``. With the best angle it is the lesser of ``c + l m`` and
+    ``c + l n``, m and n being the least and the largest of what l multiplies; each has its own minimiser.
+
+    Parameters
+    ----------
+    arc
+        Between which ends the angle lies; ``None`` where nothing limits it.
+    """
+    circle = by_circle(h, angle)
+    if circle is None:
+        return None
+    rest, *pair = circle
+    moved = sp.Add(*(term for term in sp.Add.make_args(sp.expand(rest)) if term.has(u)))
+    (cosine, one), (sine, other) = (sp.factor(e).as_independent(u, as_Add=False) for e in pair)
+    ratio = sp.simplify(other / one)
+    if ratio.has(u):
+        return None
+    sine *= ratio
+    length = sp.Dummy("length", real=True)
+    laws, turns, values = [], [], []
+    for side in (1, -1):
+        turn = Bearing(-side * sine, -side * cosine) if arc is None else _turned(side * cosine, side * sine, arc)
+        size = -side * sp.sqrt(tidy(cosine**2 + sine**2))
+        if arc is not None:
+            size = cosine * sp.cos(turn) + sine * sp.sin(turn)
+        value = moved + one * length
+        law = minimiser(name, value, u, ends)
+        laws.append(law.xreplace({length: size}))
+        values.append(value.xreplace({u: law}).xreplace({length: size}))
+        turns.append(turn)
+    excess = values[0] - values[1]
+    return Choice(excess, *laws), Choice(excess, *turns)
+
+
+def _turned(cosine: sp.Expr, sine: sp.Expr, ends: Ends) -> sp.Expr:
+    """The angle of an interval that is nearest to where a cosine and a sine together are least.
+
+    It is turned to within half a turn of the middle: from there the nearer end is the better one.
+    """
+    middle = Middle(*ends)
+    along = -cosine * sp.cos(middle) - sine * sp.sin(middle)
+    across = cosine * sp.sin(middle) - sine * sp.cos(middle)
+    return Clip(middle + Bearing(across, along), *ends)
+
+
+def _terms(slope: sp.Expr, u: sp.Symbol) -> dict[sp.Expr, sp.Expr]:
+    """Functions of the control -> what multiplies them."""
+    parts = [term.as_independent(u, as_Add=False) for term in sp.Add.make_args(slope)]
+    found: dict[sp.Expr, sp.Expr] = {}
+    for factor, function in parts:
+        found[function] = found.get(function, sp.Integer(0)) + factor
+    return {function: tidy(factor) for function, factor in found.items() if sp.simplify(factor) != 0}
+
+
+def _inverse(function: sp.Expr, u: sp.Symbol) -> sp.Lambda | None:
+    """The inverse of a function of one control that has one in closed form, found for all controls that are tried."""
+    if function.free_symbols != {u} or function.count_ops() > INVERTED:
+        return None
+    value = sp.Dummy("value", real=True)
+    try:
+        solutions = sp.solve(sp.Eq(function, value), u)
+    except NotImplementedError:
+        return None
+    there = numeric([function])
+    for solution in map(sp.simplify, solutions):
+        if solution.has(sp.I) or not all(isinstance(f, PRINTED) for f in solution.atoms(sp.Function)):
+            continue
+        back = numeric([solution])
+        with mp.workdps(DIGITS):
+            tried = list(points([u], f"inverse of {function}", CONTROLS))
+            missed = [back({value: there(point)[0]})[0] - point[u] for point in tried]
+        if all(abs(m) < ALIKE for m in missed):
+            return sp.Lambda(value, solution)
+    return None
+
+
+def _at(
+    inverse: sp.Lambda, derivative: sp.Expr, u: sp.Symbol, factor: sp.Expr, constant: sp.Expr
+) -> tuple[sp.Expr, sp.Expr]:
+    """Where the slope ``factor f(u) + constant`` vanishes, and its derivative there."""
+    value = sp.Dummy("value", real=True)
+    at = tidy(-constant / factor)
+    curvature = sp.simplify(derivative.xreplace({u: inverse(value)}))
+    return inverse(at), factor * curvature.xreplace({value: at})
+
+
+def _root(name: str, terms: dict[sp.Expr, sp.Expr], constant: sp.Expr, u: sp.Symbol, ends: Ends) -> sp.Expr:
+    """The minimiser as the root of a slope that grows, which is refused where it does not."""
+    functions = list(terms)
+    inner = sorted(set().union(*(f.free_symbols for f in functions)) - {u}, key=lambda s: s.name)
+    weights = [sp.Dummy(f"a{k}", real=True) for k in range(len(functions) + 1)]
+    slope = weights[0] + sum(w * f for w, f in zip(weights[1:], functions, strict=True))
+    values = [constant, *terms.values()]
+    _refuse_several(name, u, slope.xreplace(dict(zip(weights, values, strict=True))))
+    found = root_of(u, slope, (*weights, *inner))(*ends, *values, *inner)
+    return Convex(found, sp.diff(slope, u).xreplace({**dict(zip(weights, values, strict=True)), u: found}))
+
+
+def _refuse_several(name: str, u: sp.Symbol, slope: sp.Expr) -> None:
+    """Refuse a slope that grows for some controls and falls for others, all else being equal."""
+    curvature = numeric([sp.diff(slope, u)])
+    others = slope.free_symbols - {u}
+    with mp.workdps(DIGITS):
+        controls = [point[u] * 2 ** (k % 5 - 2) for k, point in enumerate(points([u], f"{name} {u}", CONTROLS))]
+        for point in points(others, f"{name} {u}", SAMPLES):
+            found = [curvature({**point, u: control})[0] for control in controls]
+            real = [v for v in found if moderate([v]) and not mp.im(v)]
+            if len({v > 0 for v in real if v}) > 1:
+                raise DerivationError(
+                    f"{name}: H is convex in {u} in some places and not in others, so that it may have several local "
+                    "minima, which are not compared; state bounds and a model in which it is convex"
+                )

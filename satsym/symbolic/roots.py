@@ -1,0 +1,175 @@
+"""Where a monotone function vanishes, as a function that can be differentiated, typeset, evaluated and generated.
+
+``Root(lower, upper, *coefficients)`` is the point of an interval at which a convex function is least, of which a slope
+is stated: where the slope vanishes, or the end to which it falls. Each slope has a class of its own.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+from typing import Any, ClassVar
+
+import mpmath as mp
+import sympy as sp
+
+MOST = 400
+"""Steps with 30 digits."""
+
+
+class Root(sp.Function):
+    """What the classes of all slopes share; see :func:`root_of`."""
+
+    is_real = True
+    unknown: ClassVar[sp.Symbol]
+    slope: ClassVar[sp.Expr]
+    """Of the convex function, by the unknown and the letters."""
+    letters: ClassVar[tuple[sp.Symbol, ...]]
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """By a coefficient: the implicit function's derivative, zero at an end. The ends are constants."""
+        if argindex <= 2:
+            return sp.Integer(0)
+        by = self.letters[argindex - 3]
+        ratio = -sp.diff(self.slope, by) / sp.diff(self.slope, self.unknown)
+        values = {self.unknown: self, **dict(zip(self.letters, self.args[2:], strict=True))}
+        return Interior(self, *self.args[:2]) * ratio.xreplace(values)
+
+    def __reduce_ex__(self, protocol: Any) -> tuple[Any, ...]:
+        """The class is made anew where this is read."""
+        return _again, (self.unknown, self.slope, self.letters, self.args)
+
+    def at(self) -> sp.Expr:
+        """The slope, its coefficients being what they are here."""
+        return self.slope.xreplace(dict(zip(self.letters, self.args[2:], strict=True)))
+
+
+class Interior(sp.Function):
+    """``Interior(value, lower, upper)``: one between the ends, zero at them and beyond."""
+
+    nargs = 3
+
+    @classmethod
+    def eval(cls, value: sp.Expr, lower: sp.Expr, upper: sp.Expr) -> sp.Expr | None:
+        """One where there are no ends."""
+        return sp.Integer(1) if upper is sp.oo and lower is -sp.oo else None
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """Zero, except at the ends, where it has no derivative."""
+        return sp.Integer(0)
+
+
+class Convex(sp.Function):
+    """``Convex(value, curvature)``: the value, where the curvature is not negative; no number elsewhere."""
+
+    nargs = 2
+    is_real = True
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """That of the value."""
+        return sp.Integer(int(argindex == 1))
+
+
+class Choice(sp.Function):
+    """``Choice(excess, one, other)``: the one, where its excess over the other is not positive; else the other."""
+
+    nargs = 3
+    is_real = True
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """That of what is chosen; where the excess changes sign it has no derivative."""
+        excess, *_ = self.args
+        pair = (0, 0) if argindex == 1 else (1, 0) if argindex == 2 else (0, 1)
+        return Choice(excess, *map(sp.Integer, pair)) if any(pair) else sp.Integer(0)
+
+
+class Middle(sp.Function):
+    """``Middle(lower, upper)``: the middle of an interval of angles; of one longer than a turn, of a turn of it."""
+
+    nargs = 2
+    is_real = True
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """Zero: the limits are constants."""
+        return sp.Integer(0)
+
+
+class Bearing(sp.Function):
+    """``Bearing(across, along)``: the angle of a direction, as atan2, for what goes on with it."""
+
+    nargs = 2
+    is_real = True
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """By either component: the other one over the square of the length."""
+        across, along = self.args
+        return (along if argindex == 1 else -across) / (across**2 + along**2)
+
+
+@lru_cache(maxsize=256)
+def root_of(unknown: sp.Symbol, slope: sp.Expr, letters: tuple[sp.Symbol, ...]) -> type[Root]:
+    """The class of the minimisers of convex functions with this slope."""
+    plain = {s: sp.Symbol(f"c{k}", real=True) for k, s in enumerate(letters)} | {unknown: sp.Symbol("v", real=True)}
+    stated = slope.xreplace(plain)
+    values = [plain[s] for s in letters]
+    mark = hashlib.sha256(sp.srepr(stated).encode()).hexdigest()[:10]
+    function = sp.lambdify([plain[unknown], *values], [stated, sp.diff(stated, plain[unknown])], modules="mpmath")
+
+    def value(lower: Any, upper: Any, *coefficients: Any) -> Any:
+        return minimum_between(lambda at: function(at, *coefficients), lower, upper)
+
+    shared = {"unknown": plain[unknown], "slope": stated, "letters": tuple(values), "nargs": len(letters) + 2}
+    return type(f"Root_{mark}", (Root,), shared | {"_imp_": staticmethod(value)})
+
+
+def _again(unknown: sp.Symbol, slope: sp.Expr, letters: tuple[sp.Symbol, ...], args: tuple[sp.Expr, ...]) -> sp.Expr:
+    return root_of(unknown, slope, letters)(*args)
+
+
+def minimum_between(slopes: Callable[[Any], Sequence[Any]], lower: Any, upper: Any) -> Any:
+    """Where a convex function is least on an interval, in the working precision; no number where it falls for ever.
+
+    Parameters
+    ----------
+    slopes
+        Its first and second derivative.
+    """
+    low, high = mp.mpf(lower), mp.mpf(upper)
+    at, last = max(low, min(mp.mpf(0), high)), mp.inf
+    for _ in range(MOST):
+        slope, curvature = slopes(at)
+        if slope == 0 or low == high:
+            return at
+        low, high = (at, high) if slope < 0 else (low, at)
+        longest = 1 + abs(at)
+        move = -slope / curvature if curvature > 0 else mp.inf
+        inside = low <= at + move <= high and 2 * abs(move) <= last
+        if not inside:
+            move = (low + high) / 2 - at if high - low < mp.inf else -mp.sign(slope) * longest
+        move = max(-longest, min(move, longest))
+        at, last = at + move, abs(move)
+        if abs(move) <= mp.eps * longest / 100:
+            return at
+    return mp.nan
+
+
+def _interior(value: Any, lower: Any, upper: Any) -> Any:
+    return mp.mpf(lower < value < upper)
+
+
+def _convex(value: Any, curvature: Any) -> Any:
+    return value if not mp.im(value) and not mp.im(curvature) and curvature >= 0 else mp.nan
+
+
+def _choice(excess: Any, one: Any, other: Any) -> Any:
+    return mp.nan if excess != excess else one if excess <= 0 else other
+
+
+def _middle(lower: Any, upper: Any) -> Any:
+    low = max(lower, min(upper, mp.pi) - 2 * mp.pi)
+    return (low + min(upper, max(lower, -mp.pi) + 2 * mp.pi)) / 2
+
+
+CONSTRUCTED = (Root, Interior, Convex, Choice, Middle, Bearing)
+MPMATH = {"Interior": _interior, "Convex": _convex, "Choice": _choice, "Middle": _middle, "Bearing": mp.atan2}

@@ -1,0 +1,188 @@
+"""Controls on which H depends neither linearly nor quadratically: laws against minima on a grid, and two examples."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+from sympy import Expr, cos, cosh, exp, sin
+
+from satsym import instance
+from satsym.instance import Instance
+from satsym.solvers import solve
+from satsym.status import Status, Verdict
+from satsym.symbolic import Box, DerivationError, FirstOrder, Problem, Variable, derive, symbols_of
+from tests.support.models import build, q, scalar, w
+
+PLACE = tuple(Variable(name, name) for name in ("x", "y"))
+x, y = symbols_of(PLACE)
+(b,) = symbols_of((Variable("b", "b"),))
+BOAT = Problem(
+    name="boat_in_sector",
+    title="A boat in a current that may not head anywhere",
+    model=FirstOrder(
+        name="boat",
+        title="A boat",
+        states=PLACE,
+        controls=(Variable("b", "b"),),
+        parameters=(),
+        rates={x: cos(b) - y / 2, y: sin(b)},
+    ),
+    running_cost=1,
+    control_sets={"heading": Box("b")},
+)
+
+
+def catenary() -> float:
+    """The integral of y ds: the catenary's three constants follow from the ends and the length."""
+    distance, rise, length = 1.0, 2.0, 4.0
+    chord = math.sqrt(length**2 - rise**2)
+    c = 1.0 / brentq(lambda k: 2.0 * math.sinh(k * distance / 2.0) / k - chord, 1e-3, 50.0, xtol=1e-15)
+    lowest = distance / 2.0 - c * math.atanh(rise / length)
+    base = 1.0 - c * math.cosh(lowest / c)
+
+    def doubled(at: float) -> float:
+        return at / 2.0 + c / 4.0 * math.sinh(2.0 * (at - lowest) / c)
+
+    return c * (doubled(distance) - doubled(0.0)) + base * length
+
+
+def test_the_chain_hangs_as_a_catenary():
+    found = solve(instance.load("chain"))
+    assert found.status is Status.CONVERGED
+    assert found.certificate is not None
+    assert found.certificate.verdict is Verdict.CERTIFIED, found.certificate
+    assert found.objective == pytest.approx(catenary(), rel=1e-9)
+
+
+@pytest.mark.slow
+def test_the_shuttle_glides_as_far_as_by_direct_collocation():
+    """CasADi and Ipopt, Radau points of degree 5 on 40, 80 and 120 intervals: 34.141184287, ...284321, ...284256."""
+    found = solve(instance.load("shuttle"))
+    assert found.status is Status.CONVERGED
+    assert found.certificate is not None
+    assert found.certificate.verdict is Verdict.CERTIFIED, found.certificate
+    assert math.degrees(-found.objective) == pytest.approx(34.14118428, rel=1e-9)
+    assert found.times[-1] == pytest.approx(2008.588119, rel=1e-8)
+
+
+def least_on_a_grid(case: Instance, lam: tuple[float, ...], at: tuple[float, ...], ends: tuple[float, float]) -> float:
+    grid = np.linspace(*ends, 20001)
+    columns = np.tile(np.array(at)[:, None], len(grid)), np.tile(np.array(lam)[:, None], len(grid))
+    h = case.model.hamiltonian_batch(np.zeros(len(grid)), columns[0], grid[None], columns[1], case.parameters)
+    return float(np.min(h))
+
+
+LAWS: dict[str, tuple[Expr, tuple[float, float] | None]] = {
+    "one_function_inverted": (exp(w), None),
+    "exponential_and_square": (exp(w) + w**2 / 2, None),
+    "quartic_in_a_box": (w**4 / 4 + w**2 / 2, (-0.5, 1.0)),
+    "flat_quartic": (w**4, None),
+    "rest_outside_the_box": (cosh(w) + w**2 / 2, (0.2, 1.0)),
+    "stiff": (exp(20 * w) + w**2 / 2, (-3.0, 3.0)),
+}
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_the_law_is_the_least_of_h_in_both_forms(tmp_path: Path, name: str):
+    cost, ends = LAWS[name]
+    problem = scalar(name, -q + w, cost + q**2, 0, "box" if ends else "free")
+    bounds = f"[control]\nw = [{ends[0]}, {ends[1]}]\n" if ends else ""
+    case = build(tmp_path, problem, f"[initial]\nq = 1.0\n[time]\ntf = 1.0\n{bounds}")
+    rng, limits, compared = np.random.default_rng(0), case.control_set.arguments, 0
+    for lam in [0.0, *rng.normal(0.0, 3.0, 60)]:
+        arguments = case.parameters, limits
+        batch = case.model.control_law_batch
+        with np.errstate(all="ignore"):
+            on_arrays = float(batch(np.zeros(1), np.ones((1, 1)), np.array([[lam]]), *arguments)[0, 0])
+        try:
+            (u,) = case.model.control_law(0.0, (1.0,), (lam,), *arguments)
+        except (ValueError, ZeroDivisionError):
+            assert not math.isfinite(on_arrays)
+            assert name == "one_function_inverted", "where H falls for ever there is no control at all"
+            assert lam >= 0.0
+            continue
+        compared += 1
+        assert u == pytest.approx(on_arrays, rel=1e-13, abs=1e-13)
+        least = least_on_a_grid(case, (lam,), (1.0,), ends or (-6.0, 6.0))
+        assert case.model.hamiltonian(0.0, (1.0,), (u,), (lam,), case.parameters) <= least + 1e-12 * abs(least)
+        assert ends is None or ends[0] <= u <= ends[1]
+    assert compared > 20
+
+
+def test_an_angle_between_bounds_takes_the_nearer_end(tmp_path: Path):
+    start = "[initial]\nx = 3.66\ny = -1.86\n[final]\nx = 0.0\ny = 0.0\n[time]\ntf = "
+    for ends in ((-1.0, 1.0), (0.2, 4.0), (2.0, 7.0), (-6.0, -3.0), (0.0, 20.0)):
+        case = build(tmp_path, BOAT, f'{start}"free"\n[control]\nb = [{ends[0]}, {ends[1]}]\n')
+        rng = np.random.default_rng(1)
+        for lam in map(tuple, rng.normal(size=(60, 2))):
+            (u,) = case.model.control_law(0.0, (1.0, 1.0), lam, case.parameters, case.control_set.arguments)
+            assert ends[0] <= u <= ends[1]
+            h = case.model.hamiltonian(0.0, (1.0, 1.0), (u,), lam, case.parameters)
+            assert h <= least_on_a_grid(case, lam, (1.0, 1.0), ends) + 1e-12
+
+
+@pytest.mark.slow
+def test_a_heading_is_held_at_its_bound_from_the_time_it_meets_it(tmp_path: Path):
+    """Straight on along the bound after the switch; before it the costates obey the law of the free angle."""
+    start = "[initial]\nx = 3.66\ny = -1.86\n[final]\nx = 0.0\ny = 0.0\n[time]\ntf = "
+    case = build(tmp_path, BOAT, f'{start}"free"\n[control]\nb = [-6.0, -3.0]\n')
+    found = solve(case)
+    assert found.status is Status.CONVERGED
+    ((switch,),) = found.switching_times
+    held = found.times > switch + 1e-9
+    assert (found.u[0, held] == -3.0).all()
+    free = np.arctan2(-found.lam[1, ~held], -found.lam[0, ~held]) - 2.0 * math.pi
+    assert np.abs(np.remainder(found.u[0, ~held] - free + 1.0, 2.0 * math.pi) - 1.0).max() < 1e-9
+    elsewhere = solve(build(tmp_path, BOAT, f'{start}"free"\n[control]\nb = [2.0, 7.0]\n'))
+    assert elsewhere.switching_times == ((),)
+    assert elsewhere.objective < found.objective
+
+
+def test_lift_on_either_side_is_compared(tmp_path: Path):
+    """c(u) + l(u) (a cos b + b sin b): both signs of l, against a grid in both controls."""
+    u, bank = symbols_of((Variable("u", "u"), Variable("bank", "bank")))
+    problem = Problem(
+        name="lifted",
+        title="A lift that is turned",
+        model=FirstOrder(
+            name="lifted_motion",
+            title="Two velocities",
+            states=PLACE,
+            controls=(Variable("u", "u"), Variable("bank", "bank")),
+            parameters=(),
+            rates={x: (u - 0.3) * cos(bank), y: (u - 0.3) * sin(bank)},
+        ),
+        running_cost=u**2 / 2 + u / 4,
+        control_sets={"attack": Box("u"), "turning": Box("bank")},
+    )
+    text = "[initial]\nx = 0.0\ny = 0.0\n[time]\ntf = 1.0\n[control]\nu = [-1.0, 2.0]\nbank = [-0.5, 1.5]\n"
+    case = build(tmp_path, problem, text)
+    rng, signs = np.random.default_rng(0), set()
+    first, second = (v.ravel() for v in np.meshgrid(np.linspace(-1.0, 2.0, 301), np.linspace(-0.5, 1.5, 201)))
+    for lam in map(tuple, rng.normal(size=(40, 2))):
+        law = case.model.control_law(0.0, (0.0, 0.0), lam, case.parameters, case.control_set.arguments)
+        signs.add(law[0] > 0.3)
+        h = case.model.hamiltonian(0.0, (0.0, 0.0), law, lam, case.parameters)
+        turned = (first - 0.3) * (lam[0] * np.cos(second) + lam[1] * np.sin(second))
+        assert h <= float(np.min(first**2 / 2 + first / 4 + turned)) + 1e-12
+    assert signs == {True, False}
+    said = {c.key for c in derive(problem).step("control_law").conclusions}
+    assert "least of two minimisers" in said
+
+
+def test_several_local_minima_are_refused_with_the_reason():
+    with pytest.raises(DerivationError, match="several local minima"):
+        derive(scalar("double_well", -q + w, w**4 - w**2 + q**2, 0, "box"))
+
+
+def test_an_end_out_of_reach_is_no_answer(tmp_path: Path):
+    text = (
+        '[initial]\nx = 3.66\ny = -1.86\n[final]\nx = 0.0\ny = 0.0\n[time]\ntf = "free"\n[control]\nb = [-0.5, -0.4]\n'
+    )
+    found = solve(build(tmp_path, BOAT, text))
+    assert found.status is Status.NOT_CONVERGED
+    assert "direct method" in found.message
