@@ -2,7 +2,7 @@
 
 Written by satsym from derivations/examples/catalyst.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/catalyst.py
-Digest: 210e9db07e2b91e1d1d03eadc8429cd1314dc27568a1abdb9e931f1fff8cdb71
+Digest: 237051e9c1867d8822d88033408948cf2dc022e025363b85a7648401316bce3e
 """
 
 import math
@@ -16,11 +16,11 @@ MODEL = {
     'title': 'Mixing of two catalysts for the largest yield',
     'source': 'derivations/examples/catalyst.py',
     'states': (
-        {'symbol': 'x1', 'latex': 'x_1', 'meaning': 'share of substance 1'},
-        {'symbol': 'x2', 'latex': 'x_2', 'meaning': 'share of substance 2'},
+        {'symbol': 'x1', 'latex': 'x_1', 'meaning': 'fraction of substance 1'},
+        {'symbol': 'x2', 'latex': 'x_2', 'meaning': 'fraction of substance 2'},
     ),
     'controls': (
-        {'symbol': 'u', 'latex': 'u', 'meaning': 'share of the first catalyst'},
+        {'symbol': 'u', 'latex': 'u', 'meaning': 'fraction of the first catalyst'},
     ),
     'parameters': (),
     'control_set': 'box',

@@ -6,8 +6,11 @@ Problem 14 of COPS (Dolan, More and Munson, Benchmarking optimization software w
 
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 
-STATES = (Variable("x1", "x_1", meaning="share of substance 1"), Variable("x2", "x_2", meaning="share of substance 2"))
-CONTROLS = (Variable("u", "u", meaning="share of the first catalyst"),)
+STATES = (
+    Variable("x1", "x_1", meaning="fraction of substance 1"),
+    Variable("x2", "x_2", meaning="fraction of substance 2"),
+)
+CONTROLS = (Variable("u", "u", meaning="fraction of the first catalyst"),)
 x1, x2 = symbols_of(STATES)
 (u,) = symbols_of(CONTROLS)
 
