@@ -105,7 +105,7 @@ def judged(problem: Problem, unit: Array) -> tuple[Phases, float]:
         change = np.concatenate([unit, 1.0 / unit])
         slopes.append(both * change[:, None] / change)
     tf, n = float(problem.edges[-1]), len(problem.a)
-    scale = balanced(np.ones(2 * n), np.array(slopes), tf)
+    scale = balanced(np.ones(2 * n), np.abs(slopes).max(axis=0), tf)
     scaled = np.array(slopes) * (scale / scale[:, None])
     turning = 2.0 * np.sqrt(n) * np.linalg.norm(scaled, axis=(1, 2)).max() * tf
     pieces = problem.pieces(max(STEPS, int(turning)))

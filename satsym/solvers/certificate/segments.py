@@ -76,8 +76,13 @@ def segments(solution: Solution) -> Segments | None:
     slopes = _slopes(solution, times, z)
     if not np.isfinite(slopes).all():
         return None
-    scale = balanced(unit_sizes(solution), slopes, float(times[-1] - times[0]))
+    lasting, unit = float(times[-1] - times[0]), unit_sizes(solution)
+    scale = balanced(unit, np.abs(slopes).max(axis=0), lasting)
     turned = np.append(0.0, np.cumsum(_turning(slopes, scale, np.diff(times))))
+    if turned[-1] > MOST * TURN:
+        # What is steep for a moment is not what units are for where there is far more time without it.
+        scale = balanced(unit, np.trapezoid(np.abs(slopes), times, axis=0) / lasting, lasting)
+        turned = np.append(0.0, np.cumsum(_turning(slopes, scale, np.diff(times))))
     if turned[-1] > MOST * TURN:
         return None
     nodes = _nodes(solution, turned)
@@ -109,14 +114,23 @@ def _slopes(solution: Solution, t: Array, z: Array) -> Array:
     return found
 
 
-def balanced(scale: Array, slopes: Array, duration: float) -> Array:
+def balanced(scale: Array, sizes: Array, duration: float) -> Array:
     """The scale with other units, in which neighbouring extremals turn as slowly and evenly as may be.
 
     The squares of all rates together are least, by one unit after the other (Osborne, On pre-conditioning of
     matrices, 1960), where a unit far from the one given counts as a rate of one over the duration.
+
+    Parameters
+    ----------
+    scale
+        Units of states and costates, shape (2n,).
+    sizes
+        Of the canonical rates by states and costates, without their signs, shape (2n, 2n).
+    duration
+        tf - t0.
     """
     n = len(scale) // 2
-    size = np.abs(slopes * (scale / scale[:, None])).max(axis=0)
+    size = sizes * (scale / scale[:, None])
     response = float(size[:n, n:].max())
     if not response > 0.0:
         return scale

@@ -16,6 +16,8 @@ from satsym.arrays import Array
 from satsym.solvers.collocation.curve import SMALL, Curve, Step
 from satsym.solvers.collocation.gauss import interpolation, scheme
 from satsym.solvers.collocation.linearised import Linearised
+from satsym.solvers.collocation.newton import newton
+from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.system import System
 
 POINTS = 16
@@ -27,6 +29,9 @@ CONTRACTION = 0.1
 
 ROUNDING = 3e-15
 """Corrections of this size show nothing any more, and residuals of this size are none."""
+
+SETTLED = 1e-14
+"""What is said of the error where Newton's method has brought its corrections down to rounding."""
 
 FAINT = 1e-5
 """Share of the size of the states: costates that move them by less are rounded too much to be known as well as others.
@@ -89,8 +94,23 @@ def correct_defects(curve: Curve, linearised: Linearised, tolerance: float) -> C
         before, size = size, size * contraction if np.isfinite(before) else size
         if size < max(CONTRACTION * tolerance, ROUNDING):
             break
-    omitted = _omitted(fine, small)
+    omitted = left_out(fine, small)
     return Corrected(_without_rounding(system, fine), max(size, float(omitted.max())), omitted)
+
+
+def resolved(problem: TwoPoint, curve: Curve, rough: float) -> Corrected | None:
+    """By Newton's method on all points, where polynomials of low order already leave out little.
+
+    On intervals that are long beside the decay of neighbouring extremals a linearisation of low order is worthless even
+    where hardly anything is left of these: it leads corrections nowhere, and more points still follow them.
+    """
+    if not left_out(curve).max() < rough:
+        return None
+    outcome = newton(System(problem, curve.mesh, POINTS), curve.with_stages(POINTS))
+    if outcome is None or not outcome.solved:
+        return None
+    omitted = left_out(outcome.curve)
+    return Corrected(outcome.curve, max(SETTLED, float(omitted.max())), omitted)
 
 
 def _faint(linearised: Linearised) -> float:
@@ -151,7 +171,7 @@ def _inverted(matrices: Array) -> Array:
     return found
 
 
-def _omitted(curve: Curve, small: float) -> Array:
+def left_out(curve: Curve, small: float = SMALL) -> Array:
     """What polynomials of this degree leave out, judged by their last two coefficients, relative, shape (N,)."""
     n = len(curve.nodes) // 2
     known = np.concatenate([curve.nodes[:, :-1, None], curve.stages], axis=2)

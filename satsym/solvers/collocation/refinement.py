@@ -10,7 +10,7 @@ from satsym.arrays import Array
 from satsym.solvers.collocation.attempt import Attempt, Reason
 from satsym.solvers.collocation.continuation import corners
 from satsym.solvers.collocation.curve import SMALL, Curve
-from satsym.solvers.collocation.defect_correction import Corrected, correct_defects
+from satsym.solvers.collocation.defect_correction import correct_defects, left_out, resolved
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.linearised import Linearised
 from satsym.solvers.collocation.newton import newton
@@ -33,6 +33,9 @@ FEWEST, LARGEST_SPLIT = 0.6, 4.0
 
 ROOM = 0.25
 """Share of an interval by which a node may be moved to a corner; one that is farther from all nodes gets its own."""
+
+ROUGH = 1e-6
+"""What polynomials of low order may leave out for defect corrections to converge."""
 
 SPARE = 0.1
 """Share of the error aimed at that the next mesh is laid for."""
@@ -61,7 +64,7 @@ def refine(
             total += outcome.iterations if outcome else 0
             if outcome and outcome.solved:
                 curve, known = outcome.curve, outcome.linearised
-        corrected = correct_defects(curve, known, aim) if known else None
+        corrected = (correct_defects(curve, known, aim) or resolved(problem, curve, ROUGH)) if known else None
         met = corners(problem, corrected.curve) if corrected and keep_nodes else np.zeros(0)
         error = max(corrected.error, _misplaced(problem, corrected.curve, met)) if corrected else float("inf")
         better = error < 0.5 * best.error
@@ -70,7 +73,12 @@ def refine(
             best = Attempt(corrected.curve, reason, total, error=error)
         if best.error < aim or (best.solved and not better):
             break
-        density = _density(corrected, aim) if corrected else np.full(len(curve.mesh) - 1, 2.0)
+        if corrected:
+            density = _density(corrected.omitted, SPARE * aim, corrected.curve.order)
+        elif known:
+            density = _density(left_out(curve), ROUGH, STAGES)
+        else:
+            density = np.full(len(curve.mesh) - 1, 2.0)
         if density.sum() > MOST_INTERVALS:
             break
         curve = corrected.curve if corrected else curve
@@ -80,10 +88,9 @@ def refine(
     return replace(best, cost=cost, facts=(best.error, len(best.curve.mesh) - 1))
 
 
-def _density(corrected: Corrected, aim: float) -> Array:
+def _density(omitted: Array, aim: float, order: int) -> Array:
     """Wanted intervals for each present one, from what its polynomials leave out."""
-    ratio = corrected.omitted / (SPARE * aim)
-    found: Array = np.clip(ratio ** (1.0 / corrected.curve.order), FEWEST, LARGEST_SPLIT)
+    found: Array = np.clip((omitted / aim) ** (1.0 / order), FEWEST, LARGEST_SPLIT)
     return found
 
 

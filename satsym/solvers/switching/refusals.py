@@ -55,7 +55,7 @@ def _free_of_charge(instance: Instance) -> bool:
     model, p, n = instance.model, instance.parameters, len(instance.initial)
     rng = np.random.default_rng(0)
     assert instance.tf is not None
-    x = np.array(instance.initial)[:, None] * rng.uniform(0.5, 2.0, (n, 20))
+    x = np.array([value or 1.0 for value in instance.initial])[:, None] * rng.uniform(0.5, 2.0, (n, 20))
     t = rng.uniform(instance.t0, instance.tf, 20)
     none, u = np.zeros((n, 20)), np.array(instance.upper)[:, None] * rng.uniform(0.0, 1.0, (len(instance.upper), 20))
     ends = [model.terminal_gradient(instance.tf, tuple(column), p) for column in x.T]

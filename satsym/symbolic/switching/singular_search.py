@@ -23,7 +23,7 @@ SIDES = {"_positive": 1, "_negative": -1}
 """Sign of a control with a weight on its magnitude, on the two kinds of singular arcs."""
 
 LONGEST = 2000
-"""Operations in a derivative beyond which the search is given up."""
+"""Operations in a derivative, as it is or on the surface, beyond which the search is given up."""
 
 
 @dataclass
@@ -120,7 +120,7 @@ def _search(
     while len(derivatives) < 2 * len(states):
         total = tidy(total_derivative(last, rates), (*controls, *lam))
         derivatives.append(total)
-        if total.count_ops() > LONGEST:
+        if max(e.count_ops() for e in (total, total.xreplace(surface.solved))) > LONGEST:
             break
         slope, rest = surface.reduced(sp.diff(total, u)), total.xreplace({u: sp.Integer(0)})
         condition = surface.reduced(rest)

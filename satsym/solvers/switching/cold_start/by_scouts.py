@@ -12,10 +12,10 @@ from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.attempt import Exact, attempt, given
 from satsym.solvers.switching.cold_start.minimum_effort import first_duration
-from satsym.solvers.switching.cold_start.plans import Scout, seeded
+from satsym.solvers.switching.cold_start.plans import Plans, Scout, seeded
 from satsym.solvers.switching.cold_start.scouts import ROUNDS, Target, scouted
 from satsym.solvers.switching.newton import Equations
-from satsym.solvers.switching.structure import Guess, Structure
+from satsym.solvers.switching.structure import SINGULAR, Guess, Structure
 
 SEED = 7
 """Of what is drawn; certificates draw otherwise."""
@@ -34,6 +34,9 @@ MORE, MOST = 2, 4
 
 TRIED = 4
 """Of what arrives, the cheapest first."""
+
+SHAKEN = 0.3
+"""Relative change of the lengths of a known extremal's arcs."""
 
 APART = 1e-5
 """Relative difference of costs of two that are not the same."""
@@ -54,6 +57,11 @@ def cheaper(instance: Instance, known: Exact | None, limits: Limits) -> Exact | 
         return None
     rows = None if known is None else [len(row) - 1 for row in known.refined.structure.levels]
     rng = np.random.default_rng(SEED)
+    if known is not None and not any(SINGULAR in row for row in known.refined.structure.levels):
+        beside = _beside(known, rng)
+        found = _cheapest(instance, known, beside, instance.t0 + beside.lengths.sum(axis=0), limits)
+        if found is not None:
+            return found
     for more in (MORE,) if rows is not None else range(0, MOST + 1, MORE):
         base = rows or [len(instance.initial)] * len(instance.lower)
         found = _drawn(instance, known, [count + more for count in base], rng, limits)
@@ -66,14 +74,27 @@ def _drawn(
     instance: Instance, known: Exact | None, switches: list[int], rng: np.random.Generator, limits: Limits
 ) -> Exact | None:
     """The cheapest of what one set of plans leads to."""
-    cost = float("inf") if known is None else known.trajectory.cost(instance)
     if instance.tf is not None:
         ends = np.full(PLANS, instance.tf)
     else:
         scale = first_duration(instance) if known is None else known.refined.at.end - instance.t0
         low, high = np.log(FAR if known is None else AROUND)
         ends = instance.t0 + scale * np.exp(rng.uniform(low, high, PLANS))
-    plans = seeded(instance, switches, ends - instance.t0, rng)
+    return _cheapest(instance, known, seeded(instance, switches, ends - instance.t0, rng), ends, limits)
+
+
+def _beside(known: Exact, rng: np.random.Generator) -> Plans:
+    """The arcs of an extremal with other lengths: it may be a saddle, from which motions that arrive go downhill."""
+    arcs = known.refined.arcs
+    levels = np.array([arc.field.levels for arc in arcs])
+    lengths = np.array([arc.end - arc.start for arc in arcs])
+    changed = lengths[:, None] * np.exp(rng.normal(0.0, SHAKEN, (len(arcs), PLANS)))
+    return Plans(np.repeat(levels[:, :, None], PLANS, axis=2), changed * (lengths.sum() / changed.sum(axis=0)))
+
+
+def _cheapest(instance: Instance, known: Exact | None, plans: Plans, ends: Array, limits: Limits) -> Exact | None:
+    """The cheapest extremal to which plans lead that end at these times, where these are given."""
+    cost = float("inf") if known is None else known.trajectory.cost(instance)
     sizes = given(instance)
     sizes = np.where(sizes > 0.0, sizes, max(float(sizes.max()), 1e-300))
     target = Target(instance, sizes, ends if instance.tf is not None else np.full(PLANS, np.nan))

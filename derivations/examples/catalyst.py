@@ -1,0 +1,33 @@
+"""Mixing of two catalysts along a tubular reactor, such that most of the product leaves it.
+
+Problem 14 of COPS (Dolan, More and Munson, Benchmarking optimization software with COPS 3.0, 2004), after Jackson
+(1968): time is the length that has been passed. The mixing ratio is full, singular, and zero at the end.
+"""
+
+from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
+
+STATES = (
+    Variable("x1", "x_1", meaning="fraction of substance 1"),
+    Variable("x2", "x_2", meaning="fraction of substance 2"),
+)
+CONTROLS = (Variable("u", "u", meaning="fraction of the first catalyst"),)
+x1, x2 = symbols_of(STATES)
+(u,) = symbols_of(CONTROLS)
+
+catalyst = Problem(
+    name="catalyst",
+    title="Mixing of two catalysts for the largest yield",
+    model=FirstOrder(
+        name="tubular_reactor",
+        title="A tubular reactor with two catalysts",
+        states=STATES,
+        controls=CONTROLS,
+        parameters=(),
+        rates={x1: u * (10 * x2 - x1), x2: u * (x1 - 10 * x2) - (1 - u) * x2},
+    ),
+    running_cost=0,
+    terminal_cost=x1 + x2 - 1,
+    control_set="box",
+)
+
+PROBLEMS = (catalyst,)

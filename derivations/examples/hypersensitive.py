@@ -1,0 +1,29 @@
+"""The hypersensitive problem: from a given state to a given state, and at rest in between for almost all of the time.
+
+Rao and Mease, Eigenvector approximate dichotomic basis method for solving hyper-sensitive optimal control problems,
+Optimal Control Applications and Methods 21 (2000): x' = -x^3 + u from 1 to 1.5. Errors of the canonical equations
+grow by exp(t) in either direction of time.
+"""
+
+from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
+
+STATES = (Variable("x", "x", meaning="state"),)
+CONTROLS = (Variable("u", "u", meaning="control"),)
+(x,) = symbols_of(STATES)
+(u,) = symbols_of(CONTROLS)
+
+hypersensitive = Problem(
+    name="hypersensitive",
+    title="From one state to another in a long time, at least deviation and effort",
+    model=FirstOrder(
+        name="cubic_decay",
+        title="A state that decays by its cube",
+        states=STATES,
+        controls=CONTROLS,
+        parameters=(),
+        rates={x: u - x**3},
+    ),
+    running_cost=(x**2 + u**2) / 2,
+)
+
+PROBLEMS = (hypersensitive,)

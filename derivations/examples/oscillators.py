@@ -1,0 +1,45 @@
+"""Two oscillators that are damped at least cost: Van der Pol's with a bounded control, and Rayleigh's.
+
+The first is the example of CasADi (Andersson et al., Mathematical Programming Computation 11, 2019): from (0, 1) in a
+time of 10 with u in [-0.75, 1]. The second is a tunnel diode (Jacobson and Mayne, Differential Dynamic Programming,
+1970; Maurer and Augustin, in Online Optimization of Large Scale Systems, 2001), without its mixed constraint: from
+(-5, -5) in a time of 4.5.
+"""
+
+from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
+
+STATES = (Variable("x1", "x_1", meaning="state 1"), Variable("x2", "x_2", meaning="state 2"))
+CONTROLS = (Variable("u", "u", meaning="control"),)
+x1, x2 = symbols_of(STATES)
+(u,) = symbols_of(CONTROLS)
+
+van_der_pol_boxed = Problem(
+    name="van_der_pol_boxed",
+    title="Damping of Van der Pol's oscillator with a bounded control",
+    model=FirstOrder(
+        name="van_der_pol_oscillator",
+        title="Van der Pol's oscillator",
+        states=STATES,
+        controls=CONTROLS,
+        parameters=(),
+        rates={x1: (1 - x2**2) * x1 - x2 + u, x2: x1},
+    ),
+    running_cost=x1**2 + x2**2 + u**2,
+    control_set="box",
+)
+
+rayleigh = Problem(
+    name="rayleigh",
+    title="Damping of Rayleigh's oscillator",
+    model=FirstOrder(
+        name="tunnel_diode",
+        title="Rayleigh's oscillator, a tunnel diode",
+        states=STATES,
+        controls=CONTROLS,
+        parameters=(),
+        rates={x1: x2, x2: -x1 + x2 * (1.4 - 0.14 * x2**2) + 4 * u},
+    ),
+    running_cost=u**2 + x1**2,
+)
+
+PROBLEMS = (van_der_pol_boxed, rayleigh)

@@ -1,0 +1,46 @@
+"""Rest-to-rest reorientation of a rigid body in minimum time, with a torque about each axis.
+
+Bilimoria and Wie, Time-optimal three-axis reorientation of a rigid spacecraft, Journal of Guidance, Control, and
+Dynamics 16 (1993): moments of inertia and largest torques are one, the body turns by 180 degrees about its third axis.
+The turn about that axis alone is not the quickest.
+"""
+
+from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
+
+STATES = (
+    *(Variable(f"q{k}", f"q_{k}", meaning=f"component {k} of the quaternion") for k in (1, 2, 3, 4)),
+    *(Variable(f"w{k}", rf"\omega_{k}", meaning=f"angular velocity about axis {k}") for k in (1, 2, 3)),
+)
+CONTROLS = tuple(Variable(f"u{k}", f"u_{k}", meaning=f"torque about axis {k}") for k in (1, 2, 3))
+PARAMETERS = tuple(
+    Variable(f"I{k}", f"I_{k}", meaning=f"moment of inertia about axis {k}", default=1.0, positive=True)
+    for k in (1, 2, 3)
+)
+q1, q2, q3, q4, w1, w2, w3 = symbols_of(STATES)
+u1, u2, u3 = symbols_of(CONTROLS)
+I1, I2, I3 = symbols_of(PARAMETERS)
+
+reorientation = Problem(
+    name="reorientation",
+    title="Rest-to-rest reorientation of a rigid body in minimum time",
+    model=FirstOrder(
+        name="rigid_body",
+        title="A rigid body with three torques",
+        states=STATES,
+        controls=CONTROLS,
+        parameters=PARAMETERS,
+        rates={
+            q1: (w1 * q4 - w2 * q3 + w3 * q2) / 2,
+            q2: (w1 * q3 + w2 * q4 - w3 * q1) / 2,
+            q3: (-w1 * q2 + w2 * q1 + w3 * q4) / 2,
+            q4: -(w1 * q1 + w2 * q2 + w3 * q3) / 2,
+            w1: (u1 - (I3 - I2) * w2 * w3) / I1,
+            w2: (u2 - (I1 - I3) * w3 * w1) / I2,
+            w3: (u3 - (I2 - I1) * w1 * w2) / I3,
+        },
+    ),
+    running_cost=1,
+    control_set="box",
+)
+
+PROBLEMS = (reorientation,)
