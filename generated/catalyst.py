@@ -2,7 +2,7 @@
 
 Written by satsym from derivations/examples/catalyst.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/catalyst.py
-Digest: 237051e9c1867d8822d88033408948cf2dc022e025363b85a7648401316bce3e
+Digest: 7fb7f0f4eb45e28e8599ce8d0e3ce692568ea384db3e15f852a31edb09c7fe6f
 """
 
 import math
@@ -32,6 +32,7 @@ MODEL = {
     'position': (),
     'multipliers': (),
     'switching': True,
+    'maximise': True,
 }
 
 

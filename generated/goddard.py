@@ -2,7 +2,7 @@
 
 Written by satsym from derivations/examples/goddard.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/goddard.py
-Digest: 68948421624839e48569f3ef5c4893fdf68b5320ce8a317c0c81e2be4df4c8ac
+Digest: 05a66ec1e0bdac0646f60c6bf5410d3fd3fe62c12592da93bc3d90ea8d68377c
 """
 
 import math
@@ -38,6 +38,7 @@ MODEL = {
     'position': (),
     'multipliers': (),
     'switching': True,
+    'maximise': True,
 }
 
 

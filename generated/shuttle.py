@@ -2,7 +2,7 @@
 
 Written by satsym from derivations/examples/shuttle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/shuttle.py
-Digest: 25213ea46afef20d910efe1759af6d0a0eed67dbe958b56d3d481638d5d098fe
+Digest: 80bf1b958d4c18ace55551367b4ec3dbadf0c7b23de2c442a307b55fc61bccbe
 """
 
 import math
@@ -52,6 +52,7 @@ MODEL = {
         {'name': 'attack', 'kind': 'box', 'controls': ('alpha',), 'branch': 'stationary'},
         {'name': 'bank', 'kind': 'box', 'controls': ('beta',), 'branch': 'stationary'},
     ),
+    'maximise': True,
 }
 
 

@@ -26,7 +26,8 @@ catalyst = Problem(
         rates={x1: u * (10 * x2 - x1), x2: u * (x1 - 10 * x2) - (1 - u) * x2},
     ),
     running_cost=0,
-    terminal_cost=x1 + x2 - 1,
+    terminal_cost=1 - x1 - x2,
+    maximise=True,
     control_set="box",
 )
 

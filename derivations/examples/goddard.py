@@ -38,7 +38,8 @@ goddard = Problem(
         rates={h: v, v: (T - D0 * v**2 * exp(-beta * (h - 1))) / m - g0 / h**2, m: -T / c},
     ),
     running_cost=0,
-    terminal_cost=-h,
+    terminal_cost=h,
+    maximise=True,
     control_set="box",
 )
 

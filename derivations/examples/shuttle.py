@@ -63,7 +63,8 @@ shuttle = Problem(
         },
     ),
     running_cost=0,
-    terminal_cost=-theta,
+    terminal_cost=theta,
+    maximise=True,
     control_sets={"attack": Box("alpha"), "bank": Box("beta")},
 )
 

@@ -79,9 +79,10 @@ def stated(problem: Problem, case: Instance) -> Stated:
     else:
         within = [sum(sp.Symbol(u, real=True) ** 2 for u in s.controls) for _, s in balls]
         norms = tuple((case.norms[n][0] ** 2, case.norms[n][1] ** 2) for n, _ in balls)
+    sense = -1 if problem.maximise else 1
     return Stated(
-        function([t, states, controls, parameters], [*rates, problem.running_cost]),
-        function([t, states, parameters], [problem.terminal_cost, *problem.terminal_constraints]),
+        function([t, states, controls, parameters], [*rates, sense * problem.running_cost]),
+        function([t, states, parameters], [sense * problem.terminal_cost, *problem.terminal_constraints]),
         function([controls], within),
         norms,
     )

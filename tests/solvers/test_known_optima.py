@@ -26,7 +26,7 @@ WITHIN = 1e-9
 def found(name: str, optimum: float) -> Solution:
     """Ours, which must be the optimum that the test has found, and that of the table."""
     ours = solve(instance.load(name))
-    assert ours.objective == pytest.approx(optimum, rel=WITHIN)
+    assert ours.instance.model.spec.objective(ours.objective) == pytest.approx(optimum, rel=WITHIN)
     assert KNOWN[name]["optimum"] == pytest.approx(optimum, rel=WITHIN)
     assert ours.certificate is not None
     assert ours.certificate.verdict is Verdict(KNOWN[name]["verdict"]), ours.certificate
@@ -143,10 +143,10 @@ def test_the_catalysts_are_mixed_in_a_constant_ratio_in_between():
         first, last, share = values
         matrices = (np.array([[-u, 10 * u], [u, -9 * u - 1]]) for u in (1.0, share, 0.0))
         through = [expm(m * h) for m, h in zip(matrices, (first, last - first, 1.0 - last), strict=True)]
-        return float((through[2] @ through[1] @ through[0] @ [1.0, 0.0]).sum() - 1.0)
+        return float((through[2] @ through[1] @ through[0] @ [1.0, 0.0]).sum())
 
     least = minimize(left, [0.14, 0.72, 0.23], method="Nelder-Mead", options={"xatol": 1e-10, "fatol": 1e-15})
-    ours = found("catalyst", least.fun)
+    ours = found("catalyst", 1.0 - least.fun)
     assert ours.switching_times[0] == pytest.approx(least.x[:2], abs=1e-6)
 
 
