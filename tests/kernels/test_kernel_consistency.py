@@ -8,11 +8,13 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from satsym import instance
 from satsym.kernels import consistency, load, loading, shipped
 from satsym.kernels.digest import intact, sealed
+from satsym.kernels.evaluation import FAINT
 from satsym.solution import Solution
 from satsym.solvers import solve
 from satsym.solvers.certificate import certify
@@ -105,8 +107,10 @@ def test_shipped_modules_agree_with_themselves_to_rounding(name: str):
         worst = consistency.worst(kernels, consistency.random_places(kernels, seed), seed)
         assert worst is not None
         # 17 states along a chain of 460 operations lose two digits more than the others by cancellation
-        rounding = 0.1 if name == "gimballed_wheel" else 1e-3
-        assert worst.deviation < rounding * consistency.LIMIT, worst
+        allowed = (0.1 if name == "gimballed_wheel" else 1e-3) * consistency.LIMIT
+        if worst.function == "running_cost":  # one that is none is compared with this share of the terms that cancel
+            allowed = 4.0 * np.finfo(float).eps / FAINT
+        assert worst.deviation < allowed, worst
 
 
 KINDS = ("polar_orbit", "polar_orbit_ball", "double_integrator_energy", "double_integrator_fuel", "van_der_pol")

@@ -179,6 +179,10 @@ def value(expression: sp.Expr, point: Mapping[sp.Symbol, float]) -> float:
     plain = plain.replace(
         lambda e: e.func.__name__ == "Stretch", lambda e: sp.Min(1 / e.args[1], e.args[2] / sp.sqrt(e.args[0]))
     )
+    plain = plain.replace(
+        lambda e: e.func.__name__ == "Choice", lambda e: sp.Piecewise((e.args[1], e.args[0] <= 0), (e.args[2], True))
+    )
+    plain = plain.replace(lambda e: e.func.__name__ == "Middle", lambda e: (e.args[0] + e.args[1]) / 2)
     return float(plain.subs(point))
 
 

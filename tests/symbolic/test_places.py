@@ -52,7 +52,7 @@ PROBLEMS = (effort,)
         ("terminal_cost=0 * x", "terminal_cost=u", "terminal_cost", "the terminal cost cannot depend on u"),
         ("terminal_cost=0 * x", "maximise=1", "maximise", "maximise: got 1; write True or False"),
         ("terminal_cost=0 * x", 'control_set="disc"', "control_set", "control_set: got"),
-        ("running_cost=u**2", "running_cost=u**4", "effort = ", "."),
+        ("running_cost=u**2", "running_cost=u**4 / (k**4 * x**2) - u**2", "effort = ", "several local"),
         ('"u", "u", "m/s^2"', '"u", "u", "m/s^^2"', None, "unit"),
         ('"u", "u", "m/s^2"', '"u", -1, "m/s^2"', "CONTROLS", "latex is -1; write text in quotes"),
         ("u - k * v", "u - 'k'(v)", "v: u", "not callable"),

@@ -17,6 +17,8 @@ INDENT = 1.0
 
 STRUT = r"\vphantom{\bigg|}"
 """Makes room for fractions in a row of a matrix."""
+TALL = 12
+"""Lines of one equation that are kept on one page, at most."""
 TOGETHER = 8
 """Lines of the longest group of equations that no page may break."""
 
@@ -129,13 +131,14 @@ def _block(rows: list[Row]) -> str:
     lines = []
     for row in rows:
         right = broken(row.right, room)
-        body = f"{row.left_tex} &= " + " \\\\\n  &".join(right) + (f" = {row.end}" if row.end else "")
-        if len(right) > 1:
+        between = r" \notag \displaybreak[1] \\" if len(right) > TALL else r" \\"
+        body = f"{row.left_tex} &= " + f"{between}\n  &".join(right) + (f" = {row.end}" if row.end else "")
+        if 1 < len(right) <= TALL:
             body = f"\\begin{{split}}\n  {body}\n  \\end{{split}}"
-        elif len(rows) == 1:
+        elif len(rows) == len(right) == 1:
             body = body.replace(" &= ", " = ", 1)
         lines.append(f"{body} {row.tag}")
-    return _environment("align" if len(rows) > 1 else "equation", lines)
+    return _environment("align" if len(rows) > 1 or len(right) > TALL else "equation", lines)
 
 
 def _both_sides_broken(row: Row) -> str:

@@ -44,15 +44,17 @@ def led(
     from satsym.solvers.collocation.extremal import Extremal
 
     plain = replace(instance, guess=Guess())
-    starts: list[Callable[..., object]] = [partial(bent, plain, rng, amplitude) for amplitude in amplitudes]
+    starts: list[Callable[..., object]] = [
+        partial(bent, plain, rng, amplitude, unsmoothed=full_length) for amplitude in amplitudes
+    ]
     if not instance.model.spec.directional:
         starts = [partial(direct, plain, seed=int(rng.integers(2**31))) for _ in amplitudes]
     elif instance.tf is None:
         beside = [replace(plain, tf_guess=instance.t0 + fraction * lasting) for fraction in fractions]
-        starts = [partial(directed, one, effort=False) for one in beside]
+        starts = [partial(directed, one, effort=False, unsmoothed=full_length) for one in beside]
 
     def attempt(start: Callable[..., object], limits: Limits) -> Found | None:
-        found = tried(partial(start, limits=limits, unsmoothed=full_length))
+        found = tried(partial(start, limits=limits))
         if not isinstance(found, tuple) or isinstance(found, Extremal):
             return None
         problem, begun = found

@@ -122,7 +122,9 @@ class Printer(LatexPrinter):
         others = [f for f in top if not f.is_Add and f not in trailing]
         tail = self._product(trailing)
         small_fraction = self._small and (parts.bottom or parts.number_below != 1)
-        whole = f"{self._over(parts, [*others, *sums])} {tail}".strip()
+        functions = [f for f in others if sums and self._rank(base(f))[0] >= Kind.FUNCTION]  # not before parentheses
+        plain = [f for f in others if f not in functions]
+        whole = f"{self._over(parts, [*plain, *sums, *functions])} {tail}".strip()
         if len(sums) != 1 or small_fraction:
             return _whole(negative, whole, names)
         (inner,) = sums
