@@ -107,19 +107,22 @@ class Bearing(sp.Function):
         return (along if argindex == 1 else -across) / (across**2 + along**2)
 
 
-@lru_cache(maxsize=256)
 def root_of(unknown: sp.Symbol, slope: sp.Expr, letters: tuple[sp.Symbol, ...]) -> type[Root]:
     """The class of the minimisers of convex functions with this slope."""
     plain = {s: sp.Symbol(f"c{k}", real=True) for k, s in enumerate(letters)} | {unknown: sp.Symbol("v", real=True)}
-    stated = slope.xreplace(plain)
-    values = [plain[s] for s in letters]
-    mark = hashlib.sha256(sp.srepr(stated).encode()).hexdigest()[:10]
-    function = sp.lambdify([plain[unknown], *values], [stated, sp.diff(stated, plain[unknown])], modules="mpmath")
+    return _class_of(slope.xreplace(plain), plain[unknown], tuple(plain[s] for s in letters))
+
+
+@lru_cache(maxsize=256)
+def _class_of(slope: sp.Expr, unknown: sp.Symbol, letters: tuple[sp.Symbol, ...]) -> type[Root]:
+    """One class for all slopes that differ by their letters alone: its name is made of the slope."""
+    mark = hashlib.sha256(sp.srepr(slope).encode()).hexdigest()[:10]
+    function = sp.lambdify([unknown, *letters], [slope, sp.diff(slope, unknown)], modules="mpmath")
 
     def value(lower: Any, upper: Any, *coefficients: Any) -> Any:
         return minimum_between(lambda at: function(at, *coefficients), lower, upper)
 
-    shared = {"unknown": plain[unknown], "slope": stated, "letters": tuple(values), "nargs": len(letters) + 2}
+    shared = {"unknown": unknown, "slope": slope, "letters": letters, "nargs": len(letters) + 2}
     return type(f"Root_{mark}", (Root,), shared | {"_imp_": staticmethod(value)})
 
 

@@ -8,13 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.optimize import brentq
-from sympy import Expr, cos, cosh, exp, sin
+from sympy import Expr, Rational, cos, cosh, exp, log, sin
 
 from satsym import instance
 from satsym.instance import Instance
 from satsym.solvers import solve
 from satsym.status import Status, Verdict
-from satsym.symbolic import Box, DerivationError, FirstOrder, Problem, Variable, derive, symbols_of
+from satsym.symbolic import Angle, Box, DerivationError, FirstOrder, Problem, Variable, derive, symbols_of
+from satsym.symbolic.roots import root_of
 from tests.support.models import build, q, scalar, w
 
 PLACE = tuple(Variable(name, name) for name in ("x", "y"))
@@ -186,3 +187,42 @@ def test_an_end_out_of_reach_is_no_answer(tmp_path: Path):
     found = solve(build(tmp_path, BOAT, text))
     assert found.status is Status.NOT_CONVERGED
     assert "direct method" in found.message
+
+
+def test_slopes_that_differ_by_their_letters_have_one_class():
+    """Two classes of one name could not be told apart where they are evaluated."""
+    assert root_of(x, x**3 + w * x - q, (w, q)) is root_of(y, y**3 + x * y - b, (x, b))
+    assert root_of(x, x**3 + w * x - q, (w, q)) is not root_of(x, x**3 + w * x + q, (w, q))
+
+
+def made(name: str, states: tuple[Variable, ...], controls: tuple[str, ...], rates: dict[Expr, Expr]) -> FirstOrder:
+    """A motion without parameters."""
+    own = tuple(Variable(u, u) for u in controls)
+    return FirstOrder(name=name, title=name.title(), states=states, controls=own, parameters=(), rates=rates)
+
+
+def test_a_magnitude_that_multiplies_a_direction_is_a_vector():
+    (size,) = symbols_of((Variable("size", "s"),))
+    motion = made("push", PLACE, ("size", "b"), {x: size * cos(b), y: size * sin(b)})
+    sets = {"size": Box("size"), "heading": Angle("b")}
+    stated = Problem(name="pushed", title="A push that is turned", model=motion, running_cost=1, control_sets=sets)
+    with pytest.raises(
+        DerivationError, match=r"linear in size, which multiplies what b turns; state the comp.* a Ball"
+    ):
+        derive(stated)
+
+
+@pytest.mark.slow
+def test_fractional_powers_of_states_do_not_stop_the_search_of_singular_arcs():
+    """Growth of a tumour after Hahnfeldt: sympy makes no polynomial of what singular arcs ask for."""
+    names = tuple(Variable(name, name, positive=True, typical=(0.5, 2.0)) for name in ("p", "q"))
+    dose, given = (Variable(name, name) for name in ("u", "y"))
+    size, room, _, u = symbols_of((*names, given, dose))
+    rates = {size: -size * log(size / room), room: room * (3 - size ** Rational(2, 3) - u), symbols_of((given,))[0]: u}
+    motion = made("growth", (*names, given), ("u",), rates)
+    found = derive(
+        Problem(
+            name="treatment", title="Treatment", model=motion, running_cost=0, terminal_cost=size, control_set="box"
+        )
+    )
+    assert "singular_arcs" in found

@@ -117,6 +117,11 @@ def _coupled(name: str, h: sp.Expr, parts: Sequence[Part], side: int) -> dict[st
         circle = by_circle(h, angle)
         if circle is None or not any(e.has(u) for e in circle[1:]) or by_circle(h, u):
             continue
+        if sp.simplify(sp.diff(h, u, 2)) == 0:
+            raise DerivationError(
+                f"{name}: H is linear in {u.name}, which multiplies what {angle.name} turns; state the components of "
+                f"this vector as controls in a Ball, and their norm for {u.name}"
+            )
         arc = ends_of(turned, angle) if turned.kind == "box" else None
         others = {v for part in parts if part not in (turned, beside) for v in part.symbols}
         slopes = gradient(h, (u, angle))

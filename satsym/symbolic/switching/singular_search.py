@@ -137,7 +137,11 @@ def _search(
 
 def _with_costates(condition: sp.Expr, surface: Surface, lam: Sequence[sp.Symbol]) -> sp.Expr:
     """A condition without the factor whose vanishing would make all costates vanish, if another factor is left."""
-    factors = [factor for factor, _ in sp.factor_list(sp.numer(sp.together(condition)))[1]]
+    numerator = sp.numer(sp.together(condition))
+    try:
+        factors = [factor for factor, _ in sp.factor_list(numerator)[1]]
+    except sp.PolynomialError:  # fractional powers, of which sympy makes no polynomial
+        factors = list(sp.Mul.make_args(numerator))
     others = [factor for factor in factors if not factor.free_symbols & set(lam)]
     for factor in factors:
         values = [surface.solved.get(c, c).xreplace({factor: sp.Integer(0)}) for c in lam]
