@@ -12,7 +12,7 @@ from types import FrameType
 from satsym.symbolic.derivation import DerivationError
 
 AGAIN = 0.5
-"""Seconds after which what swallowed the end of the time is told again."""
+"""Seconds between repetitions of the signal, for code that swallowed it."""
 
 _at: list[tuple[str, str]] = []
 """What is being derived, and the step it is in."""

@@ -51,7 +51,7 @@ from satsym.formula.tree import (
     symbols,
     walk,
 )  # fmt: skip
-from satsym.formula.tree import Path as Path_
+from satsym.formula.tree import Path as Place
 from satsym.formula.writing import written
 from satsym.status import BadInput
 from tests.support.claims import DOCUMENTS, bench, changes, claims, judged, other_digit, turns
@@ -193,8 +193,8 @@ def rerounded(ready: Bench, row: Row) -> Iterator[Trial]:
     """A number with fewer or more digits, as recomputed; caught means a false alarm."""
     found, before = value.number(ready, row), quantities.printed_number(str(row.table.printed))
     exact = found.evidence.get("recomputed")
-    for digits_ in range(2, 7) if isinstance(exact, float) else ():
-        text = f"{exact:.{digits_}g}" + ("" if before.unit == "1" else f" {before.unit}")
+    for figures in range(2, 7) if isinstance(exact, float) else ():
+        text = f"{exact:.{figures}g}" + ("" if before.unit == "1" else f" {before.unit}")
         right = value.number(ready, replace_table(row, text)).right
         yield Trial("rewriting: rounding", not right, True, f"{row.key}: {text}")
 
@@ -231,7 +231,9 @@ def references(document: str, rng: random.Random) -> Iterator[Trial]:
         named = [(at, part) for at, part in _walked(row.follows) if isinstance(part, Call) and part.function == "row"]
         (side, path), call = rng.choice(named)
         old = formulas_of.get(row_key(call))
-        others = [key for key, each_ in formulas_of.items() if old and key != row.key and _alike(ready, each_, old)]
+        others = [
+            key for key, candidate in formulas_of.items() if old and key != row.key and _alike(ready, candidate, old)
+        ]
         if old is None or not others:
             continue
         other = formulas_of[rng.choice(others)]
@@ -250,14 +252,14 @@ def _verdict(ledger: Ledger, row: Row) -> Judged:
     return next(found for found in audit(ledger, [row.key]) if found.key == row.key)
 
 
-def _walked(formula: Node | Equality) -> Iterator[tuple[tuple[int, Path_], Node]]:
+def _walked(formula: Node | Equality) -> Iterator[tuple[tuple[int, Place], Node]]:
     sides = (formula.lhs, formula.rhs) if isinstance(formula, Equality) else (formula,)
     for k, side in enumerate(sides):
         for path, part in walk(side):
             yield (k, path), part
 
 
-def _put(formula: Node | Equality, side: int, path: Path_, new: Node) -> Node | Equality:
+def _put(formula: Node | Equality, side: int, path: Place, new: Node) -> Node | Equality:
     if not isinstance(formula, Equality):
         return replaced(formula, path, new)
     sides = [formula.lhs, formula.rhs]
@@ -381,7 +383,7 @@ def main(count: int) -> int:
     missed = []
     with ProcessPoolExecutor(2, get_context("spawn")) as pool:
         found = dict(zip(DOCUMENTS, pool.map(partial(_all_trials, count=count), DOCUMENTS), strict=True))
-    for document, trial in ((name, trial) for name, trials_ in found.items() for trial in trials_):
+    for document, trial in ((name, trial) for name, made in found.items() for trial in made):
         tally[trial.kind].update(tried=1, caught=int(trial.caught), named=int(trial.caught and trial.named))
         if trial.caught == trial.kind.startswith("rewriting"):
             missed.append(f"{document}: {trial.kind}: {trial.text}")

@@ -1,4 +1,4 @@
-"""From nothing to an extremal where the law says nothing at vanishing costates: first a direct method.
+"""A cold start where the law says nothing at vanishing costates: a direct method first.
 
 Controls are straight lines between a few knots, their motion is simulated, and sequential quadratic programming makes
 it cheap and brings it to the end; gradients come from the costates of the motion. The multipliers of the end are those

@@ -122,16 +122,16 @@ def _first_form(trials: Trials, here: Trial) -> Array:
 def _form(trials: Trials, here: Trial) -> tuple[Array, bool]:
     """Second derivatives by central differences of slopes, and whether costs tell the same."""
     count = len(here.at)
-    form, told = np.zeros((count, count)), np.zeros(count)
+    form, by_costs = np.zeros((count, count)), np.zeros(count)
     for k, axis in enumerate(np.eye(count)):
         ahead, behind = trials(here.at + NEAR * axis), trials(here.at - NEAR * axis)
         if ahead is None or behind is None:
             return np.eye(count), False
         form[:, k] = (ahead.slope - behind.slope) / (2.0 * NEAR)
-        told[k] = (ahead.cost - 2.0 * here.cost + behind.cost) / NEAR**2
+        by_costs[k] = (ahead.cost - 2.0 * here.cost + behind.cost) / NEAR**2
     own = np.diag(form)
     blurred = 4.0 * NOISE * here.size / NEAR**2
-    believed = bool((np.abs(told - own) <= AGREEMENT * np.abs(own) + blurred).all())
+    believed = bool((np.abs(by_costs - own) <= AGREEMENT * np.abs(own) + blurred).all())
     return (form + form.T) / 2.0, believed
 
 
