@@ -23,10 +23,10 @@ demo: $(VENV)/installed  ## solve two shipped problems, with pictures, into resu
 	done
 	echo; echo "Results and pictures:"; ls -1 results/soft-return/solve/* results/its-thesis/solve/* | sed 's/^/  /'
 
-test: lint check-derive  ## lint, check generated/, run the tests, of the slowest ones a sample
+test: lint  ## lint, run the tests (also that generated/ is what is derived), of the slowest ones a sample
 	$(PYTEST)
 
-test-whole: lint check-derive  ## the same with every case of the slow tests
+test-whole: lint  ## the same with every case of the slow tests
 	$(PYTEST) --whole
 
 test-versions:  ## try the oldest and the newest versions that pyproject.toml allows, in environments of their own

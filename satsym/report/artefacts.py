@@ -16,7 +16,7 @@ from satsym.report.results.files import write_text
 
 if TYPE_CHECKING:
     from satsym.kernels import Kernels
-    from satsym.symbolic import Derivation
+    from satsym.symbolic import Derivation, Model, Problem
 
 SUFFIXES = (".py", ".tex")
 KEPT = "__init__.py"
@@ -140,18 +140,37 @@ def _workers(jobs: int) -> Iterator[Callable[..., Iterator[Any]]]:
 
 def _rendered(job: Job) -> dict[str, str]:
     """The two files of one problem."""
-    from satsym.report.latex import document as latex
     from satsym.symbolic import derive, loader
-    from satsym.symbolic.convention import in_convention, is_minimum
     from satsym.symbolic.time_limit import within
 
     path, name, seconds = job
     problem = next(problem for problem in loader.load(path) if problem.name == name)
     with loader.explained(path, problem), within(seconds, name):
-        derivation = derive(problem)
-        in_minimum_form = derivation if is_minimum(derivation) else derive(in_convention(problem, "minimum"))
-        text, _ = generated(in_minimum_form, source_of(path))
-        return {f"{name}.py": text, f"{name}.tex": latex.render(derivation)}
+        return files(problem, derive, source_of(path))
+
+
+def files(problem: Problem | Model, derive: Callable[[Problem | Model], Derivation], source: str) -> dict[str, str]:
+    """File name -> text of the two files of one problem, the generated module verified against its derivation.
+
+    Parameters
+    ----------
+    derive
+        What derives it, in the convention it is stated in and in that of a minimum.
+    source
+        As for :func:`generated`.
+
+    Raises
+    ------
+    DerivationError
+        As there.
+    """
+    from satsym.report.latex import document as latex
+    from satsym.symbolic.convention import in_convention, is_minimum
+
+    derivation = derive(problem)
+    in_minimum_form = derivation if is_minimum(derivation) else derive(in_convention(problem, "minimum"))
+    text, _ = generated(in_minimum_form, source)
+    return {f"{problem.name}.py": text, f"{problem.name}.tex": latex.render(derivation)}
 
 
 def generated(derivation: Derivation, source: str) -> tuple[str, Kernels]:

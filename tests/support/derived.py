@@ -24,15 +24,16 @@ _HOME = Path(__file__).resolve().parents[2] / ".pytest_cache" / "derivations"
 _KNOWN: dict[str, Derivation] = {}
 """Derivations by the identity of what was stated."""
 
+_THEMSELVES: list[tuple[Problem | Model, Derivation]] = []
+"""What has no identity because it holds code of its own, with its derivation."""
+
 
 def derived(subject: Problem | Model) -> Derivation:
-    """The derivation of a problem or model; anew where it holds code of its own."""
+    """The derivation of a problem or model; one that holds code of its own is known by itself, in this process."""
     key = identity(subject)
-    if not key:
-        return derive(subject)
-    if key not in _KNOWN:
+    if key and key not in _KNOWN:
         _KNOWN[key] = _kept(key) or _keep(key, derive(subject))
-    return _KNOWN[key]
+    return _KNOWN[key] if key else _itself(subject)
 
 
 def shipped(name: str) -> Derivation:
@@ -44,6 +45,14 @@ def shipped(name: str) -> Derivation:
 def stated(name: str) -> Problem | Model:
     """What a shipped derivation file states under a name."""
     return next(one for path in loader.shipped() for one in loader.load(path) if one.name == name)
+
+
+def _itself(subject: Problem | Model) -> Derivation:
+    known = [found for one, found in _THEMSELVES if one is subject]
+    if not known:
+        known = [derive(subject)]
+        _THEMSELVES.append((subject, known[0]))
+    return known[0]
 
 
 @cache

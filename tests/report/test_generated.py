@@ -1,0 +1,27 @@
+"""What is checked in as written by the machine is what the machine writes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from satsym import sources
+from satsym.report import artefacts
+from satsym.symbolic import loader
+from tests.support import derived as shared
+
+STATED = {problem.name: (path, problem) for path in sources.shipped() for problem in loader.load(path)}
+
+
+@pytest.mark.parametrize("name", STATED)
+def test_the_generated_files_of_a_model_are_what_its_derivation_leads_to(name: str, repository: Path) -> None:
+    path, _ = STATED[name]
+    files = artefacts.files(shared.stated(name), shared.derived, artefacts.source_of(path))
+    assert artefacts.differences(files, repository / "generated", whole=False) == []
+
+
+def test_no_generated_file_is_left_over(repository: Path) -> None:
+    files = {f"{name}{suffix}": "" for name in STATED for suffix in artefacts.SUFFIXES}
+    there = {path.name for path in (repository / "generated").iterdir() if path.suffix in artefacts.SUFFIXES}
+    assert there - {artefacts.KEPT} == set(files)
