@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -18,6 +19,20 @@ if TYPE_CHECKING:
     from satsym.kernels import Kernels
 
 Row = tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class BoundedNorm:
+    """Controls whose norm is bounded."""
+
+    name: str
+    """Of their set, empty where they are all."""
+    places: tuple[int, ...]
+    """In the model's order."""
+    least: float
+    largest: float
+    unit: str
+    """``"1"`` where they have none in common."""
 
 
 @dataclass(frozen=True)
@@ -185,6 +200,26 @@ class Instance:
         if not everything:
             return 5
         return 4 if "reference" in self.final.values() else 2
+
+    @cached_property
+    def bounded_norms(self) -> tuple[BoundedNorm, ...]:
+        """The norms of controls that are bounded: in a ball, an annulus or an angle, alone or beside other sets."""
+        spec = self.model.spec
+        everything = tuple(range(len(spec.controls)))
+        found = {"": (everything, (0.0, self.max_norm))} if spec.control_set == "ball" else {}
+        for part, (places, _) in zip(spec.control_parts, self.control_set.parts, strict=True):
+            if part.name in self.norms:
+                found[part.name] = (places, self.norms[part.name])
+
+        def unit(places: tuple[int, ...]) -> str:
+            units = {spec.controls[i].unit for i in places}
+            return units.pop() if len(units) == 1 else "1"
+
+        return tuple(
+            BoundedNorm(name, places, *limits, unit(places))
+            for name, (places, limits) in found.items()
+            if limits[1] < math.inf
+        )
 
     @cached_property
     def control_set(self) -> ControlSet:

@@ -17,13 +17,14 @@ import pytest
 
 from satsym import instance as instances
 from satsym.instance import Guess, Instance, SolverOptions
-from satsym.kernels import Kernels
+from satsym.kernels import Kernels, load
 from satsym.report import display
 from satsym.report.plots import curves, pictures, series, style
 from satsym.report.plots.panels import _of_pi
 from satsym.report.plots.reading import read
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.series import Series
+from satsym.report.terminal.solution import solution_text
 from satsym.solution import Iteration, Simulation, Solution
 from satsym.solvers import simulate, solve
 from satsym.spec import ProblemSpec, Variable
@@ -432,6 +433,20 @@ def test_all_values_and_the_required_end_are_on_the_axis() -> None:
 def test_a_bound_is_in_sight_if_it_is_not_far_off(bound: float, seen: bool) -> None:
     shown = read(quantity([0.0, 1.0], upper=bound, from_zero=True))
     assert (shown.high > bound) is seen
+
+
+def test_the_norm_of_a_set_of_controls_is_drawn_and_listed_with_its_bounds_and_unit() -> None:
+    model = load("transfer_fuel")
+    norms = {model.spec.control_parts[0].name: (0.0, 0.7)}
+    given = dataclasses.replace(
+        case(model), norms=norms, max_norm=math.inf, parameters=(1.0,) * len(model.spec.parameters)
+    )
+    whole = solution(given)
+    *_, norm = series.controls(Scene.of(whole))
+    np.testing.assert_allclose(norm.values, np.hypot(*whole.u), rtol=1e-12)
+    assert (norm.symbol, norm.upper, norm.lower) == (r"$\Vert \mathrm{thrust} \Vert$", 0.7, -math.inf)
+    assert norm.switching == (1.0,)
+    assert "norm of thrust" in solution_text(whole)
 
 
 def test_bounds_of_a_control_that_rests_are_in_sight() -> None:

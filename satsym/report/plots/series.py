@@ -75,7 +75,7 @@ def states(scene: Scene) -> list[Series]:
 
 
 def controls(scene: Scene) -> list[Series]:
-    """The controls with their bounds, for a ball also their norm; none of a flight without control."""
+    """The controls with their bounds, also their norm where it is bounded; none of a flight without control."""
     instance, spec = scene.instance, scene.spec
     if isinstance(scene.result, Simulation) and scene.coasting:
         return []
@@ -96,21 +96,21 @@ def controls(scene: Scene) -> list[Series]:
         )
         for i, v in enumerate(spec.controls)
     ]
-    if spec.control_set == "ball":
-        norm, units = np.linalg.norm(scene.u, axis=0), {v.unit for v in spec.controls}
-        times = sorted({t / scene.time_factor for each in switching for t in each})
-        active = _active(norm, -math.inf, instance.max_norm)
-        unit = units.pop() if len(units) == 1 else "1"
+    for bound in instance.bounded_norms:
+        norm = np.linalg.norm(scene.u[list(bound.places)], axis=0)
+        least = bound.least or -math.inf
+        times = {t / scene.time_factor for i in bound.places for t in switching[i]}
         found.append(
             Series(
-                r"\Vert u \Vert",
-                "|u|",
-                unit,
-                "norm of the control",
+                r"\Vert " + (rf"\mathrm{{{bound.name}}}" if bound.name else "u") + r" \Vert",
+                f"|{bound.name or 'u'}|",
+                bound.unit,
+                f"norm of {bound.name or 'the control'}",
                 norm,
-                upper=instance.max_norm,
-                active=active,
-                switching=tuple(times),
+                lower=least,
+                upper=bound.largest,
+                active=_active(norm, least, bound.largest),
+                switching=tuple(sorted(times)),
                 from_zero=True,
             )
         )

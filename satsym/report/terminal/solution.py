@@ -28,7 +28,7 @@ _BOUNDARY = {
     2: "final time free, final state given",
     3: "final time given, final state free or partly so",
     4: "final time free, final state on the reference",
-    5: "final time and final state free",
+    5: "final time free, final state free or partly so",
 }
 
 
@@ -222,17 +222,11 @@ def _controls(instance: Instance, times: Array, u: Array) -> list[str]:
         limits = (instance.lower[i], instance.upper[i])
         unit = "" if control.unit == "1" else control.unit
         rows.append((control.symbol, *_range(times, u[i], limits), unit))
-    if spec.control_set == "ball" and math.isfinite(instance.max_norm):
-        norm = np.sqrt((u * u).sum(axis=0))
-        rows.append(("norm", *_range(times, norm, (-math.inf, instance.max_norm)), ""))
-    for name, (least, largest) in instance.norms.items():
-        places = next(
-            at
-            for part, (at, _) in zip(spec.control_parts, instance.control_set.parts, strict=True)
-            if part.name == name
-        )
-        norm = np.linalg.norm(u[list(places)], axis=0) if u.size else u[0]
-        rows.append((f"norm of {name}", *_range(times, norm, (least or -math.inf, largest)), ""))
+    for bound in instance.bounded_norms:
+        norm = np.sqrt((u[list(bound.places)] ** 2).sum(axis=0)) if u.size else u[0]
+        named = f"norm of {bound.name}" if bound.name else "norm"
+        unit = "" if bound.unit == "1" else bound.unit
+        rows.append((named, *_range(times, norm, (bound.least or -math.inf, bound.largest)), unit))
     return table(rows, right=(1, 2, 4))
 
 
