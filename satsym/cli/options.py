@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import click
 
 from satsym.report import texts
+from satsym.report.look import FORMATS, SCREEN, Look
 from satsym.status import BadInput
 
 
@@ -53,8 +55,44 @@ trajectory_option = place_option(
 out_option = place_option("--out", metavar="DIR", help="Write result.json there; it replaces a result.")
 
 
-def plot_option(command: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Whether to draw, for a command, whose results go into a folder of its name."""
-    return click.option(
+def plot_options(command: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Whether to draw and how, as ``look``, for a command, whose results go into a folder of its name."""
+    drawn = click.option(
         "--plot", is_flag=True, help=f"Draw pictures too; without --out into results/NAME/{command}, with all else."
     )
+
+    def decorated(function: Callable[..., Any]) -> Callable[..., Any]:
+        @functools.wraps(function)
+        def called(*, plot: bool, formats: tuple[str, ...], untitled: bool, **arguments: Any) -> Any:
+            if (formats or untitled) and not plot:
+                raise click.UsageError("--format and --no-title say how pictures look; add --plot to have some.")
+            return function(look=_look(formats, untitled) if plot else None, **arguments)
+
+        return drawn(_format_option(_title_option(called)))
+
+    return decorated
+
+
+def look_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """How pictures look, as ``look``, for a command that does nothing but draw."""
+
+    @functools.wraps(function)
+    def called(*, formats: tuple[str, ...], untitled: bool, **arguments: Any) -> Any:
+        return function(look=_look(formats, untitled), **arguments)
+
+    return _format_option(_title_option(called))
+
+
+def _look(formats: tuple[str, ...], untitled: bool) -> Look:
+    return Look(tuple(dict.fromkeys(formats)) or SCREEN.formats, not untitled)
+
+
+_format_option = click.option(
+    "--format",
+    "formats",
+    metavar="KIND",
+    type=click.Choice(FORMATS),
+    multiple=True,
+    help=f"Kind of the pictures: {', '.join(FORMATS)}; may be given several times. By default png.",
+)
+_title_option = click.option("--no-title", "untitled", is_flag=True, help="Pictures without titles, for captions.")

@@ -10,6 +10,7 @@ from satsym.status import BadInput
 from satsym.wording import printable
 
 if TYPE_CHECKING:
+    from satsym.report.look import Look
     from satsym.report.results.files import Content
     from satsym.solution import Simulation, Solution
 
@@ -18,7 +19,7 @@ DRAWN = ("solve", "simulate")
 """Commands whose results can be drawn again; here once more, because ``--help`` loads no reader of them."""
 
 
-def folder_for(name: str, command: str, out: Path | None, plot: bool) -> Path | None:
+def folder_for(name: str, command: str, out: Path | None, look: Look | None) -> Path | None:
     """Where the results of a command go, ``None`` where nothing is to be written.
 
     Raises
@@ -26,7 +27,7 @@ def folder_for(name: str, command: str, out: Path | None, plot: bool) -> Path | 
     BadInput
         If that is no place to write to; better now than after a long run.
     """
-    folder = out or (Path(RESULTS, name, command) if plot else None)
+    folder = out or (Path(RESULTS, name, command) if look else None)
     if folder:
         from satsym.report.results.files import check_writable
 
@@ -43,14 +44,14 @@ def save(folder: Path | None, result: Mapping[str, Any], files: Mapping[str, Con
     return sets.write(folder, result, files)
 
 
-def trajectory_files(folder: Path | None, found: Solution | Simulation, plot: bool) -> dict[str, Content]:
+def trajectory_files(folder: Path | None, found: Solution | Simulation, look: Look | None) -> dict[str, Content]:
     """Trajectory and, where asked for, pictures: name -> content; none where nothing is to be written."""
     if folder is None:
         return {}
     from satsym.report import plots
     from satsym.report.results import trajectory
 
-    return trajectory.contents(found) | (plots.pictures(found) if plot else {})
+    return trajectory.contents(found) | (plots.pictures(found, look) if look else {})
 
 
 def split(subject: str) -> tuple[str, str | None]:

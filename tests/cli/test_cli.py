@@ -235,7 +235,7 @@ def test_solve_writes_results_where_it_is_told(run: Run, case: Path, tmp_path: P
 def test_pictures_go_to_results_by_default(
     run: Run, case: Path, tmp_path: Path, command: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("satsym.report.plots.pictures", lambda _result: {"picture.png": lambda stream: None})
+    monkeypatch.setattr("satsym.report.plots.pictures", lambda _result, _look: {"picture.png": lambda stream: None})
     code, out, _ = run(command, case, "--plot")
     assert code == 0
     assert f"{Path('results', 'case', command)}: trajectory.npz, trajectory.csv, picture.png, result.json" in out

@@ -19,6 +19,7 @@ from satsym import instance as instances
 from satsym.instance import Guess, Instance, SolverOptions
 from satsym.kernels import Kernels, load
 from satsym.report import display
+from satsym.report.look import Look
 from satsym.report.plots import curves, pictures, series, style
 from satsym.report.plots.panels import _of_pi
 from satsym.report.plots.reading import read
@@ -161,7 +162,7 @@ def stems(written: Sequence[Path]) -> list[str]:
 
 def save(result: Solution | Simulation, folder: Path, formats: Sequence[str] = ("png",)) -> list[Path]:
     """Its pictures as files."""
-    drawn = pictures(result, formats)
+    drawn = pictures(result, Look(tuple(formats)))
     folder.mkdir(parents=True, exist_ok=True)
     for name, content in drawn.items():
         with (folder / name).open("wb") as stream:

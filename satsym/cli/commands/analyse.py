@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from satsym.cli.options import json_option, out_option, plot_option
+from satsym.cli.options import json_option, out_option, plot_options
 from satsym.cli.output import emit, emit_json, in_colour
 from satsym.cli.saving import folder_for, save
 from satsym.status import ExitCode
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from satsym.analysis.orbits.survey import Survey
     from satsym.instance import Instance
     from satsym.kernels import Kernels
+    from satsym.report.look import Look
     from satsym.report.results.files import Content
     from satsym.symbolic.equilibria.survey import Attitudes
 
@@ -33,8 +34,8 @@ Examples:
 @click.argument("subject", metavar="X")
 @json_option
 @out_option
-@plot_option("analyse")
-def analyse(subject: str, as_json: bool, out: Path | None, plot: bool) -> ExitCode:
+@plot_options("analyse")
+def analyse(subject: str, as_json: bool, out: Path | None, look: Look | None) -> ExitCode:
     """Analyse a model near its reference or an equilibrium, and an orbit about a central body.
 
     X is a shipped model or instance, or the path of one. Eigenvalues with their Jordan blocks, stability with its
@@ -49,13 +50,13 @@ def analyse(subject: str, as_json: bool, out: Path | None, plot: bool) -> ExitCo
     from satsym.report.terminal.solution import with_files
 
     given = find(subject)
-    folder = folder_for(Path(subject).stem, "analyse", out, plot)
+    folder = folder_for(Path(subject).stem, "analyse", out, look)
     found, orbit = examined(given)
     resting = attitudes(given)
     saved: list[Path] = []
     if as_json or folder is not None:
         result = examination_object(given, found, orbit, attitudes=resting)
-        saved = save(folder, result, _pictures(given, found, orbit, resting) if folder and plot else {})
+        saved = save(folder, result, _pictures(given, found, orbit, resting, look) if folder and look else {})
     if as_json:
         emit_json(result)
     else:
@@ -64,18 +65,18 @@ def analyse(subject: str, as_json: bool, out: Path | None, plot: bool) -> ExitCo
 
 
 def _pictures(
-    given: Instance | Kernels, found: Analysis | None, orbit: Survey | None, resting: Attitudes | None
+    given: Instance | Kernels, found: Analysis | None, orbit: Survey | None, resting: Attitudes | None, look: Look
 ) -> dict[str, Content]:
     from satsym.instance import Instance
     from satsym.report.plots.systems import of_analysis, of_attitudes, of_orbit
 
-    pictures = (of_analysis(found) if found else {}) | (of_orbit(orbit) if orbit else {})
+    pictures = (of_analysis(found, look) if found else {}) | (of_orbit(orbit, look) if orbit else {})
     if resting is None:
         return pictures
     spec = given.model.spec if isinstance(given, Instance) else given.spec
     title = (given.title if isinstance(given, Instance) else "") or spec.title
     unit = next(v.unit for v in spec.parameters if v.symbol == resting.parameter)
-    return pictures | of_attitudes(resting, title, unit)
+    return pictures | of_attitudes(resting, title, unit, look)
 
 
 def _text(found: Analysis | None, orbit: Survey | None, resting: Attitudes | None) -> str:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from satsym.cli.options import json_option, out_option, plot_option
+from satsym.cli.options import json_option, out_option, plot_options
 from satsym.cli.output import answer, complain, live
 from satsym.cli.saving import folder_for, save
 from satsym.status import ExitCode
@@ -15,6 +15,7 @@ from satsym.status import ExitCode
 if TYPE_CHECKING:
     from satsym.analysis.comparison import Range
     from satsym.instance import Instance
+    from satsym.report.look import Look
     from satsym.report.results.files import Content
 
 EXAMPLES = """\b
@@ -32,8 +33,8 @@ FACTORS = (0.25, 0.5, 1.0, 2.0, 4.0)
 @json_option
 @click.option("--range", "ranged", is_flag=True, help="Vary damping and command of the first instance's law.")
 @out_option
-@plot_option("compare")
-def compare(subjects: tuple[str, ...], as_json: bool, ranged: bool, out: Path | None, plot: bool) -> ExitCode:
+@plot_options("compare")
+def compare(subjects: tuple[str, ...], as_json: bool, ranged: bool, out: Path | None, look: Look | None) -> ExitCode:
     """Simulate or solve instances of one system, and set the numbers that describe them side by side.
 
     An instance that states a law ([classical]) is simulated under it, any other is solved. Totals, maximum and final
@@ -45,16 +46,16 @@ def compare(subjects: tuple[str, ...], as_json: bool, ranged: bool, out: Path | 
     from satsym.report.terminal.solution import with_files
 
     loaded = [instance.load(subject) for subject in subjects]
-    folder = folder_for(loaded[0].name, "compare", out, plot)
+    folder = folder_for(loaded[0].name, "compare", out, look)
     over = _range(loaded[0]) if ranged else None
     with live() as line:
         cases = comparison.compare(loaded, line.show)
     result = comparison_object(cases, over)
     pages: dict[str, Content] = {}
-    if folder and plot:
+    if folder and look:
         from satsym.report.plots import comparison as plots
 
-        pages = plots.pictures(cases)
+        pages = plots.pictures(cases, look)
     saved = save(folder, result, pages)
     answer(as_json, result, lambda: with_files(comparison_text(cases, over), saved))
     for case in cases:

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 import click
 
-from satsym.cli.options import json_option, out_option, plot_option
+from satsym.cli.options import json_option, out_option, plot_options
 from satsym.cli.output import answer
 from satsym.cli.saving import folder_for, save
 from satsym.status import ExitCode, Status
 
 if TYPE_CHECKING:
+    from satsym.report.look import Look
     from satsym.report.results.files import Content
 
 EXAMPLES = """\b
@@ -26,8 +27,8 @@ Examples:
 @click.argument("subject", metavar="X")
 @json_option
 @out_option
-@plot_option("lqr")
-def lqr(subject: str, as_json: bool, out: Path | None, plot: bool) -> ExitCode:
+@plot_options("lqr")
+def lqr(subject: str, as_json: bool, out: Path | None, look: Look | None) -> ExitCode:
     """Find the gain of minimum cost: u = -K x for the deviation x.
 
     X is an instance with an [lqr] table, or a model, whose weights are then all 1; shipped, or the path of one. The
@@ -41,14 +42,14 @@ def lqr(subject: str, as_json: bool, out: Path | None, plot: bool) -> ExitCode:
     from satsym.report.terminal.solution import with_files
 
     given = find(subject)
-    folder = folder_for(Path(subject).stem, "lqr", out, plot)
+    folder = folder_for(Path(subject).stem, "lqr", out, look)
     design = designed(given)
     result = head_about("lqr", given, Status.CONVERGED) | regulator_object(design)
     pictures: dict[str, Content] = {}
-    if folder and plot:
+    if folder and look:
         from satsym.report.plots.systems import of_design
 
-        pictures = of_design(design)
+        pictures = of_design(design, look)
     saved = save(folder, result, pictures)
     answer(as_json, result, lambda: with_files(regulator_text(design), saved))
     return ExitCode.DONE

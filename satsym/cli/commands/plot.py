@@ -8,18 +8,17 @@ from typing import TYPE_CHECKING
 
 import click
 
-from satsym.cli.options import json_option, place_option, subject_argument
+from satsym.cli.options import json_option, look_options, place_option, subject_argument
 from satsym.cli.output import emit, emit_json
 from satsym.cli.saving import saved_folder, split
 from satsym.status import BadInput, ExitCode
 from satsym.wording import printable
 
 if TYPE_CHECKING:
+    from satsym.report.look import Look
     from satsym.report.results.files import Content
     from satsym.report.results.sets import Found
     from satsym.solution import Simulation, Solution
-
-KINDS = ("png", "pdf")
 
 EXAMPLES = """\b
 Examples:
@@ -38,17 +37,9 @@ Examples:
     help="Where its trajectory.npz and result.json are; by default the newest of results/X/solve, results/X/simulate.",
 )
 @place_option("--out", metavar="DIR", help="Where pictures go; by default there too.")
-@click.option(
-    "--format",
-    "kinds",
-    metavar="KIND",
-    type=click.Choice(KINDS),
-    multiple=True,
-    default=("png",),
-    help=f"One of: {', '.join(KINDS)}; may be given several times. By default png.",
-)
+@look_options
 @json_option
-def plot(subject: str, source: Path | None, out: Path | None, kinds: tuple[str, ...], as_json: bool) -> ExitCode:
+def plot(subject: str, source: Path | None, out: Path | None, look: Look, as_json: bool) -> ExitCode:
     """Draw a saved result, without solving again.
 
     X is the instance that was solved or simulated with --out or --plot, or X/COMMAND for what that command wrote. A
@@ -68,7 +59,7 @@ def plot(subject: str, source: Path | None, out: Path | None, kinds: tuple[str, 
     result, found = trajectory.read(case, source)
     if command not in (None, found.command):
         raise BadInput(f"{printable(str(source))}: holds the result of {found.command}, not of {command}")
-    pictures = plots.pictures(result, tuple(dict.fromkeys(kinds)))
+    pictures = plots.pictures(result, look)
     saved = _save(out or source, found, result, pictures) if pictures else []
     if as_json:
         begins = head("plot", case.model.spec, case.name, result.status)

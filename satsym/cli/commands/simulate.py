@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from satsym.cli.options import json_option, plot_option, subject_argument, trajectory_option
+from satsym.cli.options import json_option, plot_options, subject_argument, trajectory_option
 from satsym.cli.output import answer, complain, in_colour
 from satsym.cli.saving import folder_for, save, trajectory_files
 from satsym.status import ExitCode
+
+if TYPE_CHECKING:
+    from satsym.report.look import Look
 
 FEEDBACKS = ("none", "lqr", "classical", "switching", "pulses")
 """Control laws to simulate with; here once more, because ``--help`` loads no solver."""
@@ -35,8 +39,8 @@ Examples:
 )
 @json_option
 @trajectory_option
-@plot_option("simulate")
-def simulate(subject: str, feedback: str | None, as_json: bool, out: Path | None, plot: bool) -> ExitCode:
+@plot_options("simulate")
+def simulate(subject: str, feedback: str | None, as_json: bool, out: Path | None, look: Look | None) -> ExitCode:
     """Simulate the motion under a control law.
 
     X is a shipped instance (`satsym instances` lists them) or the path of a TOML file. The motion is simulated from
@@ -48,10 +52,10 @@ def simulate(subject: str, feedback: str | None, as_json: bool, out: Path | None
     from satsym.report.terminal.solution import simulation_text, with_files
 
     case = instance.load(subject)
-    folder = folder_for(case.name, "simulate", out, plot)
+    folder = folder_for(case.name, "simulate", out, look)
     simulation = simulated(case, feedback)
     result = simulation_object(simulation)
-    saved = save(folder, result, trajectory_files(folder, simulation, plot))
+    saved = save(folder, result, trajectory_files(folder, simulation, look))
     answer(as_json, result, lambda: with_files(simulation_text(simulation, in_colour()), saved))
     if simulation.status.answered:
         return ExitCode.DONE

@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from satsym import methods
-from satsym.cli.options import json_option, plot_option, subject_argument, trajectory_option
+from satsym.cli.options import json_option, plot_options, subject_argument, trajectory_option
 from satsym.cli.output import answer, in_colour, live
 from satsym.cli.saving import folder_for, save, trajectory_files
 from satsym.status import ExitCode, Verdict
 
 if TYPE_CHECKING:
     from satsym.instance import Instance
+    from satsym.report.look import Look
 
 METHODS = "\n".join(f"  {method.name:<13}{method.title}" for method in methods.METHODS.values())
 
@@ -45,7 +46,7 @@ def _positive(_context: click.Context, _option: click.Parameter, value: float | 
 @subject_argument
 @json_option
 @trajectory_option
-@plot_option("solve")
+@plot_options("solve")
 @click.option(
     "--method",
     type=click.Choice(methods.names()),
@@ -65,7 +66,7 @@ def solve(
     subject: str,
     as_json: bool,
     out: Path | None,
-    plot: bool,
+    look: Look | None,
     method: str | None,
     steps: int | None,
     varied: tuple[str, ...],
@@ -84,7 +85,7 @@ def solve(
     written = instance.read(subject)
     written = replace(written, tree=_continued(written.tree, varied))
     case = _changed(written.instance(), method=method, steps=steps, tolerance=tolerance)
-    folder = folder_for(case.name, "solve", out, plot)
+    folder = folder_for(case.name, "solve", out, look)
     with live() as line:
         solution = solvers.solve(case, progress=lambda iteration: line.show(progress_line(iteration, case)))
     if case.limits:
@@ -92,7 +93,7 @@ def solve(
 
         solution = limits_noted(solution)
     result = solution_object(solution)
-    saved = save(folder, result, trajectory_files(folder, solution, plot))
+    saved = save(folder, result, trajectory_files(folder, solution, look))
     answer(as_json, result, lambda: with_files(solution_text(solution, in_colour()), saved))
     if not solution.status.answered:
         return ExitCode.NO_ANSWER

@@ -1,13 +1,14 @@
-"""Pictures of a solution or a flight, for any model: PNG files, and on request PDF.
+"""Pictures of a solution or a flight, for any model: PNG files, and on request PDF and SVG.
 
 matplotlib is imported when the first picture is drawn, without pyplot.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from satsym.report.look import SCREEN, Look
 from satsym.report.results import files
 from satsym.solution import Simulation, Solution
 
@@ -15,15 +16,15 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def pictures(result: Solution | Simulation, formats: Sequence[str] = ("png",)) -> dict[str, files.Content]:
+def pictures(result: Solution | Simulation, look: Look = SCREEN) -> dict[str, files.Content]:
     """Draw a result.
 
     Parameters
     ----------
     result
         Also one that did not converge, as far as there is something to draw.
-    formats
-        Of ``png`` and ``pdf``.
+    look
+        As which files, and whether with titles.
 
     Returns
     -------
@@ -36,17 +37,17 @@ def pictures(result: Solution | Simulation, formats: Sequence[str] = ("png",)) -
     from satsym.report.plots import style
 
     drawn: dict[str, files.Content] = {}
-    with style.applied():
+    with style.applied(look):
         for name, page in _pages(result):
-            drawn |= {f"{name}.{kind}": files.binary(style.rendered(page, kind)) for kind in formats}
+            drawn |= {f"{name}.{kind}": files.binary(style.rendered(page, kind)) for kind in look.formats}
     return drawn
 
 
-def figures(result: Solution | Simulation) -> dict[str, Figure]:
+def figures(result: Solution | Simulation, look: Look = SCREEN) -> dict[str, Figure]:
     """The same as figures of matplotlib, by name, for people who go on drawing."""
     from satsym.report.plots import style
 
-    with style.applied():
+    with style.applied(look):
         return dict(_pages(result))
 
 

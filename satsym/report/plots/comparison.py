@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from satsym.report import display
+from satsym.report.look import SCREEN, Look
 from satsym.report.plots import legend, style
 from satsym.report.results import files
 from satsym.report.terminal.comparison import unit_of
@@ -28,13 +29,13 @@ DAMPINGS = (0.2, 5.0)
 """Shares of the instance's own, in a range."""
 
 
-def pictures(cases: Sequence[Case], formats: Sequence[str] = ("png",)) -> dict[str, files.Content]:
+def pictures(cases: Sequence[Case], look: Look = SCREEN) -> dict[str, files.Content]:
     """The page ``comparison``: name -> content of each file; none where there are no answers."""
-    with style.applied():
+    with style.applied(look):
         drawn = page(cases)
         if drawn is None:
             return {}
-        return {f"comparison.{kind}": files.binary(style.rendered(drawn, kind)) for kind in formats}
+        return {f"comparison.{kind}": files.binary(style.rendered(drawn, kind)) for kind in look.formats}
 
 
 def page(cases: Sequence[Case]) -> Figure | None:

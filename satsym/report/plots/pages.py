@@ -94,8 +94,10 @@ def overview(scene: Scene) -> Figure | None:
     rows = -(-len(states) // columns) + -(-len(controls) // columns)
     height = max(1.0 + 1.55 * rows, 4.2 if shown is None else 6.2)
     page = style.figure(style.WIDTH, height)
-    head, right = _split(page, (2, 1), height_ratios=[0.75, height - 0.75])
-    _heading(head, scene)
+    right: Figure | SubFigure = page
+    if style.with_titles() or not scene.result.status.answered:
+        head, right = _split(page, (2, 1), height_ratios=[0.75, height - 0.75])
+        _heading(head, scene)
     if shown is not None:
         left, right = _split(right, (1, 2), width_ratios=[1.0, 1.12])
         _space(left, shown)
@@ -124,7 +126,8 @@ def _heading(part: SubFigure, scene: Scene) -> None:
     result = scene.result
     name = shortened(scene.title, 80)
     look: dict[str, Any] = {"ha": "left", "va": "center", "x": 0.012}
-    part.text(y=0.7, s=name, fontsize=14.0, fontweight="bold", parse_math=False, **look)
+    if style.with_titles():
+        part.text(y=0.7, s=name, fontsize=14.0, fontweight="bold", parse_math=False, **look)
     part.text(y=0.24, s="     ".join(_facts(scene)), fontsize=10.5, color=style.SOFT, **look)
     if not result.status.answered:
         part.text(x=0.988, y=0.7, s=result.status.value, ha="right", va="center", color=style.ALARM, fontweight="bold")

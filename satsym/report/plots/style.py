@@ -6,9 +6,11 @@ import io
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import TYPE_CHECKING, Any
 
 from satsym.report.display import shortened
+from satsym.report.look import SCREEN, Look
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -60,7 +62,7 @@ ARROW: dict[str, Any] = {
 WIDTH = 10.0
 """Of a page, in inches."""
 DPI = 160
-_UNDATED: dict[str, dict[str, None]] = {"png": {"Software": None}, "pdf": {"CreationDate": None}}
+_UNDATED: dict[str, dict[str, None]] = {"png": {"Software": None}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}
 _RC: dict[Any, Any] = {
     "font.size": 10.5,
     "mathtext.fontset": "cm",
@@ -98,11 +100,17 @@ _RC: dict[Any, Any] = {
     "figure.dpi": DPI,
     "savefig.dpi": "figure",
     "savefig.facecolor": "white",
+    # publishers refuse fonts of type 3; names of shapes that are drawn anew each time would differ
+    "pdf.fonttype": 42,
+    "svg.hashsalt": "satsym",
 }
+
+_TITLES: ContextVar[bool] = ContextVar("titles", default=True)
+"""Whether pages have titles, while a style is applied."""
 
 
 @contextmanager
-def applied() -> Iterator[None]:
+def applied(look: Look = SCREEN) -> Iterator[None]:
     """Draw in this style, whatever the user's matplotlibrc says; afterwards their settings are back."""
     import logging
 
@@ -115,7 +123,16 @@ def applied() -> Iterator[None]:
         matplotlib.rcParams.update(_RC)
         # a title may be in any script; a box in its place is no news to whoever reads it
         warnings.filterwarnings("ignore", "Glyph .* missing from")
-        yield
+        before = _TITLES.set(look.titled)
+        try:
+            yield
+        finally:
+            _TITLES.reset(before)
+
+
+def with_titles() -> bool:
+    """Whether pages have titles."""
+    return _TITLES.get()
 
 
 def figure(width: float, height: float) -> Figure:
@@ -126,8 +143,10 @@ def figure(width: float, height: float) -> Figure:
 
 
 def titled(title: str, width: float, height: float) -> Figure:
-    """A figure under a title, which is cut if it is longer than a line."""
+    """A figure under a title, which is cut if it is longer than a line; or under none, if none are wanted."""
     page = figure(width, height)
+    if not with_titles():
+        return page
     text = shortened(title, int(9.8 * width))
     page.suptitle(text, x=0.012, ha="left", fontsize=11.5, fontweight="bold", parse_math=False)
     return page

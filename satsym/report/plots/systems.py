@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
 from satsym.report import display
+from satsym.report.look import SCREEN, Look
 from satsym.report.plots import style
 from satsym.report.results import files
 
@@ -23,13 +24,13 @@ Pictures: TypeAlias = dict[str, files.Content]
 """Name -> content of each file."""
 
 
-def of_analysis(found: Analysis, formats: Sequence[str] = ("png",)) -> Pictures:
+def of_analysis(found: Analysis, look: Look = SCREEN) -> Pictures:
     """Draw an analysis: ``eigenvalues``, and ``phase`` where there are two states.
 
     Parameters
     ----------
-    formats
-        Of ``png`` and ``pdf``.
+    look
+        As which files, and whether with titles.
 
     Returns
     -------
@@ -38,10 +39,10 @@ def of_analysis(found: Analysis, formats: Sequence[str] = ("png",)) -> Pictures:
     """
     from satsym.report.plots.orbits import plane
 
-    return _drawn({"eigenvalues": lambda: plane.of_analysis(found), "phase": lambda: portrait(found)}, formats)
+    return _drawn({"eigenvalues": lambda: plane.of_analysis(found), "phase": lambda: portrait(found)}, look)
 
 
-def of_orbit(found: Survey, formats: Sequence[str] = ("png",)) -> Pictures:
+def of_orbit(found: Survey, look: Look = SCREEN) -> Pictures:
     """Draw an orbit: ``orbit``, ``point`` (eigenvalues at its start) and, of a closed one, ``multipliers``."""
     from satsym.report.plots.orbits import conics, plane, unit_circle
 
@@ -50,17 +51,17 @@ def of_orbit(found: Survey, formats: Sequence[str] = ("png",)) -> Pictures:
         "point": lambda: plane.of_point(found),
         "multipliers": lambda: unit_circle.page(found),
     }
-    return _drawn(pictures, formats)
+    return _drawn(pictures, look)
 
 
-def of_attitudes(found: Attitudes, title: str, unit: str = "", formats: Sequence[str] = ("png",)) -> Pictures:
+def of_attitudes(found: Attitudes, title: str, unit: str = "", look: Look = SCREEN) -> Pictures:
     """Draw the equilibria of an attitude in orbit over a parameter with a unit: ``equilibria``."""
     from satsym.report.plots import equilibria
 
-    return _drawn({"equilibria": lambda: equilibria.page(found, title, unit)}, formats)
+    return _drawn({"equilibria": lambda: equilibria.page(found, title, unit)}, look)
 
 
-def of_design(design: Design, formats: Sequence[str] = ("png",)) -> Pictures:
+def of_design(design: Design, look: Look = SCREEN) -> Pictures:
     """Draw a regulator: ``eigenvalues``; of an instance also ``responses``; of a nonlinear model also ``basin``."""
     from satsym.report.plots import responses
     from satsym.report.plots.orbits import plane
@@ -70,16 +71,16 @@ def of_design(design: Design, formats: Sequence[str] = ("png",)) -> Pictures:
         case = design.instance
         pictures["responses"] = lambda: responses.page(design, case)
         pictures["basin"] = lambda: responses.reach(design, case)
-    return _drawn(pictures, formats)
+    return _drawn(pictures, look)
 
 
-def _drawn(pictures: Mapping[str, Callable[[], Figure | None]], formats: Sequence[str]) -> Pictures:
+def _drawn(pictures: Mapping[str, Callable[[], Figure | None]], look: Look) -> Pictures:
     drawn: Pictures = {}
-    with style.applied():
+    with style.applied(look):
         for name, picture in pictures.items():
             page = picture()
             if page is not None:
-                drawn |= {f"{name}.{kind}": files.binary(style.rendered(page, kind)) for kind in formats}
+                drawn |= {f"{name}.{kind}": files.binary(style.rendered(page, kind)) for kind in look.formats}
     return drawn
 
 
