@@ -29,8 +29,8 @@ class BoundedNorm:
     """Of their set, empty where they are all."""
     places: tuple[int, ...]
     """In the model's order."""
-    least: float
-    largest: float
+    lower: float
+    upper: float
     unit: str
     """``"1"`` where they have none in common."""
 

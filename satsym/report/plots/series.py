@@ -98,7 +98,7 @@ def controls(scene: Scene) -> list[Series]:
     ]
     for bound in instance.bounded_norms:
         norm = np.linalg.norm(scene.u[list(bound.places)], axis=0)
-        least = bound.least or -math.inf
+        lower = bound.lower or -math.inf
         times = {t / scene.time_factor for i in bound.places for t in switching[i]}
         found.append(
             Series(
@@ -107,9 +107,9 @@ def controls(scene: Scene) -> list[Series]:
                 bound.unit,
                 f"norm of {bound.name or 'the control'}",
                 norm,
-                lower=least,
-                upper=bound.largest,
-                active=_active(norm, least, bound.largest),
+                lower=lower,
+                upper=bound.upper,
+                active=_active(norm, lower, bound.upper),
                 switching=tuple(sorted(times)),
                 from_zero=True,
             )

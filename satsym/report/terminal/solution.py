@@ -226,7 +226,7 @@ def _controls(instance: Instance, times: Array, u: Array) -> list[str]:
         norm = np.sqrt((u[list(bound.places)] ** 2).sum(axis=0)) if u.size else u[0]
         named = f"norm of {bound.name}" if bound.name else "norm"
         unit = "" if bound.unit == "1" else bound.unit
-        rows.append((named, *_range(times, norm, (bound.least or -math.inf, bound.largest)), unit))
+        rows.append((named, *_range(times, norm, (bound.lower or -math.inf, bound.upper)), unit))
     return table(rows, right=(1, 2, 4))
 
 
