@@ -7,15 +7,20 @@ by reading import statements, also those inside functions, without importing any
 from __future__ import annotations
 
 import hashlib
+import importlib
 import re
 from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
+from satsym.spec import is_name
 from satsym.status import BadInput
 
 SUFFIX = ".py"
+GENERATED = "satsym.generated"
+LEDGER = "ledger.toml"
+"""The head of a ledger that is a folder."""
 DATA = ".toml"
 
 _HOME = Path(__file__).parent
@@ -33,6 +38,18 @@ def shipped() -> list[Path]:
     folder = Path(str(files("satsym.derivations")))
     found = (sorted(place.glob(f"*{SUFFIX}")) for place in (folder, folder / "examples"))
     return [p for paths in found for p in paths if not p.name.startswith("_")]
+
+
+def models() -> list[str]:
+    """Names of the generated models that come with satsym, without importing them."""
+    folders = importlib.import_module(GENERATED).__path__
+    return sorted({file.stem for folder in folders for file in Path(folder).glob(f"*{SUFFIX}") if is_name(file.stem)})
+
+
+def documents() -> list[Path]:
+    """The ledgers that come with satsym, by name: folders, each with a head."""
+    folder = Path(str(files("satsym.derivations"))) / "documents"
+    return sorted(path.parent for path in folder.glob(f"*/{LEDGER}"))
 
 
 def find(name_or_path: str, folder: Path | None = None) -> Path:

@@ -16,6 +16,7 @@ from satsym import __version__
 from satsym.cli.commands.analyse import analyse
 from satsym.cli.commands.audit import audit
 from satsym.cli.commands.compare import compare
+from satsym.cli.commands.completion import completion
 from satsym.cli.commands.derive import derive
 from satsym.cli.commands.doctor import doctor
 from satsym.cli.commands.instances import instances
@@ -66,7 +67,22 @@ class Program(click.Group):
 
 @click.group(
     cls=Program,
-    commands=[models, instances, new, solve, simulate, plot, compare, analyse, lqr, derive, latex, audit, doctor],
+    commands=[
+        models,
+        instances,
+        new,
+        solve,
+        simulate,
+        plot,
+        compare,
+        analyse,
+        lqr,
+        derive,
+        latex,
+        audit,
+        completion,
+        doctor,
+    ],
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog=OVERVIEW,
 )

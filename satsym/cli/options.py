@@ -9,6 +9,7 @@ from typing import Any
 
 import click
 
+from satsym.cli import names
 from satsym.report import texts
 from satsym.report.look import FORMATS, SCREEN, Look
 from satsym.status import BadInput
@@ -48,7 +49,7 @@ language_option = click.option(
     show_default=True,
 )
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-subject_argument = click.argument("subject", metavar="X")
+subject_argument = click.argument("subject", metavar="X", shell_complete=names.completed(names.instances))
 trajectory_option = place_option(
     "--out", metavar="DIR", help="Write trajectory.npz, trajectory.csv and result.json there; they replace a result."
 )

@@ -20,13 +20,13 @@ from typing import Any
 
 import numpy as np
 
+from satsym import sources
 from satsym.kernels.core import Backend, Function, Kernels
 from satsym.kernels.digest import intact
 from satsym.spec import NAMES, ProblemSpec, is_name
 from satsym.status import BadInput
 from satsym.wording import printable, shown, suggestion
 
-PACKAGE = "satsym.generated"
 LARGEST = 1_000_000
 """Bytes of a module file; the shipped ones have a twentieth of that."""
 
@@ -36,8 +36,7 @@ _EDITED = "edited by hand or damaged since it was written; run `satsym derive` a
 
 def shipped() -> list[str]:
     """Names of the shipped models, without importing them."""
-    folders = importlib.import_module(PACKAGE).__path__
-    return sorted({file.stem for folder in folders for file in Path(folder).glob("*.py") if is_name(file.stem)})
+    return sources.models()
 
 
 def load(model: str, folder: Path | None = None) -> Kernels:
@@ -104,7 +103,7 @@ def _unknown(model: str) -> str:
 
 @cache
 def _load_shipped(name: str) -> Kernels:
-    module = importlib.import_module(f"{PACKAGE}.{name}")
+    module = importlib.import_module(f"{sources.GENERATED}.{name}")
     loader = module.__loader__
     text = loader.get_source(module.__name__) if isinstance(loader, InspectLoader) else None
     if text is not None and not intact(text):

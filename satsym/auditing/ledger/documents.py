@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from satsym import sources
 from satsym.status import BadInput
 from satsym.wording import printable, shown, suggestion
 
 if TYPE_CHECKING:
     from satsym.auditing.ledger.contents import Ledger
 
-HEAD, CHAPTERS = "ledger.toml", "ledger_*.toml"
+HEAD, CHAPTERS = sources.LEDGER, "ledger_*.toml"
 """The files of a folder: a head, with rows or without, and chapters of rows alone, by name."""
 
 
 def shipped() -> list[Path]:
     """The ledgers that come with satsym, by name."""
-    folder = Path(str(files("satsym.derivations"))) / "documents"
-    return sorted(path.parent for path in folder.glob(f"*/{HEAD}"))
+    return sources.documents()
 
 
 def files_of(path: Path) -> list[Path]:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from satsym.cli import names
 from satsym.cli.options import json_option, language_option, place_option
 from satsym.cli.output import answer, live
 from satsym.status import BadInput, ExitCode
@@ -21,7 +22,7 @@ Examples:
 
 
 @click.command(epilog=EXAMPLES)
-@click.argument("ledgers", metavar="[LEDGER]...", nargs=-1)
+@click.argument("ledgers", metavar="[LEDGER]...", nargs=-1, shell_complete=names.completed(names.documents))
 @json_option
 @place_option("--html", metavar="FILE", help="Write a report as a page of its own, too.")
 @place_option("--latex", metavar="FILE", help="Write a report for LaTeX, too.")

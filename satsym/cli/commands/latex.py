@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from satsym.cli import names
 from satsym.cli.options import language_option, place_option
 from satsym.cli.output import emit, live
 from satsym.status import ExitCode
@@ -22,7 +23,7 @@ Examples:
 
 
 @click.command(epilog=f"\b{EXAMPLES}")
-@click.argument("name")
+@click.argument("name", shell_complete=names.completed(names.models, names.derivations))
 @place_option("-o", "--output", metavar="FILE", help="Write there instead of to stdout.")
 @language_option
 @click.option("--fragment", is_flag=True, help="Without a preamble, to be included.")

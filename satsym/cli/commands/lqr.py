@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from satsym.cli import names
 from satsym.cli.options import json_option, out_option, plot_options
 from satsym.cli.output import answer
 from satsym.cli.saving import folder_for, save
@@ -24,7 +25,7 @@ Examples:
 
 
 @click.command(epilog=EXAMPLES)
-@click.argument("subject", metavar="X")
+@click.argument("subject", metavar="X", shell_complete=names.completed(names.instances, names.models))
 @json_option
 @out_option
 @plot_options("lqr")

@@ -1,0 +1,32 @@
+"""``satsym completion``: let a shell complete commands, options and names."""
+
+from __future__ import annotations
+
+import click
+from click.shell_completion import get_completion_class
+
+from satsym.cli.output import emit
+from satsym.status import ExitCode
+
+SHELLS = ("bash", "zsh", "fish")
+
+EXAMPLES = """\b
+Examples:
+  source <(satsym completion bash)      now; in ~/.bashrc for good
+  source <(satsym completion zsh)       in ~/.zshrc, after compinit
+  satsym completion fish > ~/.config/fish/completions/satsym.fish"""
+
+
+@click.command(epilog=EXAMPLES)
+@click.argument("shell", metavar="SHELL", type=click.Choice(SHELLS))
+def completion(shell: str) -> ExitCode:
+    """Print what lets a SHELL complete what one types: bash, zsh or fish.
+
+    Commands, options, and names of instances, models and documents are completed with the TAB key.
+    """
+    complete = get_completion_class(shell)
+    assert complete is not None  # of all that may be chosen
+    # as of a shell of a supported version; the class itself would look for the shell's program
+    own = complete(click.get_current_context().find_root().command, {}, "satsym", "_SATSYM_COMPLETE")
+    emit(own.source_template % own.source_vars())
+    return ExitCode.DONE

@@ -1,0 +1,57 @@
+"""Names that a shell completes: what comes with satsym, and files; loads nothing but lists of files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from itertools import chain
+from pathlib import Path
+
+import click
+from click.shell_completion import CompletionItem
+
+FILES = (".py", ".toml")
+
+Completed = Callable[[click.Context, click.Parameter, str], list[CompletionItem]]
+
+
+def completed(*kinds: Callable[[], Iterable[str]]) -> Completed:
+    """What completes an argument that names something of these kinds, or a file of the folder.
+
+    Where none fits, the shell looks for paths; names and paths together are more than bash takes.
+    """
+
+    def complete(_context: click.Context, _argument: click.Parameter, begun: str) -> list[CompletionItem]:
+        own = (path.name for path in Path().glob("*.*") if path.suffix in FILES)
+        names = chain(*(kind() for kind in kinds), sorted(own))
+        found = [CompletionItem(name) for name in names if name.startswith(begun)]
+        return found or [CompletionItem(begun, type="file")]
+
+    return complete
+
+
+def instances() -> Iterable[str]:
+    """Of shipped instances."""
+    from satsym.instance import files
+
+    return files.shipped()
+
+
+def models() -> Iterable[str]:
+    """Of shipped models."""
+    from satsym import sources
+
+    return sources.models()
+
+
+def derivations() -> Iterable[str]:
+    """Of derivation files that come with satsym."""
+    from satsym import sources
+
+    return (path.stem for path in sources.shipped())
+
+
+def documents() -> Iterable[str]:
+    """Of the documents that are audited."""
+    from satsym import sources
+
+    return (path.name for path in sources.documents())
