@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/examples/brachistochrone.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/brachistochrone.py
-Digest: 48d0a287ef264abe911f8475c9d24ded5da3d8fdacbc0b634a6c218816e6b4d7
+Source: ../derivations/examples/brachistochrone.py 7dd71e3f9e58e3d1fbb10a1622b14b39
+Digest: c825982ad109d115cc396026f062d289c007e86496f0386a6d62d279a198f35d
 """
 
 import math

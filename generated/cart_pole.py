@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/examples/cart_pole.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/cart_pole.py
-Digest: 94c7a8616d286ffa11cb3f639984c43bbea7050bebad83d76080878858c7de3d
+Source: ../derivations/examples/cart_pole.py 33a94df2e697bb698067192969b8f71f
+Digest: 26e75d79dd6dadffd77e3f930960f48e4768bc41fa6bfe2d279f33e1e1769937
 """
 
 import math

@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/examples/catalyst.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/catalyst.py
-Digest: 7fb7f0f4eb45e28e8599ce8d0e3ce692568ea384db3e15f852a31edb09c7fe6f
+Source: ../derivations/examples/catalyst.py 0367c29be2f6aff768553de0947f23d7
+Digest: 0f61e28a318df63dbf3b7aa0e0d492ae0466cfc1c56d467cf259c45120678518
 """
 
 import math

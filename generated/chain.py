@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/examples/chain.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/chain.py
-Digest: d9bb055ff6dfab07568d7f3b77404578fbbc27d070e82a5f239b2bf8b7970777
+Source: ../derivations/examples/chain.py 4cea224eab31b2fcf2cd02907033705f
+Digest: 55b2c6340014011b5f45292652ec9d6374b4e442468b095987eb672b0b18ac7d
 """
 
 import math

@@ -2,7 +2,9 @@
 
 Written by satsym from derivations/clohessy_wiltshire.py. Do not edit: mend that file instead, then run
     satsym derive derivations/clohessy_wiltshire.py
-Digest: 5216b044367ea33987ed8ce2e0e92b6f74a81d6e788829d0858db6c67954b297
+Source: ../derivations/clohessy_wiltshire.py 52520f4e0a2f16c4858ba5a6515ea5d0
+Source: ../derivations/polar_orbit.py eea94ffce26c74c68c16f37511ae1eb3
+Digest: 5ab185f851efced5d41e1ee5bf47ba043781117415c35783b21f08b108204314
 """
 
 import math

@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
-Digest: 38cba691012f71f62a2161ab552c5a0b73d0c58d91447d4645c4cee5af41b5cb
+Source: ../derivations/double_integrator.py 7c9a8916264bd019727ab8ecd9867ba4
+Digest: 51c60b67f82798cf1358e788acd1bc5a7ab2591f203d2e698e25c07afcbf7d68
 """
 
 import math

@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
-Digest: c0e029bd2e82c51dafb216f0abff918008ba29cb8e4f5b84e89cd7e0912811cd
+Source: ../derivations/double_integrator.py 7c9a8916264bd019727ab8ecd9867ba4
+Digest: 4dd5a7ef1aaf04319957e1b4d16b7009e8549fce16d95aecca559c2d9256f918
 """
 
 import math

@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
-Digest: b7a5804bc84e1f53498ac18e2d16ddbb27825189bb520e8b8f866c8a87ba98ab
+Source: ../derivations/double_integrator.py 7c9a8916264bd019727ab8ecd9867ba4
+Digest: d7a41d0bb57c2a311fff210a7dfe0fe80d3b149ad753ace39708f25bb89c3c42
 """
 
 import math

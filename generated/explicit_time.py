@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Digest: 22cad3bf9109bf44ed6a85102f314598af618ffff802ef6448a596637e25522f
+Source: ../derivations/small_systems.py 64cc26ba670282a2a440511b061ad932
+Digest: 9fbb63bb78ae9093aa0f138dde7b9791cee642fd952de833209298bfd0a1c088
 """
 
 import math

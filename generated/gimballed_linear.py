@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Digest: a2a97b475100da55263195f3116fe4438720b36bde74aefcb229c3912c17aefe
+Source: ../derivations/gimballed_wheel.py f592f2f81dafd584b30b3628a88ec24b
+Digest: 4bac13758f9647f81f1d4f175e51dca8604e58c79a67dd24fddb34da0df43cdb
 """
 
 import math

@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Digest: 4422e94bfe07f74bda54d8f14fc0ea1a7247395daff1acd7f6333c84ca09509c
+Source: ../derivations/gimballed_wheel.py f592f2f81dafd584b30b3628a88ec24b
+Digest: e04bd3c9f327db799c0a8f2acb235a303a2d56aba73d6e48dd9909139d9e793a
 """
 
 import math

@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/examples/goddard.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/goddard.py
-Digest: 05a66ec1e0bdac0646f60c6bf5410d3fd3fe62c12592da93bc3d90ea8d68377c
+Source: ../derivations/examples/goddard.py 58e1065548d776c5eef5c563937f9858
+Digest: 679dc233a4cd720d80fbc032880ec9d5f9c94b05e6c66d83ca97610bdd5a59ba
 """
 
 import math

@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Digest: 4224228a1e26ab06c4c070b3586c55eabdc671fd898f96e2edd5ce95be65d65f
+Source: ../derivations/gimballed_wheel.py f592f2f81dafd584b30b3628a88ec24b
+Digest: a38af245d5e5384eb558bd3787f0b4a70d22a614fd8c5769a02251152dfd1117
 """
 
 import math

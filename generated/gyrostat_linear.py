@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Digest: cc1db51353851ceab53ad52f92834c0d7a31aa9ac34e424f563413e9ccd63a6a
+Source: ../derivations/gimballed_wheel.py f592f2f81dafd584b30b3628a88ec24b
+Digest: 53421c0f1bdc886fd1293cf1f7c76aea363a2db5985e5b3fb2ab941dcba38475
 """
 
 import math

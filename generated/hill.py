@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/hill.py. Do not edit: mend that file instead, then run
     satsym derive derivations/hill.py
-Digest: 666ac34e9f1f6ba8954902737331d1386bc8d9ff9c94432cbfd4fbe5692b8234
+Source: ../derivations/hill.py ee354b3f2271303d4519af49c43affe4
+Digest: 45ce7e90a762bb57c81c63e6b0b96d037d0c41be297cd5f2221e39b7512fd8c1
 """
 
 import math

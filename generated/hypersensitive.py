@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/examples/hypersensitive.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/hypersensitive.py
-Digest: 29d91f0e054dc42a8f63bb70d3aa7a219b7f91b5da25fa96740658e3732c9c2e
+Source: ../derivations/examples/hypersensitive.py 3d9e7a9eec7b48cfaf8b5a8d54b45b74
+Digest: 33561b360f7cadcb84c8ffe7c57a66651ed50fd512b57ec6389fc3b1ac80689d
 """
 
 import math

@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/examples/linear_tangent.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/linear_tangent.py
-Digest: 936874427b004454f4870473298bf1116246101baf8ef52b0892e95b0a4b52b5
+Source: ../derivations/examples/linear_tangent.py 9a5990cd81ea2ea84a5e4f5a4d6a0b85
+Digest: c1602207aa6f298e6a7f44cfbbb763d1fa9bbfd9cd06c9d04b923e58dc68e634
 """
 
 import math

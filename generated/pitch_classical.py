@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Digest: a249947c84bcf9cc09c9a3d7e87113479aeb31003bdc171dbd1171fa71d030cf
+Source: ../derivations/pitch_wheel.py d70f236478efb04d631a9d1e77eb3d4f
+Digest: 4b4b7d9bb9d94f1227102fa1eb3dcc2d3131a3199b0f5cba51ff9724e3d4e2d1
 """
 
 import math

@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Digest: 6b1355b887464cdd6e4f23e7da9ed510fe380fadb93db46ef09b6fc213d89f12
+Source: ../derivations/pitch_wheel.py d70f236478efb04d631a9d1e77eb3d4f
+Digest: 0950a17dec909e804c377bac48785e50beafa60572a2e2a7225f9761244999ab
 """
 
 import math

@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Digest: 7091d46987285afa417b0e445db28bcc6e7efe0bd10dfadb3a4b2e6521e0515b
+Source: ../derivations/pitch_wheel.py d70f236478efb04d631a9d1e77eb3d4f
+Digest: 2cdeab5802bc248d6038ed8275cb49146f6bbf8b0f8c6dc192164ec6baf3a0bf
 """
 
 import math

@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Digest: 10664c69bf390965482767f5f653549aad98056b593d4bd0a2d155f79a6a98f4
+Source: ../derivations/pitch_wheel.py d70f236478efb04d631a9d1e77eb3d4f
+Digest: 54e43530f006b3fdeb602cb58f7d1bbf7bd38042c127e774c3e903845e28ea2a
 """
 
 import math

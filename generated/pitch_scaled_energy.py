@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Digest: 186b0e79f0fe05cdabf0359abd40a078848716938c1c7e72b2b93207f8463696
+Source: ../derivations/pitch_wheel.py d70f236478efb04d631a9d1e77eb3d4f
+Digest: 85615390c44b213d5e92a9b530e283360ce139f933e4b667054d6c4027413fb9
 """
 
 import math

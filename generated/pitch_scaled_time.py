@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Digest: 7f212b096a02e43f28aae699a87e08a59355359d0fbcb140a9fe2a2894bc5ff5
+Source: ../derivations/pitch_wheel.py d70f236478efb04d631a9d1e77eb3d4f
+Digest: 38ba91a083d400e47b827cf7c9e1b8e7f12b7b96b3ddb220ef4db3c83b0c4743
 """
 
 import math

@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Digest: adb88caaa46b17f5cee20724af26cb8e0d043a1bae0ee3f8c9575ae3931940fb
+Source: ../derivations/pitch_wheel.py d70f236478efb04d631a9d1e77eb3d4f
+Digest: e70ba98636ba0f39aa9ec1cdff048b178ac3c9daed92f5d2f4f6917f37bb94fe
 """
 
 import math

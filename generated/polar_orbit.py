@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
-Digest: f40a71c794223e7a88190fc9416d7ca67631b488c8c2e1c8131101ed20ae1eba
+Source: ../derivations/polar_orbit.py eea94ffce26c74c68c16f37511ae1eb3
+Digest: e9e85f8c940cb86a391d3f92c3e21e448202aff88bf72ecedd5f82609c297c5f
 """
 
 import math

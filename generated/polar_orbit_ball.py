@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
-Digest: f4b88079926fb2245f5166f4ae3b130fbec187cab6c01d24fc17a255708e35df
+Source: ../derivations/polar_orbit.py eea94ffce26c74c68c16f37511ae1eb3
+Digest: 0832581610a70e37e0806c1bdc6d96a4361aabca2368327fe9787779395e6709
 """
 
 import math

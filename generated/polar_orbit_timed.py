@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
-Digest: 4e33f8e5a853c2e35a95565d08bfdb3144593124a0d43456d56b6cae4fbe6fdd
+Source: ../derivations/polar_orbit.py eea94ffce26c74c68c16f37511ae1eb3
+Digest: b0dc0264d7d4cc4ec70da6e36ac2836a2a8fda7828e2739cafd9b0e00c805caa
 """
 
 import math

@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/examples/oscillators.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/oscillators.py
-Digest: 2fbeed34885ba86fc8eb99da8c9f7ce18168a6c9440c350a909ea36e8744aa4c
+Source: ../derivations/examples/oscillators.py d0e938ffb5c78926407020b6e7393e3e
+Digest: 67f5b24a30e9e873d266378ba60c2bf4150af2e3fa0213bc0a9de3288ee7be01
 """
 
 import math
@@ -52,7 +53,7 @@ def jacobian_x(t, x, u, p):
         0.0,
         1.0,
         -1.0,
-        1.4 - 0.42000000000000004*x2*x2,
+        1.4 - 0.42*x2*x2,
     )
 
 
@@ -132,7 +133,7 @@ def costate_rate(t, x, u, lam, p):
     lambda_x1, lambda_x2 = lam
     return (
         lambda_x2 - 2.0*x1,
-        lambda_x2*(0.42000000000000004*x2*x2 - 1.4) - lambda_x1,
+        lambda_x2*(0.42*x2*x2 - 1.4) - lambda_x1,
     )
 
 
@@ -145,7 +146,7 @@ def canonical(t, x, lam, p, bounds):
         x2,
         x2*(1.4 - 0.14*x2_sq) - 8.0*lambda_x2 - x1,
         lambda_x2 - 2.0*x1,
-        lambda_x2*(0.42000000000000004*x2_sq - 1.4) - lambda_x1,
+        lambda_x2*(0.42*x2_sq - 1.4) - lambda_x1,
     )
 
 
@@ -153,7 +154,7 @@ def canonical_jacobian(t, x, lam, p, bounds):
     """The canonical rates by states and costates, row by row."""
     x1, x2 = x
     lambda_x1, lambda_x2 = lam
-    w = 0.42000000000000004*x2*x2 - 1.4
+    w = 0.42*x2*x2 - 1.4
     return (
         0.0,
         1.0,
@@ -168,7 +169,7 @@ def canonical_jacobian(t, x, lam, p, bounds):
         0.0,
         1.0,
         0.0,
-        0.8400000000000001*lambda_x2*x2,
+        0.84*lambda_x2*x2,
         -1.0,
         w,
     )
@@ -218,7 +219,7 @@ def boundary_jacobian(t, x, lam, nu, p, bounds, final):
         1.0 - w_2,
         0.0,
         2.0*x1 - lambda_x2,
-        lambda_x1 + lambda_x2*(1.4 - 0.42000000000000004*x2_sq),
+        lambda_x1 + lambda_x2*(1.4 - 0.42*x2_sq),
         x2,
         x2*(1.4 - 0.14*x2_sq) - 8.0*lambda_x2 - x1,
         0.0,
@@ -297,7 +298,7 @@ def backward(times, lam_f, x, x_mid, u, u_mid, p, lam, lam_mid):
     x1 = x1_at[steps]
     x2 = x2_at[steps]
     twice_x1 = 2.0*x1
-    w = 0.42000000000000004*x2*x2 - 1.4
+    w = 0.42*x2*x2 - 1.4
     slope_lambda_x1 = lambda_x2 - twice_x1
     slope_lambda_x2 = lambda_x2*w - lambda_x1
     for i in range(steps - 1, -1, -1):
@@ -312,7 +313,7 @@ def backward(times, lam_f, x, x_mid, u, u_mid, p, lam, lam_mid):
         lambda_x1_2 = half*slope_lambda_x1 + lambda_x1
         lambda_x2_2 = half*slope_lambda_x2 + lambda_x2
         twice_x1_half = 2.0*x1_half
-        w_2 = 0.42000000000000004*x2_half*x2_half - 1.4
+        w_2 = 0.42*x2_half*x2_half - 1.4
         k2_lambda_x1 = lambda_x2_2 - twice_x1_half
         k2_lambda_x2 = lambda_x2_2*w_2 - lambda_x1_2
         lambda_x1_3 = half*k2_lambda_x1 + lambda_x1
@@ -322,7 +323,7 @@ def backward(times, lam_f, x, x_mid, u, u_mid, p, lam, lam_mid):
         lambda_x1_4 = h*k3_lambda_x1 + lambda_x1
         lambda_x2_4 = h*k3_lambda_x2 + lambda_x2
         twice_x1_end = 2.0*x1_end
-        w_3 = 0.42000000000000004*x2_end*x2_end - 1.4
+        w_3 = 0.42*x2_end*x2_end - 1.4
         k4_lambda_x1 = lambda_x2_4 - twice_x1_end
         k4_lambda_x2 = lambda_x2_4*w_3 - lambda_x1_4
         lambda_x1_end = lambda_x1 + sixth*(k4_lambda_x1 + slope_lambda_x1 + 2.0*(k2_lambda_x1 + k3_lambda_x1))
@@ -363,7 +364,7 @@ def jacobian_x_batch(t, x, u, p, out=None):
     out[0, 0] = 0.0
     out[0, 1] = 1.0
     out[1, 0] = -1.0
-    out[1, 1] = 1.4 - 0.42000000000000004*x2*x2
+    out[1, 1] = 1.4 - 0.42*x2*x2
     return out
 
 
@@ -467,7 +468,7 @@ def costate_rate_batch(t, x, u, lam, p, out=None):
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
         out = np.empty((2, *shape), np.result_type(float, t, x, u, lam, *p))
     out[0] = lambda_x2 - 2.0*x1
-    out[1] = lambda_x2*(0.42000000000000004*x2*x2 - 1.4) - lambda_x1
+    out[1] = lambda_x2*(0.42*x2*x2 - 1.4) - lambda_x1
     return out
 
 
@@ -482,7 +483,7 @@ def canonical_batch(t, x, lam, p, bounds, out=None):
     out[0] = x2
     out[1] = x2*(1.4 - 0.14*x2_sq) - 8.0*lambda_x2 - x1
     out[2] = lambda_x2 - 2.0*x1
-    out[3] = lambda_x2*(0.42000000000000004*x2_sq - 1.4) - lambda_x1
+    out[3] = lambda_x2*(0.42*x2_sq - 1.4) - lambda_x1
     return out
 
 
@@ -493,7 +494,7 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
         out = np.empty((4, 4, *shape), np.result_type(float, t, x, lam, *p, *bounds))
-    w = 0.42000000000000004*x2*x2 - 1.4
+    w = 0.42*x2*x2 - 1.4
     out[0, 0] = 0.0
     out[0, 1] = 1.0
     out[0, 2] = 0.0
@@ -507,7 +508,7 @@ def canonical_jacobian_batch(t, x, lam, p, bounds, out=None):
     out[2, 2] = 0.0
     out[2, 3] = 1.0
     out[3, 0] = 0.0
-    out[3, 1] = 0.8400000000000001*lambda_x2*x2
+    out[3, 1] = 0.84*lambda_x2*x2
     out[3, 2] = -1.0
     out[3, 3] = w
     return out
@@ -563,7 +564,7 @@ def boundary_jacobian_batch(t, x, lam, nu, p, bounds, final, out=None):
     out[1, 3] = 1.0 - w_2
     out[1, 4] = 0.0
     out[2, 0] = 2.0*x1 - lambda_x2
-    out[2, 1] = lambda_x1 + lambda_x2*(1.4 - 0.42000000000000004*x2_sq)
+    out[2, 1] = lambda_x1 + lambda_x2*(1.4 - 0.42*x2_sq)
     out[2, 2] = x2
     out[2, 3] = x2*(1.4 - 0.14*x2_sq) - 8.0*lambda_x2 - x1
     out[2, 4] = 0.0

@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/examples/reorientation.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/reorientation.py
-Digest: c47a0f3cf4552be536c9ff8d1dcdbbd7a6ffbd4ad4c54abb56f8c45715165a54
+Source: ../derivations/examples/reorientation.py 187dd85ea745859e2c6cd67d76228408
+Digest: e5a0ecfb7cd7f469947a45de8b9f90c680190c09b17e35c8feb2b99404ff7d82
 """
 
 import math

@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Digest: 1a9b778cc63dae8411aac25b5e1f37b551e759d1904e04a0acfcf436aae4705a
+Source: ../derivations/gimballed_wheel.py f592f2f81dafd584b30b3628a88ec24b
+Digest: 75d80352af368e3ce8d95e1245199edb963dc4adb7ce01d20db5bf97fd38fb72
 """
 
 import math

@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Digest: 848158d370f71f18b86142e4e56ff91187272ce1177d76328acec578735db698
+Source: ../derivations/gimballed_wheel.py f592f2f81dafd584b30b3628a88ec24b
+Digest: e18caf1dbeb3c880b7ae956c66b2ea1efa6cf6a97593e381d3ae54e859e719ac
 """
 
 import math

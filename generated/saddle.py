@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Digest: 8bc03a7a944a386398f8063506dc4f9a042a1b4eb7e70e79998c24925bf66886
+Source: ../derivations/small_systems.py 64cc26ba670282a2a440511b061ad932
+Digest: 0fd7047286aa9330dfdc065d42eacaeccb8b71bc945d6f93d51de5717c28e115
 """
 
 import math

@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/examples/shuttle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/shuttle.py
-Digest: 80bf1b958d4c18ace55551367b4ec3dbadf0c7b23de2c442a307b55fc61bccbe
+Source: ../derivations/examples/shuttle.py 90ce04e0c14ffe867abe3453567e1ac2
+Digest: b5f9b41856582872aa9929ea9736e474b4263a913c59b9ff2ea1117ab29392f1
 """
 
 import math

@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Digest: 77ff440ed1441b5b9506a6ef7623eb855d08b0bacf3c3a9c4c5bcd1b3c88fa29
+Source: ../derivations/small_systems.py 64cc26ba670282a2a440511b061ad932
+Digest: 45232e6f9261439625fb0219b7d068b71f892c14daa70cb263945b7e85483fba
 """
 
 import math

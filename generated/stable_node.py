@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Digest: 8196f0ebea3ec85016a2131fcc81535fff4be7595474962382b9cb88f5f45bca
+Source: ../derivations/small_systems.py 64cc26ba670282a2a440511b061ad932
+Digest: cc36174d4165c33845ee5e15e4d096ebafd45cd969c4b57c24ccd626511622ac
 """
 
 import math

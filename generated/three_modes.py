@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Digest: f7a1be824e804e23f05cae405c96cda463fd949179b815e8c545d83f71861cf2
+Source: ../derivations/small_systems.py 64cc26ba670282a2a440511b061ad932
+Digest: c888ca0a3316b2642668dac049ee65e9d5747beda1965b6bff8f39a5758850ea
 """
 
 import math

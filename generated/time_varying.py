@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Digest: 40d9321c8814566f4cfbaeb6f5dff05078ac2ba86eb937a1975a634ee7c7500d
+Source: ../derivations/small_systems.py 64cc26ba670282a2a440511b061ad932
+Digest: 108d7e19f1afe6162513ab88c0eedfd9c59a1bd6e7b9134332dcd72133134ceb
 """
 
 import math

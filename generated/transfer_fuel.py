@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/examples/transfer_fuel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/transfer_fuel.py
-Digest: fcf52a0b1cf657925463f6fb2c9b4527b250b6580b0cb435414bb1c99a7b6d80
+Source: ../derivations/examples/transfer_fuel.py c0f542e11e9e340509ed9a0606d3f35f
+Digest: 7e0bb176eba7088203d2e6a8a2c7dfd99b2111092603e5c26c014b6197dfd779
 """
 
 import math

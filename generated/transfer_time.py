@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/examples/transfer_time.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/transfer_time.py
-Digest: 8b6d0ecdec4057b899dc661bd8eb4f9cc7a6593cd0a97b20aba7cf79e26507c4
+Source: ../derivations/examples/transfer_time.py b6d01faf7286916d9f44995f810f7ba1
+Digest: 7d06248630e3980a2d903ed80afc85d67a9f9aa9641feca15eee2f5d0cbb97c3
 """
 
 import math

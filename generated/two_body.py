@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/two_body.py. Do not edit: mend that file instead, then run
     satsym derive derivations/two_body.py
-Digest: c4e50c77f3d938b29175ea68028ead953344973f230faf09e845497247c15419
+Source: ../derivations/two_body.py 1e43053811502655dda447a261a022eb
+Digest: 7c3028c0161390485462a8866d3d427b2883911d57f04a91230bdc823c328648
 """
 
 import math

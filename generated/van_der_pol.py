@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Digest: 54b699dd675e77b7d6d7ffaeeb22b3f6455c76c78a094efdd7a42428332e3b08
+Source: ../derivations/small_systems.py 64cc26ba670282a2a440511b061ad932
+Digest: 2b6289f4d26e93cb6acafdc2574ec1e5ed9bf3a881dbab3caed5a076e1e7149d
 """
 
 import math

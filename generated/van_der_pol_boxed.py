@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/examples/oscillators.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/oscillators.py
-Digest: 152005d2f3da40c23711e09273c9c3d05245a124fcbf7b9a6460d56ca61a96f9
+Source: ../derivations/examples/oscillators.py d0e938ffb5c78926407020b6e7393e3e
+Digest: b8a49640a5f015644aa447c45074b876aaa2d4a933996c459eb71de7f15a8a11
 """
 
 import math

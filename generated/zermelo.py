@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/examples/zermelo.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/zermelo.py
-Digest: 98c5cff762f75c0b755bbc1ad04074d8e63664677e49c9fa75da2dc379378ae3
+Source: ../derivations/examples/zermelo.py 25f09390ecc610dc9dbedfda09d624f5
+Digest: 695e642e65ad9edaee476e6e7456b0d6af7387a3b36355f10940b7d7ef8a93c1
 """
 
 import math

@@ -82,9 +82,9 @@ def find(name_or_path: str, folder: Path | None = None) -> Path:
 
 
 def digest_of(path: Path) -> str:
-    """A digest of a file's content; empty where there is no file."""
+    """A digest of a file's content, whatever ends its lines; empty where there is no file."""
     try:
-        return hashlib.blake2b(path.read_bytes(), digest_size=16).hexdigest()
+        return hashlib.blake2b(path.read_bytes().replace(b"\r\n", b"\n"), digest_size=16).hexdigest()
     except OSError:
         return ""
 

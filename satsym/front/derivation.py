@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import pickle
 from collections import OrderedDict
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from satsym import symbolic
+from satsym.kernels.digest import sealed
 from satsym.report import artefacts
 from satsym.status import BadInput
 from satsym.symbolic import Model, Problem, loader
@@ -70,14 +72,17 @@ class Derivation:
         The steps.
     source
         Name of the file that states it; what it would be called where there is none.
+    stating
+        The files that state it, with digests of their content.
     """
 
     subject: Problem | Model
     derived: symbolic.Derivation
     source: str
+    stating: Mapping[Path, str] = field(default_factory=dict)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (self.subject, self.derived, self.source)
+        return type(self), (self.subject, self.derived, self.source, self.stating)
 
     @property
     def name(self) -> str:
@@ -164,7 +169,8 @@ class Derivation:
         from satsym.report.results.files import check_writable
 
         check_writable(Path(folder))
-        texts = {f"{self.name}.py": self._generated[0], f"{self.name}.tex": self.latex()}
+        module = sealed(self._generated[0], Path(folder), self.stating)
+        texts = {f"{self.name}.py": module, f"{self.name}.tex": self.latex()}
         return artefacts.write(texts, Path(folder))
 
     def __repr__(self) -> str:
@@ -231,28 +237,29 @@ def derive(subject: Subject, convention: Convention | None = None) -> Derivation
         If there is no such thing, or it cannot be derived from: with one line that says why.
     """
     source, path = "", None
+    stating: Mapping[Path, str] = {}
     if isinstance(subject, Derivation):
-        source, subject = subject.source, subject.subject
+        source, stating, subject = subject.source, subject.stating, subject.subject
     elif isinstance(subject, str | Path):
         subject, path = loader.problem(str(subject))
-        source = artefacts.source_of(path)
+        source, stating = artefacts.source_of(path), loader.stating(path)
     if not isinstance(subject, Problem | Model):
         raise BadInput(f"{shown(subject)} cannot be derived from; give a Problem, a model, or the name of one")
     if convention not in (None, "minimum", "maximum"):
         raise BadInput(f'convention: {shown(convention)} is neither "minimum" nor "maximum"')
     chosen = in_convention(subject, convention)
-    return _kept(chosen, source or f"{chosen.name}.py", path)
+    return _kept(chosen, source or f"{chosen.name}.py", path, stating)
 
 
 _KEPT: OrderedDict[bytes, Derivation] = OrderedDict()
 """By what was asked, in full: problems hold tables, which may have changed since."""
 
 
-def _kept(subject: Problem | Model, source: str, path: Path | None) -> Derivation:
-    key = pickle.dumps((subject, source))
+def _kept(subject: Problem | Model, source: str, path: Path | None, stating: Mapping[Path, str]) -> Derivation:
+    key = pickle.dumps((subject, source, stating))
     if key not in _KEPT:
         with loader.explained(path, subject), within(artefacts.MAX_SECONDS, subject.name):
-            _KEPT[key] = Derivation(subject, symbolic.derive(subject), source)
+            _KEPT[key] = Derivation(subject, symbolic.derive(subject), source, stating)
         while len(_KEPT) > KEPT:
             _KEPT.popitem(last=False)
     _KEPT.move_to_end(key)

@@ -1,24 +1,44 @@
-"""The digest that a generated module carries, so that one that was edited by hand is known from one that was not.
+"""The digests that a generated module carries: its own, and those of the derivation files that it was made of.
 
-It guards against accidents, not against malice: whoever recomputes it meets :mod:`satsym.kernels.consistency`.
+By the one a module that was edited by hand is known from one that was not, by the others one that is older than its
+derivation. They guard against accidents, not against malice: whoever recomputes them meets
+:mod:`satsym.kernels.consistency`.
 """
 
 from __future__ import annotations
 
+import os
 import re
+from collections.abc import Mapping
 from hashlib import sha256
+from pathlib import Path
+
+from satsym.sources import digest_of
 
 _LINE = re.compile(r"^Digest: ([0-9a-f]{64})\n", re.MULTILINE)
+_SOURCE = re.compile(r"^Source: ([^\n\0]{1,400}\.py) ([0-9a-f]{32})\n", re.MULTILINE)
 _PLACE = "    satsym derive "
+_LARGEST = 10_000_000
+"""Bytes of a derivation file, at most."""
 
 
-def sealed(text: str) -> str:
-    """The text of a module with its digest in the docstring, below the command that writes it.
+def sealed(text: str, folder: Path | None = None, stating: Mapping[Path, str] | None = None) -> str:
+    """The text of a module with its digests in the docstring, below the command that writes it.
 
-    A digest that it has already is replaced.
+    Those that it has already are replaced.
+
+    Parameters
+    ----------
+    folder
+        Where the module is to lie.
+    stating
+        The derivation files that it was made of, that with its problem first, with their digests.
     """
-    bare = _without(text)
+    bare = _SOURCE.sub("", _without(text))
     end = bare.index("\n", bare.index(_PLACE)) + 1
+    lines = "".join(_source_line(*each, folder) for each in (stating or {}).items()) if folder else ""
+    bare = f"{bare[:end]}{lines}{bare[end:]}"
+    end += len(lines)
     return f"{bare[:end]}Digest: {_of(bare)}\n{bare[end:]}"
 
 
@@ -27,6 +47,41 @@ def intact(text: str) -> bool:
     text = text.replace("\r\n", "\n")
     found = _LINE.search(text)
     return found is not None and found[1] == _of(_without(text))
+
+
+def changed(text: str, folder: Path) -> tuple[Path, Path] | None:
+    """A derivation file that is not what it was when a module was made of it, and the one with the module's problem.
+
+    ``None`` where all are the same; what is not there is not known to have changed.
+
+    Parameters
+    ----------
+    folder
+        Where the module lies.
+    """
+    head, _, _ = text.replace("\r\n", "\n").partition("MODEL = {")
+    found = [(folder / place, digest) for place, digest in _SOURCE.findall(head)]
+    odd = (path for path, digest in found if _now(path) not in ("", digest))
+    return next(((path, found[0][0]) for path in odd), None)
+
+
+def _source_line(path: Path, digest: str, folder: Path) -> str:
+    """Where a derivation file lies, seen from the module, and its digest; empty where no relative path leads there."""
+    try:
+        place = Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()
+    except ValueError:  # another drive
+        return ""
+    line = f"Source: {place} {digest}\n"
+    return line if _SOURCE.fullmatch(line) else ""
+
+
+def _now(path: Path) -> str:
+    """The digest of a derivation file; empty where there is none that could be one."""
+    try:
+        small = path.is_file() and path.stat().st_size <= _LARGEST
+    except (OSError, ValueError):
+        return ""
+    return digest_of(path) if small else ""
 
 
 def _without(text: str) -> str:

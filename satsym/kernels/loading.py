@@ -11,6 +11,8 @@ import ast
 import copyreg
 import importlib
 import math
+import os
+import shlex
 from collections.abc import Callable, Mapping
 from functools import cache, lru_cache
 from importlib.abc import InspectLoader
@@ -22,7 +24,7 @@ import numpy as np
 
 from satsym import sources
 from satsym.kernels.core import Backend, Function, Kernels
-from satsym.kernels.digest import intact
+from satsym.kernels.digest import changed, intact
 from satsym.spec import NAMES, ProblemSpec, is_name
 from satsym.status import BadInput
 from satsym.wording import printable, shown, suggestion
@@ -58,12 +60,17 @@ def load(model: str, folder: Path | None = None) -> Kernels:
     folder = folder or Path()
     if "/" not in model:
         if is_name(model) and model in shipped():
-            return _load_shipped(model)
+            found = _load_shipped(model)
+            _refuse_older(model, *_lying(model))
+            return found
         if not (is_name(model) and (folder / f"{model}.py").is_file()):
             raise BadInput(_unknown(model))
         model = f"./{model}"
     path, root = _resolve(model, folder)
-    return _load_file(model, root, path, _read(model, path))
+    text = _read(model, path)
+    found = _load_file(model, root, path, text)
+    _refuse_older(model, text, path.parent)
+    return found
 
 
 @lru_cache(maxsize=32)
@@ -101,12 +108,29 @@ def _unknown(model: str) -> str:
     return f"{shown(model)} is no shipped model; {suggestion(model, shipped())} (`satsym models` tells more)"
 
 
-@cache
-def _load_shipped(name: str) -> Kernels:
+def _lying(name: str) -> tuple[str, Path]:
+    """The text of a shipped module, empty where nothing tells it, and the folder in which it lies."""
     module = importlib.import_module(f"{sources.GENERATED}.{name}")
     loader = module.__loader__
     text = loader.get_source(module.__name__) if isinstance(loader, InspectLoader) else None
-    if text is not None and not intact(text):
+    return text or "", Path(module.__file__ or "").parent
+
+
+def _refuse_older(model: str, text: str, folder: Path) -> None:
+    """Refuse a module that is older than its derivation file: what it solves is no longer what that file states."""
+    if (found := changed(text, folder)) is None:
+        return
+    edited, stating, out = (printable(os.path.relpath(path.resolve()), 150) for path in (*found, folder))
+    ours = "/" not in model and model in shipped()
+    command = "satsym derive" if ours else shlex.join(["satsym", "derive", stating, "--out", out])
+    raise BadInput(f"{shown(model)}: {edited} has changed since this was derived from it; run `{command}`")
+
+
+@cache
+def _load_shipped(name: str) -> Kernels:
+    module = importlib.import_module(f"{sources.GENERATED}.{name}")
+    text, _ = _lying(name)
+    if text and not intact(text):
         raise BadInput(f"{shown(name)}: {_EDITED}")
     try:
         return Kernels(ProblemSpec.from_literal(module.MODEL), _defined(vars(module)), origin=(name, None))

@@ -11,6 +11,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from satsym.kernels.digest import sealed
 from satsym.report import stamps
 from satsym.report.results.files import write_text
 
@@ -25,20 +26,25 @@ KEPT = "__init__.py"
 MAX_SECONDS = 900.0
 """Of deriving one problem: several times what the longest of those that come with satsym takes."""
 
-Job: TypeAlias = "tuple[Path, str, float]"
-"""A derivation file, the name of a problem in it, and the time that deriving it may take."""
+Job: TypeAlias = "tuple[Path, str, Path, float]"
+"""A derivation file, the name of a problem in it, where that is to be written, and the time that deriving may take."""
 
 FEW = 6
 """Problems up to which less one process derives them all."""
 
 
 def render(
-    paths: Iterable[Path], announce: Callable[[str], None] = lambda name: None, max_seconds: float = MAX_SECONDS
+    paths: Iterable[Path],
+    folder: Path,
+    announce: Callable[[str], None] = lambda name: None,
+    max_seconds: float = MAX_SECONDS,
 ) -> dict[str, str]:
     """Everything that derivation files lead to.
 
     Parameters
     ----------
+    folder
+        Where it is to be written; modules say where their sources are, seen from there.
     announce
         Told the name of each problem once it is derived.
     max_seconds
@@ -56,7 +62,7 @@ def render(
     """
     from satsym.symbolic import loader
 
-    jobs = [(path, problem.name, max_seconds) for path in paths for problem in loader.load(path)]
+    jobs = [(path, problem.name, folder, max_seconds) for path in paths for problem in loader.load(path)]
     return _derived(jobs, announce)
 
 
@@ -92,12 +98,12 @@ def renew(
     done = {path for path, stamp in known.items() if stamp and stamps.holds(stamp, folder)}
     stated = {path: _stated(path, max_seconds) for path in paths if path not in done}
     jobs = [
-        (path, name, max_seconds)
+        (path, name, folder, max_seconds)
         for path, identities in stated.items()
         for name, identity in identities.items()
         if not stamps.spares(known[path], name, identity, folder)
     ]
-    texts = _derived(jobs, announce)
+    texts = _derived(jobs, announce) | _sealed_anew(stated, jobs, folder)
     for path, identities in stated.items():
         stamps.keep(path, known[path], engine, identities, texts)
     names = [name for path in paths for name in (stated[path] if path in stated else stamps.problems(known[path]))]
@@ -114,6 +120,19 @@ def _stated(path: Path, seconds: float) -> dict[str, str]:
         return {problem.name: identity(problem) for problem in loader.load(path)}
 
 
+def _sealed_anew(stated: Mapping[Path, Mapping[str, str]], jobs: Sequence[Job], folder: Path) -> dict[str, str]:
+    """The files of problems that state what they did in a file that does not, with the digest of that."""
+    from satsym.symbolic import loader
+
+    derived, texts = {name for _, name, *_ in jobs}, {}
+    for path, names in stated.items():
+        for name in names.keys() - derived:
+            for suffix in SUFFIXES:
+                text = (folder / f"{name}{suffix}").read_text(encoding="utf-8")
+                texts[f"{name}{suffix}"] = sealed(text, folder, loader.stating(path)) if suffix == ".py" else text
+    return texts
+
+
 def _derived(jobs: Sequence[Job], announce: Callable[[str], None]) -> dict[str, str]:
     """File name -> text, for problems of derivation files."""
     rendered: dict[str, str] = {}
@@ -122,7 +141,7 @@ def _derived(jobs: Sequence[Job], announce: Callable[[str], None]) -> dict[str, 
     from satsym.symbolic import loader
 
     with loader.explained(), _workers(len(jobs)) as each:
-        for (_, name, _), texts in zip(jobs, each(_rendered, jobs), strict=True):
+        for (_, name, *_), texts in zip(jobs, each(_rendered, jobs), strict=True):
             announce(name)
             rendered |= texts
     return rendered
@@ -143,33 +162,37 @@ def _rendered(job: Job) -> dict[str, str]:
     from satsym.symbolic import derive, loader
     from satsym.symbolic.time_limit import within
 
-    path, name, seconds = job
+    path, name, folder, seconds = job
     problem = next(problem for problem in loader.load(path) if problem.name == name)
     with loader.explained(path, problem), within(seconds, name):
-        return files(problem, derive, source_of(path))
+        return files(problem, derive, path, folder)
 
 
-def files(problem: Problem | Model, derive: Callable[[Problem | Model], Derivation], source: str) -> dict[str, str]:
+def files(
+    problem: Problem | Model, derive: Callable[[Problem | Model], Derivation], path: Path, folder: Path
+) -> dict[str, str]:
     """File name -> text of the two files of one problem, the generated module verified against its derivation.
 
     Parameters
     ----------
     derive
         What derives it, in the convention it is stated in and in that of a minimum.
-    source
-        As for :func:`generated`.
+    path, folder
+        The derivation file, which has been loaded, and where these files are to be written.
 
     Raises
     ------
     DerivationError
-        As there.
+        As of :func:`generated`.
     """
     from satsym.report.latex import document as latex
+    from satsym.symbolic import loader
     from satsym.symbolic.convention import in_convention, is_minimum
 
     derivation = derive(problem)
     in_minimum_form = derivation if is_minimum(derivation) else derive(in_convention(problem, "minimum"))
-    text, _ = generated(in_minimum_form, source)
+    text, _ = generated(in_minimum_form, source_of(path))
+    text = sealed(text, folder, loader.stating(path))
     return {f"{problem.name}.py": text, f"{problem.name}.tex": latex.render(derivation)}
 
 

@@ -16,6 +16,7 @@ from satsym import sources
 from satsym.sources import digest_of, shipped
 from satsym.status import BadInput
 from satsym.symbolic.derivation import DerivationError
+from satsym.symbolic.mistakes import said
 from satsym.symbolic.model import Model, Problem
 from satsym.symbolic.places import line_of
 from satsym.wording import printable, suggestion
@@ -41,6 +42,20 @@ def reached(path: Path) -> dict[Path, str]:
     """
     imported = {each: digest for each, digest in _IMPORTED.items() if each not in _REACHED}
     return imported | _REACHED.get(path.resolve(), {})
+
+
+def stating(path: Path) -> dict[Path, str]:
+    """The code that a loaded derivation file states its problems with, with digests as of when it was read.
+
+    That is the file itself, first, then the derivations that it asked for and the modules beside one of these.
+    """
+    first, digests = path.resolve(), reached(path)
+    known = [first, *sorted(each for each in _REACHED.get(first, {}) if each in _REACHED and each != first)]
+    for each in known:  # which grows
+        imported = sources.imports(each.read_text(encoding="utf-8"))
+        beside = (each.parent / f"{name.replace('.', '/')}{sources.SUFFIX}" for name in sorted(imported))
+        known += [found for found in beside if found not in known and found.is_file()]
+    return {each: digests.get(each) or digest_of(each) for each in known}
 
 
 def _watch(event: str, arguments: tuple[Any, ...]) -> None:
@@ -161,19 +176,7 @@ def _execute(path: Path, name: str) -> None:
             spec.loader.exec_module(module)
     except Exception as error:
         del sys.modules[name]
-        line = _line_in(resolved, error)
-        raise BadInput(f"{path}{line}: {type(error).__name__}: {' '.join(str(error).split())}") from error
+        line, message = said(error, resolved, vars(module))
+        raise BadInput(f"{path}{f':{line}' if line else ''}: {message}") from error
     finally:
         _EXECUTING.pop()
-
-
-def _line_in(path: Path, error: Exception) -> str:
-    """``:line`` of the file at which the error arose, where that is known."""
-    if isinstance(error, SyntaxError) and error.lineno:
-        return f":{error.lineno}"
-    line, traceback = "", error.__traceback__
-    while traceback:
-        if traceback.tb_frame.f_code.co_filename == str(path):
-            line = f":{traceback.tb_lineno}"
-        traceback = traceback.tb_next
-    return line

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
+from satsym import kernels
 from satsym.cli import main, requirements
 from satsym.report import artefacts, stamps
+from satsym.status import BadInput
 
 OTHER = """
 from satsym.symbolic import FirstOrder, Variable, symbols_of
@@ -158,3 +161,57 @@ def test_what_is_checked_in_is_written_with_one_version_of_sympy_and_own_models_
         assert "sympy 1.13.3" in error
         assert f"sympy{pinned.versions}" in error
     assert derived("--fresh") == ["strolling", "hiking"]
+
+
+def refusal(folder: Path) -> str:
+    """What an instance beside the model file is told of its model; empty where it can be used."""
+    try:
+        kernels.load("made/hiking", folder)
+    except BadInput as error:
+        return str(error)
+    return ""
+
+
+@pytest.mark.parametrize("file", ["own.py", "walking.py"])
+def test_a_module_older_than_its_model_is_not_used(
+    derived: Callable[..., list[str]], tmp_path: Path, file: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = (tmp_path / file).read_text(encoding="utf-8")
+    assert not refusal(tmp_path)
+    edit(tmp_path / file, "import", "import (")
+    told = f'"made/hiking": {file} has changed since this was derived from it; run `satsym derive own.py --out made`'
+    assert refusal(tmp_path) == told
+    derived(code=3)
+    assert refusal(tmp_path) == told
+    (tmp_path / file).write_bytes(text.replace("\n", "\r\n").encode())
+    assert not refusal(tmp_path), "the ends of lines say nothing"
+    (tmp_path / file).write_text(f"{text}# no more than a remark\n", encoding="utf-8")
+    assert refusal(tmp_path) == told
+    assert derived() == []
+    assert not refusal(tmp_path)
+    assert derived() == []
+    derived("--check")
+    (tmp_path / file).unlink()
+    assert not refusal(tmp_path), "a module may travel alone"
+
+
+def test_a_module_that_users_save_from_python_knows_its_model_too(
+    derived: Callable[..., list[str]], tmp_path: Path
+) -> None:
+    import satsym
+
+    made = (tmp_path / "made" / "hiking.py").read_text(encoding="utf-8")
+    found = satsym.derive(f"{tmp_path / 'own.py'}:hiking")
+    found.save(tmp_path / "made")
+    assert (tmp_path / "made" / "hiking.py").read_text(encoding="utf-8") == made
+    edit(tmp_path / "own.py", "PROBLEMS", "ALL = PROBLEMS")
+    found.save(tmp_path / "made")
+    assert "has changed" in refusal(tmp_path)
+
+
+def test_every_shipped_module_names_its_model() -> None:
+    for name in kernels.shipped():
+        text = (Path(__file__).parents[2] / "generated" / f"{name}.py").read_text(encoding="utf-8")
+        (source, *_) = re.findall(r"^Source: \.\./(\S+) \w{32}$", text, re.MULTILINE)
+        assert f"satsym derive {source}\n" in text

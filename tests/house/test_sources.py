@@ -55,7 +55,7 @@ def test_imports_are_read_however_they_are_written() -> None:
             "import pathlib; from satsym.report import artefacts; from satsym.symbolic import loader\n"
             "stated = loader.find('small_systems').read_text().partition('PROBLEMS = ')[0]\n"
             "path = pathlib.Path('one.py'); path.write_text(f'{stated}PROBLEMS = (van_der_pol,)\\n')\n"
-            "artefacts.render([path])",
+            "artefacts.render([path], path.parent)",
         ),
     ],
     ids=["judging", "writing"],

@@ -97,9 +97,10 @@ def test_kernels_are_those_of_the_minimum_form(tmp_path: Path) -> None:
     for name, content in (("a", chosen), ("b", turned)):
         (tmp_path / name).mkdir()
         (tmp_path / name / "mine.py").write_text(content, encoding="utf-8")
-        rendered.append(artefacts.render([tmp_path / name / "mine.py"]))
+        rendered.append(artefacts.render([tmp_path / name / "mine.py"], tmp_path))
     least, greatest = rendered
-    assert least["van_der_pol.py"].replace("/a/", "/b/") == greatest["van_der_pol.py"]
+    alike = [re.sub(r"^(Source|Digest): .*", r"\1", each["van_der_pol.py"], flags=re.M) for each in rendered]
+    assert alike[0] == alike[1]
     assert least["van_der_pol.tex"] != greatest["van_der_pol.tex"]
     with pytest.raises(ValueError, match="generated from the minimum form"):
         module.render(derived(MINIMUM_TIME, "maximum"), "mine.py")

@@ -61,7 +61,7 @@ def derive(files: tuple[str, ...], out: Path | None, check: bool, fresh: bool, m
         check_writable(folder)
     with live() as line:
         if check:
-            rendered = artefacts.render(paths, _announcing(line), max_seconds)
+            rendered = artefacts.render(paths, folder, _announcing(line), max_seconds)
             differences = artefacts.differences(rendered, folder, whole)
             return _compare(differences, folder, _command(files, out))
         renewed = artefacts.renew(paths, folder, _announcing(line), fresh=fresh, max_seconds=max_seconds)
