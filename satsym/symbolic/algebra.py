@@ -53,7 +53,17 @@ def _simplified(expression: sp.Expr) -> sp.Expr:
     }
     plain = _expand(expanded.xreplace(squares))
     unique = not plain.atoms(sp.Function) and all(p.base.is_Symbol and p.exp.is_Integer for p in plain.atoms(sp.Pow))
-    return plain if unique else sp.simplify(expression)
+    return plain if unique else shortened(expression)
+
+
+def shortened(expression: sp.Expr) -> sp.Expr:
+    """As by sympy's simplify, but logarithms stay apart: their factors would become exponents, which have no units."""
+    logarithms = {e: sp.Dummy(real=True) for e in expression.atoms(sp.log)}
+    if not logarithms:
+        return sp.simplify(expression)
+    if sp.simplify(expression) == 0:
+        return sp.Integer(0)
+    return sp.simplify(expression.xreplace(logarithms)).xreplace({dummy: e for e, dummy in logarithms.items()})
 
 
 def vanishes(expression: sp.Expr) -> bool:
@@ -73,7 +83,8 @@ def tidy(expression: sp.Expr, by: Sequence[sp.Symbol] = ()) -> sp.Expr:
 def _steep_named(expression: sp.Expr) -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]]:
     """The expression with symbols for steep exponentials, and these: to sympy e^(500 h) is a 500th power of e^h.
 
-    So are those that scale a difference, such as e^(-k (h - 1)): their factors have no moderate numbers of their own.
+    So are those that scale a difference, such as e^(-k (h - 1)), or have a number in it, such as e^(-(x - 5/2)^2):
+    their factors have no moderate numbers of their own.
     """
     scaled = (e for e in expression.atoms(sp.exp) if not e.args[0].is_number)
     exponentials = [e for e in scaled if _scales_a_difference(e) or any(abs(c) > STEEP for c in _coefficients(e))]
@@ -83,7 +94,8 @@ def _steep_named(expression: sp.Expr) -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]
 
 def _scales_a_difference(exponential: sp.exp) -> bool:
     terms = sp.Add.make_args(sp.expand(exponential.args[0]))
-    return len(terms) > 1 and bool(set.intersection(*(term.free_symbols for term in terms)))
+    common = set.intersection(*(term.free_symbols for term in terms))
+    return len(terms) > 1 and (bool(common) or any(term.is_number for term in terms))
 
 
 def _coefficients(exponential: sp.exp) -> Iterable[sp.Expr]:

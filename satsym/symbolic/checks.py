@@ -192,9 +192,26 @@ def _largest(values: Iterable[Any]) -> float:
 
 
 def identity(claim: str, expressions: Iterable[sp.Expr]) -> Check:
-    """Check that expressions are identically zero, by simplification where multiplying out does not show it."""
-    remainders = [e for e in expressions if sp.expand(e) != 0 and not vanishes(e)]
+    """Check that expressions are identically zero, by simplification where multiplying out does not show it.
+
+    Decimals are rounded when they are multiplied out: what has some is held against the size of its terms.
+    """
+    left = [e for e in expressions if sp.expand(e) != 0]
+    remainders = [e for e in left if not (_rounds_to_zero(claim, e) if e.has(sp.Float) else vanishes(e))]
     return Check(claim, float(len(remainders)), 0.0)
+
+
+def _rounds_to_zero(claim: str, expression: sp.Expr) -> bool:
+    """Whether an expression with decimals is no larger at random points than the rounding of its terms."""
+    terms = sp.Add.make_args(expression)
+    value = numeric(list(terms))
+
+    def sides(point: Point) -> tuple[list[Any], list[Any]]:
+        found = value(point)
+        size = sum(abs(v) for v in found)
+        return [1 + sum(found) / size if size else 1], [1]
+
+    return compare(claim, expression.free_symbols, sides).passed
 
 
 def partial(function: Callable[[Mapping[sp.Symbol, Any]], list[Any]], point: Point, symbol: sp.Symbol) -> list[Any]:

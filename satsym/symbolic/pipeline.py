@@ -13,6 +13,7 @@ from satsym.symbolic import dimensions
 from satsym.symbolic import notation as n
 from satsym.symbolic.checks import drawn_from
 from satsym.symbolic.convention import as_cost
+from satsym.symbolic.decimals import lengthened
 from satsym.symbolic.declared import begin, refuse_foreign_symbols, refuse_misfits
 from satsym.symbolic.derivation import Derivation, DerivationError, resolved
 from satsym.symbolic.linear import regulator, stability, structure
@@ -101,6 +102,7 @@ def derive(subject: Problem | Model) -> Derivation:
         If what was declared is inconsistent, the conditions cannot be solved for the controls, or a check
         failed.
     """
+    subject = lengthened(subject)
     problem, model = (subject, subject.model) if isinstance(subject, Problem) else (None, subject)
     try:
         with drawn_from(variables_of(model)):

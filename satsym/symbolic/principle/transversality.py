@@ -87,7 +87,8 @@ def _first_variation(
     """Hold the residuals against the change of S + H t - lambda' x along admissible ends, by differences."""
     residuals, cost, path = numeric([e.rhs for e in equations]), numeric([weighted]), numeric(list(curve))
     rng, turns = random.Random("ends"), itertools.count()
-    everything = {*states, *lam, n.HAMILTONIAN, t}.union(*(e.rhs.free_symbols for e in equations))
+    stated = (weighted, *curve, *(e.rhs for e in equations))
+    everything = {*states, *lam, n.HAMILTONIAN, t}.union(*(sp.sympify(e).free_symbols for e in stated))
 
     def value(point: Point) -> Any:
         costates = sum(point[costate] * point[x] for x, costate in zip(states, lam, strict=True))

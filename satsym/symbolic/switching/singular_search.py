@@ -13,7 +13,7 @@ from functools import lru_cache
 
 import sympy as sp
 
-from satsym.symbolic.algebra import tidy, total_derivative
+from satsym.symbolic.algebra import shortened, tidy, total_derivative
 from satsym.symbolic.convention import sign
 from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.model import symbols_of
@@ -155,5 +155,5 @@ def _simplest(expression: sp.Expr) -> sp.Expr:
     names = {magnitude: sp.Dummy(real=True) for magnitude in expression.atoms(sp.Abs)}
     plain = expression.xreplace(names)
     if not plain.is_rational_function():
-        return sp.simplify(expression)
+        return shortened(expression)
     return sp.factor(plain).xreplace({dummy: magnitude for magnitude, dummy in names.items()})

@@ -1,0 +1,53 @@
+"""Decimals that an author writes, with so many digits that nothing which is done with them rounds what is compared.
+
+Sympy keeps 15 digits of a float; multiplied out, and in exponentials and roots, they differ by more than checks allow.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass, replace
+from typing import Any, TypeVar
+
+import sympy as sp
+
+from satsym.spec import Variable
+from satsym.symbolic.model import Model
+
+T = TypeVar("T")
+
+DIGITS = 60
+"""Twice as many as numbers have in checks."""
+
+
+def lengthened(stated: T) -> T:
+    """A problem or a model whose decimals are what is written, exactly; itself where it has none."""
+    found: T = _lengthened(stated)
+    return found
+
+
+def _lengthened(stated: Any) -> Any:
+    if isinstance(stated, sp.Basic | sp.MatrixBase):
+        decimals = {number: sp.Float(repr(float(number)), DIGITS) for number in stated.atoms(sp.Float)}
+        return stated.xreplace(decimals) if decimals else stated
+    parts = _parts(stated)
+    changed = {key: new for key, part in parts.items() if (new := _lengthened(part)) is not part}
+    if not changed:
+        return stated
+    if isinstance(stated, Mapping):
+        return {**stated, **changed}
+    if isinstance(stated, tuple):
+        return tuple({**parts, **changed}.values())
+    return replace(stated, **changed)
+
+
+def _parts(stated: Any) -> dict[Any, Any]:
+    """What something declared consists of; a model that another one is derived from is no part of that."""
+    if isinstance(stated, Mapping):
+        return dict(stated)
+    if isinstance(stated, tuple):
+        return dict(enumerate(stated))
+    if is_dataclass(stated) and not isinstance(stated, Variable | type):
+        found = {field.name: getattr(stated, field.name) for field in fields(stated) if field.init}
+        return {k: v for k, v in found.items() if not (isinstance(stated, Model) and isinstance(v, Model))}
+    return {}
