@@ -149,12 +149,15 @@ class ControlPart:
         Their names, in order.
     branch
         How H is minimised over it.
+    ends
+        Whether H may be least at an end without falling to it, so that there must be ends.
     """
 
     name: str
     kind: PartKind
     controls: tuple[str, ...]
     branch: Branch
+    ends: bool = False
 
     @property
     def bounds(self) -> int:

@@ -21,7 +21,7 @@ from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.kepler.central_force import strength_of
 from satsym.symbolic.model import Demand, t, variables_of
 from satsym.symbolic.principle import product, set_laws
-from satsym.symbolic.roots import Root
+from satsym.symbolic.roots import Root, Vertex
 from satsym.symbolic.switching.curve import states_of
 
 
@@ -101,7 +101,9 @@ def _parts(derivation: Derivation) -> tuple[ControlPart, ...]:
     if product.STEP not in derivation:
         return ()
     return tuple(
-        ControlPart(one.part.name, one.part.kind, names(one.part.controls), one.branch)
+        ControlPart(
+            one.part.name, one.part.kind, names(one.part.controls), one.branch, any(e.has(Vertex) for e in one.laws)
+        )
         for one in set_laws.found(derivation)
     )
 

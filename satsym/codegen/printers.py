@@ -145,6 +145,18 @@ class ScalarPrinter(_Printer):
         excess, one, other = (self._print(a) for a in expr.args)
         return f"({one} if {excess} <= 0.0 else {other}) + 0.0*{excess}"
 
+    def _print_Vertex(self, expr: Any) -> str:
+        curvature, slope, lower, upper = (self._factor(a) for a in expr.args)
+        rise = f"({upper} - {lower})*(0.5*{curvature}*({lower} + {upper}) + {slope})"
+        clipped = f"{lower} if -{slope} <= {lower}*{curvature} else {upper} if -{slope} >= {upper}*{curvature}"
+        end = f"{upper} if {rise} < 0.0 else {lower}"
+        return f"({clipped} else -{slope}/{curvature}) if {curvature} > 0.0 else ({end}) + 0.0*{rise}"
+
+    def _print_Bend(self, expr: Any) -> str:
+        curvature, slope, lower, upper = (self._factor(a) for a in expr.args)
+        inside = f"0.0 if -{slope} <= {lower}*{curvature} else 0.0 if -{slope} >= {upper}*{curvature}"
+        return f"({inside} else -1.0/{curvature}) if {curvature} > 0.0 else 0.0"
+
     def _print_Bearing(self, expr: Any) -> str:
         across, along = (self._print(a) for a in expr.args)
         # no number where there is no direction, as on arrays
@@ -238,6 +250,22 @@ class BatchPrinter(_Printer):
     def _print_Choice(self, expr: Any) -> str:
         excess, one, other = (self._print(a) for a in expr.args)
         return f"np.where({excess} <= 0.0, {one}, {other}) + 0.0*{excess}"
+
+    def _print_Vertex(self, expr: Any) -> str:
+        curvature, slope, lower, upper = (self._factor(a) for a in expr.args)
+        rise = f"({upper} - {lower})*(0.5*{curvature}*({lower} + {upper}) + {slope})"
+        clipped = f"np.minimum(np.maximum(-{slope}/{self._curved(curvature)}, {lower}), {upper})"
+        return f"np.where({curvature} <= 0.0, np.where({rise} < 0.0, {upper}, {lower}), {clipped}) + 0.0*{rise}"
+
+    def _print_Bend(self, expr: Any) -> str:
+        curvature, slope, lower, upper = (self._factor(a) for a in expr.args)
+        curved = self._curved(curvature)
+        inside = f"np.heaviside(-{slope} - {lower}*{curved}, 0.0)*np.heaviside({upper}*{curved} + {slope}, 0.0)"
+        return f"-np.heaviside({curvature}, 0.0)*{inside}/{curved}"
+
+    def _curved(self, curvature: str) -> str:
+        """A curvature to divide by; one where there is no such."""
+        return f"np.where({curvature} <= 0.0, 1.0, {curvature})"
 
     def _print_Bearing(self, expr: Any) -> str:
         across, along = (self._print(a) for a in expr.args)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from satsym.instance.resolve import Row, known, quantity
+from satsym.instance.resolve import Row, quantity
 from satsym.spec import ControlPart, ProblemSpec
 from satsym.status import BadInput
 from satsym.wording import printable, shown, suggestion
@@ -38,13 +38,28 @@ def bounds(table: Mapping[str, Any], spec: ProblemSpec) -> tuple[Row, Row, Norms
         elif isinstance(value, Mapping) or name in (MAX_NORM, MIN_NORM):
             raise BadInput(f"{key}: {_control_set(spec)}")
         else:
-            known([name], spec.controls, "control", "control")
+            if name not in spec.control_names:
+                taken = (*spec.control_names, *sets, *_norms_of(spec))
+                raise BadInput(f"{key}: the model has no such control; {suggestion(name, taken)}")
             if spec.control_set != "box" and _part_of(name, spec) != "box":
                 raise BadInput(f"{key}: {_control_set(spec)}")
             unit = spec.controls[spec.control_names.index(name)].unit
             lower[name], upper[name] = _interval(value, unit, key)
     _refuse_endless(spec, norms)
+    for name in (c for part in spec.control_parts if part.ends for c in part.controls):
+        if not math.isfinite(lower[name]) or not math.isfinite(upper[name]):
+            raise BadInput(
+                f"[control] {name}: H need not be convex in this control, so it needs both bounds; "
+                f"write {name} = [lower, upper]"
+            )
     return tuple(lower.values()), tuple(upper.values()), norms
+
+
+def _norms_of(spec: ProblemSpec) -> tuple[str, ...]:
+    """What limits norms without naming their set."""
+    kinds: list[str | None] = [part.kind for part in spec.control_parts if part.normed]
+    found = {"ball": (MAX_NORM,), "annulus": (MIN_NORM, MAX_NORM)}
+    return found.get((kinds or [spec.control_set])[0] or "", ()) if len(kinds) <= 1 else ()
 
 
 def _refuse_endless(spec: ProblemSpec, norms: Norms) -> None:

@@ -68,6 +68,8 @@ def dimension_of(expression: Any, known: Known) -> Dimension | None:
         return dimension_of(e.args[0], known)
     if isinstance(e, roots.Choice):
         return _common(e.args[1:], known)
+    if isinstance(e, roots.Vertex):
+        return _common((e.args[1] / e.args[0], *e.args[2:]), known)
     if isinstance(e, roots.Root):  # what it is a value of; nothing tells where it has no ends
         return _common((end for end in e.args[:2] if not end.is_infinite), known)
     if isinstance(e, sp.Piecewise):

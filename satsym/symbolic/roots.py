@@ -84,6 +84,27 @@ class Choice(sp.Function):
         return Choice(excess, *map(sp.Integer, pair)) if any(pair) else sp.Integer(0)
 
 
+class Vertex(sp.Function):
+    """``Vertex(curvature, slope, lower, upper)``: where ``curvature/2 u**2 + slope u`` is least on an interval.
+
+    Where the curvature is not positive that is the better end; of two that are equally good, the lower one.
+    """
+
+    nargs = 4
+    is_real = True
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """By curvature and slope; where it jumps it has no derivative. The ends are constants."""
+        return (self * Bend(*self.args), Bend(*self.args), sp.Integer(0), sp.Integer(0))[argindex - 1]
+
+
+class Bend(sp.Function):
+    """``Bend(curvature, slope, lower, upper)``: the derivative of :class:`Vertex` by the slope."""
+
+    nargs = 4
+    is_real = True
+
+
 class Middle(sp.Function):
     """``Middle(lower, upper)``: the middle of an interval of angles; of one longer than a turn, of a turn of it."""
 
@@ -169,10 +190,23 @@ def _choice(excess: Any, one: Any, other: Any) -> Any:
     return mp.nan if excess != excess else one if excess <= 0 else other
 
 
+def _vertex(curvature: Any, slope: Any, lower: Any, upper: Any) -> Any:
+    if curvature > 0:
+        return max(lower, min(-slope / curvature, upper))
+    excess = (upper - lower) * (curvature * (lower + upper) / 2 + slope)
+    return mp.nan if excess != excess else upper if excess < 0 else lower
+
+
+def _bend(curvature: Any, slope: Any, lower: Any, upper: Any) -> Any:
+    inside = curvature > 0 and lower < -slope / curvature < upper
+    return -1 / curvature if inside else mp.mpf(0)
+
+
 def _middle(lower: Any, upper: Any) -> Any:
     low = max(lower, min(upper, mp.pi) - 2 * mp.pi)
     return (low + min(upper, max(lower, -mp.pi) + 2 * mp.pi)) / 2
 
 
-CONSTRUCTED = (Root, Interior, Convex, Choice, Middle, Bearing)
+CONSTRUCTED = (Root, Interior, Convex, Choice, Vertex, Bend, Middle, Bearing)
 MPMATH = {"Interior": _interior, "Convex": _convex, "Choice": _choice, "Middle": _middle, "Bearing": mp.atan2}
+MPMATH |= {"Vertex": _vertex, "Bend": _bend}

@@ -208,6 +208,9 @@ def test_what_nothing_limits_is_refused(tmp_path: Path):
         ("z = [0.0, 1.0]\n[control.jet]\nmax_norm = 1.5\n", r"\[control\] z: the model takes"),
         ("beta = [0.0, 1.0]\n[control.jet]\nmax_norm = 1.5\n", r"no bound of the angle beta"),
         ("nothing = 1.0\n[control.jet]\nmax_norm = 1.5\n", r"the model has no such control"),
+        ("maxnorm = 1.5\n", r'\[control\] maxnorm: the model has no such control; did you mean "max_norm"\?'),
+        ("jett = 1.5\n", r'\[control\] jett: the model has no such control; did you mean "jet"\?'),
+        ("[control.jet]\nmaxnorm = 1.5\n", r'\[control\.jet\] maxnorm: did you mean "max_norm"\?'),
     ],
 )
 def test_a_set_takes_its_own_numbers_only(tmp_path: Path, text: str, complaint: str):

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
-from sympy import Expr, Rational, cos, cosh, exp, log, sin
+from sympy import Expr, Rational, cos, cosh, exp, log, sin, sqrt
 
 from satsym import instance
 from satsym.instance import Instance
 from satsym.solvers import solve
-from satsym.status import Status, Verdict
+from satsym.status import BadInput, Status, Verdict
 from satsym.symbolic import Angle, Box, DerivationError, FirstOrder, Problem, Variable, derive, symbols_of
 from satsym.symbolic.roots import root_of
-from tests.support.models import build, q, scalar, w
+from tests.support.models import build, k, q, scalar, w
 
 PLACE = tuple(Variable(name, name) for name in ("x", "y"))
 x, y = symbols_of(PLACE)
@@ -175,6 +176,114 @@ def test_lift_on_either_side_is_compared(tmp_path: Path):
     assert "least of two minimisers" in said
 
 
+POLAR = Problem(
+    name="polar",
+    title="A control that drives and drags",
+    model=FirstOrder(
+        name="dragging",
+        title="Driven and dragged",
+        states=PLACE,
+        controls=(Variable("w", "w"),),
+        parameters=(Variable("k", "k", default=1.0),),
+        rates={x: w, y: w**2 / 2},
+    ),
+    running_cost=0,
+    terminal_cost=x / 2 + k * y,
+    control_set="box",
+)
+BOTH_BOUNDS = "[control]\nw = [-1.0, 1.5]\n"
+
+
+def test_where_h_is_not_convex_in_a_control_the_ends_are_compared(tmp_path: Path):
+    case = build(tmp_path, POLAR, f"[initial]\nx = 0.0\ny = 0.0\n[time]\ntf = 1.0\n{BOTH_BOUNDS}")
+    law, batch = case.model.control_law, case.model.control_law_batch
+    rng, taken = np.random.default_rng(2), set()
+    for lam in [(0.0, 0.0), (1.0, 0.0), (-1.0, 0.0), (0.0, -1.0), *map(tuple, rng.normal(size=(60, 2)))]:
+        (u,) = law(0.0, (1.0, 1.0), lam, case.parameters, case.control_set.arguments)
+        on_arrays = batch(
+            np.zeros(1), np.ones((2, 1)), np.array(lam)[:, None], case.parameters, case.control_set.arguments
+        )
+        assert u == float(on_arrays[0, 0])
+        h = case.model.hamiltonian(0.0, (1.0, 1.0), (u,), lam, case.parameters)
+        assert h <= least_on_a_grid(case, lam, (1.0, 1.0), (-1.0, 1.5)) + 1e-12
+        taken.add(u if u in (-1.0, 1.5) else "between")
+    assert taken == {-1.0, 1.5, "between"}
+
+
+@pytest.mark.parametrize(("weight", "control"), [(1.0, -0.5), (0.2, -1.0), (-1.0, -1.0), (-3.0, 1.5)])
+def test_the_better_end_is_part_of_the_answer(tmp_path: Path, weight: float, control: float):
+    text = f"[parameters]\nk = {weight}\n[initial]\nx = 0.0\ny = 0.0\n[time]\ntf = 2.0\n{BOTH_BOUNDS}"
+    found = solve(build(tmp_path, POLAR, text))
+    assert found.status is Status.CONVERGED
+    assert found.objective == pytest.approx(2.0 * (control / 2.0 + weight * control**2 / 2.0), rel=1e-12)
+
+
+@pytest.mark.study
+def test_the_hang_glider_comes_as_far_as_by_direct_collocation(tmp_path: Path):
+    """Bulirsch, Nerz, Pesch and von Stryk 1993, with the data of COPS.
+
+    CasADi and Ipopt, Legendre points of degree 5 on 24, 12 and 40 intervals between free switching times:
+    1248.03102496 m in 98.436990376 s.
+    """
+    glider = tuple(
+        Variable(name, name, unit, positive=name == "vx", typical=typical)
+        for name, unit, typical in (
+            ("x", "m", (0.0, 1200.0)),
+            ("y", "m", (850.0, 1000.0)),
+            ("vx", "m/s", (8.0, 15.0)),
+            ("vy", "m/s", (-3.0, 3.0)),
+        )
+    )
+    lift = Variable("cl", "c_L", typical=(0.0, 1.4))
+    given = (("c0", "1", 0.034), ("kl", "1", 0.069662), ("mass", "kg", 100.0), ("area", "m**2", 14.0))
+    given += (("rho", "kg/m**3", 1.13), ("g", "m/s**2", 9.80665), ("rise", "m/s", 2.5), ("R", "m", 100.0))
+    numbers = tuple(Variable(name, name, unit, "", value, positive=True) for name, unit, value in given)
+    along, height, vx, vy = symbols_of(glider)
+    (cl,), (c0, kl, mass, area, rho, g, rise, R) = symbols_of((lift,)), symbols_of(numbers)
+    s = (along / R - 2.5) ** 2
+    sinking = vy - rise * (1 - s) * exp(-s)
+    per_speed = rho * area * sqrt(vx**2 + sinking**2) / (2 * mass)
+    drag = (c0 + kl * cl**2) * per_speed
+    motion = FirstOrder(
+        name="gliding",
+        title="A hang glider in a thermal",
+        states=glider,
+        controls=(lift,),
+        parameters=numbers,
+        rates={
+            along: vx,
+            height: vy,
+            vx: -cl * per_speed * sinking - drag * vx,
+            vy: cl * per_speed * vx - drag * sinking - g,
+        },
+    )
+    problem = Problem(
+        name="hang_glider",
+        title="The farthest landing",
+        model=motion,
+        running_cost=0,
+        terminal_cost=along,
+        maximise=True,
+        control_set="box",
+    )
+    text = (
+        "[initial]\nx = 0.0\ny = 1000.0\nvx = 13.2275675\nvy = -1.28750052\n"
+        "[final]\ny = 900.0\nvx = 13.2275675\nvy = -1.28750052\n"
+        '[time]\ntf = "free"\ntf_guess = 100.0\n[solver]\nmax_seconds = 300.0\n[control]\ncl = [0.0, 1.4]\n'
+    )
+    found = solve(build(tmp_path, problem, text))
+    assert found.status is Status.CONVERGED
+    assert -found.objective == pytest.approx(1248.03102496, rel=1e-9)
+    assert found.times[-1] == pytest.approx(98.436990376, rel=1e-8)
+
+
+def test_a_control_whose_ends_are_compared_needs_both(tmp_path: Path):
+    with pytest.raises(BadInput, match=r"\[control\] w: H need not be convex in this control, so it needs both bounds"):
+        build(tmp_path, POLAR, "[initial]\nx = 0.0\ny = 0.0\n[time]\ntf = 1.0\n")
+    with pytest.raises(DerivationError, match="not positive definite"):
+        derive(replace(POLAR, control_set="free"))
+
+
 def test_several_local_minima_are_refused_with_the_reason():
     with pytest.raises(DerivationError, match="several local minima"):
         derive(scalar("double_well", -q + w, w**4 - w**2 + q**2, 0, "box"))
@@ -212,17 +321,50 @@ def test_a_magnitude_that_multiplies_a_direction_is_a_vector():
         derive(stated)
 
 
+GROWTH = (("p", "mm**3"), ("q", "mm**3"), ("y", "mg"))
+
+
 @pytest.mark.slow
-def test_fractional_powers_of_states_do_not_stop_the_search_of_singular_arcs():
+@pytest.mark.parametrize("units", [True, False], ids=["with units", "plain numbers"])
+def test_fractional_powers_of_states_do_not_stop_the_search_of_singular_arcs(units: bool):
     """Growth of a tumour after Hahnfeldt: sympy makes no polynomial of what singular arcs ask for."""
-    names = tuple(Variable(name, name, positive=True, typical=(0.5, 2.0)) for name in ("p", "q"))
-    dose, given = (Variable(name, name) for name in ("u", "y"))
-    size, room, _, u = symbols_of((*names, given, dose))
-    rates = {size: -size * log(size / room), room: room * (3 - size ** Rational(2, 3) - u), symbols_of((given,))[0]: u}
-    motion = made("growth", (*names, given), ("u",), rates)
+
+    def declared(name: str, unit: str, positive: bool = True) -> Variable:
+        return Variable(name, name, unit if units else "1", positive=positive, typical=(0.5, 2.0))
+
+    states = tuple(declared(name, unit, name != "y") for name, unit in GROWTH)
+    dose = declared("u", "mg/day", False)
+    rates_of = tuple(
+        declared(*one)
+        for one in (("xi", "1/day"), ("b", "1/day"), ("d", "1/mm**2/day"), ("G", "1/mg"), ("mu", "1/day"))
+    )
+    size, room, given = symbols_of(states)
+    (u,), (xi, birth, d, kill, mu) = symbols_of((dose,)), symbols_of(rates_of)
+    motion = FirstOrder(
+        name="growth",
+        title="Growth",
+        states=states,
+        controls=(dose,),
+        parameters=rates_of,
+        rates={
+            size: -xi * size * log(size / room),
+            room: birth * size - (mu + d * size ** Rational(2, 3)) * room - kill * u * room,
+            given: u,
+        },
+    )
     found = derive(
         Problem(
             name="treatment", title="Treatment", model=motion, running_cost=0, terminal_cost=size, control_set="box"
         )
     )
     assert "singular_arcs" in found
+
+
+def test_decimals_are_what_is_written():
+    """Multiplied out with 15 digits they differ from themselves, and e to a number is one more of them."""
+    rate = -w * exp(-((q / 3 - 2.7) ** 2)) * sqrt(1.1 + (0.3 * q - 0.7) ** 2) + w * (0.1 * q + 0.3) ** 2
+    assert "control_law" in derive(scalar("wind", rate, w**2 + q**2, 0, "free"))
+
+
+def test_a_terminal_cost_may_have_a_term_that_is_constant():
+    assert "boundary_residual" in derive(scalar("shifted", -q + w, w**2 + q**2, q**2 + k, "free"))

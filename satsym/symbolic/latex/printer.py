@@ -17,6 +17,7 @@ from sympy.printing.latex import LatexPrinter
 from satsym.symbolic.latex.levels import extreme, levels, size
 from satsym.symbolic.latex.products import Product, base, exponent, is_negative, spread, take_apart
 from satsym.symbolic.latex.terms import Piece, Term, joined
+from satsym.symbolic.minimisers import Clip
 from satsym.symbolic.roots import Root
 
 ELEMENTARY = frozenset("sin cos tan cot sec csc sinh cosh tanh log".split())
@@ -280,6 +281,14 @@ class Printer(LatexPrinter):
     def _print_Choice(self, expr: sp.Expr, exp: str | None = None) -> str:
         excess, one, other = map(self._print, expr.args)
         return rf"\begin{{cases}} {one}, & {excess} \le 0 \\ {other}, & {excess} > 0 \end{{cases}}"
+
+    def _print_Vertex(self, expr: sp.Expr, exp: str | None = None) -> str:
+        curvature, slope, lower, upper = expr.args
+        bent, low, high, rise = map(self._print, (curvature, lower, upper, slope + curvature * (lower + upper) / 2))
+        inside = self._print(Clip(-slope / curvature, lower, upper))
+        flat = rf"& {bent} \le 0,\ {rise}"
+        rows = rf"{inside}, & {bent} > 0 \\ {high}, {flat} < 0 \\ {low}, {flat} \ge 0"
+        return rf"\begin{{cases}} {rows} \end{{cases}}"
 
     def _print_Middle(self, expr: sp.Expr, exp: str | None = None) -> str:
         lower, upper = map(self._print, expr.args)

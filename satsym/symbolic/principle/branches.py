@@ -21,8 +21,8 @@ from satsym.symbolic.algebra import gradient, simplified, tidy
 from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.principle.circle import by_circle
 from satsym.symbolic.principle.parts import Part
-from satsym.symbolic.principle.stationary import minimiser, with_angle
-from satsym.symbolic.roots import Choice, Convex, Middle
+from satsym.symbolic.principle.stationary import indefinite, minimiser, with_angle
+from satsym.symbolic.roots import Choice, Convex, Middle, Vertex
 
 
 @dataclass(frozen=True)
@@ -62,6 +62,7 @@ class Minimum:
     def remarks(self) -> set[str]:
         """Keys of what is said of such a law."""
         said = {Choice: "least of two minimisers", Middle: "nearer end of the angles", Convex: "only where convex"}
+        said[Vertex] = "ends compared where not convex"
         return {key for kind, key in said.items() for law in self.laws if law.has(kind)}
 
 
@@ -193,17 +194,23 @@ def _of_vector(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr], side: i
     if all(entry == 0 for entry in rows):
         if part.kind not in ("ball", "annulus"):
             raise DerivationError(
-                f"{name}: H is linear in {controls}, so that its minimum is where they end; {part.name!r} has to be a "
-                "ball, or all controls of the problem to be in one box"
+                f"{name}: H is linear in {controls}, so that its minimum is where they end, which is solved only "
+                f"where all controls are in one box; beside others add a small c0*{part.symbols[0].name}**2 to the "
+                "cost and lower c0 by [continuation], or state a Ball"
             )
         if len(slopes) == 1:
             raise DerivationError(
-                f"{name}: H is linear in {controls} alone, which switches and does not turn; state a problem whose "
-                "controls are all in one box"
+                f"{name}: H is linear in {controls} alone, which switches and does not turn; state a Box, and all "
+                f"other controls in it, or a small c0*{controls}**2 in the cost, lowered by [continuation]"
             )
         return Minimum(part, "direction", tuple(slopes))
     if sp.simplify(rows.det()) == 0:
         raise DerivationError(f"{name}: H_uu of {controls} is singular, so H_u = 0 does not determine them")
+    if part.kind == "box" and rows.is_diagonal() and any(indefinite(name, row) for row in rows.diagonal()):
+        bends, falls = rows.diagonal(), (side * tidy(-entry) for entry in load)
+        each = zip(part.symbols, bends, falls, strict=True)
+        laws = tuple(Vertex(side * simplified(bend), fall, *ends_of(part, u)) for u, bend, fall in each)
+        return Minimum(part, "stationary", gradient=tuple(slopes), laws=laws)
     hats = tuple(tidy(simplified(u)) for u in rows.LUsolve(load))
     return Minimum(part, "quadratic", (), tuple(slopes), hats, rows.applyfunc(sp.simplify))
 

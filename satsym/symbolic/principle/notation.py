@@ -76,7 +76,7 @@ def product_names(problem: Problem) -> dict[str, str]:
     """Name -> LaTeX of what the law over a product of sets introduces."""
     found = {REGULARISED_H.name: r"H_\varepsilon"}
     found |= {v.symbol: v.latex for v in (parts.SMOOTHING, parts.FRACTION)}
-    if problem.control_sets:
+    if problem.control_sets or problem.control_set == "box":
         found |= {part_of_law(k).name: f"q_{{{k}}}" for k in range(1, MOST_PARTS + 1)}
     for v in problem.model.controls:
         found |= {f"slope_by_{v.symbol}": f"H_{{{v.latex}}}", f"primer_{v.symbol}": f"p_{{{v.latex}}}"}

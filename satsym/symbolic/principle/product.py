@@ -36,7 +36,7 @@ from satsym.symbolic.principle.set_laws import (
     shortened,
     written_out,
 )
-from satsym.symbolic.roots import Choice
+from satsym.symbolic.roots import Choice, Vertex
 
 STEP = "control_parts"
 """The step that only derivations of such problems have."""
@@ -54,6 +54,9 @@ def applies(so_far: Derivation) -> bool:
     if problem.control_set != "ball":
         if any(e.has(sp.Abs) for e in stated):
             return False
+        _, *rates = stated
+        if problem.control_set == "box" and any(sp.simplify(sp.diff(f, u, 2)) != 0 for f in rates for u in controls):
+            return True  # the costates decide whether H is convex
         slopes = [sp.diff(e, u) for e in stated for u in controls]
         return any(sp.simplify(sp.diff(s, u, v)) != 0 for s in slopes for u in controls for v in controls if s.has(u))
     if len(controls) == 1:
@@ -100,7 +103,7 @@ def control_law(so_far: Derivation) -> Step:
         for one in every
         if one.directed
     )
-    if any(one.branch == "stationary" for one in every):
+    if any(not law.has(Vertex) for one in every for law in one.laws):
         said += (Conclusion("neither linear nor quadratic", {}),)
     said += tuple(Conclusion(key, {}) for key in sorted({key for one in every for key in one.remarks}))
     return Step("control_law", worded("minimum set by set", problem), equations, (STEP,), (check,), said)
@@ -108,11 +111,12 @@ def control_law(so_far: Derivation) -> Step:
 
 def _in_parts(laws: Sequence[sp.Expr]) -> tuple[list[tuple[sp.Symbol, sp.Expr]], list[sp.Expr]]:
     """Laws that compare minimisers, in named parts that people can read; others as they are."""
-    if not any(law.has(Choice) for law in laws):
+    if not any(law.has(Choice, Vertex) for law in laws):
         return [], list(laws)
     named = (pn.part_of_law(k) for k in range(1, pn.MOST_PARTS + 1))
-    parts, reduced = sp.cse([*laws], symbols=named, order="canonical")
-    return list(parts), list(reduced)
+    compared = [e for law in laws if isinstance(law, Vertex) for e in law.args[:2]]
+    parts, reduced = sp.cse([*compared, *laws], symbols=named, order="canonical")
+    return list(parts), list(reduced[len(compared) :])
 
 
 def smoothed_law(so_far: Derivation) -> Step | None:

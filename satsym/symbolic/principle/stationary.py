@@ -101,6 +101,14 @@ def with_angle(
     return Choice(excess, *laws), Choice(excess, *turns)
 
 
+def indefinite(name: str, curvature: sp.Expr) -> bool:
+    """Whether what bends H, whatever the control, has either sign."""
+    value = numeric([curvature])
+    with mp.workdps(DIGITS):
+        found = [value(point)[0] for point in points(curvature.free_symbols, f"{name} curvature", SAMPLES)]
+    return len({v > 0 for v in found if moderate([v]) and not mp.im(v)}) > 1
+
+
 def _turned(cosine: sp.Expr, sine: sp.Expr, ends: Ends) -> sp.Expr:
     """The angle of an interval that is nearest to where a cosine and a sine together are least.
 
