@@ -61,6 +61,14 @@ def suggestion(name: str, known: Iterable[str]) -> str:
     return f"known here: {some(known)}" if known else "remove it, nothing may stand here"
 
 
+def unlike(wanted: Iterable[object], given: Iterable[object], missing: str, foreign: str) -> str:
+    """What of two collections of names is in one of them alone: ``missing: a; foreign: b, c``."""
+    one, other = ([str(each) for each in group] for group in (wanted, given))
+    lacking, odd = [name for name in one if name not in other], [name for name in other if name not in one]
+    parts = ((f"{missing}: {some(names)}") for missing, names in ((missing, lacking), (foreign, odd)) if names)
+    return "; ".join(parts)
+
+
 def some(known: Sequence[str]) -> str:
     """Known names, as many as a message has room for."""
     ends = itertools.accumulate(len(name) + 2 for name in known[:MOST_NAMES])

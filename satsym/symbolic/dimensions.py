@@ -159,10 +159,12 @@ def _of_variables(derivation: Derivation) -> dict[str, Dimension | None]:
     variables = list(variables_of(model))
     if problem:
         variables += limits_of(problem)
-    try:
-        known: dict[str, Dimension | None] = {v.symbol: of_unit(v.unit) for v in variables}
-    except BadInput as error:
-        raise DerivationError(f"{derivation.name}: {error}") from None
+    known: dict[str, Dimension | None] = {}
+    for v in variables:
+        try:
+            known[v.symbol] = of_unit(v.unit)
+        except BadInput as error:
+            raise DerivationError(f"{derivation.name}: {v.symbol}: {error}", (v.symbol,)) from None
     second = {"[time]": sp.Integer(1)} if any(known.values()) and not model.plain_time else PLAIN
     return known | {n.TIME.name: second, n.FINAL_TIME.name: second}
 

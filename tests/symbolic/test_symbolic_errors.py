@@ -254,15 +254,18 @@ def test_newtons_law_has_to_determine_the_accelerations() -> None:
 def test_states_are_the_coordinates_and_their_rates() -> None:
     mass = Variable("m", "m", positive=True)
     assert complaint(plane(states=(*plane().states, mass))) == (
-        "plane: the states must be the coordinates and their rates, no more, no less"
+        "plane: the states must be the coordinates and their rates, each once; neither coordinate nor rate: m"
     )
     shared = plane(coordinates={a: a_dot, b: a_dot})
     assert "the states must be the coordinates and their rates" in complaint(shared)
 
 
 def test_every_state_needs_one_rate() -> None:
-    for rates in ({q1: v1}, {q1: v1, v1: u1, k: u2}):
-        assert complaint(first_order(rates=rates)) == "small: give one rate for each state, no more, no less"
+    said = {"without a rate: v1": {q1: v1}, "no state: k": {q1: v1, v1: u1, k: u2}}
+    said["without a rate: v1; no state: k"] = {q1: v1, k: u2}
+    said["take the symbols from symbols_of"] = {sp.Symbol("q1"): v1, v1: u1}
+    for odd, rates in said.items():
+        assert complaint(first_order(rates=rates)) == f"small: give one rate for each state; {odd}"
 
 
 def test_a_reference_names_every_state() -> None:

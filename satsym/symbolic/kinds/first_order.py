@@ -14,6 +14,7 @@ from satsym.symbolic.dimension_algebra import Dimension
 from satsym.symbolic.kinds import stated_as
 from satsym.symbolic.model import MaybeStep, Model, Requirement, symbols_of
 from satsym.symbolic.motion import steps as motion
+from satsym.wording import unlike
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +40,8 @@ class FirstOrder(Model):
     def misfits(self) -> Iterator[str]:
         """States without a rate, and rates of other things."""
         if set(symbols_of(self.states)) != set(self.rates):
-            yield "give one rate for each state, no more, no less"
+            odd = unlike(symbols_of(self.states), self.rates, "without a rate", "no state")
+            yield f"give one rate for each state; {odd or 'take the symbols from symbols_of'}"
 
     def stated(self) -> Iterator[tuple[str, list[sp.Expr], set[sp.Symbol]]]:
         """The rates, by states and controls."""

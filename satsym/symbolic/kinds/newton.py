@@ -19,6 +19,7 @@ from satsym.symbolic.kepler import points as point_steps
 from satsym.symbolic.kinds import stated_as
 from satsym.symbolic.model import Line, MaybeStep, Paragraph, Particle, Problem, Requirement, symbols_of
 from satsym.symbolic.motion import steps as motion
+from satsym.wording import unlike
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,7 +59,8 @@ class Newton(Particle):
         """States that are no coordinates, vectors of different sizes."""
         states, moving = symbols_of(self.states), [*self.coordinates, *self.coordinates.values()]
         if len(moving) != len(states) or set(moving) != set(states):
-            yield "the states must be the coordinates and their rates, no more, no less"
+            odd = unlike(symbols_of(self.states), moving, "neither coordinate nor rate", "no state")
+            yield f"the states must be the coordinates and their rates, each once; {odd or 'one is there twice'}"
         vectors = (self.position, *self.directions.values(), *self.forces.values())
         if {len(vector) for vector in vectors} != {len(self.directions)}:
             yield "vectors need as many components as there are directions"
