@@ -43,9 +43,10 @@ format: $(VENV)/installed-dev  ## let ruff put the style right
 	$(BIN)/ruff check --quiet --fix-only
 	$(BIN)/ruff format --quiet
 
-derive: $(VENV)/installed-dev  ## write generated/ from derivations/, and the types of what it holds from the contract
+derive: $(VENV)/installed-dev  ## write generated/ from derivations/, and from the code the types of what it holds and docs/instances.md
 	$(BIN)/satsym derive
 	$(BIN)/python -m satsym.codegen.protocol
+	$(BIN)/python -m satsym.report.terminal.keys
 
 check-derive: $(VENV)/installed-dev  ## fail if generated/ is not what derivations/ says
 	$(BIN)/satsym derive --check

@@ -59,10 +59,10 @@ def read(path: Path) -> dict[str, Any]:
     BadInput
         For whatever keeps it from being read.
     """
-    text = _text(path)
-    if _LONG_KEY.search(text):
+    found = text(path)
+    if _LONG_KEY.search(found):
         raise BadInput(f"a key has more than {MAX_PARTS} parts joined by dots; see the shipped instances for the keys")
-    return finite(_parse(text))
+    return finite(_parse(found))
 
 
 def finite(tree: dict[str, Any]) -> dict[str, Any]:
@@ -101,7 +101,14 @@ def _exists(path: Path) -> bool:
         return False
 
 
-def _text(path: Path) -> str:
+def text(path: Path) -> str:
+    """The text of an instance file, which may be anything.
+
+    Raises
+    ------
+    BadInput
+        If it cannot be read, is too large, or is no text.
+    """
     try:
         if path.is_dir():
             raise BadInput("is a directory; give the path of a TOML file")
@@ -117,12 +124,12 @@ def _text(path: Path) -> str:
     if len(data) > MAX_BYTES:
         raise BadInput(f"larger than {MAX_BYTES} bytes; an instance holds a few numbers, remove the rest")
     try:
-        text = data.decode("utf-8-sig")
+        found = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise BadInput(f"not UTF-8 text (byte {error.start}); save it as UTF-8") from None
-    if "\0" in text:
+    if "\0" in found:
         raise BadInput("holds NUL characters, so it is no text; give the path of a TOML file")
-    return text
+    return found
 
 
 def _leaves(tree: dict[str, Any]) -> Iterator[tuple[str, Any]]:

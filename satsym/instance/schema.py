@@ -7,6 +7,7 @@ it, so that what is checked and what is said cannot drift apart.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Annotated, Any, Literal, get_args, get_origin
 
 import msgspec
@@ -53,8 +54,29 @@ class OneOf:
 
 Method = Annotated[str, OneOf(methods.names)]
 Backend = Literal["auto", "python", "numba"]
+Backends = Annotated[Backend, Meta(description="one of " + ", ".join(f'"{b}"' for b in get_args(Backend)))]
 Count = Annotated[int, Meta(ge=1, le=10**7, description="a whole number from 1 to 10000000")]
+Steps = Annotated[int, Meta(ge=2, le=10**7, description="a whole number from 2 to 10000000")]
 Positive = Annotated[float, Meta(gt=0, description="a positive number")]
+UpToOne = Annotated[float, Meta(gt=0, le=1, description="a number above 0, at most 1")]
+
+SOLVING, COMPARING, REGULATING = ("solve", "compare"), ("compare",), ("lqr", "simulate --feedback lqr")
+MOVING = (*SOLVING, "simulate")
+RELAYS = ("simulate --feedback switching", "simulate --feedback pulses")
+ALL = ("all",)
+
+
+@dataclass(frozen=True)
+class Key:
+    """What a key is for, beside its type and its default."""
+
+    meaning: str
+    commands: tuple[str, ...] = ALL
+    """Those that use it."""
+    unit: str = ""
+    """Of a number that stands without one; empty for what is no quantity."""
+    names: str = ""
+    """Of a table whose keys are the model's: what these are."""
 
 
 class _Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -62,82 +84,113 @@ class _Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class TimeTable(_Table, frozen=True):
-    tf: FinalTime
-    t0: Quantity = 0.0
-    tf_guess: Quantity | None = None
-    t0_guess: Quantity | None = None
+    tf: Annotated[FinalTime, Key('final time; "free" where it is found', MOVING, "time")]
+    t0: Annotated[Quantity, Key('initial time; "free" where it is found', MOVING, "time")] = 0.0
+    tf_guess: Annotated[Quantity | None, Key("where to begin with a free final time", SOLVING, "time")] = None
+    t0_guess: Annotated[Quantity | None, Key("where to begin with a free initial time", SOLVING, "time")] = None
 
 
 class LqrTable(_Table, frozen=True):
-    Q: Matrix | None = None
-    R: Matrix | None = None
-    allowed: dict[str, Quantity] = {}
-    inputs: Names | None = None
-    horizon: Quantity | None = None
+    Q: Annotated[Matrix | None, Key("weights of the states, in x'Qx + u'Ru", REGULATING, "1")] = None
+    R: Annotated[Matrix | None, Key("weights of the inputs", REGULATING, "1")] = None
+    allowed: Annotated[
+        dict[str, Quantity],
+        Key("a deviation that counts as one, in place of Q and R", REGULATING, "the model's", "STATE or CONTROL"),
+    ] = {}
+    inputs: Annotated[Names | None, Key("the controls that are used; without it all of them", REGULATING)] = None
+    horizon: Annotated[Quantity | None, Key("length of time; without it an infinite one", REGULATING, "time")] = None
+
+
+_LAW = ("simulate --feedback classical", "compare", "compare --range")
 
 
 class ClassicalTable(_Table, frozen=True):
-    follows: Name
-    command: Quantity
-    damping: Quantity | None = None
-    gains: Gains | None = None
-    differentiator: Quantity = 0.0
+    follows: Annotated[Name, Key("the state that follows the command", _LAW)]
+    command: Annotated[Quantity, Key("its value from t0 on", _LAW, "the model's")]
+    damping: Annotated[Quantity | None, Key("both poles lie at its negative", _LAW, "1/time")] = None
+    gains: Annotated[Gains | None, Key("of the rate and of the state, in place of damping", _LAW, "1")] = None
+    differentiator: Annotated[Quantity, Key("time constant of what measures the rate", _LAW, "time")] = 0.0
 
 
 class SwitchingTable(_Table, frozen=True):
-    deadband: Quantity
+    deadband: Annotated[Quantity, Key("error of the position that is allowed", RELAYS, "the model's")]
 
 
 class DrivenTable(_Table, frozen=True):
-    control: Name
-    by: Names
+    control: Annotated[Name, Key("a control that other instances work out", COMPARING)]
+    by: Annotated[Names, Key("these instances; one run for each", COMPARING)]
 
 
 class GuessTable(_Table, frozen=True):
-    state: dict[str, Series] = {}
-    costate: dict[str, Series] = {}
-    control: dict[str, Series] = {}
-    parameter: dict[str, Quantity] = {}
+    state: Annotated[dict[str, Series], Key("over time, evenly spaced", SOLVING, "the model's", "STATE")] = {}
+    costate: Annotated[dict[str, Series], Key("likewise; plain numbers", SOLVING, "cost by state", "STATE")] = {}
+    control: Annotated[dict[str, Series], Key("likewise", SOLVING, "the model's", "CONTROL")] = {}
+    parameter: Annotated[
+        dict[str, Quantity], Key("where to begin with a free parameter", SOLVING, "the model's", "PARAMETER")
+    ] = {}
 
 
 class SolverOptions(_Table, frozen=True):
     """What the solvers are told."""
 
-    method: Method = methods.AUTO
-    """Which solver, ``"auto"`` for the one that fits."""
-    tolerance: Positive = 1e-9
-    """Largest residual of an answer."""
-    steps: Annotated[int, Meta(ge=2, le=10**7, description="a whole number from 2 to 10000000")] = 1000
-    """Steps of the grid, from 2."""
-    max_seconds: Positive = 60.0
-    max_iterations: Count | None = None
-    """When to give up; the latter counts sweeps, other methods know by themselves how many steps make sense."""
-    free_angles: Names = ()
-    """States whose final value counts modulo a turn."""
-    relaxation: Annotated[float, Meta(gt=0, le=1, description="a number above 0, at most 1")] | None = None
-    """Share of the new control in each sweep, in (0, 1]; chooses plain relaxation."""
-    backend: Annotated[Backend, Meta(description="one of " + ", ".join(f'"{b}"' for b in get_args(Backend)))] = "auto"
-    """Whether kernels are compiled."""
+    method: Annotated[Method, Key("which solver; by default the one that fits", SOLVING)] = methods.AUTO
+    tolerance: Annotated[Positive, Key("largest residual of an answer", MOVING, "1")] = 1e-9
+    steps: Annotated[Steps, Key("steps of the grid", MOVING)] = 1000
+    max_seconds: Annotated[Positive, Key("when to give up", MOVING, "s")] = 60.0
+    max_iterations: Annotated[Count | None, Key("sweeps, of methods that sweep", SOLVING)] = None
+    free_angles: Annotated[Names, Key("states whose final value counts modulo a turn", SOLVING)] = ()
+    relaxation: Annotated[
+        UpToOne | None, Key("weight of the new control in each sweep; chooses plain relaxation", SOLVING, "1")
+    ] = None
+    backend: Annotated[Backends, Key("whether kernels are compiled", MOVING)] = "auto"
 
 
 class InstanceFile(_Table, frozen=True):
     """An instance as it was written."""
 
-    model: Name
-    initial: dict[str, Quantity]
-    time: TimeTable
-    title: Text = ""
-    parameters: dict[str, Quantity] = {}
-    final: dict[str, FinalValue] = {}
-    control: dict[str, Bound] = {}
-    lqr: LqrTable | None = None
-    solver: SolverOptions = SolverOptions()
-    guess: GuessTable = GuessTable()
-    classical: ClassicalTable | None = None
-    limits: dict[str, Quantity] = {}
-    switching: SwitchingTable | None = None
-    driven: DrivenTable | None = None
-    continuation: dict[str, Ends] = {}
+    model: Annotated[Name, Key("a shipped model, or a path from this file, without .py")]
+    initial: Annotated[
+        dict[str, Quantity],
+        Key('the initial state, every one; "free" where it is found', unit="the model's", names="STATE"),
+    ]
+    time: Annotated[TimeTable, Key("when it begins and ends")]
+    title: Annotated[Text, Key("one line for people")] = ""
+    parameters: Annotated[
+        dict[str, Quantity],
+        Key('values other than the defaults; "free" where it is found', unit="the model's", names="PARAMETER"),
+    ] = {}
+    final: Annotated[
+        dict[str, FinalValue],
+        Key("given final values; a state left out is free", (*SOLVING, *RELAYS), "the model's", "STATE"),
+    ] = {}
+    control: Annotated[
+        dict[str, Bound],
+        Key(
+            "bounds [lower, upper]; or max_norm (and min_norm), also in a table [control.SET] of one set",
+            SOLVING,
+            "the model's",
+            "CONTROL",
+        ),
+    ] = {}
+    lqr: Annotated[LqrTable | None, Key("a linear-quadratic regulator", REGULATING)] = None
+    solver: Annotated[SolverOptions, Key("what the solvers are told", MOVING)] = SolverOptions()
+    guess: Annotated[GuessTable, Key("where solvers may start", SOLVING)] = GuessTable()
+    classical: Annotated[ClassicalTable | None, Key("a linear law that follows a command", _LAW)] = None
+    limits: Annotated[
+        dict[str, Quantity],
+        Key("largest magnitudes, reported only", MOVING, "the model's", "STATE or quantity"),
+    ] = {}
+    switching: Annotated[SwitchingTable | None, Key("a feedback that switches", RELAYS)] = None
+    driven: Annotated[DrivenTable | None, Key("a control worked out by other instances", COMPARING)] = None
+    continuation: Annotated[
+        dict[str, Ends],
+        Key(
+            "where a number begins and ends on the way to this problem",
+            ("solve",),
+            "the model's",
+            "PARAMETER, t0, tf, initial.STATE or final.STATE",
+        ),
+    ] = {}
 
 
 def check(tree: dict[str, Any]) -> InstanceFile:
@@ -154,24 +207,33 @@ def check(tree: dict[str, Any]) -> InstanceFile:
 
 def _table(tree: dict[str, Any], table: type[Any], section: str) -> Any:
     fields = {entry.name: entry for entry in msgspec.structs.fields(table)}
+    kinds = {name: apart(entry.type)[0] for name, entry in fields.items()}
     for name in tree:
         if name not in fields:
-            raise BadInput(f"{_key(section, name)}: unknown key; {_instead(name, fields, table)}")
+            raise BadInput(f"{_key(section, name)}: unknown key; {_instead(name, kinds, table)}")
     for name, entry in fields.items():
         if entry.required and name not in tree:
-            raise BadInput(f"{_key(section, name)}: missing; write {_wanted(entry.type, section, name)}")
-    return table(**{name: _value(value, fields[name].type, section, name) for name, value in tree.items()})
+            raise BadInput(f"{_key(section, name)}: missing; write {wanted(kinds[name], section, name)}")
+    return table(**{name: _value(value, kinds[name], section, name) for name, value in tree.items()})
+
+
+def apart(kind: Any) -> tuple[Any, Key]:
+    """The type of a key, and what it is for."""
+    base, *more = get_args(kind)
+    (key,) = (m for m in more if isinstance(m, Key))
+    others = tuple(m for m in more if not isinstance(m, Key))
+    return (Annotated[(base, *others)] if others else base), key
 
 
 def _value(value: Any, kind: Any, section: str, name: str) -> Any:
-    inner, entries = _inner(kind), _entries(kind)
+    inner, entries = inner_table(kind), entries_of(kind)
     if inner is None and entries is None:
         try:
             return _chosen(msgspec.convert(value, kind), kind)
         except msgspec.ValidationError:
-            raise BadInput(f"{_key(section, name)}: got {shown(value)}; write {_wanted(kind, section, name)}") from None
+            raise BadInput(f"{_key(section, name)}: got {shown(value)}; write {wanted(kind, section, name)}") from None
     if not isinstance(value, dict):
-        raise BadInput(f"{_key(section, name)}: got {shown(value)}; write {_wanted(kind, section, name)}")
+        raise BadInput(f"{_key(section, name)}: got {shown(value)}; write {wanted(kind, section, name)}")
     below = _below(section, name)
     if inner is not None:
         return _table(value, inner, below)
@@ -186,12 +248,12 @@ def _chosen(value: Any, kind: Any) -> Any:
     return value
 
 
-def _inner(kind: Any) -> type[_Table] | None:
+def inner_table(kind: Any) -> type[_Table] | None:
     """The table that a type stands for, if it is one or may be ``None`` instead."""
     return next((k for k in (kind, *get_args(kind)) if isinstance(k, type) and issubclass(k, _Table)), None)
 
 
-def _entries(kind: Any) -> Any:
+def entries_of(kind: Any) -> Any:
     """The type of the values of a table whose keys are a model's names."""
     return get_args(kind)[1] if get_origin(kind) is dict else None
 
@@ -204,18 +266,18 @@ def _key(section: str, name: str) -> str:
     return f"[{section}] {printable(name)}" if section else printable(name)
 
 
-def _wanted(kind: Any, section: str, name: str) -> str:
+def wanted(kind: Any, section: str, name: str) -> str:
     """The words that a type carries, for a table its header."""
-    if _inner(kind) or _entries(kind):
+    if inner_table(kind) or entries_of(kind):
         return f"a table, [{_below(section, name)}]"
     metas = (meta for part in (kind, *get_args(kind)) for meta in getattr(part, "__metadata__", ()))
     return next(str(meta.description) for meta in metas)
 
 
-def _instead(name: str, fields: dict[str, Any], table: type[Any]) -> str:
+def _instead(name: str, kinds: dict[str, Any], table: type[Any]) -> str:
     if table is InstanceFile:
-        for section, entry in fields.items():
-            inner = _inner(entry.type)
+        for section, kind in kinds.items():
+            inner = inner_table(kind)
             if inner is not None and name in inner.__struct_fields__:
                 return f"it belongs under [{section}]"
-    return suggestion(name, fields)
+    return suggestion(name, kinds)

@@ -1,29 +1,79 @@
-"""``satsym instances``: what can be solved as it stands."""
+"""``satsym instances``: what can be solved as it stands, and what an instance file may say."""
 
 from __future__ import annotations
 
 import click
 
 from satsym.cli.options import json_option
-from satsym.cli.output import answer
+from satsym.cli.output import answer, emit, emit_json
 from satsym.status import ExitCode
 
 EXAMPLES = """\b
-Example:
+Examples:
   satsym instances
+  satsym instances soft-return          the file of one
+  satsym instances --keys               every key of an instance file, with unit, default and meaning
+  satsym instances --schema             the same for editors, as JSON Schema
 
 The type is that of the transversality conditions: 1 final time and final state given, 2 final time free,
 3 final state free, 4 final time free and final state on the reference, 5 both free."""
 
 
 @click.command(epilog=EXAMPLES)
+@click.argument("name", metavar="[X]", required=False)
+@click.option("--keys", is_flag=True, help="List what an instance file may say, key by key.")
+@click.option("--schema", is_flag=True, help="The same as JSON Schema.")
 @json_option
-def instances(as_json: bool) -> ExitCode:
-    """List the instances that can be solved as they stand."""
+def instances(name: str | None, keys: bool, schema: bool, as_json: bool) -> ExitCode:
+    """List the instances that can be solved as they stand.
+
+    With X, show the file of that one.
+    """
+    if sum((name is not None, keys, schema)) > 1:
+        raise click.UsageError("X, --keys and --schema are three things to ask; give one of them.")
+    if keys or schema:
+        _said(schema or as_json)
+    elif name is not None:
+        _shown(name, as_json)
+    else:
+        _listed(as_json)
+    return ExitCode.DONE
+
+
+def _said(as_schema: bool) -> None:
+    """What an instance file may say."""
+    if as_schema:
+        from satsym.instance.keys import json_schema
+
+        emit_json(json_schema())
+        return
+    from satsym.report.terminal.keys import keys_text
+
+    emit(keys_text())
+
+
+def _shown(name: str, as_json: bool) -> None:
+    """The file of one instance."""
+    from satsym import instance
+    from satsym.instance.files import locate, text
+    from satsym.report.results.objects import instance_object
+    from satsym.status import BadInput
+    from satsym.wording import printable
+
+    if as_json:
+        emit_json(instance_object(instance.load(name)))
+        return
+    try:
+        emit(text(locate(name)))
+    except BadInput as error:
+        raise BadInput(f"{printable(name, 200)}: {error}") from None
+
+
+def _listed(as_json: bool) -> None:
+    """All that come with satsym."""
     from satsym import instance
     from satsym.report.results.objects import instance_object
     from satsym.report.terminal.listing import instances_text
 
     loaded = [instance.load(name) for name in instance.shipped()]
     answer(as_json, {"instances": [instance_object(each) for each in loaded]}, lambda: instances_text(loaded))
-    return ExitCode.DONE

@@ -1,0 +1,93 @@
+"""The keys of an instance file, one by one: what people and editors read of the schema."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import msgspec
+
+from satsym.instance.schema import InstanceFile, Key, OneOf, apart, entries_of, inner_table, wanted
+
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A key of an instance file, or what all keys of a table have in common that are the model's names."""
+
+    table: str
+    """Where it stands; empty above all tables."""
+    name: str
+    """The key, or in capitals what the keys are."""
+    kind: str
+    """What its value may be."""
+    required: bool
+    default: str
+    """As it would be written; empty where there is none."""
+    key: Key
+
+
+def entries() -> list[Entry]:
+    """All keys, table by table, those of a table before the tables in it."""
+    return list(_entries(InstanceFile, ""))
+
+
+def _entries(table: type[Any], section: str) -> Iterator[Entry]:
+    tables = []
+    for field in msgspec.structs.fields(table):
+        kind, key = apart(field.type)
+        if inner_table(kind) or entries_of(kind):
+            tables.append((field, kind, key))
+            continue
+        default = "" if field.required else _written(field.default)
+        yield Entry(section, field.name, wanted(kind, section, field.name), field.required, default, key)
+    for field, kind, key in tables:
+        below = f"{section}.{field.name}" if section else field.name
+        if inner := inner_table(kind):
+            yield from _entries(inner, below)
+        else:
+            yield Entry(below, key.names, wanted(entries_of(kind), below, ""), field.required, "", key)
+
+
+def _written(value: Any) -> str:
+    """A default as TOML has it; nothing for what is not there."""
+    if value is None or value == ():
+        return ""
+    return f'"{value}"' if isinstance(value, str) else repr(value)
+
+
+def json_schema() -> dict[str, Any]:
+    """The schema of instance files for editors, as JSON Schema."""
+    return {"$schema": DIALECT, "title": "satsym instance", **_object(InstanceFile)}
+
+
+def _object(table: type[Any]) -> dict[str, Any]:
+    fields = msgspec.structs.fields(table)
+    return {
+        "type": "object",
+        "additionalProperties": False,
+        "required": [field.name for field in fields if field.required],
+        "properties": {field.name: _property(field) for field in fields},
+    }
+
+
+def _property(field: Any) -> dict[str, Any]:
+    kind, key = apart(field.type)
+    said = key.meaning + (f" ({key.unit})" if key.unit else "")
+    if inner := inner_table(kind):
+        return {**_object(inner), "description": said}
+    if values := entries_of(kind):
+        return {"type": "object", "additionalProperties": _of_type(values), "description": said}
+    default = {} if field.required or field.default is None else {"default": field.default}
+    return {**_of_type(kind), "description": said, **default}
+
+
+def _of_type(kind: Any) -> dict[str, Any]:
+    """The schema of a value, which may have to be one of some names."""
+    found = {k: v for k, v in msgspec.json.schema(kind).items() if k != "description"}
+    if {"type": "null"} in found.get("anyOf", ()):  # which TOML has not
+        found = {k: v for k, v in found["anyOf"][0].items() if k != "description"}
+    names = [meta.names() for meta in getattr(kind, "__metadata__", ()) if isinstance(meta, OneOf)]
+    return found | ({"enum": list(names[0])} if names else {})

@@ -1,0 +1,86 @@
+"""The keys of instance files, for the terminal and as a page."""
+
+from __future__ import annotations
+
+import shutil
+import textwrap
+from itertools import groupby
+from pathlib import Path
+
+from satsym.instance.keys import Entry, entries
+
+HEAD = """# Instance files
+
+<!-- Written by `make derive` from satsym/instance/schema.py: do not edit. -->
+
+One case of a model, in TOML. `satsym instances` lists those that come with satsym, `satsym instances soft-return`
+shows one, `satsym new my_case --instance soft-return` copies one to start from. `satsym instances --keys` prints what
+stands here, `satsym instances --schema` the same as JSON Schema for editors: with
+`satsym instances --schema > instance.schema.json` and `#:schema instance.schema.json` in the first line of a file,
+those that know TOML complete and check it.
+
+`model`, `[initial]` and `[time] tf` are all that solving needs. Names in capitals stand for those of the model, which
+`satsym models MODEL` lists with their units and defaults. A number is in the unit that is listed; a text may carry its
+own, such as `"5 km"`. Unknown keys are refused.
+"""
+
+
+REQUIRED = "must be given"
+WIDEST, DEEPEST = 100, 20
+"""Columns of the terminal that are used at most, and those of names beside which there is room."""
+TITLES = ("key", "value", "unit", "default", "meaning", "used by")
+FILE = Path(__file__).parents[3] / "docs" / "instances.md"
+
+
+def keys_text() -> str:
+    """A block for each table, a paragraph for each key."""
+    width = min(WIDEST, shutil.get_terminal_size().columns)
+    blocks = []
+    for title, rows in _blocks():
+        deep = 4 + max((len(row[0]) for row in rows if len(row[0]) <= DEEPEST), default=0)
+        lines = [title]
+        for name, value, unit, default, meaning, _ in rows:
+            about = "; ".join(part for part in (value, unit and f"unit: {unit}", _said(default)) if part)
+            first = f"  {name}".ljust(deep)
+            if len(first) > deep:
+                lines.append(first)
+                first = " " * deep
+            for start, text in ((first, meaning), (" " * deep, about)):
+                lines += textwrap.wrap(text, width, initial_indent=start, subsequent_indent=" " * deep)
+        blocks.append("\n".join(lines))
+    return "\n\n".join(blocks)
+
+
+def _said(default: str) -> str:
+    return default if default in ("", REQUIRED) else f"by default {default}"
+
+
+def page() -> str:
+    """The page of the documentation."""
+    blocks = [HEAD]
+    for title, rows in _blocks():
+        marked = [
+            (f"`{key}`", value, unit, default if default in ("", REQUIRED) else f"`{default}`", *more)
+            for key, value, unit, default, *more in rows
+        ]
+        lines = [f"| {' | '.join(cells)} |" for cells in (TITLES, ["---"] * len(TITLES), *marked)]
+        blocks.append("\n".join([f"## {f'`{title}`' if title.startswith('[') else title}", "", *lines, ""]))
+    return "\n".join(blocks)
+
+
+def _blocks() -> list[tuple[str, list[tuple[str, ...]]]]:
+    """Tables with the cells of their keys."""
+    return [
+        (f"[{place}]" if place else "Above all tables", [_cells(entry) for entry in group])
+        for place, group in groupby(entries(), key=lambda entry: entry.table)
+    ]
+
+
+def _cells(entry: Entry) -> tuple[str, ...]:
+    key = entry.key
+    default = REQUIRED if entry.required else entry.default
+    return entry.name, entry.kind, key.unit, default, key.meaning, ", ".join(key.commands)
+
+
+if __name__ == "__main__":
+    FILE.write_text(page(), encoding="utf-8")
