@@ -113,11 +113,26 @@ def begin(model: Model, problem: Problem | None) -> Derivation:
     DerivationError
         If two things have the same name.
     """
-    variables = list(variables_of(model))
-    if problem:
-        variables += limits_of(problem)
-    notation = {s.name: latex for s, latex in n.FIXED.items()}
+    variables, notation = _variables(model, problem), _notation(model, problem)
+    _refuse_clashes(variables, {*notation, *_entries(model)})
     results = {} if problem else linear_notation.results(model)
+    return Derivation(model, problem, results | notation | {v.symbol: v.latex for v in variables})
+
+
+def given_names(model: Model, problem: Problem | None) -> set[str]:
+    """The names that a derivation gives, which no variable of it may have."""
+    limits = {v.symbol for v in limits_of(problem)} if problem else set()
+    return {*_notation(model, problem), *_entries(model), *limits}
+
+
+def _variables(model: Model, problem: Problem | None) -> list[Variable]:
+    """What is declared, and what an instance gives besides."""
+    return [*variables_of(model), *(limits_of(problem) if problem else ())]
+
+
+def _notation(model: Model, problem: Problem | None) -> dict[str, str]:
+    """Name -> LaTeX of what is derived."""
+    notation = {s.name: latex for s, latex in n.FIXED.items()}
     for state, own in zip(symbols_of(model.states), (v.latex for v in model.states), strict=True):
         notation[n.rate_of(state).name] = rf"\frac{{d {own}}}{{dt}}"
         notation[n.initial(state).name] = rf"{{{own}}}_0"
@@ -138,9 +153,7 @@ def begin(model: Model, problem: Problem | None) -> Derivation:
     for control in model.controls:
         notation[f"{control.symbol}_star"] = rf"{control.latex}^*"
         notation[f"{control.symbol}_hat"] = rf"\hat {control.latex}"
-    notation |= model.names(problem) | (principle_notation.names(model) if problem else {})
-    _refuse_clashes(variables, {*notation, *_entries(model)})
-    return Derivation(model, problem, results | notation | {v.symbol: v.latex for v in variables})
+    return notation | model.names(problem) | (principle_notation.names(model) if problem else {})
 
 
 def _entries(model: Model) -> Iterable[str]:
