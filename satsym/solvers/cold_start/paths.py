@@ -62,9 +62,15 @@ def bent(problem: TwoPoint, rng: np.random.Generator, amplitude: float) -> State
     return drawn
 
 
-def start(problem: TwoPoint) -> Curve:
-    """Where to begin as a curve, with the costates that are guessed."""
-    begun, n = curve(problem, first(problem)), problem.states
+def start(problem: TwoPoint, path: States | None = None) -> Curve:
+    """Where to begin as a curve, with the costates that are guessed.
+
+    Parameters
+    ----------
+    path
+        :func:`first`, if that is known.
+    """
+    begun, n = curve(problem, path or first(problem)), problem.states
     times = stage_times(begun.mesh, STAGES)
     for name, values in problem.instance.guess.costate.items():
         i = n + problem.instance.model.spec.state_names.index(name)
