@@ -18,6 +18,7 @@ from satsym.solvers.iteration import Limits, watched
 from satsym.solvers.nearest_end import nearest
 from satsym.solvers.switching.answers import answered, without
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
+from satsym.solvers.switching.chattering import NARROW, Look, at_rest, chattered, look, shows
 from satsym.solvers.switching.cold_start import by_scouts, by_throttle, homotopy, minimum_effort
 from satsym.solvers.switching.cold_start import saturated as held
 from satsym.solvers.switching.cold_start.recognition import Sample, guess, inside, sample
@@ -45,6 +46,9 @@ ADOPTED = 3
 
 GIVEN = np.sqrt(2.0) ** np.arange(-8.0, 5.0)
 """Durations that are given in turn where a free one is not found, as shares of the motion's own time scale."""
+
+LONGER = (1.3, 1.7, 2.5)
+"""Durations in which infinitely many switches are looked for, relative to one that was found."""
 
 STEADY = 0.5
 """Share of the time off the bounds that is left after smoothing less, where that time is a singular arc's."""
@@ -77,6 +81,9 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     limits, history = watched(instance, progress)
     with np.errstate(all="ignore"):
         found = _found(instance, limits)
+        endless = _endless(instance, found, limits)
+        if endless is not None:
+            return replace(endless, iterations=len(history), history=tuple(history), wall_s=time.perf_counter() - began)
         if isinstance(found, homotopy.Stopped):
             found = _by_least_time(instance, found, limits)
         if isinstance(found, homotopy.Stopped):
@@ -97,6 +104,28 @@ def _throttled(instance: Instance, progress: Progress | None) -> Solution:
     if isinstance(found, homotopy.Stopped):
         return without(instance, found, tuple(history), began)
     return answered(instance, found, tuple(history), began)
+
+
+def _endless(instance: Instance, found: Exact | homotopy.Stopped, limits: Limits) -> Solution | None:
+    """What infinitely many switches lead to; where the final time is free, in a longer one if that is cheaper."""
+    if not instance.model.spec.chattering:
+        return None
+    if isinstance(found, homotopy.Stopped) and found.chattering:
+        return chattered(instance, found.chattering, limits)
+    if instance.tf is not None:
+        return None
+    known = None if isinstance(found, homotopy.Stopped) else found
+    duration = minimum_effort.first_duration(instance) if known is None else known.refined.at.end - instance.t0
+    for factor in LONGER:
+        given = replace(instance, tf=instance.t0 + factor * duration, tf_guess=None)
+        near = None if limits.expired else _smoothed(given, limits)
+        if isinstance(near, homotopy.Stopped) and near.chattering:
+            endless = chattered(instance, near.chattering, limits)
+            if endless is None or not at_rest(endless):
+                return None
+            cheaper = known is None or endless.objective < known.trajectory.cost(instance)
+            return replace(endless, message=f"{endless.message}; a longer time costs the same") if cheaper else None
+    return None
 
 
 def _by_least_time(instance: Instance, stopped: homotopy.Stopped, limits: Limits) -> Exact | homotopy.Stopped:
@@ -187,7 +216,8 @@ def _found(instance: Instance, limits: Limits) -> Exact | homotopy.Stopped:
     best = _by_effort(instance, limits)
     for _ in range(ADOPTED):
         cheapest = None if isinstance(best, homotopy.Stopped) else best
-        better = None if limits.expired else tried(partial(by_scouts.cheaper, instance, cheapest, limits))
+        done = limits.expired or (isinstance(best, homotopy.Stopped) and best.chattering)
+        better = None if done else tried(partial(by_scouts.cheaper, instance, cheapest, limits))
         if better is None:
             break
         best = replace(better, origin=Origin.DRAWN)
@@ -236,13 +266,19 @@ def _smoothed(instance: Instance, limits: Limits, thorough: bool = True) -> Exac
     Structures with an arc less or more are many, so they are tried once all smoothed extremals show no better one.
     """
     before: Sample | None = None
-    last: minimum_effort.Smoothed | None = None
+    levels: list[minimum_effort.Smoothed] = []
     waiting: list[tuple[Guess, float]] = []
+    looks: list[Look] = []
+    most = homotopy.LEVELS * (2 if instance.model.spec.chattering else 1)
     try:
-        for level, near in enumerate(homotopy.path(instance, limits)):
-            seen, last = sample(near.problem, near.curve), near
+        for level, near in enumerate(homotopy.path(instance, limits, most)):
+            seen = sample(near.problem, near.curve)
+            levels.append(near)
             smoothing = near.problem.control_set.smoothing
-            for candidate in _candidates(instance, seen, before):
+            looks.append(look(instance, near, seen))
+            if level >= homotopy.LEVELS and (looks[-1].width <= NARROW or not shows(looks)):
+                break
+            for candidate in _candidates(instance, seen, before) if level <= homotopy.LEVELS else ():
                 if exact := attempt(instance, candidate, limits):
                     return replace(exact, origin=Origin.SMOOTHED, smoothing=smoothing)
                 if thorough and level % BETWEEN == BETWEEN - 1:
@@ -256,8 +292,9 @@ def _smoothed(instance: Instance, limits: Limits, thorough: bool = True) -> Exac
         last_seen = homotopy.Stopped(Status.NOT_CONVERGED, f"no regularised solution was found ({error})")
     else:
         message = "no structure recognised in regularised solutions satisfies Pontryagin's minimum principle"
-        assert last is not None
-        last_seen = homotopy.Stopped(Status.NOT_CONVERGED, message, last.problem, last.curve)
+        last_seen = homotopy.Stopped(Status.NOT_CONVERGED, message, levels[-1].problem, levels[-1].curve)
+    if shows(looks):
+        return replace(last_seen, chattering=tuple(levels))
     for candidate, smoothing in waiting:
         for one in unbroken(neighbours(instance, candidate, limits)):
             if exact := attempt(instance, one, limits):
@@ -317,7 +354,9 @@ def _candidates(instance: Instance, seen: Sample, before: Sample | None) -> list
         return [plain]
     was = inside(instance, before)
     steady = [_time(seen, now) >= STEADY * _time(before, then) for now, then in zip(free, was, strict=True)]
-    singular = free & np.array(steady)[:, None]
+    spec = instance.model.spec
+    joined = [name not in spec.chattering for name in spec.control_names]
+    singular = free & np.array(steady)[:, None] & np.array(joined)[:, None]
     if not singular.any():
         return [plain]
     return [guess(instance, seen, singular), plain]
