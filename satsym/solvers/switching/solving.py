@@ -263,26 +263,32 @@ def _beside(instance: Instance, duration: float, fractions: Sequence[float], lim
 def _smoothed(instance: Instance, limits: Limits, thorough: bool = True) -> Exact | homotopy.Stopped:
     """Exact arcs with a structure that is recognised where less and less is smoothed, or why there are none.
 
-    Structures with an arc less or more are many, so they are tried once all smoothed extremals show no better one.
+    Structures with an arc less or more are many, and those without an arc that seems to be singular seldom lead
+    anywhere, so both are tried once all smoothed extremals show no better one.
     """
     before: Sample | None = None
     levels: list[minimum_effort.Smoothed] = []
     waiting: list[tuple[Guess, float]] = []
+    unlikely: list[tuple[Guess, float]] = []
     looks: list[Look] = []
-    most = homotopy.LEVELS * (2 if instance.model.spec.chattering else 1)
+    endless = bool(instance.model.spec.chattering)
+    most = homotopy.LEVELS * (2 if endless else 1)
     try:
         for level, near in enumerate(homotopy.path(instance, limits, most)):
             seen = sample(near.problem, near.curve)
             levels.append(near)
             smoothing = near.problem.control_set.smoothing
-            looks.append(look(instance, near, seen))
-            if level >= homotopy.LEVELS and (looks[-1].width <= NARROW or not shows(looks)):
-                break
-            for candidate in _candidates(instance, seen, before) if level <= homotopy.LEVELS else ():
-                if exact := attempt(instance, candidate, limits):
-                    return replace(exact, origin=Origin.SMOOTHED, smoothing=smoothing)
-                if thorough and level % BETWEEN == BETWEEN - 1:
-                    waiting.append((candidate, smoothing))
+            if endless:
+                looks.append(look(instance, near, seen))
+                if level >= homotopy.LEVELS and (looks[-1].width <= NARROW or not shows(looks)):
+                    break
+            likeliest, *plainer = _candidates(instance, seen, before)
+            exact = attempt(instance, likeliest, limits) if level <= homotopy.LEVELS else None
+            if exact is not None:
+                return replace(exact, origin=Origin.SMOOTHED, smoothing=smoothing)
+            unlikely += [(one, smoothing) for one in plainer]
+            if thorough and level % BETWEEN == BETWEEN - 1:
+                waiting += [(one, smoothing) for one in (likeliest, *plainer)]
             before = seen
             if limits.expired:
                 break
@@ -295,12 +301,12 @@ def _smoothed(instance: Instance, limits: Limits, thorough: bool = True) -> Exac
         last_seen = homotopy.Stopped(Status.NOT_CONVERGED, message, levels[-1].problem, levels[-1].curve)
     if shows(looks):
         return replace(last_seen, chattering=tuple(levels))
-    for candidate, smoothing in waiting:
-        for one in unbroken(neighbours(instance, candidate, limits)):
-            if exact := attempt(instance, one, limits):
-                return replace(exact, origin=Origin.SMOOTHED, smoothing=smoothing)
-            if limits.expired:
-                break
+    more = ((one, s) for candidate, s in waiting for one in unbroken(neighbours(instance, candidate, limits)))
+    for one, smoothing in chain(unlikely, more):
+        if limits.expired:
+            break
+        if exact := attempt(instance, one, limits):
+            return replace(exact, origin=Origin.SMOOTHED, smoothing=smoothing)
     if limits.expired:
         return replace(last_seen, status=Status.TIME_LIMIT, message=f"time was up: {last_seen.message}")
     return last_seen
