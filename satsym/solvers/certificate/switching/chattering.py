@@ -21,7 +21,6 @@ from satsym.solvers.certificate.switching.variation import convex
 from satsym.solvers.control.regularised import regularised, smoothed_law
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import leap
-from satsym.solvers.switching.chattering import excess
 from satsym.status import Verdict
 
 RESIDUAL, DEFECT, STATIONARY, COST = 1e-9, 1e-7, 1e-8, 1e-8
@@ -116,7 +115,20 @@ def _costs(instance: Instance, t: Array, z: Array) -> Array:
     x, lam = z[:n], z[n:]
     u = smoothed_law(instance, instance.control_set, t, x, lam)
     running = np.broadcast_to(instance.model.running_cost_batch(t, x, u, instance.parameters), t.shape)
-    return np.array([running, excess(instance, t, x, lam, u)])
+    return np.array([running, _excess(instance, t, x, lam, u)])
+
+
+def _excess(instance: Instance, t: Array, x: Array, lam: Array, u: Array) -> Array:
+    """By how much H is above its minimum, control by control, as it is affine in each but for a magnitude; (N,)."""
+    model, p = instance.model, instance.parameters
+    here, total = np.asarray(model.hamiltonian_batch(t, x, u, lam, p)), np.zeros(len(t))
+    for i, places in enumerate(zip(instance.lower, instance.upper, instance.control_set.rest, strict=True)):
+        moved, best = u.copy(), here
+        for value in places:
+            moved[i] = value
+            best = np.minimum(best, model.hamiltonian_batch(t, x, moved, lam, p))
+        total += here - best
+    return total
 
 
 def _without_flow() -> Certificate:
