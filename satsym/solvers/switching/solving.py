@@ -9,19 +9,19 @@ from functools import partial
 from itertools import chain
 
 import numpy as np
-from numpy.typing import NDArray
 
 from satsym.instance import Instance
 from satsym.solution import Progress, Solution
-from satsym.solvers.failures import FAILURES, tried, unbroken
+from satsym.solvers.failures import tried, unbroken
 from satsym.solvers.iteration import Limits, watched
 from satsym.solvers.nearest_end import nearest
 from satsym.solvers.switching.answers import answered, without
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
-from satsym.solvers.switching.chattering import NARROW, Look, at_rest, chattered, look, shows
+from satsym.solvers.switching.by_smoothing import smoothed
+from satsym.solvers.switching.chattering import at_rest, chattered
 from satsym.solvers.switching.cold_start import by_scouts, by_throttle, homotopy, minimum_effort
 from satsym.solvers.switching.cold_start import saturated as held
-from satsym.solvers.switching.cold_start.recognition import Sample, guess, inside, sample
+from satsym.solvers.switching.cold_start.recognition import guess, sample
 from satsym.solvers.switching.linear import by_reach
 from satsym.solvers.switching.minimum_time import minimum_time
 from satsym.solvers.switching.refusals import refuse, refuse_angles
@@ -31,9 +31,6 @@ from satsym.status import Status
 
 ENOUGH = 1e-9
 """By this share of it a given time may fall short of the least."""
-
-BETWEEN = 4
-"""Of so many smoothed extremals one is looked at for structures with an arc less or more."""
 
 COMPARED = 100_000
 """Columns for which at most an extremal that may have more arcs is looked for, where free ends have one already."""
@@ -49,9 +46,6 @@ GIVEN = np.sqrt(2.0) ** np.arange(-8.0, 5.0)
 
 LONGER = (1.3, 1.7, 2.5)
 """Durations in which infinitely many switches are looked for, relative to one that was found."""
-
-STEADY = 0.5
-"""Share of the time off the bounds that is left after smoothing less, where that time is a singular arc's."""
 
 
 def solve(instance: Instance, progress: Progress | None = None) -> Solution:
@@ -118,7 +112,7 @@ def _endless(instance: Instance, found: Exact | homotopy.Stopped, limits: Limits
     duration = minimum_effort.first_duration(instance) if known is None else known.refined.at.end - instance.t0
     for factor in LONGER:
         given = replace(instance, tf=instance.t0 + factor * duration, tf_guess=None)
-        near = None if limits.expired else _smoothed(given, limits)
+        near = None if limits.expired else smoothed(given, limits)
         if isinstance(near, homotopy.Stopped) and near.chattering:
             endless = chattered(instance, near.chattering, limits)
             if endless is None or not at_rest(endless):
@@ -187,8 +181,8 @@ def _at_corners(instance: Instance, limits: Limits) -> list[Exact]:
 def _compared(instance: Instance, known: list[Exact], limits: Limits) -> list[Exact]:
     """Extremals that are known, and what smoothing leads to with moderate effort."""
     moderate = replace(limits, work=min(limits.work, limits.meter.spent + COMPARED))
-    smoothed = _smoothed(instance, moderate, thorough=False)
-    return known if isinstance(smoothed, homotopy.Stopped) else [*known, smoothed]
+    found = smoothed(instance, moderate, thorough=False)
+    return known if isinstance(found, homotopy.Stopped) else [*known, found]
 
 
 def _signs(instance: Instance, near: minimum_effort.Smoothed) -> Guess:
@@ -206,7 +200,7 @@ def _found(instance: Instance, limits: Limits) -> Exact | homotopy.Stopped:
     if held.applies(instance):
         if known := rest + _at_corners(instance, limits):
             return min(_compared(instance, known, limits), key=lambda one: one.trajectory.cost(instance))
-        return _smoothed(instance, limits)
+        return smoothed(instance, limits)
     if rest:
         return rest[0]
     if exact := by_reach.optimum(instance, limits):
@@ -234,7 +228,7 @@ def _by_effort(instance: Instance, limits: Limits) -> Exact | homotopy.Stopped:
                 others = _beside(instance, exact.refined.at.end - instance.t0, BESIDE, limits)
                 best = min([exact, *others], key=lambda one: one.trajectory.cost(instance))
                 return replace(best, origin=Origin.EFFORT)
-    found = _smoothed(instance, limits)
+    found = smoothed(instance, limits)
     stuck = isinstance(found, homotopy.Stopped) and found.status is Status.NOT_CONVERGED and instance.tf is None
     return (_in_given_durations(instance, limits) if stuck else None) or found
 
@@ -242,7 +236,7 @@ def _by_effort(instance: Instance, limits: Limits) -> Exact | homotopy.Stopped:
 def _in_given_durations(instance: Instance, limits: Limits) -> Exact | None:
     """The extremal of a free duration to which one of a given duration leads, the shortest in which there is one."""
     for share in (minimum_effort.first_duration(instance) * GIVEN).tolist():
-        near = _smoothed(replace(instance, tf=instance.t0 + share, tf_guess=None), limits, thorough=False)
+        near = smoothed(replace(instance, tf=instance.t0 + share, tf_guess=None), limits, thorough=False)
         if not isinstance(near, homotopy.Stopped):
             at = near.refined.at
             freed = attempt(instance, Guess(near.refined.structure, at.times, at.costates, at.end), limits)
@@ -258,58 +252,6 @@ def _beside(instance: Instance, duration: float, fractions: Sequence[float], lim
     starts = unbroken(_signs(instance, near) for near in minimum_effort.beside(instance, duration, fractions, limits))
     found = (_first_of(instance, start, limits, thorough=False) for start in starts)
     return [exact for exact in found if exact]
-
-
-def _smoothed(instance: Instance, limits: Limits, thorough: bool = True) -> Exact | homotopy.Stopped:
-    """Exact arcs with a structure that is recognised where less and less is smoothed, or why there are none.
-
-    Structures with an arc less or more are many, and those without an arc that seems to be singular seldom lead
-    anywhere, so both are tried once all smoothed extremals show no better one.
-    """
-    before: Sample | None = None
-    levels: list[minimum_effort.Smoothed] = []
-    waiting: list[tuple[Guess, float]] = []
-    unlikely: list[tuple[Guess, float]] = []
-    looks: list[Look] = []
-    endless = bool(instance.model.spec.chattering)
-    most = homotopy.LEVELS * (2 if endless else 1)
-    try:
-        for level, near in enumerate(homotopy.path(instance, limits, most)):
-            seen = sample(near.problem, near.curve)
-            levels.append(near)
-            smoothing = near.problem.control_set.smoothing
-            if endless:
-                looks.append(look(instance, near, seen))
-                if level >= homotopy.LEVELS and (looks[-1].width <= NARROW or not shows(looks)):
-                    break
-            likeliest, *plainer = _candidates(instance, seen, before)
-            exact = attempt(instance, likeliest, limits) if level <= homotopy.LEVELS else None
-            if exact is not None:
-                return replace(exact, origin=Origin.SMOOTHED, smoothing=smoothing)
-            unlikely += [(one, smoothing) for one in plainer]
-            if thorough and level % BETWEEN == BETWEEN - 1:
-                waiting += [(one, smoothing) for one in (likeliest, *plainer)]
-            before = seen
-            if limits.expired:
-                break
-    except homotopy.Stopped as stopped:
-        last_seen = stopped
-    except FAILURES as error:
-        last_seen = homotopy.Stopped(Status.NOT_CONVERGED, f"no regularised solution was found ({error})")
-    else:
-        message = "no structure recognised in regularised solutions satisfies Pontryagin's minimum principle"
-        last_seen = homotopy.Stopped(Status.NOT_CONVERGED, message, levels[-1].problem, levels[-1].curve)
-    if shows(looks):
-        return replace(last_seen, chattering=tuple(levels))
-    more = ((one, s) for candidate, s in waiting for one in unbroken(neighbours(instance, candidate, limits)))
-    for one, smoothing in chain(unlikely, more):
-        if limits.expired:
-            break
-        if exact := attempt(instance, one, limits):
-            return replace(exact, origin=Origin.SMOOTHED, smoothing=smoothing)
-    if limits.expired:
-        return replace(last_seen, status=Status.TIME_LIMIT, message=f"time was up: {last_seen.message}")
-    return last_seen
 
 
 def _resting(instance: Instance) -> Guess | None:
@@ -350,23 +292,3 @@ def _first_of(instance: Instance, first: Guess, limits: Limits, thorough: bool) 
         if exact or limits.expired:
             return exact
     return None
-
-
-def _candidates(instance: Instance, seen: Sample, before: Sample | None) -> list[Guess]:
-    """Structures of a smoothed extremal, the likeliest first."""
-    plain = guess(instance, seen)
-    free = inside(instance, seen)
-    if before is None or not free.any():
-        return [plain]
-    was = inside(instance, before)
-    steady = [_time(seen, now) >= STEADY * _time(before, then) for now, then in zip(free, was, strict=True)]
-    spec = instance.model.spec
-    joined = [name not in spec.chattering for name in spec.control_names]
-    singular = free & np.array(steady)[:, None] & np.array(joined)[:, None]
-    if not singular.any():
-        return [plain]
-    return [guess(instance, seen, singular), plain]
-
-
-def _time(seen: Sample, where: NDArray[np.bool_]) -> float:
-    return float(np.trapezoid(where.astype(float), seen.times))
