@@ -1,8 +1,8 @@
-"""Least squared distance of a body on a line that is brought to rest.
+"""Minimum squared distance of a body on a line that is brought to rest.
 
 Written by satsym from derivations/examples/fuller.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/fuller.py
-Digest: f04ba8fae52c800ac2a1fb1ead1e29ef408ac23d593c3c9a15336a23b8320fad
+Digest: 5193839c90b9645798e06789c3795b935242aec7e657a0d24700ed94a11a72ea
 """
 
 import math
@@ -13,7 +13,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'fuller',
-    'title': 'Least squared distance of a body on a line that is brought to rest',
+    'title': 'Minimum squared distance of a body on a line that is brought to rest',
     'source': 'derivations/examples/fuller.py',
     'states': (
         {'symbol': 'x1', 'latex': 'x_1', 'meaning': 'position'},

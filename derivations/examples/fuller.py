@@ -14,7 +14,7 @@ x1, x2 = symbols_of(STATES)
 
 fuller = Problem(
     name="fuller",
-    title="Least squared distance of a body on a line that is brought to rest",
+    title="Minimum squared distance of a body on a line that is brought to rest",
     model=FirstOrder(
         name="body_on_a_line",
         title="A body on a line",

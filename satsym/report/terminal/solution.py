@@ -105,7 +105,7 @@ def _interval(solution: Solution) -> list[tuple[str, str]]:
         return []
     spec = solution.instance.model.spec
     ends = sorted(spec.objective(end) for end in (solution.interval.lower, solution.interval.upper))
-    name = "largest objective" if spec.maximise else "least cost"
+    name = "maximum objective" if spec.maximise else "minimum cost"
     return [(name, f"from {figure(ends[0], 12)} to {figure(ends[1], 12)}")]
 
 

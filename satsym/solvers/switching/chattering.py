@@ -142,8 +142,8 @@ def excess(instance: Instance, t: Array, x: Array, lam: Array, u: Array) -> Arra
     """By how much H is above its minimum over the control set, shape (N,)."""
     sigma, weight = signs(instance, t, x, lam)
     low, high = instance.control_set.box
-    least = np.min([sigma * v + weight * np.abs(v) for v in (low, high, np.clip(0.0, low, high))], axis=0)
-    return np.asarray((sigma * u + weight * np.abs(u) - least).sum(axis=0))
+    lowest = np.min([sigma * v + weight * np.abs(v) for v in (low, high, np.clip(0.0, low, high))], axis=0)
+    return np.asarray((sigma * u + weight * np.abs(u) - lowest).sum(axis=0))
 
 
 def _accurate(near: Smoothed, limits: Limits) -> Curve | None:
