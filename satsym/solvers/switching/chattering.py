@@ -23,7 +23,7 @@ from satsym.solvers.collocation.curve import Curve
 from satsym.solvers.collocation.gauss import STAGES, scheme
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.refinement import refine
-from satsym.solvers.control.corners import zero
+from satsym.solvers.control.corners import enclosed
 from satsym.solvers.control.regularised import smoothed_law
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
@@ -166,16 +166,11 @@ def _corners(problem: TwoPoint, curve: Curve) -> Array:
         t, z, _ = _along(problem, curve, at)
         return signs(problem.instance, t, z[: problem.states], z[problem.states :])[0]
 
-    def value(row: int, at: float) -> float:
-        return float(values(np.array([at]))[row, 0])
-
-    found = []
-    for row, sigma in enumerate(values(tau)):
-        size = np.abs(sigma)
-        seen = np.maximum(size[:-1], size[1:]) > FAINT * size.max()
-        changes = np.flatnonzero(seen & (np.sign(sigma[:-1]) * np.sign(sigma[1:]) < 0))
-        found += [zero(partial(value, row), tau[k], tau[k + 1]) for k in changes.tolist()]
-    return np.array(found)
+    sigma = values(tau)
+    size = np.abs(sigma)
+    seen = np.maximum(size[:, :-1], size[:, 1:]) > FAINT * size.max(axis=1, keepdims=True)
+    rows, at = np.nonzero(seen & (np.sign(sigma[:, :-1]) * np.sign(sigma[:, 1:]) < 0))
+    return enclosed(lambda times: values(times)[rows, np.arange(len(rows))], tau[at], tau[at + 1])
 
 
 def _interval(instance: Instance, problem: TwoPoint, curve: Curve, edges: Array) -> CostInterval:
