@@ -130,6 +130,26 @@ class Certificate:
     not_checked: tuple[Kind, ...] = ()
 
 
+@dataclass(frozen=True)
+class CostInterval:
+    """Between which costs the least lies, where it takes infinitely many switches.
+
+    What is shown is then the optimum of a regularised problem: an admissible motion, whose cost is the upper end.
+
+    Attributes
+    ----------
+    lower, upper
+        The least cost is not above the latter, nor below the former if the problem is convex; otherwise that is an
+        estimate to first order.
+    smoothing
+        So many times half the squared controls are added to the running cost of the regularised problem.
+    """
+
+    lower: float
+    upper: float
+    smoothing: float
+
+
 @dataclass(frozen=True, eq=False)
 class Solution:
     """How a solver run ended, and where.
@@ -157,6 +177,8 @@ class Solution:
         ``None`` where there is no answer to certify.
     intermediate
         Of a continuation: the answers of the problems before this one, in order.
+    interval
+        Where controls chatter, what the least cost lies between.
     """
 
     instance: Instance
@@ -174,6 +196,7 @@ class Solution:
     wall_s: float
     certificate: Certificate | None = None
     intermediate: tuple[Solution, ...] = ()
+    interval: CostInterval | None = None
 
 
 @dataclass(frozen=True)

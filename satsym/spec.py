@@ -39,6 +39,7 @@ _OF_VARIABLES = (
 _UNLESS_DEFAULT = (
     *(*_OF_LINEAR_MODELS, "keplerian", "switching", "coordinates", "velocities", "quantities", "balances"),
     *("switching_curve", "conditions", "equilibria", "mode_groups", "control_parts", "maximise", "objective_unit"),
+    "chattering",
 )
 
 
@@ -221,6 +222,9 @@ class ProblemSpec:
         Whether the author's objective is to be large; functions are those of its negative, the cost.
     objective_unit
         Of the objective, where it is stated; else empty.
+    chattering
+        Names of the controls whose singular arcs, within their bounds, are reached and left by infinitely many switches
+        only.
     """
 
     name: str
@@ -252,6 +256,7 @@ class ProblemSpec:
     control_parts: tuple[ControlPart, ...] = ()
     maximise: bool = False
     objective_unit: str = ""
+    chattering: tuple[str, ...] = ()
 
     def objective(self, cost: float) -> float:
         """What the author calls the objective, where the cost is this; and the other way round."""

@@ -23,6 +23,7 @@ from satsym.symbolic.model import Demand, t, variables_of
 from satsym.symbolic.principle import product, set_laws
 from satsym.symbolic.roots import Root, Vertex
 from satsym.symbolic.switching.curve import states_of
+from satsym.symbolic.switching.singular import chattering
 
 
 def render(derivation: Derivation, source: str) -> str:
@@ -83,6 +84,7 @@ def spec(derivation: Derivation, source: str) -> ProblemSpec:
         keplerian=strength_of(derivation) is not None,
         switching=switches(derivation),
         switching_curve=states_of(derivation) or (),
+        chattering=chattering(derivation),
         coordinates=tuple(q.name for q in parts.coordinates) if (parts := symplectic.split(derivation)) else (),
         velocities=tuple(v.name for v in parts.velocities) if parts else (),
         quantities=_quantities(derivation),

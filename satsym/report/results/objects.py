@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from satsym.arrays import Array
     from satsym.instance import Instance
     from satsym.kernels import Kernels
-    from satsym.solution import Simulation, Solution
+    from satsym.solution import CostInterval, Simulation, Solution
 
 
 SCHEMA = 1
@@ -76,8 +76,15 @@ def solution_object(solution: Solution) -> dict[str, Any]:
         "x_initial": _each(states, solution.x, 0),
         "t_initial": _at(solution.times, 0),
         "parameters_found": _found(solution),
+        **(_interval(solution.interval, spec) if solution.interval else {}),
         **_continuation(solution),
     }
+
+
+def _interval(interval: CostInterval, spec: ProblemSpec) -> dict[str, Any]:
+    """What the best objective lies between, in the author's sense, the smaller first; and how much was smoothed."""
+    ends = sorted(spec.objective(end) for end in (interval.lower, interval.upper))
+    return {"cost_interval": plain(ends), "smoothing": plain(interval.smoothing)}
 
 
 def _continuation(solution: Solution) -> dict[str, list[dict[str, Any]]]:

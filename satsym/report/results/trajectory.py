@@ -17,7 +17,7 @@ from satsym.report.results.certificate import Stored as StoredCertificate
 from satsym.report.results.certificate import absent
 from satsym.report.results.files import Content
 from satsym.report.results.set_list import LIST, unusable
-from satsym.solution import Invariant, Iteration, Simulation, Solution
+from satsym.solution import CostInterval, Invariant, Iteration, Simulation, Solution
 from satsym.status import Status
 from satsym.wording import printable
 
@@ -58,6 +58,8 @@ class _Result(msgspec.Struct):
     wall_s: float | None = None
     certificate: StoredCertificate | None = None
     parameters_found: dict[str, float | None] = {}
+    cost_interval: tuple[float, float] | None = None
+    smoothing: float = 0.0
     feedback: str = ""
     invariants: dict[str, _Kept] = {}
     metrics: dict[str, float | None] = {}
@@ -177,7 +179,16 @@ def _solution(instance: Instance, result: _Result, stored: Stored) -> Solution:
         history=tuple(Iteration(k, cost, left) for k, (cost, left) in enumerate(history)),
         wall_s=absent(result.wall_s),
         certificate=result.certificate.certificate(spec) if result.certificate else None,
+        interval=_interval(result, spec),
     )
+
+
+def _interval(result: _Result, spec: ProblemSpec) -> CostInterval | None:
+    """What the least cost lies between, where that is stored."""
+    if result.cost_interval is None:
+        return None
+    lower, upper = sorted(spec.objective(end) for end in result.cost_interval)
+    return CostInterval(lower, upper, result.smoothing)
 
 
 def _flight(instance: Instance, result: _Result, stored: Stored) -> Simulation:

@@ -38,6 +38,7 @@ def solution_text(solution: Solution, colour: bool = False) -> str:
     unit = time_unit(instance.model.spec)
     facts = [
         _objective(instance, solution.objective),
+        *_interval(solution),
         *_found(instance, unit),
         ("final time", f"{figure(_last(solution.times), 10)} {unit}".rstrip()),
         ("boundary type", f"{instance.boundary_type}, {_BOUNDARY[instance.boundary_type]}"),
@@ -96,6 +97,16 @@ def _objective(instance: Instance, cost: float) -> tuple[str, str]:
         if spec.maximise
         else ("cost J", text)
     )
+
+
+def _interval(solution: Solution) -> list[tuple[str, str]]:
+    """What the best objective lies between, where it takes infinitely many switches."""
+    if solution.interval is None:
+        return []
+    spec = solution.instance.model.spec
+    ends = sorted(spec.objective(end) for end in (solution.interval.lower, solution.interval.upper))
+    name = "maximum objective" if spec.maximise else "minimum cost"
+    return [(name, f"from {figure(ends[0], 12)} to {figure(ends[1], 12)}")]
 
 
 def _found(instance: Instance, time: str) -> list[tuple[str, str]]:

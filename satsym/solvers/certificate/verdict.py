@@ -61,6 +61,11 @@ def examined(solution: Solution, deadline: float, seed: int = 0) -> tuple[Certif
 
 def _judged(solution: Solution, deadline: float, seed: int) -> tuple[Certificate, Competitor | None]:
     """The certificate that the kernels give, whatever they are worth, and the cheapest competitor."""
+    if solution.interval is not None:
+        from satsym.solvers.certificate.switching import chattering
+
+        with np.errstate(all="ignore"):
+            return chattering.certify(solution, solution.interval), None
     if solution.method == "bang-bang":
         from satsym.solvers.certificate.switching import conditions as switching
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from typing import TypeVar
 
 import numpy as np
@@ -98,15 +98,16 @@ def _begun(instance: Instance, effort: bool) -> Iterator[tuple[Instance, bool, f
 
     The straight line does not move such a state, and where nothing moves directions may do nothing. More is smoothed
     where that leads nowhere: what directions of any length may do together with states can be worth more than their
-    squares cost. What takes great effort comes last.
+    squares cost. What takes great effort comes last. The motion is simulated when its turn comes.
     """
-    near = steered(instance)
-    both = [instance] if near is None else [instance, near]
+    starts: list[Callable[[], Instance | None]] = [lambda: instance, cache(partial(steered, instance))]
     if len(instance.final) < len(instance.initial):
-        both.reverse()
-    yield from ((one, False, factor) for factor in SMOOTHER for one in both)
-    if effort:
-        yield from ((one, True, 1.0) for one in both)
+        starts.reverse()
+    turns = [(False, factor) for factor in SMOOTHER] + ([(True, 1.0)] if effort else [])
+    for much, factor in turns:
+        for start in starts:
+            if (one := start()) is not None:
+                yield one, much, factor
 
 
 def _directed(

@@ -54,20 +54,21 @@ def cold_start(problem: TwoPoint, limits: Limits, quick: bool = False) -> Start:
         Try the first way only.
     """
     free, guess = problem.relaxed(float("inf")), problem.instance.guess
-    line = paths.start(free)
+    path = paths.first(free)
+    line = paths.start(free, path)
 
-    def from_line(problem: TwoPoint) -> Attempt:
+    def shorter(problem: TwoPoint) -> Attempt:
         return from_path(problem, paths.first(problem), limits)
 
     attempts: list[tuple[Origin, Callable[[], Attempt | None]]] = [
         (
             Origin.GUESS if guess else Origin.STRAIGHT_LINE,
-            lambda: straight_through(line, System(free, line.mesh, STAGES), limits) or from_line(free),
+            lambda: straight_through(line, System(free, line.mesh, STAGES), limits) or from_path(free, path, limits),
         ),
         (Origin.PROBLEMS, lambda: along_problems(free, geometric, limits)),
         (Origin.DRAWN, lambda: _drawn(free, limits)),
         (Origin.STRAIGHT_PROBLEMS, lambda: along_problems(free, straight, limits)),
-        (Origin.DURATIONS, lambda: along_durations(free, STAGES, limits, from_line)),
+        (Origin.DURATIONS, lambda: along_durations(free, STAGES, limits, shorter)),
         (Origin.ENDS, lambda: along_ends(free, limits, lambda easier: cold_start(easier, limits).found)),
     ]
     turning = [] if guess else spirals(free, TURNS)

@@ -13,6 +13,7 @@ from satsym.solvers.collocation.curve import Curve, stage_times
 from satsym.solvers.collocation.gauss import STAGES
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import straight
+from satsym.solvers.failures import FAILURES
 
 States = Callable[[Array], Array]
 """Scaled states, shape (n, M), at M times tau in [0, 1]."""
@@ -24,7 +25,10 @@ WAVES = 4
 """Of a path that is drawn."""
 
 STEPS = 4000
-"""RK4 steps of a motion without control."""
+"""RK4 steps of a motion under a control that is guessed, and at most of one without control."""
+
+FEWEST, QUICK = 400, 20.0
+"""RK4 steps of a motion without control at least, and in the time in which its quickest mode turns by one radian."""
 
 
 def first(problem: TwoPoint) -> States:
@@ -62,9 +66,15 @@ def bent(problem: TwoPoint, rng: np.random.Generator, amplitude: float) -> State
     return drawn
 
 
-def start(problem: TwoPoint) -> Curve:
-    """Where to begin as a curve, with the costates that are guessed."""
-    begun, n = curve(problem, first(problem)), problem.states
+def start(problem: TwoPoint, path: States | None = None) -> Curve:
+    """Where to begin as a curve, with the costates that are guessed.
+
+    Parameters
+    ----------
+    path
+        :func:`first`, if that is known.
+    """
+    begun, n = curve(problem, path or first(problem)), problem.states
     times = stage_times(begun.mesh, STAGES)
     for name, values in problem.instance.guess.costate.items():
         i = n + problem.instance.model.spec.state_names.index(name)
@@ -123,15 +133,29 @@ def _under_guess(problem: TwoPoint) -> States | None:
 
 def _coasting(problem: TwoPoint, state: Array, backwards: bool) -> States | None:
     """The motion without control through a scaled state; ``None`` where it leaves the domain."""
-    instance, grid = problem.instance, Grid.uniform(0.0, 1.0, STEPS)
+    instance, start = problem.instance, tuple((state * problem.scale.state).tolist())
+    steps = _steps(problem, start, backwards)
+    grid = Grid.uniform(0.0, 1.0, steps)
     times = instance.t0 + problem.duration * (1.0 - grid.nodes if backwards else grid.nodes)
-    none = np.zeros((len(instance.model.spec.controls), STEPS + 1))
-    start = tuple((state * problem.scale.state).tolist())
+    none = np.zeros((len(instance.model.spec.controls), steps + 1))
     x, _, _ = instance.model.forward(times, start, none, none[:, 1:], instance.parameters)
     if not np.isfinite(x).all() or not instance.model.in_domain(x):
         return None
     found = (x[:, ::-1] if backwards else x) / problem.scale.state[:, None]
     return lambda tau: np.array([np.interp(tau, grid.nodes, row) for row in found])
+
+
+def _steps(problem: TwoPoint, start: tuple[float, ...], backwards: bool) -> int:
+    """So many that the quickest mode of a motion without control, as it is at its start, is followed."""
+    instance, n = problem.instance, problem.states
+    none = (0.0,) * len(instance.model.spec.controls)
+    begin = instance.t0 + problem.duration if backwards else instance.t0
+    try:
+        slopes = np.array(instance.model.jacobian_x(begin, start, none, instance.parameters)).reshape(n, n)
+        turned = float(np.abs(np.linalg.eigvals(slopes)).max()) * problem.duration
+    except FAILURES:
+        return STEPS
+    return int(min(max(FEWEST, np.ceil(QUICK * turned)), STEPS))
 
 
 def _end_without_costates(problem: TwoPoint) -> Array | None:

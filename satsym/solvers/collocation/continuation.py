@@ -7,7 +7,6 @@ is met or left. Newton converges if it starts near, so the bounds move in as far
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from satsym.solvers.collocation.curve import Curve, Path, stage_times
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.system import System
-from satsym.solvers.control.corners import zero
+from satsym.solvers.control.corners import enclosed
 from satsym.solvers.iteration import Limits
 
 FIRST_FRACTION = 0.35
@@ -91,16 +90,11 @@ def by_bound(problem: TwoPoint, curve: Path) -> list[Array]:
         law = problem.control(at, curve(at), curve.theta, bounded=False)
         return problem.control_set.excess(law)
 
-    def distance_at(row: int, at: float) -> float:
-        return float(excess(np.array([at]))[row, 0])
-
     values = excess(tau)
-    found: list[Array] = []
-    for row, distance in enumerate(values):
-        signs = np.sign(distance) if np.isfinite(distance).all() else np.ones(len(tau))
-        changes = np.flatnonzero(signs[:-1] * signs[1:] < 0)
-        found.append(np.array([zero(partial(distance_at, row), tau[k], tau[k + 1]) for k in changes]))
-    return found
+    signs = np.where(np.isfinite(values).all(axis=1, keepdims=True), np.sign(values), 1.0)
+    rows, at = np.nonzero(signs[:, :-1] * signs[:, 1:] < 0)
+    met = enclosed(lambda times: excess(times)[rows, np.arange(len(rows))], tau[at], tau[at + 1])
+    return [met[rows == row] for row in range(len(values))]
 
 
 def kept(problem: TwoPoint, curve: Curve) -> bool:

@@ -37,26 +37,32 @@ def zeros(times: Array, values: Array) -> list[float]:
     return sorted(found)
 
 
-def zero(function: Callable[[float], float], low: float, high: float) -> float:
-    """The zero of a continuous function between two points where its signs differ, to the last digits.
+def enclosed(function: Callable[[Array], Array], low: Array, high: Array) -> Array:
+    """The zeros of continuous functions between points where the signs of each differ, to the last digits; shape (K,).
 
-    Secant steps that keep the zero enclosed (the Illinois method). The library function for this would cost an
-    import several times longer than solving.
+    Secant steps that keep each zero enclosed (the Illinois method), all at once. The library function for this would
+    cost an import several times longer than solving.
+
+    Parameters
+    ----------
+    function
+        The value of each at a time of its own, from shape (K,) to (K,).
     """
-    at_low, at_high = function(low), function(high)
+    if not len(low):
+        return np.zeros(0)
+    at_low, at_high, left = function(low), function(high), np.ones(len(low), dtype=bool)
     for _ in range(MOST_STEPS):
-        if at_high == 0.0 or high == low:
+        left &= (at_high != 0.0) & (high != low)
+        if not left.any():
             break
-        between = high - at_high * (high - low) / (at_high - at_low)
-        value = function(between)
-        if value * at_high < 0.0:
-            low, at_low = high, at_high
-        else:
-            at_low /= 2.0
-        moved = abs(between - high)
+        rise = np.where(left, at_high - at_low, 1.0)
+        between = np.where(left, high - at_high * (high - low) / rise, high)
+        value = np.where(left, function(between), at_high)
+        crossed = left & (value * at_high < 0.0)
+        low, at_low = np.where(crossed, high, low), np.where(crossed, at_high, np.where(left, at_low / 2.0, at_low))
+        moved = np.abs(between - high)
         high, at_high = between, value
-        if moved <= LAST_DIGITS * max(abs(high), 1.0):
-            break
+        left &= moved > LAST_DIGITS * np.maximum(np.abs(high), 1.0)
     return high
 
 

@@ -14,6 +14,9 @@ from satsym.solvers.switching.structure import LOWER, SINGULAR, UPPER
 NUDGE = 1e-30
 """Imaginary step of derivatives: exact, for nothing is subtracted."""
 
+BEYOND = 10.0
+"""Times the width of its range by which a singular control is off its middle where nothing brings it back."""
+
 PLACES, WEIGHTS = np.array([-2.0, -1.0, 1.0, 2.0]), np.array([1.0, -8.0, 8.0, -1.0]) / 12.0
 SHIFT = 1e-3
 """Places and weights of a central difference of fourth order, and its step as a share of the duration."""
@@ -38,6 +41,9 @@ class Field:
             for level, low, high in zip(levels, *instance.control_set.switching, strict=True)
         )
         self.singular = levels.index(SINGULAR) if SINGULAR in levels else None
+        if self.singular is not None:
+            low, high = instance.lower[self.singular], instance.upper[self.singular]
+            self.middle, self.beyond = (low + high) / 2.0, BEYOND * (high - low)
 
     def kept_at(self, t: float, z: list[float]) -> Row:
         """The argument ``bounds`` of kernels that keep what switches as it is there."""
@@ -168,6 +174,8 @@ class Field:
         value = -float(slopes @ rates) / acting if acting else math.nan
         if not math.isfinite(value):
             raise ArithmeticError("the second derivative of the switching function does not determine the control")
+        if abs(value - self.middle) > self.beyond:
+            raise ArithmeticError("the singular control leaves its bounds for good")
         return self._with(value), slopes[:-1], by_control
 
     def _turning(self, t: float, z: list[float], u: tuple[float, ...], rates: Array) -> Array:
@@ -191,6 +199,8 @@ class Field:
         curvature = np.concatenate([-by_control[n:], by_control[:n]])
         gradient = np.concatenate([(f[n:, 2] - f[n:, 1]) / 2.0, column])
         found = (curvature @ f[:, 0] + gradient @ slopes[:, :, 0]).imag / NUDGE
+        if self.model.spec.autonomous:
+            return np.asarray(found)
         end = self.instance.tf if self.instance.tf is not None else self.instance.t0 + max(1.0, abs(t))
         step = SHIFT * (end - self.instance.t0)
         explicit = self._by_time(t + step * PLACES, here[:, None] + step * PLACES * rates[:, None])

@@ -28,7 +28,8 @@ def minimum_time(instance: Instance) -> Instance | None:
     """The problem of least time with the same motion, bounds and ends; ``None`` where constraints tie the end."""
     if instance.model.spec.multipliers:
         return None
-    model = Kernels(replace(instance.model.spec, has_terminal_cost=False), _LeastTime(instance.model).functions())
+    spec = replace(instance.model.spec, has_terminal_cost=False, chattering=())
+    model = Kernels(spec, _LeastTime(instance.model).functions())
     return replace(instance, model=model, tf=None, tf_guess=instance.tf)
 
 

@@ -9,18 +9,19 @@ from functools import partial
 from itertools import chain
 
 import numpy as np
-from numpy.typing import NDArray
 
 from satsym.instance import Instance
 from satsym.solution import Progress, Solution
-from satsym.solvers.failures import FAILURES, tried, unbroken
+from satsym.solvers.failures import tried, unbroken
 from satsym.solvers.iteration import Limits, watched
 from satsym.solvers.nearest_end import nearest
 from satsym.solvers.switching.answers import answered, without
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
+from satsym.solvers.switching.by_smoothing import smoothed
+from satsym.solvers.switching.chattering import at_rest, chattered
 from satsym.solvers.switching.cold_start import by_scouts, by_throttle, homotopy, minimum_effort
 from satsym.solvers.switching.cold_start import saturated as held
-from satsym.solvers.switching.cold_start.recognition import Sample, guess, inside, sample
+from satsym.solvers.switching.cold_start.recognition import guess, sample
 from satsym.solvers.switching.linear import by_reach
 from satsym.solvers.switching.minimum_time import minimum_time
 from satsym.solvers.switching.refusals import refuse, refuse_angles
@@ -30,9 +31,6 @@ from satsym.status import Status
 
 ENOUGH = 1e-9
 """By this share of it a given time may fall short of the least."""
-
-BETWEEN = 4
-"""Of so many smoothed extremals one is looked at for structures with an arc less or more."""
 
 COMPARED = 100_000
 """Columns for which at most an extremal that may have more arcs is looked for, where free ends have one already."""
@@ -46,8 +44,8 @@ ADOPTED = 3
 GIVEN = np.sqrt(2.0) ** np.arange(-8.0, 5.0)
 """Durations that are given in turn where a free one is not found, as shares of the motion's own time scale."""
 
-STEADY = 0.5
-"""Share of the time off the bounds that is left after smoothing less, where that time is a singular arc's."""
+LONGER = (1.3, 1.7, 2.5)
+"""Durations in which infinitely many switches are looked for, relative to one that was found."""
 
 
 def solve(instance: Instance, progress: Progress | None = None) -> Solution:
@@ -77,6 +75,9 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     limits, history = watched(instance, progress)
     with np.errstate(all="ignore"):
         found = _found(instance, limits)
+        endless = _endless(instance, found, limits)
+        if endless is not None:
+            return replace(endless, iterations=len(history), history=tuple(history), wall_s=time.perf_counter() - began)
         if isinstance(found, homotopy.Stopped):
             found = _by_least_time(instance, found, limits)
         if isinstance(found, homotopy.Stopped):
@@ -97,6 +98,28 @@ def _throttled(instance: Instance, progress: Progress | None) -> Solution:
     if isinstance(found, homotopy.Stopped):
         return without(instance, found, tuple(history), began)
     return answered(instance, found, tuple(history), began)
+
+
+def _endless(instance: Instance, found: Exact | homotopy.Stopped, limits: Limits) -> Solution | None:
+    """What infinitely many switches lead to; where the final time is free, in a longer one if that is cheaper."""
+    if not instance.model.spec.chattering:
+        return None
+    if isinstance(found, homotopy.Stopped) and found.chattering:
+        return chattered(instance, found.chattering, limits)
+    if instance.tf is not None:
+        return None
+    known = None if isinstance(found, homotopy.Stopped) else found
+    duration = minimum_effort.first_duration(instance) if known is None else known.refined.at.end - instance.t0
+    for factor in LONGER:
+        given = replace(instance, tf=instance.t0 + factor * duration, tf_guess=None)
+        near = None if limits.expired else smoothed(given, limits)
+        if isinstance(near, homotopy.Stopped) and near.chattering:
+            endless = chattered(instance, near.chattering, limits)
+            if endless is None or not at_rest(endless):
+                return None
+            cheaper = known is None or endless.objective < known.trajectory.cost(instance)
+            return replace(endless, message=f"{endless.message}; a longer time costs the same") if cheaper else None
+    return None
 
 
 def _by_least_time(instance: Instance, stopped: homotopy.Stopped, limits: Limits) -> Exact | homotopy.Stopped:
@@ -158,8 +181,8 @@ def _at_corners(instance: Instance, limits: Limits) -> list[Exact]:
 def _compared(instance: Instance, known: list[Exact], limits: Limits) -> list[Exact]:
     """Extremals that are known, and what smoothing leads to with moderate effort."""
     moderate = replace(limits, work=min(limits.work, limits.meter.spent + COMPARED))
-    smoothed = _smoothed(instance, moderate, thorough=False)
-    return known if isinstance(smoothed, homotopy.Stopped) else [*known, smoothed]
+    found = smoothed(instance, moderate, thorough=False)
+    return known if isinstance(found, homotopy.Stopped) else [*known, found]
 
 
 def _signs(instance: Instance, near: minimum_effort.Smoothed) -> Guess:
@@ -177,7 +200,7 @@ def _found(instance: Instance, limits: Limits) -> Exact | homotopy.Stopped:
     if held.applies(instance):
         if known := rest + _at_corners(instance, limits):
             return min(_compared(instance, known, limits), key=lambda one: one.trajectory.cost(instance))
-        return _smoothed(instance, limits)
+        return smoothed(instance, limits)
     if rest:
         return rest[0]
     if exact := by_reach.optimum(instance, limits):
@@ -187,7 +210,8 @@ def _found(instance: Instance, limits: Limits) -> Exact | homotopy.Stopped:
     best = _by_effort(instance, limits)
     for _ in range(ADOPTED):
         cheapest = None if isinstance(best, homotopy.Stopped) else best
-        better = None if limits.expired else tried(partial(by_scouts.cheaper, instance, cheapest, limits))
+        done = limits.expired or (isinstance(best, homotopy.Stopped) and best.chattering)
+        better = None if done else tried(partial(by_scouts.cheaper, instance, cheapest, limits))
         if better is None:
             break
         best = replace(better, origin=Origin.DRAWN)
@@ -204,7 +228,7 @@ def _by_effort(instance: Instance, limits: Limits) -> Exact | homotopy.Stopped:
                 others = _beside(instance, exact.refined.at.end - instance.t0, BESIDE, limits)
                 best = min([exact, *others], key=lambda one: one.trajectory.cost(instance))
                 return replace(best, origin=Origin.EFFORT)
-    found = _smoothed(instance, limits)
+    found = smoothed(instance, limits)
     stuck = isinstance(found, homotopy.Stopped) and found.status is Status.NOT_CONVERGED and instance.tf is None
     return (_in_given_durations(instance, limits) if stuck else None) or found
 
@@ -212,7 +236,7 @@ def _by_effort(instance: Instance, limits: Limits) -> Exact | homotopy.Stopped:
 def _in_given_durations(instance: Instance, limits: Limits) -> Exact | None:
     """The extremal of a free duration to which one of a given duration leads, the shortest in which there is one."""
     for share in (minimum_effort.first_duration(instance) * GIVEN).tolist():
-        near = _smoothed(replace(instance, tf=instance.t0 + share, tf_guess=None), limits, thorough=False)
+        near = smoothed(replace(instance, tf=instance.t0 + share, tf_guess=None), limits, thorough=False)
         if not isinstance(near, homotopy.Stopped):
             at = near.refined.at
             freed = attempt(instance, Guess(near.refined.structure, at.times, at.costates, at.end), limits)
@@ -228,45 +252,6 @@ def _beside(instance: Instance, duration: float, fractions: Sequence[float], lim
     starts = unbroken(_signs(instance, near) for near in minimum_effort.beside(instance, duration, fractions, limits))
     found = (_first_of(instance, start, limits, thorough=False) for start in starts)
     return [exact for exact in found if exact]
-
-
-def _smoothed(instance: Instance, limits: Limits, thorough: bool = True) -> Exact | homotopy.Stopped:
-    """Exact arcs with a structure that is recognised where less and less is smoothed, or why there are none.
-
-    Structures with an arc less or more are many, so they are tried once all smoothed extremals show no better one.
-    """
-    before: Sample | None = None
-    last: minimum_effort.Smoothed | None = None
-    waiting: list[tuple[Guess, float]] = []
-    try:
-        for level, near in enumerate(homotopy.path(instance, limits)):
-            seen, last = sample(near.problem, near.curve), near
-            smoothing = near.problem.control_set.smoothing
-            for candidate in _candidates(instance, seen, before):
-                if exact := attempt(instance, candidate, limits):
-                    return replace(exact, origin=Origin.SMOOTHED, smoothing=smoothing)
-                if thorough and level % BETWEEN == BETWEEN - 1:
-                    waiting.append((candidate, smoothing))
-            before = seen
-            if limits.expired:
-                break
-    except homotopy.Stopped as stopped:
-        last_seen = stopped
-    except FAILURES as error:
-        last_seen = homotopy.Stopped(Status.NOT_CONVERGED, f"no regularised solution was found ({error})")
-    else:
-        message = "no structure recognised in regularised solutions satisfies Pontryagin's minimum principle"
-        assert last is not None
-        last_seen = homotopy.Stopped(Status.NOT_CONVERGED, message, last.problem, last.curve)
-    for candidate, smoothing in waiting:
-        for one in unbroken(neighbours(instance, candidate, limits)):
-            if exact := attempt(instance, one, limits):
-                return replace(exact, origin=Origin.SMOOTHED, smoothing=smoothing)
-            if limits.expired:
-                break
-    if limits.expired:
-        return replace(last_seen, status=Status.TIME_LIMIT, message=f"time was up: {last_seen.message}")
-    return last_seen
 
 
 def _resting(instance: Instance) -> Guess | None:
@@ -307,21 +292,3 @@ def _first_of(instance: Instance, first: Guess, limits: Limits, thorough: bool) 
         if exact or limits.expired:
             return exact
     return None
-
-
-def _candidates(instance: Instance, seen: Sample, before: Sample | None) -> list[Guess]:
-    """Structures of a smoothed extremal, the likeliest first."""
-    plain = guess(instance, seen)
-    free = inside(instance, seen)
-    if before is None or not free.any():
-        return [plain]
-    was = inside(instance, before)
-    steady = [_time(seen, now) >= STEADY * _time(before, then) for now, then in zip(free, was, strict=True)]
-    singular = free & np.array(steady)[:, None]
-    if not singular.any():
-        return [plain]
-    return [guess(instance, seen, singular), plain]
-
-
-def _time(seen: Sample, where: NDArray[np.bool_]) -> float:
-    return float(np.trapezoid(where.astype(float), seen.times))

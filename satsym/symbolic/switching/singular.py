@@ -66,8 +66,7 @@ def generalised_legendre_clebsch(so_far: Derivation) -> Step | None:
     for search in searches(so_far):
         if search.outcome != "order" or search.order % 2:
             continue
-        half = search.order // 2
-        value = sp.factor((-1) ** half * search.slope)
+        value = _kelley(search)
         symbol = s.kelley(search.control, search.branch)
         equations.append(Equation(f"{search.control.name}{search.branch}", symbol, value))
         checks.append(_slope_of_differences(so_far, search))
@@ -85,6 +84,29 @@ def generalised_legendre_clebsch(so_far: Derivation) -> Step | None:
     return Step(
         "generalised_legendre_clebsch", rule, tuple(equations), ("singular_arcs",), tuple(checks), tuple(conclusions)
     )
+
+
+def chattering(so_far: Derivation) -> tuple[str, ...]:
+    """Names of the controls whose singular arcs no arc at a bound joins with a finite number of switches.
+
+    So it is where the control first appears in a derivative of order 2q with an even q, and the generalised
+    Legendre-Clebsch condition holds strictly: within its bounds, the control would have to leave such an arc towards
+    either side with a switching function of the wrong sign (Kelley, Kopp and Moyer, 1967; McDanell and Powers,
+    Necessary conditions for joining optimal singular and nonsingular subarcs, SIAM Journal on Control 9, 1971).
+    """
+    if so_far.problem is None or "singular_arcs" not in so_far:
+        return ()
+    return tuple(
+        search.control.name
+        for search in searches(so_far)
+        if search.outcome == "order" and not search.branch and search.order % 4 == 0
+        if (sign(so_far.problem) * _kelley(search)).is_positive
+    )
+
+
+def _kelley(search: Search) -> sp.Expr:
+    """What the generalised Legendre-Clebsch condition is about, of an even order."""
+    return sp.factor((-1) ** (search.order // 2) * search.slope)
 
 
 def _kept(search: Search) -> tuple[sp.Expr, ...]:

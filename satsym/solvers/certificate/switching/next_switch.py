@@ -27,9 +27,9 @@ AHEAD, TURNING = 1e-6, 1e-3
 """Share of the time that is left after which the level of a control is looked at that switches at once, and by how much
 its switching function, relative to its size, changes at least in that time."""
 
-AT_THE_END = 1e-12
+AT_THE_END = 1e-11
 """Share of the time within which a switch before the end is rounding: a costate that vanishes at the end does so there
-to the last digits only."""
+to the last digits only. What is shorter is no arc for the solver either."""
 
 
 @dataclass(frozen=True, eq=False)

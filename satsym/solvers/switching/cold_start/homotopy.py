@@ -33,6 +33,9 @@ from satsym.solvers.switching.cold_start.minimum_effort import (
 )
 from satsym.status import Status
 
+STEPS = 200
+"""RK4 steps of a motion under a constant control."""
+
 LEVELS = 12
 TIGHTER = 4.0
 """By so much less is smoothed at each level."""
@@ -48,10 +51,12 @@ class Stopped(Exception):
     problem: TwoPoint | None = None
     curve: Path | None = None
     """The last regularised problem that was solved, if any."""
+    chattering: tuple[Smoothed, ...] = ()
+    """All regularised problems that were solved, the least smoothed last, where that shows infinitely many switches."""
 
 
-def path(instance: Instance, limits: Limits) -> Iterator[Smoothed]:
-    """Smoothed extremals, less and less smoothed.
+def path(instance: Instance, limits: Limits, most: int = LEVELS) -> Iterator[Smoothed]:
+    """Smoothed extremals, less and less smoothed, that many times.
 
     Raises
     ------
@@ -69,7 +74,7 @@ def path(instance: Instance, limits: Limits) -> Iterator[Smoothed]:
         raise Stopped(Status.NOT_CONVERGED, f"the weight of |u| could be brought in only {reached:.0%}", problem, curve)
     problem = weighed(1.0)
     yield Smoothed(problem, curve)
-    for _ in range(LEVELS):
+    for _ in range(most):
         before = smoothing
 
         def sharper(fraction: float, before: float = before, problem: TwoPoint = problem) -> TwoPoint:
@@ -141,7 +146,18 @@ def first_smoothing(instance: Instance) -> float:
         abs(model.running_cost(instance.t0, x, tuple(u), p)) for u in (instance.lower, instance.upper, (0.0,) * m)
     )
     effort = sum(value * value for value in largest)
-    return 2.0 * (cost or 1.0) / effort if effort > 0.0 else 1.0
+    return 2.0 * (cost or _later(instance) or 1.0) / effort if effort > 0.0 else 1.0
+
+
+def _later(instance: Instance) -> float:
+    """What time and state cost in the mean where they cost nothing at first: the least among constant controls."""
+    duration = first_duration(instance) if instance.tf is None else instance.tf - instance.t0
+    times, p, found = instance.t0 + np.linspace(0.0, duration, STEPS + 1), instance.parameters, [0.0]
+    for held in (instance.lower, instance.upper, instance.control_set.rest):
+        u = np.repeat(np.array(held)[:, None], STEPS + 1, axis=1)
+        x = instance.model.forward(times, instance.initial, u, u[:, 1:], p)[0]
+        found.append(abs(float(np.mean(instance.model.running_cost_batch(times, x, u, p)))))
+    return min((cost for cost in found if 0.0 < cost < float("inf")), default=0.0)
 
 
 def _unbounded(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve]:

@@ -1,0 +1,30 @@
+"""Fuller's problem: a body on a line is brought to rest such that its distance from there, squared, adds up to least.
+
+A. T. Fuller (Relay control systems optimized for various performance criteria, 1960) found that the force switches
+infinitely often in finite time: its singular arc, at rest, is of second order, and no bang-bang arc joins such a one
+(Kelley, Kopp and Moyer, Singular extremals, 1967; Zelikin and Borisov, Theory of Chattering Control, 1994).
+"""
+
+from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
+
+STATES = (Variable("x1", "x_1", meaning="position"), Variable("x2", "x_2", meaning="velocity"))
+CONTROLS = (Variable("u", "u", meaning="force per mass"),)
+x1, x2 = symbols_of(STATES)
+(u,) = symbols_of(CONTROLS)
+
+fuller = Problem(
+    name="fuller",
+    title="Minimum squared distance of a body on a line that is brought to rest",
+    model=FirstOrder(
+        name="body_on_a_line",
+        title="A body on a line",
+        states=STATES,
+        controls=CONTROLS,
+        parameters=(),
+        rates={x1: x2, x2: u},
+    ),
+    running_cost=x1**2,
+    control_set="box",
+)
+
+PROBLEMS = (fuller,)

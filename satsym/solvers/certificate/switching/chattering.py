@@ -1,0 +1,137 @@
+"""The certificate of a motion whose controls would have to switch infinitely often: how far from the optimum it is.
+
+The motion and its costates are integrated again, from node to node: neighbouring extremals of a problem that is hardly
+regularised part too quickly for the initial costates alone to say where they end. What its cost exceeds the least by is
+integrated with them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.instance import Instance
+from satsym.solution import Certificate, Check, CostInterval, Solution
+from satsym.solvers.certificate import conditions
+from satsym.solvers.certificate.segments import segments, values
+from satsym.solvers.certificate.switching.comparison import allowed
+from satsym.solvers.certificate.switching.variation import convex
+from satsym.solvers.control.regularised import regularised, smoothed_law
+from satsym.solvers.failures import FAILURES
+from satsym.solvers.simulation.extrapolation import leap
+from satsym.status import Verdict
+
+RESIDUAL, DEFECT, STATIONARY, COST = 1e-9, 1e-7, 1e-8, 1e-8
+"""Largest boundary residual, defect, violation of the smoothed law and error of the stated cost, relative."""
+
+NARROW = 1e-3
+"""Largest width of the cost interval, relative to the cost."""
+
+SAME = 1e-2
+"""By this share of its width the lower end of the interval may be off."""
+
+
+def certify(solution: Solution, interval: CostInterval) -> Certificate:
+    """Certify what a regularised problem says; never more than an extremal, for the optimum itself is not shown."""
+    smooth = _smooth(solution, interval)
+    along = segments(smooth)
+    reached = None if along is None else conditions.node_by_node(smooth, along)
+    measured = _integrated(smooth)
+    if along is None or reached is None or measured is None:
+        return _without_flow()
+    cost, gap = measured
+    size = max(abs(cost), 1e-300)
+    width = max(cost - interval.lower, 0.0)
+    first = [
+        Check(conditions.BOUNDARY, conditions.boundary_residual(smooth, reached), RESIDUAL),
+        Check(conditions.OF_SEGMENTS, conditions.dynamics_defect(smooth, reached), DEFECT),
+        Check("correction of the nodes", conditions.correction(smooth, along, reached), DEFECT),
+        Check(conditions.STATIONARITY, _off_law(smooth), STATIONARY),
+        Check("cost", abs(cost - solution.objective) / size, COST),
+        Check("cost interval too narrow", max(interval.lower - (cost - gap), 0.0), SAME * width),
+        Check("domain violation", float(not solution.instance.model.in_domain(reached.x)), 0.0),
+    ]
+    proved = convex(solution)
+    second = [Check("width of the cost interval", width / size, NARROW)]
+    second += [Check("infinitely many switching times: chattering", 1.0, 0.0)]
+    if not proved:
+        second.append(Check("lower end of the cost interval is an estimate: not convex", 1.0, 0.0))
+    return Certificate(
+        verdict=Verdict.of(all(c.passed for c in first), all(c.passed for c in second)),
+        **conditions.headlines(first),
+        legendre_clebsch=float("nan"),
+        conjugate_time=None,
+        checks=(*first, *second),
+        not_checked=() if proved else tuple(allowed(solution.instance)),
+    )
+
+
+def _smooth(solution: Solution, interval: CostInterval) -> Solution:
+    """The same as a solution of the regularised problem, with the times at which bounds are met and left."""
+    instance, t = solution.instance, solution.times
+    low, high = instance.control_set.box
+    changes = np.diff((solution.u >= high).astype(int) - (solution.u <= low), axis=1) != 0
+    met = tuple(tuple(np.unique([t[:-1][row], t[1:][row]]).tolist()) for row in changes)
+    return replace(solution, instance=regularised(instance, interval.smoothing, 1.0), switching_times=met)
+
+
+def _off_law(smooth: Solution) -> float:
+    """Largest difference of a control from the one that minimises the regularised H, relative to its range."""
+    instance = smooth.instance
+    law = smoothed_law(instance, instance.control_set, smooth.times, smooth.x, smooth.lam)
+    low, high = instance.control_set.box
+    return float((np.abs(law - smooth.u) / np.maximum(high - low, 1e-300)).max())
+
+
+def _integrated(smooth: Solution) -> tuple[float, float] | None:
+    """The cost, and the integral of what H exceeds its minimum by, step by step between nodes."""
+    instance, n, times, start = smooth.instance, len(smooth.x), smooth.times, values(smooth)
+    apart = np.diff(times) > 0.0
+
+    def rates(t: Array, y: Array) -> Array:
+        return np.concatenate([_canonical(instance, t, y[: 2 * n]), _costs(instance, t, y[: 2 * n])])
+
+    found = np.append(start[:, :-1][:, apart], np.zeros((2, int(apart.sum()))), axis=0)
+    try:
+        ends = leap(rates, times[:-1][apart], found, np.diff(times)[apart])
+        terminal = instance.model.terminal_cost(float(times[-1]), tuple(smooth.x[:, -1].tolist()), instance.parameters)
+    except FAILURES:
+        return None
+    cost, gap = ends[2 * n :].sum(axis=1)
+    return (float(cost + terminal), float(gap)) if np.isfinite(ends).all() else None
+
+
+def _canonical(instance: Instance, t: Array, z: Array) -> Array:
+    n = len(z) // 2
+    arguments = instance.parameters, instance.control_set.arguments
+    return np.asarray(instance.model.canonical_batch(t, z[:n], z[n:], *arguments))
+
+
+def _costs(instance: Instance, t: Array, z: Array) -> Array:
+    """The running cost, and what H exceeds its minimum by, shape (2, N)."""
+    n = len(z) // 2
+    x, lam = z[:n], z[n:]
+    u = smoothed_law(instance, instance.control_set, t, x, lam)
+    running = np.broadcast_to(instance.model.running_cost_batch(t, x, u, instance.parameters), t.shape)
+    return np.array([running, _excess(instance, t, x, lam, u)])
+
+
+def _excess(instance: Instance, t: Array, x: Array, lam: Array, u: Array) -> Array:
+    """By how much H is above its minimum, control by control, as it is affine in each but for a magnitude; (N,)."""
+    model, p = instance.model, instance.parameters
+    here, total = np.asarray(model.hamiltonian_batch(t, x, u, lam, p)), np.zeros(len(t))
+    for i, places in enumerate(zip(instance.lower, instance.upper, instance.control_set.rest, strict=True)):
+        moved, best = u.copy(), here
+        for value in places:
+            moved[i] = value
+            best = np.minimum(best, model.hamiltonian_batch(t, x, moved, lam, p))
+        total += here - best
+    return total
+
+
+def _without_flow() -> Certificate:
+    missing = float("nan")
+    check = Check("flow from node to node is finite", 1.0, 0.0)
+    return Certificate(Verdict.FAILED, missing, missing, missing, None, missing, None, (check,))

@@ -1,0 +1,209 @@
+"""Controls that switch infinitely often in finite time: a motion that nobody can undercut by more than is told.
+
+A singular arc of even order is joined by no finite number of switches, see
+:func:`satsym.symbolic.switching.singular.chattering`. What is left is the regularised problem, ever less smoothed. Its
+motion is admissible, so that the least cost is not above what it costs. Its costates obey the equations of the problem
+itself, so that where this is convex the least cost is not farther below than the integral of what H exceeds its
+minimum by (the duality gap; Mangasarian, SIAM Journal on Control 4, 1966). Elsewhere that holds to first order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.instance import Instance
+from satsym.solution import CostInterval, Solution
+from satsym.solvers.collocation.continuation import settled
+from satsym.solvers.collocation.curve import Curve
+from satsym.solvers.collocation.gauss import STAGES, scheme
+from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.collocation.refinement import refine
+from satsym.solvers.control.corners import enclosed
+from satsym.solvers.control.regularised import smoothed_law
+from satsym.solvers.failures import tried
+from satsym.solvers.iteration import Limits
+from satsym.solvers.switching.cold_start.minimum_effort import Smoothed
+from satsym.solvers.switching.cold_start.recognition import INSIDE, Sample
+from satsym.solvers.switching.throttled import signs
+from satsym.solvers.switching.trajectory import runs
+from satsym.status import Status
+
+POINTS = 12
+"""Gauss points in each interval of the mesh, on which bounds are met at nodes only."""
+
+LEVELS = 5
+"""Of the least smoothed problems that are solved accurately, one after the other, until one is."""
+
+FAINT = 1e-9
+"""Share of its size at which a switching function is as good as none."""
+
+NARROW = 1e-8
+"""Width of the cost interval, relative to the cost, at which no less is smoothed."""
+
+DIGITS = 1e-11
+"""Relative error of the two ends of the interval."""
+
+
+@dataclass(frozen=True)
+class Look:
+    """What a smoothed extremal shows of controls that may chatter."""
+
+    smoothing: float
+    switches: int
+    """How often controls go from one bound to the other."""
+    longest: float
+    """The longest time for which such a control is off both bounds."""
+    width: float
+    """Of the cost interval, relative to the cost, roughly."""
+
+
+def look(instance: Instance, near: Smoothed, seen: Sample) -> Look:
+    """What one extremal shows."""
+    low, high = instance.control_set.box
+    off = INSIDE * (high - low)
+    free = (seen.u > low + off) & (seen.u < high - off)
+    own = [name in instance.model.spec.chattering for name in instance.model.spec.control_names]
+    stretches = [seen.times[last] - seen.times[first] for row in free[own] for first, last in runs(row)]
+    switches = sum(map(len, _passages(instance, seen.times, seen.u, seen.sigma)))
+    n, p, t = len(instance.initial), instance.parameters, seen.times
+    gap = float(np.trapezoid(excess(instance, t, seen.z[:n], seen.z[n:], seen.u), t))
+    running = np.broadcast_to(instance.model.running_cost_batch(t, seen.z[:n], seen.u, p), len(t))
+    cost = float(np.trapezoid(running, t)) + float(instance.model.terminal_cost(t[-1], tuple(seen.z[:n, -1]), p))
+    width = gap / max(abs(cost), 1e-300)
+    return Look(near.problem.control_set.smoothing, switches, float(max(stretches, default=0.0)), width)
+
+
+def shows(looks: Sequence[Look]) -> bool:
+    """Whether the less is smoothed the more switches show, and a control that may chatter stays off its bounds.
+
+    Where it switches once the time between its bounds is proportional to the smoothing; beside a singular arc of second
+    order to the fourth root of it at least.
+    """
+    if not looks:
+        return False
+    before, last = looks[len(looks) // 2], looks[-1]
+    slowly = last.longest**2 * before.smoothing > before.longest**2 * last.smoothing
+    return last.switches > before.switches and slowly
+
+
+def chattered(instance: Instance, levels: Sequence[Smoothed], limits: Limits) -> Solution | None:
+    """What the least regularised problem says of those that can be solved accurately; ``None`` without any.
+
+    Parameters
+    ----------
+    levels
+        Solved roughly, the least smoothed last.
+    """
+    solved = ((one.problem, tried(partial(_accurate, one, limits))) for one in reversed(levels[-LEVELS:]))
+    problem, found = next(((one, curve) for one, curve in solved if curve is not None), (None, None))
+    if problem is None or found is None:
+        return None
+    edges = np.unique(np.concatenate([found.mesh, _corners(problem, found)]))
+    interval = _interval(instance, problem, found, edges)
+    tau = np.unique(np.concatenate([np.linspace(0.0, 1.0, instance.solver.steps + 1), edges]))
+    t, z, u = _along(problem, found, tau)
+    times = _passages(instance, t, u, signs(instance, t, z[: problem.states], z[problem.states :])[0])
+    message = (
+        f"infinitely many switching times: chattering; {sum(map(len, times))} of them show where "
+        f"{interval.smoothing:.1e} is smoothed, with a duality gap of {interval.upper - interval.lower:.1e}"
+    )
+    return Solution(
+        instance=instance,
+        method="bang-bang",
+        status=Status.CONVERGED if instance.model.in_domain(z[: problem.states]) else Status.LEFT_DOMAIN,
+        message=message,
+        objective=interval.upper,
+        times=t,
+        x=z[: problem.states],
+        u=u,
+        lam=z[problem.states :],
+        switching_times=times,
+        iterations=0,
+        history=(),
+        wall_s=0.0,
+        interval=interval,
+    )
+
+
+def at_rest(solution: Solution) -> bool:
+    """Whether H vanishes at the end, so that a longer time, spent there, costs the same."""
+    model, p = solution.instance.model, solution.instance.parameters
+    t, x, u, lam = solution.times, solution.x, solution.u, solution.lam
+    terms = np.abs(lam * model.dynamics_batch(t, x, u, p)).sum(axis=0).max()
+    return bool(abs(np.broadcast_to(model.hamiltonian_batch(t, x, u, lam, p), t.shape)[-1]) <= FAINT * terms)
+
+
+def excess(instance: Instance, t: Array, x: Array, lam: Array, u: Array) -> Array:
+    """By how much H is above its minimum over the control set, shape (N,)."""
+    sigma, weight = signs(instance, t, x, lam)
+    low, high = instance.control_set.box
+    lowest = np.min([sigma * v + weight * np.abs(v) for v in (low, high, np.clip(0.0, low, high))], axis=0)
+    return np.asarray((sigma * u + weight * np.abs(u) - lowest).sum(axis=0))
+
+
+def _accurate(near: Smoothed, limits: Limits) -> Curve | None:
+    """An extremal with nodes where bounds are met, to the tolerance of the instance."""
+    problem, curve = near.problem, near.curve
+    tolerance = problem.instance.solver.tolerance
+    refined = refine(problem, curve, tolerance, keep_nodes=True)
+    if not refined.solved:
+        bounded = settled(problem, curve, STAGES, len(curve.mesh) - 1, limits)
+        refined = refine(problem, bounded.curve, tolerance, keep_nodes=True)
+    return refined.curve if refined.solved else None
+
+
+def _corners(problem: TwoPoint, curve: Curve) -> Array:
+    """Where switching functions vanish: there what H exceeds its minimum by has corners."""
+    inner = np.linspace(0.0, 1.0, POINTS, endpoint=False)
+    tau = np.append((curve.mesh[:-1, None] + np.diff(curve.mesh)[:, None] * inner).ravel(), 1.0)
+
+    def values(at: Array) -> Array:
+        t, z, _ = _along(problem, curve, at)
+        return signs(problem.instance, t, z[: problem.states], z[problem.states :])[0]
+
+    sigma = values(tau)
+    size = np.abs(sigma)
+    seen = np.maximum(size[:, :-1], size[:, 1:]) > FAINT * size.max(axis=1, keepdims=True)
+    rows, at = np.nonzero(seen & (np.sign(sigma[:, :-1]) * np.sign(sigma[:, 1:]) < 0))
+    return enclosed(lambda times: values(times)[rows, np.arange(len(rows))], tau[at], tau[at + 1])
+
+
+def _interval(instance: Instance, problem: TwoPoint, curve: Curve, edges: Array) -> CostInterval:
+    """What the motion costs, and how far the least cost may lie below; smooth between edges."""
+    gauss, n = scheme(POINTS), problem.states
+    widths = np.diff(edges)
+    weights = problem.elapsed(curve.theta) * np.outer(widths, gauss.weights).ravel()
+    t, z, u = _along(problem, curve, (edges[:-1, None] + widths[:, None] * gauss.nodes).ravel())
+    running = np.broadcast_to(instance.model.running_cost_batch(t, z[:n], u, instance.parameters), len(t))
+    terminal = problem.terminal_cost(curve.nodes[:, -1], curve.theta) * problem.scale.cost
+    cost = float(running @ weights + terminal)
+    gap = float(excess(instance, t, z[:n], z[n:], u) @ weights)
+    return CostInterval(cost - gap - DIGITS * abs(cost), cost, float(problem.control_set.smoothing))
+
+
+def _along(problem: TwoPoint, curve: Curve, tau: Array) -> tuple[Array, Array, Array]:
+    """Times, states and costates, and controls."""
+    instance, n = problem.instance, problem.states
+    t, z = instance.t0 + problem.elapsed(curve.theta) * tau, curve(tau) * problem.scale.both
+    return t, z, smoothed_law(instance, problem.control_set, t, z[:n], z[n:])
+
+
+def _passages(instance: Instance, times: Array, u: Array, sigma: Array) -> tuple[tuple[float, ...], ...]:
+    """When each control goes from one bound to the other: where its switching function changes its sign in between."""
+    low, high = instance.control_set.box
+    found = []
+    for row, value in zip(np.where(u >= high, 1, np.where(u <= low, -1, 0)), sigma, strict=True):
+        bound = np.flatnonzero(row)
+        own = []
+        for k in np.flatnonzero(np.diff(row[bound])):
+            begin, end = bound[k], bound[k + 1]
+            at = begin + int(np.flatnonzero(np.sign(value[begin:end]) != np.sign(value[begin + 1 : end + 1]))[0])
+            share = value[at] / (value[at] - value[at + 1])
+            own.append(float(times[at] + share * (times[at + 1] - times[at])))
+        found.append(tuple(own))
+    return tuple(found)
