@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/examples/fuller.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/fuller.py
-Digest: 5193839c90b9645798e06789c3795b935242aec7e657a0d24700ed94a11a72ea
+Source: ../derivations/examples/fuller.py 3f853fbdfebb569b9374e4a329c695b1
+Digest: cd4a379d60bee5de6da37d2619ae7db9c7b5e8624f1390a73bebf74bb3dd17fe
 """
 
 import math
