@@ -23,7 +23,6 @@ from satsym.solvers.collocation.second_variation import negative_directions
 from satsym.solvers.collocation.system import System
 from satsym.solvers.iteration import Limits
 
-
 NEGLIGIBLE = 1e-30
 """Share of the problem's own cost below which time costs nothing: what costates that are not quite zero leave."""
 
