@@ -28,6 +28,9 @@ DRAWN, PIECES = 4, 5
 ARRIVED = 1e-4
 """Relative miss that the grid and the minimisation may leave of none."""
 
+NO_MOTION = 1e10
+"""In place of the miss where a motion is not finite or leaves its domain."""
+
 INSIDE, FAINT = 0.9, 1e-9
 """Share of the largest norm at which vectors start at most, and the size of parameters that stand for none: what the
 norm of a vector does has no slope where that is none."""
@@ -73,7 +76,8 @@ def nearest(problem: TwoPoint, path: Path, limits: Limits) -> Nearest | None:
     Returns
     -------
     Nearest or None
-        ``None`` where the final time is free, where time was up first, or where nothing could be simulated.
+        ``None`` where the final time is free, where time was up first, or where few of the starts lead to a motion in
+        its domain: they say nothing about the others.
     """
     from scipy.optimize import minimize
 
@@ -101,12 +105,14 @@ def nearest(problem: TwoPoint, path: Path, limits: Limits) -> Nearest | None:
                 callback=stop,
                 options={"maxiter": ROUNDS, "maxcor": 20, "ftol": 1e-15, "gtol": 1e-10},
             )
+        if not found.fun < NO_MOTION:
+            continue
         tried += 1
-        if np.isfinite(found.fun) and (best is None or found.fun < best.fun):
+        if best is None or found.fun < best.fun:
             best = found
         if best is not None and best.fun <= ARRIVED**2 / 2.0:
             break
-    if best is None:
+    if best is None or 2 * tried < len(starts) and best.fun > ARRIVED**2 / 2.0:
         return None
     gap = reach.gap(best.x)
     if gap is None:
@@ -218,7 +224,7 @@ class _Reach:
         u = self.control(parameters)
         x, gap, slopes = self.reached(u)
         if not np.isfinite(x).all() or not instance.model.in_domain(x):
-            return 1e10, np.zeros_like(parameters)
+            return NO_MOTION, np.zeros_like(parameters)
         n = problem.states
         by_x = instance.model.jacobian_x_batch(self.grid.nodes, x, u, instance.parameters)
         by_u = instance.model.jacobian_u_batch(self.grid.nodes, x, u, instance.parameters)

@@ -49,7 +49,7 @@ class Origin(Enum):
     DRAWN = "switching times that were drawn"
     SMOOTHED = "the regularised problem, smoothed by {:.1e}"
     MINIMUM_TIME = "the structure of the minimum time"
-    LARGER_NORMS = "larger norms, brought down"
+    EASIER = "exact arcs of an easier problem"
 
 
 @dataclass(frozen=True, eq=False)

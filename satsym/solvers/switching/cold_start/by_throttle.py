@@ -14,7 +14,7 @@ from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
 from satsym.solvers.switching.cold_start.arcs_of_norms import arcs
-from satsym.solvers.switching.cold_start.by_larger_norms import followed
+from satsym.solvers.switching.cold_start.by_easier import followed
 from satsym.solvers.switching.cold_start.homotopy import Stopped
 from satsym.solvers.switching.structure import LOWER, Structure
 from satsym.solvers.switching.structure import Guess as Arcs
@@ -46,7 +46,7 @@ def best(instance: Instance, limits: Limits) -> Exact | Stopped:
 
 
 def _first(instance: Instance, limits: Limits) -> Exact | Stopped:
-    """The extremal to which a cold start leads, with larger norms at first where the time is given and that helps."""
+    """The extremal to which a cold start leads; where the time is given, perhaps by way of an easier problem."""
     idle = coasting(instance, limits)
     if idle is not None:
         return idle
@@ -55,10 +55,10 @@ def _first(instance: Instance, limits: Limits) -> Exact | Stopped:
         return found
     message = ""
     near = followed(instance, limits) if instance.tf is not None and not instance.guess else None
-    if near is not None and near.arrives:
+    if near is not None and not near.share:
         return near.exact
     if near is not None and near.least:
-        message = f"; norms {near.factor:.6g} times as large are the least with which an extremal arrives in time"
+        message = f"; norms {near.norms:.6g} times as large are the least with which an extremal arrives in time"
     else:
         thorough = directed(instance, limits, True, arcs)
         if isinstance(thorough, Exact):
