@@ -128,9 +128,9 @@ def _directed(
 
 
 def _without_duration(chosen: Extremal, instance: Instance) -> Extremal:
-    """No duration of the regularised problem, which for full lengths says little about the problem itself."""
+    """No duration of the regularised problem, which says little about the problem itself."""
     status, message = chosen.status, chosen.message
-    if status is Status.NO_MINIMISER and not instance.model.spec.throttled:
+    if status is Status.NO_MINIMISER:
         status = Status.NOT_CONVERGED
     message = f"of the regularised problem from which one starts: {message}"
     return replace(chosen, problem=_exact(chosen.problem, instance), status=status, message=message)

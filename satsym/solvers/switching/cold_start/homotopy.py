@@ -23,6 +23,7 @@ from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.system import System
 from satsym.solvers.control.regularised import regularised
+from satsym.solvers.control.slopes import cost_rate
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.cold_start.minimum_effort import (
     NEAR_FULL,
@@ -133,15 +134,12 @@ def _bounded(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve]:
 
 
 def first_smoothing(instance: Instance) -> float:
-    """The smoothing at which the largest control costs about as much again as time, state and |u| do."""
-    model, p, x = instance.model, instance.parameters, instance.initial
+    """The smoothing at which the largest control costs about as much again as time, state, |u| and the end do."""
     m = len(instance.lower)
     largest = [max(abs(low), abs(high)) for low, high in zip(instance.lower, instance.upper, strict=True)]
-    cost = max(
-        abs(model.running_cost(instance.t0, x, tuple(u), p)) for u in (instance.lower, instance.upper, (0.0,) * m)
-    )
+    cost = max(abs(cost_rate(instance, np.array(u))) for u in (instance.lower, instance.upper, (0.0,) * m))
     effort = sum(value * value for value in largest)
-    return 2.0 * (cost or 1.0) / effort if effort > 0.0 else 1.0
+    return 2.0 * (cost if 0.0 < cost < float("inf") else 1.0) / effort if effort > 0.0 else 1.0
 
 
 def _unbounded(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve]:
