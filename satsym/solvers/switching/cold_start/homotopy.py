@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from satsym.instance import Instance
+from satsym.solvers.cold_start.direct import direct
 from satsym.solvers.cold_start.durations import free_duration
 from satsym.solvers.cold_start.first_minimum import cold_start
 from satsym.solvers.collocation.attempt import Reason
@@ -24,6 +25,7 @@ from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.system import System
 from satsym.solvers.control.regularised import regularised
 from satsym.solvers.control.slopes import cost_rate
+from satsym.solvers.failures import FAILURES, tried
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.cold_start.minimum_effort import (
     NEAR_FULL,
@@ -59,6 +61,18 @@ def path(instance: Instance, limits: Limits) -> Iterator[Smoothed]:
     Stopped
         Where there is none, or the way to the bounds is blocked.
     """
+    try:
+        first = _weighed(instance, limits)
+    except (Stopped, *FAILURES):
+        by_programme = _by_programme(instance, limits)
+        if by_programme is None:
+            raise
+        first = by_programme
+    yield from sharpened(instance, first, limits)
+
+
+def _weighed(instance: Instance, limits: Limits) -> Smoothed:
+    """Well smoothed within the bounds, with the weight of |u|."""
     problem, curve = (instance.tf is None and _long(instance, limits)) or _bounded(instance, limits)
     smoothing = problem.control_set.smoothing
 
@@ -68,8 +82,26 @@ def path(instance: Instance, limits: Limits) -> Iterator[Smoothed]:
     curve, reached = follow(weighed, curve, limits)
     if reached < 1.0:
         raise Stopped(Status.NOT_CONVERGED, f"the weight of |u| could be brought in only {reached:.0%}", problem, curve)
-    problem = weighed(1.0)
-    yield Smoothed(problem, curve)
+    return Smoothed(weighed(1.0), curve)
+
+
+def _by_programme(instance: Instance, limits: Limits) -> Smoothed | None:
+    """The same from a direct method, which keeps the bounds from the start; ``None`` where that leads nowhere."""
+    found = tried(lambda: direct(regularised(instance, first_smoothing(instance), 1.0), limits))
+    return None if found is None else Smoothed(found[0], found[1].found.curve)
+
+
+def sharpened(instance: Instance, first: Smoothed, limits: Limits) -> Iterator[Smoothed]:
+    """A smoothed extremal, and then others, less and less smoothed.
+
+    Raises
+    ------
+    Stopped
+        Where that does not go on.
+    """
+    problem, curve = first.problem, first.curve
+    smoothing = problem.control_set.smoothing
+    yield first
     for _ in range(LEVELS):
         before = smoothing
 
