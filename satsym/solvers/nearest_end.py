@@ -112,7 +112,7 @@ def nearest(problem: TwoPoint, path: Path, limits: Limits) -> Nearest | None:
             best = found
         if best is not None and best.fun <= ARRIVED**2 / 2.0:
             break
-    if best is None or 2 * tried < len(starts) and best.fun > ARRIVED**2 / 2.0:
+    if best is None or (2 * tried < len(starts) and best.fun > ARRIVED**2 / 2.0):
         return None
     gap = reach.gap(best.x)
     if gap is None:
