@@ -83,7 +83,7 @@ def nearest(problem: TwoPoint, path: Path, limits: Limits) -> Nearest | None:
 
     if problem.free_time or not (problem.fixed.any() or problem.unknowns):
         return None
-    reach = _Reach(problem)
+    reach = Reach(problem)
 
     def stop(_: Array) -> None:
         if limits.expired:
@@ -123,7 +123,7 @@ def nearest(problem: TwoPoint, path: Path, limits: Limits) -> Nearest | None:
     return Nearest(missed, float(np.abs(gap).max()), tried)
 
 
-def _drawn(problem: TwoPoint, reach: _Reach) -> list[Array]:
+def _drawn(problem: TwoPoint, reach: Reach) -> list[Array]:
     """Controls that are drawn within the bounds, constant for a few pieces each."""
     rng, nodes = np.random.default_rng(0), len(reach.tau)
     low, high = np.empty((reach.controls, 1)), np.empty((reach.controls, 1))
@@ -148,7 +148,7 @@ def _lengths(part: ControlSet, size: Array) -> tuple[Array, Array]:
     return part.inner + room * size / np.sqrt(1.0 + size**2), room / (1.0 + size**2) ** 1.5
 
 
-class _Reach:
+class Reach:
     """Where controls lead that are straight between the nodes of a uniform grid."""
 
     def __init__(self, problem: TwoPoint) -> None:
