@@ -137,14 +137,18 @@ def _spans_less(instance: Instance, end: Array, rng: np.random.Generator) -> boo
     u = _controls(instance, rng, DRAWN).T.tolist()
     rates = np.array([model.dynamics(t, end.tolist(), one, p) for one in u]).T
     slopes = [np.array(model.jacobian_x(t, end.tolist(), one, p)).reshape(n, n) for one in u]
-    columns = [rates - rates[:, :1] if instance.tf is not None else rates]
+    size = _sizes(instance, end)
+    moved = rates - rates[:, :1] if instance.tf is not None else rates
+    columns = [(column, np.abs(rates).max(axis=1)) for column in moved.T]
     for i in range(DRAWN):
         for j in range(i):
-            columns.append((slopes[j] @ rates[:, i] - slopes[i] @ rates[:, j])[:, None])
-    table = np.concatenate(columns, axis=1) / _sizes(instance, end)[:, None]
+            one, other = slopes[j] @ rates[:, i], slopes[i] @ rates[:, j]
+            columns.append((one - other, np.abs(slopes[j]) @ np.abs(rates[:, i]) + np.abs(slopes[i] @ rates[:, j])))
+    # what cancels but for rounding must not count: each column is relative to what it is made of
+    table = np.array([column / size / max(float((terms / size).max()), 1e-300) for column, terms in columns]).T
     if not np.isfinite(table).all():
         return False
-    values = np.linalg.svd(table / np.maximum(np.abs(table).max(axis=0), 1e-300), compute_uv=False)
+    values = np.linalg.svd(table, compute_uv=False)
     return bool(values[-1] <= SPANNED * values[0])
 
 
