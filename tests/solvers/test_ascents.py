@@ -139,5 +139,5 @@ def test_little_time_to_spare_makes_a_short_coast_and_less_than_the_least_is_inf
     assert found.switching_times[0] == pytest.approx(expected.x[2:], abs=1e-8)
     hurried = solve(replace(case, tf=0.38))
     assert hurried.status is Status.INFEASIBLE, hurried.message
-    assert "times as large are the least with which an extremal arrives in time" in hurried.message
+    assert "times as large are the minimum with which an extremal arrives in time" in hurried.message
     assert np.isnan(hurried.x).all()

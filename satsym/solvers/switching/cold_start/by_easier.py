@@ -35,16 +35,16 @@ class Easier:
     norms: float = 1.0
     duration: float = 1.0
 
-    def of(self, instance: Instance, share: float) -> Instance:
-        """The problem that is easier by a share of these, from none to one, of their logarithms."""
+    def of(self, instance: Instance, fraction: float) -> Instance:
+        """The problem that is easier by a fraction of these, from none to one, of their logarithms."""
         assert instance.tf is not None
         throttled = {part.name for part in instance.model.spec.control_parts if part.branch == "throttled"}
         norms = {
-            name: (low, high * self.norms**share if name in throttled else high)
+            name: (low, high * self.norms**fraction if name in throttled else high)
             for name, (low, high) in instance.norms.items()
         }
-        end = instance.t0 + (instance.tf - instance.t0) * self.duration**share
-        return replace(instance, norms=norms, tf=end if share else instance.tf)
+        end = instance.t0 + (instance.tf - instance.t0) * self.duration**fraction
+        return replace(instance, norms=norms, tf=end if fraction else instance.tf)
 
 
 EASIER = (*(Easier(norms=by) for by in (1.3, 1.7, 2.5, 4.0)), *(Easier(duration=by) for by in (0.6, 0.3)))
@@ -57,16 +57,16 @@ class Followed:
 
     exact: Exact
     easier: Easier
-    share: float
+    fraction: float
     """The last ones, and those of which problem they are."""
 
     @property
     def norms(self) -> float:
         """How many times as large the largest norms are."""
-        return self.easier.norms**self.share
+        return self.easier.norms**self.fraction
 
     @property
-    def least(self) -> bool:
+    def saturated(self) -> bool:
         """Whether hardly any time is left off the largest norms: smaller ones do not arrive near there."""
         at, structure, start = self.exact.refined.at, self.exact.refined.structure, self.exact.trajectory.arcs[0].start
         lengths = structure.durations(at.times, start, at.end)
@@ -90,7 +90,7 @@ def followed(instance: Instance, limits: Limits) -> Followed | None:
         found = tried(partial(directed, easier.of(instance, 1.0), limits, False, arcs))
         if isinstance(found, Exact):
             far = _back(instance, Followed(found, easier, 1.0), limits)
-        if limits.expired or (far and (not far.share or far.least)):
+        if limits.expired or (far and (not far.fraction or far.saturated)):
             break
     return far
 
@@ -98,17 +98,19 @@ def followed(instance: Instance, limits: Limits) -> Followed | None:
 def _back(instance: Instance, here: Followed, limits: Limits) -> Followed:
     """To the problem itself, in steps as long as they succeed."""
     step = STEP
-    while here.share and step > SMALLEST and not limits.expired:
-        share, at = max(here.share - step, 0.0), here.exact.refined.at
+    while here.fraction and step > SMALLEST and not limits.expired:
+        fraction, at = max(here.fraction - step, 0.0), here.exact.refined.at
         start = Guess(here.exact.refined.structure, at.times, at.costates, at.end)
-        near = attempt(here.easier.of(instance, share), replace(start, end=_end(instance, here.easier, share)), limits)
+        near = attempt(
+            here.easier.of(instance, fraction), replace(start, end=_end(instance, here.easier, fraction)), limits
+        )
         step *= CALMER if near is None else BOLDER
         if near is not None:
-            here = replace(here, exact=replace(near, origin=Origin.EASIER), share=share)
+            here = replace(here, exact=replace(near, origin=Origin.EASIER), fraction=fraction)
     return here
 
 
-def _end(instance: Instance, easier: Easier, share: float) -> float:
-    end = easier.of(instance, share).tf
+def _end(instance: Instance, easier: Easier, fraction: float) -> float:
+    end = easier.of(instance, fraction).tf
     assert end is not None
     return end

@@ -55,10 +55,10 @@ def _first(instance: Instance, limits: Limits) -> Exact | Stopped:
         return found
     message = ""
     near = followed(instance, limits) if instance.tf is not None and not instance.guess else None
-    if near is not None and not near.share:
+    if near is not None and not near.fraction:
         return near.exact
-    if near is not None and near.least:
-        message = f"; norms {near.norms:.6g} times as large are the least with which an extremal arrives in time"
+    if near is not None and near.saturated:
+        message = f"; norms {near.norms:.6g} times as large are the minimum with which an extremal arrives in time"
     else:
         thorough = directed(instance, limits, True, arcs)
         if isinstance(thorough, Exact):

@@ -68,7 +68,7 @@ def path(instance: Instance, limits: Limits) -> Iterator[Smoothed]:
         if by_programme is None:
             raise
         first = by_programme
-    yield from sharpened(instance, first, limits)
+    yield from less_and_less(instance, first, limits)
 
 
 def _weighed(instance: Instance, limits: Limits) -> Smoothed:
@@ -91,7 +91,7 @@ def _by_programme(instance: Instance, limits: Limits) -> Smoothed | None:
     return None if found is None else Smoothed(found[0], found[1].found.curve)
 
 
-def sharpened(instance: Instance, first: Smoothed, limits: Limits) -> Iterator[Smoothed]:
+def less_and_less(instance: Instance, first: Smoothed, limits: Limits) -> Iterator[Smoothed]:
     """A smoothed extremal, and then others, less and less smoothed.
 
     Raises
