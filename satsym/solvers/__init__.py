@@ -76,6 +76,24 @@ def _uncertified(instance: Instance, progress: Progress | None) -> Solution:
 
 
 def _found(instance: Instance, progress: Progress | None) -> Solution:
+    """What is found, without a final state that follows from the others."""
+    from satsym.solvers import iteration
+    from satsym.solvers.redundant_ends import redundant
+
+    less = redundant(instance)
+    if less is None:
+        return _by_method(instance, progress)
+    solution = _by_method(less.instance, progress)
+    if not less.met(solution) and not instance.model.spec.switching:
+        again = _by_method(less.towards, progress)
+        solution = again if again.status.answered else solution
+    if not solution.status.answered or less.met(solution):
+        return replace(solution, message=f"{solution.message}; {less.note}")
+    nothing = iteration.unsolved(instance, solution.method, solution.wall_s)
+    return replace(nothing, status=Status.NOT_CONVERGED, message=less.missed(solution))
+
+
+def _by_method(instance: Instance, progress: Progress | None) -> Solution:
     """What the method finds, or the sweep in its place."""
     spec, name = instance.model.spec, instance.solver.method
     automatic = name == methods.AUTO

@@ -91,8 +91,9 @@ def _solution(
     u = problem.control(tau, scaled, path.theta)
     if instance.model.spec.directional:
         u = continued(instance, instance.t0 + elapsed * tau, z[:n], z[n:], u)
-    if status in (Status.INFEASIBLE, Status.NO_MINIMISER, Status.NON_FINITE):
+    if not status.answered and not (extremal.obeys and status is extremal.status):
         z, u = np.full_like(z, np.nan), np.full_like(u, np.nan)  # what was tried on the way is no answer
+        elapsed = float("nan") if instance.tf is None else elapsed
     met = by_bound(problem, path) if status.answered else []
     return Solution(
         instance=instance,

@@ -168,7 +168,7 @@ def unsolved(instance: Instance, method: str, wall_s: float) -> Solution:
         status=Status.TIME_LIMIT,
         message=MESSAGE.format(steps=instance.solver.steps),
         objective=float("nan"),
-        times=np.array([instance.t0, instance.t0 + 1.0 if instance.tf is None else instance.tf]),
+        times=np.array([instance.t0, float("nan") if instance.tf is None else instance.tf]),
         x=np.full((n, 2), np.nan),
         u=np.full((m, 2), np.nan),
         lam=np.full((n, 2), np.nan),

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.control_set import ControlSet
 from satsym.grid import Grid
 from satsym.solvers.collocation.curve import Path
 from satsym.solvers.collocation.problem import TwoPoint
@@ -26,6 +27,13 @@ DRAWN, PIECES = 4, 5
 
 ARRIVED = 1e-4
 """Relative miss that the grid and the minimisation may leave of none."""
+
+NO_MOTION = 1e10
+"""In place of the miss where a motion is not finite or leaves its domain."""
+
+INSIDE, FAINT = 0.9, 1e-9
+"""Share of the largest norm at which vectors start at most, and the size of parameters that stand for none: what the
+norm of a vector does has no slope where that is none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,13 +76,14 @@ def nearest(problem: TwoPoint, path: Path, limits: Limits) -> Nearest | None:
     Returns
     -------
     Nearest or None
-        ``None`` where the final time is free, where time was up first, or where nothing could be simulated.
+        ``None`` where the final time is free, where time was up first, or where few of the starts lead to a motion in
+        its domain: they say nothing about the others.
     """
     from scipy.optimize import minimize
 
     if problem.free_time or not (problem.fixed.any() or problem.unknowns):
         return None
-    reach = _Reach(problem)
+    reach = Reach(problem)
 
     def stop(_: Array) -> None:
         if limits.expired:
@@ -96,12 +105,14 @@ def nearest(problem: TwoPoint, path: Path, limits: Limits) -> Nearest | None:
                 callback=stop,
                 options={"maxiter": ROUNDS, "maxcor": 20, "ftol": 1e-15, "gtol": 1e-10},
             )
+        if not found.fun < NO_MOTION:
+            continue
         tried += 1
-        if np.isfinite(found.fun) and (best is None or found.fun < best.fun):
+        if best is None or found.fun < best.fun:
             best = found
         if best is not None and best.fun <= ARRIVED**2 / 2.0:
             break
-    if best is None:
+    if best is None or (2 * tried < len(starts) and best.fun > ARRIVED**2 / 2.0):
         return None
     gap = reach.gap(best.x)
     if gap is None:
@@ -112,19 +123,32 @@ def nearest(problem: TwoPoint, path: Path, limits: Limits) -> Nearest | None:
     return Nearest(missed, float(np.abs(gap).max()), tried)
 
 
-def _drawn(problem: TwoPoint, reach: _Reach) -> list[Array]:
+def _drawn(problem: TwoPoint, reach: Reach) -> list[Array]:
     """Controls that are drawn within the bounds, constant for a few pieces each."""
-    rng, instance, nodes = np.random.default_rng(0), problem.instance, len(reach.tau)
-    low, high = instance.control_set.box
-    if reach._round:
-        low, high = -instance.max_norm * np.ones((reach.controls, 1)), instance.max_norm * np.ones((reach.controls, 1))
+    rng, nodes = np.random.default_rng(0), len(reach.tau)
+    low, high = np.empty((reach.controls, 1)), np.empty((reach.controls, 1))
+    for places, part in reach.parts:
+        if part.kind == "angle":
+            low[places], high[places] = -np.pi, np.pi
+        elif part.kind == "box":
+            low[places], high[places] = part.box
+        else:
+            low[places], high[places] = -part.radius, part.radius
     if not (np.isfinite(low).all() and np.isfinite(high).all()):
         return []
     piece = np.minimum(np.arange(nodes) * PIECES // nodes, PIECES - 1)
     return [(low + (high - low) * rng.uniform(size=(reach.controls, PIECES)))[:, piece] for _ in range(DRAWN)]
 
 
-class _Reach:
+def _lengths(part: ControlSet, size: Array) -> tuple[Array, Array]:
+    """Norms of vectors that parameters of such sizes stand for, and their derivatives: all that are admissible."""
+    if part.directed and not part.throttled:
+        return np.full_like(size, part.radius), np.zeros_like(size)
+    room = part.radius - part.inner
+    return part.inner + room * size / np.sqrt(1.0 + size**2), room / (1.0 + size**2) ** 1.5
+
+
+class Reach:
     """Where controls lead that are straight between the nodes of a uniform grid."""
 
     def __init__(self, problem: TwoPoint) -> None:
@@ -134,42 +158,50 @@ class _Reach:
         self.tau = np.linspace(0.0, 1.0, STEPS + 1)
         self.rows = np.append(np.flatnonzero(problem.fixed), problem.states + np.arange(problem.unknowns))
         self.controls = len(instance.model.spec.controls)
+        whole = instance.control_set
+        parts = whole.parts if whole.kind == "product" else ((tuple(range(self.controls)), whole),)
+        self.parts = [(list(places), part) for places, part in parts]
+        self.vectors = [(places, part) for places, part in self.parts if part.kind in ("ball", "annulus")]
+        self.vectors = [(places, part) for places, part in self.vectors if np.isfinite(part.radius)]
 
     @property
-    def box(self) -> list[tuple[float, float]] | None:
-        """Bounds of the parameters: the controls themselves, but on a ball all vectors that are mapped into it."""
-        instance = self.problem.instance
-        if instance.model.spec.control_set != "box":
-            return None
-        pairs = zip(instance.lower, instance.upper, strict=True)
+    def box(self) -> list[tuple[float, float]]:
+        """Bounds of the parameters: the controls themselves, but vectors are all mapped to admissible ones."""
+        pairs = [(-np.inf, np.inf)] * self.controls
+        for places, part in self.parts:
+            if part.kind == "box":
+                for place, low, high in zip(places, part.lower, part.upper, strict=True):
+                    pairs[place] = low, high
         return [pair for pair in pairs for _ in range(STEPS + 1)]
 
     def parameters(self, u: Array) -> Array:
         """Parameters of a control, cut to its bounds."""
-        instance = self.problem.instance
-        if self._round:
-            size = np.linalg.norm(u, axis=0) / instance.max_norm
-            inside = np.minimum(size, 0.9)
-            return (
-                u
-                / instance.max_norm
-                * np.where(size > 0.0, inside / np.maximum(size, 1e-300), 1.0)
-                / np.sqrt(1.0 - inside**2)
-            )
-        if instance.model.spec.control_set == "box":
-            return instance.control_set.project(u)
-        return u
-
-    @property
-    def _round(self) -> bool:
-        instance = self.problem.instance
-        return instance.model.spec.control_set == "ball" and np.isfinite(instance.max_norm)
+        found = np.array(self.problem.instance.control_set.project(u))
+        for places, part in self.vectors:
+            length, room = np.linalg.norm(u[places], axis=0), max(part.radius - part.inner, 1e-300)
+            share = np.clip((length - part.inner) / room, 0.0, INSIDE)
+            size = share / np.sqrt(1.0 - share**2)
+            found[places] = u[places] * np.where(length > 0.0, size / np.maximum(length, 1e-300), 0.0)
+            found[places[0]] += np.where(np.linalg.norm(found[places], axis=0) > 0.0, 0.0, FAINT)
+        return found
 
     def control(self, parameters: Array) -> Array:
         """The control, shape (m, N + 1)."""
-        found = parameters.reshape(self.controls, -1)
-        if self._round:
-            found = self.problem.instance.max_norm * found / np.sqrt(1.0 + (found**2).sum(axis=0))
+        found = parameters.reshape(self.controls, -1).copy()
+        for places, part in self.vectors:
+            size = np.maximum(np.linalg.norm(found[places], axis=0), FAINT)
+            found[places] *= _lengths(part, size)[0] / size
+        return found
+
+    def _by_parameters(self, parameters: Array, slope: Array) -> Array:
+        """Derivatives by the parameters, from those by the control."""
+        found, v = slope.copy(), parameters.reshape(self.controls, -1)
+        for places, part in self.vectors:
+            size = np.maximum(np.linalg.norm(v[places], axis=0), FAINT)
+            length, growth = _lengths(part, size)
+            unit = v[places] / size
+            along = (unit * slope[places]).sum(axis=0)
+            found[places] = growth * along * unit + length / size * (slope[places] - along * unit)
         return found
 
     def reached(self, u: Array) -> tuple[Array, Array, Array]:
@@ -192,7 +224,7 @@ class _Reach:
         u = self.control(parameters)
         x, gap, slopes = self.reached(u)
         if not np.isfinite(x).all() or not instance.model.in_domain(x):
-            return 1e10, np.zeros_like(parameters)
+            return NO_MOTION, np.zeros_like(parameters)
         n = problem.states
         by_x = instance.model.jacobian_x_batch(self.grid.nodes, x, u, instance.parameters)
         by_u = instance.model.jacobian_u_batch(self.grid.nodes, x, u, instance.parameters)
@@ -207,8 +239,4 @@ class _Reach:
         weights = np.full(STEPS + 1, width)
         weights[[0, -1]] /= 2.0
         slope = np.einsum("ijk,ik->jk", by_u, adjoint) * weights
-        if self._round:
-            v = parameters.reshape(self.controls, -1)
-            length = np.sqrt(1.0 + (v**2).sum(axis=0))
-            slope = instance.max_norm * (slope / length - v * (v * slope).sum(axis=0) / length**3)
-        return float(gap @ gap) / 2.0, slope.ravel()
+        return float(gap @ gap) / 2.0, self._by_parameters(parameters, slope).ravel()

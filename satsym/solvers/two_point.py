@@ -231,6 +231,6 @@ def within(problem: TwoPoint, start: Start, limits: Limits) -> Extremal:
         message = refined.message
         if refined.error < ROUNDING:
             message += ", which rounding leaves: raise [solver] tolerance"
-        return unfinished(problem, refined.curve, message, steps, limits)
+        return replace(unfinished(problem, refined.curve, message, steps, limits), obeys=True)
     message = f"estimated error {refined.error:.0e} on {len(refined.curve.mesh) - 1} intervals"
     return Extremal(problem, refined.curve, refined.cost * problem.scale.cost, Status.CONVERGED, message, steps)

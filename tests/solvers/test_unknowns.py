@@ -240,3 +240,24 @@ def test_only_solving_takes_an_instance_that_leaves_something_free() -> None:
             use(case)
     with pytest.raises(BadInput, match=r"\[initial\] x: the model spring has no cost, so nothing chooses it"):
         satsym.Instance.of(CART, initial={"x": "free", "v": 0.0}, tf=1.0)
+
+
+def test_one_begins_where_the_end_can_be_reached_if_not_with_what_is_guessed():
+    """Both have to change together; the optimum has no costates at its start, so that an exponential tells it."""
+    free = FirstOrder(name="free", title="x'' = u", states=(X, V), controls=(U,), parameters=(), rates={x: v, v: u})
+    cost = u**2 / 2 + ((x - 3) ** 2 + (v + 1) ** 2) / 100
+    found = solved(
+        problem("near_three", free, cost, control_set="box"),
+        initial={"x": "free", "v": "free"},
+        final={"x": 0.0, "v": 0.0},
+        tf=2.0,
+        control={"u": [-1.0, 1.0]},
+        guess={"state": {"x": 10.0, "v": 5.0}},
+    )
+    said = certified(found)
+    matrix = np.zeros((5, 5))  # of x, v, their costates, and one
+    matrix[0, 1], matrix[1, 3], matrix[3, 2] = 1.0, -1.0, -1.0
+    matrix[2, [0, 4]], matrix[3, [1, 4]] = (-0.02, 0.06), (-0.02, -0.02)
+    whole = expm(2.0 * matrix)
+    start = np.linalg.solve(whole[:2, :2], -whole[:2, 4])
+    assert said["x_initial"] == pytest.approx(dict(zip("xv", start.tolist(), strict=True)), abs=1e-8)

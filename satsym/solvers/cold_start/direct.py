@@ -15,6 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.control_set import UNSMOOTHED
 from satsym.instance import Instance
 from satsym.solvers.cold_start.origin import Origin, Start
 from satsym.solvers.cold_start.swept import on_mesh
@@ -90,7 +91,21 @@ class Programme:
         times = instance.t0 + duration * np.linspace(0.0, 1.0, (u.shape[1] + 1) // 2)
         x, x_mid, cost = instance.model.forward(times, instance.initial, u[:, ::2], u[:, 1::2], instance.parameters)
         end = float(instance.model.terminal_cost(times[-1], tuple(x[:, -1].tolist()), instance.parameters))
+        if self.smoothing:
+            cost += self.smoothing / 2.0 * float((u * u).sum(axis=0) @ self._weights(u.shape[1], duration))
         return times, x, x_mid, cost + end
+
+    @cached_property
+    def smoothing(self) -> float:
+        """What squares of controls cost besides, if the problem is regularised."""
+        smoothing = self.instance.control_set.smoothing
+        return smoothing if smoothing > UNSMOOTHED else 0.0
+
+    def _weights(self, count: int, duration: float) -> Array:
+        """Simpson's, of nodes and midpoints."""
+        weights = np.where(np.arange(count) % 2, 4.0, 2.0) * duration / (3.0 * (count - 1))
+        weights[[0, -1]] /= 2.0
+        return weights
 
     def missed(self, x: Array) -> Array:
         """By how much the end is missed, in units of the states."""
@@ -112,14 +127,13 @@ class Programme:
         tau, states = np.empty(u.shape[1]), np.empty((n, u.shape[1]))
         tau[::2], tau[1::2] = times, (times[1:] + times[:-1]) / 2.0
         states[:, ::2], states[:, 1::2] = x, x_mid
-        weights = np.where(np.arange(len(tau)) % 2, 4.0, 2.0) * duration / (3.0 * (len(tau) - 1))
-        weights[[0, -1]] /= 2.0
+        weights = self._weights(len(tau), duration)
         rows, nodes = [], []
         for end in ends:
             lam, lam_mid = model.backward(times, tuple(end.tolist()), x, x_mid, u[:, ::2], u[:, 1::2], p)
             both = np.empty_like(states)
             both[:, ::2], both[:, 1::2] = lam, lam_mid
-            slopes = np.broadcast_to(model.stationarity_batch(tau, states, u, both, p), u.shape)
+            slopes = self._stationarity(tau, states, u, both)
             rows.append(((slopes * weights) @ self.hats.T * self.scales[:, None]).ravel())
             nodes.append(lam)
         found = np.array([rows[1], *(row - rows[0] for row in rows[2:])])
@@ -128,6 +142,14 @@ class Programme:
             later, sooner = (self.values(np.append(unknown[:-1], duration + s)) for s in (step, -step))
             found = np.column_stack([found, (later - sooner) / (2.0 * step)])
         return times, x, [nodes[1], *(lam - nodes[0] for lam in nodes[2:])], found
+
+    def _stationarity(self, t: Array, x: Array, u: Array, lam: Array) -> Array:
+        """The derivatives of H by the controls, shape (m, N)."""
+        model, p = self.instance.model, self.instance.parameters
+        if not model.spec.switching:
+            return np.broadcast_to(model.stationarity_batch(t, x, u, lam, p), u.shape)
+        sigma, weight = model.switching_function_batch(t, x, lam, p), model.magnitude_weight_batch(t, x, p)
+        return np.broadcast_to(sigma + weight * np.sign(u) + self.smoothing * u, u.shape)
 
     def bounds(self) -> list[tuple[float | None, float | None]]:
         """Of the unknowns."""

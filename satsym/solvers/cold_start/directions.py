@@ -118,7 +118,7 @@ def _directed(
     if eased.tf is None:
         chosen = free_duration(eased, limits, effort)
         if isinstance(chosen, Extremal):
-            return replace(chosen, problem=_exact(chosen.problem, instance))
+            return _without_duration(chosen, instance)
         problem, start = chosen.problem, chosen.start
     else:
         problem = two_point(eased, eased.tf - eased.t0)
@@ -126,6 +126,15 @@ def _directed(
         if not start.found.minimum:
             return stopped(problem, instance, start.found.curve, f"no extremal found: {start.found.message}", limits)
     return directed_from(problem, start, instance, limits, unsmoothed)
+
+
+def _without_duration(chosen: Extremal, instance: Instance) -> Extremal:
+    """No duration of the regularised problem, which says little about the problem itself."""
+    status, message = chosen.status, chosen.message
+    if status is Status.NO_MINIMISER:
+        status = Status.NOT_CONVERGED
+    message = f"of the regularised problem from which one starts: {message}"
+    return replace(chosen, problem=_exact(chosen.problem, instance), status=status, message=message)
 
 
 def steered(instance: Instance) -> Instance | None:

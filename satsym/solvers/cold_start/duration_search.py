@@ -165,7 +165,7 @@ class Search:
         rising = len(costs) > RISES and all(a < b for a, b in pairwise(costs[-RISES - 1 :]))
         if rising and last.cost > FAR_ABOVE * min(costs):
             return False
-        if last.floor > 0.0:
+        if self._timed:
             return duration < self._dearest()
         falls = last.cost <= min(costs) and last.duration >= LONG * self.tries[0].duration
         return planned or (not falls and duration <= MOST_SCALES * self.trials.first)
@@ -210,8 +210,13 @@ class Search:
 
     def _dearest(self) -> float:
         """From which duration on time alone costs more than the cheapest motion; the longest tried where it is free."""
-        longest = self.tries[-1]
-        return self.cheapest.cost / longest.floor if longest.floor > 0.0 else longest.duration
+        longest, spent = self.tries[-1], self.cheapest.cost + self.trials.credit
+        return spent / longest.floor if self._timed else longest.duration
+
+    @property
+    def _timed(self) -> bool:
+        """Whether time costs something along the longest motion, and that can be more than the cheapest one costs."""
+        return self.tries[-1].floor > 0.0 and self.cheapest.cost + self.trials.credit > 0.0
 
     def _solved(self, duration: float, near: Try) -> Try | None:
         """The problem of a duration near another one: from nothing where that is easy, else from that extremal."""

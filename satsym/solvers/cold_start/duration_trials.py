@@ -23,6 +23,9 @@ from satsym.solvers.collocation.second_variation import negative_directions
 from satsym.solvers.collocation.system import System
 from satsym.solvers.iteration import Limits
 
+NEGLIGIBLE = 1e-30
+"""Share of the problem's own cost below which time costs nothing: what costates that are not quite zero leave."""
+
 
 @dataclass(frozen=True, eq=False)
 class Try:
@@ -76,6 +79,14 @@ class Trials:
     def at_once(self) -> float:
         """What ending without any motion costs; infinite where that is no end."""
         return self.free(self.first).at_once
+
+    @cached_property
+    def credit(self) -> float:
+        """What the end brings in right at the start: time has to cost it as well before that is too dear."""
+        instance = self.instance
+        if not instance.model.spec.has_terminal_cost:
+            return 0.0
+        return max(0.0, -float(instance.model.terminal_cost(instance.t0, instance.initial, instance.parameters)))
 
     @property
     def last(self) -> tuple[TwoPoint, Curve]:
@@ -154,6 +165,7 @@ class Trials:
         tau = stage_times(curve.mesh, curve.order).ravel()
         floor = problem.running_cost(tau, idle, curve.theta).min() * problem.scale.cost
         slope = residual[-1] * free.scale.cost / duration
+        floor = floor if floor > NEGLIGIBLE * problem.scale.cost / duration else 0.0  # idle costates are not quite zero
         return Try(problem, start, float(start.found.cost * problem.scale.cost), float(slope), float(floor))
 
 

@@ -86,12 +86,13 @@ def _why(search: Search) -> tuple[Status, str]:
     if search.ends_at_nothing:
         advice = "weigh time less, ask something of the final state, or fix the final time"
         return Status.NO_MINIMISER, f"shorter is always cheaper: {_costs(_spread(search.tries))}; {advice}"
+    advice = "give a tf_guess" if search.trials.instance.tf_guess is None else "give another tf_guess"
     if search.falls_to_the_longest:
         costs = _costs(_records(search.tries))
-        return Status.NOT_CONVERGED, f"the cost still falls at the longest duration tried: {costs}; give a tf_guess"
+        return Status.NOT_CONVERGED, f"the cost still falls at the longest duration solved: {costs}; {advice}"
     if search.falls_to_the_shortest:
         costs = _costs(search.tries[:3])
-        return Status.NOT_CONVERGED, f"the cost still falls at the shortest duration solved: {costs}; give a tf_guess"
+        return Status.NOT_CONVERGED, f"the cost still falls at the shortest duration solved: {costs}; {advice}"
     return Status.NOT_CONVERGED, f"no minimum over the duration settles near {search.cheapest.duration:g}"
 
 

@@ -24,3 +24,5 @@ class Extremal:
     """Outcome."""
     iterations: int
     """Linear systems that were solved."""
+    obeys: bool = False
+    """Without an answer: whether the path still obeys the problem itself, and not only an easier one on the way."""

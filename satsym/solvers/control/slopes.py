@@ -14,6 +14,9 @@ from satsym.instance import Instance
 VANISHING, MOMENT = 1e-9, 1e-4
 """Share of the largest slope below which it counts as none, and of the usual one below which its law has a pole."""
 
+INSTANT = 1e-6
+"""Over which a derivative by explicit time is taken, relative to it."""
+
 
 def slope(instance: Instance, places: Sequence[int], t: Array, x: Array, lam: Array) -> Array:
     """The slope of H by a direction, shape (components, N): by the controls, or by cosine and sine of an angle.
@@ -78,12 +81,32 @@ def continued(instance: Instance, t: Array, x: Array, lam: Array, u: Array) -> A
 
 
 def full_length_smoothing(instance: Instance) -> float:
-    """The smoothing at which full length costs about as much again as time and state do."""
-    model, p, x = instance.model, instance.parameters, instance.initial
-    idle = tuple(instance.control_set.project(np.zeros((len(model.spec.controls), 1)))[:, 0].tolist())
-    cost = abs(model.running_cost(instance.t0, x, idle, p))
-    effort = sum(part.radius**2 for _, part in instance.control_set.parts if part.directed)
-    return 2.0 * (cost or 1.0) / effort
+    """The smoothing at which full length costs about as much again as time and state do.
+
+    Where only the end costs, that is how fast it grows dearer, if not at rest then at full length.
+    """
+    idle = instance.control_set.project(np.zeros((len(instance.model.spec.controls), 1)))[:, 0]
+    directed = [(places, part.radius) for places, part in instance.control_set.parts if part.directed]
+    cost = abs(cost_rate(instance, idle))
+    if not cost:
+        full = np.array(idle)
+        for places, radius in directed:
+            full[places[0]] = radius
+        cost = abs(cost_rate(instance, full))
+    effort = sum(radius**2 for _, radius in directed)
+    return 2.0 * (cost if 0.0 < cost < float("inf") else 1.0) / effort
+
+
+def cost_rate(instance: Instance, u: Array) -> float:
+    """How fast the cost grows at the start under a control: the running cost, and the rate of the terminal one."""
+    model, p, t, x = instance.model, instance.parameters, instance.t0, instance.initial
+    found = float(model.running_cost(t, x, tuple(u.tolist()), p))
+    if model.spec.has_terminal_cost:
+        rates = model.dynamics(t, x, tuple(u.tolist()), p)
+        found += sum(a * b for a, b in zip(model.terminal_gradient(t, x, p), rates, strict=True))
+        step = INSTANT * max(abs(t), 1.0)
+        found += float(model.terminal_cost(t + step, x, p) - model.terminal_cost(t - step, x, p)) / (2.0 * step)
+    return found
 
 
 def without_poles(instance: Instance, t: Array, x: Array, lam: Array) -> ControlSet:

@@ -97,7 +97,7 @@ def extremal(problem: TwoPoint, start: Path, limits: Limits) -> Extremal:
             limits.tell(arcs.cost() * problem.scale.cost, error)
             if error <= tolerance and not problem.instance.model.in_domain(arcs.course[1]):
                 why = "the extremal leaves the domain"
-                return Extremal(problem, arcs, float("inf"), Status.LEFT_DOMAIN, why, total)
+                return Extremal(problem, arcs, float("inf"), Status.LEFT_DOMAIN, why, total, obeys=True)
             if error <= tolerance:
                 return converged(arcs, error, total)
             accuracy /= 2**ORDER

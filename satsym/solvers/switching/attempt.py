@@ -49,6 +49,7 @@ class Origin(Enum):
     DRAWN = "switching times that were drawn"
     SMOOTHED = "the regularised problem, smoothed by {:.1e}"
     MINIMUM_TIME = "the structure of the minimum time"
+    EASIER = "exact arcs of an easier problem"
 
 
 @dataclass(frozen=True, eq=False)

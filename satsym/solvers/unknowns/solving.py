@@ -16,15 +16,16 @@ import numpy as np
 from satsym.instance import Instance
 from satsym.solution import Check, Competitors, Kind, Progress, Solution
 from satsym.solvers.certificate.start import STATIONARY, Curvature, with_start
+from satsym.solvers.failures import tried
 from satsym.solvers.iteration import unsolved
 from satsym.solvers.unknowns.descent import NOISE, met_beside, minimum_from
+from satsym.solvers.unknowns.reaching import reaching
 from satsym.solvers.unknowns.trials import Late, Solver, Trial, Trials, unit_of
 from satsym.status import Status
 from satsym.wording import counted
 
 ELSEWHERE = (1.0, -1.0, 3.0, -3.0, 0.3, -0.3)
-"""Units by which unknowns are changed where the first guess has no answer."""
-
+"""Units by which unknowns are changed, one after the other, where the first guess has no answer."""
 
 SAME = 1e-9
 """Relative margin by which another choice may seem cheaper: its own error."""
@@ -98,6 +99,8 @@ def _begin(trials: Trials) -> Trial | Solution:
     """The first trial that has an answer, with units that fit it."""
     count = len(trials.unknowns)
     here = trials(np.zeros(count))
+    if here is None and (arriving := tried(lambda: reaching(trials))) is not None:
+        here = trials(arriving)
     for step in ELSEWHERE:
         for axis in np.eye(count):
             here = here or trials(step * axis)

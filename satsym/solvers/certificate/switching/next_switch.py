@@ -52,17 +52,33 @@ class Mark:
         """That of the switching function."""
         return max(float(np.abs(self.field.gradient(t, z.tolist(), self.control)) @ sizes), 1e-300)
 
-    def sign(self, span: Span, sizes: Array) -> float:
+    def blurred(self, span: Span, sizes: Array) -> float:
+        """Share of a span after whose start signs tell nothing: more of it where the rate vanishes there as well.
+
+        So it does where a singular arc ends, and the sign of next to nothing is that of rounding.
+        """
+        now, rate = self.gap(span.start, span.z.tolist())
+        flat = max(abs(now), abs(rate) * span.lasting) <= AT_ONCE * self.size(span.start, span.z, sizes)
+        return AT_ONCE**0.5 if flat else AT_ONCE
+
+    def sign(self, span: Span, by: Integration) -> float:
         """That of the gap at the start of a span, or right after it."""
         now, rate = self.gap(span.start, span.z.tolist())
-        return float(np.sign(now) if abs(now) > AT_ONCE * self.size(span.start, span.z, sizes) else np.sign(rate))
+        if abs(now) > AT_ONCE * self.size(span.start, span.z, by.sizes):
+            return float(np.sign(now))
+        blurred = self.blurred(span, by.sizes)
+        if blurred > AT_ONCE:
+            after = span.start + blurred * span.lasting
+            rate = self.gap(after, by.end(span.until(after)).tolist())[0]
+        return float(np.sign(rate))
 
-    def event(self, span: Span, sign: float) -> Any:
+    def event(self, span: Span, sign: float, sizes: Array) -> Any:
         """For SciPy: a change of sign, away from the switch that began the arc."""
         field, side, control = self.field, self.side, self.control
+        blurred = self.blurred(span, sizes)
 
         def value(t: float, y: Array) -> float:
-            if t - span.start < AT_ONCE * span.lasting:
+            if t - span.start < blurred * span.lasting:
                 return sign
             sigma = field.sigma(t, y.tolist(), control)
             return sigma - side * field.weight(t, y.tolist(), control) if side else sigma
@@ -84,8 +100,9 @@ def next_switch(span: Span, settled: list[bool], by: Integration) -> tuple[float
     field, start, marks = span.field, span.start, _marks(span, settled)
     if not marks or span.lasting <= 0.0:
         return None
-    signs = [mark.sign(span, by.sizes) for mark in marks]
-    crossings = [mark.event(span, sign) for mark, sign in zip(marks, signs, strict=True)]
+    signs = [mark.sign(span, by) for mark in marks]
+    crossings = [mark.event(span, sign, by.sizes) for mark, sign in zip(marks, signs, strict=True)]
+    blurred = {mark: mark.blurred(span, by.sizes) for mark in marks}
     turns = [lambda t, y, mark=mark: mark.gap(t, y.tolist())[1] for mark in marks]
     found = by.solved(
         lambda t, y: field.rates(t, y.tolist()),
@@ -102,7 +119,7 @@ def next_switch(span: Span, settled: list[bool], by: Integration) -> tuple[float
             marks, signs, found.t_events[len(marks) :], found.y_events[len(marks) :], strict=True
         )
         for t, y in zip(times, points, strict=True)
-        if t - start > AT_ONCE * span.lasting
+        if t - start > blurred[mark] * span.lasting
         and sign * mark.gap(t, y.tolist())[0] < -TOUCHED * mark.size(t, y, by.sizes)
     ]
     if between and min(between) < float(found.t[-1]):

@@ -9,22 +9,22 @@ from functools import partial
 import numpy as np
 
 from satsym.instance import Guess, Instance
-from satsym.solvers.cold_start.directions import bent, directed, fraction_between, levels, stopped
-from satsym.solvers.cold_start.origin import Start
-from satsym.solvers.collocation.curve import Curve
-from satsym.solvers.collocation.extremal import Extremal
-from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.cold_start.directions import bent, directed
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
+from satsym.solvers.switching.cold_start.arcs_of_norms import arcs
+from satsym.solvers.switching.cold_start.by_easier import followed
 from satsym.solvers.switching.cold_start.homotopy import Stopped
-from satsym.solvers.switching.cold_start.recognition import guess, sample
-
-SWITCHED = 0.35
-"""Share of the time at most for which norms are far from their bounds where a structure is to be recognised."""
+from satsym.solvers.switching.structure import LOWER, Structure
+from satsym.solvers.switching.structure import Guess as Arcs
 
 SEED, AMPLITUDES = 5, (0.2, 0.5)
 """Of paths that are drawn, and how far they leave the straight line; certificates draw others."""
+
+POINTS, NEAR, FAINT = 401, 1e-3, 1e-9
+"""Times at which a motion without any control is looked at, by how much of its size it may miss an end, and costates
+of ends that it meets, relative to sizes."""
 
 BESIDE = (0.6, 1.6)
 """Shares of a free duration that was found at which others are looked for."""
@@ -35,14 +35,57 @@ CHEAPER = 1e-9
 
 def best(instance: Instance, limits: Limits) -> Exact | Stopped:
     """The cheapest extremal that a cold start and a few others lead to, or why there is none."""
-    found = directed(instance, limits, True, arcs)
-    if isinstance(found, Extremal):
-        return Stopped(found.status, found.message, found.problem, found.path)
+    found = _first(instance, limits)
+    if isinstance(found, Stopped):
+        return found
     for other in others(instance, found.refined.at.end - instance.t0, limits, np.random.default_rng(SEED), BESIDE):
         cost, least = (one.trajectory.cost(instance) for one in (other, found))
         if cost < least - CHEAPER * abs(least):
             found = other
     return found
+
+
+def _first(instance: Instance, limits: Limits) -> Exact | Stopped:
+    """The extremal to which a cold start leads; where the time is given, perhaps by way of an easier problem."""
+    idle = coasting(instance, limits)
+    if idle is not None:
+        return idle
+    found = directed(instance, limits, False, arcs)
+    if isinstance(found, Exact):
+        return found
+    message = ""
+    near = followed(instance, limits) if instance.tf is not None and not instance.guess else None
+    if near is not None and not near.fraction:
+        return near.exact
+    if near is not None and near.saturated:
+        message = f"; norms {near.norms:.6g} times as large are the minimum with which an extremal arrives in time"
+    else:
+        thorough = directed(instance, limits, True, arcs)
+        if isinstance(thorough, Exact):
+            return thorough
+    return Stopped(found.status, found.message + message, found.problem, found.path)
+
+
+def coasting(instance: Instance, limits: Limits) -> Exact | None:
+    """No norms at all for the whole of a given time, where that arrives and is an extremal."""
+    least = instance.control_set.switching[0]
+    if instance.tf is None or any(least):
+        return None
+    n, p, model = len(instance.initial), instance.parameters, instance.model
+    times, none = np.linspace(instance.t0, instance.tf, POINTS), np.zeros((len(model.spec.controls), POINTS))
+    x, middle, _ = model.forward(times, instance.initial, none, none[:, 1:], p)
+    fixed = [(i, instance.final[name]) for i, name in enumerate(model.spec.state_names) if name in instance.final]
+    size = np.abs(x).max(axis=1)
+    size = np.where(size > NEAR * size.max(), size, size.max())
+    if any(isinstance(end, float) and not abs(x[i, -1] - end) <= NEAR * size[i] for i, end in fixed):
+        return None
+    given = np.array([name in instance.final for name in model.spec.state_names])
+    slope = np.array(model.terminal_gradient(instance.tf, tuple(x[:, -1].tolist()), p))
+    end = np.where(given, FAINT / size, slope)  # any that are small enough do, but where all vanish nothing has a slope
+    lam, _ = model.backward(times, tuple(end.tolist()), x, middle, none, none[:, 1:], p)
+    costates = lam[:, 0] if np.isfinite(lam).all() else np.zeros(n)
+    found = attempt(instance, Arcs(Structure(((LOWER,),) * len(least)), np.zeros(0), costates, instance.tf), limits)
+    return None if found is None else replace(found, origin=Origin.REST)
 
 
 def others(
@@ -57,22 +100,6 @@ def others(
         found = None if limits.expired else tried(partial(start, limits=limits, unsmoothed=arcs))
         if isinstance(found, Exact):
             yield found
-
-
-def arcs(problem: TwoPoint, instance: Instance, curve: Curve, _start: Start, limits: Limits) -> Exact | Extremal:
-    """Exact arcs as smoothed extremals show them, the first that satisfy the minimum principle."""
-    for near in levels(problem, instance, curve, limits):
-        problem, curve = near
-        if fraction_between(problem, curve) <= SWITCHED:
-            exact = attempt(instance, guess(instance, sample(problem, curve)), limits)
-            if exact is not None:
-                return replace(exact, origin=Origin.SMOOTHED, smoothing=problem.control_set.smoothing)
-        if limits.expired:
-            break
-    message = "no structure recognised in regularised solutions satisfies Pontryagin's minimum principle"
-    if fraction_between(problem, curve) > SWITCHED:
-        message = "for some time nothing decides the norm of a vector, and no law is known there"
-    return stopped(problem, instance, curve, message, limits)
 
 
 def _guessed(instance: Instance, duration: float) -> Instance:

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from satsym.instance import Instance
+from satsym.solvers.cold_start.direct import direct
 from satsym.solvers.cold_start.durations import free_duration
 from satsym.solvers.cold_start.first_minimum import cold_start
 from satsym.solvers.collocation.attempt import Reason
@@ -23,6 +24,8 @@ from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.system import System
 from satsym.solvers.control.regularised import regularised
+from satsym.solvers.control.slopes import cost_rate
+from satsym.solvers.failures import FAILURES, tried
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.cold_start.minimum_effort import (
     NEAR_FULL,
@@ -63,6 +66,18 @@ def path(instance: Instance, limits: Limits, most: int = LEVELS) -> Iterator[Smo
     Stopped
         Where there is none, or the way to the bounds is blocked.
     """
+    try:
+        first = _weighed(instance, limits)
+    except (Stopped, *FAILURES):
+        by_programme = _by_programme(instance, limits)
+        if by_programme is None:
+            raise
+        first = by_programme
+    yield from less_and_less(instance, first, limits, most)
+
+
+def _weighed(instance: Instance, limits: Limits) -> Smoothed:
+    """Well smoothed within the bounds, with the weight of |u|."""
     problem, curve = (instance.tf is None and _long(instance, limits)) or _bounded(instance, limits)
     smoothing = problem.control_set.smoothing
 
@@ -72,8 +87,26 @@ def path(instance: Instance, limits: Limits, most: int = LEVELS) -> Iterator[Smo
     curve, reached = follow(weighed, curve, limits)
     if reached < 1.0:
         raise Stopped(Status.NOT_CONVERGED, f"the weight of |u| could be brought in only {reached:.0%}", problem, curve)
-    problem = weighed(1.0)
-    yield Smoothed(problem, curve)
+    return Smoothed(weighed(1.0), curve)
+
+
+def _by_programme(instance: Instance, limits: Limits) -> Smoothed | None:
+    """The same from a direct method, which keeps the bounds from the start; ``None`` where that leads nowhere."""
+    found = tried(lambda: direct(regularised(instance, first_smoothing(instance), 1.0), limits))
+    return None if found is None else Smoothed(found[0], found[1].found.curve)
+
+
+def less_and_less(instance: Instance, first: Smoothed, limits: Limits, most: int = LEVELS) -> Iterator[Smoothed]:
+    """A smoothed extremal, and then so many others, less and less smoothed.
+
+    Raises
+    ------
+    Stopped
+        Where that does not go on.
+    """
+    problem, curve = first.problem, first.curve
+    smoothing = problem.control_set.smoothing
+    yield first
     for _ in range(most):
         before = smoothing
 
@@ -138,15 +171,13 @@ def _bounded(instance: Instance, limits: Limits) -> tuple[TwoPoint, Curve]:
 
 
 def first_smoothing(instance: Instance) -> float:
-    """The smoothing at which the largest control costs about as much again as time, state and |u| do."""
-    model, p, x = instance.model, instance.parameters, instance.initial
+    """The smoothing at which the largest control costs about as much again as time, state, |u| and the end do."""
     m = len(instance.lower)
     largest = [max(abs(low), abs(high)) for low, high in zip(instance.lower, instance.upper, strict=True)]
-    cost = max(
-        abs(model.running_cost(instance.t0, x, tuple(u), p)) for u in (instance.lower, instance.upper, (0.0,) * m)
-    )
+    cost = max(abs(cost_rate(instance, np.array(u))) for u in (instance.lower, instance.upper, (0.0,) * m))
     effort = sum(value * value for value in largest)
-    return 2.0 * (cost or _later(instance) or 1.0) / effort if effort > 0.0 else 1.0
+    known = cost if 0.0 < cost < float("inf") else _later(instance)
+    return 2.0 * (known or 1.0) / effort if effort > 0.0 else 1.0
 
 
 def _later(instance: Instance) -> float:

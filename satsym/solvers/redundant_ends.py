@@ -1,0 +1,207 @@
+"""A final state that follows from the others, because a quantity is conserved whatever the controls do.
+
+The components of a quaternion are an example: with three of them given at the end, and the sign, so is the fourth. Such
+a condition makes all equations for costates singular. It shows in what controls do to the final state: there is a
+direction in which they move it nowhere. The condition on the state that this direction has most of is left out, and
+looked at again in the answer.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.instance import Guess, Instance
+from satsym.solution import Solution
+
+SPANNED, MOVED = 1e-9, 1e-9
+"""Share of the largest singular value below which rates at the end, and responses to controls, span a direction less.
+"""
+
+DRAWN = 6
+"""Controls whose rates at the end are compared."""
+
+MORE, STEPS = 3, 16
+"""Knots at which controls are varied, more than it takes to move the end everywhere, and steps from one to the next."""
+
+STEP = 1e-4
+"""By which they are varied, relative to their size."""
+
+OFF = (0.3, 0.7)
+"""By how much a final state that is free is off its start, relative to that."""
+
+SAME = 1e-4
+"""Difference of the directions that two controls leave open, if it is one of the motion and none of these controls."""
+
+HORIZON = 0.25
+"""Of the motion's own time scale, in which controls are varied."""
+
+DRIFTING = 1e-3
+"""Share of the largest slope of the motion below which its eigenvalues are none."""
+
+MET = 1e-6
+"""Miss of a final state that was left out, relative to its size, with which it is met."""
+
+
+@dataclass(frozen=True)
+class Redundant:
+    """An instance without one of its final states, which follows from the others."""
+
+    instance: Instance
+    state: str
+    given: float
+
+    @property
+    def towards(self) -> Instance:
+        """With the straight line to the end that is asked for as a guess: the others may leave a sign open."""
+        names, whole = self.instance.model.spec.state_names, {**self.instance.final, self.state: self.given}
+        line = {
+            name: (x, float(whole[name]) if isinstance(whole.get(name), float | int) else x)
+            for name, x in zip(names, self.instance.initial, strict=True)
+        }
+        return replace(self.instance, guess=Guess(state=line))
+
+    def met(self, solution: Solution) -> bool:
+        """Whether there is an answer, and it ends there all the same."""
+        return solution.status.answered and abs(self.reached(solution) - self.given) <= MET * max(1.0, abs(self.given))
+
+    def reached(self, solution: Solution) -> float:
+        """Where it ends."""
+        return float(solution.x[self.instance.model.spec.state_names.index(self.state), -1])
+
+    def missed(self, solution: Solution) -> str:
+        """What an answer that does not end there means."""
+        return (
+            f"a function of the states that no control changes ties the final {self.state} to the others: what was "
+            f"found with these as asked ends at {self.reached(solution):.6g} instead of {self.given:.6g}; leave it out"
+        )
+
+    @property
+    def note(self) -> str:
+        """What was done, in words."""
+        return (
+            f"what is asked of the final {self.state} follows from the other final states, because no control changes "
+            "a certain function of them: it was left out"
+        )
+
+
+def redundant(instance: Instance) -> Redundant | None:
+    """The instance without a final state that follows from the others; ``None`` where none does."""
+    names = instance.model.spec.state_names
+    fixed = np.array([isinstance(instance.final.get(name), float | int) for name in names])
+    if instance.guess or instance.model.spec.multipliers or fixed.sum() < 2:
+        return None
+    rng = np.random.default_rng(0)
+    end = _end(instance, fixed, rng)
+    with np.errstate(all="ignore"):
+        if not _spans_less(instance, end, rng):
+            return None
+        one = _still(instance, end, rng)
+        other = None if one is None else _still(instance, end, rng)
+    if one is None or other is None or min(np.abs(one - other).max(), np.abs(one + other).max()) > SAME:
+        return None
+    if np.abs(one[~fixed]).max(initial=0.0) > SAME:
+        return None  # a state that is free makes up for it
+    state = names[int(np.abs(one).argmax())]
+    final = {name: value for name, value in instance.final.items() if name != state}
+    return Redundant(replace(instance, final=final), state, float(instance.final[state]))
+
+
+def _end(instance: Instance, fixed: Array, rng: np.random.Generator) -> Array:
+    """A final state as it is asked for, and with what is free somewhere off the start."""
+    start = np.array(instance.initial)
+    off = start + np.where(start != 0.0, np.abs(start), 1.0) * rng.uniform(*OFF, len(start))
+    names = instance.model.spec.state_names
+    return np.array([float(instance.final[name]) if fixed[i] else off[i] for i, name in enumerate(names)])
+
+
+def _sizes(instance: Instance, end: Array) -> Array:
+    """Of states at both ends; one where both are zero."""
+    size = np.maximum(np.abs(end), np.abs(np.array(instance.initial)))
+    return np.where(size > 0.0, size, 1.0)
+
+
+def _controls(instance: Instance, rng: np.random.Generator, count: int) -> Array:
+    """Admissible controls that are drawn, shape (m, count)."""
+    return np.asarray(instance.control_set.project(rng.normal(size=(len(instance.model.spec.controls), count))))
+
+
+def _spans_less(instance: Instance, end: Array, rng: np.random.Generator) -> bool:
+    """Whether rates of change at the end and how they change along each other span less than all directions.
+
+    Where they do not, no quantity is conserved, and nothing else needs to be looked at.
+    """
+    model, p, t, n = instance.model, instance.parameters, _last(instance), len(end)
+    u = _controls(instance, rng, DRAWN).T.tolist()
+    rates = np.array([model.dynamics(t, end.tolist(), one, p) for one in u]).T
+    slopes = [np.array(model.jacobian_x(t, end.tolist(), one, p)).reshape(n, n) for one in u]
+    size = _sizes(instance, end)
+    moved = rates - rates[:, :1] if instance.tf is not None else rates
+    columns = [(column, np.abs(rates).max(axis=1)) for column in moved.T]
+    for i in range(DRAWN):
+        for j in range(i):
+            one, other = slopes[j] @ rates[:, i], slopes[i] @ rates[:, j]
+            columns.append((one - other, np.abs(slopes[j]) @ np.abs(rates[:, i]) + np.abs(slopes[i] @ rates[:, j])))
+    # what cancels but for rounding must not count: each column is relative to what it is made of
+    table = np.array([column / size / max(float((terms / size).max()), 1e-300) for column, terms in columns]).T
+    if not np.isfinite(table).all():
+        return False
+    values = np.linalg.svd(table, compute_uv=False)
+    return bool(values[-1] <= SPANNED * values[0])
+
+
+def _last(instance: Instance) -> float:
+    """The final time, or one that may be."""
+    if instance.tf is not None:
+        return instance.tf
+    return instance.t0 + 1.0 if instance.tf_guess is None else instance.tf_guess
+
+
+def _still(instance: Instance, end: Array, rng: np.random.Generator) -> Array | None:
+    """The direction in which controls do not move the end of a motion that ends as it should, if there is just one."""
+    model, p, size = instance.model, instance.parameters, _sizes(instance, end)
+    knots = -(-len(end) // len(model.spec.controls)) + MORE
+    drawn, count = _controls(instance, rng, knots), (knots - 1) * STEPS
+    last = _last(instance)
+    lasting = HORIZON / max(_quickest(instance, end, drawn), 1e-300)
+    if instance.tf is not None:
+        lasting = min(lasting, instance.tf - instance.t0)
+    hats = np.array(
+        [np.interp(np.linspace(0.0, knots - 1.0, 2 * count + 1), range(knots), one) for one in np.eye(knots)]
+    )
+    times = np.linspace(last - lasting, last, count + 1)
+    back = (drawn @ hats)[:, ::-1]
+    start = model.forward(times[::-1], tuple(end.tolist()), back[:, ::2], back[:, 1::2], p)[0][:, -1]
+
+    def reached(at: Array) -> Array:
+        u = at @ hats
+        return np.asarray(model.forward(times, tuple(start.tolist()), u[:, ::2], u[:, 1::2], p)[0][:, -1])
+
+    columns = []
+    for place in np.ndindex(drawn.shape):
+        change = np.zeros_like(drawn)
+        change[place] = STEP * max(float(np.abs(drawn).max()), 1e-6)
+        columns.append((reached(drawn + change) - reached(drawn - change)) / change[place])
+    if instance.tf is None:
+        columns.append(np.array(model.dynamics(last, tuple(end.tolist()), tuple(drawn[:, -1].tolist()), p)))
+    table = np.array(columns).T / size[:, None]
+    if not np.isfinite(table).all():
+        return None
+    left, values, _ = np.linalg.svd(table, full_matrices=True)
+    if len(values) < len(end) or not values[-1] <= MOVED * values[0] < values[-2]:
+        return None
+    direction = left[:, -1] / size
+    return np.asarray(direction / np.abs(direction).max())
+
+
+def _quickest(instance: Instance, end: Array, drawn: Array) -> float:
+    """The largest rate of the motion about the end: by its eigenvalues, or by its slopes where these give no scale."""
+    last, n = _last(instance), len(end)
+    found = []
+    for u in drawn.T.tolist():
+        slopes = np.array(instance.model.jacobian_x(last, end.tolist(), u, instance.parameters)).reshape(n, n)
+        own, largest = float(np.abs(np.linalg.eigvals(slopes)).max()), float(np.linalg.norm(slopes, 2))
+        found.append(own if own > DRIFTING * largest else largest)
+    return max(found)
