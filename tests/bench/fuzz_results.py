@@ -37,7 +37,7 @@ def made(folder: Path) -> Path:
     """A sound result, of few steps."""
     case = instance.load(NAME)
     found = solve(replace(case, solver=msgspec.structs.replace(case.solver, steps=40)))
-    sets.write(folder, solution_object(found), trajectory_files(folder, found, plot=False))
+    sets.write(folder, solution_object(found), trajectory_files(folder, found, look=None))
     return folder
 
 

@@ -14,6 +14,7 @@ from click.testing import CliRunner
 from satsym import instance
 from satsym.cli.app import program
 from satsym.cli.saving import save, trajectory_files
+from satsym.report.look import SCREEN
 from satsym.report.results import trajectory
 from satsym.report.results.objects import simulation_object, solution_object
 from satsym.solution import Simulation, Solution
@@ -37,7 +38,7 @@ def flight() -> Simulation:
 
 @pytest.fixture
 def folder(solution: Solution, tmp_path: Path) -> Path:
-    save(tmp_path, solution_object(solution), trajectory_files(tmp_path, solution, plot=False))
+    save(tmp_path, solution_object(solution), trajectory_files(tmp_path, solution, look=None))
     return tmp_path
 
 
@@ -57,7 +58,7 @@ def test_a_solution_comes_back_with_every_number(solution: Solution, folder: Pat
 
 
 def test_a_flight_comes_back_with_every_number(flight: Simulation, tmp_path: Path) -> None:
-    save(tmp_path, simulation_object(flight), trajectory_files(tmp_path, flight, plot=False))
+    save(tmp_path, simulation_object(flight), trajectory_files(tmp_path, flight, look=None))
     found, _ = trajectory.read(flight.instance, tmp_path)
     assert isinstance(found, Simulation)
     assert kept(found) == kept(flight)
@@ -71,7 +72,7 @@ def plotted(*arguments: str | Path) -> str:
 
 @pytest.mark.slow
 def test_pictures_are_those_of_the_run_itself(solution: Solution, tmp_path: Path) -> None:
-    files = trajectory_files(tmp_path / "run", solution, plot=True)
+    files = trajectory_files(tmp_path / "run", solution, look=SCREEN)
     first = save(tmp_path / "run", solution_object(solution), files)
     drawn = json.loads(plotted(NAME, "--from", tmp_path / "run", "--out", tmp_path / "again", "--json"))
     pictures = [path for path in first if path.suffix == ".png"]

@@ -81,7 +81,7 @@ def test_fullers_least_cost_is_within_what_is_stated_and_comes_back_from_its_fil
     stated = solution_object(found)
     assert found.interval is not None
     assert stated["cost_interval"] == [found.interval.lower, found.interval.upper]
-    save(tmp_path, stated, trajectory_files(tmp_path, found, plot=False))
+    save(tmp_path, stated, trajectory_files(tmp_path, found, look=None))
     again, _ = trajectory.read(found.instance, tmp_path)
     assert isinstance(again, Solution)
     assert again.interval == found.interval
