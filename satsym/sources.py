@@ -7,11 +7,11 @@ by reading import statements, also those inside functions, without importing any
 from __future__ import annotations
 
 import hashlib
-import importlib
 import re
 from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib.resources import files
+from importlib.util import find_spec
 from pathlib import Path
 
 from satsym.spec import is_name
@@ -42,7 +42,8 @@ def shipped() -> list[Path]:
 
 def models() -> list[str]:
     """Names of the generated models that come with satsym, without importing them."""
-    folders = importlib.import_module(GENERATED).__path__
+    found = find_spec(GENERATED)
+    folders = (found and found.submodule_search_locations) or ()
     return sorted({file.stem for folder in folders for file in Path(folder).glob(f"*{SUFFIX}") if is_name(file.stem)})
 
 
