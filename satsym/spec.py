@@ -40,6 +40,7 @@ _UNLESS_DEFAULT = (
     *(*_OF_LINEAR_MODELS, "keplerian", "switching", "coordinates", "velocities", "quantities", "balances"),
     *("switching_curve", "conditions", "equilibria", "mode_groups", "control_parts", "maximise", "objective_unit"),
     "chattering",
+    *("path_constraints", "linear_quadratic"),
 )
 
 
@@ -177,6 +178,22 @@ class ControlPart:
 
 
 @dataclass(frozen=True)
+class PathConstraint:
+    """An inequality on the state that must hold all along.
+
+    Attributes
+    ----------
+    name
+        As the model states it.
+    order
+        How often it is differentiated until a control appears: 1 or 2.
+    """
+
+    name: str
+    order: int
+
+
+@dataclass(frozen=True)
 class ProblemSpec:
     """Names, units and kinds of one generated model or optimal control problem.
 
@@ -225,6 +242,10 @@ class ProblemSpec:
     chattering
         Names of the controls whose singular arcs, within their bounds, are reached and left by infinitely many switches
         only.
+    path_constraints
+        Inequalities on the state along the way. May be empty.
+    linear_quadratic
+        Whether, with such constraints, all is linear or quadratic so that signs of matrices tell whether it is convex.
     """
 
     name: str
@@ -257,6 +278,8 @@ class ProblemSpec:
     maximise: bool = False
     objective_unit: str = ""
     chattering: tuple[str, ...] = ()
+    path_constraints: tuple[PathConstraint, ...] = ()
+    linear_quadratic: bool = False
 
     def objective(self, cost: float) -> float:
         """What the author calls the objective, where the cost is this; and the other way round."""
@@ -353,6 +376,7 @@ class ProblemSpec:
             stated["conditions"] = tuple(Condition(**entry) for entry in stated.get("conditions", ()))
             stated["mode_groups"] = tuple(ModeGroup(**entry) for entry in stated.get("mode_groups", ()))
             stated["control_parts"] = tuple(ControlPart(**entry) for entry in stated.get("control_parts", ()))
+            stated["path_constraints"] = tuple(PathConstraint(**entry) for entry in stated.get("path_constraints", ()))
             return cls(**stated)
         except (KeyError, TypeError) as error:
             raise ValueError(f"its MODEL has other fields than this version knows ({error})") from None
@@ -368,7 +392,7 @@ def names(variables: Iterable[Variable]) -> tuple[str, ...]:
     return tuple(v.symbol for v in variables)
 
 
-def _stated(variable: Variable | Condition | ModeGroup | ControlPart | str) -> dict[str, Any] | str:
+def _stated(variable: Variable | Condition | ModeGroup | ControlPart | PathConstraint | str) -> dict[str, Any] | str:
     """The fields of one of these that differ from their defaults; a name as it is."""
     if isinstance(variable, str):
         return variable

@@ -16,7 +16,7 @@ from satsym.symbolic.kepler.central_force import inertial_state, strength_of
 from satsym.symbolic.linear.notation import matrix_symbols
 from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.notation import costate_of, given, multipliers, on_reference, target
-from satsym.symbolic.principle import product, set_laws
+from satsym.symbolic.principle import path_constraints, path_notation, product, set_laws
 from satsym.symbolic.principle.parts import FRACTION, SMOOTHING, limits_of, minimum_norm_of
 from satsym.symbolic.switching.notation import REGULARISED
 
@@ -172,6 +172,29 @@ def _cost_functions(derivation: Derivation) -> list[Function]:
             "t x u lam p",
             derivation.rhs("costate_equations"),
         ),
+        *(_of_path_constraints(derivation) if path_constraints.STEP in derivation else []),
+    ]
+
+
+def _of_path_constraints(derivation: Derivation) -> list[Function]:
+    """Functions of constraints along the way, a row for each of these."""
+    found = path_constraints.constraints(derivation)
+    states, controls = symbols_of(derivation.model.states), symbols_of(derivation.model.controls)
+    stated = {e.name: e.rhs for e in derivation.step("constraint_multiplier").equations}
+    rates = [[*one.rates[1:], sp.Integer(0)][:2] for one in found]
+    held = [[stated.get(path_notation.held_entry(one.name, k), sp.Integer(0)) for k in range(2)] for one in found]
+    multiplier = sp.Matrix([stated[f"{one.name}_eta"] for one in found])
+    g = sp.Matrix([one.rates[0] for one in found])
+    laws = [[derivation.equation(f"boundary_control.{one.name}_{u.name}").rhs for u in controls] for one in found]
+    return [
+        _vector("path_constraints", "What may not be positive along the way.", "t x p", g),
+        _matrix("path_gradient", "Its derivatives by the states, row by row.", "t x p", g.jacobian(states)),
+        _matrix("path_rates", "Its first and second rates of change; 0 for a second after the control.", "t x u p",
+                sp.Matrix(rates)),
+        _matrix("path_held", "What vanishes besides on the boundary, and its rate, row by row.", "t x lam p",
+                sp.Matrix(held)),
+        _vector("path_multiplier", "The multiplier of each while it is on its boundary.", "t x lam p", multiplier),
+        _matrix("boundary_control", "The controls on the boundary of each, row by row.", "t x lam p", sp.Matrix(laws)),
     ]
 
 

@@ -83,6 +83,17 @@ those of the regularised problem, see :mod:`satsym.symbolic.principle.product`."
 THROTTLES = {"throttle_slope": _signature("t x lam p", "r")}
 """What such a problem has besides in which vectors may be none: their norms switch by its sign."""
 
+PATH_CONSTRAINTS = {
+    "path_constraints": _signature("t x p", "h"),
+    "path_gradient": _signature("t x p", "hn"),
+    "path_rates": _signature("t x u p", "hw"),
+    "path_held": _signature("t x lam p", "hw"),
+    "path_multiplier": _signature("t x lam p", "h"),
+    "boundary_control": _signature("t x lam p", "hm"),
+}
+"""What a problem has besides whose states must keep to inequalities along the way, see
+:mod:`satsym.symbolic.principle.path_constraints`; second rates of constraints of order one are 0."""
+
 CURVE = {
     "beyond_switching_curve": _signature("t x p bounds final"),
     "feedback_law": _signature("t x p bounds final", "m"),
@@ -115,7 +126,7 @@ Eigenvalues are rows of a real and an imaginary part.
 
 POINTWISE = {
     **(_MOTION | _REFERENCE | _INVARIANTS | _POSITION | _QUANTITIES | _BALANCES | _KEPLERIAN | _COST),
-    **(_SWITCHING | DIRECTIONS | THROTTLES | CURVE | LINEAR),
+    **(_SWITCHING | DIRECTIONS | THROTTLES | PATH_CONSTRAINTS | CURVE | LINEAR),
 }
 """All functions of one point in time that any model has."""
 
@@ -140,6 +151,7 @@ def pointwise(spec: ProblemSpec) -> dict[str, Signature]:
     found |= _COST if spec.has_cost else {}
     found |= DIRECTIONS if spec.directional else {}
     found |= THROTTLES if spec.throttled else {}
+    found |= PATH_CONSTRAINTS if spec.path_constraints else {}
     if spec.switching:
         found = {name: signature for name, signature in found.items() if name not in _OF_REGULAR_LAWS} | _SWITCHING
         found |= CURVE if spec.switching_curve else {}
@@ -158,13 +170,15 @@ def sizes(spec: ProblemSpec) -> dict[str, int]:
     invariants (i), position components (q), constraints at the final time (c), choices and targets there (f), states
     and costates (z), residuals at the final time (e) and unknowns there (v); outputs (o), coefficients of the
     characteristic polynomial (g), parts of a complex number (w); position, velocity and gravitational parameter in
-    space (s); quantities (a), balances with their rates (y); vectors that may be none (r).
+    space (s); quantities (a), balances with their rates (y); vectors that may be none (r),
+    constraints along the way (h).
     """
     n, m, c = len(spec.states), len(spec.controls), len(spec.multipliers)
     counts = {"n": n, "m": m, "k": len(spec.parameters), "i": len(spec.invariants), "q": len(spec.position), "c": c}
     counts["b"] = {"box": 2 * m, "ball": 1}.get(spec.control_set or "free", 0) + spec.regularising
     counts["b"] += sum(part.bounds for part in spec.control_parts)
     counts["r"] = sum(part.branch == "throttled" for part in spec.control_parts)
+    counts["h"] = len(spec.path_constraints)
     counts |= {"o": len(spec.outputs), "g": n + 1, "w": 2, "s": 7}
     counts |= {"a": len(spec.quantities), "y": 2 * len(spec.balances)}
     return counts | {"f": 3 * n, "z": 2 * n, "e": n + c + 1, "v": 2 * n + c + 1}

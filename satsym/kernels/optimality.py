@@ -15,6 +15,7 @@ from satsym.arrays import Array
 from satsym.control_set import ControlSet
 from satsym.kernels.directions import effort, of_sets, outside_ball, outside_box, relaxed
 from satsym.kernels.evaluation import FAINT, Evaluation, size
+from satsym.kernels.path_constraints import of_path_constraints
 from satsym.kernels.relations import Relation, derivative
 
 
@@ -29,6 +30,8 @@ def of_the_cost(of: Evaluation) -> Iterator[Relation]:
         control, surplus = of("control_law"), np.zeros_like(of.at["x"])
     yield from _of_canonical(of, control, surplus)
     yield from _of_ends(of, control)
+    if of.kernels.spec.path_constraints:
+        yield from of_path_constraints(of)
 
 
 def _of_hamiltonian(of: Evaluation) -> Iterator[Relation]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
 from typing import Any, get_args
 
 import sympy as sp
@@ -14,6 +14,7 @@ from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.linear import notation as linear_notation
 from satsym.symbolic.model import Model, Problem, symbols_of, variables_of
 from satsym.symbolic.principle import notation as principle_notation
+from satsym.symbolic.principle import path_notation
 from satsym.symbolic.principle.parts import limits_of
 from satsym.symbolic.switching import notation as switching_notation
 from satsym.wording import shown
@@ -53,8 +54,23 @@ def refuse_misfits(model: Model, problem: Problem | None) -> None:
         )
     if problem and problem.running_cost == 0 and problem.terminal_cost == 0:
         raise DerivationError(f"{problem.name}: no objective; state a running_cost or a terminal_cost")
+    if problem:
+        _refuse_constraints(problem)
     if problem and not model.controls:
         raise DerivationError(f"{problem.name}: the model has no controls, so there is nothing to optimise")
+
+
+def _refuse_constraints(problem: Problem) -> None:
+    """Refuse constraints along the way that are stated otherwise than by name, or beside what excludes them."""
+    constraints, what = problem.path_constraints, f"{problem.name}: path_constraints"
+    if not isinstance(constraints, Mapping):
+        raise DerivationError(f'{what}: write a name for each, {{"ceiling": h - h_max}}', ("path_constraints",))
+    for name in constraints:
+        if not is_name(name) or "__" in name:
+            raise DerivationError(f"{what}: got {shown(name)}; a constraint's name is {NAMES}", ("path_constraints",))
+    if constraints and (problem.control_set != "free" or problem.control_sets):
+        message = "beside bounds of the controls they are not derived; leave out the control set, or state no constraints"
+        raise DerivationError(f"{what}: {message}", ("path_constraints", "control_set", "control_sets"))
 
 
 def refuse_foreign_symbols(derivation: Derivation) -> None:
@@ -91,6 +107,11 @@ def refuse_foreign_symbols(derivation: Derivation) -> None:
         refuse("the running cost", [problem.running_cost], everything | derived, "running_cost")
         refuse("the terminal cost", [problem.terminal_cost], motion, "terminal_cost")
         refuse("a terminal constraint", problem.terminal_constraints, motion, "terminal_constraints")
+        for name, stated in problem.path_constraints.items():
+            if mixed := sp.sympify(stated).free_symbols & set(symbols_of(model.controls)):
+                message = f"depends on the control {min(s.name for s in mixed)}; state one of states, time and parameters"
+                raise DerivationError(f"{derivation.name}: path_constraints {name}: {message}", ("path_constraints",))
+            refuse(f"the path constraint {name}", [stated], motion, "path_constraints")
 
 
 def _complaint(foreign: set[sp.Symbol], everything: set[sp.Symbol]) -> str:
@@ -149,7 +170,7 @@ def _notation(model: Model, problem: Problem | None) -> dict[str, str]:
         notation[n.residual_of(multiplier).name] = rf"B_{{\psi_{{{k}}}}}"
     notation |= switching_notation.names(problem) if problem else {}
     if problem:
-        notation |= principle_notation.product_names(problem)
+        notation |= principle_notation.product_names(problem) | path_notation.names(problem)
     for control in model.controls:
         notation[f"{control.symbol}_star"] = rf"{control.latex}^*"
         notation[f"{control.symbol}_hat"] = rf"\hat {control.latex}"

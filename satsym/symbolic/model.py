@@ -267,6 +267,8 @@ class Problem:
         S(x, t, p), taken at the final time (Mayer term).
     terminal_constraints
         Expressions psi(x, t, p) that vanish at the final time.
+    path_constraints
+        Expressions g(x, t, p) by name, none of which may ever be positive: ``{"ceiling": h - h_max}``.
     control_set
         ``"free"``, ``"box"`` (each control between its bounds) or ``"ball"`` (a bound on the norm); the
         numbers belong to the instance.
@@ -290,6 +292,7 @@ class Problem:
     running_cost: sp.Expr
     terminal_cost: sp.Expr = sp.Integer(0)
     terminal_constraints: tuple[sp.Expr, ...] = ()
+    path_constraints: Mapping[str, sp.Expr] = field(default_factory=dict)
     control_set: ControlSetKind = "free"
     control_sets: Mapping[str, AdmissibleSet] = field(default_factory=dict)
     convention: Convention = "minimum"

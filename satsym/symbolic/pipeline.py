@@ -19,7 +19,7 @@ from satsym.symbolic.derivation import Derivation, DerivationError, resolved
 from satsym.symbolic.linear import regulator, stability, structure
 from satsym.symbolic.model import MaybeStep, Model, Problem, variables_of
 from satsym.symbolic.motion import steps
-from satsym.symbolic.principle import effort, minimised, pontryagin, product, transversality
+from satsym.symbolic.principle import effort, minimised, path_constraints, pontryagin, product, transversality
 from satsym.symbolic.switching import curve as switching_curve
 from satsym.symbolic.switching import functions as switching
 from satsym.symbolic.switching import singular
@@ -35,6 +35,11 @@ MINIMUM_PRINCIPLE: tuple[MaybeStep, ...] = (
     pontryagin.minimised_hamiltonian,
     pontryagin.state_equations,
     pontryagin.costate_equations,
+    path_constraints.constraint_order,
+    path_constraints.boundary_control,
+    path_constraints.constraint_multiplier,
+    path_constraints.constrained_costates,
+    path_constraints.junction_conditions,
     pontryagin.boundary_conditions,
     transversality.boundary_residual,
     effort.exact_differential,
@@ -193,6 +198,8 @@ def _principle(motion_derived: Derivation) -> tuple[MaybeStep, ...]:
         return LINEAR
     if product.applies(motion_derived):
         return PRODUCT_PRINCIPLE
+    if motion_derived.problem.path_constraints:
+        return MINIMUM_PRINCIPLE
     return SWITCHING_PRINCIPLE if switching.applies(motion_derived) else MINIMUM_PRINCIPLE
 
 

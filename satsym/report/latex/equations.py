@@ -35,7 +35,7 @@ class Row:
     also: str = ""
     """Something the left side also equals, written between both sides."""
     end: str = ""
-    """Something both sides also equal, written at the end."""
+    """What both sides also are, with its relation: ``= 0``, written at the end."""
 
     @property
     def left_tex(self) -> str:
@@ -132,7 +132,7 @@ def _block(rows: list[Row]) -> str:
     for row in rows:
         right = broken(row.right, room)
         between = r" \notag \displaybreak[1] \\" if len(right) > TALL else r" \\"
-        body = f"{row.left_tex} &= " + f"{between}\n  &".join(right) + (f" = {row.end}" if row.end else "")
+        body = f"{row.left_tex} &= " + f"{between}\n  &".join(right) + (f" {row.end}" if row.end else "")
         if 1 < len(right) <= TALL:
             body = f"\\begin{{split}}\n  {body}\n  \\end{{split}}"
         elif len(rows) == len(right) == 1:

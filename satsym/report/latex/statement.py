@@ -18,6 +18,7 @@ from satsym.symbolic.latex.typeset import Typesetter
 from satsym.symbolic.model import Line
 from satsym.symbolic.principle.parts import Part as ControlPart
 from satsym.symbolic.principle.parts import parts_of
+from satsym.symbolic.principle.path_notation import rate
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ class Part:
 def statement(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
     """The whole of it."""
     kinds = (
-        *(_cost, _control_set, _constraints),
+        *(_cost, _control_set, _constraints, _path_constraints),
         *(_quantities, _definitions),
         *(_motion, _outputs),
     )
@@ -109,10 +110,20 @@ def _constraints(derivation: Derivation, texts: Texts, typeset: Typesetter) -> P
         return Part()
     end = typeset.at("t_f")
     rows = [
-        Row(_address(derivation, f"psi_{k}"), plain(rf"\psi_{{{k}}}"), end.terms(constraint), end="0")
+        Row(_address(derivation, f"psi_{k}"), plain(rf"\psi_{{{k}}}"), end.terms(constraint), end="= 0")
         for k, constraint in enumerate(derivation.problem.terminal_constraints, 1)
     ]
     return Part((f"{texts.get('statement', 'constraints')}\n{display(rows)}",))
+
+
+def _path_constraints(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
+    if derivation.problem is None or not derivation.problem.path_constraints:
+        return Part()
+    rows = [
+        Row(_address(derivation, name), typeset.terms(rate(name, 0)), typeset.terms(constraint), end=r"\le 0")
+        for name, constraint in derivation.problem.path_constraints.items()
+    ]
+    return Part((f"{texts.get('statement', 'path_constraints')}\n{display(rows)}",))
 
 
 def _quantities(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:

@@ -105,7 +105,7 @@ def _stationarity(context: Context, step: Step) -> Shown:
             f"{context.address(step)}.{e.name}",
             plain(_derivative(symbol(e.name))),
             context.typeset.terms(e.rhs),
-            end="0",
+            end="= 0",
         )
         for e in step.equations
         if context.typeset.is_zero(e.lhs)

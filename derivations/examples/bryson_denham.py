@@ -1,0 +1,38 @@
+"""A body on a line that must not pass a wall (Bryson, Denham and Dreyfus 1963; Bryson and Ho, 3.11).
+
+From (0, 1) to (0, -1) in unit time with the least effort and x <= l. In closed form: J = 2 where l >= 1/4 and the wall
+is not met, 2 + 6 (1 - 4 l)^2 where it is touched (1/6 <= l), and 4/(9 l) where the body rests at it.
+"""
+
+from dataclasses import replace
+
+from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
+
+STATES = (
+    Variable("x", "x", meaning="position"),
+    Variable("v", "v", meaning="velocity"),
+)
+CONTROLS = (Variable("u", "u", meaning="acceleration"),)
+PARAMETERS = (Variable("l", r"\ell", meaning="position of the wall", default=1 / 9, positive=True),)
+x, v = symbols_of(STATES)
+(u,) = symbols_of(CONTROLS)
+(l,) = symbols_of(PARAMETERS)  # noqa: E741 - as the authors call it
+
+bryson_denham = Problem(
+    name="bryson_denham",
+    title="Least effort before a wall",
+    model=FirstOrder(
+        name="body_before_a_wall",
+        title="A body on a line",
+        states=STATES,
+        controls=CONTROLS,
+        parameters=PARAMETERS,
+        rates={x: v, v: u},
+    ),
+    running_cost=u**2 / 2,
+    path_constraints={"wall": x - l},
+)
+
+beam = replace(bryson_denham, name="beam", title="A clamped beam under a ceiling", running_cost=u**2)
+
+PROBLEMS = (bryson_denham, beam)

@@ -1,0 +1,306 @@
+"""Inequalities on the state along the way, g(x, t, p) <= 0: order, boundary control, multiplier, junctions.
+
+Constraints are adjoined directly (Hartl, Sethi and Vickson, SIAM Review 37, 1995, theorem 4.1): to H comes eta g with a
+multiplier eta >= 0 that vanishes where g < 0. The control then minimises H itself, also on the boundary, and the
+multiplier is what keeps it there: of a constraint of order q it follows from the q-th rate of g^(q) along the extremal.
+Costates jump by -zeta g_x with zeta >= 0 where arcs on the boundary begin and end and at touch points, but for
+constraints of order one, where the control would jump with them. One constraint is on its boundary at a time.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from satsym.symbolic import notation as n
+from satsym.symbolic.algebra import definitions_of, gradient, simplified, tidy, total_derivative
+from satsym.symbolic.checks import Point, compare, identity, never_below, numeric, slopes
+from satsym.symbolic.convention import sign, worded
+from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
+from satsym.symbolic.model import Problem, symbols_of, t
+from satsym.symbolic.principle import path_notation as pn
+from satsym.symbolic.principle.pontryagin import costates
+
+HIGHEST = 2
+"""Order of a constraint that is solved; arcs on the boundary of a higher one have endlessly many junctions as a rule."""
+
+COMPETITORS = 20
+"""Controls on the boundary that the boundary control is held against at each random point."""
+
+STEP = "constraint_order"
+"""The step that only derivations of such problems have."""
+
+
+@dataclass(frozen=True)
+class Constraint:
+    """One constraint with its rates g, g', ..., g^(q), of which only the last depends on the controls."""
+
+    name: str
+    rates: tuple[sp.Expr, ...]
+
+    @property
+    def order(self) -> int:
+        """How often it is differentiated until a control appears."""
+        return len(self.rates) - 1
+
+
+def constraint_order(so_far: Derivation) -> Step | None:
+    """Rates of each constraint along the motion, up to the first in which a control appears."""
+    if not _problem(so_far).path_constraints:
+        return None
+    motion, equations, checks = _motion(so_far), list[Equation](), []
+    for found in (_differentiated(so_far, name) for name in _problem(so_far).path_constraints):
+        equations += [
+            Equation(pn.entry(found.name, k), pn.rate(found.name, k), rate) for k, rate in enumerate(found.rates)
+        ]
+        checks.append(_rates_along(found.rates, motion))
+    return Step(STEP, "differentiate until a control appears", tuple(equations), ("first_order",), tuple(checks))
+
+
+def boundary_control(so_far: Derivation) -> Step | None:
+    """The control that minimises H among those that keep g^(q) = 0."""
+    if STEP not in so_far:
+        return None
+    problem, controls = _problem(so_far), symbols_of(so_far.model.controls)
+    h, equations, checks = so_far.equation("hamiltonian.H").rhs, list[Equation](), []
+    free = sp.Matrix([so_far.equation(f"stationarity.{u.name}_hat").rhs for u in controls])
+    weight = sp.hessian(h, controls).applyfunc(sp.simplify)
+    for found in constraints(so_far):
+        effect, rest = _affine(found, controls)
+        turned = weight.LUsolve(effect)
+        missed = (effect.T * free)[0] + rest
+        laws = [tidy(simplified(law)) for law in free - turned * missed / (effect.T * turned)[0]]
+        equations += [
+            Equation(f"{found.name}_{u.name}", pn.boundary_control(found.name, u), law)
+            for u, law in zip(controls, laws, strict=True)
+        ]
+        substituted = found.rates[-1].xreplace(dict(zip(controls, laws, strict=True)))
+        checks.append(identity("keeps the constraint", [substituted]))
+        if len(controls) > 1:  # a single one has no other
+            checks.append(_cheapest_on_boundary(so_far, found, laws, sign(problem)))
+    rule = worded("minimise H on the boundary", problem)
+    return Step("boundary_control", rule, tuple(equations), (STEP, "hamiltonian"), tuple(checks))
+
+
+def constraint_multiplier(so_far: Derivation) -> Step | None:
+    """The multiplier with which the control that minimises H keeps to the boundary, and what vanishes there."""
+    if STEP not in so_far:
+        return None
+    equations, checks = list[Equation](), []
+    for found in constraints(so_far):
+        held = _held(so_far, found)
+        moving = _canonical(so_far, found)
+        last = tidy(sp.expand(total_derivative(held[-1], moving)), (eta := pn.multiplier(found.name),))
+        by_eta = sp.simplify(sp.diff(last, eta))
+        value = tidy(simplified(-last.xreplace({eta: sp.Integer(0)}) / by_eta))
+        equations += [Equation(pn.held_entry(found.name, k), pn.held(found.name, k), e) for k, e in enumerate(held)]
+        equations.append(Equation(f"{found.name}_eta", eta, value))
+        checks.append(_rates_along((*held, sp.Integer(0)), {x: r.xreplace({eta: value}) for x, r in moving.items()}))
+    rule, sources = worded("keep the law on the boundary", _problem(so_far)), (STEP, "control_law", "costate_equations")
+    return Step("constraint_multiplier", rule, tuple(equations), sources, tuple(checks))
+
+
+def constrained_costates(so_far: Derivation) -> Step | None:
+    """The costate equations on the boundary."""
+    if STEP not in so_far:
+        return None
+    states, equations, drifts = symbols_of(so_far.model.states), list[Equation](), []
+    law = _law(so_far)
+    for found in constraints(so_far):
+        moving = _canonical(so_far, found)
+        equations += [
+            Equation(f"{found.name}_{lam.name}", n.rate_of(lam), moving[lam]) for lam in costates(so_far)
+        ]
+        h = so_far.equation("hamiltonian.H").rhs.xreplace(law)
+        g, eta = found.rates[0], pn.multiplier(found.name)
+        shift = sign(_problem(so_far)) * eta * sum(sp.diff(g, x) * moving[x] for x in states)
+        change = sum(sp.diff(h, v) * rate for v, rate in moving.items())
+        drifts.append(change + shift)
+    check = identity("H changes on the boundary with the constraint", drifts)
+    rule = worded("adjoin the constraint", _problem(so_far))
+    return Step("constrained_costates", rule, tuple(equations), (STEP, "costate_equations"), (check,))
+
+
+def junction_conditions(so_far: Derivation) -> Step | None:
+    """What holds where arcs on the boundary begin and end and at touch points: tangency, and jumps of costates and H.
+
+    The jump leaves the control as it is where the order is two or more; where it is one it moves g' by a multiple of
+    zeta, which must vanish because g' = 0 on both sides.
+    """
+    if STEP not in so_far:
+        return None
+    problem, states, lam = _problem(so_far), symbols_of(so_far.model.states), costates(so_far)
+    law, equations, kept = _law(so_far), list[Equation](), []
+    h = so_far.equation("hamiltonian.H").rhs.xreplace(law)
+    for found in constraints(so_far):
+        g, zeta = found.rates[0], pn.jump(found.name)
+        equations += [
+            Equation(f"{found.name}_tangency_{k}", pn.rate(found.name, k), sp.Integer(0)) for k in range(found.order)
+        ]
+        jumps = [sign(problem) * zeta * sp.diff(g, x) for x in states]
+        before = {costate: costate + jump for costate, jump in zip(lam, jumps, strict=True)}
+        if found.order == 1:
+            held = _held(so_far, found)[0]
+            moved = sp.simplify((held.xreplace(before) - held) / zeta)
+            kept.append(sp.diff(moved, zeta))
+            if moved == 0:
+                raise DerivationError(f"{so_far.name}: path_constraints {found.name}: the jump of costates is open")
+            equations.append(Equation(f"{found.name}_jump", zeta, sp.Integer(0)))
+            continue
+        kept += [value.xreplace(before) - value for value in law.values()]
+        along = h.xreplace(before) - h - sign(problem) * zeta * (found.rates[1] - sp.diff(g, t))
+        kept.append(along)
+        equations += [
+            Equation(f"{found.name}_{costate.name}", pn.change(costate), tidy(jump))
+            for costate, jump in zip(lam, jumps, strict=True)
+        ]
+        equations.append(Equation(f"{found.name}_H", pn.change(n.HAMILTONIAN), tidy(-sign(problem) * zeta * sp.diff(g, t))))
+    check = identity("the control passes junctions unchanged", kept)
+    rule = worded("junctions", problem)
+    return Step("junction_conditions", rule, tuple(equations), (STEP, "control_law"), (check,))
+
+
+def constraints(so_far: Derivation) -> list[Constraint]:
+    """All of them, with their rates as the step has them."""
+    stated = {e.name: e.rhs for e in so_far.step(STEP).equations}
+    found = []
+    for name in _problem(so_far).path_constraints:
+        orders = [k for k in range(HIGHEST + 1) if pn.entry(name, k) in stated]
+        found.append(Constraint(name, tuple(stated[pn.entry(name, k)] for k in orders)))
+    return found
+
+
+def linear_quadratic(so_far: Derivation) -> bool:
+    """Whether the motion is linear in states and controls, costs are quadratic and constraints linear or quadratic.
+
+    What is left to make the problem convex are signs of matrices, which depend on the parameters.
+    """
+    problem, states = _problem(so_far), symbols_of(so_far.model.states)
+    moving = (*states, *symbols_of(so_far.model.controls))
+
+    def settled(expressions: list[Any], order: int) -> bool:
+        """Whether derivatives of this order are free of states and controls."""
+        table = [sp.sympify(e) for e in expressions]
+        for _ in range(order):
+            table = [sp.diff(e, v) for e in table for v in moving]
+        return not any(sp.simplify(e).free_symbols & set(moving) for e in table)
+
+    return (
+        settled(list(so_far.rhs("first_order")), 1)
+        and settled(list(problem.terminal_constraints), 1)
+        and settled([problem.running_cost, problem.terminal_cost], 2)
+        and settled([found.rates[0] for found in constraints(so_far)], 2)
+    )
+
+
+def _differentiated(so_far: Derivation, name: str) -> Constraint:
+    problem = _problem(so_far)
+    motion, controls = _motion(so_far), set(symbols_of(so_far.model.controls))
+    what = f"{so_far.name}: path_constraints {name}"
+    rates = [sp.sympify(problem.path_constraints[name])]
+    for _ in range(HIGHEST):
+        rates.append(tidy(simplified(total_derivative(rates[-1], motion)), tuple(sorted(controls, key=str))))
+        if rates[-1].free_symbols & controls:
+            return Constraint(name, tuple(rates))
+    if _uncontrolled(rates[-1], motion, controls):
+        raise DerivationError(f"{what}: no control influences it, so nothing can keep it", ("path_constraints",))
+    raise DerivationError(
+        f"{what}: its order is more than {HIGHEST}, for which no extremals are found", ("path_constraints",)
+    )
+
+
+def _uncontrolled(rate: sp.Expr, motion: Mapping[sp.Symbol, sp.Expr], controls: set[sp.Symbol]) -> bool:
+    """Whether no control enters any rate: further ones say nothing new once there are as many as states."""
+    for _ in motion:
+        rate = total_derivative(rate, motion)
+        if sp.simplify(rate).free_symbols & controls:
+            return False
+    return True
+
+
+def _affine(found: Constraint, controls: tuple[sp.Symbol, ...]) -> tuple[sp.Matrix, sp.Expr]:
+    """What multiplies the controls in g^(q), and the rest."""
+    effect = sp.Matrix(gradient(found.rates[-1], controls))
+    if any(e.free_symbols & set(controls) for e in effect):
+        raise DerivationError(
+            f"path_constraints {found.name}: the controls enter its rate in another way than linearly, "
+            "for which the boundary control is not derived",
+            ("path_constraints",),
+        )
+    return effect, found.rates[-1].xreplace(dict.fromkeys(controls, sp.Integer(0)))
+
+
+def _law(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
+    """The control that minimises H, without bounds."""
+    controls = symbols_of(so_far.model.controls)
+    return {u: so_far.equation(f"stationarity.{u.name}_hat").rhs for u in controls}
+
+
+def _held(so_far: Derivation, found: Constraint) -> tuple[sp.Expr, ...]:
+    """What must vanish on the boundary besides g and its rates: g^(q) under the law, and its first q - 1 rates."""
+    held = [tidy(simplified(found.rates[-1].xreplace(_law(so_far))))]
+    moving = _canonical(so_far, found)
+    for _ in range(found.order - 1):
+        held.append(tidy(simplified(total_derivative(held[-1], moving))))
+    return tuple(held)
+
+
+def _canonical(so_far: Derivation, found: Constraint) -> dict[sp.Symbol, sp.Expr]:
+    """Rates of states and costates on the boundary, the multiplier being a symbol."""
+    states, law = symbols_of(so_far.model.states), _law(so_far)
+    force = -sign(_problem(so_far)) * pn.multiplier(found.name)
+    rates = so_far.rhs("costate_equations")
+    moving = {x: rate.xreplace(law) for x, rate in _motion(so_far).items()}
+    for x, lam, rate in zip(states, costates(so_far), rates, strict=True):
+        moving[lam] = tidy(rate.xreplace(law) + force * sp.diff(found.rates[0], x))
+    return moving
+
+
+def _motion(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
+    return dict(zip(symbols_of(so_far.model.states), so_far.rhs("first_order"), strict=True))
+
+
+def _rates_along(rates: tuple[sp.Expr, ...], motion: Mapping[sp.Symbol, sp.Expr]) -> Any:
+    """Each but the first against the numeric rate of the one before it along the motion."""
+    values, derived, pace = numeric(list(rates[:-1])), numeric(list(rates[1:])), numeric(list(motion.values()))
+
+    def sides(point: Point) -> tuple[list[Any], list[Any]]:
+        speed = dict(zip(motion, pace(point), strict=True))
+
+        def later(h: Any) -> list[Any]:
+            return values({**point, t: point[t] + h, **{x: point[x] + h * speed[x] for x in motion}})
+
+        return derived(point), slopes(later)
+
+    symbols = {t, *motion}.union(*(e.free_symbols for e in (*rates, *motion.values())))
+    return compare("numeric rates along the motion", symbols, sides)
+
+
+def _cheapest_on_boundary(so_far: Derivation, found: Constraint, laws: list[sp.Expr], direction: int) -> Any:
+    """H against that of other controls that keep g^(q) = 0: the law moved, and brought back along its effect."""
+    controls, h = symbols_of(so_far.model.controls), so_far.equation("hamiltonian.H").rhs
+    effect, _ = _affine(found, controls)
+    value, chosen, push = numeric([h]), numeric(laws), numeric(list(effect))
+
+    def margins(point: Point, rng: random.Random) -> list[Any]:
+        law, along = chosen(point), push(point)
+        best, size = value({**point, **dict(zip(controls, law, strict=True))})[0], sum(a * a for a in along)
+        found = []
+        for _ in range(COMPETITORS):
+            moved = [rng.uniform(-1.0, 1.0) for _ in law]
+            back = sum(a * b for a, b in zip(along, moved, strict=True)) / size
+            other = [u + m - back * a for u, m, a in zip(law, moved, along, strict=True)]
+            found.append(direction * (value({**point, **dict(zip(controls, other, strict=True))})[0] - best))
+        return found
+
+    symbols = h.free_symbols.union(*(e.free_symbols for e in (*laws, *effect)))
+    return never_below(worded("cheapest on the boundary", _problem(so_far)), symbols, margins)
+
+
+def _problem(so_far: Derivation) -> Problem:
+    assert so_far.problem is not None
+    return so_far.problem

@@ -1,0 +1,99 @@
+"""Symbols of constraints along the way, and how they are typeset."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from satsym.symbolic.dimension_algebra import Dimension, over
+from satsym.symbolic.model import Problem, Requirement, symbols_of
+from satsym.symbolic.notation import HAMILTONIAN, costate_of
+
+RATES = 2
+"""Rates of a constraint that have symbols."""
+
+
+def entry(name: str, order: int) -> str:
+    """Name of the equation of a rate."""
+    return f"{name}_{order}" if order else name
+
+
+def held_entry(name: str, order: int) -> str:
+    """Name of the equation of what vanishes on the boundary."""
+    return f"{name}_held_{order}" if order else f"{name}_held"
+
+
+def rate(name: str, order: int) -> sp.Symbol:
+    """The symbol for a rate of a constraint; of order 0 the constraint itself."""
+    return sp.Symbol(f"constraint_{entry(name, order)}", real=True)
+
+
+def held(name: str, order: int) -> sp.Symbol:
+    """The symbol for the last rate under the law, or a rate of that."""
+    return sp.Symbol(f"constraint_{held_entry(name, order)}", real=True)
+
+
+def multiplier(name: str) -> sp.Symbol:
+    """The symbol for the multiplier of a constraint."""
+    return sp.Symbol(f"eta_{name}", real=True)
+
+
+def jump(name: str) -> sp.Symbol:
+    """The symbol for the multiplier at a junction."""
+    return sp.Symbol(f"zeta_{name}", real=True)
+
+
+def change(of: sp.Symbol) -> sp.Symbol:
+    """The symbol for the value before a junction less that after it."""
+    return sp.Symbol(f"change_of_{of.name}", real=True)
+
+
+def boundary_control(name: str, control: sp.Symbol) -> sp.Symbol:
+    """The symbol for a control on the boundary of a constraint."""
+    return sp.Symbol(f"{control.name}_on_{name}", real=True)
+
+
+def names(problem: Problem) -> dict[str, str]:
+    """Name -> LaTeX of all of them."""
+    if not problem.path_constraints:
+        return {}
+    found = {change(HAMILTONIAN).name: r"H(t^-) - H(t^+)"}
+    for v in problem.model.states:
+        lam = rf"\lambda_{{{v.latex}}}"
+        found[change(costate_of(symbols_of((v,))[0])).name] = rf"{lam}(t^-) - {lam}(t^+)"
+    for k, name in enumerate(problem.path_constraints, start=1):
+        letter = f"h_{{{k}}}" if len(problem.path_constraints) > 1 else "h"
+        found[rate(name, 0).name] = letter
+        found[rate(name, 1).name], found[rate(name, 2).name] = (rf"{dots}{{{letter}}}" for dots in (r"\dot", r"\ddot"))
+        found[held(name, 0).name] = rf"\varphi_{{{k}}}" if letter != "h" else r"\varphi"
+        found[held(name, 1).name] = rf"\dot\varphi_{{{k}}}" if letter != "h" else r"\dot\varphi"
+        found[multiplier(name).name] = rf"\eta_{{{k}}}" if letter != "h" else r"\eta"
+        found[jump(name).name] = rf"\zeta_{{{k}}}" if letter != "h" else r"\zeta"
+        for v in problem.model.controls:
+            found[boundary_control(name, symbols_of((v,))[0]).name] = rf"{v.latex}^{{\mathrm{{b}}}}" + (
+                f"_{{{k}}}" if letter != "h" and "_" not in v.latex else ""
+            )
+    return found
+
+
+def declare(known: dict[str, Dimension | None], problem: Problem, second: Dimension | None, total: Dimension | None,
+            require: Requirement) -> None:
+    """Enter the dimensions of these.
+
+    Parameters
+    ----------
+    second, total
+        Of time and of the cost.
+    """
+    for name, stated in problem.path_constraints.items():
+        found = require(f"the path constraint {name}", stated)
+        known[rate(name, 0).name] = found
+        known[rate(name, 1).name] = over(found, second)
+        known[rate(name, 2).name] = over(over(found, second), second)
+        known[jump(name).name] = over(total, found)
+        known[multiplier(name).name] = over(over(total, found), second)
+        for control in symbols_of(problem.model.controls):
+            known[boundary_control(name, control).name] = known[control.name]
+    if problem.path_constraints:
+        known[change(HAMILTONIAN).name] = known[HAMILTONIAN.name]
+        for state in symbols_of(problem.model.states):
+            known[change(costate_of(state)).name] = known[costate_of(state).name]
