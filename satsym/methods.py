@@ -53,6 +53,8 @@ class Method:
         ``"module:function"`` of the function ``(instance, progress) -> Solution``, imported when it is first called.
     switching
         Whether it is for controls that enter the Hamiltonian without a square, or else for those that do not.
+    constrained
+        Whether it is for problems with path constraints, or else for those without.
     automatic
         Whether it is what ``"auto"`` begins with for such controls.
     certified
@@ -69,6 +71,7 @@ class Method:
     title: str
     solver: str
     switching: bool = False
+    constrained: bool = False
     automatic: bool = False
     certified: bool = True
     relaxed: bool = False
@@ -120,6 +123,13 @@ METHODS = {
             switching=True,
             automatic=True,
         ),
+        Method(
+            "boundary-arcs",
+            "exact arcs and touch points, for constraints on the state along the way",
+            "satsym.solvers.constrained.solving:solve",
+            constrained=True,
+            automatic=True,
+        ),
     )
 }
 """By their names, in the order in which they are listed."""
@@ -137,8 +147,9 @@ def possible(name: str) -> list[Method]:
 
 def automatic(spec: ProblemSpec) -> Method:
     """The method that ``"auto"`` begins with."""
-    switches = spec.switching or spec.throttled
-    return next(method for method in METHODS.values() if method.automatic and method.switching == switches)
+    switches, constrained = spec.switching or spec.throttled, bool(spec.path_constraints)
+    fitting = (one for one in METHODS.values() if one.automatic and one.constrained == constrained)
+    return next(method for method in fitting if constrained or method.switching == switches)
 
 
 def refusal(name: str, asked: Asked) -> str:
@@ -150,6 +161,9 @@ def refusal(name: str, asked: Asked) -> str:
         available = " or ".join(f'"{one}"' for one in names())
         return f'solver.method: "{name}" is not available; use {available}'
     method, instead = METHODS[name], automatic(spec).name
+    if method.constrained != bool(spec.path_constraints):
+        what = "constraints on the state along the way" if spec.path_constraints else "no path constraints"
+        return f'solver.method: the model has {what}; use "{instead}"'
     if spec.switching and not method.switching:
         return (
             f'solver.method: the controls enter without a square and switch, which "{name}" cannot find; '

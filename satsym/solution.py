@@ -36,6 +36,25 @@ Progress: TypeAlias = Callable[[Iteration], None]
 
 
 @dataclass(frozen=True)
+class Event:
+    """What happens at a time along the way: an arc on the boundary of a constraint is entered or left, or it is touched.
+
+    Attributes
+    ----------
+    kind
+        ``"entry"``, ``"exit"`` or ``"touch"``.
+    name
+        Of the constraint.
+    t
+        When.
+    """
+
+    kind: str
+    name: str
+    t: float
+
+
+@dataclass(frozen=True)
 class Check:
     """A measured condition of optimality, with the limit it must keep."""
 
@@ -59,6 +78,7 @@ class Kind(str, Enum):
     DURATIONS = "duration"
     EARLIER = "earlier arrival"
     STARTS = "seeded starts"
+    ARCS = "structure of boundary arcs"
     UNKNOWNS = "other values of what is free"
 
 
@@ -175,6 +195,8 @@ class Solution:
         Seconds of solving, without loading and reporting.
     certificate
         ``None`` where there is no answer to certify.
+    events
+        Where boundaries of path constraints are entered, left and touched, in order of time.
     intermediate
         Of a continuation: the answers of the problems before this one, in order.
     interval
@@ -195,6 +217,7 @@ class Solution:
     history: tuple[Iteration, ...]
     wall_s: float
     certificate: Certificate | None = None
+    events: tuple[Event, ...] = ()
     intermediate: tuple[Solution, ...] = ()
     interval: CostInterval | None = None
 

@@ -19,6 +19,9 @@ from satsym.status import Status, Verdict
 ROUNDS = 3
 """Cheaper competitors that are taken for the solution, one after the other."""
 
+CONSTRAINED = "boundary-arcs"
+"""The method whose extremals are not departed from: descents of other problems do not keep to path constraints."""
+
 Solver = Callable[[Instance, Progress | None], Solution]
 
 
@@ -47,7 +50,7 @@ def improved(solver: Solver, instance: Instance, progress: Progress | None) -> S
             break
         certificate, better = examined(again, deadline, seed)
         solution = again
-    if certificate is not None and certificate.verdict is Verdict.EXTREMAL_ONLY:
+    if certificate is not None and certificate.verdict is Verdict.EXTREMAL_ONLY and solution.method != CONSTRAINED:
         endless = bottomless(solution)
         if endless is not None:
             return endless

@@ -71,12 +71,20 @@ def _judged(solution: Solution, deadline: float, seed: int) -> tuple[Certificate
 
         with np.errstate(all="ignore"):
             return switching.certify(solution), None
+    if solution.method == "boundary-arcs":
+        from satsym.solvers.certificate.constrained import conditions as constrained
+
+        return constrained.certify(solution, seed), None
     solution = revolutions.as_stated(solution)
     with np.errstate(all="ignore"):
         along = segments(solution)
         first = _first_order(solution, along)
         if not first:
             return _without_flow(), None
+        if solution.instance.model.spec.path_constraints:
+            from satsym.solvers.certificate.constrained.conditions import VIOLATED, violation
+
+            first.append(Check("path constraint violated", max(0.0, violation(solution)), VIOLATED))
         field = conjugate(solution, along)
         second: list[Check] = []
         close, others = None, Comparison((), ())

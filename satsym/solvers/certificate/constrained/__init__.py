@@ -1,0 +1,1 @@
+"""The certificate of extremals with arcs on boundaries of path constraints."""

@@ -1,0 +1,163 @@
+"""The second variation with the active arcs held: is it positive for all variations that keep these, to first order?
+
+Variations of the control are constant between nodes of a mesh, those of the state follow by the linearised motion. They
+keep to given ends, to g_x dx = 0 along boundary arcs and at touch points. To the form along the way a touch point of
+order two adds - zeta (d/dt g_x dx)^2 / g'' with g'' < 0 (Bonnans and Hermant, SIAM J. Control Optim. 46, 2007): it
+moves with the variation. Boundary arcs add the curvature of g times its multiplier.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.kernels.evaluation import COMPLEX_STEP
+from satsym.solution import Solution
+from satsym.solvers.certificate.constrained.replay import Replay
+from satsym.solvers.certificate.end_form import end_form
+from satsym.solvers.certificate.flow import unit_sizes
+from satsym.solvers.constrained.arcs import gradient
+from satsym.solvers.constrained.structure import FREE
+
+MESH = 160
+"""Intervals."""
+
+
+def curvature(solution: Solution, again: Replay) -> float:
+    """Least eigenvalue of the form over that of H_uu alone; NaN where the end is free in time, which is not looked at."""
+    instance, n = solution.instance, len(solution.x)
+    if instance.tf is None:
+        return float("nan")
+    times, which = _mesh(solution, again)
+    middles, h = (times[1:] + times[:-1]) / 2, np.diff(times)
+    z = _values(again, middles)
+    a, b, second, weight = _along(solution, middles, z, which)
+    moves, inputs = _transitions(a, b, h)
+    m, count = b.shape[1], len(h)
+    size, form, pure = m * count, np.zeros((m * count, m * count)), np.zeros((m * count, m * count))
+    state, ties, events = np.zeros((n, size)), [], _events(solution, again)
+    for k in range(count):
+        control = np.zeros((m, size))
+        control[:, m * k : m * (k + 1)] = np.eye(m)
+        after = moves[k] @ state + inputs[k] @ control
+        both = np.vstack([(state + after) / 2, control])
+        form += h[k] * both.T @ second[k] @ both
+        pure += h[k] * control.T @ weight[k] @ control
+        state = after
+        at = times[k + 1]
+        if which[k] != FREE:
+            ties.append(gradient(instance, which[k], np.array([at]), _values(again, np.array([at]))[:n])[:, 0] @ state)
+        for event in [one for one in events if abs(one[0] - at) < 1e-12 * max(1.0, abs(at))]:
+            ties.append(event[1] @ state)
+            form += np.outer(event[2] @ state, event[2] @ state) * event[3]
+            form += state.T @ event[4] @ state
+    unit = unit_sizes(solution)
+    end = end_form(solution, unit)
+    scaled = state / unit[:n, None]
+    form += scaled.T @ end.form @ scaled * unit[0] * unit[n]
+    ties += list(end.ties @ scaled)
+    return _least(form, pure, np.array(ties).reshape(-1, size))
+
+
+def _least(form: Array, pure: Array, ties: Array) -> float:
+    """Least generalised eigenvalue on what keeps the ties."""
+    from scipy.linalg import eigh
+
+    rows = ties / np.maximum(np.abs(ties).max(axis=1, keepdims=True), 1e-300)
+    left, strengths, kept = np.linalg.svd(rows)
+    rank = int((strengths > 1e-9 * strengths.max(initial=0.0)).sum())
+    basis = kept[rank:].T
+    del left
+    return float(eigh(basis.T @ form @ basis, basis.T @ pure @ basis, eigvals_only=True, subset_by_index=[0, 0])[0])
+
+
+def _mesh(solution: Solution, again: Replay) -> tuple[Array, list[int]]:
+    """Times with all events among them, and the boundary on which each interval runs."""
+    whole = float(solution.times[-1] - solution.times[0])
+    times, which = [np.array([solution.times[0]])], list[int]()
+    for piece in again.pieces:
+        a, b = piece.times[0], piece.times[-1]
+        count = max(4, int(np.ceil(MESH * (b - a) / whole)))
+        times.append(np.linspace(a, b, count + 1)[1:])
+        which += [piece.constraint] * count
+    return np.concatenate(times), which
+
+
+def _values(again: Replay, times: Array) -> Array:
+    """States and costates by lines between the dense places of the replay."""
+    known = np.concatenate([piece.times for piece in again.pieces])
+    rows = np.concatenate([piece.dense for piece in again.pieces], axis=1)
+    return np.array([np.interp(times, known, row) for row in rows])
+
+
+def _along(solution: Solution, t: Array, z: Array, which: list[int]) -> tuple[Array, Array, list[Array], list[Array]]:
+    """Jacobians of the motion, second derivatives of H + eta g by state and control, and H_uu, at midpoints."""
+    instance, n = solution.instance, len(solution.x)
+    model, p, x, lam = instance.model, instance.parameters, z[:n], z[n:]
+    u = np.asarray(model.control_law_batch(t, x, lam, p, instance.control_set.arguments))
+    m, count = len(u), len(t)
+    a = np.broadcast_to(np.asarray(model.jacobian_x_batch(t, x, u, p)).reshape(n, n, -1), (n, n, count))
+    b = np.broadcast_to(np.asarray(model.jacobian_u_batch(t, x, u, p)).reshape(n, m, -1), (n, m, count))
+
+    def slopes(y: Array) -> Array:
+        by_x = -np.asarray(model.costate_rate_batch(t, y[:n], y[n:], lam, p))
+        by_u = np.asarray(model.stationarity_batch(t, y[:n], y[n:], lam, p))
+        return np.concatenate([np.broadcast_to(by_x, x.shape), np.broadcast_to(by_u, u.shape)])
+
+    table = _slopes(slopes, np.concatenate([x, u]))
+    eta = np.asarray(model.path_multiplier_batch(t, x, lam, p))
+    for k in {one for one in which if one != FREE}:
+        curved = _slopes(lambda y, k=k: gradient(instance, k, t, y), x)
+        table[:n, :n] += curved * np.where(np.array(which) == k, np.broadcast_to(eta[k], t.shape), 0.0)
+    second = list(np.moveaxis((table + table.swapaxes(0, 1)) / 2, -1, 0))
+    return np.moveaxis(a, -1, 0), np.moveaxis(b, -1, 0), second, [one[n:, n:] for one in second]
+
+
+def _transitions(a: Array, b: Array, h: Array) -> tuple[list[Array], list[Array]]:
+    """The midpoint rule's step of the linearised motion."""
+    moves, inputs = [], []
+    for one, push, step in zip(a, b, h, strict=True):
+        unit = np.eye(len(one))
+        inverse = np.linalg.inv(unit - step / 2 * one)
+        moves.append(inverse @ (unit + step / 2 * one))
+        inputs.append(inverse @ (step * push))
+    return moves, inputs
+
+
+def _events(solution: Solution, again: Replay) -> list[tuple[float, Array, Array, float, Array]]:
+    """Of each junction: its time, g_x, its rate, what multiplies the square of the latter, and zeta times g_xx."""
+    instance, n, found = solution.instance, len(solution.x), []
+    names = [one.name for one in instance.model.spec.path_constraints]
+    for event, piece, zeta in zip(solution.events, again.pieces, again.jumps, strict=False):
+        k, t, z = names.index(event.name), np.array([event.t]), piece.z[:, -1:]
+        x = z[:n]
+        curved = _slopes(lambda y, k=k, t=t: gradient(instance, k, t, y), x)[..., 0]
+        rate, share = np.zeros(n), 0.0
+        if event.kind == "touch":
+            u = np.asarray(
+                instance.model.control_law_batch(t, x, z[n:], instance.parameters, instance.control_set.arguments)
+            )
+            p = instance.parameters
+            rate = _slopes(
+                lambda y, k=k, t=t, u=u: np.asarray(
+                    instance.model.path_rates_batch(t, y, u.astype(complex), p)
+                ).reshape(-1, 2, 1)[k, :1],
+                x,
+            )[0, :, 0]
+            second = float(np.asarray(instance.model.path_rates_batch(t, x, u, p)).reshape(-1, 2, 1)[k, 1, 0])
+            share = float(zeta) / second if second < 0.0 else -np.inf
+        g_x = gradient(instance, k, t, x)[:, 0]
+        found.append((event.t, g_x, rate, share, float(zeta) * curved))
+    return found
+
+
+def _slopes(function: Callable[[Array], Array], at: Array) -> Array:
+    """Derivatives by every component, shape (rows, d, N)."""
+    columns = []
+    for j in range(len(at)):
+        moved = at.astype(complex)
+        moved[j] += 1j * COMPLEX_STEP
+        columns.append(np.imag(function(moved)) / COMPLEX_STEP)
+    return np.stack(columns, axis=1)

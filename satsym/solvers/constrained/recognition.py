@@ -1,0 +1,80 @@
+"""The structure that a regularised path shows: where slacks are small and multipliers are not."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.arrays import Array
+from satsym.solvers.constrained.interior_point import Path
+from satsym.solvers.constrained.structure import Contact, Structure
+from satsym.solvers.constrained.transcription import Program
+from satsym.solvers.switching.trajectory import runs
+
+CLOSE = 1e-3
+"""A slack of this share of the largest is small: nodes meet a boundary only nearly."""
+
+PUSHES = 1e-3
+"""Share of the largest multiplier nearby from which on one counts."""
+
+NOTHING = 1e-6
+"""Share of the costates below which what a constraint adds to them is nothing."""
+
+INSTANT = 2
+"""Intervals within which multipliers of a touch point are spread."""
+
+
+def recognised(program: Program, path: Path) -> Structure:
+    """Contacts with all constraints, those of an order of one as arcs."""
+    found: list[Contact] = []
+    model, at = program.instance.model, path.at
+    times = np.real(program.times(at.duration, middle=False))
+    g_x = np.asarray(model.path_gradient_batch(times, at.x[:, 1:], program.p))
+    g_x = np.broadcast_to(g_x.reshape(len(at.s), len(at.x), -1), (len(at.s), len(at.x), len(times)))
+    costates = np.abs(at.y).max(axis=1)
+    for k, one in enumerate(model.spec.path_constraints):
+        s, z = at.s[k], at.z[k] * program.kept[k]
+        near = (s < CLOSE * s.max()) & (program.kept[k] > 0.0)
+        pushing = (np.abs(g_x[k]) * z / np.maximum(costates[:, None], NOTHING * costates.max() + 1e-300)).max(axis=0)
+        for first, last in runs(_bridged(near)):
+            if pushing[first : last + 1].sum() > NOTHING:
+                found.append(_contact(k, one.order, times, z, first, last))
+    found.sort(key=lambda contact: contact.middle)
+    return _with_ends(program, tuple(found), times)
+
+
+def _bridged(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """With single gaps closed."""
+    found = flags.copy()
+    found[1:-1] |= flags[:-2] & flags[2:]
+    return found
+
+
+def _contact(constraint: int, order: int, times: Array, z: Array, first: int, last: int) -> Contact:
+    """An arc or a touch point where multipliers count."""
+    own = z[first : last + 1]
+    counts = np.flatnonzero(own > PUSHES * own.max()) + first
+    begins, ends = int(counts[0]), int(counts[-1])
+    if order > 1 and ends - begins <= INSTANT:
+        weight = z[begins : ends + 1]
+        time = float(times[begins : ends + 1] @ weight / weight.sum())
+        return Contact(constraint, time, time, (float(weight.sum()), 0.0))
+    step = float(times[1] - times[0])
+    jumps = (float(z[begins : begins + 3].sum()), float(z[max(ends - 2, begins + 1) : ends + 1].sum()))
+    start, end = float(times[begins]), float(times[ends])
+    if end - start < step:
+        start, end = start - step, end + step
+    return Contact(constraint, start, end, jumps)
+
+
+def _with_ends(program: Program, contacts: tuple[Contact, ...], times: Array) -> Structure:
+    """Whether the first contact holds from the start on, and the last until the end."""
+    if not contacts:
+        return Structure(())
+    one, step = program.instance, 1.5 * float(times[1] - times[0])
+    begun = np.array(one.model.path_constraints(one.t0, one.initial, program.p))
+    first, last = contacts[0], contacts[-1]
+    starts = not first.touches and first.start - one.t0 < step and abs(float(begun[first.constraint])) < 1e-9
+    order = one.model.spec.path_constraints[last.constraint].order
+    ends = not last.touches and float(times[-1]) - last.end < step and order == 1
+    return Structure(contacts, starts, ends)

@@ -1,0 +1,200 @@
+"""What is wrong with an extremal of a structure, and which structures to try instead."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.solvers.constrained.arcs import Arcs, values
+from satsym.solvers.constrained.structure import Contact, Event, Structure
+from satsym.solvers.switching.trajectory import runs
+
+SLACK = 1e-9
+"""Violation of a constraint, relative to its size along the way, and negative share of a multiplier, that are none."""
+
+STEEP = 1e-7
+"""Second rate of a constraint at a touch point, times the square of the duration and over its size, that is none."""
+
+DENSE = 8
+"""Places an interval at which constraints are looked at."""
+
+BESIDE = 0.05
+"""Share of the duration around a touch point within which a violation makes an arc of it."""
+
+
+def wrong(arcs: Arcs) -> tuple[str, list[Structure]]:
+    """A reason why this is no extremal of the problem, empty if it is one; and what to try instead."""
+    flaws = (_disordered, _pulling, _resting, _violated, _rising, _pulling_along)
+    return next((found for found in (flaw(arcs) for flaw in flaws) if found is not None), ("", []))
+
+
+def contacts(arcs: Arcs) -> list[Contact]:
+    """The contacts of the structure, with the times and jumps that were found."""
+    found, times = [], arcs.times
+    k = 0
+    for number, one in enumerate(arcs.structure.contacts):
+        if one.touches:
+            found.append(Contact(one.constraint, float(times[k + 1]), float(times[k + 1]), (arcs.jump(k), 0.0)))
+            k += 1
+            continue
+        start, end, jumps = float(times[0]), float(times[-1]), [0.0, 0.0]
+        if not (number == 0 and arcs.structure.starts):
+            start, jumps[0], k = float(times[k + 1]), arcs.jump(k), k + 1
+        if not (number == len(arcs.structure.contacts) - 1 and arcs.structure.ends):
+            end, jumps[1], k = float(times[k + 1]), arcs.jump(k), k + 1
+        found.append(Contact(one.constraint, start, end, (jumps[0], jumps[1])))
+    return found
+
+
+def along(arcs: Arcs, arc: int) -> tuple[Array, Array]:
+    """Times between the nodes and values (2n, N) there."""
+    a, b = arcs.times[arc : arc + 2]
+    times = a + (b - a) * np.linspace(0.0, 1.0, DENSE * arcs.intervals[arc] + 1)
+    return times, arcs.at(arc, times)
+
+
+def sizes(arcs: Arcs) -> Array:
+    """Of each constraint along the way, shape (h,)."""
+    n, found = arcs.n, []
+    for arc in range(len(arcs.intervals)):
+        times, z = along(arcs, arc)
+        found.append(np.abs(values(arcs.instance, times, z[:n])).max(axis=1))
+    return np.maximum(np.max(found, axis=0), 1e-300)
+
+
+def _order(arcs: Arcs, constraint: int) -> int:
+    return arcs.instance.model.spec.path_constraints[constraint].order
+
+
+def _instead(arcs: Arcs, place: int, *others: Contact) -> Structure:
+    """The structure with other contacts in place of one; flags of ends hold for what stays an arc there."""
+    known = contacts(arcs)
+    kept = (*known[:place], *others, *known[place + 1 :])
+    starts = arcs.structure.starts and bool(kept) and not kept[0].touches
+    ends = arcs.structure.ends and bool(kept) and not kept[-1].touches
+    return Structure(kept, starts, ends)
+
+
+def _touch(one: Contact) -> Contact:
+    return Contact(one.constraint, one.middle, one.middle, (sum(one.jumps), 0.0))
+
+
+def _disordered(arcs: Arcs) -> tuple[str, list[Structure]] | None:
+    """Arcs that end before they begin."""
+    lasting = arcs.end - arcs.instance.t0
+    for place, one in enumerate(contacts(arcs)):
+        if not one.touches and one.end - one.start < SLACK * lasting:
+            tries = [_instead(arcs, place, _touch(one))] if _order(arcs, one.constraint) > 1 else []
+            return "an arc on a boundary has no length", [*tries, _instead(arcs, place)]
+    if np.diff(arcs.times).min() <= 0.0:
+        known = contacts(arcs)
+        return "contacts change places", [_instead(arcs, place) for place in range(len(known))]
+    return None
+
+
+def _pulling(arcs: Arcs) -> tuple[str, list[Structure]] | None:
+    """Jumps with a negative multiplier."""
+    known = contacts(arcs)
+    largest = max([abs(jump) for one in known for jump in one.jumps], default=0.0)
+    for place, one in enumerate(known):
+        if min(one.jumps) < -SLACK * largest:
+            tries = [] if one.touches else [_instead(arcs, place, _touch(one))]
+            return "a multiplier at a junction is negative", [*tries, _instead(arcs, place)]
+    return None
+
+
+def _resting(arcs: Arcs) -> tuple[str, list[Structure]] | None:
+    """Free arcs between two touch points that lie on the boundary: they are arcs on it, whose multiplier vanishes."""
+    known, room, k = contacts(arcs), sizes(arcs), -1
+    for arc, boundary in enumerate(arcs.structure.arcs):
+        k += arc > 0 and boundary < 0
+        if boundary >= 0 or not 0 <= k < len(known) - 1:
+            continue
+        first, second = known[k : k + 2]
+        if first.touches and second.touches and first.constraint == second.constraint:
+            times, z = along(arcs, arc)
+            if np.abs(values(arcs.instance, times, z[: arcs.n])[first.constraint]).max() < SLACK * room[first.constraint]:
+                one = Contact(first.constraint, first.start, second.start, (first.jumps[0], second.jumps[0]))
+                kept = (*known[:k], one, *known[k + 2 :])
+                return "a free arc lies on a boundary", [replace(arcs.structure, contacts=kept)]
+    return None
+
+
+def _rising(arcs: Arcs) -> tuple[str, list[Structure]] | None:
+    """Touch points at which the constraint would be crossed: its second rate is positive on one side."""
+    room, lasting, instance, n = sizes(arcs), arcs.end - arcs.instance.t0, arcs.instance, arcs.n
+    places = [k for k, one in enumerate(contacts(arcs)) if one.touches]
+    for junction, place in zip([k for k, j in enumerate(arcs.junctions) if j.event is Event.TOUCH], places, strict=True):
+        one, t = contacts(arcs)[place], arcs.times[junction + 1 : junction + 2]
+        for z in (arcs.node(junction, -1)[:, None], arcs.node(junction + 1, 0)[:, None]):
+            u = instance.model.control_law_batch(t, z[:n], z[n:], instance.parameters, instance.control_set.arguments)
+            rates = np.asarray(instance.model.path_rates_batch(t, z[:n], u, instance.parameters)).reshape(-1, 2)
+            if rates[one.constraint, 1] * lasting**2 > STEEP * room[one.constraint]:
+                half = 0.5 * np.sqrt(float(rates[one.constraint, 1]) * lasting**2 / room[one.constraint])
+                half = min(half * lasting, 0.25 * lasting, one.start - arcs.times[0], arcs.times[-1] - one.start)
+                longer = Contact(one.constraint, one.start - half, one.start + half, (one.jumps[0] / 2,) * 2)
+                return "a constraint rises at its touch point", [_instead(arcs, place, longer)]
+    return None
+
+
+def _violated(arcs: Arcs) -> tuple[str, list[Structure]] | None:
+    """Constraints that are positive between contacts."""
+    room, n, worst = sizes(arcs), arcs.n, None
+    for arc, boundary in enumerate(arcs.structure.arcs):
+        times, z = along(arcs, arc)
+        g = values(arcs.instance, times, z[:n]) / room[:, None]
+        if boundary >= 0:
+            g[boundary] = 0.0
+        constraint = int(g.max(axis=1).argmax())
+        most = float(g[constraint].max())
+        if most > SLACK and (worst is None or most > worst[0]):
+            first, last = next(r for r in runs(g[constraint] > SLACK) if g[constraint][r[0] : r[1] + 1].max() == most)
+            worst = most, constraint, float(times[first]), float(times[last])
+    if worst is None:
+        return None
+    _, constraint, start, end = worst
+    reason = f"{arcs.instance.model.spec.path_constraints[constraint].name} is violated"
+    lasting, known = arcs.end - arcs.instance.t0, contacts(arcs)
+    for place, one in enumerate(known):
+        if one.touches and one.constraint == constraint and abs(0.5 * (start + end) - one.start) < BESIDE * lasting:
+            half = max(abs(start - one.start), abs(end - one.start), 0.01 * lasting)
+            low, high = max(one.start - half, arcs.times[0]), min(one.start + half, arcs.times[-1])
+            return reason, [_instead(arcs, place, Contact(constraint, low, high, (one.jumps[0] / 2,) * 2))]
+    place = sum(one.middle < 0.5 * (start + end) for one in known)
+    arc = Contact(constraint, start, end)
+    added = [arc] if _order(arcs, constraint) == 1 else [_touch(arc), arc]
+    return reason, [replace(arcs.structure, contacts=(*known[:place], one, *known[place:])) for one in added]
+
+
+def _pulling_along(arcs: Arcs) -> tuple[str, list[Structure]] | None:
+    """Boundary arcs with a negative multiplier somewhere: touch points at both ends, or one."""
+    known, place = contacts(arcs), -1
+    for arc, boundary in enumerate(arcs.structure.arcs):
+        if boundary < 0:
+            continue
+        place = next(k for k in range(place + 1, len(known)) if not known[k].touches)
+        if multiplier(arcs, arc).min() >= -SLACK * _pressure(arcs):
+            continue
+        one, reason = known[place], "a multiplier along a boundary is negative"
+        if _order(arcs, boundary) == 1:
+            return reason, [_instead(arcs, place)]
+        ends = [Contact(boundary, t, t, (jump, 0.0)) for t, jump in zip((one.start, one.end), one.jumps, strict=True)]
+        return reason, [_instead(arcs, place, *ends), _instead(arcs, place, _touch(one))]
+    return None
+
+
+def multiplier(arcs: Arcs, arc: int) -> Array:
+    """eta along an arc on a boundary, shape (N,)."""
+    times, z = along(arcs, arc)
+    n, constraint = arcs.n, arcs.structure.arcs[arc]
+    found = np.asarray(arcs.instance.model.path_multiplier_batch(times, z[:n], z[n:], arcs.instance.parameters))
+    return np.broadcast_to(found[constraint], times.shape)
+
+
+def _pressure(arcs: Arcs) -> float:
+    """What multipliers are measured by: the largest of them, or jumps over the duration."""
+    along_arcs = [float(np.abs(multiplier(arcs, k)).max()) for k, b in enumerate(arcs.structure.arcs) if b >= 0]
+    jumps = [abs(arcs.jump(k)) for k, one in enumerate(arcs.junctions) if one.event in Event]
+    return max([*along_arcs, *(jump / (arcs.end - arcs.instance.t0) for jump in jumps), 1e-300])

@@ -1,0 +1,100 @@
+"""Which constraint is active when: contacts with boundaries, the arcs that they cut the time into, and what ties these."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from satsym.instance import Instance
+
+
+class Event(Enum):
+    """What happens between two arcs."""
+
+    ENTRY = "entry"
+    EXIT = "exit"
+    TOUCH = "touch"
+
+
+FREE = -1
+"""In place of a constraint's number: on no boundary."""
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A constraint on its boundary, from one time to another; for an instant where these are the same."""
+
+    constraint: int
+    start: float
+    end: float
+    jumps: tuple[float, float] = (0.0, 0.0)
+    """Multipliers at both of its ends, to begin with; a touch point has the first."""
+
+    @property
+    def touches(self) -> bool:
+        """Whether it lasts for an instant only."""
+        return self.start == self.end
+
+    @property
+    def middle(self) -> float:
+        """Of both times."""
+        return 0.5 * (self.start + self.end)
+
+
+@dataclass(frozen=True)
+class Junction:
+    """Between two arcs."""
+
+    event: Event
+    constraint: int
+    time: float
+    jump: float | None
+    """Multiplier of the jump of costates to begin with; ``None`` where they do not jump."""
+
+
+@dataclass(frozen=True)
+class Structure:
+    """Contacts in order of time, none of which overlaps another."""
+
+    contacts: tuple[Contact, ...]
+    starts: bool = False
+    """Whether the first of them holds from the start on."""
+    ends: bool = False
+    """Whether the last of them holds until the end."""
+
+    def junctions(self, instance: Instance) -> list[Junction]:
+        """Where arcs meet."""
+        orders = [one.order for one in instance.model.spec.path_constraints]
+        found = []
+        for k, one in enumerate(self.contacts):
+            jumps = one.jumps if orders[one.constraint] > 1 else (None, None)
+            if one.touches:
+                found.append(Junction(Event.TOUCH, one.constraint, one.start, one.jumps[0]))
+                continue
+            if not (k == 0 and self.starts):
+                found.append(Junction(Event.ENTRY, one.constraint, one.start, jumps[0]))
+            if not (k == len(self.contacts) - 1 and self.ends):
+                found.append(Junction(Event.EXIT, one.constraint, one.end, jumps[1]))
+        return found
+
+    @property
+    def arcs(self) -> list[int]:
+        """The constraint on whose boundary each arc runs, or that none does."""
+        found = [] if self.starts else [FREE]
+        for one in self.contacts:
+            found += [FREE] if one.touches else [one.constraint, FREE]
+        return found[:-1] if self.ends else found
+
+    def name(self, instance: Instance) -> str:
+        """For messages: ``free, wall, free``; touch points in brackets."""
+        spec = instance.model.spec.path_constraints
+        words = [] if self.starts else ["free"]
+        for one in self.contacts:
+            name = spec[one.constraint].name
+            words += [f"[{name}]" if one.touches else name, "free"]
+        return ", ".join(words[:-1] if self.ends else words)
+
+    @property
+    def key(self) -> tuple[object, ...]:
+        """What two of them have in common that differ in times only."""
+        return (self.starts, self.ends, *((one.constraint, one.touches) for one in self.contacts))
