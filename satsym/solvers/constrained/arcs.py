@@ -136,7 +136,6 @@ class Arcs:
         """The running cost by Gauss's rule, and the terminal cost."""
         one, n, total = self.instance, self.n, 0.0
         for arc, k in enumerate(self.intervals):
-            t, z = (np.moveaxis(v, -1, 0).reshape(-1, *()) if v.ndim == 2 else v for v in self.stages(arc))
             t, z = self.stages(arc)[0].ravel(), self.stages(arc)[1].reshape(-1, 2 * n).T
             u = one.model.control_law_batch(t, z[:n], z[n:], one.parameters, one.control_set.arguments)
             cost = np.broadcast_to(one.model.running_cost_batch(t, z[:n], u, one.parameters), t.shape)
@@ -174,10 +173,10 @@ class Rest:
 
 
 class System:
-    """Residuals of all conditions with their derivatives."""
+    """Residuals of all conditions with their derivatives, or without."""
 
-    def __init__(self, arcs: Arcs) -> None:
-        self.arcs = arcs
+    def __init__(self, arcs: Arcs, sloped: bool = True) -> None:
+        self.arcs, self.sloped = arcs, sloped
         self.residuals: list[Array] = []
         self.rows: list[Array] = []
         self.columns: list[Array] = []
@@ -214,9 +213,8 @@ class System:
         constraint, gauss = arcs.structure.arcs[arc], scheme(STAGES)
         a, b = arcs.times[arc : arc + 2]
         t, z = arcs.stages(arc)
-        f, f_z, f_t = _derivatives(lambda at, y: field(arcs.instance, constraint, at, y), t.ravel(), z.reshape(-1, d).T)
-        f, f_t = (v.T.reshape(k, STAGES, d) for v in (f, f_t))
-        f_z = f_z.transpose(2, 0, 1).reshape(k, STAGES, d, d)
+        places, values = t.ravel(), z.reshape(-1, d).T
+        f = field(arcs.instance, constraint, places, values).T.reshape(k, STAGES, d)
         table = np.vstack([gauss.matrix, gauss.weights])  # the last row leads to the next node
         h = (b - a) / k
         known = arcs.nodes(arc)
@@ -224,6 +222,11 @@ class System:
         reached = np.concatenate([z, known[STAGES + 1 :: STAGES + 1][:, None]], axis=1)
         moved = np.einsum("ij,kjd->kid", table, f)
         self.residuals.append((reached - begins[:, None] - h * moved).ravel())
+        if not self.sloped:
+            return
+        f_z, f_t = _derivatives(lambda at, y: field(arcs.instance, constraint, at, y), places, values)
+        f_t = f_t.T.reshape(k, STAGES, d)
+        f_z = f_z.transpose(2, 0, 1).reshape(k, STAGES, d, d)
         first, rows = arcs.places[arc], self.height + np.arange(k * (STAGES + 1) * d).reshape(k, STAGES + 1, d)
         begin = first + (np.arange(k)[:, None] * (STAGES + 1)) * d + np.arange(d)
         stage = begin[:, None, :] + (np.arange(1, STAGES + 2) * d)[None, :, None]
@@ -232,8 +235,8 @@ class System:
         slopes = -h * table[None, :, :, None, None] * f_z[:, None]  # interval, row, stage, component, by which
         self._add(rows[:, :, None, :, None], stage[:, None, :STAGES, None, :], slopes)
         share = (np.arange(k)[:, None] + gauss.nodes) / k
-        places = arcs.rest.bounds(arc, len(arcs.intervals))
-        for place, sign, passing in zip(places, (-1.0, 1.0), (1.0 - share, share), strict=True):
+        bounds = arcs.rest.bounds(arc, len(arcs.intervals))
+        for place, sign, passing in zip(bounds, (-1.0, 1.0), (1.0 - share, share), strict=True):
             if place is not None:
                 later = h * np.einsum("ij,kjd->kid", table, f_t * passing[:, :, None])
                 self._add(rows, place, -(sign * moved / k + later))
@@ -296,8 +299,11 @@ class System:
     def _conditions(self, conditions: Callable[[Array], Array], columns: Array) -> None:
         """Conditions on a few unknowns, each a row of one column, by complex steps."""
         here = self.arcs.unknown[columns].astype(complex)
-        moved = here[:, None] + 1j * COMPLEX_STEP * np.eye(len(here))
         value = np.real(conditions(here[:, None])[:, 0])
+        if not self.sloped:
+            self.residuals.append(value)
+            return
+        moved = here[:, None] + 1j * COMPLEX_STEP * np.eye(len(here))
         slopes = np.column_stack([np.imag(conditions(moved[:, j : j + 1])[:, 0]) for j in range(len(here))]) / COMPLEX_STEP
         self.residuals.append(value)
         self._add(self.height + np.arange(len(value))[:, None], columns, slopes)
@@ -321,12 +327,12 @@ def _held(instance: Instance, constraint: int, t: Array, z: Array) -> Array:
     return found[: model.spec.path_constraints[constraint].order]
 
 
-def _derivatives(rates: Callable[[Array, Array], Array], t: Array, z: Array) -> tuple[Array, Array, Array]:
-    """A field, its derivatives by the values, shape (2n, 2n, N), and by time."""
+def _derivatives(rates: Callable[[Array, Array], Array], t: Array, z: Array) -> tuple[Array, Array]:
+    """Derivatives of a field by the values, shape (2n, 2n, N), and by time."""
     slopes = np.empty((len(z), *z.shape))
     for j in range(len(z)):
         moved = z.astype(complex)
         moved[j] += 1j * COMPLEX_STEP
         slopes[:, j] = np.imag(rates(t, moved)) / COMPLEX_STEP
     by_time = np.imag(rates(t + 1j * COMPLEX_STEP, z.astype(complex))) / COMPLEX_STEP
-    return rates(t, z), slopes, by_time
+    return slopes, by_time

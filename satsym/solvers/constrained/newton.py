@@ -20,7 +20,7 @@ ACCURATE = 1e-12
 SETTLED = 1e-10
 """Change of times and cost from one mesh to the next that is none."""
 
-ITERATIONS, HALVINGS = 40, 12
+ITERATIONS, HALVINGS = 25, 6
 DENSITY, MESHES = 24, 4
 """Intervals over the whole duration at first, and how often they are doubled."""
 
@@ -108,7 +108,7 @@ def _converged(arcs: Arcs, limits: Limits) -> Arcs | None:
         length = 1.0
         for _ in range(HALVINGS):
             there = replace(arcs, unknown=arcs.unknown - length * step)
-            again = float(np.abs(inverse.solve(System(there).residual) / size).max())
+            again = float(np.abs(inverse.solve(System(there, sloped=False).residual) / size).max())
             if again <= (1.0 - length / 4.0) * whole or (length == 1.0 and again < ACCURATE):
                 break
             length /= 2.0

@@ -1,4 +1,8 @@
-"""The structure that a regularised path shows: where slacks are small and multipliers are not."""
+"""The structure that a regularised path shows: where multipliers are larger, in their measure, than slacks in theirs.
+
+Neighbouring nodes make an arc, a few of them alone a touch point. Two touch points between which the multiplier of a
+boundary arc vanishes are taken for one arc later (:mod:`satsym.solvers.constrained.revision`).
+"""
 
 from __future__ import annotations
 
@@ -13,9 +17,6 @@ from satsym.solvers.switching.trajectory import runs
 
 CLOSE = 1e-3
 """A slack of this share of the largest is small: nodes meet a boundary only nearly."""
-
-PUSHES = 1e-3
-"""Share of the largest multiplier nearby from which on one counts."""
 
 NOTHING = 1e-6
 """Share of the costates below which what a constraint adds to them is nothing."""
@@ -36,7 +37,8 @@ def recognised(program: Program, path: Path) -> Structure:
         s, z = at.s[k], at.z[k] * program.kept[k]
         near = (s < CLOSE * s.max()) & (program.kept[k] > 0.0)
         pushing = (np.abs(g_x[k]) * z / np.maximum(costates[:, None], NOTHING * costates.max() + 1e-300)).max(axis=0)
-        for first, last in runs(_bridged(near)):
+        counts = near & (z / max(float(z.max()), 1e-300) > s / s.max())
+        for first, last in runs(_bridged(counts)):
             if pushing[first : last + 1].sum() > NOTHING:
                 found.append(_contact(k, one.order, times, z, first, last))
     found.sort(key=lambda contact: contact.middle)
@@ -50,11 +52,8 @@ def _bridged(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return found
 
 
-def _contact(constraint: int, order: int, times: Array, z: Array, first: int, last: int) -> Contact:
+def _contact(constraint: int, order: int, times: Array, z: Array, begins: int, ends: int) -> Contact:
     """An arc or a touch point where multipliers count."""
-    own = z[first : last + 1]
-    counts = np.flatnonzero(own > PUSHES * own.max()) + first
-    begins, ends = int(counts[0]), int(counts[-1])
     if order > 1 and ends - begins <= INSTANT:
         weight = z[begins : ends + 1]
         time = float(times[begins : ends + 1] @ weight / weight.sum())

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from satsym.arrays import Array
@@ -68,13 +66,13 @@ def _order(arcs: Arcs, constraint: int) -> int:
     return arcs.instance.model.spec.path_constraints[constraint].order
 
 
-def _instead(arcs: Arcs, place: int, *others: Contact) -> Structure:
-    """The structure with other contacts in place of one; flags of ends hold for what stays an arc there."""
-    known = contacts(arcs)
-    kept = (*known[:place], *others, *known[place + 1 :])
+def _instead(arcs: Arcs, place: int | slice, *others: Contact) -> Structure:
+    """The structure with other contacts in place of one or some; flags of ends hold for what stays an arc there."""
+    kept = contacts(arcs)
+    kept[place if isinstance(place, slice) else slice(place, place + 1)] = others
     starts = arcs.structure.starts and bool(kept) and not kept[0].touches
     ends = arcs.structure.ends and bool(kept) and not kept[-1].touches
-    return Structure(kept, starts, ends)
+    return Structure(tuple(kept), starts, ends)
 
 
 def _touch(one: Contact) -> Contact:
@@ -117,8 +115,7 @@ def _resting(arcs: Arcs) -> tuple[str, list[Structure]] | None:
             times, z = along(arcs, arc)
             if np.abs(values(arcs.instance, times, z[: arcs.n])[first.constraint]).max() < SLACK * room[first.constraint]:
                 one = Contact(first.constraint, first.start, second.start, (first.jumps[0], second.jumps[0]))
-                kept = (*known[:k], one, *known[k + 2 :])
-                return "a free arc lies on a boundary", [replace(arcs.structure, contacts=kept)]
+                return "a free arc lies on a boundary", [_instead(arcs, slice(k, k + 2), one)]
     return None
 
 
@@ -157,15 +154,29 @@ def _violated(arcs: Arcs) -> tuple[str, list[Structure]] | None:
     _, constraint, start, end = worst
     reason = f"{arcs.instance.model.spec.path_constraints[constraint].name} is violated"
     lasting, known = arcs.end - arcs.instance.t0, contacts(arcs)
+    found = _merged(arcs, constraint, start, end)
     for place, one in enumerate(known):
         if one.touches and one.constraint == constraint and abs(0.5 * (start + end) - one.start) < BESIDE * lasting:
             half = max(abs(start - one.start), abs(end - one.start), 0.01 * lasting)
             low, high = max(one.start - half, arcs.times[0]), min(one.start + half, arcs.times[-1])
-            return reason, [_instead(arcs, place, Contact(constraint, low, high, (one.jumps[0] / 2,) * 2))]
+            found.append(_instead(arcs, place, Contact(constraint, low, high, (one.jumps[0] / 2,) * 2)))
     place = sum(one.middle < 0.5 * (start + end) for one in known)
     arc = Contact(constraint, start, end)
     added = [arc] if _order(arcs, constraint) == 1 else [_touch(arc), arc]
-    return reason, [replace(arcs.structure, contacts=(*known[:place], one, *known[place:])) for one in added]
+    return reason, found + [_instead(arcs, slice(place, place), one) for one in added]
+
+
+def _merged(arcs: Arcs, constraint: int, start: float, end: float) -> list[Structure]:
+    """With one arc in place of two contacts with a constraint between which it is violated."""
+    known = contacts(arcs)
+    place = sum(one.middle < 0.5 * (start + end) for one in known)
+    if not 0 < place < len(known):
+        return []
+    first, second = known[place - 1 : place + 1]
+    if first.constraint != constraint or second.constraint != constraint:
+        return []
+    jumps = first.jumps[0], second.jumps[0 if second.touches else 1]
+    return [_instead(arcs, slice(place - 1, place + 1), Contact(constraint, first.start, second.end, jumps))]
 
 
 def _pulling_along(arcs: Arcs) -> tuple[str, list[Structure]] | None:

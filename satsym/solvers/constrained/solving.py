@@ -26,8 +26,11 @@ from satsym.status import Status
 
 METHOD = "boundary-arcs"
 
-INTERVALS = (100, 250)
+INTERVALS = (100, 250, 800)
 """Of the regularised path: of more where the structure is not seen."""
+
+SAME = 1e-6
+"""Relative difference of costs of regularised paths that are one."""
 
 REVISED = 12
 """Structures that are tried at most from one path."""
@@ -103,9 +106,12 @@ def _best(instance: Instance, relaxed: Solution, limits: Limits) -> Arcs | Stopp
     found: list[Arcs] = []
     last: Arcs | Stopped = Stopped(Status.NOT_CONVERGED, "")
     for intervals in INTERVALS:
-        program = Program(instance, intervals)
+        program, costs = Program(instance, intervals), list[float]()
         for start in _starts(program, relaxed):
             path = regularised(program, start, limits)
+            if path.solved and any(abs(path.cost - cost) <= SAME * abs(cost) for cost in costs):
+                continue
+            costs += [path.cost] if path.solved else []
             last = _exact(program, path, limits) if path.solved else _unsolved(program, path)
             if isinstance(last, Arcs):
                 found.append(last)

@@ -2,8 +2,8 @@
 
 Variations of the control are constant between nodes of a mesh, those of the state follow by the linearised motion. They
 keep to given ends, to g_x dx = 0 along boundary arcs and at touch points. To the form along the way a touch point of
-order two adds - zeta (d/dt g_x dx)^2 / g'' with g'' < 0 (Bonnans and Hermant, SIAM J. Control Optim. 46, 2007): it
-moves with the variation. Boundary arcs add the curvature of g times its multiplier.
+order two adds - zeta (d/dt g_x dx)^2 / g'' with g'' < 0 (Bonnans and Hermant, SIAM J. Control Optim. 46, 2007): where
+it moves with the variation, the constraint is harder to keep. Boundary arcs add the curvature of g times its multiplier.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def curvature(solution: Solution, again: Replay) -> float:
     z = _values(again, middles)
     a, b, second, weight = _along(solution, middles, z, which)
     moves, inputs = _transitions(a, b, h)
-    m, count = b.shape[1], len(h)
+    m, count = b.shape[2], len(h)
     size, form, pure = m * count, np.zeros((m * count, m * count)), np.zeros((m * count, m * count))
     state, ties, events = np.zeros((n, size)), [], _events(solution, again)
     for k in range(count):
@@ -147,7 +147,7 @@ def _events(solution: Solution, again: Replay) -> list[tuple[float, Array, Array
                 x,
             )[0, :, 0]
             second = float(np.asarray(instance.model.path_rates_batch(t, x, u, p)).reshape(-1, 2, 1)[k, 1, 0])
-            share = float(zeta) / second if second < 0.0 else -np.inf
+            share = -float(zeta) / second if second < 0.0 else -np.inf
         g_x = gradient(instance, k, t, x)[:, 0]
         found.append((event.t, g_x, rate, share, float(zeta) * curved))
     return found

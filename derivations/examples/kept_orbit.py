@@ -1,0 +1,53 @@
+"""Satellites that return to their orbit and keep clear of something: a smallest radius, a slot of angle, a cone.
+
+The motion is that of polar_orbit; near the orbit, to first order, that of clohessy_wiltshire.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+
+from satsym.symbolic import Problem, Variable, symbols_of, t
+from satsym.symbolic.loader import find, load
+
+HERE = Path(__file__).parent
+given = next(p for p in load(find("polar_orbit", HERE)) if isinstance(p, Problem))
+orbit = replace(given.model, parameters=tuple(v for v in given.model.parameters if not v.symbol.startswith("k")))
+near = load(find("clohessy_wiltshire", HERE))[0]
+
+FLOOR = Variable("r_min", r"r_{\min}", "km", "smallest distance from the centre of force", positive=True)
+SLOT = Variable("slot", r"\Delta", "rad", "half the width of the slot, as an angle", positive=True)
+CONE = (
+    Variable("slope", "k", "1", "slope of the approach cone", 0.5, positive=True),
+    Variable("mouth", "d", "km", "half the width of the cone at its end", 0.001, positive=True),
+)
+r, r_dot, theta, theta_dot = symbols_of(orbit.states)
+x1, x2, x3, x4 = symbols_of(near.states)
+u1, u2 = symbols_of(orbit.controls)
+(r_min,), (slot,), (slope, mouth) = symbols_of((FLOOR,)), symbols_of((SLOT,)), symbols_of(CONE)
+omega = next(s for s in symbols_of(orbit.parameters) if s.name == "omega")
+
+return_above = Problem(
+    name="return_above",
+    title="Return to the orbit above a smallest radius",
+    model=replace(orbit, parameters=(*orbit.parameters, FLOOR)),
+    running_cost=given.running_cost,
+    path_constraints={"floor": r_min - r},
+)
+
+return_in_slot = Problem(
+    name="return_in_slot",
+    title="Return to the orbit within a slot of angle about the reference",
+    model=replace(orbit, parameters=(*orbit.parameters, SLOT)),
+    running_cost=given.running_cost,
+    path_constraints={"ahead": theta - omega * t - slot, "behind": omega * t - theta - slot},
+)
+
+approach_cone = Problem(
+    name="approach_cone",
+    title="Rendezvous from behind within an approach cone",
+    model=replace(near, parameters=(*near.parameters, *CONE)),
+    running_cost=(u1**2 + u2**2) / 2,
+    path_constraints={"above": x1 + slope * x3 - mouth, "below": -x1 + slope * x3 - mouth},
+)
+
+PROBLEMS = (return_above, return_in_slot, approach_cone)

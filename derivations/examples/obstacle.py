@@ -1,0 +1,48 @@
+"""A body in the plane on its way round two discs, with the least effort: the constraints are not convex.
+
+Which way round each disc is cheapest nobody says; every one is a local optimum of its own.
+"""
+
+from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
+
+STATES = (
+    Variable("x", "x", meaning="position along the way"),
+    Variable("y", "y", meaning="position across it"),
+    Variable("vx", "v_x", meaning="velocity along the way"),
+    Variable("vy", "v_y", meaning="velocity across it"),
+)
+CONTROLS = (
+    Variable("ux", "u_x", meaning="acceleration along the way"),
+    Variable("uy", "u_y", meaning="acceleration across it"),
+)
+PARAMETERS = (
+    Variable("x_1", "x_1", meaning="centre of the first disc", default=0.3),
+    Variable("y_1", "y_1", meaning="the same across the way", default=-0.05),
+    Variable("radius_1", "R_1", meaning="its radius", default=0.2, positive=True),
+    Variable("x_2", "x_2", meaning="centre of the second disc", default=0.7),
+    Variable("y_2", "y_2", meaning="the same across the way", default=0.1),
+    Variable("radius_2", "R_2", meaning="its radius", default=0.15, positive=True),
+)
+x, y, vx, vy = symbols_of(STATES)
+ux, uy = symbols_of(CONTROLS)
+x_1, y_1, radius_1, x_2, y_2, radius_2 = symbols_of(PARAMETERS)
+
+obstacle = Problem(
+    name="obstacle",
+    title="Round two discs with the least effort",
+    model=FirstOrder(
+        name="body_in_the_plane",
+        title="A body in the plane",
+        states=STATES,
+        controls=CONTROLS,
+        parameters=PARAMETERS,
+        rates={x: vx, y: vy, vx: ux, vy: uy},
+    ),
+    running_cost=(ux**2 + uy**2) / 2,
+    path_constraints={
+        "first": radius_1**2 - (x - x_1) ** 2 - (y - y_1) ** 2,
+        "second": radius_2**2 - (x - x_2) ** 2 - (y - y_2) ** 2,
+    },
+)
+
+PROBLEMS = (obstacle,)
