@@ -7,7 +7,7 @@ or jumps between two nodes, each side keeps its own.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TypeAlias
@@ -167,6 +167,22 @@ def extremal(case: Instance, times: Array, x: Array, lam: Array, corners: Array)
         return np.asarray(model.canonical_batch(t, z[:n], z[n:], p, bounds))
 
     return Motion(times, np.vstack([x, lam]), rates, corners, case.solver.tolerance), None
+
+
+def bounded(case: Instance, times: Array, x: Array, lam: Array, arcs: Sequence[int]) -> tuple[Motion, Pieces | None]:
+    """The same where arcs run on boundaries of constraints, the one of each by its number, -1 for none."""
+    from satsym.solvers.constrained.arcs import field
+
+    edges = np.flatnonzero(np.diff(times) == 0.0) + 1
+
+    def rates(t: Array, z: Array, left: NDArray[np.intp]) -> Array:
+        found, which = np.empty_like(z), np.searchsorted(edges, left, side="right")
+        for arc in np.unique(which):
+            here = which == arc
+            found[:, here] = field(case, arcs[int(arc)], t[here], z[:, here])
+        return found
+
+    return Motion(times, np.vstack([x, lam]), rates, np.empty(0), case.solver.tolerance), None
 
 
 def controlled(case: Instance, times: Array, x: Array, u: Array, lam: Array | None) -> tuple[Motion, Pieces]:

@@ -17,7 +17,8 @@ from satsym.front.instance import Instance, as_case
 from satsym.front.result import Result
 from satsym.report.results.objects import solution_object
 from satsym.report.terminal.solution import solution_text
-from satsym.solution import Certificate, Progress
+from satsym.solution import Certificate, Event, Progress
+from satsym.solvers.constrained.structure import stated_arcs
 
 
 class Solution(Result[solution.Solution]):
@@ -44,6 +45,11 @@ class Solution(Result[solution.Solution]):
     def switching_times(self) -> dict[str, tuple[float, ...]]:
         """For each control, the times at which it meets or leaves a bound."""
         return dict(zip(self._spec.control_names, self.found.switching_times, strict=True))
+
+    @property
+    def events(self) -> tuple[Event, ...]:
+        """Entries, exits and touch points of path constraints, in order of time."""
+        return self.found.events
 
     @property
     def iterations(self) -> int:
@@ -74,6 +80,8 @@ class Solution(Result[solution.Solution]):
         found, case = self.found, self.found.instance
         if case.model.spec.switching:  # the law of the kernels is that of the regularised problem
             return between.controlled(case, found.times, found.x, found.u, found.lam)
+        if found.events:
+            return between.bounded(case, found.times, found.x, found.lam, stated_arcs(found))
         corners = np.unique([t for times in found.switching_times for t in times])
         return between.extremal(case, found.times, found.x, found.lam, corners)
 

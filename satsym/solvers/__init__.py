@@ -48,6 +48,9 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         raise BadInput(f"{instance.name}: model {spec.name} has no cost, so there is nothing to solve; try simulate")
     if refusal := methods.refusal(name, instance):
         raise BadInput(f"{instance.name}: {refusal}")
+    if spec.path_constraints and instance.free:
+        key = instance.free[0].key
+        raise BadInput(f'{instance.name}: {key}: "free" is not solved beside path constraints; write a number')
     return _solved_in_steps(instance, progress) if instance.continuation else _with_free(instance, progress)
 
 

@@ -30,7 +30,8 @@ def pictures(result: Solution | Simulation, look: Look = SCREEN) -> dict[str, fi
     -------
     dict
         Name -> content of each file, the overview first. A picture that would show nothing is left out: ``orbit`` where
-        the model has no position vector, ``controls`` where a flight has none, ``costates`` for a flight,
+        the model has no position vector, ``controls`` where a flight has none, ``constraints`` where the model has no
+        path constraints, ``costates`` for a flight,
         ``invariants`` where the model has none, ``convergence`` for fewer than three iterations, and all but that where
         there is no trajectory.
     """
@@ -56,7 +57,7 @@ def _pages(result: Solution | Simulation) -> Iterator[tuple[str, Figure]]:
     from satsym.report.plots.scene import Scene
 
     scene = Scene.of(result)
-    motion = (pages.orbit, pages.states, pages.controls, pages.costates, pages.invariants)
+    motion = (pages.orbit, pages.states, pages.controls, pages.constraints, pages.costates, pages.invariants)
     for picture in (pages.overview, *motion, pages.convergence):
         page = picture(scene)
         if page is not None:

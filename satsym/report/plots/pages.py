@@ -55,6 +55,11 @@ def controls(scene: Scene) -> Figure | None:
     return _multiples(scene, series.controls(scene), style.CONTROL, columns=1)
 
 
+def constraints(scene: Scene) -> Figure | None:
+    """Every path constraint, with the time on its boundary and the times at which that is met and left."""
+    return _multiples(scene, series.constraints(scene), style.INVARIANT, columns=1)
+
+
 def costates(scene: Scene) -> Figure | None:
     """Every costate, and the Hamiltonian."""
     return _multiples(scene, series.costates(scene), style.COSTATE)

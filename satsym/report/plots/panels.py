@@ -93,7 +93,7 @@ def _remark(scene: Scene, series: Series, shown: Reading) -> str:
     if series.switching:
         times = [number(time, 4) for time in series.switching[:MOST_TIMES]]
         more = ", \N{HORIZONTAL ELLIPSIS}" if len(series.switching) > MOST_TIMES else ""
-        return f"switching at {', '.join(times)}{more} {unit_text(scene.time_unit)}".rstrip()
+        return f"{series.said} at {', '.join(times)}{more} {unit_text(scene.time_unit)}".rstrip()
     known = shown.values[np.isfinite(shown.values)]
     if not known.size:
         return ""

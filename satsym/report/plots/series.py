@@ -46,6 +46,8 @@ class Series:
     """Nodes at which it is on a bound."""
     switching: tuple[float, ...] = ()
     """Times at which it meets or leaves a bound, as in the scene."""
+    said: str = "switching"
+    """What these are called."""
     size: float = 0.0
     """What counts as large for it, where its values may be nothing but rounding errors."""
     from_zero: bool = False
@@ -115,6 +117,31 @@ def controls(scene: Scene) -> list[Series]:
             )
         )
     return found
+
+
+def constraints(scene: Scene) -> list[Series]:
+    """The path constraints, none of which may be positive, with the times at which they are met and left."""
+    instance, spec = scene.instance, scene.spec
+    if not spec.path_constraints:
+        return []
+    with np.errstate(all="ignore"):
+        rows = curves.clean(instance.model.path_constraints_batch(scene.nodes, scene.x, instance.parameters))
+    met = getattr(scene.result, "events", ())
+    return [
+        Series(
+            rf"\mathrm{{{one.name.replace('_', ' ')}}}",
+            one.name,
+            "1",
+            f"path constraint {one.name.replace('_', ' ')}, never positive",
+            row,
+            upper=0.0,
+            active=row >= -ON_BOUND * _largest(row),
+            switching=tuple(event.t / scene.time_factor for event in met if event.name == one.name),
+            said="met",
+            from_zero=True,
+        )
+        for one, row in zip(spec.path_constraints, rows, strict=True)
+    ]
 
 
 def costates(scene: Scene) -> list[Series]:

@@ -57,7 +57,8 @@ def solution_object(solution: Solution) -> dict[str, Any]:
     -------
     dict
         Keys in a fixed order. States and costates by the state's name; ``None`` where a number is not finite.
-        ``switching_times`` are those of all controls together, each once, sorted.
+        ``switching_times`` are those of all controls together, each once, sorted; ``events`` are entries, exits and
+        touch points of path constraints, in order of time.
     """
     spec, states = solution.instance.model.spec, solution.instance.model.spec.state_names
     switches = {float(t) for times in solution.switching_times for t in times}
@@ -77,6 +78,7 @@ def solution_object(solution: Solution) -> dict[str, Any]:
         "t_initial": _at(solution.times, 0),
         "parameters_found": _found(solution),
         **(_interval(solution.interval, spec) if solution.interval else {}),
+        "events": plain(solution.events),
         **_continuation(solution),
     }
 

@@ -18,6 +18,7 @@ from satsym.report.results.certificate import absent
 from satsym.report.results.files import Content
 from satsym.report.results.set_list import LIST, unusable
 from satsym.solution import CostInterval, Invariant, Iteration, Simulation, Solution
+from satsym.solution import Event, Invariant, Iteration, Simulation, Solution
 from satsym.status import Status
 from satsym.wording import printable
 
@@ -45,6 +46,14 @@ class _Kept(msgspec.Struct):
     drift: float | None
 
 
+class _Event(msgspec.Struct):
+    """Something that happens along the way, in result.json."""
+
+    kind: str
+    name: str
+    t: float
+
+
 class _Result(msgspec.Struct):
     """What of result.json is read back; the rest is in the trajectory."""
 
@@ -60,6 +69,7 @@ class _Result(msgspec.Struct):
     parameters_found: dict[str, float | None] = {}
     cost_interval: tuple[float, float] | None = None
     smoothing: float = 0.0
+    events: list[_Event] = []
     feedback: str = ""
     invariants: dict[str, _Kept] = {}
     metrics: dict[str, float | None] = {}
@@ -180,6 +190,7 @@ def _solution(instance: Instance, result: _Result, stored: Stored) -> Solution:
         wall_s=absent(result.wall_s),
         certificate=result.certificate.certificate(spec) if result.certificate else None,
         interval=_interval(result, spec),
+        events=tuple(Event(one.kind, one.name, one.t) for one in result.events),
     )
 
 

@@ -54,6 +54,7 @@ def solution_text(solution: Solution, colour: bool = False) -> str:
         _states(solution.instance, solution.times, solution.x, solution.lam),
         _controls(instance, solution.times, solution.u),
         _switching(solution, unit),
+        _events(solution, unit),
         _certificate(solution.certificate, instance) if solution.certificate else [],
     ]
     return joined(blocks)
@@ -264,6 +265,12 @@ def _switching(solution: Solution, unit: str) -> list[str]:
             listed = ", ".join(figure(t) for t in times[:SHOWN_TIMES])
             rows.append(("switching times:", control, f"at {listed}{more} {unit}".rstrip()))
     return table([("", "", ""), *rows])[1:] if rows else []
+
+
+def _events(solution: Solution, unit: str) -> list[str]:
+    """Where path constraints are met and left."""
+    rows = [(one.kind, one.name, f"at {figure(one.t, 10)} {unit}".rstrip()) for one in solution.events]
+    return table([("path constraint", "", ""), *rows]) if rows else []
 
 
 def _last(row: Array) -> float:

@@ -39,18 +39,20 @@ class Path:
     steps: int
 
 
-def regularised(program: Program, start: Point, limits: Limits) -> Path:
+def regularised(program: Program, start: Point, worth: float, limits: Limits) -> Path:
     """Follow the barrier's path from a point to where it hardly weighs.
 
     Parameters
     ----------
     start
         Whose slacks are set here.
+    worth
+        The size of costs.
     """
     g = program.constraints(start)
     room = np.maximum(np.abs(g).max(axis=1, keepdims=True), 1e-300)
     at = replace(start, s=np.maximum(-g, 0.1 * room))
-    first = 0.1 * max(abs(program.cost(at)), 1e-8) / program.intervals
+    first = 0.1 * max(abs(worth), 1e-12) / program.intervals
     weight, at = first, replace(at, z=first / at.s)
     filtered: list[tuple[float, float]] = []
     for step in range(STEPS):

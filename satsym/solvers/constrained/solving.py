@@ -12,7 +12,9 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Event, Progress, Solution
 from satsym.solvers import iteration, two_point
+from satsym.solvers.collocation.scaling import two_point as two_point_of
 from satsym.solvers.constrained.arcs import Arcs
+from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.constrained.feasibility import impossible, refuse
 from satsym.solvers.constrained.interior_point import Path, regularised
 from satsym.solvers.constrained.newton import from_arcs, from_path, solved
@@ -35,8 +37,8 @@ SAME = 1e-6
 REVISED = 12
 """Structures that are tried at most from one path."""
 
-DRAWN, AMPLITUDE = 4, 0.3
-"""Paths that are drawn where the problem is not convex, and how far they leave the relaxed one."""
+DRAWN, AMPLITUDE = 3, 0.3
+"""Pairs of paths that are drawn where the problem is not convex, and how far they leave the relaxed one, to either side."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,41 +106,55 @@ def _kept(relaxed: Solution) -> bool:
 def _best(instance: Instance, relaxed: Solution, limits: Limits) -> Arcs | Stopped:
     """The cheapest extremal to which regularised paths lead."""
     found: list[Arcs] = []
+    worth = relaxed.objective if relaxed.status.answered and relaxed.objective else 1.0
     last: Arcs | Stopped = Stopped(Status.NOT_CONVERGED, "")
     for intervals in INTERVALS:
         program, costs = Program(instance, intervals), list[float]()
         for start in _starts(program, relaxed):
-            path = regularised(program, start, limits)
+            path = regularised(program, start, worth, limits)
             if path.solved and any(abs(path.cost - cost) <= SAME * abs(cost) for cost in costs):
                 continue
             costs += [path.cost] if path.solved else []
             last = _exact(program, path, limits) if path.solved else _unsolved(program, path)
             if isinstance(last, Arcs):
                 found.append(last)
-            if limits.expired or (found and instance.model.spec.linear_quadratic):
+            if limits.expired:
                 break
         if found:
             return min(found, key=lambda one: one.cost())
     return last
 
 
-def others(instance: Instance, seed: int) -> tuple[int, list[float]]:
-    """How many paths were drawn about the straight line, and the costs of the extremals to which they led."""
-    limits, found = watched(instance, None)[0], []
-    program = Program(instance, INTERVALS[0])
+def others(instance: Instance, worth: float, seed: int) -> tuple[int, list[float]]:
+    """How many paths were drawn about the straight line, and the costs of the extremals to which they led.
+
+    Parameters
+    ----------
+    worth
+        The size of costs.
+    seed
+        Of the paths.
+    """
+    limits, found = watched(instance, None)[0], list[float]()
+    program, known = Program(instance, INTERVALS[0]), list[tuple[float, float]]()
     starts = _drawn(program, _straight(program), seed)
     with np.errstate(all="ignore"):
         for start in starts:
-            path = regularised(program, start, limits)
+            path = regularised(program, start, worth, limits)
+            same = [cost for near, cost in known if abs(path.cost - near) <= SAME * abs(near)]
+            if path.solved and same:
+                found.append(same[0])
+                continue
             exact = tried(partial(_exact, program, path, limits)) if path.solved else None
             if isinstance(exact, Arcs):
                 found.append(exact.cost())
+                known.append((path.cost, found[-1]))
     return len(starts), found
 
 
 def _unsolved(program: Program, path: Path) -> Stopped:
     """Why the regularised problem has no answer."""
-    if path.violation > 1e-6 and program.instance.model.spec.linear_quadratic:
+    if path.violation > 1e-6 and convex(program.instance):
         return Stopped(Status.INFEASIBLE, impossible(program, path))
     return Stopped(Status.NOT_CONVERGED, "no regularised path keeps to the path constraints")
 
@@ -160,7 +176,7 @@ def _starts(program: Program, relaxed: Solution) -> list[Point]:
         first = Point(x, u, lasting, y, v, none, none)
     else:
         first = _straight(program)
-    return [first] if one.model.spec.linear_quadratic else [first, *_drawn(program, first, 0)]
+    return [first] if convex(one) else [first, *_drawn(program, first, 0)]
 
 
 def _straight(program: Program) -> Point:
@@ -178,10 +194,11 @@ def _straight(program: Program) -> Point:
 def _drawn(program: Program, about: Point, seed: int) -> list[Point]:
     """Paths about another."""
     rng, n = np.random.default_rng(seed), len(about.x)
-    size = np.abs(about.x).max(axis=1, keepdims=True)
+    unit = two_point_of(program.instance, about.duration).scale.state[:, None]
+    size = np.maximum(np.abs(about.x).max(axis=1, keepdims=True), unit)
     tau = np.linspace(0.0, 1.0, program.intervals + 1)
     bumps = [rng.normal(size=(n, 1)) * size * AMPLITUDE * np.sin(np.pi * tau) for _ in range(DRAWN)]
-    return [replace(about, x=about.x + bump, y=0.0 * about.y) for bump in bumps]
+    return [replace(about, x=about.x + side * bump, y=0.0 * about.y) for bump in bumps for side in (1.0, -1.0)]
 
 
 def _exact(program: Program, path: Path, limits: Limits) -> Arcs | Stopped:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from satsym.instance import Instance
+from satsym.solution import Solution
 
 
 class Event(Enum):
@@ -98,3 +99,14 @@ class Structure:
     def key(self) -> tuple[object, ...]:
         """What two of them have in common that differ in times only."""
         return (self.starts, self.ends, *((one.constraint, one.touches) for one in self.contacts))
+
+
+def stated_arcs(solution: Solution) -> list[int]:
+    """The constraint on whose boundary each arc between events runs, or that none does."""
+    names = [one.name for one in solution.instance.model.spec.path_constraints]
+    events = solution.events
+    first = names.index(events[0].name) if events and events[0].kind == "exit" else FREE
+    found = [first]
+    for one in events:
+        found.append(names.index(one.name) if one.kind == "entry" else FREE)
+    return found

@@ -24,7 +24,7 @@ class Comparison:
 
 def compared(solution: Solution, seed: int) -> Comparison:
     """Hold a solution against extremals from paths that are drawn."""
-    tried, costs = others(solution.instance, seed + 1)
+    tried, costs = others(solution.instance, solution.objective, seed + 1)
     found = Competitors(Kind.ARCS, tried, len(costs), min(costs, default=float("nan")))
     if not costs:
         return Comparison((found,), (), (Kind.ARCS,))

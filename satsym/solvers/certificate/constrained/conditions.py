@@ -8,11 +8,11 @@ from satsym.arrays import Array
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers.certificate import conditions
 from satsym.solvers.certificate.constrained.comparison import compared
-from satsym.solvers.certificate.constrained.convexity import convex
 from satsym.solvers.certificate.constrained.replay import Piece, Replay, replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
 from satsym.solvers.certificate.flow import FAINT, typical
 from satsym.solvers.constrained.arcs import values
+from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.constrained.structure import FREE
 from satsym.status import Verdict
 
@@ -42,7 +42,7 @@ def certify(solution: Solution, seed: int = 0) -> Certificate:
         competitors, not_checked = (), ()
         if all(c.passed for c in first):
             second = [Check("legendre-clebsch", float(not conditions.legendre_clebsch(solution) > 0.0), 0.0)]
-            if convex(solution):
+            if convex(solution.instance):
                 second.append(Check("not convex", 0.0, 0.0))
             else:
                 second += _sufficient(solution, again)
@@ -129,7 +129,7 @@ def _off_boundary(solution: Solution, again: Replay) -> float:
         if piece.constraint != FREE:
             g = values(solution.instance, piece.times, piece.dense[:n])[piece.constraint]
             worst = max(worst, float(np.abs(g).max()) / sizes[piece.constraint])
-    return worst
+    return float(worst)
 
 
 def _off_tangency(solution: Solution, again: Replay) -> float:
@@ -143,7 +143,7 @@ def _off_tangency(solution: Solution, again: Replay) -> float:
         if instance.model.spec.path_constraints[which].order > 1:
             found.append(abs(_rates(solution, piece, -1)[which, 0]) * lasting)
         worst = max(worst, max(found) / sizes[which])
-    return worst
+    return float(worst)
 
 
 def _number(solution: Solution, name: str) -> int:
@@ -176,7 +176,7 @@ def _negative(solution: Solution, again: Replay) -> float:
     A touch point at which the constraint would rise on either side counts as one.
     """
     least, most = _least_multiplier(solution, again)
-    return max(0.0, -least / most)
+    return max(0.0, float(-least / most))
 
 
 def _least_multiplier(solution: Solution, again: Replay) -> tuple[float, float]:
@@ -190,7 +190,7 @@ def _least_multiplier(solution: Solution, again: Replay) -> tuple[float, float]:
     jumps += [jump / lasting for jump in again.jumps[len(jumping) :]]
     along = [float(eta.min()) for eta in _multipliers(solution, again)]
     sizes = [float(np.abs(eta).max()) for eta in _multipliers(solution, again)]
-    return min([*jumps, *along], default=0.0), max([*map(abs, jumps), *sizes, 1e-300])
+    return float(min([*jumps, *along], default=0.0)), float(max([*map(abs, jumps), *sizes, 1e-300]))
 
 
 def _drift(solution: Solution, again: Replay) -> float | None:

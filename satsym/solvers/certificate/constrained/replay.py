@@ -16,7 +16,7 @@ from satsym.solution import Solution
 from satsym.solvers.certificate.end_form import fixed_states
 from satsym.solvers.certificate.flow import FAINT, TOLERANCE, Flow, typical
 from satsym.solvers.constrained.arcs import field, gradient
-from satsym.solvers.constrained.structure import FREE
+from satsym.solvers.constrained.structure import FREE, stated_arcs
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import integrate, leap
 
@@ -59,17 +59,6 @@ class Replay:
         """As conditions at the end have it."""
         z, n = np.column_stack([self.z[:, :-1], self.end]), len(solution.x)
         return Flow(solution.times, z[:n], z[n:], self.cost)
-
-
-def stated_arcs(solution: Solution) -> list[int]:
-    """The constraint on whose boundary each arc between events runs, or that none does."""
-    names = [one.name for one in solution.instance.model.spec.path_constraints]
-    events = solution.events
-    first = names.index(events[0].name) if events and events[0].kind == "exit" else FREE
-    found = [first]
-    for one in events:
-        found.append(names.index(one.name) if one.kind == "entry" else FREE)
-    return found
 
 
 def replay(solution: Solution) -> Replay | None:

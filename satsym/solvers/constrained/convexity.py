@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.instance import Instance
 from satsym.kernels.evaluation import COMPLEX_STEP
-from satsym.solution import Solution
 
 ROUNDING = 1e-12
 """Share of the largest eigenvalue by which the least may be negative."""
@@ -19,14 +19,17 @@ LOOKED_AT = 65
 """Times."""
 
 
-def convex(solution: Solution) -> bool:
-    """Whether it is; what is not of that form, or ends at a free time, is not."""
-    instance = solution.instance
+def convex(instance: Instance) -> bool:
+    """Whether it is; what is not of that form, or ends at a free time, is not.
+
+    Second derivatives of such problems are the same at all states and controls, so that they are taken anywhere.
+    """
     if not instance.model.spec.linear_quadratic or instance.tf is None or "reference" in instance.final.values():
         return False
-    chosen = np.linspace(0, len(solution.times) - 1, LOOKED_AT).astype(int)
-    t, x, u = solution.times[chosen], solution.x[:, chosen], solution.u[:, chosen]
-    model, p, none = instance.model, instance.parameters, np.zeros((len(x), len(chosen)))
+    t = np.linspace(instance.t0, instance.tf, LOOKED_AT)
+    x = np.repeat(np.array(instance.initial)[:, None], LOOKED_AT, axis=1)
+    u = np.zeros((len(instance.model.spec.controls), LOOKED_AT))
+    model, p, none = instance.model, instance.parameters, np.zeros_like(x)
 
     def slopes(y: Array) -> Array:
         by_x = -np.asarray(model.costate_rate_batch(t, y[: len(x)], y[len(x) :], none, p))
