@@ -37,7 +37,7 @@ Progress: TypeAlias = Callable[[Iteration], None]
 
 @dataclass(frozen=True)
 class Event:
-    """What happens at a time along the way: an arc on the boundary of a constraint is entered or left, or it is touched.
+    """What happens along the way: an arc on the boundary of a path constraint begins or ends, or it is touched.
 
     Attributes
     ----------

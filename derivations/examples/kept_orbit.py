@@ -6,13 +6,13 @@ The motion is that of polar_orbit; near the orbit, to first order, that of clohe
 from dataclasses import replace
 from pathlib import Path
 
-from satsym.symbolic import Problem, Variable, symbols_of, t
+from satsym.symbolic import Linearised, Problem, Variable, symbols_of, t
 from satsym.symbolic.loader import find, load
 
 HERE = Path(__file__).parent
 given = next(p for p in load(find("polar_orbit", HERE)) if isinstance(p, Problem))
 orbit = replace(given.model, parameters=tuple(v for v in given.model.parameters if not v.symbol.startswith("k")))
-near = load(find("clohessy_wiltshire", HERE))[0]
+near = next(m for m in load(find("clohessy_wiltshire", HERE)) if isinstance(m, Linearised))
 
 FLOOR = Variable("r_min", r"r_{\min}", "km", "smallest distance from the centre of force", positive=True)
 SLOT = Variable("slot", r"\Delta", "rad", "half the width of the slot, as an angle", positive=True)

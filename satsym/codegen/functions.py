@@ -189,10 +189,18 @@ def _of_path_constraints(derivation: Derivation) -> list[Function]:
     return [
         _vector("path_constraints", "What may not be positive along the way.", "t x p", g),
         _matrix("path_gradient", "Its derivatives by the states, row by row.", "t x p", g.jacobian(states)),
-        _matrix("path_rates", "Its first and second rates of change; 0 for a second after the control.", "t x u p",
-                sp.Matrix(rates)),
-        _matrix("path_held", "What vanishes besides on the boundary, and its rate, row by row.", "t x lam p",
-                sp.Matrix(held)),
+        _matrix(
+            "path_rates",
+            "Its first and second rates of change; 0 for a second after the control.",
+            "t x u p",
+            sp.Matrix(rates),
+        ),
+        _matrix(
+            "path_held",
+            "What vanishes besides on the boundary, and its rate, row by row.",
+            "t x lam p",
+            sp.Matrix(held),
+        ),
         _vector("path_multiplier", "The multiplier of each while it is on its boundary.", "t x lam p", multiplier),
         _matrix("boundary_control", "The controls on the boundary of each, row by row.", "t x lam p", sp.Matrix(laws)),
     ]

@@ -69,7 +69,9 @@ def _refuse_constraints(problem: Problem) -> None:
         if not is_name(name) or "__" in name:
             raise DerivationError(f"{what}: got {shown(name)}; a constraint's name is {NAMES}", ("path_constraints",))
     if constraints and (problem.control_set != "free" or problem.control_sets):
-        message = "beside bounds of the controls they are not derived; leave out the control set, or state no constraints"
+        message = (
+            "beside bounds of the controls they are not derived; leave out the control set, or state no constraints"
+        )
         raise DerivationError(f"{what}: {message}", ("path_constraints", "control_set", "control_sets"))
 
 
@@ -109,7 +111,9 @@ def refuse_foreign_symbols(derivation: Derivation) -> None:
         refuse("a terminal constraint", problem.terminal_constraints, motion, "terminal_constraints")
         for name, stated in problem.path_constraints.items():
             if mixed := sp.sympify(stated).free_symbols & set(symbols_of(model.controls)):
-                message = f"depends on the control {min(s.name for s in mixed)}; state one of states, time and parameters"
+                message = (
+                    f"depends on the control {min(s.name for s in mixed)}; state one of states, time and parameters"
+                )
                 raise DerivationError(f"{derivation.name}: path_constraints {name}: {message}", ("path_constraints",))
             refuse(f"the path constraint {name}", [stated], motion, "path_constraints")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from satsym.instance import Instance
 from satsym.solvers.constrained.interior_point import Path
@@ -23,12 +24,12 @@ def refuse(instance: Instance) -> None:
     """
     program = Program(instance, 2)
     _refuse_at(instance, instance.t0, instance.initial, "initial", 1.0)
-    if len(program._given) == len(instance.initial) and instance.tf is not None:
+    if len(program.given) == len(instance.initial) and instance.tf is not None:
         _refuse_at(instance, instance.tf, tuple(program.target(instance.tf - instance.t0).tolist()), "final", -1.0)
         return
     end = program.kept[:, -1] == 0.0
     if end.any() and instance.tf is not None:
-        state = np.where(np.isin(np.arange(len(instance.initial)), program._given), program.target(program.guessed), 0.0)
+        state = np.where(np.isin(np.arange(len(instance.initial)), program.given), program.target(program.guessed), 0.0)
         _refuse_values(instance, instance.tf, tuple(state.tolist()), "final", end)
 
 
@@ -42,13 +43,17 @@ def _refuse_at(instance: Instance, time: float, state: tuple[float, ...], key: s
         if one.order > 1 and abs(value) <= ROUNDING and direction * rate > 0.0:
             when = "after the start" if direction > 0 else "before the end"
             raise BadInput(
-                f"{instance.name}: {key}: path constraint {one.name} is met and its rate is {rate:.6g}, which no control "
-                f"changes at once, so it is violated right {when}; change the velocity there"
+                f"{instance.name}: {key}: path constraint {one.name} is met with the rate {rate:.6g}, which no "
+                f"control changes at once, so it is violated right {when}; change the velocity there"
             )
 
 
 def _refuse_values(
-    instance: Instance, time: float, state: tuple[float, ...], key: str, which: np.ndarray  # type: ignore[type-arg]
+    instance: Instance,
+    time: float,
+    state: tuple[float, ...],
+    key: str,
+    which: NDArray[np.bool_],
 ) -> None:
     model, p = instance.model, instance.parameters
     g = np.array(model.path_constraints(time, state, p))

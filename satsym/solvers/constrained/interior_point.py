@@ -1,7 +1,7 @@
 """A regularised path: the program by a primal-dual interior-point method, its barrier weighed less and less.
 
-Waechter and Biegler, Mathematical Programming 106, 2006, in short: slacks, steps to the boundary, a filter, and curvature
-added where steps would not descend.
+Waechter and Biegler, Mathematical Programming 106, 2006, in short: slacks, steps to the boundary, a filter, and
+curvature added where steps would not descend.
 """
 
 from __future__ import annotations
@@ -11,7 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.solvers.constrained.transcription import Point, Program, Slopes
+from satsym.solvers.constrained.slopes import Slopes
+from satsym.solvers.constrained.transcription import Point, Program
 from satsym.solvers.iteration import Limits
 
 TO_BOUNDARY = 0.995
@@ -56,7 +57,7 @@ def regularised(program: Program, start: Point, worth: float, limits: Limits) ->
     weight, at = first, replace(at, z=first / at.s)
     filtered: list[tuple[float, float]] = []
     for step in range(STEPS):
-        slopes = program.slopes(at)
+        slopes = Slopes.of(program, at)
         error, violation = _error(program, at, slopes, weight, first)
         while error < 10.0 * weight / first and weight > LAST * first:
             weight, filtered = max(LAST * first, min(0.2 * weight, first * (weight / first) ** 1.5)), []
@@ -92,7 +93,9 @@ def _violation(program: Program, at: Point) -> float:
     return float(max(*parts, np.abs(slack).max(initial=0.0) / room))
 
 
-def _stepped(program: Program, at: Point, slopes: Slopes, weight: float, filtered: list[tuple[float, float]]) -> Point | None:
+def _stepped(
+    program: Program, at: Point, slopes: Slopes, weight: float, filtered: list[tuple[float, float]]
+) -> Point | None:
     """The next point; ``None`` where no step is accepted."""
     for curved in CURVED:
         direction = _direction(program, at, slopes, weight, curved)
@@ -125,7 +128,9 @@ def _accepted(found: tuple[float, float], others: list[tuple[float, float]]) -> 
     if not np.isfinite(found).all():
         return False
     tiny = 1e-13
-    return all(v <= w * (1.0 - 1e-5) or v <= tiny or c <= d - 1e-5 * w for (v, c), (w, d) in ((found, o) for o in others))
+    return all(
+        v <= w * (1.0 - 1e-5) or v <= tiny or c <= d - 1e-5 * w for (v, c), (w, d) in ((found, o) for o in others)
+    )
 
 
 def _measures(program: Program, at: Point, weight: float) -> tuple[float, float]:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.collocation.gauss import STAGES, scheme
-from satsym.solvers.constrained.arcs import Arcs, System
+from satsym.solvers.constrained.arcs import Arcs
+from satsym.solvers.constrained.equations import System
 from satsym.solvers.constrained.structure import Structure
 from satsym.solvers.constrained.transcription import Point, Program
 from satsym.solvers.iteration import Limits
@@ -78,7 +80,7 @@ def from_arcs(arcs: Arcs, structure: Structure) -> Arcs:
 
 
 def _pairs(edges: list[float]) -> list[tuple[float, float]]:
-    return list(zip(edges[:-1], edges[1:], strict=True))
+    return list(pairwise(edges))
 
 
 def _places(intervals: int) -> Array:

@@ -113,7 +113,10 @@ def _resting(arcs: Arcs) -> tuple[str, list[Structure]] | None:
         first, second = known[k : k + 2]
         if first.touches and second.touches and first.constraint == second.constraint:
             times, z = along(arcs, arc)
-            if np.abs(values(arcs.instance, times, z[: arcs.n])[first.constraint]).max() < SLACK * room[first.constraint]:
+            if (
+                np.abs(values(arcs.instance, times, z[: arcs.n])[first.constraint]).max()
+                < SLACK * room[first.constraint]
+            ):
                 one = Contact(first.constraint, first.start, second.start, (first.jumps[0], second.jumps[0]))
                 return "a free arc lies on a boundary", [_instead(arcs, slice(k, k + 2), one)]
     return None
@@ -123,7 +126,9 @@ def _rising(arcs: Arcs) -> tuple[str, list[Structure]] | None:
     """Touch points at which the constraint would be crossed: its second rate is positive on one side."""
     room, lasting, instance, n = sizes(arcs), arcs.end - arcs.instance.t0, arcs.instance, arcs.n
     places = [k for k, one in enumerate(contacts(arcs)) if one.touches]
-    for junction, place in zip([k for k, j in enumerate(arcs.junctions) if j.event is Event.TOUCH], places, strict=True):
+    for junction, place in zip(
+        [k for k, j in enumerate(arcs.junctions) if j.event is Event.TOUCH], places, strict=True
+    ):
         one, t = contacts(arcs)[place], arcs.times[junction + 1 : junction + 2]
         for z in (arcs.node(junction, -1)[:, None], arcs.node(junction + 1, 0)[:, None]):
             u = instance.model.control_law_batch(t, z[:n], z[n:], instance.parameters, instance.control_set.arguments)
@@ -147,7 +152,8 @@ def _violated(arcs: Arcs) -> tuple[str, list[Structure]] | None:
         constraint = int(g.max(axis=1).argmax())
         most = float(g[constraint].max())
         if most > SLACK and (worst is None or most > worst[0]):
-            first, last = next(r for r in runs(g[constraint] > SLACK) if g[constraint][r[0] : r[1] + 1].max() == most)
+            row = g[constraint]
+            first, last = next((a, b) for a, b in runs(row > SLACK) if row[a : b + 1].max() == most)
             worst = most, constraint, float(times[first]), float(times[last])
     if worst is None:
         return None
@@ -160,10 +166,10 @@ def _violated(arcs: Arcs) -> tuple[str, list[Structure]] | None:
             half = max(abs(start - one.start), abs(end - one.start), 0.01 * lasting)
             low, high = max(one.start - half, arcs.times[0]), min(one.start + half, arcs.times[-1])
             found.append(_instead(arcs, place, Contact(constraint, low, high, (one.jumps[0] / 2,) * 2)))
-    place = sum(one.middle < 0.5 * (start + end) for one in known)
-    arc = Contact(constraint, start, end)
-    added = [arc] if _order(arcs, constraint) == 1 else [_touch(arc), arc]
-    return reason, found + [_instead(arcs, slice(place, place), one) for one in added]
+    gap = slice((first := sum(one.middle < 0.5 * (start + end) for one in known)), first)
+    own = Contact(constraint, start, end)
+    added = [own] if _order(arcs, constraint) == 1 else [_touch(own), own]
+    return reason, found + [_instead(arcs, gap, each) for each in added]
 
 
 def _merged(arcs: Arcs, constraint: int, start: float, end: float) -> list[Structure]:

@@ -38,7 +38,7 @@ REVISED = 12
 """Structures that are tried at most from one path."""
 
 DRAWN, AMPLITUDE = 3, 0.3
-"""Pairs of paths that are drawn where the problem is not convex, and how far they leave the relaxed one, to either side."""
+"""Pairs of paths that are drawn where the problem is not convex, and how far they leave the relaxed one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +75,7 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     relaxed = two_point.solve(instance, progress)
     if relaxed.status.answered and _kept(relaxed):
         return replace(relaxed, message=f"{relaxed.message}; no path constraint is ever active")
-    limits, history = watched(instance, None)
+    limits, _ = watched(instance, None)
     with np.errstate(all="ignore"):
         try:
             found = _best(instance, relaxed, limits)
@@ -99,7 +99,9 @@ def _kept(relaxed: Solution) -> bool:
     # a bound by slopes at both ends: between two nodes nothing rises higher than along the steeper one
     size = np.maximum(np.abs(g).max(axis=1), 1e-300)
     inside = np.minimum(rising, g[:, 1:] + np.maximum(-rates[:, 1:], 0.0) * steps)
-    met = np.maximum(np.maximum(g[:, :-1], g[:, 1:]), np.where((rates[:, :-1] > 0) & (rates[:, 1:] < 0), inside, -np.inf))
+    met = np.maximum(
+        np.maximum(g[:, :-1], g[:, 1:]), np.where((rates[:, :-1] > 0) & (rates[:, 1:] < 0), inside, -np.inf)
+    )
     return bool((met.max(axis=1) <= SLACK * size).all())
 
 
@@ -162,10 +164,10 @@ def _unsolved(program: Program, path: Path) -> Stopped:
 def _starts(program: Program, relaxed: Solution) -> list[Point]:
     """The path without constraints or a straight line; where the problem is not convex also paths about it."""
     one, count = program.instance, program.intervals
-    h, n, m = len(one.model.spec.path_constraints), len(one.initial), len(one.model.spec.controls)
+    h = len(one.model.spec.path_constraints)
     tau = np.linspace(0.0, 1.0, count + 1)
     middles = (tau[1:] + tau[:-1]) / 2
-    none, v = np.zeros((h, count)), np.zeros(len(program._given) + len(one.model.spec.multipliers))
+    none, v = np.zeros((h, count)), np.zeros(len(program.given) + len(one.model.spec.multipliers))
     if relaxed.status.answered:
         lasting = float(relaxed.times[-1] - relaxed.times[0])
         share = (relaxed.times - relaxed.times[0]) / lasting
@@ -184,10 +186,10 @@ def _straight(program: Program) -> Point:
     one, count = program.instance, program.intervals
     h, n, m = len(one.model.spec.path_constraints), len(one.initial), len(one.model.spec.controls)
     begin, given = np.array(one.initial), np.zeros(n, bool)
-    given[program._given] = True
+    given[program.given] = True
     end = np.where(given, program.target(program.guessed), begin)
     x = begin[:, None] + (end - begin)[:, None] * np.linspace(0.0, 1.0, count + 1)
-    none, v = np.zeros((h, count)), np.zeros(len(program._given) + len(one.model.spec.multipliers))
+    none, v = np.zeros((h, count)), np.zeros(len(program.given) + len(one.model.spec.multipliers))
     return Point(x, np.zeros((m, count)), program.guessed, np.zeros((n, count)), v, none, none)
 
 

@@ -1,4 +1,4 @@
-"""Which constraint is active when: contacts with boundaries, the arcs that they cut the time into, and what ties these."""
+"""Which constraint is active when: contacts with boundaries, and the arcs into which they cut the time."""
 
 from __future__ import annotations
 

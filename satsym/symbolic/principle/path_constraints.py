@@ -17,7 +17,7 @@ from typing import Any
 import sympy as sp
 
 from satsym.symbolic import notation as n
-from satsym.symbolic.algebra import definitions_of, gradient, simplified, tidy, total_derivative
+from satsym.symbolic.algebra import gradient, simplified, tidy, total_derivative
 from satsym.symbolic.checks import Point, compare, identity, never_below, numeric, slopes
 from satsym.symbolic.convention import sign, worded
 from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
@@ -26,7 +26,7 @@ from satsym.symbolic.principle import path_notation as pn
 from satsym.symbolic.principle.pontryagin import costates
 
 HIGHEST = 2
-"""Order of a constraint that is solved; arcs on the boundary of a higher one have endlessly many junctions as a rule."""
+"""Order of a constraint that is solved; those of a higher one have endlessly many junctions as a rule."""
 
 COMPETITORS = 20
 """Controls on the boundary that the boundary control is held against at each random point."""
@@ -112,9 +112,7 @@ def constrained_costates(so_far: Derivation) -> Step | None:
     law = _law(so_far)
     for found in constraints(so_far):
         moving = _canonical(so_far, found)
-        equations += [
-            Equation(f"{found.name}_{lam.name}", n.rate_of(lam), moving[lam]) for lam in costates(so_far)
-        ]
+        equations += [Equation(f"{found.name}_{lam.name}", n.rate_of(lam), moving[lam]) for lam in costates(so_far)]
         h = so_far.equation("hamiltonian.H").rhs.xreplace(law)
         g, eta = found.rates[0], pn.multiplier(found.name)
         shift = sign(_problem(so_far)) * eta * sum(sp.diff(g, x) * moving[x] for x in states)
@@ -158,7 +156,9 @@ def junction_conditions(so_far: Derivation) -> Step | None:
             Equation(f"{found.name}_{costate.name}", pn.change(costate), tidy(jump))
             for costate, jump in zip(lam, jumps, strict=True)
         ]
-        equations.append(Equation(f"{found.name}_H", pn.change(n.HAMILTONIAN), tidy(-sign(problem) * zeta * sp.diff(g, t))))
+        equations.append(
+            Equation(f"{found.name}_H", pn.change(n.HAMILTONIAN), tidy(-sign(problem) * zeta * sp.diff(g, t)))
+        )
     check = identity("the control passes junctions unchanged", kept)
     rule = worded("junctions", problem)
     return Step("junction_conditions", rule, tuple(equations), (STEP, "control_law"), (check,))

@@ -75,8 +75,13 @@ def names(problem: Problem) -> dict[str, str]:
     return found
 
 
-def declare(known: dict[str, Dimension | None], problem: Problem, second: Dimension | None, total: Dimension | None,
-            require: Requirement) -> None:
+def declare(
+    known: dict[str, Dimension | None],
+    problem: Problem,
+    second: Dimension | None,
+    total: Dimension | None,
+    require: Requirement,
+) -> None:
     """Enter the dimensions of these.
 
     Parameters

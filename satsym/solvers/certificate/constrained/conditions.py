@@ -7,7 +7,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers.certificate import conditions
-from satsym.solvers.certificate.constrained.comparison import compared
+from satsym.solvers.certificate.constrained.comparison import Comparison, compared
 from satsym.solvers.certificate.constrained.replay import Piece, Replay, replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
 from satsym.solvers.certificate.flow import FAINT, typical
@@ -39,7 +39,7 @@ def certify(solution: Solution, seed: int = 0) -> Certificate:
             return Certificate(Verdict.FAILED, missing, missing, missing, None, missing, None, (check,))
         first = _first_order(solution, again)
         second: list[Check] = []
-        competitors, not_checked = (), ()
+        comparison = Comparison((), (), ())
         if all(c.passed for c in first):
             second = [Check("legendre-clebsch", float(not conditions.legendre_clebsch(solution) > 0.0), 0.0)]
             if convex(solution.instance):
@@ -48,15 +48,14 @@ def certify(solution: Solution, seed: int = 0) -> Certificate:
                 second += _sufficient(solution, again)
                 comparison = compared(solution, seed)
                 second += comparison.checks
-                competitors, not_checked = comparison.competitors, comparison.not_checked
     return Certificate(
         verdict=Verdict.of(all(c.passed for c in first), all(c.passed for c in second)),
         **conditions.headlines(first),
         legendre_clebsch=conditions.legendre_clebsch(solution),
         conjugate_time=None,
         checks=(*first, *second),
-        competitors=competitors,
-        not_checked=not_checked,
+        competitors=comparison.competitors,
+        not_checked=comparison.not_checked,
     )
 
 

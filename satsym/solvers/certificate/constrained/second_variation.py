@@ -1,18 +1,22 @@
-"""The second variation with the active arcs held: is it positive for all variations that keep these, to first order?
+"""The second variation with the active arcs held: whether it is positive for all variations that keep to these.
 
 Variations of the control are constant between nodes of a mesh, those of the state follow by the linearised motion. They
 keep to given ends, to g_x dx = 0 along boundary arcs and at touch points. To the form along the way a touch point of
 order two adds - zeta (d/dt g_x dx)^2 / g'' with g'' < 0 (Bonnans and Hermant, SIAM J. Control Optim. 46, 2007): where
-it moves with the variation, the constraint is harder to keep. Boundary arcs add the curvature of g times its multiplier.
+it moves with the variation, the constraint is harder to keep. Boundary arcs add the curvature of g times its
+multiplier.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.instance import Instance
 from satsym.kernels.evaluation import COMPLEX_STEP
 from satsym.solution import Solution
 from satsym.solvers.certificate.constrained.replay import Replay
@@ -26,7 +30,7 @@ MESH = 160
 
 
 def curvature(solution: Solution, again: Replay) -> float:
-    """Least eigenvalue of the form over that of H_uu alone; NaN where the end is free in time, which is not looked at."""
+    """Least eigenvalue of the form over that of H_uu alone; NaN where the final time is free, which is not seen to."""
     instance, n = solution.instance, len(solution.x)
     if instance.tf is None:
         return float("nan")
@@ -49,10 +53,9 @@ def curvature(solution: Solution, again: Replay) -> float:
         at = times[k + 1]
         if which[k] != FREE:
             ties.append(gradient(instance, which[k], np.array([at]), _values(again, np.array([at]))[:n])[:, 0] @ state)
-        for event in [one for one in events if abs(one[0] - at) < 1e-12 * max(1.0, abs(at))]:
-            ties.append(event[1] @ state)
-            form += np.outer(event[2] @ state, event[2] @ state) * event[3]
-            form += state.T @ event[4] @ state
+        for met in [one for one in events if abs(one.time - at) < 1e-12 * max(1.0, abs(at))]:
+            ties.append(met.gradient @ state)
+            form += state.T @ (met.share * np.outer(met.rate, met.rate) + met.curved) @ state
     unit = unit_sizes(solution)
     end = end_form(solution, unit)
     scaled = state / unit[:n, None]
@@ -66,10 +69,8 @@ def _least(form: Array, pure: Array, ties: Array) -> float:
     from scipy.linalg import eigh
 
     rows = ties / np.maximum(np.abs(ties).max(axis=1, keepdims=True), 1e-300)
-    left, strengths, kept = np.linalg.svd(rows)
-    rank = int((strengths > 1e-9 * strengths.max(initial=0.0)).sum())
-    basis = kept[rank:].T
-    del left
+    _, strengths, kept = np.linalg.svd(rows)
+    basis = kept[int((strengths > 1e-9 * strengths.max(initial=0.0)).sum()) :].T
     return float(eigh(basis.T @ form @ basis, basis.T @ pure @ basis, eigvals_only=True, subset_by_index=[0, 0])[0])
 
 
@@ -109,7 +110,7 @@ def _along(solution: Solution, t: Array, z: Array, which: list[int]) -> tuple[Ar
     table = _slopes(slopes, np.concatenate([x, u]))
     eta = np.asarray(model.path_multiplier_batch(t, x, lam, p))
     for k in {one for one in which if one != FREE}:
-        curved = _slopes(lambda y, k=k: gradient(instance, k, t, y), x)
+        curved = _slopes(partial(gradient, instance, k, t), x)
         table[:n, :n] += curved * np.where(np.array(which) == k, np.broadcast_to(eta[k], t.shape), 0.0)
     second = list(np.moveaxis((table + table.swapaxes(0, 1)) / 2, -1, 0))
     return np.moveaxis(a, -1, 0), np.moveaxis(b, -1, 0), second, [one[n:, n:] for one in second]
@@ -126,31 +127,40 @@ def _transitions(a: Array, b: Array, h: Array) -> tuple[list[Array], list[Array]
     return moves, inputs
 
 
-def _events(solution: Solution, again: Replay) -> list[tuple[float, Array, Array, float, Array]]:
-    """Of each junction: its time, g_x, its rate, what multiplies the square of the latter, and zeta times g_xx."""
-    instance, n, found = solution.instance, len(solution.x), []
-    names = [one.name for one in instance.model.spec.path_constraints]
-    for event, piece, zeta in zip(solution.events, again.pieces, again.jumps, strict=False):
-        k, t, z = names.index(event.name), np.array([event.t]), piece.z[:, -1:]
-        x = z[:n]
-        curved = _slopes(lambda y, k=k, t=t: gradient(instance, k, t, y), x)[..., 0]
-        rate, share = np.zeros(n), 0.0
-        if event.kind == "touch":
-            u = np.asarray(
-                instance.model.control_law_batch(t, x, z[n:], instance.parameters, instance.control_set.arguments)
-            )
-            p = instance.parameters
-            rate = _slopes(
-                lambda y, k=k, t=t, u=u: np.asarray(
-                    instance.model.path_rates_batch(t, y, u.astype(complex), p)
-                ).reshape(-1, 2, 1)[k, :1],
-                x,
-            )[0, :, 0]
-            second = float(np.asarray(instance.model.path_rates_batch(t, x, u, p)).reshape(-1, 2, 1)[k, 1, 0])
-            share = -float(zeta) / second if second < 0.0 else -np.inf
-        g_x = gradient(instance, k, t, x)[:, 0]
-        found.append((event.t, g_x, rate, share, float(zeta) * curved))
-    return found
+@dataclass(frozen=True, eq=False)
+class Met:
+    """A junction: when, g_x, the derivative of the rate of g, what multiplies its square, and zeta times g_xx."""
+
+    time: float
+    gradient: Array
+    rate: Array
+    share: float
+    curved: Array
+
+
+def _events(solution: Solution, again: Replay) -> list[Met]:
+    names = [one.name for one in solution.instance.model.spec.path_constraints]
+    return [
+        _met(solution.instance, names.index(event.name), event.t, piece.z[:, -1:], float(zeta), event.kind == "touch")
+        for event, piece, zeta in zip(solution.events, again.pieces, again.jumps, strict=False)
+    ]
+
+
+def _met(instance: Instance, constraint: int, time: float, z: Array, zeta: float, touches: bool) -> Met:
+    """The junction of a constraint at a time, with states and costates before it."""
+    model, p, n, t = instance.model, instance.parameters, len(instance.initial), np.array([time])
+    x, share = z[:n], 0.0
+    u = np.asarray(model.control_law_batch(t, x, z[n:], p, instance.control_set.arguments))
+
+    def rates(y: Array) -> Array:
+        return np.asarray(model.path_rates_batch(t, y, u.astype(y.dtype), p)).reshape(-1, 2, 1)[constraint]
+
+    if touches:
+        second = float(rates(x)[1, 0])
+        share = -zeta / second if second < 0.0 else -np.inf
+    rate = _slopes(lambda y: rates(y)[:1], x)[0, :, 0]
+    curved = _slopes(lambda y: gradient(instance, constraint, t, y), x)[..., 0]
+    return Met(time, gradient(instance, constraint, t, x)[:, 0], rate, share, zeta * curved)
 
 
 def _slopes(function: Callable[[Array], Array], at: Array) -> Array:
