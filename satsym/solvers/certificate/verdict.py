@@ -82,7 +82,8 @@ def _judged(solution: Solution, deadline: float, seed: int) -> tuple[Certificate
         if not first:
             return _without_flow(), None
         if solution.instance.model.spec.path_constraints:
-            from satsym.solvers.certificate.constrained.conditions import VIOLATED, violation
+            from satsym.solvers.certificate.constrained.conditions import VIOLATED
+            from satsym.solvers.constrained.violation import violation
 
             first.append(Check("path constraint violated", max(0.0, violation(solution)), VIOLATED))
         field = conjugate(solution, along)

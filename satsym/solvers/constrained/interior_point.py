@@ -21,7 +21,7 @@ TO_BOUNDARY = 0.995
 LAST = 1e-9
 """The last weight of the barrier, relative to the first."""
 
-STEPS = 150
+STEPS = 60
 """Linear systems at most."""
 
 CURVED = (0.0, 1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4)

@@ -12,7 +12,6 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Event, Progress, Solution
 from satsym.solvers import iteration, two_point
-from satsym.solvers.collocation.scaling import two_point as two_point_of
 from satsym.solvers.constrained.arcs import Arcs
 from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.constrained.feasibility import impossible, refuse
@@ -20,8 +19,10 @@ from satsym.solvers.constrained.interior_point import Path, regularised
 from satsym.solvers.constrained.newton import from_arcs, from_path, solved
 from satsym.solvers.constrained.recognition import recognised
 from satsym.solvers.constrained.revision import SLACK, contacts, wrong
+from satsym.solvers.constrained.starts import drawn, first, straight
 from satsym.solvers.constrained.structure import Structure
 from satsym.solvers.constrained.transcription import Point, Program
+from satsym.solvers.constrained.violation import violation
 from satsym.solvers.failures import FAILURES, tried
 from satsym.solvers.iteration import Limits, watched
 from satsym.status import Status
@@ -31,14 +32,14 @@ METHOD = "boundary-arcs"
 INTERVALS = (100, 250, 800)
 """Of the regularised path: of more where the structure is not seen."""
 
+DRAWN, COMPARED = 4, 2
+"""Pairs of paths that are drawn where the problem is not convex, by the solver and by the certificate."""
+
 SAME = 1e-6
 """Relative difference of costs of regularised paths that are one."""
 
 REVISED = 12
 """Structures that are tried at most from one path."""
-
-DRAWN, AMPLITUDE = 3, 0.3
-"""Pairs of paths that are drawn where the problem is not convex, and how far they leave the relaxed one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +48,9 @@ class Stopped:
 
     status: Status
     message: str
+
+
+NO_NUMBERS = Stopped(Status.NOT_CONVERGED, "no extremal found: arithmetic fails on the way")
 
 
 def solve(instance: Instance, progress: Progress | None = None) -> Solution:
@@ -73,7 +77,7 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     refuse(instance)
     began = time.perf_counter()
     relaxed = two_point.solve(instance, progress)
-    if relaxed.status.answered and _kept(relaxed):
+    if relaxed.status.answered and violation(relaxed) <= SLACK:
         return replace(relaxed, message=f"{relaxed.message}; no path constraint is ever active")
     limits, _ = watched(instance, None)
     with np.errstate(all="ignore"):
@@ -88,43 +92,37 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     return _answered(instance, found, relaxed, time.perf_counter() - began)
 
 
-def _kept(relaxed: Solution) -> bool:
-    """Whether a trajectory keeps to all constraints, at its nodes and between them."""
-    instance, times = relaxed.instance, relaxed.times
-    model, p = instance.model, instance.parameters
-    g = np.asarray(model.path_constraints_batch(times, relaxed.x, p))
-    rates = np.asarray(model.path_rates_batch(times, relaxed.x, relaxed.u, p)).reshape(len(g), 2, -1)[:, 0]
-    steps = np.diff(times)
-    rising = np.maximum(g[:, :-1] + np.maximum(rates[:, :-1], 0.0) * steps, g[:, 1:])
-    # a bound by slopes at both ends: between two nodes nothing rises higher than along the steeper one
-    size = np.maximum(np.abs(g).max(axis=1), 1e-300)
-    inside = np.minimum(rising, g[:, 1:] + np.maximum(-rates[:, 1:], 0.0) * steps)
-    met = np.maximum(
-        np.maximum(g[:, :-1], g[:, 1:]), np.where((rates[:, :-1] > 0) & (rates[:, 1:] < 0), inside, -np.inf)
-    )
-    return bool((met.max(axis=1) <= SLACK * size).all())
-
-
 def _best(instance: Instance, relaxed: Solution, limits: Limits) -> Arcs | Stopped:
     """The cheapest extremal to which regularised paths lead."""
-    found: list[Arcs] = []
     worth = relaxed.objective if relaxed.status.answered and relaxed.objective else 1.0
-    last: Arcs | Stopped = Stopped(Status.NOT_CONVERGED, "")
+    found: list[Arcs | Stopped] = []
     for intervals in INTERVALS:
-        program, costs = Program(instance, intervals), list[float]()
-        for start in _starts(program, relaxed):
-            path = regularised(program, start, worth, limits)
-            if path.solved and any(abs(path.cost - cost) <= SAME * abs(cost) for cost in costs):
-                continue
-            costs += [path.cost] if path.solved else []
-            last = _exact(program, path, limits) if path.solved else _unsolved(program, path)
-            if isinstance(last, Arcs):
-                found.append(last)
-            if limits.expired:
-                break
-        if found:
-            return min(found, key=lambda one: one.cost())
-    return last
+        program = Program(instance, intervals)
+        begun = first(program, relaxed)
+        found = _searched(
+            program, [begun, *([] if convex(instance) else drawn(program, begun, DRAWN, 0))], worth, limits
+        )
+        exact = [one for one in found if isinstance(one, Arcs)]
+        if exact or limits.expired:
+            return min(exact, key=lambda one: one.cost(), default=found[0])
+    return found[0]
+
+
+def _searched(program: Program, starts: list[Point], worth: float, limits: Limits) -> list[Arcs | Stopped]:
+    """To what each start leads; what leads to the same regularised path leads to the same extremal."""
+    found: list[Arcs | Stopped] = []
+    known: list[tuple[float, Arcs | Stopped]] = []
+    for start in starts:
+        path = regularised(program, start, worth, limits)
+        same = [one for cost, one in known if path.solved and abs(path.cost - cost) <= SAME * abs(cost)]
+        one = same[0] if same else _unsolved(program, path)
+        if path.solved and not same:
+            one = tried(partial(_exact, program, path, limits)) or NO_NUMBERS
+            known.append((path.cost, one))
+        found.append(one)
+        if limits.expired:
+            break
+    return found
 
 
 def others(instance: Instance, worth: float, seed: int) -> tuple[int, list[float]]:
@@ -137,21 +135,10 @@ def others(instance: Instance, worth: float, seed: int) -> tuple[int, list[float
     seed
         Of the paths.
     """
-    limits, found = watched(instance, None)[0], list[float]()
-    program, known = Program(instance, INTERVALS[0]), list[tuple[float, float]]()
-    starts = _drawn(program, _straight(program), seed)
+    program = Program(instance, INTERVALS[0])
     with np.errstate(all="ignore"):
-        for start in starts:
-            path = regularised(program, start, worth, limits)
-            same = [cost for near, cost in known if abs(path.cost - near) <= SAME * abs(near)]
-            if path.solved and same:
-                found.append(same[0])
-                continue
-            exact = tried(partial(_exact, program, path, limits)) if path.solved else None
-            if isinstance(exact, Arcs):
-                found.append(exact.cost())
-                known.append((path.cost, found[-1]))
-    return len(starts), found
+        found = _searched(program, drawn(program, straight(program), COMPARED, seed), worth, watched(instance, None)[0])
+    return len(found), [one.cost() for one in found if isinstance(one, Arcs)]
 
 
 def _unsolved(program: Program, path: Path) -> Stopped:
@@ -159,48 +146,6 @@ def _unsolved(program: Program, path: Path) -> Stopped:
     if path.violation > 1e-6 and convex(program.instance):
         return Stopped(Status.INFEASIBLE, impossible(program, path))
     return Stopped(Status.NOT_CONVERGED, "no regularised path keeps to the path constraints")
-
-
-def _starts(program: Program, relaxed: Solution) -> list[Point]:
-    """The path without constraints or a straight line; where the problem is not convex also paths about it."""
-    one, count = program.instance, program.intervals
-    h = len(one.model.spec.path_constraints)
-    tau = np.linspace(0.0, 1.0, count + 1)
-    middles = (tau[1:] + tau[:-1]) / 2
-    none, v = np.zeros((h, count)), np.zeros(len(program.given) + len(one.model.spec.multipliers))
-    if relaxed.status.answered:
-        lasting = float(relaxed.times[-1] - relaxed.times[0])
-        share = (relaxed.times - relaxed.times[0]) / lasting
-        x, u, y = (
-            np.array([np.interp(places, share, row) for row in rows]).reshape(len(rows), -1)
-            for rows, places in ((relaxed.x, tau), (relaxed.u, middles), (relaxed.lam, middles))
-        )
-        first = Point(x, u, lasting, y, v, none, none)
-    else:
-        first = _straight(program)
-    return [first] if convex(one) else [first, *_drawn(program, first, 0)]
-
-
-def _straight(program: Program) -> Point:
-    """A straight line to the given end."""
-    one, count = program.instance, program.intervals
-    h, n, m = len(one.model.spec.path_constraints), len(one.initial), len(one.model.spec.controls)
-    begin, given = np.array(one.initial), np.zeros(n, bool)
-    given[program.given] = True
-    end = np.where(given, program.target(program.guessed), begin)
-    x = begin[:, None] + (end - begin)[:, None] * np.linspace(0.0, 1.0, count + 1)
-    none, v = np.zeros((h, count)), np.zeros(len(program.given) + len(one.model.spec.multipliers))
-    return Point(x, np.zeros((m, count)), program.guessed, np.zeros((n, count)), v, none, none)
-
-
-def _drawn(program: Program, about: Point, seed: int) -> list[Point]:
-    """Paths about another."""
-    rng, n = np.random.default_rng(seed), len(about.x)
-    unit = two_point_of(program.instance, about.duration).scale.state[:, None]
-    size = np.maximum(np.abs(about.x).max(axis=1, keepdims=True), unit)
-    tau = np.linspace(0.0, 1.0, program.intervals + 1)
-    bumps = [rng.normal(size=(n, 1)) * size * AMPLITUDE * np.sin(np.pi * tau) for _ in range(DRAWN)]
-    return [replace(about, x=about.x + side * bump, y=0.0 * about.y) for bump in bumps for side in (1.0, -1.0)]
 
 
 def _exact(program: Program, path: Path, limits: Limits) -> Arcs | Stopped:

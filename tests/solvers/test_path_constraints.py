@@ -1,0 +1,188 @@
+"""Constraints on the state along the way: structures are found from a cold start, optima are those of closed forms."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize_scalar
+
+import satsym
+from satsym.front.solution import Solution
+from satsym.solvers.certificate import certify
+from satsym.status import BadInput, Verdict
+from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
+from satsym.symbolic.model import t
+
+STATES = (Variable("x", "x"), Variable("v", "v"))
+CONTROLS, PARAMETERS = (Variable("u", "u"),), (Variable("l", "l", default=0.1), Variable("c", "c", default=0.0))
+(x, v), (u,), (wall_at, c) = symbols_of(STATES), symbols_of(CONTROLS), symbols_of(PARAMETERS)
+LINE = FirstOrder(
+    name="body", title="x'' = u", states=STATES, controls=CONTROLS, parameters=PARAMETERS, rates={x: v, v: u}
+)
+
+
+def kept(name: str, **constraints: Any) -> Problem:
+    return Problem(name=name, title=name, model=LINE, running_cost=c + u**2 / 2, path_constraints=constraints)
+
+
+WALL = kept("wall", wall=x - wall_at)
+SPEED = kept("speed", limit=v - wall_at)
+MOVING = kept("moving", wall=x - wall_at - c * (t - 0.5))
+GATE = kept("gate", ceiling=x - wall_at, floor=wall_at + 0.1 - 4 * (t - 0.5) ** 2 - x)
+THERE_AND_BACK = {"initial": {"x": 0.0, "v": 1.0}, "final": {"x": 0.0, "v": -1.0}, "tf": 1.0}
+ACROSS = {"initial": {"x": 0.0, "v": 0.0}, "final": {"x": 1.0, "v": 0.0}, "tf": 1.0}
+
+
+def solved(of: Problem | str, **given: Any) -> Solution:
+    return satsym.solve(satsym.Instance.of(of, **given))
+
+
+def certified(found: Solution) -> Solution:
+    said = found.to_dict()
+    assert said["status"] == "converged", said["message"]
+    assert said["certificate"]["verdict"] == "certified", said["certificate"]["checks"]
+    return found
+
+
+def least_effort(wall: float) -> float:
+    """Of going from (0, 1) to (0, -1) in unit time before a wall (Bryson and Ho, 3.11)."""
+    if wall <= 1 / 6:
+        return 4 / (9 * wall)
+    return 2 + 6 * max(0.0, 1 - 4 * wall) ** 2
+
+
+@pytest.mark.parametrize(
+    ("wall", "events"),
+    [
+        *((wall, ["entry", "exit"]) for wall in (0.02, 1 / 9, 0.1666)),
+        *((wall, ["touch"]) for wall in (0.1667, 0.24)),
+        *((1 / 6, None), (0.25, None), (0.3, [])),
+    ],
+)
+def test_before_a_wall_the_body_rests_touches_or_turns_by_itself(wall: float, events: list[str] | None):
+    found = certified(solved("bryson_denham", parameters={"l": wall}, **THERE_AND_BACK))
+    assert found.objective == pytest.approx(least_effort(wall), rel=1e-9)
+    kinds = [one.kind for one in found.events]
+    assert events is None or kinds == events
+    if kinds == ["entry", "exit"]:
+        assert [one.t for one in found.events] == pytest.approx([3 * wall, 1 - 3 * wall], abs=1e-8)
+    assert ("no path constraint is ever active" in found.message) == (not kinds)
+    assert found.found.x[0].max() <= wall * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("speed", [1.02, 1.2, 1.49])
+def test_a_bound_on_the_speed_has_an_order_of_one_and_no_jumps(speed: float):
+    """v rises as a (t - t^2 / (2 tau)) to the bound, tau = 3 (w - 1) / (2 w): J = 8 w^3 / (9 (w - 1))."""
+    found = certified(solved(SPEED, parameters={"l": speed}, **ACROSS))
+    ramp = 3 * (speed - 1) / (2 * speed)
+    assert found.objective == pytest.approx(8 * speed**3 / (9 * (speed - 1)), rel=1e-9)
+    assert [(one.kind, one.t) for one in found.events] == [
+        ("entry", pytest.approx(ramp, abs=1e-8)),
+        ("exit", pytest.approx(1 - ramp, abs=1e-8)),
+    ]
+    twice = np.flatnonzero(np.diff(found.found.times) == 0.0)
+    assert np.abs(found.found.lam[:, twice + 1] - found.found.lam[:, twice]).max() < 1e-8
+
+
+def test_before_a_moving_wall_it_is_as_before_one_at_rest_and_the_hamiltonian_jumps():
+    pace, wall = 0.3, 1 / 9
+    ends = {"initial": {"x": -pace / 2, "v": 1 + pace}, "final": {"x": pace / 2, "v": -1 + pace}, "tf": 1.0}
+    found = solved(MOVING, parameters={"l": wall, "c": pace}, **ends)
+    assert certified(found).objective == pytest.approx(least_effort(wall) + pace, rel=1e-9)
+    case, n = found.found.instance, 2
+    z = np.concatenate([found.found.x, found.found.lam])
+    h = case.model.hamiltonian_batch(found.found.times, z[:n], found.found.u, z[n:], case.parameters)
+    first = int(np.flatnonzero(np.diff(found.found.times) == 0.0)[0])
+    jump = found.found.lam[0, first] - found.found.lam[0, first + 1]
+    assert jump == pytest.approx(2 / (9 * wall**2), rel=1e-8)
+    assert h[first] - h[first + 1] == pytest.approx(pace * jump, rel=1e-7)  # -zeta g_t, with g_t = -pace
+
+
+def test_a_free_duration_ends_where_the_wall_is_touched():
+    """With time weighed, J(T) = c T + (2 + 6 (1 - 4 l / T)^2) / T while the wall is touched, from T = 4 l to 6 l."""
+    wall, weight = 0.1, 8.0
+    best = minimize_scalar(
+        lambda lasting: weight * lasting + least_effort(wall / lasting) / lasting,
+        bounds=(4 * wall, 6 * wall),
+        method="bounded",
+        options={"xatol": 1e-12},
+    )
+    found = solved(WALL, parameters={"l": wall, "c": weight}, **{**THERE_AND_BACK, "tf": "free", "tf_guess": 0.5})
+    assert found.status.answered, found.message
+    assert found.objective == pytest.approx(best.fun, rel=1e-10)
+    assert found.to_dict()["t_final"] == pytest.approx(best.x, rel=1e-6)
+    assert [one.kind for one in found.events] == ["touch"]
+    assert found.certificate is not None
+    assert found.certificate.verdict is Verdict.EXTREMAL_ONLY  # the second variation with a free time is not seen to
+
+
+def test_a_beam_under_a_ceiling_has_twice_the_effort():
+    assert certified(satsym.solve("beam")).objective == pytest.approx(80 / 9, rel=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("of", "given", "message"),
+    [
+        (WALL, {"initial": {"x": 0.2, "v": 1.0}}, "initial: path constraint wall is 0.1 there"),
+        (WALL, {"final": {"x": 0.2, "v": -1.0}}, "final: path constraint wall is 0.1 there"),
+        (WALL, {"initial": {"x": 0.1, "v": 1.0}}, "violated right after the start"),
+        (WALL, {"final": {"x": 0.1, "v": -1.0}}, "violated right before the end"),
+        (WALL, {"parameters": {"l": "free"}}, "is not solved beside path constraints"),
+    ],
+)
+def test_what_cannot_be_kept_at_the_ends_is_refused(of: Problem, given: dict[str, Any], message: str):
+    with pytest.raises(BadInput, match=message):
+        solved(of, **{**THERE_AND_BACK, **given})
+
+
+def test_constraints_against_each_other_are_infeasible():
+    found = solved(GATE, **{**THERE_AND_BACK, "initial": {"x": 0.0, "v": 0.0}, "final": {"x": 0.0, "v": 0.0}})
+    said = found.to_dict()
+    assert said["status"] == "infeasible", said["message"]
+    assert "ceiling" in said["message"]
+    assert "floor" in said["message"]
+
+
+def test_other_methods_refuse_path_constraints_and_this_one_what_has_none():
+    with pytest.raises(BadInput, match='use "boundary-arcs"'):
+        satsym.solve("bryson-denham", method="collocation")
+    with pytest.raises(BadInput, match="no path constraints"):
+        satsym.solve("return-to-orbit", method="boundary-arcs")
+
+
+def test_arcs_between_nodes_follow_the_boundary():
+    found = satsym.solve("bryson-denham")
+    between = np.linspace(0.34, 0.66, 57)
+    assert np.abs(found.x["x"](between) - 1 / 9).max() < 1e-12
+    first = between[between < 1 / 3]
+    assert np.allclose(found.x["x"](first), 1 / 9 * (1 - (1 - 3 * first) ** 3))
+
+
+@pytest.mark.parametrize("damage", ["multiplier", "later", "without", "violated"])
+def test_the_certificate_sees_what_is_no_extremal(damage: str):
+    """Jumps of the wrong sign, junctions at other times, and trajectories that pass the wall."""
+    good = satsym.solve("bryson-denham").found
+    assert certify(good) is not None
+    bad = good
+    if damage == "multiplier":
+        lam = good.lam.copy()
+        lam[0, np.searchsorted(good.times, 1 / 3, side="right") + 1 :] += 1.0
+        bad = replace(good, lam=lam)
+    elif damage == "later":
+        moved = tuple(replace(one, t=one.t + 1e-4) for one in good.events)
+        times = good.times.copy()
+        for one, other in zip(good.events, moved, strict=True):
+            times[np.abs(times - one.t) < 1e-12] = other.t
+        bad = replace(good, events=moved, times=times)
+    elif damage == "without":
+        bad = replace(good, events=())
+    else:
+        bad = replace(good, instance=replace(good.instance, parameters=(0.11,)))
+    found = certify(bad)
+    assert found is not None
+    assert found.verdict is Verdict.FAILED
+    assert math.isfinite(good.objective)
