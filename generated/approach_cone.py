@@ -2,7 +2,7 @@
 
 Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/kept_orbit.py
-Digest: 4753fe909c1a9036467cf50329a2737a83846651dd744d36ca2794784e0674aa
+Digest: f85fbb429a697f778a74bd093bf66aeefab1607e62da17debbae3c36d321cb15
 """
 
 import math
@@ -238,7 +238,7 @@ def path_rates(t, x, u, p):
     )
 
 
-def path_held(t, x, lam, p):
+def path_vanishing(t, x, lam, p):
     """What vanishes besides on the boundary, and its rate, row by row."""
     x1, x2, x3, x4 = x
     lambda_x1, lambda_x2, lambda_x3, lambda_x4 = lam
@@ -875,7 +875,7 @@ def path_rates_batch(t, x, u, p, out=None):
     return out
 
 
-def path_held_batch(t, x, lam, p, out=None):
+def path_vanishing_batch(t, x, lam, p, out=None):
     """What vanishes besides on the boundary, and its rate, row by row. Batch form."""
     x1, x2, x3, x4 = x
     lambda_x1, lambda_x2, lambda_x3, lambda_x4 = lam

@@ -2,7 +2,7 @@
 
 Written by satsym from derivations/examples/bryson_denham.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/bryson_denham.py
-Digest: 19b29bf983d5c2998233888c6fab57dd8d412eda8c8c8d075c1c30da545deb5c
+Digest: 590150523dbb6322f0ed45ea324d11208fb9d9525aa08ff93e710a14e3e02ce9
 """
 
 import math
@@ -183,7 +183,7 @@ def path_rates(t, x, u, p):
     )
 
 
-def path_held(t, x, lam, p):
+def path_vanishing(t, x, lam, p):
     """What vanishes besides on the boundary, and its rate, row by row."""
     x_value, v = x
     lambda_x, lambda_v = lam
@@ -557,7 +557,7 @@ def path_rates_batch(t, x, u, p, out=None):
     return out
 
 
-def path_held_batch(t, x, lam, p, out=None):
+def path_vanishing_batch(t, x, lam, p, out=None):
     """What vanishes besides on the boundary, and its rate, row by row. Batch form."""
     x_value, v = x
     lambda_x, lambda_v = lam

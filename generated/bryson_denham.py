@@ -1,8 +1,8 @@
-"""Least effort before a wall.
+"""Minimum effort before a wall.
 
 Written by satsym from derivations/examples/bryson_denham.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/bryson_denham.py
-Digest: 3126aff7fc7e7a6e59bd3f34522272c235ff17f073a0e01eb06d9aeb8cbf80fe
+Digest: 69a55483ce0ca3ee3b7d0f1209b30448e3456efe03c74266802d5a803f15cafd
 """
 
 import math
@@ -13,7 +13,7 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'bryson_denham',
-    'title': 'Least effort before a wall',
+    'title': 'Minimum effort before a wall',
     'source': 'derivations/examples/bryson_denham.py',
     'states': (
         {'symbol': 'x', 'latex': 'x', 'meaning': 'position'},
@@ -183,7 +183,7 @@ def path_rates(t, x, u, p):
     )
 
 
-def path_held(t, x, lam, p):
+def path_vanishing(t, x, lam, p):
     """What vanishes besides on the boundary, and its rate, row by row."""
     x_value, v = x
     lambda_x, lambda_v = lam
@@ -557,7 +557,7 @@ def path_rates_batch(t, x, u, p, out=None):
     return out
 
 
-def path_held_batch(t, x, lam, p, out=None):
+def path_vanishing_batch(t, x, lam, p, out=None):
     """What vanishes besides on the boundary, and its rate, row by row. Batch form."""
     x_value, v = x
     lambda_x, lambda_v = lam

@@ -1,8 +1,8 @@
-"""Round two discs with the least effort.
+"""Minimum effort around two discs.
 
 Written by satsym from derivations/examples/obstacle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/obstacle.py
-Digest: 45a29280ccbbc4fd246ff550eb7a5424e23f09d092fbb440bc09ab94eeaf418e
+Digest: 14282b8b184f2c782eee0babee8bfcb732f3a89f59680017b79a4e4d56c765d9
 """
 
 import math
@@ -13,24 +13,24 @@ import numpy as np
 MODEL = {
     'format': 1,
     'name': 'obstacle',
-    'title': 'Round two discs with the least effort',
+    'title': 'Minimum effort around two discs',
     'source': 'derivations/examples/obstacle.py',
     'states': (
-        {'symbol': 'x', 'latex': 'x', 'meaning': 'position along the way'},
+        {'symbol': 'x', 'latex': 'x', 'meaning': 'position in the direction of the end'},
         {'symbol': 'y', 'latex': 'y', 'meaning': 'position across it'},
-        {'symbol': 'vx', 'latex': 'v_x', 'meaning': 'velocity along the way'},
+        {'symbol': 'vx', 'latex': 'v_x', 'meaning': 'velocity in the direction of the end'},
         {'symbol': 'vy', 'latex': 'v_y', 'meaning': 'velocity across it'},
     ),
     'controls': (
-        {'symbol': 'ux', 'latex': 'u_x', 'meaning': 'acceleration along the way'},
+        {'symbol': 'ux', 'latex': 'u_x', 'meaning': 'acceleration in the direction of the end'},
         {'symbol': 'uy', 'latex': 'u_y', 'meaning': 'acceleration across it'},
     ),
     'parameters': (
         {'symbol': 'x_1', 'latex': 'x_1', 'meaning': 'centre of the first disc', 'default': 0.3},
-        {'symbol': 'y_1', 'latex': 'y_1', 'meaning': 'the same across the way', 'default': -0.05},
+        {'symbol': 'y_1', 'latex': 'y_1', 'meaning': 'the same across that direction', 'default': -0.05},
         {'symbol': 'radius_1', 'latex': 'R_1', 'meaning': 'its radius', 'default': 0.2, 'positive': True},
         {'symbol': 'x_2', 'latex': 'x_2', 'meaning': 'centre of the second disc', 'default': 0.7},
-        {'symbol': 'y_2', 'latex': 'y_2', 'meaning': 'the same across the way', 'default': 0.1},
+        {'symbol': 'y_2', 'latex': 'y_2', 'meaning': 'the same across that direction', 'default': 0.1},
         {'symbol': 'radius_2', 'latex': 'R_2', 'meaning': 'its radius', 'default': 0.15, 'positive': True},
     ),
     'control_set': 'free',
@@ -244,7 +244,7 @@ def path_rates(t, x, u, p):
     )
 
 
-def path_held(t, x, lam, p):
+def path_vanishing(t, x, lam, p):
     """What vanishes besides on the boundary, and its rate, row by row."""
     x_value, y, vx, vy = x
     lambda_x, lambda_y, lambda_vx, lambda_vy = lam
@@ -829,7 +829,7 @@ def path_rates_batch(t, x, u, p, out=None):
     return out
 
 
-def path_held_batch(t, x, lam, p, out=None):
+def path_vanishing_batch(t, x, lam, p, out=None):
     """What vanishes besides on the boundary, and its rate, row by row. Batch form."""
     x_value, y, vx, vy = x
     lambda_x, lambda_y, lambda_vx, lambda_vy = lam

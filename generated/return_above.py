@@ -2,7 +2,7 @@
 
 Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/kept_orbit.py
-Digest: b8234a73c29ee6e25d34658cdd7b1fa8e394a991019dca9b70c8d9b88e2bcbdd
+Digest: cc6caf10a9cafbf93cef22a85391a40a5c3e886d337ddf635e646739c237f479
 """
 
 import math
@@ -298,7 +298,7 @@ def path_rates(t, x, u, p):
     )
 
 
-def path_held(t, x, lam, p):
+def path_vanishing(t, x, lam, p):
     """What vanishes besides on the boundary, and its rate, row by row."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
@@ -1057,7 +1057,7 @@ def path_rates_batch(t, x, u, p, out=None):
     return out
 
 
-def path_held_batch(t, x, lam, p, out=None):
+def path_vanishing_batch(t, x, lam, p, out=None):
     """What vanishes besides on the boundary, and its rate, row by row. Batch form."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam

@@ -2,7 +2,7 @@
 
 Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/kept_orbit.py
-Digest: b8d5957a3b99271a451c5a07b2927d581ee10d4c1a7ad731994aabf17c3824ac
+Digest: 4ebdea3841d0354f616838c8a767047512026fa1257643776a516ef98ada5abb
 """
 
 import math
@@ -308,7 +308,7 @@ def path_rates(t, x, u, p):
     )
 
 
-def path_held(t, x, lam, p):
+def path_vanishing(t, x, lam, p):
     """What vanishes besides on the boundary, and its rate, row by row."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
@@ -1088,7 +1088,7 @@ def path_rates_batch(t, x, u, p, out=None):
     return out
 
 
-def path_held_batch(t, x, lam, p, out=None):
+def path_vanishing_batch(t, x, lam, p, out=None):
     """What vanishes besides on the boundary, and its rate, row by row. Batch form."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam

@@ -125,7 +125,7 @@ METHODS = {
         ),
         Method(
             "boundary-arcs",
-            "exact arcs and touch points, for constraints on the state along the way",
+            "exact arcs and touch points, for path constraints",
             "satsym.solvers.constrained.solving:solve",
             constrained=True,
             automatic=True,
@@ -162,7 +162,7 @@ def refusal(name: str, asked: Asked) -> str:
         return f'solver.method: "{name}" is not available; use {available}'
     method, instead = METHODS[name], automatic(spec).name
     if method.constrained != bool(spec.path_constraints):
-        what = "constraints on the state along the way" if spec.path_constraints else "no path constraints"
+        what = "path constraints" if spec.path_constraints else "no path constraints"
         return f'solver.method: the model has {what}; use "{instead}"'
     if spec.switching and not method.switching:
         return (

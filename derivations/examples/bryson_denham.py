@@ -20,7 +20,7 @@ x, v = symbols_of(STATES)
 
 bryson_denham = Problem(
     name="bryson_denham",
-    title="Least effort before a wall",
+    title="Minimum effort before a wall",
     model=FirstOrder(
         name="body_before_a_wall",
         title="A body on a line",

@@ -6,21 +6,21 @@ Which way round each disc is cheapest nobody says; every one is a local optimum 
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 
 STATES = (
-    Variable("x", "x", meaning="position along the way"),
+    Variable("x", "x", meaning="position in the direction of the end"),
     Variable("y", "y", meaning="position across it"),
-    Variable("vx", "v_x", meaning="velocity along the way"),
+    Variable("vx", "v_x", meaning="velocity in the direction of the end"),
     Variable("vy", "v_y", meaning="velocity across it"),
 )
 CONTROLS = (
-    Variable("ux", "u_x", meaning="acceleration along the way"),
+    Variable("ux", "u_x", meaning="acceleration in the direction of the end"),
     Variable("uy", "u_y", meaning="acceleration across it"),
 )
 PARAMETERS = (
     Variable("x_1", "x_1", meaning="centre of the first disc", default=0.3),
-    Variable("y_1", "y_1", meaning="the same across the way", default=-0.05),
+    Variable("y_1", "y_1", meaning="the same across that direction", default=-0.05),
     Variable("radius_1", "R_1", meaning="its radius", default=0.2, positive=True),
     Variable("x_2", "x_2", meaning="centre of the second disc", default=0.7),
-    Variable("y_2", "y_2", meaning="the same across the way", default=0.1),
+    Variable("y_2", "y_2", meaning="the same across that direction", default=0.1),
     Variable("radius_2", "R_2", meaning="its radius", default=0.15, positive=True),
 )
 x, y, vx, vy = symbols_of(STATES)
@@ -29,7 +29,7 @@ x_1, y_1, radius_1, x_2, y_2, radius_2 = symbols_of(PARAMETERS)
 
 obstacle = Problem(
     name="obstacle",
-    title="Round two discs with the least effort",
+    title="Minimum effort around two discs",
     model=FirstOrder(
         name="body_in_the_plane",
         title="A body in the plane",

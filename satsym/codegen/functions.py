@@ -182,7 +182,9 @@ def _of_path_constraints(derivation: Derivation) -> list[Function]:
     states, controls = symbols_of(derivation.model.states), symbols_of(derivation.model.controls)
     stated = {e.name: e.rhs for e in derivation.step("constraint_multiplier").equations}
     rates = [[*one.rates[1:], sp.Integer(0)][:2] for one in found]
-    held = [[stated.get(path_notation.held_entry(one.name, k), sp.Integer(0)) for k in range(2)] for one in found]
+    vanishing = [
+        [stated.get(path_notation.vanishing_entry(one.name, k), sp.Integer(0)) for k in range(2)] for one in found
+    ]
     multiplier = sp.Matrix([stated[f"{one.name}_eta"] for one in found])
     g = sp.Matrix([one.rates[0] for one in found])
     laws = [[derivation.equation(f"boundary_control.{one.name}_{u.name}").rhs for u in controls] for one in found]
@@ -196,10 +198,10 @@ def _of_path_constraints(derivation: Derivation) -> list[Function]:
             sp.Matrix(rates),
         ),
         _matrix(
-            "path_held",
+            "path_vanishing",
             "What vanishes besides on the boundary, and its rate, row by row.",
             "t x lam p",
-            sp.Matrix(held),
+            sp.Matrix(vanishing),
         ),
         _vector("path_multiplier", "The multiplier of each while it is on its boundary.", "t x lam p", multiplier),
         _matrix("boundary_control", "The controls on the boundary of each, row by row.", "t x lam p", sp.Matrix(laws)),

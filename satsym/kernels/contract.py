@@ -87,7 +87,7 @@ PATH_CONSTRAINTS = {
     "path_constraints": _signature("t x p", "h"),
     "path_gradient": _signature("t x p", "hn"),
     "path_rates": _signature("t x u p", "hw"),
-    "path_held": _signature("t x lam p", "hw"),
+    "path_vanishing": _signature("t x lam p", "hw"),
     "path_multiplier": _signature("t x lam p", "h"),
     "boundary_control": _signature("t x lam p", "hm"),
 }

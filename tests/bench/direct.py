@@ -47,6 +47,8 @@ class Stated:
     """u -> squared norms of the controls in each ball."""
     norms: tuple[tuple[float, float], ...]
     """Their least and largest, squared."""
+    path: Any
+    """(t, x, p) -> path constraints."""
 
 
 def stated(problem: Problem, case: Instance) -> Stated:
@@ -85,6 +87,7 @@ def stated(problem: Problem, case: Instance) -> Stated:
         function([t, states, parameters], [sense * problem.terminal_cost, *problem.terminal_constraints]),
         function([controls], within),
         norms,
+        function([t, states, parameters], list(problem.path_constraints.values())),
     )
 
 
@@ -128,9 +131,12 @@ def tried(problem: Problem, functions: Stated, case: Instance, intervals: int) -
     end = functions.end(case.t0 + lasting, x[:, -1], p)
     cost = h * ca.sum2(f[n, :] @ ca.repmat(b, intervals, 1)) + end[0]
     norms = functions.within.map(stages)(u) if functions.norms else ca.MX(0, stages)
-    g = [ca.vec(slopes - h * f[:n, :]), ca.vec(ends - x[:, 1:]), ca.vec(end[1:]), ca.vec(norms)]
-    zeros = np.zeros(sum(one.numel() for one in g[:3]))
-    low, high = (np.concatenate([zeros, np.tile([row[k] for row in functions.norms], stages)]) for k in (0, 1))
+    inner = ca.DM(np.linspace(0.0, 1.0, intervals + 1)[1:-1]).T
+    path = functions.path.map(intervals - 1)(case.t0 + lasting * inner, x[:, 1:-1], ca.repmat(p, 1, intervals - 1))
+    g = [ca.vec(slopes - h * f[:n, :]), ca.vec(ends - x[:, 1:]), ca.vec(end[1:]), ca.vec(norms), ca.vec(path)]
+    zeros, kept = np.zeros(sum(one.numel() for one in g[:3])), np.zeros(path.numel())
+    rows = [np.tile([row[k] for row in functions.norms], stages) for k in (0, 1)]
+    low, high = np.concatenate([zeros, rows[0], kept - math.inf]), np.concatenate([zeros, rows[1], kept])
     lengths = ((case.tf_guess - case.t0) if case.tf_guess else FIRST) if free else case.tf - case.t0
     start, lower, upper = _begun(problem, case, intervals, tau, lengths)
     options = {"ipopt.print_level": 0, "print_time": 0, "ipopt.sb": "yes", "ipopt.tol": 1e-10, "ipopt.max_iter": 1000}

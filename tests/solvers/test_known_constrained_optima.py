@@ -71,8 +71,8 @@ START, BACK = [1.1, 0.0, 0.0, 0.9], [1.0, 0.0, TURN, 1.0]
 
 
 @pytest.mark.slow
-def test_a_satellite_touches_its_floor_and_then_flies_along_it():
-    def flown(v: np.ndarray) -> tuple[np.ndarray, list[float]]:
+def test_a_satellite_touches_its_floor_and_then_follows_it():
+    def simulated(v: np.ndarray) -> tuple[np.ndarray, list[float]]:
         touch, push, entry, first, second, leave = v[4:]
         z = along(polar(False), 0.0, touch, np.array([*START, *v[:4], 0.0]))
         missed = [z[0] - 0.98, z[1]]
@@ -85,19 +85,19 @@ def test_a_satellite_touches_its_floor_and_then_flies_along_it():
         return along(polar(False), leave, TURN, z), missed
 
     def misses(v: np.ndarray) -> np.ndarray:
-        z, missed = flown(v)
+        z, missed = simulated(v)
         return np.array([*missed, *(z[:4] - BACK)])
 
     near = [0.2439, 0.1003, -0.033, 0.1191, 3.2401, 0.0846, 4.0242, 0.055, 0.0, 4.2807]
     found = shot(misses, near)
-    check("return-above", flown(found)[0][8], found[[4, 6, 9]])
+    check("return-above", simulated(found)[0][8], found[[4, 6, 9]])
 
 
 @pytest.mark.slow
 def test_a_satellite_touches_the_end_of_its_slot_twice():
     slot = np.radians(3.0)
 
-    def flown(v: np.ndarray) -> tuple[np.ndarray, list[float]]:
+    def simulated(v: np.ndarray) -> tuple[np.ndarray, list[float]]:
         z, missed, begun = np.array([*START, *v[:4], 0.0]), [], 0.0
         for time, push in (v[4:6], v[6:8]):
             z = along(polar(False), begun, time, z)
@@ -107,11 +107,11 @@ def test_a_satellite_touches_the_end_of_its_slot_twice():
         return along(polar(False), begun, TURN, z), missed
 
     def misses(v: np.ndarray) -> np.ndarray:
-        z, missed = flown(v)
+        z, missed = simulated(v)
         return np.array([*missed, *(z[:4] - BACK)])
 
     found = shot(misses, [0.5494, 0.3406, -0.361, 0.025, 1.0258, 0.3437, 2.5928, 0.0106])
-    check("return-in-slot", flown(found)[0][8], found[[4, 6]])
+    check("return-in-slot", simulated(found)[0][8], found[[4, 6]])
 
 
 def test_a_rendezvous_slides_along_its_approach_cone():
@@ -135,7 +135,7 @@ def test_a_rendezvous_slides_along_its_approach_cone():
     def pushed(z: np.ndarray) -> float:
         return float(-3 * z[0] - 2 * z[3] + z[5] - z[1] - z[7] / 2)
 
-    def flown(v: np.ndarray) -> tuple[np.ndarray, list[float]]:
+    def simulated(v: np.ndarray) -> tuple[np.ndarray, list[float]]:
         entry, first, second, leave = v[4:]
         z = along(hill(False), 0.0, entry, np.array([0.04, 0.0, -0.1, 0.0, *v[:4], 0.0]))
         missed = [-z[0] + z[2] / 2 - 0.001, -z[1] + z[3] / 2, pushed(z)]
@@ -144,11 +144,11 @@ def test_a_rendezvous_slides_along_its_approach_cone():
         return along(hill(False), leave, np.pi, z), [*missed, pushed(z)]
 
     def misses(v: np.ndarray) -> np.ndarray:
-        z, missed = flown(v)
+        z, missed = simulated(v)
         return np.array([*missed, *z[:4]])
 
     found = shot(misses, [0.4374, 0.1959, -0.0933, 0.1371, 2.5171, 0.26, 0.0, 2.5439])
-    check("approach-cone", flown(found)[0][8], found[[4, 7]])
+    check("approach-cone", simulated(found)[0][8], found[[4, 7]])
 
 
 @pytest.mark.slow

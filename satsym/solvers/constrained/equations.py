@@ -100,7 +100,7 @@ class System:
         if arcs.structure.starts:
             constraint = arcs.structure.contacts[0].constraint
             time = np.array([arcs.instance.t0])
-            self._conditions(lambda v: _held(arcs.instance, constraint, time, v), list(range(2 * n)))
+            self._conditions(lambda v: _vanishing(arcs.instance, constraint, time, v), list(range(2 * n)))
 
     def _junction(self, k: int, junction: Junction) -> None:
         """States continue, costates jump; tangency, and what is held on a boundary after it."""
@@ -121,7 +121,7 @@ class System:
             if not pinned:
                 found.append(_tangency(arcs.instance, constraint, t, left[:n]))
             if junction.event is Event.ENTRY:
-                found.append(_held(arcs.instance, constraint, t, right))
+                found.append(_vanishing(arcs.instance, constraint, t, right))
             return np.concatenate(found)
 
         self._conditions(conditions, columns)
@@ -172,10 +172,10 @@ def _tangency(instance: Instance, constraint: int, t: Array, x: Array) -> Array:
     return np.array(found)
 
 
-def _held(instance: Instance, constraint: int, t: Array, z: Array) -> Array:
+def _vanishing(instance: Instance, constraint: int, t: Array, z: Array) -> Array:
     """What vanishes besides on a boundary, shape (q, 1)."""
     model, n = instance.model, len(instance.initial)
-    found = np.asarray(model.path_held_batch(t, z[:n], z[n:], instance.parameters)).reshape(-1, 2, 1)[constraint]
+    found = np.asarray(model.path_vanishing_batch(t, z[:n], z[n:], instance.parameters)).reshape(-1, 2, 1)[constraint]
     return found[: model.spec.path_constraints[constraint].order]
 
 

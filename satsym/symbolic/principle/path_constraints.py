@@ -18,9 +18,9 @@ import sympy as sp
 
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import gradient, simplified, tidy, total_derivative
-from satsym.symbolic.checks import Point, compare, identity, never_below, numeric, slopes
+from satsym.symbolic.checks import Point, compare, identity, never_below, numeric, partial, slopes
 from satsym.symbolic.convention import sign, worded
-from satsym.symbolic.derivation import Derivation, DerivationError, Equation, Step
+from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equation, Step
 from satsym.symbolic.model import Problem, symbols_of, t
 from satsym.symbolic.principle import path_notation as pn
 from satsym.symbolic.principle.pontryagin import costates
@@ -29,7 +29,7 @@ HIGHEST = 2
 """Order of a constraint that is solved; those of a higher one have endlessly many junctions as a rule."""
 
 COMPETITORS = 20
-"""Controls on the boundary that the boundary control is held against at each random point."""
+"""Controls on the boundary with which the boundary control is compared at each random point."""
 
 STEP = "constraint_order"
 """The step that only derivations of such problems have."""
@@ -92,14 +92,18 @@ def constraint_multiplier(so_far: Derivation) -> Step | None:
         return None
     equations, checks = list[Equation](), []
     for found in constraints(so_far):
-        held = _held(so_far, found)
+        vanishing = _vanishing(so_far, found)
         moving = _canonical(so_far, found)
-        last = tidy(sp.expand(total_derivative(held[-1], moving)), (eta := pn.multiplier(found.name),))
+        last = tidy(sp.expand(total_derivative(vanishing[-1], moving)), (eta := pn.multiplier(found.name),))
         by_eta = sp.simplify(sp.diff(last, eta))
         value = tidy(simplified(-last.xreplace({eta: sp.Integer(0)}) / by_eta))
-        equations += [Equation(pn.held_entry(found.name, k), pn.held(found.name, k), e) for k, e in enumerate(held)]
+        equations += [
+            Equation(pn.vanishing_entry(found.name, k), pn.vanishing(found.name, k), e) for k, e in enumerate(vanishing)
+        ]
         equations.append(Equation(f"{found.name}_eta", eta, value))
-        checks.append(_rates_along((*held, sp.Integer(0)), {x: r.xreplace({eta: value}) for x, r in moving.items()}))
+        checks.append(
+            _rates_along((*vanishing, sp.Integer(0)), {x: r.xreplace({eta: value}) for x, r in moving.items()})
+        )
     rule, sources = worded("keep the law on the boundary", _problem(so_far)), (STEP, "control_law", "costate_equations")
     return Step("constraint_multiplier", rule, tuple(equations), sources, tuple(checks))
 
@@ -108,7 +112,7 @@ def constrained_costates(so_far: Derivation) -> Step | None:
     """The costate equations on the boundary."""
     if STEP not in so_far:
         return None
-    states, equations, drifts = symbols_of(so_far.model.states), list[Equation](), []
+    states, equations, drifts, checks = symbols_of(so_far.model.states), list[Equation](), [], []
     law = _law(so_far)
     for found in constraints(so_far):
         moving = _canonical(so_far, found)
@@ -118,9 +122,10 @@ def constrained_costates(so_far: Derivation) -> Step | None:
         shift = sign(_problem(so_far)) * eta * sum(sp.diff(g, x) * moving[x] for x in states)
         change = sum(sp.diff(h, v) * rate for v, rate in moving.items())
         drifts.append(change + shift)
-    check = identity("H changes on the boundary with the constraint", drifts)
+        checks.append(_adjoined(so_far, found, [moving[lam] for lam in costates(so_far)]))
+    checks.append(identity("H changes on the boundary with the constraint", drifts))
     rule = worded("adjoin the constraint", _problem(so_far))
-    return Step("constrained_costates", rule, tuple(equations), (STEP, "costate_equations"), (check,))
+    return Step("constrained_costates", rule, tuple(equations), (STEP, "costate_equations"), tuple(checks))
 
 
 def junction_conditions(so_far: Derivation) -> Step | None:
@@ -142,8 +147,8 @@ def junction_conditions(so_far: Derivation) -> Step | None:
         jumps = [sign(problem) * zeta * sp.diff(g, x) for x in states]
         before = {costate: costate + jump for costate, jump in zip(lam, jumps, strict=True)}
         if found.order == 1:
-            held = _held(so_far, found)[0]
-            moved = sp.simplify((held.xreplace(before) - held) / zeta)
+            vanishing = _vanishing(so_far, found)[0]
+            moved = sp.simplify((vanishing.xreplace(before) - vanishing) / zeta)
             kept.append(sp.diff(moved, zeta))
             if moved == 0:
                 raise DerivationError(f"{so_far.name}: path_constraints {found.name}: the jump of costates is open")
@@ -227,7 +232,7 @@ def _affine(found: Constraint, controls: tuple[sp.Symbol, ...]) -> tuple[sp.Matr
     effect = sp.Matrix(gradient(found.rates[-1], controls))
     if any(e.free_symbols & set(controls) for e in effect):
         raise DerivationError(
-            f"path_constraints {found.name}: the controls enter its rate in another way than linearly, "
+            f"path_constraints {found.name}: the controls enter its rate otherwise than linearly, "
             "for which the boundary control is not derived",
             ("path_constraints",),
         )
@@ -240,13 +245,13 @@ def _law(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
     return {u: so_far.equation(f"stationarity.{u.name}_hat").rhs for u in controls}
 
 
-def _held(so_far: Derivation, found: Constraint) -> tuple[sp.Expr, ...]:
+def _vanishing(so_far: Derivation, found: Constraint) -> tuple[sp.Expr, ...]:
     """What must vanish on the boundary besides g and its rates: g^(q) under the law, and its first q - 1 rates."""
-    held = [tidy(simplified(found.rates[-1].xreplace(_law(so_far))))]
+    vanishing = [tidy(simplified(found.rates[-1].xreplace(_law(so_far))))]
     moving = _canonical(so_far, found)
     for _ in range(found.order - 1):
-        held.append(tidy(simplified(total_derivative(held[-1], moving))))
-    return tuple(held)
+        vanishing.append(tidy(simplified(total_derivative(vanishing[-1], moving))))
+    return tuple(vanishing)
 
 
 def _canonical(so_far: Derivation, found: Constraint) -> dict[sp.Symbol, sp.Expr]:
@@ -264,7 +269,7 @@ def _motion(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
     return dict(zip(symbols_of(so_far.model.states), so_far.rhs("first_order"), strict=True))
 
 
-def _rates_along(rates: tuple[sp.Expr, ...], motion: Mapping[sp.Symbol, sp.Expr]) -> Any:
+def _rates_along(rates: tuple[sp.Expr, ...], motion: Mapping[sp.Symbol, sp.Expr]) -> Check:
     """Each but the first against the numeric rate of the one before it along the motion."""
     values, derived, pace = numeric(list(rates[:-1])), numeric(list(rates[1:])), numeric(list(motion.values()))
 
@@ -280,7 +285,23 @@ def _rates_along(rates: tuple[sp.Expr, ...], motion: Mapping[sp.Symbol, sp.Expr]
     return compare("numeric rates along the motion", symbols, sides)
 
 
-def _cheapest_on_boundary(so_far: Derivation, found: Constraint, laws: list[sp.Expr], direction: int) -> Any:
+def _adjoined(so_far: Derivation, found: Constraint, rates: list[sp.Expr]) -> Check:
+    """Costate rates against numeric derivatives of H with the constraint adjoined, whose multiplier is positive."""
+    states, law = symbols_of(so_far.model.states), _law(so_far)
+    penalty = pn.multiplier(found.name) * found.rates[0]
+    h = so_far.equation("hamiltonian.H").rhs
+    whole = h + penalty if _problem(so_far).convention == "minimum" else h - penalty
+    value, controls, derived = numeric([whole]), numeric(list(law.values())), numeric(rates)
+
+    def sides(point: Point) -> tuple[list[Any], list[Any]]:
+        here = {**point, **dict(zip(law, controls(point), strict=True))}
+        return derived(point), [-partial(value, here, x)[0] for x in states]
+
+    symbols = whole.free_symbols.union(states, *(e.free_symbols for e in (*rates, *law.values()))) - set(law)
+    return compare("numeric derivative", symbols, sides)
+
+
+def _cheapest_on_boundary(so_far: Derivation, found: Constraint, laws: list[sp.Expr], direction: int) -> Check:
     """H against that of other controls that keep g^(q) = 0: the law moved, and brought back along its effect."""
     controls, h = symbols_of(so_far.model.controls), so_far.equation("hamiltonian.H").rhs
     effect, _ = _affine(found, controls)

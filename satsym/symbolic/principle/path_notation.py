@@ -17,9 +17,9 @@ def entry(name: str, order: int) -> str:
     return f"{name}_{order}" if order else name
 
 
-def held_entry(name: str, order: int) -> str:
+def vanishing_entry(name: str, order: int) -> str:
     """Name of the equation of what vanishes on the boundary."""
-    return f"{name}_held_{order}" if order else f"{name}_held"
+    return f"{name}_vanishing_{order}" if order else f"{name}_vanishing"
 
 
 def rate(name: str, order: int) -> sp.Symbol:
@@ -27,9 +27,9 @@ def rate(name: str, order: int) -> sp.Symbol:
     return sp.Symbol(f"constraint_{entry(name, order)}", real=True)
 
 
-def held(name: str, order: int) -> sp.Symbol:
+def vanishing(name: str, order: int) -> sp.Symbol:
     """The symbol for the last rate under the law, or a rate of that."""
-    return sp.Symbol(f"constraint_{held_entry(name, order)}", real=True)
+    return sp.Symbol(f"constraint_{vanishing_entry(name, order)}", real=True)
 
 
 def multiplier(name: str) -> sp.Symbol:
@@ -64,8 +64,8 @@ def names(problem: Problem) -> dict[str, str]:
         letter = f"h_{{{k}}}" if len(problem.path_constraints) > 1 else "h"
         found[rate(name, 0).name] = letter
         found[rate(name, 1).name], found[rate(name, 2).name] = (rf"{dots}{{{letter}}}" for dots in (r"\dot", r"\ddot"))
-        found[held(name, 0).name] = rf"\varphi_{{{k}}}" if letter != "h" else r"\varphi"
-        found[held(name, 1).name] = rf"\dot\varphi_{{{k}}}" if letter != "h" else r"\dot\varphi"
+        found[vanishing(name, 0).name] = rf"\varphi_{{{k}}}" if letter != "h" else r"\varphi"
+        found[vanishing(name, 1).name] = rf"\dot\varphi_{{{k}}}" if letter != "h" else r"\dot\varphi"
         found[multiplier(name).name] = rf"\eta_{{{k}}}" if letter != "h" else r"\eta"
         found[jump(name).name] = rf"\zeta_{{{k}}}" if letter != "h" else r"\zeta"
         for v in problem.model.controls:

@@ -82,7 +82,7 @@ def _sufficient(solution: Solution, again: Replay) -> list[Check]:
     least, most = _least_multiplier(solution, again)
     return [
         Check("multiplier vanishes on a boundary", float(not least > STRICT * most), 0.0),
-        Check("second variation with active arcs held", float(not curvature(solution, again) > CURVED), 0.0),
+        Check("second variation with the active arcs fixed", float(not curvature(solution, again) > CURVED), 0.0),
     ]
 
 

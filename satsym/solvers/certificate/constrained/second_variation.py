@@ -55,7 +55,7 @@ def curvature(solution: Solution, again: Replay) -> float:
             ties.append(gradient(instance, which[k], np.array([at]), _values(again, np.array([at]))[:n])[:, 0] @ state)
         for met in [one for one in events if abs(one.time - at) < 1e-12 * max(1.0, abs(at))]:
             ties.append(met.gradient @ state)
-            form += state.T @ (met.share * np.outer(met.rate, met.rate) + met.curved) @ state
+            form += state.T @ (met.factor * np.outer(met.rate, met.rate) + met.curved) @ state
     unit = unit_sizes(solution)
     end = end_form(solution, unit)
     scaled = state / unit[:n, None]
@@ -134,7 +134,7 @@ class Met:
     time: float
     gradient: Array
     rate: Array
-    share: float
+    factor: float
     curved: Array
 
 
@@ -149,7 +149,7 @@ def _events(solution: Solution, again: Replay) -> list[Met]:
 def _met(instance: Instance, constraint: int, time: float, z: Array, zeta: float, touches: bool) -> Met:
     """The junction of a constraint at a time, with states and costates before it."""
     model, p, n, t = instance.model, instance.parameters, len(instance.initial), np.array([time])
-    x, share = z[:n], 0.0
+    x, factor = z[:n], 0.0
     u = np.asarray(model.control_law_batch(t, x, z[n:], p, instance.control_set.arguments))
 
     def rates(y: Array) -> Array:
@@ -157,10 +157,10 @@ def _met(instance: Instance, constraint: int, time: float, z: Array, zeta: float
 
     if touches:
         second = float(rates(x)[1, 0])
-        share = -zeta / second if second < 0.0 else -np.inf
+        factor = -zeta / second if second < 0.0 else -np.inf
     rate = _slopes(lambda y: rates(y)[:1], x)[0, :, 0]
     curved = _slopes(lambda y: gradient(instance, constraint, t, y), x)[..., 0]
-    return Met(time, gradient(instance, constraint, t, x)[:, 0], rate, share, zeta * curved)
+    return Met(time, gradient(instance, constraint, t, x)[:, 0], rate, factor, zeta * curved)
 
 
 def _slopes(function: Callable[[Array], Array], at: Array) -> Array:

@@ -1,0 +1,117 @@
+"""What is derived of path constraints: orders, boundary controls, multipliers, junctions; and what is refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+import sympy as sp
+
+from satsym.report.latex.document import render
+from satsym.symbolic import FirstOrder, Problem, Variable, derive, symbols_of
+from satsym.symbolic.derivation import DerivationError, Step
+from satsym.symbolic.principle import path_constraints as steps
+from tests.support.derived import derived, shipped, stated
+
+STATES = tuple(Variable(name, name) for name in ("a", "b", "d", "e"))
+(a, b, d, e), (u,) = symbols_of(STATES), symbols_of((Variable("u", "u"),))
+CHAIN = FirstOrder(
+    name="chain_of_three",
+    title="Three integrators, and a state that nothing moves",
+    states=STATES,
+    controls=(Variable("u", "u"),),
+    parameters=(),
+    rates={a: b, b: d, d: u, e: -e},
+)
+
+
+def kept(constraint: sp.Expr, **more: Any) -> Problem:
+    stated = {"name": "kept", "title": "", "model": CHAIN, "running_cost": u**2 / 2} | more
+    return Problem(path_constraints={"bound": constraint}, **stated)
+
+
+def values(step: Step) -> dict[str, sp.Expr]:
+    return {equation.name: equation.rhs for equation in step.equations}
+
+
+def test_the_control_on_a_floor_balances_weight_and_centrifugal_force():
+    found = shipped("return_above")
+    r, o, mu = (sp.Symbol(name, real=True, positive=name != "theta_dot" or None) for name in ("r", "theta_dot", "mu"))
+    assert [one.order for one in steps.constraints(found)] == [2]
+    control = values(found.step("boundary_control"))
+    assert sp.simplify(control["floor_u1"] - (mu / r**2 - r * o**2)) == 0
+    assert sp.simplify(control["floor_u2"] - found.equation("stationarity.u2_hat").rhs) == 0
+    jumps = values(found.step("junction_conditions"))
+    assert jumps["floor_lambda_r"] == -sp.Symbol("zeta_floor", real=True)
+    assert jumps["floor_H"] == 0
+
+
+def test_a_constraint_of_order_one_has_a_multiplier_and_no_jump():
+    found = derived(kept(d - 1))
+    assert [one.order for one in steps.constraints(found)] == [1]
+    lam = sp.Symbol("lambda_b", real=True)
+    assert values(found.step("constraint_multiplier"))["bound_eta"] == -lam
+    assert values(found.step("junction_conditions"))["bound_jump"] == 0
+
+
+def test_with_the_maximum_convention_costates_change_their_sign_and_multipliers_do_not():
+    problem = stated("bryson_denham")
+    assert isinstance(problem, Problem)
+    found = derived(replace(problem, convention="maximum"))
+    zeta = sp.Symbol("zeta_wall", real=True)
+    assert values(found.step("junction_conditions"))["wall_lambda_x"] == -zeta
+    assert values(found.step("constrained_costates"))["wall_lambda_x"] == sp.Symbol("eta_wall", real=True)
+
+
+@pytest.mark.parametrize("language", ["en", "id"])
+def test_it_is_typeset(language: str):
+    text = render(shipped("return_in_slot"), language)
+    assert r"\theta - \omega t - \Delta \le 0" in text or r"\le 0" in text
+    assert r"\eta_{1}" in text
+    assert r"\zeta_{2}" in text
+
+
+@pytest.mark.parametrize(
+    ("problem", "message"),
+    [
+        (kept(e - 1), "no control influences it, so nothing can keep it"),
+        (kept(a - 1), "its order is more than 2"),
+        (kept(b - u), "depends on the control u"),
+        (kept(b - sp.Symbol("q", real=True)), "uses undeclared symbols: q"),
+        (kept(b - 1, control_set="box"), "beside bounds of the controls they are not derived"),
+        (replace(kept(b - 1), path_constraints={"no name": b - 1}), "a constraint's name is"),
+        (replace(kept(b - 1), path_constraints=(b - 1,)), "write a name for each"),  # type: ignore[arg-type]
+    ],
+)
+def test_what_cannot_be_derived_is_refused(problem: Problem, message: str):
+    with pytest.raises(DerivationError, match=message):
+        derive(problem)
+
+
+@pytest.mark.parametrize("wrong", ["multiplier", "rate", "costate", "control"])
+def test_a_wrong_equation_fails_its_check(wrong: str, monkeypatch: pytest.MonkeyPatch):
+    """Mutations of what the steps are made of: none passes."""
+    if wrong == "multiplier":
+        monkeypatch.setattr(steps, "_canonical", _with_sign(steps._canonical))
+    elif wrong == "rate":
+        true = steps.total_derivative
+        monkeypatch.setattr(steps, "total_derivative", lambda e, rates: true(e, rates) + a)
+    elif wrong == "costate":
+        true_change = steps.sign
+        monkeypatch.setattr(steps, "sign", lambda problem: 2 * true_change(problem))
+    else:
+        true_law = steps._affine
+        monkeypatch.setattr(steps, "_affine", lambda found, controls: (true_law(found, controls)[0], sp.Integer(1)))
+    with pytest.raises(DerivationError, match="failed its check"):
+        derive(kept(d - a**2))
+
+
+def _with_sign(true: Any) -> Any:
+    """Costate equations with a wrong term."""
+
+    def canonical(so_far: Any, found: Any) -> Any:
+        moving = true(so_far, found)
+        return {symbol: rate + (b if symbol.name == "lambda_b" else 0) for symbol, rate in moving.items()}
+
+    return canonical
