@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.solvers.constrained.interior_point import Path
-from satsym.solvers.constrained.transcription import Program
+from satsym.solvers.constrained.slopes import Slopes
+from satsym.solvers.constrained.transcription import Point, Program
 from satsym.status import BadInput
 
 ROUNDING = 1e-12
 """Of a constraint that holds exactly, relative to its terms."""
+
+
+WEIGHTS, NEWTON = (1e2, 1e4, 1e6, 1e8), 40
+"""Of squared violations, relative to the cost, and steps for each."""
+
+REMAINING = 0.5
+"""Share of a violation that a hundred times the weight leaves where it cannot be avoided."""
 
 
 def refuse(instance: Instance) -> None:
@@ -66,9 +76,51 @@ def _refuse_values(
             )
 
 
-def impossible(program: Program, path: Path) -> str:
-    """What stands against each other where a convex problem has no admissible path."""
-    z = path.at.z * program.kept
+def impossible(program: Program, start: Point, worth: float) -> str:
+    """What stands against each other where no path of a convex problem is admissible; empty where that is not shown.
+
+    Violations are penalised by their squares, more and more: where some path is admissible they vanish like one over
+    the weight, else they tend to the least that there are.
+    """
+    room = np.maximum(np.abs(program.constraints(start)).max(axis=1, keepdims=True), 1e-300)
+    at, found = start, list[Array]()
+    for weight in WEIGHTS:
+        at = _penalised(program, at, weight * max(abs(worth), 1e-12) / room**2 / program.intervals)
+        if not np.isfinite(at.x).all():
+            return ""
+        found.append(np.maximum(program.constraints(at) * program.kept / room, 0.0).max(axis=1))
+    before, last = found[-2:]
+    if not last.max() > REMAINING * before.max() > 0.0:
+        return ""
     names = [one.name for one in program.instance.model.spec.path_constraints]
-    pushing = [name for name, row in zip(names, z, strict=True) if row.max(initial=0.0) > 1e-3 * z.max(initial=1e-300)]
-    return f"no motion keeps to the path constraints ({', '.join(pushing or names)}) on the way to the given end"
+    violated = ", ".join(name for name, left in zip(names, last, strict=True) if left > 0.01 * last.max())
+    return f"no motion to the given end keeps to the path constraints ({violated}): one of them is always violated"
+
+
+def _penalised(program: Program, start: Point, weight: Array) -> Point:
+    """The path of least cost with squared violations in it, by Newton's method on those that are violated."""
+    from scipy.sparse import bmat, diags
+    from scipy.sparse.linalg import splu
+
+    at = start
+    for _ in range(NEWTON):
+        g = program.constraints(at) * program.kept
+        pushed = replace(at, z=weight * np.maximum(g, 0.0))
+        slopes = Slopes.of(program, pushed)
+        active = (np.broadcast_to(weight, g.shape) * (g > 0.0)).ravel()
+        jacobian, c = slopes.inequalities, slopes.equalities
+        curved = slopes.hessian + jacobian.T @ diags(active) @ jacobian
+        matrix = bmat([[curved, c.T], [c, None]], format="csc")
+        rows = np.concatenate([program.gaps(at).T.ravel(), program.ends(at)])
+        try:
+            step = splu(matrix).solve(-np.concatenate([slopes.gradient + jacobian.T @ pushed.z.ravel(), rows]))
+        except RuntimeError:
+            return replace(at, x=np.full_like(at.x, np.nan))
+        size, count = jacobian.shape[1], at.y.size
+        dy = step[size : size + count].reshape(-1, len(at.x)).T
+        moved = at.moved(step[:size], dy, step[size + count :], 1.0)
+        settled = np.abs(moved.x - at.x).max() <= 1e-10 * np.abs(at.x).max()
+        at = moved
+        if settled:
+            break
+    return at

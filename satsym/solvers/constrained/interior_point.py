@@ -53,7 +53,7 @@ def regularised(program: Program, start: Point, worth: float, limits: Limits) ->
     g = program.constraints(start)
     room = np.maximum(np.abs(g).max(axis=1, keepdims=True), 1e-300)
     at = replace(start, s=np.maximum(-g, 0.1 * room))
-    first = 0.1 * max(abs(worth), 1e-12) / program.intervals
+    first = max(abs(worth), 1e-12) / program.intervals
     weight, at = first, replace(at, z=first / at.s)
     filtered: list[tuple[float, float]] = []
     for step in range(STEPS):

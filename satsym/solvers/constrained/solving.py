@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections import Counter
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -38,8 +39,8 @@ DRAWN, COMPARED = 4, 2
 SAME = 1e-6
 """Relative difference of costs of regularised paths that are one."""
 
-REVISED = 12
-"""Structures that are tried at most from one path."""
+REVISED, AGAIN = 12, 2
+"""Structures that are tried at most from one path, and times that one of them is, from other junctions."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,9 +104,13 @@ def _best(instance: Instance, relaxed: Solution, limits: Limits) -> Arcs | Stopp
             program, [begun, *([] if convex(instance) else drawn(program, begun, DRAWN, 0))], worth, limits
         )
         exact = [one for one in found if isinstance(one, Arcs)]
-        if exact or limits.expired:
+        if exact or limits.expired or _impossible(found[0]):
             return min(exact, key=lambda one: one.cost(), default=found[0])
     return found[0]
+
+
+def _impossible(one: Arcs | Stopped) -> bool:
+    return isinstance(one, Stopped) and one.status is Status.INFEASIBLE
 
 
 def _searched(program: Program, starts: list[Point], worth: float, limits: Limits) -> list[Arcs | Stopped]:
@@ -115,8 +120,11 @@ def _searched(program: Program, starts: list[Point], worth: float, limits: Limit
     for start in starts:
         path = regularised(program, start, worth, limits)
         same = [one for cost, one in known if path.solved and abs(path.cost - cost) <= SAME * abs(cost)]
-        one = same[0] if same else _unsolved(program, path)
-        if path.solved and not same:
+        if same:
+            one = same[0]
+        elif not path.solved:
+            one = _unsolved(program, start, worth)
+        else:
             one = tried(partial(_exact, program, path, limits)) or NO_NUMBERS
             known.append((path.cost, one))
         found.append(one)
@@ -141,10 +149,10 @@ def others(instance: Instance, worth: float, seed: int) -> tuple[int, list[float
     return len(found), [one.cost() for one in found if isinstance(one, Arcs)]
 
 
-def _unsolved(program: Program, path: Path) -> Stopped:
+def _unsolved(program: Program, start: Point, worth: float) -> Stopped:
     """Why the regularised problem has no answer."""
-    if path.violation > 1e-6 and convex(program.instance):
-        return Stopped(Status.INFEASIBLE, impossible(program, path))
+    if convex(program.instance) and (reason := impossible(program, start, worth)):
+        return Stopped(Status.INFEASIBLE, reason)
     return Stopped(Status.NOT_CONVERGED, "no regularised path keeps to the path constraints")
 
 
@@ -152,13 +160,13 @@ def _exact(program: Program, path: Path, limits: Limits) -> Arcs | Stopped:
     """Exact arcs from a regularised path, the structure revised until nothing is wrong with it."""
     instance = program.instance
     waiting: list[tuple[Structure, Arcs | None]] = [(recognised(program, path), None)]
-    seen: set[tuple[object, ...]] = set()
+    seen: Counter[tuple[object, ...]] = Counter()
     reason = "the equations of its arcs are not solved"
-    while waiting and len(seen) < REVISED and not limits.expired:
+    while waiting and seen.total() < REVISED and not limits.expired:
         structure, before = waiting.pop(0)
-        if structure.key in seen:
+        if seen[structure.key] >= AGAIN:
             continue
-        seen.add(structure.key)
+        seen[structure.key] += 1
         begun = from_path(program, path.at, structure) if before is None else from_arcs(before, structure)
         found = solved(begun, limits)
         if found is None and before is not None:
