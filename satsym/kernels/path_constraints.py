@@ -12,7 +12,7 @@ from satsym.kernels.relations import Relation, along, derivative
 
 
 def of_path_constraints(of: Evaluation) -> Iterator[Relation]:
-    """Gradients and rates are derivatives; what is kept at zero on the boundary stays there with the multiplier."""
+    """Gradients and rates are derivatives; what vanishes on the boundary stays there with the multiplier."""
     orders = np.array([one.order for one in of.kernels.spec.path_constraints])
     second = orders > 1
     yield from derivative(of, "path_gradient", "path_constraints", ("x",))
@@ -22,22 +22,22 @@ def of_path_constraints(of: Evaluation) -> Iterator[Relation]:
     faster, terms = along(of, "path_rates", of("dynamics"))
     wanted = np.where(second[:, None], faster[:, 0], 0.0)
     yield Relation("path_rates", "second rates of the constraints", rates[:, 1], wanted, terms[:, 0])
-    kept, last = of("path_vanishing"), of("path_rates", u=law)
+    vanishing, last = of("path_vanishing"), of("path_rates", u=law)
     wanted = np.where(second[:, None], last[:, 1], last[:, 0])
-    yield Relation("path_vanishing", "the last rate under the law", kept[:, 0], wanted, FAINT * size(last).max())
+    yield Relation("path_vanishing", "the last rate under the law", vanishing[:, 0], wanted, FAINT * size(last).max())
     for k, order in enumerate(orders):
         found, terms = _rates_on_boundary(of, k)
         if order > 1:
-            yield Relation("path_vanishing", "and its rate", kept[k, 1], found[k, 0], terms[k, 0])
+            yield Relation("path_vanishing", "and its rate", vanishing[k, 1], found[k, 0], terms[k, 0])
         zero = found[k, order - 1]
-        yield Relation("path_multiplier", "keeps what is kept", zero, np.zeros_like(zero), terms[k, order - 1])
+        yield Relation("path_multiplier", "keeps to the boundary", zero, np.zeros_like(zero), terms[k, order - 1])
         kept = of("path_rates", u=of("boundary_control")[k])[k, order - 1]
         sizes = np.abs(of.slope("path_rates", "u") * of("boundary_control")[k]).sum(axis=-2)[k, order - 1]
         yield Relation("boundary_control", "keeps the last rate zero", kept, np.zeros_like(kept), sizes)
 
 
 def _rates_on_boundary(of: Evaluation, which: int) -> tuple[Array, Array]:
-    """Rates of what is kept along the extremal on the boundary of one constraint, and sizes of their terms."""
+    """Rates of what vanishes along the extremal on the boundary of one constraint, and sizes of their terms."""
     law = of("control_law")
     eta, push = of("path_multiplier")[which], of("path_gradient")[which]
     forced = of("costate_rate", u=law) - eta * push

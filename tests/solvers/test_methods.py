@@ -104,9 +104,14 @@ def test_every_method_has_its_function_and_a_line(name: str) -> None:
 
 
 def test_every_kind_of_controls_has_one_method_to_begin_with() -> None:
-    assert [m.switching for m in methods.METHODS.values() if m.automatic] == [False, True]
-    chosen = [methods.automatic(instance.load(name).model.spec).name for name in ("soft-return", "lapan-minimum-time")]
-    assert chosen == ["collocation", "bang-bang"]
+    assert [(m.switching, m.constrained) for m in methods.METHODS.values() if m.automatic] == [
+        (False, False),
+        (True, False),
+        (False, True),
+    ]
+    shown = ("soft-return", "lapan-minimum-time", "bryson-denham")
+    chosen = [methods.automatic(instance.load(name).model.spec).name for name in shown]
+    assert chosen == ["collocation", "bang-bang", "boundary-arcs"]
 
 
 @pytest.mark.parametrize(

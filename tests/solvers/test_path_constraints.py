@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.optimize import minimize_scalar
+from scipy.integrate import solve_ivp
+from scipy.optimize import minimize_scalar, root
 
 import satsym
 from satsym.front.solution import Solution
@@ -186,3 +187,58 @@ def test_the_certificate_sees_what_is_no_extremal(damage: str):
     assert found is not None
     assert found.verdict is Verdict.FAILED
     assert math.isfinite(good.objective)
+
+
+OSCILLATOR = replace(LINE, name="oscillator", title="van der Pol's", rates={x: v, v: (1 - x**2) * v - x + u})
+DAMPED = Problem(
+    name="damped",
+    title="damped",
+    model=OSCILLATOR,
+    running_cost=x**2 + v**2 + u**2,
+    path_constraints={"low": -v - wall_at},
+)
+
+
+@pytest.mark.parametrize(("least", "near"), [(0.4, [0.628, 1.469]), (0.2, [0.2947, 3.624])])
+def test_van_der_pols_oscillator_keeps_to_a_lowest_velocity_as_by_shooting(least: float, near: list[float]):
+    """Of order one, so that lambda_v = -2 u on the boundary; at 0.2 the end, which is free, is on it as well."""
+
+    def rates(bounded: bool) -> Any:
+        def found(t: float, z: np.ndarray) -> list[float]:
+            a, b, p, q, _ = z
+            control = -(1 - a * a) * b + a if bounded else -q / 2
+            q = -2 * control
+            moved = [b, (1 - a * a) * b - a + control, -2 * a + q * (2 * a * b + 1), -2 * b - p - q * (1 - a * a)]
+            return [*moved, a * a + b * b + control**2]
+
+        return found
+
+    def simulated(unknown: np.ndarray) -> tuple[np.ndarray, list[float]]:
+        costates, entry, leave = unknown[:2], *unknown[2:]
+        z, missed = np.array([1.0, 0.0, *costates, 0.0]), list[float]()
+        for bounded, times in ((False, (0.0, entry)), (True, (entry, leave)), (False, (leave, 5.0))):
+            z = solve_ivp(rates(bounded), times, z, method="DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+            pushed = -2 * (z[0] - (1 - z[0] ** 2) * z[1])
+            if times[1] == entry:
+                missed += [z[1] + least, z[3] - pushed]
+            z[3] = pushed if bounded else z[3]
+        return z, [*missed, z[2], z[3] if least > 0.3 else z[1] + least]
+
+    found = certified(solved(DAMPED, parameters={"l": least}, initial={"x": 1.0, "v": 0.0}, tf=5.0))
+    begun = [*np.round(found.found.lam[:, 0], 3), *near]
+    shot = root(lambda unknown: simulated(unknown)[1], begun, tol=1e-12)
+    z, missed = simulated(shot.x)
+    assert np.abs(missed).max() < 1e-9
+    assert found.objective == pytest.approx(z[4], rel=1e-9)
+    kinds = ["entry", "exit"] if least > 0.3 else ["entry", "exit", "touch"]
+    assert [one.kind for one in found.events] == kinds
+    assert [one.t for one in found.events[:2]] == pytest.approx(shot.x[2:], abs=1e-7)
+
+
+def test_along_a_continuation_the_structure_changes():
+    case = satsym.Instance.of("bryson_denham", parameters={"l": 0.3}, **THERE_AND_BACK)
+    case = case.with_(continuation={"l": [0.3, 0.05]})
+    found = certified(satsym.solve(case))
+    assert found.objective == pytest.approx(80 / 9, rel=1e-9)
+    kinds = {tuple(event.kind for event in one.events) for one in found.found.intermediate}
+    assert {(), ("entry", "exit")} <= kinds

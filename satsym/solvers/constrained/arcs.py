@@ -131,7 +131,7 @@ class Arcs:
     def at(self, arc: int, times: Array) -> Array:
         """Values (2n, N) on an arc by its polynomials."""
         k, (a, b) = self.intervals[arc], self.times[arc : arc + 2]
-        share = np.clip((times - a) / (b - a) * k, 0.0, k)
+        share = np.clip((times - a) / (b - a if b != a else np.inf) * k, 0.0, k)
         which = np.minimum(share.astype(int), k - 1)
         known = self.nodes(arc)[:-1].reshape(k, STAGES + 1, -1)[which]
         return np.asarray(np.einsum("ts,tsd->dt", lagrange(STAGES, share - which), known))

@@ -142,7 +142,10 @@ class System:
                 lam = lam - v[d + rest.constraints] * gradient(one, constraint, t, z[:n])
             bounds = one.control_set.arguments
             found = np.asarray(one.model.boundary_batch(t, z[:n], lam, tuple(nu), one.parameters, bounds, final))
-            return found if free else found[:-1]
+            rows = found if free else found[:-1]
+            if not (rest.pressed and arcs.structure.contacts[-1].touches):
+                return rows
+            return np.concatenate([rows, values(one, t, z[:n])[arcs.structure.contacts[-1].constraint][None]])
 
         self._conditions(conditions, columns)
 

@@ -74,6 +74,9 @@ def _with_ends(program: Program, contacts: tuple[Contact, ...], times: Array) ->
     begun = np.array(one.model.path_constraints(one.t0, one.initial, program.p))
     first, last = contacts[0], contacts[-1]
     starts = not first.touches and first.start - one.t0 < step and abs(float(begun[first.constraint])) < 1e-9
-    order = one.model.spec.path_constraints[last.constraint].order
-    ends = not last.touches and float(times[-1]) - last.end < step and order == 1
-    return Structure(contacts, starts, ends)
+    order, end = one.model.spec.path_constraints[last.constraint].order, float(times[-1])
+    if end - last.end >= step or (order > 1 and not last.touches):
+        return Structure(contacts, starts)
+    alone = end - last.start <= step
+    kept = Contact(last.constraint, end if alone else last.start, end, last.jumps)
+    return Structure((*contacts[:-1], kept), starts, ends=True)

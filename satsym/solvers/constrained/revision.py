@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.solvers.constrained.arcs import Arcs, values
+from satsym.solvers.constrained.arcs import Arcs, gradient, values
 from satsym.solvers.constrained.structure import Contact, Event, Structure
 from satsym.solvers.switching.trajectory import runs
 
@@ -32,7 +32,12 @@ def contacts(arcs: Arcs) -> list[Contact]:
     """The contacts of the structure, with the times and jumps that were found."""
     found, times = [], arcs.times
     k = 0
+    pressed = (float(arcs.unknown[-1]), 0.0) if arcs.pressed else (0.0, 0.0)
     for number, one in enumerate(arcs.structure.contacts):
+        last = number == len(arcs.structure.contacts) - 1
+        if one.touches and last and arcs.structure.ends:
+            found.append(Contact(one.constraint, float(times[-1]), float(times[-1]), pressed))
+            continue
         if one.touches:
             found.append(Contact(one.constraint, float(times[k + 1]), float(times[k + 1]), (arcs.jump(k), 0.0)))
             k += 1
@@ -40,8 +45,10 @@ def contacts(arcs: Arcs) -> list[Contact]:
         start, end, jumps = float(times[0]), float(times[-1]), [0.0, 0.0]
         if not (number == 0 and arcs.structure.starts):
             start, jumps[0], k = float(times[k + 1]), arcs.jump(k), k + 1
-        if not (number == len(arcs.structure.contacts) - 1 and arcs.structure.ends):
+        if not (last and arcs.structure.ends):
             end, jumps[1], k = float(times[k + 1]), arcs.jump(k), k + 1
+        else:
+            jumps[1] = pressed[0]
         found.append(Contact(one.constraint, start, end, (jumps[0], jumps[1])))
     return found
 
@@ -70,9 +77,9 @@ def _instead(arcs: Arcs, place: int | slice, *others: Contact) -> Structure:
     """The structure with other contacts in place of one or some; flags of ends hold for what stays an arc there."""
     kept = contacts(arcs)
     kept[place if isinstance(place, slice) else slice(place, place + 1)] = others
-    starts = arcs.structure.starts and bool(kept) and not kept[0].touches
-    ends = arcs.structure.ends and bool(kept) and not kept[-1].touches
-    return Structure(tuple(kept), starts, ends)
+    first, last = arcs.times[0], arcs.times[-1]
+    starts = arcs.structure.starts and bool(kept) and kept[0].start <= first
+    return Structure(tuple(kept), starts, arcs.structure.ends and bool(kept) and kept[-1].end >= last)
 
 
 def _touch(one: Contact) -> Contact:
@@ -96,8 +103,11 @@ def _pulling(arcs: Arcs) -> tuple[str, list[Structure]] | None:
     """Jumps with a negative multiplier."""
     known = contacts(arcs)
     largest = max([abs(jump) for one in known for jump in one.jumps], default=0.0)
+    costates = max(float(np.abs(arcs.nodes(k)[:, arcs.n :]).max()) for k in range(len(arcs.intervals)))
     for place, one in enumerate(known):
-        if min(one.jumps) < -SLACK * largest:
+        t, x = np.array([one.middle]), arcs.nodes(0)[:1, : arcs.n].T
+        push = float(np.abs(gradient(arcs.instance, one.constraint, t, x)).max())
+        if min(one.jumps) < -SLACK * max(largest, costates / max(push, 1e-300)):
             tries = [] if one.touches else [_instead(arcs, place, _touch(one))]
             return "a multiplier at a junction is negative", [*tries, _instead(arcs, place)]
     return None
@@ -125,7 +135,7 @@ def _resting(arcs: Arcs) -> tuple[str, list[Structure]] | None:
 def _rising(arcs: Arcs) -> tuple[str, list[Structure]] | None:
     """Touch points at which the constraint would be crossed: its second rate is positive on one side."""
     room, lasting, instance, n = sizes(arcs), arcs.end - arcs.instance.t0, arcs.instance, arcs.n
-    places = [k for k, one in enumerate(contacts(arcs)) if one.touches]
+    places = [k for k, one in enumerate(contacts(arcs)) if one.touches and one.start < arcs.end]
     for junction, place in zip(
         [k for k, j in enumerate(arcs.junctions) if j.event is Event.TOUCH], places, strict=True
     ):

@@ -172,7 +172,7 @@ def _exact(program: Program, path: Path, limits: Limits) -> Arcs | Stopped:
         if found is None and before is not None:
             found = solved(from_path(program, path.at, structure), limits)
         if found is None:
-            waiting += [(other, before) for other in _variants(structure)]
+            waiting += [(other, before) for other in _variants(instance, structure)]
             continue
         reason, others = wrong(found)
         if not reason:
@@ -182,13 +182,16 @@ def _exact(program: Program, path: Path, limits: Limits) -> Arcs | Stopped:
     return Stopped(Status.NOT_CONVERGED, f"no structure near ({shown}) is an extremal: {reason}")
 
 
-def _variants(structure: Structure) -> list[Structure]:
-    """With one arc as a touch point."""
+def _variants(instance: Instance, structure: Structure) -> list[Structure]:
+    """With one arc as a touch point, or without it where its order is one."""
     found = []
     for k, one in enumerate(structure.contacts):
+        second = instance.model.spec.path_constraints[one.constraint].order > 1
         if not one.touches:
             touch = replace(one, start=one.middle, end=one.middle, jumps=(sum(one.jumps), 0.0))
-            found.append(replace(structure, contacts=(*structure.contacts[:k], touch, *structure.contacts[k + 1 :])))
+            kept = (*structure.contacts[:k], *([touch] if second else []), *structure.contacts[k + 1 :])
+            last = k == len(structure.contacts) - 1
+            found.append(Structure(kept, structure.starts and k > 0, structure.ends and not last))
     return found
 
 
@@ -209,6 +212,8 @@ def _answered(instance: Instance, arcs: Arcs, relaxed: Solution, wall_s: float) 
         Event(one.event.value, names[one.constraint], float(t))
         for one, t in zip(arcs.junctions, arcs.times[1:-1], strict=True)
     )
+    if arcs.structure.ends and arcs.structure.contacts[-1].touches:
+        events += (Event("touch", names[arcs.structure.contacts[-1].constraint], float(arcs.end)),)
     lasting = ", ".join(f"{names[c.constraint]} {c.end - c.start:.4g} long" for c in contacts(arcs) if not c.touches)
     message = f"structure {arcs.structure.name(instance)}" + (f" ({lasting})" if lasting else "")
     return Solution(

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from satsym.instance import Instance
+from satsym.solution import Event as Happening
 from satsym.solution import Solution
 
 
@@ -61,7 +62,7 @@ class Structure:
     starts: bool = False
     """Whether the first of them holds from the start on."""
     ends: bool = False
-    """Whether the last of them holds until the end."""
+    """Whether the last of them holds until the end; a touch point is then met at the end alone."""
 
     def junctions(self, instance: Instance) -> list[Junction]:
         """Where arcs meet."""
@@ -69,6 +70,8 @@ class Structure:
         found = []
         for k, one in enumerate(self.contacts):
             jumps = one.jumps if orders[one.constraint] > 1 else (None, None)
+            if one.touches and self.ends and k == len(self.contacts) - 1:
+                continue
             if one.touches:
                 found.append(Junction(Event.TOUCH, one.constraint, one.start, one.jumps[0]))
                 continue
@@ -104,9 +107,21 @@ class Structure:
 def stated_arcs(solution: Solution) -> list[int]:
     """The constraint on whose boundary each arc between events runs, or that none does."""
     names = [one.name for one in solution.instance.model.spec.path_constraints]
-    events = solution.events
+    events = within(solution)
     first = names.index(events[0].name) if events and events[0].kind == "exit" else FREE
     found = [first]
     for one in events:
         found.append(names.index(one.name) if one.kind == "entry" else FREE)
     return found
+
+
+def within(solution: Solution) -> tuple[Happening, ...]:
+    """The events before the end, where arcs meet."""
+    return tuple(one for one in solution.events if one.t < solution.times[-1])
+
+
+def pressing(solution: Solution) -> int:
+    """The constraint that may push at the end: that of the last arc, or that is touched there; or none."""
+    names = [one.name for one in solution.instance.model.spec.path_constraints]
+    last = solution.events[-1:]
+    return names.index(last[0].name) if last and last != within(solution)[-1:] else stated_arcs(solution)[-1]

@@ -13,7 +13,7 @@ from satsym.solvers.certificate.constrained.second_variation import curvature
 from satsym.solvers.certificate.flow import FAINT, typical
 from satsym.solvers.constrained.arcs import values
 from satsym.solvers.constrained.convexity import convex
-from satsym.solvers.constrained.structure import FREE
+from satsym.solvers.constrained.structure import FREE, within
 from satsym.status import Verdict
 
 RESIDUAL, DEFECT, STATIONARY, DRIFT, COST = 1e-9, 1e-7, 1e-8, 1e-9, 1e-8
@@ -124,7 +124,7 @@ def _off_tangency(solution: Solution, again: Replay) -> float:
         which = _number(solution, event.name)
         x, t = piece.z[:n, -1:], piece.times[-1:]
         found = [abs(float(values(instance, t, x)[which, 0]))]
-        if instance.model.spec.path_constraints[which].order > 1:
+        if instance.model.spec.path_constraints[which].order > 1 and event.t < solution.times[-1]:
             found.append(abs(_rates(solution, piece, -1)[which, 0]) * lasting)
         worst = max(worst, max(found) / sizes[which])
     return float(worst)
@@ -168,7 +168,7 @@ def _least_multiplier(solution: Solution, again: Replay) -> tuple[float, float]:
     lasting = float(solution.times[-1] - solution.times[0])
     jumping = [
         abs(jump) > 0.0 or solution.instance.model.spec.path_constraints[_number(solution, event.name)].order > 1
-        for event, jump in zip(solution.events, again.jumps, strict=False)
+        for event, jump in zip(within(solution), again.jumps, strict=False)
     ]
     jumps = [jump / lasting for jump, counts in zip(again.jumps, jumping, strict=False) if counts]
     jumps += [jump / lasting for jump in again.jumps[len(jumping) :]]

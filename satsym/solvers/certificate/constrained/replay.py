@@ -16,7 +16,7 @@ from satsym.solution import Solution
 from satsym.solvers.certificate.end_form import fixed_states
 from satsym.solvers.certificate.flow import FAINT, TOLERANCE, Flow, typical
 from satsym.solvers.constrained.arcs import field, gradient
-from satsym.solvers.constrained.structure import FREE, stated_arcs
+from satsym.solvers.constrained.structure import FREE, pressing, stated_arcs, within
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import integrate, leap
 
@@ -65,7 +65,7 @@ def replay(solution: Solution) -> Replay | None:
     """Integrate again; ``None`` where the motion is not finite, or events do not fit the nodes."""
     instance, n, arcs = solution.instance, len(solution.x), stated_arcs(solution)
     breaks = np.flatnonzero(np.diff(solution.times) == 0.0)
-    if len(breaks) != len(solution.events):
+    if len(breaks) != len(events := within(solution)):
         return None
     edges = [0, *(breaks + 1).tolist(), len(solution.times)]
     sizes = np.concatenate(typical(solution, FAINT))
@@ -77,7 +77,7 @@ def replay(solution: Solution) -> Replay | None:
             pieces.append(piece)
             cost += spent
             value = piece.z[:, -1].copy()
-            if k < len(solution.events):
+            if k < len(events):
                 zeta, left = _jump(solution, k, int(breaks[k]), sizes)
                 jumps.append(zeta)
                 off = max(off, left)
@@ -87,8 +87,8 @@ def replay(solution: Solution) -> Replay | None:
     except FAILURES:
         return None
     end = value
-    if arcs[-1] != FREE:
-        zeta, end = _pressed(solution, arcs[-1], value)
+    if (last := pressing(solution)) != FREE:
+        zeta, end = _pressed(solution, last, value)
         jumps.append(zeta)
     final = float(solution.times[-1])
     total = cost + float(instance.model.terminal_cost(final, tuple(end[:n].tolist()), instance.parameters))

@@ -141,8 +141,16 @@ class Met:
 def _events(solution: Solution, again: Replay) -> list[Met]:
     names = [one.name for one in solution.instance.model.spec.path_constraints]
     return [
-        _met(solution.instance, names.index(event.name), event.t, piece.z[:, -1:], float(zeta), event.kind == "touch")
+        _met(
+            solution.instance,
+            names.index(event.name),
+            event.t,
+            piece.z[:, -1:],
+            float(zeta),
+            event.kind == "touch" and event.t < solution.times[-1],
+        )
         for event, piece, zeta in zip(solution.events, again.pieces, again.jumps, strict=False)
+        # at the end a constraint is not moved along
     ]
 
 
