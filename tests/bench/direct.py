@@ -150,7 +150,10 @@ def tried(problem: Problem, functions: Stated, case: Instance, intervals: int) -
 def _begun(problem: Problem, case: Instance, intervals: int, tau: Any, lasting: float) -> tuple[Any, Any, Any]:
     """Where to start, and the bounds of all variables: nodes, stages, controls, the duration."""
     names, stages = case.model.spec.state_names, len(tau)
-    ends = np.array([case.initial[k] if case.final.get(x) is None else case.final[x] for k, x in enumerate(names)])
+    referred = "reference" in case.final.values()
+    known = case.model.reference(case.t0 + lasting, case.parameters) if referred else case.initial
+    wanted = [known[k] if case.final.get(x) == "reference" else case.final.get(x) for k, x in enumerate(names)]
+    ends = np.array([case.initial[k] if value is None else value for k, value in enumerate(wanted)], dtype=float)
     initial = np.array(case.initial)
     line = [np.outer(initial, 1.0 - at) + np.outer(ends, at) for at in (np.linspace(0.0, 1.0, intervals + 1), tau)]
     low, high = np.array(case.lower), np.array(case.upper)

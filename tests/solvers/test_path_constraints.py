@@ -14,6 +14,8 @@ from scipy.optimize import minimize_scalar, root
 import satsym
 from satsym.front.solution import Solution
 from satsym.solvers.certificate import certify
+from satsym.solvers.certificate.constrained.replay import replay
+from satsym.solvers.certificate.constrained.second_variation import curvature
 from satsym.status import BadInput, Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 from satsym.symbolic.model import t
@@ -233,6 +235,15 @@ def test_van_der_pols_oscillator_keeps_to_a_lowest_velocity_as_by_shooting(least
     kinds = ["entry", "exit"] if least > 0.3 else ["entry", "exit", "touch"]
     assert [one.kind for one in found.events] == kinds
     assert [one.t for one in found.events[:2]] == pytest.approx(shot.x[2:], abs=1e-7)
+
+
+@pytest.mark.parametrize("wall", [1 / 9, 0.2])
+def test_the_second_variation_of_an_effort_is_that_of_the_control(wall: float):
+    """Nothing but u^2 is in it, and where a touch point moves with the variation that makes it larger, not smaller."""
+    found = solved("bryson_denham", parameters={"l": wall}, **THERE_AND_BACK).found
+    again = replay(found)
+    assert again is not None
+    assert curvature(found, again) == pytest.approx(1.0, abs=1e-9)
 
 
 def test_along_a_continuation_the_structure_changes():

@@ -126,6 +126,7 @@ def model_object(spec: ProblemSpec) -> dict[str, Any]:
         "parameters": [_variable(v) | {"default": v.default} for v in spec.parameters],
         "control_set": spec.control_set,
         **({"control_sets": [_set(part) for part in spec.control_parts]} if spec.control_parts else {}),
+        **({"path_constraints": [plain(one) for one in spec.path_constraints]} if spec.path_constraints else {}),
         "has_cost": spec.has_cost,
         "has_terminal_cost": spec.has_terminal_cost,
         "has_reference": spec.has_reference,
