@@ -60,18 +60,14 @@ def names(problem: Problem) -> dict[str, str]:
     for v in problem.model.states:
         lam = rf"\lambda_{{{v.latex}}}"
         found[change(costate_of(symbols_of((v,))[0])).name] = rf"{lam}(t^-) - {lam}(t^+)"
+    several = len(problem.path_constraints) > 1
     for k, name in enumerate(problem.path_constraints, start=1):
-        letter = f"h_{{{k}}}" if len(problem.path_constraints) > 1 else "h"
-        found[rate(name, 0).name] = letter
-        found[rate(name, 1).name], found[rate(name, 2).name] = (rf"{dots}{{{letter}}}" for dots in (r"\dot", r"\ddot"))
-        found[vanishing(name, 0).name] = rf"\varphi_{{{k}}}" if letter != "h" else r"\varphi"
-        found[vanishing(name, 1).name] = rf"\dot\varphi_{{{k}}}" if letter != "h" else r"\dot\varphi"
-        found[multiplier(name).name] = rf"\eta_{{{k}}}" if letter != "h" else r"\eta"
-        found[jump(name).name] = rf"\zeta_{{{k}}}" if letter != "h" else r"\zeta"
+        foot = f"_{{{k}}}" if several else ""
+        found |= {rate(name, order).name: f"{dots}h{foot}" for order, dots in enumerate(("", r"\dot ", r"\ddot "))}
+        found |= {vanishing(name, order).name: rf"{dots}\varphi{foot}" for order, dots in enumerate(("", r"\dot"))}
+        found |= {multiplier(name).name: rf"\eta{foot}", jump(name).name: rf"\zeta{foot}"}
         for v in problem.model.controls:
-            found[boundary_control(name, symbols_of((v,))[0]).name] = rf"{v.latex}^{{\mathrm{{b}}}}" + (
-                f"_{{{k}}}" if letter != "h" and "_" not in v.latex else ""
-            )
+            found[boundary_control(name, symbols_of((v,))[0]).name] = rf"{v.latex}^{{\mathrm{{b}}{foot}}}"
     return found
 
 
