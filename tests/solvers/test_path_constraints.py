@@ -201,6 +201,7 @@ DAMPED = Problem(
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("least", "near"), [(0.4, [0.628, 1.469]), (0.2, [0.2947, 3.624])])
 def test_van_der_pols_oscillator_keeps_to_a_lowest_velocity_as_by_shooting(least: float, near: list[float]):
     """Of order one, so that lambda_v = -2 u on the boundary; at 0.2 the end, which is free, is on it as well."""
@@ -246,6 +247,7 @@ def test_the_second_variation_of_an_effort_is_that_of_the_control(wall: float):
     assert curvature(found, again) == pytest.approx(1.0, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_along_a_continuation_the_structure_changes():
     case = satsym.Instance.of("bryson_denham", parameters={"l": 0.3}, **THERE_AND_BACK)
     case = case.with_(continuation={"l": [0.3, 0.05]})
