@@ -2,7 +2,10 @@
 
 Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/kept_orbit.py
-Digest: f85fbb429a697f778a74bd093bf66aeefab1607e62da17debbae3c36d321cb15
+Source: ../derivations/examples/kept_orbit.py e89be9172e891c8e79a7325f3458710f
+Source: ../derivations/clohessy_wiltshire.py 52520f4e0a2f16c4858ba5a6515ea5d0
+Source: ../derivations/polar_orbit.py eea94ffce26c74c68c16f37511ae1eb3
+Digest: 066b51dbca3699ec3d46a27063dd92c5e64bf9c7ed0651f08251f34a68bc0281
 """
 
 import math

@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/examples/bryson_denham.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/bryson_denham.py
-Digest: 590150523dbb6322f0ed45ea324d11208fb9d9525aa08ff93e710a14e3e02ce9
+Source: ../derivations/examples/bryson_denham.py 40d7dac073b1a99986530fae9830d7de
+Digest: b95b3e8e8baa06ba830c257b7a1944b1464d7ed6ac9c17fc884767ee37fab49f
 """
 
 import math

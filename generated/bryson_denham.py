@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/examples/bryson_denham.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/bryson_denham.py
-Digest: 69a55483ce0ca3ee3b7d0f1209b30448e3456efe03c74266802d5a803f15cafd
+Source: ../derivations/examples/bryson_denham.py 40d7dac073b1a99986530fae9830d7de
+Digest: 159646682f0a7773a59d5a629423a13d15a12d15f4954d8e272c7ddb10e907ca
 """
 
 import math

@@ -2,7 +2,8 @@
 
 Written by satsym from derivations/examples/obstacle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/obstacle.py
-Digest: 14282b8b184f2c782eee0babee8bfcb732f3a89f59680017b79a4e4d56c765d9
+Source: ../derivations/examples/obstacle.py 935b9e8d2400951ac21806daa850147f
+Digest: 2cb398b5444230d89c6850fcd88390f95650f5e58cb7429aa5e12fcf32726735
 """
 
 import math

@@ -2,7 +2,10 @@
 
 Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/kept_orbit.py
-Digest: cc6caf10a9cafbf93cef22a85391a40a5c3e886d337ddf635e646739c237f479
+Source: ../derivations/examples/kept_orbit.py e89be9172e891c8e79a7325f3458710f
+Source: ../derivations/clohessy_wiltshire.py 52520f4e0a2f16c4858ba5a6515ea5d0
+Source: ../derivations/polar_orbit.py eea94ffce26c74c68c16f37511ae1eb3
+Digest: 102208734bc3273581098f8dd99e11a5aa98628f3ff6704d2e4405fb74ead582
 """
 
 import math

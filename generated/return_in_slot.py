@@ -2,7 +2,10 @@
 
 Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/kept_orbit.py
-Digest: 4ebdea3841d0354f616838c8a767047512026fa1257643776a516ef98ada5abb
+Source: ../derivations/examples/kept_orbit.py e89be9172e891c8e79a7325f3458710f
+Source: ../derivations/clohessy_wiltshire.py 52520f4e0a2f16c4858ba5a6515ea5d0
+Source: ../derivations/polar_orbit.py eea94ffce26c74c68c16f37511ae1eb3
+Digest: bc0b52f6452d9660c894820f8d9d346fd56fe319425c9c999fe3c101914ed756
 """
 
 import math
