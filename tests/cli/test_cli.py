@@ -24,7 +24,7 @@ COMMANDS = "models instances new solve simulate plot compare analyse lqr derive 
 HEAD = "satsym schema command model instance status units".split()
 SOLUTION_KEYS = (
     "satsym schema command model instance status units method message boundary_type objective t_final x_final "
-    "costate_initial switching_times iterations wall_s certificate x_initial t_initial parameters_found"
+    "costate_initial switching_times iterations wall_s certificate x_initial t_initial parameters_found events"
 ).split()
 
 INSTANCE = """
