@@ -17,8 +17,7 @@ from satsym.report.results.certificate import Stored as StoredCertificate
 from satsym.report.results.certificate import absent
 from satsym.report.results.files import Content
 from satsym.report.results.set_list import LIST, unusable
-from satsym.solution import CostInterval, Invariant, Iteration, Simulation, Solution
-from satsym.solution import Event, Invariant, Iteration, Simulation, Solution
+from satsym.solution import CostInterval, Event, Invariant, Iteration, Simulation, Solution
 from satsym.status import Status
 from satsym.wording import printable
 
