@@ -33,6 +33,9 @@ Matrix = Annotated[
     list[float | list[float]], Meta(description="a list of rows of numbers, or the list of the diagonal's numbers")
 ]
 Series = Annotated[float | str | list[float | str], Meta(description="a number, or a list of numbers over time")]
+Variations = Annotated[
+    dict[str, str | dict[str, str]], Meta(description='a table of texts, such as "initial.r" = "0.9:1.1:50"')
+]
 Gains = Annotated[
     tuple[float, float],
     Meta(description="two numbers, the gain of the rate and that of the angle, such as [13.56, 0.0678]"),
@@ -100,6 +103,19 @@ class GuessTable(_Table, frozen=True):
     parameter: dict[str, Quantity] = {}
 
 
+class StudyTable(_Table, frozen=True):
+    vary: Variations = {}
+    normal: Variations = {}
+    uniform: Variations = {}
+    sample: Count | None = None
+    method: Name | None = None
+    seed: Annotated[int, Meta(ge=0, lt=2**32, description="a whole number from 0 to 4294967295")] | None = None
+    command: Name | None = None
+    certificate: Name | None = None
+    feedback: Name | None = None
+    trajectories: bool = False
+
+
 class SolverOptions(_Table, frozen=True):
     """What the solvers are told."""
 
@@ -138,6 +154,7 @@ class InstanceFile(_Table, frozen=True):
     switching: SwitchingTable | None = None
     driven: DrivenTable | None = None
     continuation: dict[str, Ends] = {}
+    study: StudyTable | None = None
 
 
 def check(tree: dict[str, Any]) -> InstanceFile:

@@ -27,20 +27,28 @@ COST_MARGIN = 1e-9
 """Relative margin by which a competitor may seem cheaper: its own error."""
 
 
-def certify(solution: Solution) -> Certificate | None:
+def certify(solution: Solution, compared: bool = True) -> Certificate | None:
     """Certify a solution; ``None`` where there is nothing to certify.
+
+    Parameters
+    ----------
+    compared
+        Whether competitors are looked for.
 
     Returns
     -------
     Certificate
         ``certified``: a strict local optimum, with no cheaper competitor among the kinds that it lists.
+        ``local minimum``: the same where none was looked for.
         ``extremal only``: the first-order conditions hold, a sufficient one does not. ``failed``: not even the
         former hold.
     """
-    return examined(solution, time.perf_counter() + solution.instance.solver.max_seconds)[0]
+    return examined(solution, time.perf_counter() + solution.instance.solver.max_seconds, compared=compared)[0]
 
 
-def examined(solution: Solution, deadline: float, seed: int = 0) -> tuple[Certificate | None, Competitor | None]:
+def examined(
+    solution: Solution, deadline: float, seed: int = 0, *, compared: bool = True
+) -> tuple[Certificate | None, Competitor | None]:
     """The certificate of a solution, and the cheapest competitor if one is cheaper than it.
 
     Parameters
@@ -49,23 +57,25 @@ def examined(solution: Solution, deadline: float, seed: int = 0) -> tuple[Certif
         On the clock of ``time.perf_counter``; what is not compared by then is said.
     seed
         Of starts that are drawn.
+    compared
+        Whether competitors are looked for.
     """
     if not solution.status.answered:
         return None, None
     given = settled(solution)
-    certificate, competitor = _judged(given, deadline, seed)
+    certificate, competitor = _judged(given, deadline, seed, compared)
     certificate = with_kernels_examined(certificate, given)
     # how the least cost is curved in what is free tells only who solves beside it
     return with_start(certificate, solution, UNRESOLVED.checks) if solution.instance.free else certificate, competitor
 
 
-def _judged(solution: Solution, deadline: float, seed: int) -> tuple[Certificate, Competitor | None]:
+def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> tuple[Certificate, Competitor | None]:
     """The certificate that the kernels give, whatever they are worth, and the cheapest competitor."""
     if solution.method == "bang-bang":
         from satsym.solvers.certificate.switching import conditions as switching
 
         with np.errstate(all="ignore"):
-            return switching.certify(solution), None
+            return switching.certify(solution, compared), None
     solution = revolutions.as_stated(solution)
     with np.errstate(all="ignore"):
         along = segments(solution)
@@ -78,9 +88,9 @@ def _judged(solution: Solution, deadline: float, seed: int) -> tuple[Certificate
         if all(c.passed for c in first):
             close = neighbours(solution)
             second = _sufficient(solution, field, close)
-            if competitors.none_conceivable(solution):
+            if compared and competitors.none_conceivable(solution):
                 second.append(Check("no cheaper competitor", 0.0, 0.0))
-            else:
+            elif compared:
                 others = competitors.compared(solution, deadline, seed)
                 second += [
                     Check(f"cheaper by: {kind.summary.kind.value}", max(0.0, -kind.margin), COST_MARGIN)
@@ -88,7 +98,7 @@ def _judged(solution: Solution, deadline: float, seed: int) -> tuple[Certificate
                     if math.isfinite(kind.margin)
                 ]
                 second += [Check(f"time was up before: {kind.value}", 1.0, 0.0) for kind in others.interrupted]
-    verdict = Verdict.of(all(c.passed for c in first), all(c.passed for c in second))
+    verdict = Verdict.of(all(c.passed for c in first), all(c.passed for c in second), compared)
     certificate = Certificate(
         verdict=verdict,
         **conditions.headlines(first),
