@@ -7,6 +7,7 @@ import time
 
 import numpy as np
 
+from satsym.arrays import Array
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers import revolutions
 from satsym.solvers.certificate import competitors, conditions
@@ -117,20 +118,29 @@ def _first_order(solution: Solution, along: Segments | None) -> list[Check]:
     So it is where it misses, and its own rounding grows beyond what may be missed. Empty where neither is finite.
     """
     recomputed = flow(solution)
-    checks = _along(solution, recomputed, conditions.OF_FLOW) if recomputed else []
+    checks = first_order(solution, recomputed, conditions.OF_FLOW) if recomputed else []
     if (checks and all(c.passed for c in checks)) or along is None or not along.growth * TOLERANCE > RESIDUAL:
         return checks
     reached = node_by_node(solution, along)
     if reached is None:
         return checks
     moved = Check("correction of the nodes", correction(solution, along, reached), DEFECT)
-    return [*_along(solution, reached, conditions.OF_SEGMENTS), moved]
+    return [*first_order(solution, reached, conditions.OF_SEGMENTS), moved]
 
 
-def _along(solution: Solution, recomputed: Flow, defect: str) -> list[Check]:
+def first_order(solution: Solution, recomputed: Flow, defect: str, without: Array | None = None) -> list[Check]:
+    """The first-order conditions along a flow.
+
+    Parameters
+    ----------
+    defect
+        What the distance of the solution from the flow is called.
+    without
+        Where the motion would end without control, if that is known already.
+    """
     model = solution.instance.model
     checks = [
-        Check(conditions.BOUNDARY, conditions.boundary_residual(solution, recomputed), RESIDUAL),
+        Check(conditions.BOUNDARY, conditions.boundary_residual(solution, recomputed, without), RESIDUAL),
         Check(defect, conditions.dynamics_defect(solution, recomputed), DEFECT),
         Check(conditions.STATIONARITY, conditions.stationarity(solution), STATIONARY),
         Check("cost", conditions.off_cost(solution, recomputed), COST),
