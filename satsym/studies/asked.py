@@ -51,7 +51,7 @@ _MEANING = {
     Checked.FULL: "as `satsym solve`",
 }
 
-LARGEST_CHUNK, FEWEST_CHUNKS = 64, 32
+LARGEST_CHUNK, FEWEST_CHUNKS = 256, 8
 """Rows of a chunk at most, and chunks that a study with enough rows has at least."""
 
 LIBRARIES = ("numpy", "scipy", "numba")

@@ -24,16 +24,11 @@ def computed(packed: bytes, chunk: Chunk) -> list[Row]:
         The study, see :func:`packed`; a worker unpacks it once.
     """
     task = _unpacked(packed)
-    instances = [_instance(task, values) for values in chunk.values.tolist()]
-    work = begun(task)
-    found: dict[int, Row] = {}
-    for place in chunk.order:
-        given = instances[place]
-        if isinstance(given, str):
-            found[place] = rows.failed("", Failure.BAD_INPUT, given)
-        else:
-            found[place] = _tried(work, key_of(task.row_digest, given), given)
-    return [found[place] for place in range(len(instances))]
+    given = [_instance(task, values) for values in chunk.values.tolist()]
+    cases = {k: one for k in chunk.order if isinstance(one := given[k], Instance)}
+    found = begun(task)([(key_of(task.row_digest, one), one) for one in cases.values()])
+    done = dict(zip(cases, found, strict=True))
+    return [done.get(k) or rows.failed("", Failure.BAD_INPUT, str(one)) for k, one in enumerate(given)]
 
 
 def pack(study: Study) -> bytes:
@@ -55,16 +50,6 @@ def _instance(task: Task, values: Sequence[float]) -> Instance | str:
         return str(error)
 
 
-def _tried(work: Work, key: str, instance: Instance) -> Row:
-    """What comes of a row, whatever happens: one that fails must not take others with it."""
-    try:
-        return work(key, instance)
-    except BadInput as error:
-        return rows.failed(key, Failure.BAD_INPUT, str(error))
-    except Exception as error:
-        return rows.failed(key, Failure.UNFORESEEN, f"{type(error).__name__}: {error}")
-
-
 def begun(task: Task) -> Work:
     """The work of a chunk from its beginning: the same whatever the worker has done before."""
     if task.command is Command.SOLVE:
@@ -73,7 +58,7 @@ def begun(task: Task) -> Work:
         return solving(task)
     if task.command is Command.SIMULATE:
         return _simulating(task)
-    return _regulating
+    return rows.one_by_one(_regulated)
 
 
 def _simulating(task: Task) -> Work:
@@ -83,10 +68,10 @@ def _simulating(task: Task) -> Work:
         instance.require_numbers()
         return rows.of_simulation(key, simulate(instance, task.feedback), task.trajectories)
 
-    return simulated
+    return rows.one_by_one(simulated)
 
 
-def _regulating(key: str, instance: Instance) -> Row:
+def _regulated(key: str, instance: Instance) -> Row:
     from satsym.analysis.regulator.feedback import designed
 
     instance.require_numbers()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import TYPE_CHECKING, TypeAlias
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from satsym.arrays import Array
 from satsym.instance.unknowns import Place
 from satsym.solution import Simulation, Solution
-from satsym.status import Status
+from satsym.status import BadInput, Status
 
 if TYPE_CHECKING:
     from satsym.analysis.regulator.feedback import Design
@@ -56,8 +56,26 @@ class Row:
         return self.status == Status.CONVERGED.value
 
 
-Work: TypeAlias = "Callable[[str, Instance], Row]"
-"""From the key of a row and its instance to what the table says of it."""
+Cases: TypeAlias = "Sequence[tuple[str, Instance]]"
+"""Keys of rows, and their instances."""
+
+Work: TypeAlias = Callable[[Cases], list[Row]]
+"""From rows of a chunk, in the order in which they are computed, to what the table says of them."""
+
+
+def one_by_one(single: Callable[[str, Instance], Row]) -> Work:
+    """The work of rows that have nothing to do with each other."""
+    return lambda cases: [tried(single, key, instance) for key, instance in cases]
+
+
+def tried(single: Callable[[str, Instance], Row], key: str, instance: Instance) -> Row:
+    """What comes of a row, whatever happens: one that fails must not take others with it."""
+    try:
+        return single(key, instance)
+    except BadInput as error:
+        return failed(key, Failure.BAD_INPUT, str(error))
+    except Exception as error:
+        return failed(key, Failure.UNFORESEEN, f"{type(error).__name__}: {error}")
 
 
 def failed(key: str, failure: Failure, message: str) -> Row:

@@ -25,7 +25,7 @@ from satsym.front.studies import study
 from satsym.report import study as reports
 from satsym.status import BadInput
 from satsym.studies import parts, reading, running
-from satsym.studies.asked import Study
+from satsym.studies.asked import Checked, Study
 from satsym.studies.design import Grid, Sample
 from satsym.studies.reading import Written
 from satsym.studies.workers import Workers
@@ -36,7 +36,8 @@ NAME = "return-to-orbit"
 
 def asked(rows: int = 6, **more: Any) -> Study:
     case = instance.load(NAME)
-    return Study(case, reading.design(Written(vary=[("initial.r", f"0.9:1.1:{rows}")]), case), **more)
+    design = reading.design(Written(vary=[("initial.r", f"0.9:1.1:{rows}")]), case)
+    return Study(case, design, checked=Checked.NONE, **more)
 
 
 def threads() -> ThreadPoolExecutor:
@@ -212,7 +213,7 @@ def test_what_is_done_is_not_computed_again(tmp_path: Path) -> None:
 def test_a_changed_study_is_refused_with_the_difference(tmp_path: Path) -> None:
     reports.carry_out(asked(2), tmp_path, threads, 1)
     before = (tmp_path / "result.json").read_bytes()
-    with pytest.raises(BadInput, match="rows was 2 and is 3; vary initial.r was 0.9:1.1:2 and is 0.9:1.1:3"):
+    with pytest.raises(BadInput, match=r"rows was 2 and is 3; vary initial.r was 0.9:1.1:2 and is 0.9:1.1:3"):
         reports.carry_out(asked(3), tmp_path, threads, 1, resume=True)
     with pytest.raises(BadInput, match="--resume"):
         reports.carry_out(asked(2), tmp_path, threads, 1)
@@ -254,7 +255,7 @@ def test_a_full_disk_is_one_line_and_what_was_written_counts(tmp_path: Path, mon
         real(handle)
 
     monkeypatch.setattr(parts.os, "fsync", full)
-    with pytest.raises(BadInput, match="No space left on device.*--resume"):
+    with pytest.raises(BadInput, match=r"No space left on device.*--resume"):
         reports.carry_out(asked(), tmp_path, threads, 1)
     monkeypatch.undo()
     with parts.opened(tmp_path) as kept:
@@ -287,8 +288,8 @@ def test_killed_twenty_times_no_finished_chunk_is_lost(tmp_path: Path) -> None:
 
 def killed(folder: Path, moments: list[float]) -> None:
     """A study that is killed after each of these seconds, counted from its first chunk; then it is the same."""
-    options = ["--vary", "initial.r=0.9:1.1:60", "--workers", "2", "--resume", "--certificate", "none", "--trajectories"]
-    command = [sys.executable, "-m", "satsym", "study", NAME, *options, "--out"]
+    options = "--vary initial.r=0.9:1.1:60 --workers 2 --resume --certificate none --trajectories --out"
+    command = [sys.executable, "-m", "satsym", "study", NAME, *options.split()]
     lines, done = folder / "cut" / parts.LINES, set[int]()
     for moment in moments:
         before = lines.stat().st_size if lines.exists() else 0

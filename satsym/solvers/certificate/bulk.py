@@ -61,13 +61,11 @@ def certify_all(solutions: Sequence[Solution]) -> list[Certificate | None]:
     list
         As ``certify(solution, compared=False)`` gives them, whose verdict a clear case has without all of its checks.
     """
-    found: dict[int, Certificate] = {}
     fit = [k for k, solution in enumerate(solutions) if fits(solution)]
+    found: dict[int, Certificate | None] = {}
     if len(fit) > 1:
         with np.errstate(all="ignore"):
-            for k, certificate in zip(fit, _confirmed([solutions[k] for k in fit]), strict=True):
-                if certificate is not None:
-                    found[k] = certificate
+            found = dict(zip(fit, _confirmed([solutions[k] for k in fit]), strict=True))
     return [found.get(k) or certify(solution, compared=False) for k, solution in enumerate(solutions)]
 
 

@@ -64,9 +64,8 @@ def boundary_residual(solution: Solution, flow: Flow, without: Array | None = No
     )
     gradient = np.abs(slopes.reshape(len(residual), -1)[:-1, :n]) @ state
     smallest = np.minimum(state, NEGLIGIBLE * unit_sizes(solution)[:n])
-    rows = np.where(
-        fixed, np.maximum(state * _moved(flow, state, undriven(solution) if without is None else without), smallest), np.maximum(costate, gradient[:n])
-    )
+    moved = _moved(flow, state, undriven(solution) if without is None else without)
+    rows = np.where(fixed, np.maximum(state * moved, smallest), np.maximum(costate, gradient[:n]))
     found = np.abs(residual[:n]) / rows
     constraints = np.abs(residual[n:-1]) / np.maximum(gradient[n:], 1e-300)
     parts = [*found, *constraints]
