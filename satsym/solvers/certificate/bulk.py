@@ -37,15 +37,24 @@ FINER = (1, 2, 4)
 COLUMNS, UNDRIVEN = 6, 4
 """Of the extrapolation table; for the motion without control only its size matters."""
 
-SEGMENTS, MERGED = range(24, 65), (4, 2)
-"""Numbers of segments of the variational equations, eight times of which must divide the steps of the solutions, and
-Runge-Kutta steps in each; half as many where phases turn too much."""
+SEGMENTS = (16, 20, 25, 40, 50, 64, 80, 100, 125)
+"""Numbers of segments of the variational equations that are tried, one after the other."""
+
+LOOKS = range(100, 201)
+"""Numbers of times at which it is looked how quickly phases turn."""
+
+VARIATIONS, ROUGH = 5, 0.01
+"""Columns of the extrapolation table of these equations, and the relative error that is small enough."""
 
 WHOLE = 0.9 * 2.0 * np.pi
 """Turn of a phase in a segment: below a full turn, so that it has no conjugate point of its own."""
 
+SAME = 1e-12
+"""Share of the duration by which a node may miss an even one that it is."""
+
 CLEAR = 1e-3
-"""Least eigenvalue of the second derivatives at a corner, normed, that is positive beyond doubt."""
+"""Least eigenvalue of what the corners before one leave of the second derivatives there, in units of the square roots
+of these, that is positive beyond doubt."""
 
 
 def certify_all(solutions: Sequence[Solution]) -> list[Certificate | None]:
@@ -61,11 +70,12 @@ def certify_all(solutions: Sequence[Solution]) -> list[Certificate | None]:
     list
         As ``certify(solution, compared=False)`` gives them, whose verdict a clear case has without all of its checks.
     """
-    fit = [k for k, solution in enumerate(solutions) if fits(solution)]
+    fit = [k for k, one in enumerate(solutions) if fits(one) and _alike(one.instance, solutions[0].instance)]
     found: dict[int, Certificate | None] = {}
     if len(fit) > 1:
         with np.errstate(all="ignore"):
             found = dict(zip(fit, _confirmed([solutions[k] for k in fit]), strict=True))
+        unit_sizes.cache_clear()  # it keeps solutions alive
     return [found.get(k) or certify(solution, compared=False) for k, solution in enumerate(solutions)]
 
 
@@ -75,15 +85,30 @@ def fits(solution: Solution) -> bool:
     smooth = not (spec.switching or spec.throttled or spec.stationary or spec.directional or spec.multipliers)
     given = instance.tf is not None and len(instance.final) == len(instance.initial)
     steps = instance.solver.steps
-    divided = _divisor(steps, LEAPS) is not None and _divisor(steps, SEGMENTS, 8) is not None
+    divided = _divisor(steps, LEAPS) is not None and _divisor(steps, LOOKS) is not None
     met = any(map(len, solution.switching_times))
     plain = not (instance.free or instance.solver.free_angles)
-    return solution.status.answered and smooth and given and divided and plain and not met
+    suited = solution.status.answered and smooth and given and divided and plain and not met
+    return suited and _places(solution) is not None
 
 
-def _divisor(steps: int, among: range, by: int = 1) -> int | None:
-    """The largest of some numbers of which so many times divide the steps."""
-    return next((k for k in reversed(among) if steps % (by * k) == 0), None)
+def _alike(one: Instance, other: Instance) -> bool:
+    """Whether two instances can be columns of the same arrays."""
+    same = one.model is other.model and one.solver.steps == other.solver.steps
+    return same and one.control_set.arguments == other.control_set.arguments
+
+
+def _places(solution: Solution) -> NDArray[np.intp] | None:
+    """Where the even nodes are among those of a solution; ``None`` where some are not."""
+    times, steps = solution.times, solution.instance.solver.steps
+    even, slack = np.linspace(times[0], times[-1], steps + 1), SAME * float(times[-1] - times[0])
+    found = np.minimum(np.searchsorted(times, even - slack), len(times) - 1)
+    return found if (np.abs(times[found] - even) <= slack).all() else None
+
+
+def _divisor(steps: int, among: range) -> int | None:
+    """The largest of some numbers that divides the steps."""
+    return next((k for k in reversed(among) if steps % k == 0), None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,19 +131,15 @@ class _Together:
 
     @classmethod
     def of(cls, solutions: Sequence[Solution]) -> _Together:
-        steps = solutions[0].instance.solver.steps
-        picked = []
-        for s in solutions:
-            even = np.linspace(s.times[0], s.times[-1], steps + 1)
-            picked.append(np.clip(np.searchsorted(s.times, even - 1e-12 * (even[-1] - even[0])), 0, len(s.times) - 1))
-        both = zip(solutions, picked, strict=True)
+        picked = [found for s in solutions if (found := _places(s)) is not None]
+        both = list(zip(solutions, picked, strict=True))
         return cls(
             solutions,
             solutions[0].instance,
             tuple(np.array([s.instance.parameters for s in solutions]).T.copy()),
             np.array([[*s.instance.initial, *s.lam[:, 0]] for s in solutions]).T.copy(),
             np.array([np.concatenate(typical(s, FAINT)) for s in solutions]).T.copy(),
-            np.array([s.times[k] for s, k in zip(solutions, picked, strict=True)]),
+            np.array([s.times[k] for s, k in both]),
             np.array([np.concatenate([s.x[:, k], s.lam[:, k]]) for s, k in both]).transpose(1, 0, 2).copy(),
         )
 
@@ -232,53 +253,72 @@ def _integrated(
 
 def _without_conjugate_points(together: _Together) -> NDArray[np.bool_]:
     """Which have none beyond doubt, shape (M,)."""
-    segments = _divisor(together.instance.solver.steps, SEGMENTS, 8)
-    assert segments is not None
-    slopes = _slopes(together, 8 * segments)
-    size = slopes.shape[-1]
-    norms = 2.0 * np.sqrt(np.einsum("mkij,mkij->mk", slopes, slopes))  # no phase turns more quickly
-    turned = np.maximum(norms[:, 1:], norms[:, :-1]) * (together.lasting / (8 * segments))[:, None]
-    for merged in MERGED:
-        short = turned.reshape(len(turned), -1, 2 * merged).sum(axis=2).max(axis=1) < WHOLE
-        if short.all():
+    steps, found = together.instance.solver.steps, np.zeros(len(together.solutions), bool)
+    slopes, scale = _slopes(together)
+    rates = 2.0 * np.sqrt(np.einsum("mkij,mkij->mk", slopes, slopes))  # no phase turns more quickly
+    turned = np.maximum(rates[:, 1:], rates[:, :-1]) * (together.lasting / (rates.shape[1] - 1))[:, None]
+    for segments in (count for count in SEGMENTS if steps % count == 0 and turned.shape[1] % count == 0):
+        left = ~found & (turned.reshape(len(turned), segments, -1).sum(axis=2).max(axis=1) < WHOLE)
+        if left.any():
+            places = np.flatnonzero(left)
+            transition, rough = _transitions(together, places, segments, scale)
+            sound = places[rough < ROUGH]
+            found[sound] = _positive(transition[rough < ROUGH])
+        if found.all():
             break
-    transition = _transitions(slopes, together.lasting / (4 * segments))
-    transition = transition.reshape(len(slopes), -1, merged, size, size)
-    whole = transition[:, :, 0]
-    for k in range(1, merged):
-        whole = transition[:, :, k] @ whole
-    finite = short & np.isfinite(whole).all(axis=(1, 2, 3))
-    found = np.zeros(len(slopes), bool)
-    found[finite] = _positive(whole[finite])
     return found
 
 
-def _slopes(together: _Together, count: int) -> Array:
-    """The canonical rates by states and costates, scaled, at so many steps' nodes, shape (M, count + 1, 2n, 2n)."""
+def _slopes(together: _Together) -> tuple[Array, Array]:
+    """The canonical rates by states and costates at even times, scaled, shape (M, K, 2n, 2n), and their scale.
+
+    Any scale in which states and their costates have equal products keeps transitions symplectic: that of the first
+    solution does for all.
+    """
     instance, n = together.instance, len(together.start) // 2
-    every = instance.solver.steps // count
+    every = instance.solver.steps // (_divisor(instance.solver.steps, LOOKS) or instance.solver.steps)
     nodes, times = together.nodes[:, :, ::every], together.times[:, ::every]
     columns = nodes.reshape(2 * n, -1)
-    p = tuple(np.repeat(one, count + 1) for one in together.parameters)
-    table = instance.model.canonical_jacobian_batch(
-        times.ravel(), columns[:n], columns[n:], p, instance.control_set.arguments
-    )
-    table = np.asarray(np.broadcast_to(table, (2 * n, 2 * n, columns.shape[1])))
-    first = np.abs(table[:, :, : count + 1]).max(axis=2)
-    # any scale with equal products keeps transitions symplectic; that of the first does for all
+    p = tuple(np.repeat(one, times.shape[1]) for one in together.parameters)
+    bounds = instance.control_set.arguments
+    table = np.asarray(instance.model.canonical_jacobian_batch(times.ravel(), columns[:n], columns[n:], p, bounds))
+    first = np.abs(table[:, :, : times.shape[1]]).max(axis=2)
     scale = balanced(unit_sizes(together.solutions[0]), first, float(together.lasting[0]))
     scaled = table * (scale / scale[:, None])[:, :, None]
-    return np.ascontiguousarray(scaled.transpose(2, 0, 1)).reshape(*times.shape, 2 * n, 2 * n)
+    return scaled.transpose(2, 0, 1).reshape(*times.shape, 2 * n, 2 * n), scale
 
 
-def _transitions(slopes: Array, width: Array) -> Array:
-    """From the beginning to the end of each step by the classical Runge-Kutta method, shape (M, steps, 2n, 2n)."""
-    begin, middle, end = slopes[:, :-2:2], slopes[:, 1::2], slopes[:, 2::2]
-    h = width[:, None, None, None]
-    two = middle + middle @ begin * (h / 2.0)
-    three = middle + middle @ two * (h / 2.0)
-    four = end + end @ three * h
-    return np.asarray(np.eye(slopes.shape[-1]) + h / 6.0 * (begin + 2.0 * (two + three) + four))
+def _transitions(together: _Together, places: NDArray[np.intp], segments: int, scale: Array) -> tuple[Array, Array]:
+    """Over each segment, scaled, shape (M, segments, 2n, 2n), and their errors, shape (M,).
+
+    The latter are those of how the ends follow the costates, relative to that itself: where a control acts through
+    several states this is small.
+    """
+    model, bounds = together.instance.model, together.instance.control_set.arguments
+    every, size = together.instance.solver.steps // segments, len(scale)
+    n, ratio = size // 2, (scale / scale[:, None])[:, :, None]
+    p = tuple(np.repeat(one[places], segments) for one in together.parameters)
+
+    def rates(t: Array, y: Array) -> Array:
+        found = np.empty_like(y)
+        found[:size] = model.canonical_batch(t, y[:n], y[n:size], p, bounds)
+        slopes = np.asarray(model.canonical_jacobian_batch(t, y[:n], y[n:size], p, bounds)) * ratio
+        varied = slopes.transpose(2, 0, 1) @ y[size:].reshape(size, size, -1).transpose(2, 0, 1)
+        found[size:] = varied.transpose(1, 2, 0).reshape(size * size, -1)
+        return found
+
+    begins = together.nodes[:, places, :-1:every].reshape(size, -1)
+    unity = np.repeat(np.eye(size).reshape(-1, 1), begins.shape[1], axis=1)
+    h = np.repeat(together.lasting[places] / segments, segments)
+    start = np.concatenate([begins, unity])
+    reached, error = leap_and_error(rates, together.times[places, :-1:every].ravel(), start, h, VARIATIONS)
+    shape = (size, size, len(places), segments)
+    whole, off = (one[size:].reshape(shape).transpose(2, 3, 0, 1) for one in (reached, error))
+    try:
+        rough = (np.abs(np.linalg.inv(whole[..., :n, n:])) @ off[..., :n, n:]).max(axis=(1, 2, 3))
+    except np.linalg.LinAlgError:
+        rough = np.full(len(places), np.inf)
+    return whole, np.where(np.isfinite(rough), rough, np.inf)
 
 
 def _positive(transition: Array) -> NDArray[np.bool_]:
@@ -302,11 +342,11 @@ def _positive(transition: Array) -> NDArray[np.bool_]:
             across = inverse[:, k]
             left = own[:, k] - across.swapaxes(-1, -2) @ np.linalg.solve(left, across)
             left = (left + left.swapaxes(-1, -2)) / 2.0
-        diagonal = np.einsum("mii->mi", left)
+        diagonal = np.einsum("mii->mi", own[:, k])
         clear &= (diagonal > 0.0).all(axis=1) & np.isfinite(left).all(axis=(1, 2))
+        left[~clear] = np.eye(n)
         unit = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
-        normed = left * unit[:, :, None] * unit[:, None, :]
-        normed[~clear], left[~clear] = np.eye(n), np.eye(n)
-        clear &= np.linalg.eigvalsh(normed)[:, 0] > CLEAR
+        unit[~clear] = 1.0
+        clear &= np.linalg.eigvalsh(left * unit[:, :, None] * unit[:, None, :])[:, 0] > CLEAR
         left[~clear] = np.eye(n)
     return clear

@@ -107,7 +107,7 @@ def _resolved(solution: Solution) -> Array:
     return found
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=256)
 def unit_sizes(solution: Solution) -> Array:
     """Of states and costates, those of the scaled problem, shape (2n,)."""
     found: Array = two_point(solution.instance, float(solution.times[-1] - solution.times[0])).scale.both[:, 0]
