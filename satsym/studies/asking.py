@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from enum import Enum
-from importlib.util import find_spec
 from typing import Any, TypeVar
 
 import msgspec
@@ -20,11 +19,6 @@ from satsym.studies.reading import Written
 from satsym.wording import shown, suggestion
 
 Choice = TypeVar("Choice", bound=Enum)
-
-FEEDBACKS = ("none", "lqr", "classical", "switching", "pulses")
-
-COMPILED_FROM = 20_000
-"""Rows from which compiling pays where ``[solver] backend`` leaves it open: it takes each worker seconds."""
 
 
 class Options(msgspec.Struct, frozen=True):
@@ -75,7 +69,7 @@ def asked(instance: Instance, table: Mapping[str, Any], design: Written, options
         command,
         checked,
         feedback,
-        compiled=_compiled(instance, found.count),
+        compiled=instance.solver.backend == "numba",
         trajectories=options.trajectories or stated.trajectories,
     )
 
@@ -92,15 +86,12 @@ def _refuse(instance: Instance, command: Command, feedback: str | None) -> None:
             raise BadInput(f"{instance.name}: {refusal}")
         return
     instance.require_numbers()
+    from satsym.analysis.regulator.feedback import FEEDBACKS
+
     if feedback is not None and feedback not in FEEDBACKS:
         raise BadInput(f"feedback: {shown(feedback)}: {suggestion(feedback, FEEDBACKS)}")
     if (command is Command.LQR or feedback == "lqr") and instance.lqr is None:
         raise BadInput(f"{instance.name}: has no table [lqr]; add one with Q and R")
-
-
-def _compiled(instance: Instance, rows: int) -> bool:
-    backend = instance.solver.backend
-    return backend == "numba" or (backend == "auto" and rows >= COMPILED_FROM and find_spec("numba") is not None)
 
 
 def _one(choices: type[Choice], name: str, key: str) -> Choice:

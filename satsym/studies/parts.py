@@ -20,7 +20,7 @@ from typing import IO, Any
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.status import BadInput
+from satsym.status import BadInput, Status
 from satsym.studies.rows import Row
 from satsym.wording import printable
 
@@ -135,7 +135,7 @@ class Parts:
 
     def _count(self, rows: Sequence[Sequence[Any]]) -> None:
         self.rows += len(rows)
-        self.failures += sum(status != "converged" for _, status, *_ in rows)
+        self.failures += sum(status != Status.CONVERGED.value for _, status, *_ in rows)
 
 
 @contextmanager

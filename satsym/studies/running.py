@@ -100,8 +100,8 @@ def run(
         for future in wait(under_way, timeout=PAUSE, return_when=FIRST_COMPLETED).done:
             chunk, since = under_way.pop(future)
             found = _result(future)
-            if isinstance(found, BaseException):
-                deaths[chunk.number] += 1
+            if isinstance(found, int):
+                deaths[chunk.number] += found
                 log(f"chunk {chunk.number}: its worker died ({deaths[chunk.number]})")
                 if deaths[chunk.number] < MOST_DEATHS:
                     waiting.appendleft(chunk.number)
@@ -115,17 +115,19 @@ def run(
 PAUSE = 0.5
 """Seconds after which it is told anew how far a study is, though nothing is new."""
 
-DEATHS = ("KilledWorker", "CancelledError")
-"""What executors of other libraries call the death of a worker, which they may have tried to replace already."""
+DEADLY = "KilledWorker"
+"""What Dask calls a task of which so many workers died that it tries no other."""
 
 
-def _result(future: Future[list[Row]]) -> Sequence[Row] | BaseException:
-    """The rows of a chunk; or the death of its worker. Anything else that a worker raises is raised here."""
+def _result(future: Future[list[Row]]) -> Sequence[Row] | int:
+    """The rows of a chunk, or how many workers died of it. Anything else that a worker raises is raised here."""
     error = future.exception()
     if error is None:
         return future.result()
-    if isinstance(error, BrokenExecutor) or type(error).__name__ in DEATHS:
-        return error
+    if isinstance(error, BrokenExecutor):
+        return 1
+    if type(error).__name__ == DEADLY:
+        return MOST_DEATHS
     raise error
 
 

@@ -24,7 +24,7 @@ from satsym.front.instance import load
 from satsym.front.studies import study
 from satsym.report import study as reports
 from satsym.status import BadInput
-from satsym.studies import parts, reading, running
+from satsym.studies import cluster, parts, reading, running
 from satsym.studies.asked import Checked, Study
 from satsym.studies.design import Grid, Sample
 from satsym.studies.reading import Written
@@ -335,3 +335,31 @@ def test_the_command_of_a_worst_row_solves_that_row(tmp_path: Path, capsys: pyte
     assert json.loads(capsys.readouterr().out)["objective"] == pytest.approx(worst["objective"], rel=1e-9)
     assert main(["simulate", NAME, "--set", "initial.q=1"]) == 3
     assert main(["lqr", "clohessy_wiltshire", "--set", "initial.q=1"]) == 3
+
+
+def test_no_cluster_is_one_line_and_writes_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out"
+    wanted = ["study", NAME, "--vary", "initial.r=0.9:1.1:4", "--out", str(out), "--scheduler", "nowhere"]
+    assert main(wanted) == 3
+    assert len(capsys.readouterr().err.splitlines()) == 1
+    assert not out.exists()
+
+
+@pytest.mark.study
+def test_a_cluster_whose_worker_is_killed_gives_the_same_bytes(tmp_path: Path) -> None:
+    distributed = pytest.importorskip("distributed")
+    reports.carry_out(asked(24), tmp_path / "here", threads, 1)
+    with (
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as local,
+        cluster.cluster(local.scheduler_address) as (executor, at_once),
+    ):
+        killed: list[int] = []
+
+        def kill(advance: running.Advance) -> None:
+            if advance.done >= 3 and not killed:
+                killed.append(next(iter(local.workers.values())).process.pid)
+                os.kill(killed[0], signal.SIGKILL)
+
+        reports.carry_out(asked(24), tmp_path / "there", lambda: executor, at_once, watch=kill)
+    assert killed
+    assert (tmp_path / "there/table.csv").read_bytes() == (tmp_path / "here/table.csv").read_bytes()

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -11,6 +14,9 @@ from satsym.cli.options import json_option, place_option, subject_argument
 from satsym.cli.output import answer, live
 from satsym.cli.saving import RESULTS
 from satsym.status import ExitCode
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
 
 EXAMPLES = """\b
 Examples:
@@ -44,6 +50,7 @@ Exit codes: 0 done (rows that fail say so in the table), 3 the study cannot be c
 @place_option("--out", metavar="DIR", help="Where it goes; by default results/NAME/study.")
 @click.option("--resume", is_flag=True, help="Go on with the study that is there, or begin it.")
 @click.option("--workers", type=click.IntRange(1, 1000), metavar="N", help="Processes; by default one a processor.")
+@click.option("--scheduler", metavar="ADDRESS", help="Of a Dask cluster that computes instead: tcp://HOST:PORT.")
 @click.option("--plot", is_flag=True, help="Draw pictures too; `satsym plot DIR` draws them later.")
 @json_option
 def study(
@@ -61,6 +68,7 @@ def study(
     out: Path | None,
     resume: bool,
     workers: int | None,
+    scheduler: str | None,
     plot: bool,
     as_json: bool,
 ) -> ExitCode:
@@ -77,7 +85,6 @@ def study(
     from satsym.report.terminal.study import progress_line, study_text
     from satsym.studies import reading
     from satsym.studies.asking import Options, asked
-    from satsym.studies.workers import Workers
 
     written = instance.read(subject)
     case = written.instance()
@@ -92,12 +99,11 @@ def study(
     options = Options(command=command, certificate=certificate, feedback=feedback, trajectories=trajectories)
     found = asked(case, written.tree.get("study", {}), design, options)
     folder = out or Path(RESULTS, case.name, "study")
-    count = min(workers or os.cpu_count() or 1, found.chunks)
-    with live() as line:
+    with _computing(scheduler, min(workers or os.cpu_count() or 1, found.chunks)) as (made, count), live() as line:
         result = carry_out(
             found,
             folder,
-            lambda: Workers(count),
+            made,
             count,
             resume=resume,
             watch=lambda advance: line.show(progress_line(advance)),
@@ -105,3 +111,17 @@ def study(
     drawn = draw(folder)[1] if plot else []
     answer(as_json, result, lambda: with_files(study_text(result), [folder / TABLE, *drawn]))
     return ExitCode.DONE if result["status"] == "converged" else ExitCode.NO_ANSWER
+
+
+@contextmanager
+def _computing(scheduler: str | None, count: int) -> Iterator[tuple[Callable[[], Executor], int]]:
+    """What computes chunks, and how many at a time: processes of this machine, or a cluster."""
+    if scheduler is None:
+        from satsym.studies.workers import Workers
+
+        yield lambda: Workers(count), count
+        return
+    from satsym.studies.cluster import cluster
+
+    with cluster(scheduler) as (executor, most):
+        yield lambda: executor, most
