@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from satsym.front.instance import Instance, as_case
+from satsym.report.look import Look
 from satsym.report.results.files import to_json
 from satsym.report.results.studies import TABLE
 from satsym.report.study import carry_out, draw
@@ -58,9 +59,9 @@ class Study:
     def __getitem__(self, name: str) -> NDArray[Any]:
         return self.columns[name]
 
-    def plot(self, formats: Sequence[str] = ("png",)) -> list[Path]:
+    def plot(self, formats: Sequence[str] = ("png",), titled: bool = True) -> list[Path]:
         """Draw it into its folder; the pictures."""
-        return draw(self.folder, formats)[1]
+        return draw(self.folder, Look(tuple(formats), titled))[1]
 
     def to_json(self) -> str:
         """The summary as text."""

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from satsym.report.look import SCREEN, Look
 from satsym.report.results import sets, studies
 from satsym.report.results.files import Content, check_writable, opened, to_json, write_text
 from satsym.report.results.studies import ASKED, TABLE, Merged
@@ -102,7 +103,7 @@ def _found(study: Study, folder: Path, resume: bool) -> dict[str, Any] | None:
     return found
 
 
-def draw(folder: Path, kinds: Sequence[str] = ("png",), out: Path | None = None) -> tuple[dict[str, Any], list[Path]]:
+def draw(folder: Path, look: Look = SCREEN, out: Path | None = None) -> tuple[dict[str, Any], list[Path]]:
     """Draw the study of a folder; what its result.json holds, and the pictures, which are there, or in another folder.
 
     Raises
@@ -116,7 +117,7 @@ def draw(folder: Path, kinds: Sequence[str] = ("png",), out: Path | None = None)
     if found.command != "study" or TABLE not in found.listed:
         raise BadInput(f"{printable(str(folder))}: holds the result of {printable(found.command)}, and no study")
     said: dict[str, Any] = json.loads(found.result)
-    pictures = plots.pictures(studies.numbers(folder / TABLE, said), tuple(dict.fromkeys(kinds)))
+    pictures = plots.pictures(studies.numbers(folder / TABLE, said), look)
     if out is None or out.resolve() == folder.resolve():
         return said, sets.extend(found, pictures)
     if (other := sets.command_of(out)) not in (None, "plot"):

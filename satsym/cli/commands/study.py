@@ -10,13 +10,15 @@ from typing import TYPE_CHECKING
 
 import click
 
-from satsym.cli.options import json_option, place_option, subject_argument
+from satsym.cli.options import json_option, place_option, plot_options, subject_argument
 from satsym.cli.output import answer, live
 from satsym.cli.saving import RESULTS
 from satsym.status import ExitCode
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
+
+    from satsym.report.look import Look
 
 EXAMPLES = """\b
 Examples:
@@ -51,7 +53,7 @@ Exit codes: 0 done (rows that fail say so in the table), 3 the study cannot be c
 @click.option("--resume", is_flag=True, help="Go on with the study that is there, or begin it.")
 @click.option("--workers", type=click.IntRange(1, 1000), metavar="N", help="Processes; by default one a processor.")
 @click.option("--scheduler", metavar="ADDRESS", help="Of a Dask cluster that computes instead: tcp://HOST:PORT.")
-@click.option("--plot", is_flag=True, help="Draw pictures too; `satsym plot DIR` draws them later.")
+@plot_options("study")
 @json_option
 def study(
     subject: str,
@@ -69,7 +71,7 @@ def study(
     resume: bool,
     workers: int | None,
     scheduler: str | None,
-    plot: bool,
+    look: Look | None,
     as_json: bool,
 ) -> ExitCode:
     """Solve, simulate or regulate an instance for many values.
@@ -108,7 +110,7 @@ def study(
             resume=resume,
             watch=lambda advance: line.show(progress_line(advance)),
         )
-    drawn = draw(folder)[1] if plot else []
+    drawn = draw(folder, look)[1] if look else []
     answer(as_json, result, lambda: with_files(study_text(result), [folder / TABLE, *drawn]))
     return ExitCode.DONE if result["status"] == "converged" else ExitCode.NO_ANSWER
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from satsym.arrays import Array
 from satsym.report import display
+from satsym.report.look import SCREEN, Look
 from satsym.report.plots import legend, style
 from satsym.report.results import files
 from satsym.report.results.studies import Numbers
@@ -31,10 +31,10 @@ def figures(numbers: Numbers) -> dict[str, Figure]:
     return found
 
 
-def pictures(numbers: Numbers, kinds: Sequence[str] = ("png",)) -> dict[str, files.Content]:
+def pictures(numbers: Numbers, look: Look = SCREEN) -> dict[str, files.Content]:
     """File name -> content, each figure in each kind."""
-    with style.applied():
-        drawn = [(f"{name}.{kind}", page, kind) for name, page in figures(numbers).items() for kind in kinds]
+    with style.applied(look):
+        drawn = [(f"{name}.{kind}", page, kind) for name, page in figures(numbers).items() for kind in look.formats]
         return {name: files.binary(style.rendered(page, kind)) for name, page, kind in drawn}
 
 
