@@ -169,7 +169,7 @@ def _lock(stream: IO[bytes], folder: Path) -> None:
     try:
         fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
-        raise BadInput(f"{printable(str(folder))}: a study is under way there; wait for it, or give another") from None
+        raise BadInput(f"{printable(str(folder))}: another process is at it; wait, or give another folder") from None
     except OSError:
         return  # a file system without locks
 

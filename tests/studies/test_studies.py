@@ -264,7 +264,7 @@ def test_a_full_disk_is_one_line_and_what_was_written_counts(tmp_path: Path, mon
 
 
 def test_two_processes_cannot_be_at_one_study(tmp_path: Path) -> None:
-    with parts.opened(tmp_path), pytest.raises(BadInput, match="under way"), parts.opened(tmp_path):
+    with parts.opened(tmp_path), pytest.raises(BadInput, match="another process"), parts.opened(tmp_path):
         pass
 
 
