@@ -277,6 +277,7 @@ def test_how_far_a_study_is_is_told(tmp_path: Path) -> None:
     assert seen[2].left > 0.0
 
 
+@pytest.mark.slow
 def test_killed_at_any_moment_no_finished_chunk_is_lost(tmp_path: Path) -> None:
     killed(tmp_path, [0.0, 0.25])
 
