@@ -29,6 +29,7 @@ __all__ = [
     "lqr",
     "simulate",
     "solve",
+    "study",
 ]
 
 TYPE_CHECKING = False  # as of typing, which would be loaded for it
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from satsym.front.derivation import derive
     from satsym.front.instance import Instance, load
     from satsym.front.solution import Solution, solve
+    from satsym.front.studies import study
     from satsym.front.trajectory import simulate
     from satsym.spec import Variable
     from satsym.symbolic import Angle, Annulus, Ball, Box, FirstOrder, Free, Newton, Problem
@@ -48,6 +50,7 @@ _HOMES = {
     "front.derivation": ("derive",),
     "front.instance": ("Instance", "load"),
     "front.solution": ("Solution", "solve"),
+    "front.studies": ("study",),
     "front.trajectory": ("simulate",),
     "spec": ("Variable",),
     "symbolic": ("Angle", "Annulus", "Ball", "Box", "FirstOrder", "Free", "Newton", "Problem"),

@@ -43,18 +43,24 @@ _ADVICE = {
 
 
 class Verdict(str, Enum):
-    """What a certificate says: a strict local minimum that no competitor undercuts, an extremal, or not even that."""
+    """What a certificate says: a strict local minimum that no competitor undercuts, an extremal, or not even that.
+
+    Where no competitor was looked for, a strict local minimum is all that is said.
+    """
 
     CERTIFIED = "certified"
+    LOCAL_MINIMUM = "local minimum"
     EXTREMAL_ONLY = "extremal only"
     FAILED = "failed"
 
     @classmethod
-    def of(cls, necessary: bool, sufficient: bool) -> Verdict:
-        """The verdict where the necessary conditions hold or not, and the sufficient ones."""
+    def of(cls, necessary: bool, sufficient: bool, compared: bool = True) -> Verdict:
+        """The verdict where necessary conditions hold or not, and sufficient ones, and competitors were compared."""
         if not necessary:
             return cls.FAILED
-        return cls.CERTIFIED if sufficient else cls.EXTREMAL_ONLY
+        if not sufficient:
+            return cls.EXTREMAL_ONLY
+        return cls.CERTIFIED if compared else cls.LOCAL_MINIMUM
 
 
 class ExitCode(IntEnum):

@@ -27,6 +27,7 @@ from satsym.cli.commands.new import new
 from satsym.cli.commands.plot import plot
 from satsym.cli.commands.simulate import simulate
 from satsym.cli.commands.solve import solve
+from satsym.cli.commands.study import study
 from satsym.cli.output import Unheard, complain, hearable, silence, unless_unwritable
 from satsym.cli.stopping import comes_of_a_stop, stopped
 from satsym.status import BadInput, ExitCode
@@ -73,6 +74,7 @@ class Program(click.Group):
         new,
         solve,
         simulate,
+        study,
         plot,
         compare,
         analyse,

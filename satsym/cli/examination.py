@@ -16,6 +16,7 @@ from satsym.cli.requirements import Requirement, requirements
 
 EXTRAS = {
     "fast": "compiled kernels, for many steps or many cases",
+    "cluster": "studies on a Dask cluster",
     "control": "comparison with python-control",
     "bench": "the peers that `make bench` times",
     "dev": "tests and lint",

@@ -55,6 +55,14 @@ trajectory_option = place_option(
 )
 out_option = place_option("--out", metavar="DIR", help="Write result.json there; it replaces a result.")
 
+set_option = click.option(
+    "--set",
+    "values",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="Another value of a number, such as initial.r=1.05; the keys are those of `satsym study`.",
+)
+
 
 def plot_options(command: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Whether to draw and how, as ``look``, for a command, whose results go into a folder of its name."""

@@ -60,6 +60,12 @@ def split(subject: str) -> tuple[str, str | None]:
     return (name, command) if name and command in DRAWN else (subject, None)
 
 
+def study_folder(subject: str, source: Path | None) -> Path | None:
+    """Where the study is that is meant, if one is: its folder itself, or ``NAME/study``."""
+    home = Path(RESULTS, subject) if subject.endswith("/study") else Path(subject)
+    return next((place for place in (source, home) if place is not None and (place / "study.json").is_file()), None)
+
+
 def saved_folder(name: str, command: str | None) -> Path:
     """Where the results of an instance are: of a command, or of the one that wrote last.
 

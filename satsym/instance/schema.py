@@ -34,6 +34,9 @@ Matrix = Annotated[
     list[float | list[float]], Meta(description="a list of rows of numbers, or the list of the diagonal's numbers")
 ]
 Series = Annotated[float | str | list[float | str], Meta(description="a number, or a list of numbers over time")]
+Variations = Annotated[
+    dict[str, str | dict[str, str]], Meta(description='a table of texts, such as "initial.r" = "0.9:1.1:50"')
+]
 Gains = Annotated[
     tuple[float, float],
     Meta(description="two numbers, the gain of the rate and that of the angle, such as [13.56, 0.0678]"),
@@ -57,11 +60,13 @@ Backend = Literal["auto", "python", "numba"]
 Backends = Annotated[Backend, Meta(description="one of " + ", ".join(f'"{b}"' for b in get_args(Backend)))]
 Count = Annotated[int, Meta(ge=1, le=10**7, description="a whole number from 1 to 10000000")]
 Steps = Annotated[int, Meta(ge=2, le=10**7, description="a whole number from 2 to 10000000")]
+Seed = Annotated[int, Meta(ge=0, lt=2**32, description="a whole number from 0 to 4294967295")]
 Positive = Annotated[float, Meta(gt=0, description="a positive number")]
 UpToOne = Annotated[float, Meta(gt=0, le=1, description="a number above 0, at most 1")]
 
 SOLVING, COMPARING, REGULATING = ("solve", "compare"), ("compare",), ("lqr", "simulate --feedback lqr")
 MOVING = (*SOLVING, "simulate")
+STUDYING = ("study",)
 RELAYS = ("simulate --feedback switching", "simulate --feedback pulses")
 ALL = ("all",)
 
@@ -130,6 +135,25 @@ class GuessTable(_Table, frozen=True):
     ] = {}
 
 
+class StudyTable(_Table, frozen=True):
+    vary: Annotated[
+        Variations, Key("a grid: FROM:TO:N, log:FROM:TO:N or a list of values", STUDYING, "the model's", "KEY")
+    ] = {}
+    normal: Annotated[
+        Variations, Key("of a sample: MEAN,DEVIATION of a normal distribution", STUDYING, "the model's", "KEY")
+    ] = {}
+    uniform: Annotated[
+        Variations, Key("of a sample: LOWEST,HIGHEST, all as likely", STUDYING, "the model's", "KEY")
+    ] = {}
+    sample: Annotated[Count | None, Key("size of a sample", STUDYING)] = None
+    method: Annotated[Name | None, Key("how a sample is drawn", STUDYING)] = None
+    seed: Annotated[Seed | None, Key("what a sample is drawn from", STUDYING)] = None
+    command: Annotated[Name | None, Key("what is done with each", STUDYING)] = None
+    certificate: Annotated[Name | None, Key("how much of a certificate each gets", STUDYING)] = None
+    feedback: Annotated[Name | None, Key("the law of a simulation", STUDYING)] = None
+    trajectories: Annotated[bool, Key("whether trajectories are kept", STUDYING)] = False
+
+
 class SolverOptions(_Table, frozen=True):
     """What the solvers are told."""
 
@@ -191,6 +215,7 @@ class InstanceFile(_Table, frozen=True):
             "PARAMETER, t0, tf, initial.STATE or final.STATE",
         ),
     ] = {}
+    study: Annotated[StudyTable | None, Key("this instance for many values", STUDYING)] = None
 
 
 def check(tree: dict[str, Any]) -> InstanceFile:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -23,7 +24,7 @@ __all__ = ["simulate", "solve"]
 Solver: TypeAlias = Callable[[Instance, Progress | None], Solution]
 
 
-def solve(instance: Instance, progress: Progress | None = None) -> Solution:
+def solve(instance: Instance, progress: Progress | None = None, *, examined: bool = True) -> Solution:
     """Solve an instance by the method it names and certify the answer.
 
     By default that is collocation, or exact arcs where controls switch between their bounds; collocation again where
@@ -37,6 +38,8 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         What to solve, in the model's units.
     progress
         Called after each iteration.
+    examined
+        Whether the answer is certified, and another taken that the certificate finds to be cheaper.
 
     Raises
     ------
@@ -51,24 +54,26 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     if spec.path_constraints and instance.free:
         key = instance.free[0].key
         raise BadInput(f'{instance.name}: {key}: "free" is not solved beside path constraints; write a number')
-    return _solved_in_steps(instance, progress) if instance.continuation else _with_free(instance, progress)
+    found = partial(_with_free, examined=examined)
+    return _solved_in_steps(instance, progress, found) if instance.continuation else found(instance, progress)
 
 
-def _solved_in_steps(instance: Instance, progress: Progress | None) -> Solution:
+def _solved_in_steps(instance: Instance, progress: Progress | None, last: Solver) -> Solution:
     """By continuation."""
     from satsym.solvers import continued
 
     quick = _with_free if instance.free else _uncertified
-    return continued.solve(instance, progress, quick, _with_free)
+    return continued.solve(instance, progress, quick, last)
 
 
-def _with_free(instance: Instance, progress: Progress | None) -> Solution:
+def _with_free(instance: Instance, progress: Progress | None, examined: bool = True) -> Solution:
     """With what the instance leaves free besides its end, if it does."""
+    found = partial(_found, examined=examined)
     if not instance.free:
-        return _found(instance, progress)
+        return found(instance, progress)
     from satsym.solvers.unknowns import solving
 
-    return solving.solve(instance, progress, _uncertified, _found)
+    return solving.solve(instance, progress, _uncertified, found)
 
 
 def _uncertified(instance: Instance, progress: Progress | None) -> Solution:
@@ -78,17 +83,17 @@ def _uncertified(instance: Instance, progress: Progress | None) -> Solution:
     return _in_time(method)(instance, progress)
 
 
-def _found(instance: Instance, progress: Progress | None) -> Solution:
+def _found(instance: Instance, progress: Progress | None, examined: bool = True) -> Solution:
     """What is found, without a final state that follows from the others."""
     from satsym.solvers import iteration
     from satsym.solvers.redundant_ends import redundant
 
     less = redundant(instance)
     if less is None:
-        return _by_method(instance, progress)
-    solution = _by_method(less.instance, progress)
+        return _by_method(instance, progress, examined)
+    solution = _by_method(less.instance, progress, examined)
     if not less.met(solution) and not instance.model.spec.switching:
-        again = _by_method(less.towards, progress)
+        again = _by_method(less.towards, progress, examined)
         solution = again if again.status.answered else solution
     if not solution.status.answered or less.met(solution):
         return replace(solution, message=f"{solution.message}; {less.note}")
@@ -96,24 +101,24 @@ def _found(instance: Instance, progress: Progress | None) -> Solution:
     return replace(nothing, status=Status.NOT_CONVERGED, message=less.missed(solution))
 
 
-def _by_method(instance: Instance, progress: Progress | None) -> Solution:
+def _by_method(instance: Instance, progress: Progress | None, examined: bool) -> Solution:
     """What the method finds, or the sweep in its place."""
     spec, name = instance.model.spec, instance.solver.method
     automatic = name == methods.AUTO
     method = methods.automatic(spec) if automatic else methods.METHODS[name]
-    solution = _solved(method, instance, progress)
+    solution = _solved(method, instance, progress, examined)
     if automatic and spec.throttled and solution.status is Status.NOT_CONVERGED:
-        steady = _solved(methods.METHODS["collocation"], instance, progress)
+        steady = _solved(methods.METHODS["collocation"], instance, progress, examined)
         return steady if steady.status.answered else solution
     if automatic and solution.status is Status.NOT_CONVERGED and not methods.refusal(methods.SWEEP.name, instance):
         return _confirmed(_solved(methods.SWEEP, instance, progress), method, progress)
     return solution
 
 
-def _solved(method: Method, instance: Instance, progress: Progress | None) -> Solution:
-    """By a method, with its certificate."""
+def _solved(method: Method, instance: Instance, progress: Progress | None, examined: bool = True) -> Solution:
+    """By a method, with its certificate if it has one and is examined."""
     solver = _in_time(method)
-    if not method.certified:
+    if not (method.certified and examined):
         return solver(instance, progress)
     from satsym.solvers.improving import improved
 

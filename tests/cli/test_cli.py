@@ -20,7 +20,10 @@ from satsym.instance import SolverOptions
 from satsym.report.results.files import to_json
 
 Run = Callable[..., tuple[int, str, str]]
-COMMANDS = "models instances new solve simulate plot compare analyse lqr derive latex audit completion doctor".split()
+COMMANDS = [
+    *("models", "instances", "new", "solve", "simulate", "study", "plot", "compare", "analyse", "lqr", "derive"),
+    *("latex", "audit", "completion", "doctor"),
+]
 HEAD = "satsym schema command model instance status units".split()
 SOLUTION_KEYS = (
     "satsym schema command model instance status units method message boundary_type objective t_final x_final "

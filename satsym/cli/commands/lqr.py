@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 import click
 
 from satsym.cli import names
-from satsym.cli.options import json_option, out_option, plot_options
+from satsym.cli.options import json_option, out_option, plot_options, set_option
 from satsym.cli.output import answer
 from satsym.cli.saving import folder_for, save
-from satsym.status import ExitCode, Status
+from satsym.status import BadInput, ExitCode, Status
+from satsym.wording import printable
 
 if TYPE_CHECKING:
     from satsym.report.look import Look
@@ -26,10 +27,11 @@ Examples:
 
 @click.command(epilog=EXAMPLES)
 @click.argument("subject", metavar="X", shell_complete=names.completed(names.instances, names.models))
+@set_option
 @json_option
 @out_option
 @plot_options("lqr")
-def lqr(subject: str, as_json: bool, out: Path | None, look: Look | None) -> ExitCode:
+def lqr(subject: str, values: tuple[str, ...], as_json: bool, out: Path | None, look: Look | None) -> ExitCode:
     """Find the gain of minimum cost: u = -K x for the deviation x.
 
     X is an instance with an [lqr] table, or a model, whose weights are then all 1; shipped, or the path of one. The
@@ -37,12 +39,18 @@ def lqr(subject: str, as_json: bool, out: Path | None, look: Look | None) -> Exi
     """
     from satsym.analysis.regulator.feedback import designed
     from satsym.analysis.subject import find
+    from satsym.kernels import Kernels
     from satsym.report.results.linear import regulator_object
     from satsym.report.results.objects import head_about
     from satsym.report.terminal.linear import regulator_text
     from satsym.report.terminal.solution import with_files
+    from satsym.studies.reading import with_values
 
     given = find(subject)
+    if values:
+        if isinstance(given, Kernels):
+            raise BadInput(f"--set {printable(values[0])}: is for an instance, and {printable(subject)} is a model")
+        given = with_values(given, values)
     folder = folder_for(Path(subject).stem, "lqr", out, look)
     design = designed(given)
     result = head_about("lqr", given, Status.CONVERGED) | regulator_object(design)

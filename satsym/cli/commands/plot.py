@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import click
 
 from satsym.cli.options import json_option, look_options, place_option, subject_argument
-from satsym.cli.output import emit, emit_json
-from satsym.cli.saving import saved_folder, split
+from satsym.cli.output import answer, emit, emit_json
+from satsym.cli.saving import saved_folder, split, study_folder
 from satsym.status import BadInput, ExitCode
 from satsym.wording import printable
 
@@ -42,16 +42,22 @@ Examples:
 def plot(subject: str, source: Path | None, out: Path | None, look: Look, as_json: bool) -> ExitCode:
     """Draw a saved result, without solving again.
 
-    X is the instance that was solved or simulated with --out or --plot, or X/COMMAND for what that command wrote. A
-    result that is not whole any more is refused.
+    X is the instance that was solved or simulated with --out or --plot, or X/COMMAND for what that command wrote, or
+    the folder of a study. A result that is not whole any more is refused.
     """
     from satsym import instance
     from satsym.report import plots
     from satsym.report.results import trajectory
     from satsym.report.results.files import check_writable
     from satsym.report.results.objects import head
+    from satsym.report.study import draw
     from satsym.report.terminal.solution import with_files
 
+    if (study := study_folder(subject, source)) is not None:
+        said, drawn = draw(study, look, out)
+        told = said | {"command": "plot", "pictures": [str(path) for path in drawn]}
+        answer(as_json, told, lambda: with_files(f"{said['instance']}: study of {said['rows']} rows", drawn))
+        return ExitCode.DONE
     name, command = split(subject)
     case = instance.load(name)
     source = source or saved_folder(case.name, command)

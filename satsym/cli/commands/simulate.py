@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from satsym.cli.options import json_option, plot_options, subject_argument, trajectory_option
+from satsym.cli.options import json_option, plot_options, set_option, subject_argument, trajectory_option
 from satsym.cli.output import answer, complain, in_colour
 from satsym.cli.saving import folder_for, save, trajectory_files
 from satsym.status import ExitCode
@@ -37,10 +37,13 @@ Examples:
     metavar="LAW",
     help=f"One of: {', '.join(FEEDBACKS)}; by default classical where the instance states such a law, else none.",
 )
+@set_option
 @json_option
 @trajectory_option
 @plot_options("simulate")
-def simulate(subject: str, feedback: str | None, as_json: bool, out: Path | None, look: Look | None) -> ExitCode:
+def simulate(
+    subject: str, feedback: str | None, values: tuple[str, ...], as_json: bool, out: Path | None, look: Look | None
+) -> ExitCode:
     """Simulate the motion under a control law.
 
     X is a shipped instance (`satsym instances` lists them) or the path of a TOML file. The motion is simulated from
@@ -50,8 +53,9 @@ def simulate(subject: str, feedback: str | None, as_json: bool, out: Path | None
     from satsym.analysis.regulator.feedback import simulate as simulated
     from satsym.report.results.objects import simulation_object
     from satsym.report.terminal.solution import simulation_text, with_files
+    from satsym.studies.reading import with_values
 
-    case = instance.load(subject)
+    case = with_values(instance.load(subject), values)
     folder = folder_for(case.name, "simulate", out, look)
     simulation = simulated(case, feedback)
     result = simulation_object(simulation)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from satsym import methods
-from satsym.cli.options import json_option, plot_options, subject_argument, trajectory_option
+from satsym.cli.options import json_option, plot_options, set_option, subject_argument, trajectory_option
 from satsym.cli.output import answer, in_colour, live
 from satsym.cli.saving import folder_for, save, trajectory_files
 from satsym.status import ExitCode, Verdict
@@ -53,6 +53,7 @@ def _positive(_context: click.Context, _option: click.Parameter, value: float | 
     metavar="METHOD",
     help=f"Instead of the instance's: {', '.join(methods.names())}.",
 )
+@set_option
 @click.option("--steps", type=click.IntRange(2, 10**7), metavar="N", help="Steps of the grid.")
 @click.option(
     "--continue",
@@ -67,6 +68,7 @@ def solve(
     as_json: bool,
     out: Path | None,
     look: Look | None,
+    values: tuple[str, ...],
     method: str | None,
     steps: int | None,
     varied: tuple[str, ...],
@@ -81,10 +83,11 @@ def solve(
     from satsym import instance, solvers
     from satsym.report.results.objects import solution_object
     from satsym.report.terminal.solution import progress_line, solution_text, with_files
+    from satsym.studies.reading import with_values
 
     written = instance.read(subject)
     written = replace(written, tree=_continued(written.tree, varied))
-    case = _changed(written.instance(), method=method, steps=steps, tolerance=tolerance)
+    case = _changed(with_values(written.instance(), values), method=method, steps=steps, tolerance=tolerance)
     folder = folder_for(case.name, "solve", out, look)
     with live() as line:
         solution = solvers.solve(case, progress=lambda iteration: line.show(progress_line(iteration, case)))

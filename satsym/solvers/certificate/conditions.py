@@ -39,7 +39,7 @@ def headlines(checks: Iterable[Check]) -> dict[str, Any]:
     }
 
 
-def boundary_residual(solution: Solution, flow: Flow) -> float:
+def boundary_residual(solution: Solution, flow: Flow, without: Array | None = None) -> float:
     """Largest residual at the right end of the flow, each relative to the size of what it compares.
 
     A given state is compared with its own size or, where the control moves the end by less, with that, down to a
@@ -47,6 +47,11 @@ def boundary_residual(solution: Solution, flow: Flow) -> float:
     of the terminal cost, which may cancel almost: an error of the state then counts alike in both. A terminal
     constraint is compared with what the states contribute to it, and H with its terms for costates of that size: at
     the top of an ascent each of them vanishes.
+
+    Parameters
+    ----------
+    without
+        Where the motion would end without control, if that is known already.
     """
     instance, model = solution.instance, solution.instance.model
     n = len(instance.initial)
@@ -59,9 +64,8 @@ def boundary_residual(solution: Solution, flow: Flow) -> float:
     )
     gradient = np.abs(slopes.reshape(len(residual), -1)[:-1, :n]) @ state
     smallest = np.minimum(state, NEGLIGIBLE * unit_sizes(solution)[:n])
-    rows = np.where(
-        fixed, np.maximum(state * _moved(solution, flow, state), smallest), np.maximum(costate, gradient[:n])
-    )
+    moved = _moved(flow, state, undriven(solution) if without is None else without)
+    rows = np.where(fixed, np.maximum(state * moved, smallest), np.maximum(costate, gradient[:n]))
     found = np.abs(residual[:n]) / rows
     constraints = np.abs(residual[n:-1]) / np.maximum(gradient[n:], 1e-300)
     parts = [*found, *constraints]
@@ -71,9 +75,8 @@ def boundary_residual(solution: Solution, flow: Flow) -> float:
     return float(max(parts))
 
 
-def _moved(solution: Solution, flow: Flow, state: Array) -> float:
+def _moved(flow: Flow, state: Array, without: Array | None) -> float:
     """How far the control moves the end, relative to the sizes of the states, at most one."""
-    without = undriven(solution)
     if without is None:
         return 1.0
     return float(np.minimum((np.abs(flow.x[:, -1] - without) / state).max(), 1.0))

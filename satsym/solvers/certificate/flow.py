@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -106,9 +107,11 @@ def _resolved(solution: Solution) -> Array:
     return found
 
 
+@lru_cache(maxsize=256)
 def unit_sizes(solution: Solution) -> Array:
     """Of states and costates, those of the scaled problem, shape (2n,)."""
     found: Array = two_point(solution.instance, float(solution.times[-1] - solution.times[0])).scale.both[:, 0]
+    found.flags.writeable = False  # what several conditions ask for is computed once
     return found
 
 

@@ -7,6 +7,7 @@ import time
 
 import numpy as np
 
+from satsym.arrays import Array
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers import revolutions
 from satsym.solvers.certificate import competitors, conditions
@@ -27,20 +28,28 @@ COST_MARGIN = 1e-9
 """Relative margin by which a competitor may seem cheaper: its own error."""
 
 
-def certify(solution: Solution) -> Certificate | None:
+def certify(solution: Solution, compared: bool = True) -> Certificate | None:
     """Certify a solution; ``None`` where there is nothing to certify.
+
+    Parameters
+    ----------
+    compared
+        Whether competitors are looked for.
 
     Returns
     -------
     Certificate
         ``certified``: a strict local optimum, with no cheaper competitor among the kinds that it lists.
+        ``local minimum``: the same where none was looked for.
         ``extremal only``: the first-order conditions hold, a sufficient one does not. ``failed``: not even the
         former hold.
     """
-    return examined(solution, time.perf_counter() + solution.instance.solver.max_seconds)[0]
+    return examined(solution, time.perf_counter() + solution.instance.solver.max_seconds, compared=compared)[0]
 
 
-def examined(solution: Solution, deadline: float, seed: int = 0) -> tuple[Certificate | None, Competitor | None]:
+def examined(
+    solution: Solution, deadline: float, seed: int = 0, *, compared: bool = True
+) -> tuple[Certificate | None, Competitor | None]:
     """The certificate of a solution, and the cheapest competitor if one is cheaper than it.
 
     Parameters
@@ -49,17 +58,19 @@ def examined(solution: Solution, deadline: float, seed: int = 0) -> tuple[Certif
         On the clock of ``time.perf_counter``; what is not compared by then is said.
     seed
         Of starts that are drawn.
+    compared
+        Whether competitors are looked for.
     """
     if not solution.status.answered:
         return None, None
     given = settled(solution)
-    certificate, competitor = _judged(given, deadline, seed)
+    certificate, competitor = _judged(given, deadline, seed, compared)
     certificate = with_kernels_examined(certificate, given)
     # how the least cost is curved in what is free tells only who solves beside it
     return with_start(certificate, solution, UNRESOLVED.checks) if solution.instance.free else certificate, competitor
 
 
-def _judged(solution: Solution, deadline: float, seed: int) -> tuple[Certificate, Competitor | None]:
+def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> tuple[Certificate, Competitor | None]:
     """The certificate that the kernels give, whatever they are worth, and the cheapest competitor."""
     if solution.interval is not None:
         from satsym.solvers.certificate.switching import chattering
@@ -70,7 +81,7 @@ def _judged(solution: Solution, deadline: float, seed: int) -> tuple[Certificate
         from satsym.solvers.certificate.switching import conditions as switching
 
         with np.errstate(all="ignore"):
-            return switching.certify(solution), None
+            return switching.certify(solution, compared), None
     if solution.method == "boundary-arcs":
         from satsym.solvers.certificate.constrained import conditions as constrained
 
@@ -92,9 +103,9 @@ def _judged(solution: Solution, deadline: float, seed: int) -> tuple[Certificate
         if all(c.passed for c in first):
             close = neighbours(solution)
             second = _sufficient(solution, field, close)
-            if competitors.none_conceivable(solution):
+            if compared and competitors.none_conceivable(solution):
                 second.append(Check("no cheaper competitor", 0.0, 0.0))
-            else:
+            elif compared:
                 others = competitors.compared(solution, deadline, seed)
                 second += [
                     Check(f"cheaper by: {kind.summary.kind.value}", max(0.0, -kind.margin), COST_MARGIN)
@@ -102,7 +113,7 @@ def _judged(solution: Solution, deadline: float, seed: int) -> tuple[Certificate
                     if math.isfinite(kind.margin)
                 ]
                 second += [Check(f"time was up before: {kind.value}", 1.0, 0.0) for kind in others.interrupted]
-    verdict = Verdict.of(all(c.passed for c in first), all(c.passed for c in second))
+    verdict = Verdict.of(all(c.passed for c in first), all(c.passed for c in second), compared)
     certificate = Certificate(
         verdict=verdict,
         **conditions.headlines(first),
@@ -121,20 +132,29 @@ def _first_order(solution: Solution, along: Segments | None) -> list[Check]:
     So it is where it misses, and its own rounding grows beyond what may be missed. Empty where neither is finite.
     """
     recomputed = flow(solution)
-    checks = _along(solution, recomputed, conditions.OF_FLOW) if recomputed else []
+    checks = first_order(solution, recomputed, conditions.OF_FLOW) if recomputed else []
     if (checks and all(c.passed for c in checks)) or along is None or not along.growth * TOLERANCE > RESIDUAL:
         return checks
     reached = node_by_node(solution, along)
     if reached is None:
         return checks
     moved = Check("correction of the nodes", correction(solution, along, reached), DEFECT)
-    return [*_along(solution, reached, conditions.OF_SEGMENTS), moved]
+    return [*first_order(solution, reached, conditions.OF_SEGMENTS), moved]
 
 
-def _along(solution: Solution, recomputed: Flow, defect: str) -> list[Check]:
+def first_order(solution: Solution, recomputed: Flow, defect: str, without: Array | None = None) -> list[Check]:
+    """The first-order conditions along a flow.
+
+    Parameters
+    ----------
+    defect
+        What the distance of the solution from the flow is called.
+    without
+        Where the motion would end without control, if that is known already.
+    """
     model = solution.instance.model
     checks = [
-        Check(conditions.BOUNDARY, conditions.boundary_residual(solution, recomputed), RESIDUAL),
+        Check(conditions.BOUNDARY, conditions.boundary_residual(solution, recomputed, without), RESIDUAL),
         Check(defect, conditions.dynamics_defect(solution, recomputed), DEFECT),
         Check(conditions.STATIONARITY, conditions.stationarity(solution), STATIONARY),
         Check("cost", conditions.off_cost(solution, recomputed), COST),

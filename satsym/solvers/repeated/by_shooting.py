@@ -59,6 +59,8 @@ class ByShooting:
 
     def full(self, found: Extremal, limits: Limits) -> Extremal:
         """With nodes where bounds are met: compiled arcs step onto these times, but do not tell them."""
+        if not found.problem.control_set.bounded:
+            return found
         return extremal(found.problem, found.path, limits)
 
     def _shot(self, problem: TwoPoint, start: Arcs) -> Shot | None:

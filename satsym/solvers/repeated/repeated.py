@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from typing import Protocol
@@ -132,6 +133,12 @@ class Repeated:
         with np.errstate(all="ignore"):
             self.answer = _answer(*self._found(case, limits, cold))
         return self.answer
+
+    def branched(self) -> Repeated:
+        """A second one that begins with the last answer of this one, and then goes its own way."""
+        other = copy(self)
+        other._means = copy(self._means)
+        return other
 
     def _found(self, case: Instance, limits: Limits, cold: bool) -> tuple[Extremal, Origin]:
         """An extremal, or why there is none, and from where it was found."""

@@ -106,6 +106,13 @@ def leap(rates: Callable[[Any, Array], Array], t: Array, y: Array, h: Array, col
     Array
         Values at the ends, shape (d, M).
     """
+    return leap_and_error(rates, t, y, h, columns)[0]
+
+
+def leap_and_error(
+    rates: Callable[[Any, Array], Array], t: Array, y: Array, h: Array, columns: int = len(SUBSTEPS)
+) -> tuple[Array, Array]:
+    """The same with an estimate of its errors, that of the value of the next lower order, both of shape (d, M)."""
     slope, table = rates(t, y), [y]
     for k, count in enumerate(SUBSTEPS[:columns]):
         row = [_midpoint(rates, t, y, slope, h, count)]
@@ -113,7 +120,7 @@ def leap(rates: Callable[[Any, Array], Array], t: Array, y: Array, h: Array, col
             ratio = (count / SUBSTEPS[k - j - 1]) ** 2
             row.append(row[j] + (row[j] - table[j]) / (ratio - 1.0))
         table = row
-    return table[-1]
+    return table[-1], np.abs(table[-1] - table[-2])
 
 
 def _piece(

@@ -1,0 +1,123 @@
+"""Pictures of a study: maps over a grid, curves over one axis, histograms of a sample, and where rows fail."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.report import display
+from satsym.report.look import SCREEN, Look
+from satsym.report.plots import legend, style
+from satsym.report.results import files
+from satsym.report.results.studies import Numbers
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+ANSWERED = "converged"
+
+MARKS = ("x", "v", "s", "^", "P", "D", "*", "o")
+COLOURS = (style.VERMILION, style.PURPLE, style.INK, style.GREEN, style.BLUE, style.GREY)
+
+
+def figures(numbers: Numbers) -> dict[str, Figure]:
+    """Figures by name: the quantities, and where rows failed if any did."""
+    found = {"overview": _overview(numbers)}
+    if any(one != ANSWERED for one in numbers.status):
+        found["failures"] = _failures(numbers)
+    return found
+
+
+def pictures(numbers: Numbers, look: Look = SCREEN) -> dict[str, files.Content]:
+    """File name -> content, each figure in each kind."""
+    with style.applied(look):
+        drawn = [(f"{name}.{kind}", page, kind) for name, page in figures(numbers).items() for kind in look.formats]
+        return {name: files.binary(style.rendered(page, kind)) for name, page, kind in drawn}
+
+
+def _overview(numbers: Numbers) -> Figure:
+    named = numbers.quantities
+    page = style.titled(numbers.title, style.WIDTH, 0.36 * style.WIDTH * max(1, len(named)) + 0.5)
+    rows = page.subplots(max(1, len(named)), 1, squeeze=False)[:, 0]
+    axes = [label for label, values in numbers.varied.items() if np.ptp(values) > 0.0] or list(numbers.varied)[:1]
+    for place, (name, values) in zip(rows, named.items(), strict=False):
+        if numbers.shape is not None and len(axes) == 1:
+            place.plot(numbers.varied[axes[0]], values, ".-", color=style.BLUE, markersize=4.0)
+            place.set_xlabel(display.plain(axes[0]))
+            place.set_ylabel(display.plain(name))
+        elif numbers.shape is not None:
+            _map(page, place, numbers, name, values)
+        else:
+            _histogram(place, name, values)
+    return page
+
+
+def _map(page: Figure, place: Axes, numbers: Numbers, name: str, values: Array) -> None:
+    """Over the first two axes that vary; further ones are left at their middle values, which is said."""
+    assert numbers.shape is not None
+    varying = [k for k, count in enumerate(numbers.shape) if count > 1][:2]
+    labels = list(numbers.varied)
+    table = values.reshape(numbers.shape)
+    grids = [numbers.varied[labels[k]].reshape(numbers.shape) for k in varying]
+    fixed = tuple(slice(None) if k in varying else count // 2 for k, count in enumerate(numbers.shape))
+    x, y = grids[0][fixed], grids[1][fixed]
+    drawn = place.pcolormesh(x, y, np.ma.masked_invalid(table[fixed]), shading="nearest", cmap="viridis")
+    for axis, k, low in (("x", varying[0], x), ("y", varying[1], y)):
+        if _logarithmic(low):
+            getattr(place, f"set_{axis}scale")("log")
+        getattr(place, f"set_{axis}label")(display.plain(labels[k]))
+    page.colorbar(drawn, ax=place, label=display.plain(name))
+    others = [
+        f"{labels[k]} = {display.number(float(numbers.varied[labels[k]].reshape(numbers.shape)[fixed].flat[0]))}"
+        for k, count in enumerate(numbers.shape)
+        if k not in varying and count > 1
+    ]
+    place.set_title(display.plain(", ".join(others)))
+
+
+def _logarithmic(values: Array) -> bool:
+    """Whether values are spaced evenly in their logarithms rather than evenly."""
+    own = np.unique(values)
+    if len(own) < 3 or own[0] <= 0.0:
+        return False
+    return bool(np.ptp(np.diff(np.log(own))) < np.ptp(np.diff(own)) / own[0])
+
+
+def _histogram(place: Axes, name: str, values: Array) -> None:
+    finite = values[np.isfinite(values)]
+    place.hist(finite, bins=min(60, max(5, int(np.sqrt(len(finite))))), color=style.BLUE)
+    place.set_xlabel(display.plain(name))
+    place.set_ylabel("rows")
+    if len(finite):
+        low, middle, high = np.quantile(finite, [0.05, 0.5, 0.95])
+        said = ", ".join(display.number(float(one), 4) for one in (low, middle, high))
+        place.set_title(f"quantiles 5, 50 and 95 %: {said}")
+
+
+def _failures(numbers: Numbers) -> Figure:
+    """Each row by its first two numbers that vary, and how it ended."""
+    page = style.titled(numbers.title, style.WIDTH, 0.6 * style.WIDTH)
+    place = page.subplots()
+    labels = [label for label, values in numbers.varied.items() if np.ptp(values) > 0.0] or list(numbers.varied)
+    x = numbers.varied[labels[0]]
+    y = numbers.varied[labels[1]] if len(labels) > 1 else np.zeros_like(x)
+    status, seen = np.array(numbers.status), []
+    looks: list[dict[str, Any]] = [{"marker": ".", "markersize": 3.0, "color": style.GREY}]
+    pairs = zip(MARKS, COLOURS * 2, strict=False)
+    looks += [{"marker": mark, "markersize": 5.0, "color": colour} for mark, colour in pairs]
+    kinds = [ANSWERED, *sorted(set(numbers.status) - {ANSWERED})]
+    for kind, look in zip(kinds, looks, strict=False):
+        own = status == kind
+        if own.any():
+            place.plot(x[own], y[own], linestyle="none", **look)
+            seen.append((legend.line(linestyle="none", **look), f"{kind}: {int(own.sum())}"))
+    place.set_xlabel(display.plain(labels[0]))
+    if len(labels) > 1:
+        place.set_ylabel(display.plain(labels[1]))
+    else:
+        place.set_yticks([])
+    legend.below(page, seen)
+    return page

@@ -1,0 +1,228 @@
+"""What is asked of a study, and what its results depend on."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import platform
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from enum import Enum
+from functools import cached_property
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from satsym import __version__, sources
+from satsym.arrays import Array
+from satsym.instance import Instance
+from satsym.kernels import Kernels
+from satsym.studies.design import Design, chain
+from satsym.studies.keys import Key
+
+
+class Command(str, Enum):
+    """What is done with each row."""
+
+    SOLVE = "solve"
+    SIMULATE = "simulate"
+    LQR = "lqr"
+
+
+class Checked(str, Enum):
+    """How much of a certificate answers get."""
+
+    NONE = "none"
+    LOCAL = "local"
+    FULL = "full"
+
+    @property
+    def meaning(self) -> str:
+        """For help."""
+        return _MEANING[self]
+
+
+_MEANING = {
+    Checked.NONE: "no certificate",
+    Checked.LOCAL: "all but competitors, at best a local minimum",
+    Checked.FULL: "as `satsym solve`",
+}
+
+LARGEST_CHUNK, FEWEST_CHUNKS = 256, 8
+"""Rows of a chunk at most, and chunks that a study with enough rows has at least."""
+
+LIBRARIES = ("numpy", "scipy", "numba")
+"""Whose versions may change the last digits."""
+
+PLACES = ("name", "path", "title", "model")
+"""Of an instance, what no result depends on, and what is told otherwise."""
+
+
+@dataclass(frozen=True, eq=False)
+class Study:
+    """Many rows of one instance.
+
+    Attributes
+    ----------
+    instance
+        What is varied.
+    design
+        Which values.
+    command
+        What is done with each row.
+    checked
+        Which certificate answers get, of ``solve``.
+    feedback
+        Of ``simulate``.
+    compiled
+        Whether kernels are compiled.
+    trajectories
+        Whether trajectories are kept.
+    """
+
+    instance: Instance
+    design: Design
+    command: Command = Command.SOLVE
+    checked: Checked = Checked.LOCAL
+    feedback: str | None = None
+    compiled: bool = False
+    trajectories: bool = False
+
+    @cached_property
+    def size(self) -> int:
+        """Rows of a chunk but for the last, which depends on the number of rows alone."""
+        return max(1, min(LARGEST_CHUNK, math.ceil(self.design.count / FEWEST_CHUNKS)))
+
+    @property
+    def chunks(self) -> int:
+        """How many there are."""
+        return math.ceil(self.design.count / self.size)
+
+    def chunk(self, number: int) -> Chunk:
+        """A chunk by its number, from 0."""
+        start = number * self.size
+        return Chunk(number, start, self.design.rows(start, min(start + self.size, self.design.count)))
+
+    @cached_property
+    def identity(self) -> dict[str, str]:
+        """Everything that the results depend on, by name."""
+        found = {f"instance {name}": text for name, text in _parts(self.instance).items()}
+        found |= {
+            "command": self.command.value,
+            "certificate": self.checked.value if self.command is Command.SOLVE else "none",
+            "feedback": self.feedback or "",
+            "trajectories": str(self.trajectories).lower(),
+            "rows": str(self.design.count),
+            "chunk": str(self.size),
+            **self.design.stated(),
+            "model": model_digest(self.instance.model),
+            "code": sources.digest(CODE),
+            "backend": "numba" if self.compiled else "python",
+            "satsym": __version__,
+            "python": platform.python_version(),
+            "machine": platform.machine(),
+        }
+        return found | {name: _version(name) for name in LIBRARIES}
+
+    @property
+    def row_digest(self) -> str:
+        """Of what the result of a row depends on besides its own numbers."""
+        varied = {*self.design.stated(), "rows", "chunk"}
+        return _digest({k: v for k, v in self.identity.items() if k not in varied and not k.startswith("instance ")})
+
+    @cached_property
+    def task(self) -> Task:
+        """What workers need to know of it."""
+        return Task(
+            instance=self.instance,
+            keys=self.design.keys,
+            command=self.command,
+            checked=self.checked,
+            feedback=self.feedback,
+            compiled=self.compiled,
+            trajectories=self.trajectories,
+            row_digest=self.row_digest,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """A study without its values, which chunks bring; fields as there."""
+
+    instance: Instance
+    keys: tuple[Key, ...]
+    command: Command
+    checked: Checked
+    feedback: str | None
+    compiled: bool
+    trajectories: bool
+    row_digest: str
+
+
+CODE = ("satsym.studies.chunks", "satsym.studies.asked")
+"""Modules whose code, with all that it imports, decides the results."""
+
+
+@dataclass(frozen=True, eq=False)
+class Chunk:
+    """Rows that are computed one after the other, in an order that they alone decide."""
+
+    number: int
+    start: int
+    values: Array
+    """Shape (rows, keys)."""
+
+    @property
+    def order(self) -> list[int]:
+        """Places of the rows, neighbours after each other."""
+        return list(chain(self.values))
+
+
+def key_of(row_digest: str, instance: Instance) -> str:
+    """What a row's result depends on, as a short text."""
+    return _digest({**_parts(instance), "": row_digest})[:16]
+
+
+def differences(before: Mapping[str, str], now: Mapping[str, str]) -> list[str]:
+    """What differs between two identities, in a few words each."""
+    found = []
+    for name in (*before, *(name for name in now if name not in before)):
+        old, new = before.get(name), now.get(name)
+        if old != new:
+            long = max(len(text or "") for text in (old, new)) > 60
+            found.append(f"{name} differs" if long else f"{name} was {old or 'absent'} and is {new or 'absent'}")
+    return found
+
+
+def model_digest(kernels: Kernels) -> str:
+    """A digest of the generated module that kernels come from."""
+    if kernels.text is not None:
+        return hashlib.sha256(kernels.text.encode()).hexdigest()[:32]
+    module = next(iter(kernels.functions.values())).__code__.co_filename
+    return sources.digest_of(Path(module))
+
+
+def _parts(instance: Instance) -> dict[str, str]:
+    """The numbers and options of an instance, each as text."""
+    names = (each.name for each in fields(instance) if each.name not in PLACES)
+    return {name: repr(_plain(getattr(instance, name))) for name in names}
+
+
+def _plain(value: Any) -> Any:
+    return dict(value) if isinstance(value, Mapping) else value
+
+
+def _digest(parts: Mapping[str, str]) -> str:
+    return hashlib.blake2b(json.dumps(parts).encode(), digest_size=16).hexdigest()
+
+
+def _version(name: str) -> str:
+    if name == "numpy":
+        return np.__version__
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return ""

@@ -1,0 +1,79 @@
+"""What a worker does with a chunk of a study; it keeps what all chunks of a study share."""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+
+from satsym.instance import Instance
+from satsym.status import BadInput
+from satsym.studies import keys, rows
+from satsym.studies.asked import Chunk, Command, Study, Task, key_of
+from satsym.studies.rows import Failure, Row, Work
+
+
+def computed(packed: bytes, chunk: Chunk) -> list[Row]:
+    """The rows of a chunk, in their order in the study.
+
+    Parameters
+    ----------
+    packed
+        The study, see :func:`packed`; a worker unpacks it once.
+    """
+    task = _unpacked(packed)
+    given = [_instance(task, values) for values in chunk.values.tolist()]
+    cases = {k: one for k in chunk.order if isinstance(one := given[k], Instance)}
+    found = begun(task)([(key_of(task.row_digest, one), one) for one in cases.values()])
+    done = dict(zip(cases, found, strict=True))
+    return [done.get(k) or rows.failed("", Failure.BAD_INPUT, str(one)) for k, one in enumerate(given)]
+
+
+def pack(study: Study) -> bytes:
+    """What workers need to know of a study, as bytes that any of them can unpack."""
+    return pickle.dumps(study.task)
+
+
+@lru_cache(maxsize=4)
+def _unpacked(packed: bytes) -> Task:
+    found: Task = pickle.loads(packed)
+    return found
+
+
+def _instance(task: Task, values: Sequence[float]) -> Instance | str:
+    """The instance of a row, or why there is none."""
+    try:
+        return keys.at(task.instance, task.keys, tuple(values))
+    except BadInput as error:
+        return str(error)
+
+
+def begun(task: Task) -> Work:
+    """The work of a chunk from its beginning: the same whatever the worker has done before."""
+    if task.command is Command.SOLVE:
+        from satsym.studies.solving import solving
+
+        return solving(task)
+    if task.command is Command.SIMULATE:
+        return _simulating(task)
+    return rows.one_by_one(_regulated)
+
+
+def _simulating(task: Task) -> Work:
+    from satsym.analysis.regulator.feedback import simulate
+
+    def simulated(key: str, instance: Instance) -> Row:
+        instance.require_numbers()
+        return rows.of_simulation(key, simulate(instance, task.feedback), task.trajectories)
+
+    return rows.one_by_one(simulated)
+
+
+def _regulated(key: str, instance: Instance) -> Row:
+    from satsym.analysis.regulator.feedback import designed
+
+    instance.require_numbers()
+    with np.errstate(all="ignore"):
+        return rows.of_regulator(key, designed(instance))

@@ -1,0 +1,211 @@
+"""Chunks of a study that are done, in two files to which each is appended: rows as lines, trajectories as arrays.
+
+A line holds a chunk and a digest of itself, and is written after the arrays of its chunk; both are flushed to the disk
+before the chunk counts. Whatever ends the process in between leaves a tail that nobody counts, which is cut off before
+more is appended.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.status import BadInput, Status
+from satsym.studies.rows import Row
+from satsym.wording import printable
+
+LINES, ARRAYS = "parts.jsonl", "parts.npz"
+"""The two files, while a study is under way."""
+
+DIGEST = 16
+"""Letters of the digest that begins a line."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a chunk lies in both files."""
+
+    line: int
+    arrays: int
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """A chunk, read back."""
+
+    number: int
+    start: int
+    rows: tuple[Row, ...]
+
+
+class Parts:
+    """The files of a folder, opened by :func:`opened`.
+
+    Attributes
+    ----------
+    done
+        Where each chunk lies that counts, by its number.
+    failures
+        Rows among them without an answer.
+    rows
+        All rows among them.
+    """
+
+    def __init__(self, lines: IO[bytes], arrays: IO[bytes]) -> None:
+        self._lines, self._arrays = lines, arrays
+        self.done: dict[int, Place] = {}
+        self.failures = self.rows = 0
+
+    def recover(self) -> None:
+        """Find what counts, and cut off the rest."""
+        self._lines.seek(0)
+        end = arrays_end = 0
+        for line in self._lines:
+            found = _decoded(line)
+            if found is None or found["arrays"][0] + found["arrays"][1] > _size(self._arrays):
+                break
+            self.done[found["chunk"]] = Place(end, found["arrays"][0])
+            self._count(found["rows"])
+            end += len(line)
+            arrays_end = max(arrays_end, found["arrays"][0] + found["arrays"][1])
+        for stream, size in ((self._lines, end), (self._arrays, arrays_end)):
+            stream.truncate(size)
+            stream.seek(size)
+
+    def append(self, number: int, start: int, rows: Sequence[Row]) -> None:
+        """Keep a chunk; it counts once this returns.
+
+        Raises
+        ------
+        OSError
+            If it cannot be written; then it does not count.
+        """
+        kept = {place: row.trajectory for place, row in enumerate(rows) if row.trajectory}
+        packed = _packed(kept)
+        begin, size = self._arrays.tell(), self._lines.tell()
+        entry: dict[str, Any] = {
+            "chunk": number,
+            "start": start,
+            "arrays": [begin, len(packed)],
+            "rows": [[row.key, row.status, row.message, dict(row.numbers)] for row in rows],
+        }
+        try:
+            if packed:
+                _write(self._arrays, packed)
+            _write(self._lines, _encoded(entry))
+        except OSError:
+            self._lines.truncate(size)  # which needs no room
+            self._arrays.truncate(begin)
+            raise
+        self.done[number] = Place(size, begin)
+        self._count(entry["rows"])
+
+    def read(self, number: int) -> Part:
+        """A chunk that counts."""
+        self._lines.seek(self.done[number].line)
+        found = _decoded(self._lines.readline())
+        if found is None:
+            raise BadInput(f"{printable(self._lines.name)}: has changed while it was read; start the study anew")
+        rows = tuple(Row(key, status, message, numbers) for key, status, message, numbers in found["rows"])
+        return Part(found["chunk"], found["start"], rows)
+
+    def trajectories(self, number: int) -> dict[int, dict[str, Array]]:
+        """Of a chunk, by the place of the row in it."""
+        self._lines.seek(self.done[number].line)
+        found = _decoded(self._lines.readline())
+        if found is None or not found["arrays"][1]:
+            return {}
+        self._arrays.seek(found["arrays"][0])
+        with np.load(io.BytesIO(self._arrays.read(found["arrays"][1])), allow_pickle=False) as stored:
+            kept: dict[int, dict[str, Array]] = {}
+            for name in stored.files:
+                place, _, what = name.partition(".")
+                kept.setdefault(int(place), {})[what] = stored[name]
+        return kept
+
+    def _count(self, rows: Sequence[Sequence[Any]]) -> None:
+        self.rows += len(rows)
+        self.failures += sum(status != Status.CONVERGED.value for _, status, *_ in rows)
+
+
+@contextmanager
+def opened(folder: Path) -> Iterator[Parts]:
+    """The parts in a folder, none at first; no other process can open them meanwhile.
+
+    Raises
+    ------
+    BadInput
+        If another process has them.
+    """
+    with (folder / LINES).open("a+b") as lines, (folder / ARRAYS).open("a+b") as arrays:
+        _lock(lines, folder)
+        found = Parts(lines, arrays)
+        found.recover()
+        yield found
+
+
+def remove(folder: Path) -> None:
+    """Once all is merged: the arrays first, for lines tell what there was."""
+    for name in (ARRAYS, LINES):
+        (folder / name).unlink(missing_ok=True)
+
+
+def _lock(stream: IO[bytes], folder: Path) -> None:
+    """Taken for as long as the file is open; without effect where the system has no such locks."""
+    try:
+        import fcntl
+    except ImportError:
+        return
+    try:
+        fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise BadInput(f"{printable(str(folder))}: another process is at it; wait, or give another folder") from None
+    except OSError:
+        return  # a file system without locks
+
+
+def _encoded(entry: Mapping[str, Any]) -> bytes:
+    text = json.dumps(entry, allow_nan=False, separators=(",", ":")).encode()
+    return _digest(text) + b" " + text + b"\n"
+
+
+def _decoded(line: bytes) -> dict[str, Any] | None:
+    """What a line holds; ``None`` for one that is not whole."""
+    digest, _, text = line.rstrip(b"\n").partition(b" ")
+    if not line.endswith(b"\n") or digest != _digest(text):
+        return None
+    found: dict[str, Any] = json.loads(text)
+    return found
+
+
+def _digest(text: bytes) -> bytes:
+    return hashlib.blake2b(text, digest_size=DIGEST // 2).hexdigest().encode()
+
+
+def _packed(kept: Mapping[int, Mapping[str, Array]]) -> bytes:
+    if not kept:
+        return b""
+    stream = io.BytesIO()
+    named: dict[str, Any] = {f"{place}.{name}": row for place, arrays in kept.items() for name, row in arrays.items()}
+    np.savez(stream, **named)
+    return stream.getvalue()
+
+
+def _size(stream: IO[bytes]) -> int:
+    return os.fstat(stream.fileno()).st_size
+
+
+def _write(stream: IO[bytes], content: bytes) -> None:
+    stream.write(content)
+    stream.flush()
+    os.fsync(stream.fileno())

@@ -1,0 +1,176 @@
+"""From what a user writes, on the command line or in a ``[study]`` table, to what a study varies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import msgspec
+
+from satsym.instance import Instance
+from satsym.status import BadInput
+from satsym.studies import keys
+from satsym.studies.design import METHODS, Axis, Design, Distribution, Grid, Sample
+from satsym.studies.keys import Key
+from satsym.wording import printable, shown, suggestion
+
+MOST_ROWS = 10**7
+
+RANGE = "LOW:HIGH:N or log:LOW:HIGH:N, such as 0.9:1.1:50"
+PAIR = {"normal": "MEAN,SD, such as 1.1,0.01", "uniform": "LOW,HIGH, such as 0.9,1.1"}
+
+Said = Sequence[tuple[str, str]]
+"""Keys, and what is said of each."""
+
+
+class Written(msgspec.Struct, frozen=True):
+    """A design as it was written."""
+
+    vary: Said = ()
+    normal: Said = ()
+    uniform: Said = ()
+    sample: int | None = None
+    method: str | None = None
+    seed: int | None = None
+
+    def __bool__(self) -> bool:
+        return bool(self.vary or self.normal or self.uniform)
+
+
+def design(written: Written, instance: Instance) -> Design:
+    """What a study varies, checked against an instance.
+
+    Raises
+    ------
+    BadInput
+        With one line, if nothing varies, a key does not exist or varies twice, a value lies outside its domain, there
+        is both a grid and a sample, or there are too many rows.
+    """
+    drawn = [(kind, key, text) for kind in PAIR for key, text in getattr(written, kind)]
+    if written.vary and (drawn or written.sample is not None):
+        raise BadInput("a study is a grid (vary) or a sample (sample, normal, uniform), not both; remove one of them")
+    if not written.vary and not drawn:
+        known = ", ".join(key.text for key in keys.known(instance.model.spec))
+        raise BadInput(f"nothing varies; write --vary KEY={RANGE}; keys here: {printable(known, 300)}")
+    seen: set[str] = set()
+    for key in (*(key for key, _ in written.vary), *(key for _, key, _ in drawn)):
+        if key in seen:
+            raise BadInput(f"{printable(key)}: varies twice; remove one of the two")
+        seen.add(key)
+    if written.vary:
+        if unused := [name for name in ("method", "seed") if getattr(written, name) is not None]:
+            raise BadInput(f"{unused[0]}: is for a sample, and this is a grid; remove it")
+        found: Design = Grid(tuple(_axis(key, text, instance) for key, text in written.vary))
+    else:
+        found = _sample(written, tuple(_distribution(kind, key, text, instance) for kind, key, text in drawn))
+    if found.count > MOST_ROWS:
+        raise BadInput(f"{found.count} rows are more than {MOST_ROWS}; write fewer values")
+    return found
+
+
+def _axis(name: str, text: str, instance: Instance) -> Axis:
+    key = keys.find(name, instance)
+    logarithmic = text.startswith("log:")
+    parts = text.removeprefix("log:").split(":")
+    if len(parts) != 3 or not all(part.strip() for part in parts):
+        raise BadInput(f"{key.text}: {shown(text)} is no range; write {RANGE}")
+    low, high = (_value(key, part, instance) for part in parts[:2])
+    count = _count(parts[2], f"{key.text}: {shown(text)}")
+    if logarithmic and not min(low, high) > 0.0:
+        raise BadInput(f"{key.text}: {shown(text)} has no logarithm; write positive ends, or leave out log:")
+    if (low == high) != (count == 1):
+        raise BadInput(f"{key.text}: {shown(text)} is {count} times the same or one of two; write {RANGE}")
+    return Axis(key, low, high, count, logarithmic)
+
+
+def _distribution(kind: str, name: str, text: str, instance: Instance) -> Distribution:
+    key = keys.find(name, instance)
+    parts = text.split(",")
+    if len(parts) != 2 or not all(part.strip() for part in parts):
+        raise BadInput(f"{key.text}: {shown(text)} is no {kind} distribution; write {PAIR[kind]}")
+    first = _value(key, parts[0], instance)
+    if kind == "normal":
+        return Distribution(key, first, key.spread(_number(parts[1], key), instance.model.spec), normal=True)
+    second = _value(key, parts[1], instance)
+    if not first < second:
+        raise BadInput(f"{key.text}: {shown(text)} does not go up; write {PAIR[kind]}")
+    return Distribution(key, first, second, normal=False)
+
+
+def _sample(written: Written, distributions: tuple[Distribution, ...]) -> Sample:
+    if written.sample is None:
+        raise BadInput("how many rows to draw is not said; write --sample N")
+    if written.sample < 1:
+        raise BadInput(f"sample: {shown(written.sample)} rows are none; write a whole number from 1")
+    method = written.method or METHODS[0]
+    if method not in METHODS:
+        raise BadInput(f"method: {shown(method)}: {suggestion(method, METHODS)}")
+    seed = written.seed or 0
+    if not 0 <= seed < 2**32:
+        raise BadInput(f"seed: {shown(seed)} is no seed; write a whole number from 0 to 4294967295")
+    return Sample(distributions, written.sample, method, seed)
+
+
+def _value(key: Key, text: str, instance: Instance) -> float:
+    """A value, which the instance can have while all else stays as it is."""
+    value = key.value(_number(text, key), instance.model.spec)
+    try:
+        keys.at(instance, (key,), (value,))
+    except BadInput as error:
+        raise BadInput(f"{key.text}: {shown(text.strip())} is not possible ({error})") from None
+    return value
+
+
+def _number(text: str, key: Key) -> float | str:
+    """A finite number, or text with a unit."""
+    try:
+        number = float(text)
+    except ValueError:
+        return text.strip()
+    if number - number != 0.0:
+        raise BadInput(f"{key.text}: {shown(text)} is not finite; write a finite number")
+    return number
+
+
+def _count(text: str, place: str) -> int:
+    try:
+        count = int(text)
+    except ValueError:
+        count = 0
+    if not 1 <= count <= MOST_ROWS:
+        raise BadInput(f"{place}: {shown(text)} is no number of values; write a whole number from 1 to {MOST_ROWS}")
+    return count
+
+
+def read_pairs(entries: Sequence[str], option: str) -> Said:
+    """``KEY=VALUE`` arguments of an option."""
+    found: list[tuple[str, str]] = []
+    for entry in entries:
+        key, equals, value = entry.partition("=")
+        if not (equals and key.strip() and value.strip()):
+            wanted: Any = RANGE if option == "vary" else PAIR[option]
+            raise BadInput(f"--{option} {printable(entry)}: write --{option} KEY={wanted}")
+        found.append((key.strip(), value.strip()))
+    return found
+
+
+def with_values(instance: Instance, entries: Sequence[str]) -> Instance:
+    """An instance with numbers that ``--set KEY=VALUE`` gives.
+
+    Raises
+    ------
+    BadInput
+        If a key does not exist, or a value is not possible.
+    """
+    chosen: list[Key] = []
+    values: list[float] = []
+    for entry in entries:
+        name, equals, text = entry.partition("=")
+        if not (equals and name.strip() and text.strip()):
+            raise BadInput(f"--set {printable(entry)}: write --set KEY=VALUE, such as --set initial.r=1.05")
+        key = keys.find(name.strip(), instance)
+        if key in chosen:
+            raise BadInput(f"{key.text}: is set twice; remove one of the two")
+        chosen.append(key)
+        values.append(key.value(_number(text, key), instance.model.spec))
+    return keys.at(instance, tuple(chosen), tuple(values)) if chosen else instance

@@ -1,0 +1,151 @@
+"""What a table says of a row: how it ended, and numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import TYPE_CHECKING, TypeAlias
+
+from satsym.arrays import Array
+from satsym.instance.unknowns import Place
+from satsym.solution import Simulation, Solution
+from satsym.status import BadInput, Status
+
+if TYPE_CHECKING:
+    from satsym.analysis.regulator.feedback import Design
+    from satsym.instance import Instance
+
+Scalar = float | str | None
+
+
+class Failure(str, Enum):
+    """How a row may end besides the statuses of solvers."""
+
+    BAD_INPUT = "bad input"
+    UNFORESEEN = "unforeseen"
+    WORKER_DIED = "worker died"
+
+
+@dataclass(frozen=True, eq=False)
+class Row:
+    """A row of the table.
+
+    Attributes
+    ----------
+    key
+        What its result depends on, see :func:`satsym.studies.asked.key_of`.
+    status, message
+        How it ended: of a solver, or of :class:`Failure`.
+    numbers
+        By the name of the column; ``None`` where there is none.
+    trajectory
+        Arrays by name, where trajectories are kept and there is one.
+    """
+
+    key: str
+    status: str
+    message: str
+    numbers: Mapping[str, Scalar] = field(default_factory=dict)
+    trajectory: Mapping[str, Array] = field(default_factory=dict)
+
+    @property
+    def answered(self) -> bool:
+        """Whether there is an answer."""
+        return self.status == Status.CONVERGED.value
+
+
+Cases: TypeAlias = "Sequence[tuple[str, Instance]]"
+"""Keys of rows, and their instances."""
+
+Work: TypeAlias = Callable[[Cases], list[Row]]
+"""From rows of a chunk, in the order in which they are computed, to what the table says of them."""
+
+
+def one_by_one(single: Callable[[str, Instance], Row]) -> Work:
+    """The work of rows that have nothing to do with each other."""
+    return lambda cases: [tried(single, key, instance) for key, instance in cases]
+
+
+def tried(single: Callable[[str, Instance], Row], key: str, instance: Instance) -> Row:
+    """What comes of a row, whatever happens: one that fails must not take others with it."""
+    try:
+        return single(key, instance)
+    except BadInput as error:
+        return failed(key, Failure.BAD_INPUT, str(error))
+    except Exception as error:
+        return failed(key, Failure.UNFORESEEN, f"{type(error).__name__}: {error}")
+
+
+def failed(key: str, failure: Failure, message: str) -> Row:
+    """A row without an answer."""
+    return Row(key, failure.value, " ".join(message.split()))
+
+
+def of_solution(key: str, solution: Solution, origin: str, kept: bool) -> Row:
+    """Of an optimum, or of there being none."""
+    spec = solution.instance.model.spec
+    numbers: dict[str, Scalar] = {}
+    if solution.status.answered:
+        verdict = solution.certificate.verdict.value if solution.certificate else None
+        numbers = {
+            "objective": _plain(spec.objective(solution.objective)),
+            "t_final": _plain(solution.times[-1]),
+            "verdict": verdict,
+            **_each("x_final", spec.state_names, solution.x, -1),
+            **_each("costate_initial", spec.state_names, solution.lam, 0),
+            **dict(_found(solution.instance)),
+            "switching_times": float(len({t for times in solution.switching_times for t in times})),
+            "method": solution.method,
+            "origin": origin,
+        }
+    message = "" if solution.status.answered else solution.status.explain(solution.message)
+    trajectory = _kept(solution, solution.lam) if kept and solution.status.answered else {}
+    return Row(key, solution.status.value, message, numbers, trajectory)
+
+
+def of_simulation(key: str, simulation: Simulation, kept: bool) -> Row:
+    """Of a motion."""
+    spec = simulation.instance.model.spec
+    numbers: dict[str, Scalar] = {}
+    if simulation.status.answered:
+        numbers = {"t_final": _plain(simulation.times[-1]), **_each("x_final", spec.state_names, simulation.x, -1)}
+        numbers |= {f"metrics.{name}": _plain(value) for name, value in simulation.metrics.items()}
+        numbers |= {f"drift.{name}": _plain(each.drift) for name, each in simulation.invariants.items()}
+    message = "" if simulation.status.answered else simulation.message
+    trajectory = _kept(simulation, None) if kept and simulation.status.answered else {}
+    return Row(key, simulation.status.value, message, numbers, trajectory)
+
+
+def of_regulator(key: str, design: Design) -> Row:
+    """Of a linear feedback."""
+    found, deviation = design.regulator, design.deviation
+    numbers: dict[str, Scalar] = {"cost_from_initial": None if deviation is None else _plain(found.cost(deviation))}
+    for i, name in enumerate(found.system.inputs):
+        numbers |= {f"K.{name}.{state}": _plain(k) for state, k in zip(found.system.states, found.K[i], strict=True)}
+    for i, value in enumerate(found.eigenvalues, 1):
+        numbers |= {f"eigenvalue_{i}.re": _plain(value.real), f"eigenvalue_{i}.im": _plain(value.imag)}
+    numbers["riccati_residual"] = _plain(found.residual)
+    return Row(key, Status.CONVERGED.value, "", numbers)
+
+
+def _kept(found: Solution | Simulation, lam: Array | None) -> dict[str, Array]:
+    arrays = {"t": found.times, "x": found.x, "u": found.u}
+    return arrays if lam is None else arrays | {"lam": lam}
+
+
+def _found(instance: Instance) -> Iterator[tuple[str, Scalar]]:
+    """What the instance left free besides its end, as it was found."""
+    for unknown in instance.free:
+        name = "t_initial" if unknown.place is Place.TIME else f"found.{unknown.name}"
+        yield name, _plain(unknown.of(instance))
+
+
+def _each(name: str, states: tuple[str, ...], rows: Array, place: int) -> dict[str, Scalar]:
+    return {f"{name}.{state}": _plain(row[place]) for state, row in zip(states, rows, strict=True)}
+
+
+def _plain(value: float) -> float | None:
+    number = float(value)
+    return number if math.isfinite(number) else None

@@ -1,0 +1,110 @@
+"""Solving the rows of a chunk one after the other, each from its neighbour's answer where that is possible."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import lru_cache
+
+from satsym import methods, solvers
+from satsym.instance import Instance
+from satsym.solution import Certificate, Solution
+from satsym.solvers.certificate.bulk import certify_all
+from satsym.solvers.repeated import Repeated
+from satsym.status import BadInput, Verdict
+from satsym.studies import rows
+from satsym.studies.asked import Checked, Task
+from satsym.studies.keys import Table
+from satsym.studies.rows import Cases, Row, Work
+
+ALONE = "single solver"
+"""The origin of answers that were found without their neighbours."""
+
+
+def solving(task: Task) -> Work:
+    """The work of a chunk of optima."""
+    single = _single(task)
+    if task.checked is Checked.FULL or not warm(task):
+        return rows.one_by_one(single)
+    try:
+        repeated = _repeated(task).branched()
+    except BadInput:
+        return rows.one_by_one(single)
+    return lambda cases: _from_neighbours(task, repeated, single, cases)
+
+
+def _single(task: Task) -> Callable[[str, Instance], Row]:
+    """A row by itself."""
+    return lambda key, instance: rows.of_solution(key, alone(instance, task.checked), ALONE, task.trajectories)
+
+
+def warm(task: Task) -> bool:
+    """Whether rows may start from their neighbours: what varies leaves scales and ends as they are."""
+    instance, spec = task.instance, task.instance.model.spec
+    fitting = instance.solver.method in (methods.AUTO, "collocation") and not (instance.free or instance.continuation)
+    smooth = not (spec.switching or spec.throttled or spec.stationary or spec.directional)
+    stays = all(key.table in (Table.INITIAL, Table.PARAMETERS) for key in task.keys)
+    return fitting and smooth and stays and not instance.solver.free_angles and not instance.guess
+
+
+def alone(instance: Instance, checked: Checked) -> Solution:
+    """One optimum from a cold start."""
+    if checked is Checked.FULL:
+        return solvers.solve(instance)
+    found = solvers.solve(instance, examined=False)
+    if checked is Checked.NONE:
+        return replace(found, certificate=None)
+    found = certified(found)
+    if found.certificate is None or found.certificate.verdict is Verdict.LOCAL_MINIMUM:
+        return found
+    return solvers.solve(instance)  # which goes on from what is no minimum
+
+
+def certified(solution: Solution) -> Solution:
+    """An answer with all of its certificate but competitors."""
+    from satsym.solvers.certificate import certify
+
+    if not solution.status.answered or not methods.METHODS[solution.method].certified:
+        return replace(solution, certificate=None)
+    return replace(solution, certificate=certify(solution, compared=False))
+
+
+@lru_cache(maxsize=1)
+def _repeated(task: Task) -> Repeated:
+    """The study's own instance, solved from a cold start."""
+    return Repeated(task.instance, task.compiled)
+
+
+def _from_neighbours(task: Task, repeated: Repeated, single: Callable[[str, Instance], Row], cases: Cases) -> list[Row]:
+    """Each from the last answer, the first of a chunk from that of the study's own instance.
+
+    What leads to no minimum is left to the single solver.
+    """
+    answers = [_again(repeated, instance) for _, instance in cases]
+    found = [answer for answer in answers if answer is not None]
+    certificates: list[Certificate | None] = [None] * len(found)
+    if task.checked is Checked.LOCAL:
+        certificates = certify_all([solution for solution, _ in found])
+    certified = iter(zip(found, certificates, strict=True))
+    done: list[Row] = []
+    for (key, instance), answer in zip(cases, answers, strict=True):
+        if answer is not None:
+            (solution, origin), certificate = next(certified)
+            minimum = certificate is not None and certificate.verdict is Verdict.LOCAL_MINIMUM
+            if minimum or task.checked is Checked.NONE:
+                solution = replace(solution, certificate=certificate)
+                done.append(rows.of_solution(key, solution, origin, task.trajectories))
+                continue
+        done.append(rows.tried(single, key, instance))
+    return done
+
+
+def _again(repeated: Repeated, instance: Instance) -> tuple[Solution, str] | None:
+    """The answer near the last one, and from where it was found."""
+    try:
+        answer = repeated.solve(instance.initial, instance.parameters)
+        if not answer.status.answered:
+            return None
+        return replace(repeated.solution(answer), instance=instance), answer.origin.value
+    except Exception:  # the single solver tells what it is
+        return None

@@ -1,0 +1,116 @@
+"""Processes that compute chunks, in the shape of ``concurrent.futures``: one that dies takes no other with it."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterator
+from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from multiprocessing import get_context
+from multiprocessing.connection import Connection, wait
+from queue import SimpleQueue
+from threading import Thread
+from types import ModuleType
+from typing import Any
+
+ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+"""Read by libraries when they are loaded: on matrices as small as ours, threads cost several times what they save."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Process:
+    """A pool of one process, and a pipe whose closing ends that process."""
+
+    pool: ProcessPoolExecutor
+    lifeline: Connection
+
+    def end(self) -> None:
+        self.lifeline.close()
+        self.pool.shutdown(wait=True, cancel_futures=True)
+
+
+class Workers(Executor):
+    """Several pools of one process each, so that it is known what a process that dies was at.
+
+    A library's pool is broken as a whole by the death of one of its processes; here the next call has another process.
+    All end with this process, whatever ends it.
+
+    Parameters
+    ----------
+    count
+        Processes: so many calls are under way at once, and submitting another waits for one to be over.
+    """
+
+    def __init__(self, count: int) -> None:
+        self._all = [_begun() for _ in range(count)]
+        self._idle: SimpleQueue[int] = SimpleQueue()
+        for k in range(count):
+            self._idle.put(k)
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """As of ``Executor``, in an idle process."""
+        k = self._idle.get()
+        with _single_threaded(), _main_hidden():
+            future = self._all[k].pool.submit(fn, *args, **kwargs)
+
+        def over(done: Future[Any]) -> None:
+            if not done.cancelled() and isinstance(done.exception(), BrokenExecutor):
+                self._all[k].lifeline.close()
+                self._all[k] = _begun()
+            self._idle.put(k)
+
+        future.add_done_callback(over)
+        return future
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """End all processes, whatever they are at."""
+        for process in self._all:
+            process.end()
+
+
+def _begun() -> _Process:
+    """A pool whose process begins with its first call."""
+    context = get_context("spawn")
+    theirs, ours = context.Pipe(duplex=False)
+    return _Process(ProcessPoolExecutor(1, context, _tied, (theirs,)), ours)
+
+
+def _tied(lifeline: Connection) -> None:
+    """End this process when the other end of a pipe is closed; leave it to that one to be interrupted."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+
+    def watch() -> None:
+        wait([lifeline])
+        os._exit(1)
+
+    Thread(target=watch, daemon=True).start()
+
+
+@contextmanager
+def _single_threaded() -> Iterator[None]:
+    """What processes that are started in here inherit."""
+    before = {name: os.environ.get(name) for name in ONE_THREAD}
+    os.environ.update(dict.fromkeys(ONE_THREAD, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+@contextmanager
+def _main_hidden() -> Iterator[None]:
+    """Processes that are started in here do not run the user's script again, of which they need nothing."""
+    main = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = main
