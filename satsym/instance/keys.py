@@ -55,6 +55,8 @@ def _written(value: Any) -> str:
     """A default as TOML has it; nothing for what is not there."""
     if value is None or value == ():
         return ""
+    if isinstance(value, bool):
+        return str(value).lower()
     return f'"{value}"' if isinstance(value, str) else repr(value)
 
 

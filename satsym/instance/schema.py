@@ -34,9 +34,9 @@ Matrix = Annotated[
     list[float | list[float]], Meta(description="a list of rows of numbers, or the list of the diagonal's numbers")
 ]
 Series = Annotated[float | str | list[float | str], Meta(description="a number, or a list of numbers over time")]
-Variations = Annotated[
-    dict[str, str | dict[str, str]], Meta(description='a table of texts, such as "initial.r" = "0.9:1.1:50"')
-]
+Spread = Annotated[str | dict[str, str], Meta(description='text such as "0.9:1.1:50"')]
+Variations = dict[str, Spread]
+Flag = Annotated[bool, Meta(description="true or false")]
 Gains = Annotated[
     tuple[float, float],
     Meta(description="two numbers, the gain of the rate and that of the angle, such as [13.56, 0.0678]"),
@@ -137,21 +137,19 @@ class GuessTable(_Table, frozen=True):
 
 class StudyTable(_Table, frozen=True):
     vary: Annotated[
-        Variations, Key("a grid: FROM:TO:N, log:FROM:TO:N or a list of values", STUDYING, "the model's", "KEY")
+        Variations, Key("a grid: LOW:HIGH:N, evenly spaced, or log:LOW:HIGH:N", STUDYING, "the model's", "KEY")
     ] = {}
     normal: Annotated[
-        Variations, Key("of a sample: MEAN,DEVIATION of a normal distribution", STUDYING, "the model's", "KEY")
+        Variations, Key("a sample: MEAN,SD of a normal distribution", STUDYING, "the model's", "KEY")
     ] = {}
-    uniform: Annotated[
-        Variations, Key("of a sample: LOWEST,HIGHEST, all as likely", STUDYING, "the model's", "KEY")
-    ] = {}
+    uniform: Annotated[Variations, Key("a sample: LOW,HIGH, all as likely", STUDYING, "the model's", "KEY")] = {}
     sample: Annotated[Count | None, Key("size of a sample", STUDYING)] = None
-    method: Annotated[Name | None, Key("how a sample is drawn", STUDYING)] = None
+    method: Annotated[Name | None, Key("how a sample is drawn: sobol, lhs or random", STUDYING)] = None
     seed: Annotated[Seed | None, Key("what a sample is drawn from", STUDYING)] = None
-    command: Annotated[Name | None, Key("what is done with each", STUDYING)] = None
-    certificate: Annotated[Name | None, Key("how much of a certificate each gets", STUDYING)] = None
-    feedback: Annotated[Name | None, Key("the law of a simulation", STUDYING)] = None
-    trajectories: Annotated[bool, Key("whether trajectories are kept", STUDYING)] = False
+    command: Annotated[Name | None, Key("what is done with each: solve, simulate or lqr", STUDYING)] = None
+    certificate: Annotated[Name | None, Key("what is checked of each answer: none, local or full", STUDYING)] = None
+    feedback: Annotated[Name | None, Key("the law of a simulation, as simulate --feedback", STUDYING)] = None
+    trajectories: Annotated[Flag, Key("whether trajectories are kept", STUDYING)] = False
 
 
 class SolverOptions(_Table, frozen=True):

@@ -62,7 +62,7 @@ def test_every_key_is_listed_with_its_meaning_and_commands_that_there_are() -> N
 
 def test_every_key_can_be_written_with_its_default() -> None:
     law = {"follows": "theta", "command": 1.0}
-    required = {"model": "a", "initial": {}, "time": {"tf": 1.0}, "classical": law}
+    required = {"model": "a", "initial": {}, "time": {"tf": 1.0}, "classical": law, "study": {}}
     plain = msgspec.to_builtins(check(required))
     for entry in entries():
         if entry.default:
