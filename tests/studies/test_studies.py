@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import math
 import os
 import signal
 import subprocess
@@ -23,6 +24,7 @@ from satsym.front.analysing import lqr
 from satsym.front.instance import load
 from satsym.front.studies import study
 from satsym.report import study as reports
+from satsym.report.results.studies import telling
 from satsym.status import BadInput
 from satsym.studies import cluster, parts, reading, running
 from satsym.studies.asked import Checked, Study
@@ -364,3 +366,16 @@ def test_a_cluster_whose_worker_is_killed_gives_the_same_bytes(tmp_path: Path) -
         reports.carry_out(asked(24), tmp_path / "there", lambda: executor, at_once, watch=kill)
     assert killed
     assert (tmp_path / "there/table.csv").read_bytes() == (tmp_path / "here/table.csv").read_bytes()
+
+
+def test_what_is_rounding_or_the_same_in_each_row_is_not_drawn() -> None:
+    rounding, steady = np.array([1e-14, -3e-15, 0.0]), np.full(3, 6.28)
+    given = {
+        "t_final": steady,
+        "x_final.v": rounding,
+        "objective": np.array([1e-12, 2e-12, math.nan]),
+        "none": rounding * math.nan,
+    }
+    assert list(telling(given)) == ["objective"]
+    assert list(telling({"t_final": steady, "x_final.v": rounding})) == ["t_final"]
+    assert list(telling({name: np.arange(3.0) for name in "abcd"})) == ["a", "b", "c"]

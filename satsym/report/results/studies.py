@@ -40,6 +40,9 @@ SHOWN = 5
 DRAWN, MOST_DRAWN = ("objective", "t_final", "cost_from_initial"), 3
 """Columns that are drawn first, and how many are."""
 
+MOST_READ, ROUNDING = 16, 1e-9
+"""How many of them are looked at, and what may differ by rounding alone."""
+
 FEWEST_IN_FILE, MOST_FILES = 1000, 100
 """Rows of a file of trajectories where there are not too many for that, and files of them."""
 
@@ -214,7 +217,7 @@ def numbers(path: Path, said: Mapping[str, Any]) -> Numbers:
         drawn = [names.index(name) for name in DRAWN if name in names]
         first = len(varied) + 4  # the number, the key, the status and its message stand before
         drawn += [k for k in range(first, len(names)) if k not in drawn and names[k] not in TEXTS]
-        chosen, place = [*varied, *drawn[:MOST_DRAWN]], names.index("status")
+        chosen, place = [*varied, *drawn[:MOST_READ]], names.index("status")
         status: list[str] = []
         values = array("d")
         for row in rows:
@@ -226,10 +229,25 @@ def numbers(path: Path, said: Mapping[str, Any]) -> Numbers:
     return Numbers(
         title=title,
         varied={labels[k]: columns[labels[k]] for k in varied},
-        quantities={labels[k]: columns[labels[k]] for k in chosen[len(varied) :]},
+        quantities=telling({labels[k]: columns[labels[k]] for k in chosen[len(varied) :]}),
         status=status,
         shape=tuple(said["grid"]) if said["grid"] else None,
     )
+
+
+def telling(quantities: Mapping[str, Array]) -> dict[str, Array]:
+    """The first of them that differ from row to row by more than rounding does; where none does, the first alone."""
+
+    def varies(name: str, values: Array) -> bool:
+        known = values[np.isfinite(values)]
+        if not known.size:
+            return False
+        # a final state that is given as zero is nothing but rounding
+        size = float(np.abs(known).max()) + name.startswith("x_final")
+        return bool(np.ptp(known) > ROUNDING * size)
+
+    found = [name for name, values in quantities.items() if varies(name, values)]
+    return {name: quantities[name] for name in (found or list(quantities))[: MOST_DRAWN if found else 1]}
 
 
 def _case(study: Study, number: int, values: Sequence[float]) -> dict[str, Any]:
