@@ -10,6 +10,7 @@ from satsym import methods, solvers
 from satsym.instance import Instance
 from satsym.solution import Certificate, Solution
 from satsym.solvers.certificate.bulk import certify_all
+from satsym.solvers.redundant_ends import redundant
 from satsym.solvers.repeated import Repeated
 from satsym.status import BadInput, Verdict
 from satsym.studies import rows
@@ -42,9 +43,10 @@ def warm(task: Task) -> bool:
     """Whether rows may start from their neighbours: what varies leaves scales and ends as they are."""
     instance, spec = task.instance, task.instance.model.spec
     fitting = instance.solver.method in (methods.AUTO, "collocation") and not (instance.free or instance.continuation)
-    smooth = not (spec.switching or spec.throttled or spec.stationary or spec.directional)
+    smooth = not (spec.switching or spec.throttled or spec.stationary or spec.directional or spec.path_constraints)
     stays = all(key.table in (Table.INITIAL, Table.PARAMETERS) for key in task.keys)
-    return fitting and smooth and stays and not instance.solver.free_angles and not instance.guess
+    plain = not (instance.solver.free_angles or instance.guess)
+    return fitting and smooth and stays and plain and redundant(instance) is None
 
 
 def alone(instance: Instance, checked: Checked) -> Solution:

@@ -286,7 +286,7 @@ def test_killed_at_any_moment_no_finished_chunk_is_lost(tmp_path: Path) -> None:
 
 @pytest.mark.study
 def test_killed_twenty_times_no_finished_chunk_is_lost(tmp_path: Path) -> None:
-    killed(tmp_path, np.random.default_rng(1).uniform(0.0, 0.5, 20).tolist(), rows=16000)
+    killed(tmp_path, np.random.default_rng(1).uniform(0.0, 0.5, 20).tolist(), rows=40000)
 
 
 def killed(folder: Path, moments: list[float], rows: int) -> None:
@@ -304,7 +304,7 @@ def killed(folder: Path, moments: list[float], rows: int) -> None:
                     time.sleep(moment)
                     break
                 time.sleep(0.005)
-            os.kill(process.pid, signal.SIGKILL)
+            process.kill()
         assert lines.exists(), "done before it could be killed"
         with parts.opened(folder / "cut") as kept:
             assert done <= set(kept.done), "a chunk was lost"

@@ -82,7 +82,8 @@ def certify_all(solutions: Sequence[Solution]) -> list[Certificate | None]:
 def fits(solution: Solution) -> bool:
     """Whether a solution is of a kind that is certified here."""
     instance, spec = solution.instance, solution.instance.model.spec
-    smooth = not (spec.switching or spec.throttled or spec.stationary or spec.directional or spec.multipliers)
+    smooth = not (spec.switching or spec.throttled or spec.stationary or spec.directional)
+    smooth = smooth and not (spec.multipliers or spec.path_constraints)
     given = instance.tf is not None and len(instance.final) == len(instance.initial)
     steps = instance.solver.steps
     divided = _divisor(steps, LEAPS) is not None and _divisor(steps, LOOKS) is not None
