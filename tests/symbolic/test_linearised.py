@@ -15,6 +15,7 @@ from scipy.linalg import expm, solve_continuous_are
 
 from satsym.codegen import module
 from satsym.kernels import Kernels, from_text, load
+from satsym.kernels.digest import sealed
 from satsym.status import BadInput
 from satsym.symbolic import (
     Definition,
@@ -375,7 +376,7 @@ def test_a_model_without_parameters_and_controls_is_generated():
 
 def test_the_text_is_the_same_every_time(repository: Path):
     text = module.render(small("time_varying"), "derivations/small_systems.py")
-    assert text == (repository / "generated" / "time_varying.py").read_text(encoding="utf-8")
+    assert text == sealed((repository / "generated" / "time_varying.py").read_text(encoding="utf-8"))
 
 
 def test_linear_functions_compile():

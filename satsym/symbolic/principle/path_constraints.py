@@ -101,9 +101,9 @@ def constraint_multiplier(so_far: Derivation) -> Step | None:
             Equation(pn.vanishing_entry(found.name, k), pn.vanishing(found.name, k), e) for k, e in enumerate(vanishing)
         ]
         equations.append(Equation(f"{found.name}_eta", eta, value))
-        checks.append(
-            _rates_along((*vanishing, sp.Integer(0)), {x: r.xreplace({eta: value}) for x, r in moving.items()})
-        )
+        chain = (found.rates[-2], *vanishing, sp.Integer(0))
+        checks.append(_rates_along(chain, {x: r.xreplace({eta: value}) for x, r in moving.items()}))
+        checks.append(_adjoined(so_far, found, [moving[lam] for lam in costates(so_far)]))
     rule, sources = worded("keep the law on the boundary", _problem(so_far)), (STEP, "control_law", "costate_equations")
     return Step("constraint_multiplier", rule, tuple(equations), sources, tuple(checks))
 
@@ -144,7 +144,8 @@ def junction_conditions(so_far: Derivation) -> Step | None:
         equations += [
             Equation(f"{found.name}_tangency_{k}", pn.rate(found.name, k), sp.Integer(0)) for k in range(found.order)
         ]
-        jumps = [sign(problem) * zeta * sp.diff(g, x) for x in states]
+        jumps = [tidy(sign(problem) * zeta * sp.diff(g, x)) for x in states]
+        jump_of_h = tidy(-sign(problem) * zeta * sp.diff(g, t))
         before = {costate: costate + jump for costate, jump in zip(lam, jumps, strict=True)}
         if found.order == 1:
             vanishing = _vanishing(so_far, found)[0]
@@ -155,15 +156,13 @@ def junction_conditions(so_far: Derivation) -> Step | None:
             equations.append(Equation(f"{found.name}_jump", zeta, sp.Integer(0)))
             continue
         kept += [value.xreplace(before) - value for value in law.values()]
-        along = h.xreplace(before) - h - sign(problem) * zeta * (found.rates[1] - sp.diff(g, t))
-        kept.append(along)
+        # the rate of g vanishes where the jump is
+        kept.append(h.xreplace(before) - h - sign(problem) * zeta * found.rates[1] - jump_of_h)
         equations += [
-            Equation(f"{found.name}_{costate.name}", pn.change(costate), tidy(jump))
+            Equation(f"{found.name}_{costate.name}", pn.change(costate), jump)
             for costate, jump in zip(lam, jumps, strict=True)
         ]
-        equations.append(
-            Equation(f"{found.name}_H", pn.change(n.HAMILTONIAN), tidy(-sign(problem) * zeta * sp.diff(g, t)))
-        )
+        equations.append(Equation(f"{found.name}_H", pn.change(n.HAMILTONIAN), jump_of_h))
     check = identity("the control passes junctions unchanged", kept)
     rule = worded("junctions", problem)
     return Step("junction_conditions", rule, tuple(equations), (STEP, "control_law"), (check,))
