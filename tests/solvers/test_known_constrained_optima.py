@@ -93,7 +93,7 @@ def test_a_satellite_touches_its_floor_and_then_follows_it():
     check("return-above", simulated(found)[0][8], found[[4, 6, 9]])
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_a_satellite_touches_the_end_of_its_slot_twice():
     slot = np.radians(3.0)
 
@@ -151,7 +151,7 @@ def test_a_rendezvous_slides_along_its_approach_cone():
     check("approach-cone", simulated(found)[0][8], found[[4, 7]])
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_round_two_discs_a_spline_leads_through_two_points_at_which_it_is_stationary():
     """Between touch points accelerations are linear in time: the least effort through two given points is a spline."""
 

@@ -201,7 +201,7 @@ DAMPED = Problem(
 )
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.parametrize(("least", "near"), [(0.4, [0.628, 1.469]), (0.2, [0.2947, 3.624])])
 def test_van_der_pols_oscillator_keeps_to_a_lowest_velocity_as_by_shooting(least: float, near: list[float]):
     """Of order one, so that lambda_v = -2 u on the boundary; at 0.2 the end, which is free, is on it as well."""

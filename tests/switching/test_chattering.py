@@ -148,7 +148,7 @@ def best_of(switches: int, damping: float, start: tuple[float, float]) -> float:
     return float(minimize(first, begun, constraints=[met], bounds=bounds, method="SLSQP", options=options).fun)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_a_damped_body_cannot_be_undercut_by_six_switches(tmp_path: Path) -> None:
     assert best_of(6, 0.0, (0.0, 1.0)) == pytest.approx(least(0.0, 1.0)[0], rel=1e-8)
     damped = problem("damped", {x: y, y: -0.3 * y + v}, x**2, ("v",))
@@ -160,7 +160,7 @@ def test_a_damped_body_cannot_be_undercut_by_six_switches(tmp_path: Path) -> Non
     assert failed(found) == [CHATTERS]
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.parametrize(
     ("one", "start", "tf"),
     [
