@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
+from typing import Any
 
 import hypothesis
 import pytest
@@ -53,6 +54,13 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     spared |= {item for own in cases.values() if len(own) > FEW for k, item in enumerate(own) if k % SHARE}
     config.hook.pytest_deselected(items=[item for item in items if item in spared])
     items[:] = [item for item in items if item not in spared]
+
+
+@pytest.fixture(scope="session")
+def sample(request: pytest.FixtureRequest) -> Callable[[Iterable[Any]], list[Any]]:
+    """What is looked at of many cases in one test: every third, or all if all are asked for."""
+    step = 1 if request.config.getoption("--whole") else SHARE
+    return lambda cases: list(cases)[::step]
 
 
 @pytest.fixture(scope="session")

@@ -168,14 +168,14 @@ def test_a_second_route_finds_fault_with_it_too(document, key):
 
 
 @pytest.mark.slow
-def test_the_audit_and_the_second_routes_agree(judged):
+def test_the_audit_and_the_second_routes_agree(judged, sample):
     """No false alarm: whatever is not confirmed has a route, and the route reaches the same verdict."""
     for document, routes in ROUTES.items():
         found = {row.key: row.verdict for row in judged[document] if row.verdict != "confirmed"}
         assert {key for key, verdict in found.items() if verdict == "illegible"} == UNREAD[document]
         assert set(found) - UNREAD[document] == set(routes)
-        reached = {key: route(rows(document), key) for key, route in routes.items()}
-        assert {key: found[key] for key in routes} == reached
+        reached = {key: route(rows(document), key) for key, route in sample(routes.items())}
+        assert {key: found[key] for key in reached} == reached
 
 
 @pytest.mark.slow

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -13,9 +15,9 @@ VARIANTS = Path(__file__).parent / "variants"
 
 
 @pytest.mark.parametrize("document", DOCUMENTS)
-def test_each_claim_denied_has_the_other_truth(document: str) -> None:
+def test_each_claim_denied_has_the_other_truth(document: str, sample: Callable[[Iterable[Any]], list[Any]]) -> None:
     open_ = []
-    for row in claims(document):
+    for row in sample(claims(document)):
         before = judged(document, row, str(row.table.printed))
         after = judged(document, row, f"not ({row.table.printed})")
         if before.truth is None:

@@ -102,6 +102,7 @@ def compared(solution: Solution) -> set[Kind]:
     return {found.kind for found in certificate(solution).competitors}
 
 
+@pytest.mark.study
 def test_a_transfer_in_cartesian_coordinates_makes_the_revolutions_that_cost_least(tmp_path: Path) -> None:
     """Polar coordinates, where the final angle says how many they are, give the same cost."""
     case = build(
@@ -135,6 +136,7 @@ def test_spirals_lead_from_the_start_to_the_end_with_their_turns(tmp_path: Path)
         assert (angle[-1] - angle[0]) / (2.0 * np.pi) == pytest.approx(spiral.turns, abs=0.03)
 
 
+@pytest.mark.study
 def test_a_force_that_fades_leads_from_each_spiral_to_the_minimum_with_its_turns(tmp_path: Path) -> None:
     """Polar coordinates have the same minima, by final angle; with all of the force the spiral is a motion."""
     text = "[initial]\nx = 1.0\ny = 0.0\nv_x = 0.0\nv_y = 1.0\n[final]\nx = -1.2\ny = 0.0\nv_x = 0.0\nv_y = -0.9\n"

@@ -81,7 +81,7 @@ def test_pictures_are_those_of_the_run_itself(solution: Solution, tmp_path: Path
         assert (tmp_path / "again" / path.name).read_bytes() == path.read_bytes(), path.name
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_pictures_are_drawn_for_print_too(folder: Path) -> None:
     plotted(NAME, "--from", folder, "--format", "pdf")
     pictures = list(folder.glob("*.pdf"))

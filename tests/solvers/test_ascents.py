@@ -116,7 +116,7 @@ def test_the_least_mass_is_burnt_where_only_the_end_costs(tmp_path: Path) -> Non
     assert found.certificate.verdict is Verdict.CERTIFIED
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_little_time_to_spare_makes_a_short_coast_and_less_than_the_least_is_infeasible(tmp_path: Path) -> None:
     """Burn, coast, burn: the switching function is as large at the end of the coast as at its start."""
     case = throttled(tmp_path)

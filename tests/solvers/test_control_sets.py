@@ -281,6 +281,7 @@ max_norm = 0.1405
 """
 
 
+@pytest.mark.study
 def test_thrust_in_a_ball_whose_size_burns_mass_is_full_in_minimum_time(tmp_path: Path):
     """The same as with a mass that is known in time, of which a shipped example is held against shooting."""
     found = certified(build(tmp_path, thrusting("hurry", 1, sympify(0)), ORBITS.format('"free"')))

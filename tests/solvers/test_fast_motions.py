@@ -49,6 +49,7 @@ def test_a_law_of_any_form_gives_the_same_stiff_motion() -> None:
     assert (np.abs(stepped.x - exact.x) / np.abs(exact.x).max(axis=1, keepdims=True)).max() < 1e-7
 
 
+@pytest.mark.study
 def test_a_stiff_nonlinear_motion_is_that_of_many_short_steps() -> None:
     given = with_steps("lapan-coupling", 50, 2.0)
     found = simulate(given, "none")

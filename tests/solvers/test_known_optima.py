@@ -150,7 +150,7 @@ def test_the_catalysts_are_mixed_in_a_constant_ratio_in_between():
     assert ours.switching_times[0] == pytest.approx(least.x[:2], abs=1e-6)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_the_body_turns_about_no_fixed_axis():
     """Bilimoria and Wie: five switches; they and the time by the six conditions at the end. About one axis: 3.545."""
     levels = (-1.0, -1.0, 1.0)

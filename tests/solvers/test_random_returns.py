@@ -25,7 +25,7 @@ from satsym.solvers.iteration import Limits
 from satsym.status import Status
 from tests.support.samples import EASY, HARD, Population
 
-EACH, STUDY, SHARE = 6, 204, 9
+EACH, STUDY, SHARE = 6, 204, 17
 """Cases of a test, and of all of them; every so many tests one that always runs.
 
 One case of a test has a whole certificate: competitors take longer than solving.
@@ -53,7 +53,7 @@ def test_hard_returns_are_solved_from_nothing(first: int) -> None:
 
 
 def test_easy_returns_are_solved_from_nothing() -> None:
-    check(EASY, range(50))
+    check(EASY, range(20))
 
 
 def check(population: Population, numbers: range) -> None:

@@ -83,6 +83,7 @@ def test_a_start_too_far_away_is_no_reason_to_fail(pair: Pair):
     assert pair.plain.solve().status is Status.CONVERGED
 
 
+@pytest.mark.study
 def test_no_answer_is_none(pair: Pair):
     answer = pair.bounded.solve(initial=(1.3, 0.0, 0.0, 0.9))
     assert not answer.status.answered

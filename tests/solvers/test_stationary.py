@@ -60,7 +60,7 @@ def test_the_chain_hangs_as_a_catenary():
     assert found.objective == pytest.approx(catenary(), rel=1e-9)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_the_shuttle_glides_as_far_as_by_direct_collocation():
     """CasADi and Ipopt, Radau points of degree 5 on 40, 80 and 120 intervals: 34.141184287, ...284321, ...284256."""
     found = solve(instance.load("shuttle"))

@@ -307,6 +307,7 @@ def test_an_angle_that_follows_the_reference_may_lose_turns():
     assert "theta ends 1 turn above" in found.message
 
 
+@pytest.mark.study
 def test_the_thesis_can_be_answered_with_thrusts_both_ways():
     found = two_point.solve(instance.load("its-thesis-return-two-sided"))
     assert found.status is Status.CONVERGED

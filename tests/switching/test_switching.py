@@ -103,6 +103,7 @@ def test_hardly_more_than_the_least_time_leaves_a_short_coast() -> None:
     assert found.switching_times[0] == pytest.approx(known.switches, abs=1e-9)
 
 
+@pytest.mark.study
 def test_a_control_that_only_pushes_away_is_infeasible_and_the_nearest_end_is_told() -> None:
     # With u >= 1/2 for 3 s from q = 1 nothing ends below q = 1 + 9/4, or slower than 3/2.
     found = solving.solve(case(FUEL, initial=(1.0, 0.0), tf=3.0, lower=(0.5,)))
@@ -137,6 +138,7 @@ def test_where_any_brake_costs_the_same_the_cost_is_found_and_no_strict_minimum_
     assert "not strict: other controls cost the same" in failed
 
 
+@pytest.mark.study
 def test_fuel_without_a_weight_on_time_has_no_minimiser() -> None:
     assert solving.solve(case(FUEL, tf=None)).status is Status.NO_MINIMISER
 

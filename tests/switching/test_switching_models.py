@@ -143,7 +143,7 @@ def test_two_controls_switch_each_at_its_own_times(tmp_path: Path) -> None:
     assert_certified(found)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_an_orbit_is_raised_in_least_time_by_two_thrusters(tmp_path: Path) -> None:
     states = (Variable("r", "r", positive=True), Variable("r_dot", "s"), Variable("rotation", "n"))
     controls = (Variable("radial", "a"), Variable("tangential", "b"))

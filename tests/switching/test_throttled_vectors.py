@@ -196,6 +196,7 @@ def test_a_vector_in_an_annulus_has_its_least_or_its_largest_norm(tmp_path: Path
     assert failed(found) == []
 
 
+@pytest.mark.study
 def test_a_norm_that_nothing_decides_has_no_answer(tmp_path: Path):
     """A velocity that is steered: any course at any speeds along the straight line costs its length."""
     text = BETWEEN.replace("vx = 0.0\nvy = 0.0\n", "")
@@ -204,7 +205,7 @@ def test_a_norm_that_nothing_decides_has_no_answer(tmp_path: Path):
     assert "for some time nothing decides the norm of a vector" in found.message
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_a_transfer_that_may_begin_at_any_time_is_no_strict_minimum():
     """From circle to circle with time to spare and the place on the second one left open."""
     met = instance.load("transfer-fuel")
@@ -213,7 +214,7 @@ def test_a_transfer_that_may_begin_at_any_time_is_no_strict_minimum():
     assert failed(found) == ["second variation in lengths of arcs and directions"]
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_fuel_may_be_what_is_left_at_the_end(tmp_path: Path):
     left = replace(transfer_fuel, name="left", running_cost=0, terminal_cost=-m)
     met: Instance = instance.load("transfer-fuel")
@@ -223,7 +224,7 @@ def test_fuel_may_be_what_is_left_at_the_end(tmp_path: Path):
     assert failed(found) == []
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_full_thrust_all_the_time_needs_no_switches(tmp_path: Path):
     hurried = replace(transfer_fuel, name="hurried", running_cost=transfer_fuel.running_cost / 10 + 1)
     text = instance.load("transfer-fuel").path.read_text(encoding="utf-8").split("\n", 2)[2]

@@ -46,7 +46,7 @@ TUMOUR = Problem(
     [
         # by CasADi and Ipopt, Runge-Kutta steps 3000 between piecewise constant controls
         (4314.410609539558, 15.0, "-s-", 8458.1560731, 0.4470414),
-        pytest.param(8000.0, 15.0, "+s-", None, None, marks=pytest.mark.slow),
+        pytest.param(8000.0, 15.0, "+s-", None, None, marks=pytest.mark.study),
     ],
 )
 def test_a_singular_dose_ends_in_rest(

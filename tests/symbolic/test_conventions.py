@@ -116,10 +116,15 @@ def test_every_step_has_its_texts(problem: Problem, language: str, convention: C
 
 
 SHIPPED = [p for path in loader.shipped() for p in loader.load(path) if isinstance(p, Problem)]
+LONG = {"shuttle", "reorientation"}
+"""Problems that take more than ten seconds to derive."""
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("problem", SHIPPED, ids=lambda p: p.name)
+@pytest.mark.parametrize(
+    "problem",
+    [pytest.param(p, marks=[pytest.mark.study] if p.name in LONG else [], id=p.name) for p in SHIPPED],
+)
 def test_every_shipped_problem_can_be_told_in_the_other_convention(problem: Problem) -> None:
     (other,) = set(get_args(Convention)) - {problem.convention}
     assert latex.render(shared.derived(replace(problem, convention=other)))

@@ -241,6 +241,7 @@ def test_equations_of_motion_are_those_of_lagrange(name: str) -> None:
         np.testing.assert_allclose(ours(*point), by_lagrange(*point), rtol=1e-11, atol=1e-12)
 
 
+@pytest.mark.study
 def test_spherical_equations_are_those_of_the_textbook() -> None:
     r, _, phi, r_dot, theta_dot, phi_dot = symbols_of(spherical().states)
     a, b, c = symbols_of(spherical().controls)

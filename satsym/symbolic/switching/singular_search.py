@@ -39,15 +39,17 @@ class Surface:
 
     def add(self, condition: sp.Expr, unknowns: Sequence[sp.Symbol]) -> None:
         """Solve a condition, reduced before, for the first unknown it is linear in, and certainly if there is one."""
-        candidates = []
+        chosen: tuple[sp.Symbol, sp.Expr] | None = None
         for unknown in unknowns:
-            slope = _simplest(sp.diff(condition, unknown))
-            if slope != 0 and not slope.has(unknown):
-                candidates.append((not slope.is_nonzero, unknowns.index(unknown), unknown, slope))
-        if not candidates:
+            slope = _slope(condition, unknown)
+            if slope is not None and (chosen is None or slope.is_nonzero):
+                chosen = unknown, slope
+                if slope.is_nonzero:
+                    break
+        if chosen is None:
             self.left.append(condition)
             return
-        *_, unknown, slope = min(candidates, key=lambda c: c[:2])
+        unknown, slope = chosen
         value = _simplest(-condition.xreplace({unknown: sp.Integer(0)}) / slope)
         self.solved = {k: _simplest(v.xreplace({unknown: value})) for k, v in self.solved.items()} | {unknown: value}
 
@@ -136,18 +138,27 @@ def _search(
 
 
 def _with_costates(condition: sp.Expr, surface: Surface, lam: Sequence[sp.Symbol]) -> sp.Expr:
-    """A condition without the factor whose vanishing would make all costates vanish, if another factor is left."""
-    numerator = sp.numer(sp.together(condition))
-    try:
-        factors = [factor for factor, _ in sp.factor_list(numerator)[1]]
-    except sp.PolynomialError:  # fractional powers, of which sympy makes no polynomial
-        factors = list(sp.Mul.make_args(numerator))
+    """A reduced condition without the factor whose vanishing would make all costates vanish, if another is left."""
+    bases = (factor.as_base_exp()[0] for factor in sp.Mul.make_args(sp.numer(condition)))
+    factors = [base for base in bases if base.free_symbols]
     others = [factor for factor in factors if not factor.free_symbols & set(lam)]
     for factor in factors:
         values = [surface.solved.get(c, c).xreplace({factor: sp.Integer(0)}) for c in lam]
         if factor in lam and others and all(_simplest(v) == 0 for v in values):
             return sp.Mul(*others)
     return condition
+
+
+def _slope(condition: sp.Expr, unknown: sp.Symbol) -> sp.Expr | None:
+    """What multiplies an unknown in a condition that is a product, as reduced ones are, and linear in it."""
+    having = [factor for factor in sp.Mul.make_args(condition) if factor.has(unknown)]
+    if len(having) != 1 or having[0].is_Pow:
+        return None
+    if not having[0].is_polynomial(unknown):
+        slope = _simplest(sp.diff(having[0], unknown))
+        return None if slope.has(unknown) else slope * condition / having[0]
+    polynomial = sp.Poly(having[0], unknown)
+    return _simplest(polynomial.LC()) * condition / having[0] if polynomial.degree() == 1 else None
 
 
 def _simplest(expression: sp.Expr) -> sp.Expr:
