@@ -19,9 +19,9 @@ import numpy as np
 from satsym import __version__, sources
 from satsym.arrays import Array
 from satsym.instance import Instance
+from satsym.instance.numbers import Key
 from satsym.kernels import Kernels
 from satsym.studies.design import Design, chain
-from satsym.studies.keys import Key
 
 
 class Command(str, Enum):

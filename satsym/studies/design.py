@@ -11,7 +11,7 @@ from typing import TypeAlias
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.studies.keys import Key
+from satsym.instance.numbers import Key
 
 METHODS = ("sobol", "lhs", "random")
 """Of sampling: Sobol' points with a random shift and scramble, Latin hypercubes, independent points."""

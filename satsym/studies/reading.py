@@ -8,10 +8,10 @@ from typing import Any
 import msgspec
 
 from satsym.instance import Instance
+from satsym.instance import numbers as keys
+from satsym.instance.numbers import Key
 from satsym.status import BadInput
-from satsym.studies import keys
 from satsym.studies.design import METHODS, Axis, Design, Distribution, Grid, Sample
-from satsym.studies.keys import Key
 from satsym.wording import printable, shown, suggestion
 
 MOST_ROWS = 10**7

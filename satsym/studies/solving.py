@@ -8,6 +8,7 @@ from functools import lru_cache
 
 from satsym import methods, solvers
 from satsym.instance import Instance
+from satsym.instance.numbers import Table
 from satsym.solution import Certificate, Solution
 from satsym.solvers.certificate.bulk import certify_all
 from satsym.solvers.redundant_ends import redundant
@@ -15,7 +16,6 @@ from satsym.solvers.repeated import Repeated
 from satsym.status import BadInput, Verdict
 from satsym.studies import rows
 from satsym.studies.asked import Checked, Task
-from satsym.studies.keys import Table
 from satsym.studies.rows import Cases, Row, Work
 
 ALONE = "single solver"

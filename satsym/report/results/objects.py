@@ -94,7 +94,7 @@ def _continuation(solution: Solution) -> dict[str, list[dict[str, Any]]]:
     spec = solution.instance.model.spec
     rows = [
         {
-            **{one.key: plain(one.of(answer.instance)) for one in solution.instance.continuation},
+            **{one.key.short: plain(one.key.of(answer.instance)) for one in solution.instance.continuation},
             "objective": plain(spec.objective(answer.objective)),
             "t_final": _at(answer.times, -1),
             "costate_initial": _each(spec.state_names, answer.lam, 0),

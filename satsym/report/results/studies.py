@@ -18,13 +18,13 @@ from typing import IO, Any
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.instance.numbers import Table
 from satsym.report.results.files import Content
 from satsym.report.results.objects import head
 from satsym.report.results.unit_names import units
 from satsym.spec import ProblemSpec
 from satsym.status import Status
 from satsym.studies.asked import Command, Study
-from satsym.studies.keys import Table
 from satsym.studies.parts import Parts
 from satsym.studies.rows import Row, Scalar
 from satsym.wording import counted
