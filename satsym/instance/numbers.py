@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING
@@ -158,6 +158,22 @@ def _instead(text: str, names: dict[str, Key]) -> str:
     """What to write; bare names, which tables have too, are found by their ends."""
     ending = [name for name in names if name.partition(".")[2] == text]
     return f'did you mean "{ending[0]}"?' if ending else suggestion(text, names)
+
+
+def changed(instance: Instance, values: Mapping[str, float]) -> Instance:
+    """An instance with other values of some numbers, by their names; see :func:`at`."""
+    return at(instance, tuple(find(name, instance) for name in values), tuple(values.values()))
+
+
+def texts(table: Mapping[str, str | Mapping[str, str]]) -> list[tuple[str, str]]:
+    """Keys and what is said of them, whether a table has ``"initial.r"`` or a table ``initial`` with ``r``."""
+    found: list[tuple[str, str]] = []
+    for name, value in table.items():
+        if isinstance(value, str):
+            found.append((name, value))
+        else:
+            found += [(f"{name}.{inner}", text) for inner, text in value.items()]
+    return found
 
 
 def at(instance: Instance, keys: tuple[Key, ...], values: tuple[float, ...]) -> Instance:

@@ -11,6 +11,7 @@ from satsym.instance import Instance
 from satsym.instance.numbers import Table
 from satsym.solution import Certificate, Solution
 from satsym.solvers.certificate.bulk import certify_all
+from satsym.solvers.improving import goes_on
 from satsym.solvers.redundant_ends import redundant
 from satsym.solvers.repeated import Repeated
 from satsym.status import BadInput, Verdict
@@ -57,9 +58,7 @@ def alone(instance: Instance, checked: Checked) -> Solution:
     if checked is Checked.NONE:
         return replace(found, certificate=None)
     found = certified(found)
-    if found.certificate is None or found.certificate.verdict is Verdict.LOCAL_MINIMUM:
-        return found
-    return solvers.solve(instance)  # which goes on from what is no minimum
+    return solvers.solve(instance) if goes_on(found) else found
 
 
 def certified(solution: Solution) -> Solution:
@@ -108,5 +107,5 @@ def _again(repeated: Repeated, instance: Instance) -> tuple[Solution, str] | Non
         if not answer.status.answered:
             return None
         return replace(repeated.solution(answer), instance=instance), answer.origin.value
-    except Exception:  # the single solver tells what it is
+    except Exception:  # the single solver says what it is
         return None

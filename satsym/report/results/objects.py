@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from satsym import __version__
@@ -48,6 +48,11 @@ def head_about(command: str, given: Instance | Kernels, status: Status) -> dict[
 
     name, model = (None, given) if isinstance(given, Kernels) else (given.name, given.model)
     return head(command, model.spec, name, status)
+
+
+def with_settings(result: dict[str, Any], given: Mapping[str, float]) -> dict[str, Any]:
+    """An object with the numbers that were given beside the instance, by name; no key where there are none."""
+    return result | {"set": dict(given)} if given else result
 
 
 def solution_object(solution: Solution) -> dict[str, Any]:
