@@ -18,7 +18,7 @@ EXTRAS = {
     "fast": "compiled kernels, for many steps or many cases",
     "cluster": "studies on a Dask cluster",
     "control": "comparison with python-control",
-    "bench": "the peers that `make bench` times",
+    "bench": "the peers that `make bench` times, and Dask",
     "dev": "tests and lint",
 }
 PROGRAMS = (

@@ -30,8 +30,10 @@ def folder_for(name: str, command: str, out: Path | None, look: Look | None) -> 
     folder = out or (Path(RESULTS, name, command) if look else None)
     if folder:
         from satsym.report.results.files import check_writable
+        from satsym.report.results.sets import keep_apart
 
         check_writable(folder)
+        keep_apart(folder, command)
     return folder
 
 
@@ -62,8 +64,10 @@ def split(subject: str) -> tuple[str, str | None]:
 
 def study_folder(subject: str, source: Path | None) -> Path | None:
     """Where the study is that is meant, if one is: its folder itself, or ``NAME/study``."""
-    home = Path(RESULTS, subject) if subject.endswith("/study") else Path(subject)
-    return next((place for place in (source, home) if place is not None and (place / "study.json").is_file()), None)
+    from satsym.report.study import is_study
+
+    places = [source] if source else [Path(subject), Path(RESULTS, subject)]
+    return next((place for place in places if is_study(place)), None)
 
 
 def saved_folder(name: str, command: str | None) -> Path:

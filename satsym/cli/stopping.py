@@ -70,9 +70,9 @@ def comes_of_a_stop(error: BaseException) -> bool:
 
 
 def stopped(error: BaseException) -> int:
-    """Say on stderr, as far as it can be written to, that the command was stopped; its exit code."""
+    """Say on stderr, as far as it can be written to, that the command was stopped, and its notes; its exit code."""
     terminated = isinstance(error, Terminated) or signal.SIGTERM in _asked
-    complain("terminated" if terminated else "interrupted")
+    complain("; ".join(["terminated" if terminated else "interrupted", *getattr(error, "__notes__", ())]))
     return TERMINATED if terminated else INTERRUPTED
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from satsym.report import plots
-from satsym.report.look import FORMATS, Look
+from satsym.report.look import Look
 from satsym.report.results.files import Content, check_writable, store, unwritable
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
@@ -59,10 +59,7 @@ class Pictures(Mapping[str, "Figure"]):
         BadInput
             For a format that is not known here.
         """
-        for each in formats:
-            if each not in FORMATS:
-                raise BadInput(f"no pictures as {shown(each)}; {suggestion(str(each), FORMATS)}")
-        return plots.pictures(self._found, Look(tuple(formats)))
+        return plots.pictures(self._found, Look.of(formats))
 
     def save(self, folder: str | Path, formats: Sequence[str] = ("png",)) -> list[Path]:
         """Write them into a folder; their paths.

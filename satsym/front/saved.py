@@ -11,6 +11,7 @@ import msgspec
 from satsym.front import tables
 from satsym.front.instance import Instance, as_case, load
 from satsym.instance import shipped
+from satsym.instance.numbers import find
 from satsym.report.results import sets, trajectory
 from satsym.report.results.files import Content, check_writable, text
 from satsym.report.results.set_list import LIST, may_hold, unusable
@@ -42,10 +43,11 @@ def save(
         If the folder cannot be written to.
     """
     check_writable(folder)
-    return sets.write(folder, result, trajectory.contents(found) | dict(pictures) | _origin(instance))
+    sets.keep_apart(folder, str(result["command"]))
+    return sets.write(folder, result, trajectory.contents(found) | dict(pictures) | origin(instance))
 
 
-def _origin(instance: Instance) -> dict[str, Content]:
+def origin(instance: Instance) -> dict[str, Content]:
     """The files from which the instance can be read again."""
     model, tree, place = instance.case.model, dict(instance.written.tree), f"{instance.name}.toml"
     if not may_hold(place):
@@ -74,10 +76,24 @@ def read(folder: Path, instance: Instance | str | Path | None) -> tuple[Instance
             folder / LIST,
             f"is of {printable(name)}, which is neither there nor a shipped instance; give that as `instance`",
         )
+    case = _with(case, msgspec.json.decode(listed.result).get("set", {}))
     found, _ = trajectory.read(case.case, folder)
     if given and own and (changed := [part for part in ASKED if _part(given, part) != _part(own, part)]):
         raise unusable(folder / LIST, f"is of another {given.name}: {', '.join(changed)} differ")
     return case, found
+
+
+def _with(case: Instance, settings: Mapping[str, float]) -> Instance:
+    """An instance with the numbers that were given beside it; a continuation that changes one of them ends there."""
+    changes: dict[str, dict[str, Any]] = {}
+    for name, value in settings.items():
+        key = find(name, case.case)
+        changes.setdefault(key.table.value, {})[key.name] = value
+        for one in case.case.continuation:
+            if one.key == key:
+                ends = None if one.begin == value else [one.begin, value]
+                changes.setdefault("continuation", {})[key.short] = ends
+    return case.with_(**changes.pop("time", {}), **changes) if changes else case
 
 
 def _part(instance: Instance, name: str) -> object:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
@@ -11,18 +9,19 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
+from satsym.front import saved
 from satsym.front.instance import Instance, as_case
+from satsym.front.tables import name_of, plain
 from satsym.report.look import Look
 from satsym.report.results.files import to_json
-from satsym.report.results.studies import TABLE
+from satsym.report.results.study_table import TABLE, columns
 from satsym.report.study import carry_out, draw
 from satsym.report.terminal.study import study_text
-from satsym.studies import reading
-from satsym.studies.asking import Options, asked
+from satsym.status import BadInput
+from satsym.studies.asking import asked, named
 from satsym.studies.running import Watch
-from satsym.studies.workers import Workers
+from satsym.studies.workers import Workers, processes
+from satsym.wording import shown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -49,19 +48,14 @@ class Study:
     @cached_property
     def columns(self) -> dict[str, NDArray[Any]]:
         """The table by the names of its columns, units left out: numbers (NaN where there is none), or texts."""
-        with (self.folder / TABLE).open(encoding="utf-8", newline="") as stream:
-            names, *rows = csv.reader(stream)
-        return {
-            name.partition(" [")[0]: _column(column)
-            for name, column in zip(names, zip(*rows, strict=True), strict=True)
-        }
+        return columns(self.folder / TABLE)
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         return self.columns[name]
 
-    def plot(self, formats: Sequence[str] = ("png",), titled: bool = True) -> list[Path]:
+    def plot(self, formats: str | Sequence[str] = "png", titled: bool = True) -> list[Path]:
         """Draw it into its folder; the pictures."""
-        return draw(self.folder, Look(tuple(formats), titled))[1]
+        return draw(self.folder, Look.of(formats, titled))[1]
 
     def to_json(self) -> str:
         """The summary as text."""
@@ -102,25 +96,17 @@ def study(
         A grid: by key a low and a high value and their number, ``(0.9, 1.1, 50)``, or ``"log:1:100:20"``.
     normal, uniform
         Distributions to draw `sample` rows from: by key mean and standard deviation, or both ends.
-    sample, method, seed
-        Rows to draw, by ``"sobol"``, ``"lhs"`` or ``"random"`` points.
-    command
-        ``"solve"``, ``"simulate"`` or ``"lqr"``.
-    certificate
-        Of solve: ``"none"``, ``"local"`` for all but competitors, or ``"full"``.
-    feedback
-        Of simulate.
-    trajectories
-        Whether they are kept, too.
+    sample, method, seed, command, certificate, feedback, trajectories
+        As in the table ``[study]``, instead of what that says; see ``docs/instances.md``.
     resume
         Whether a study may be there.
     workers
-        Processes; by default one a processor.
+        Processes; by default one a processor that this process may use.
     executor
         Makes something of the shape of ``concurrent.futures.Executor`` that computes instead of these processes;
         `workers` calls are given to it at a time.
     progress
-        Told after each chunk how far the study is.
+        Called after each chunk with how far the study is.
 
     Raises
     ------
@@ -134,35 +120,23 @@ def study(
         found = satsym.study("return-to-orbit", "map", vary={"initial.r": (0.9, 1.1, 50)})
         found["objective"].max()
     """
-    case = as_case(instance)
-    design = reading.Written(
-        vary=_said(vary, ":"),
-        normal=_said(normal, ","),
-        uniform=_said(uniform, ","),
-        sample=sample,
-        method=method,
-        seed=seed,
-    )
-    options = Options(command=command, certificate=certificate, feedback=feedback, trajectories=trajectories)
-    found = asked(case.case, case.written.tree.get("study", {}), design, options)
-    count = min(workers or os.cpu_count() or 1, found.chunks)
-    made = executor or (lambda: Workers(count))
-    return Study(Path(folder), carry_out(found, Path(folder), made, count, resume=resume, watch=progress))
+    if not isinstance(folder, str | Path):
+        raise BadInput(f"folder: {shown(folder)} is none; give the path of one")
+    case, place = as_case(instance), Path(folder)
+    said = {"vary": _said(vary, ":"), "normal": _said(normal, ","), "uniform": _said(uniform, ",")}
+    said |= {"sample": sample, "method": method, "seed": seed}
+    said |= {"command": command, "certificate": certificate, "feedback": feedback, "trajectories": trajectories}
+    subject = named(case.written)
+    found = asked(case.written, case.case, plain(said), subject or str(place / f"{case.name}.toml"))
+    count = processes(workers, found.chunks)
+    made, more = executor or (lambda: Workers(count)), {} if subject else saved.origin(case)
+    return Study(place, carry_out(found, place, made, count, resume=resume, watch=progress, more=more))
 
 
-def _said(given: Said | None, between: str) -> list[tuple[str, str]]:
-    """As the command line has it."""
-    pairs = (given or {}).items()
-    return [(str(k), v if isinstance(v, str) else between.join(_text(one) for one in v)) for k, v in pairs]
-
-
-def _text(value: float) -> str:
-    return repr(int(value)) if isinstance(value, int | np.integer) else repr(float(value))
-
-
-def _column(values: Sequence[str]) -> NDArray[Any]:
-    """Numbers, if all that is there is one."""
-    try:
-        return np.array([float(value) if value else np.nan for value in values])
-    except ValueError:
-        return np.array(values)
+def _said(given: Any, between: str) -> Any:
+    """As the command line has it; what is not of that kind as it is, to be refused."""
+    if isinstance(given, Mapping):
+        return {name_of(key): _said(value, between) for key, value in given.items()}
+    if isinstance(found := plain(given), list):
+        return between.join(one if isinstance(one, str) else repr(one) for one in found)
+    return found

@@ -8,7 +8,7 @@ from typing import Any
 
 import msgspec
 
-from satsym.instance.schema import InstanceFile, Key, OneOf, apart, entries_of, inner_table, wanted
+from satsym.instance.schema import InstanceFile, Key, apart, entries_of, inner_table, names_of, wanted
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
@@ -91,5 +91,4 @@ def _of_type(kind: Any) -> dict[str, Any]:
     found = {k: v for k, v in msgspec.json.schema(kind).items() if k != "description"}
     if {"type": "null"} in found.get("anyOf", ()):  # which TOML has not
         found = {k: v for k, v in found["anyOf"][0].items() if k != "description"}
-    names = [meta.names() for meta in getattr(kind, "__metadata__", ()) if isinstance(meta, OneOf)]
-    return found | ({"enum": list(names[0])} if names else {})
+    return found | ({"enum": list(names)} if (names := names_of(kind)) else {})

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from satsym.instance import continuation, control, files, resolve, unknowns
+from satsym.instance import continuation, control, files, numbers, resolve, unknowns
 from satsym.instance.options import guess, lqr, solver
 from satsym.instance.pointing import classical, deadband, driven, limits
 from satsym.instance.schema import InstanceFile, check
@@ -144,4 +144,9 @@ def _resolve(written: Written, file: InstanceFile, model: Kernels) -> Instance:
     changing = continuation.varied(file.continuation, spec, found)
     for one in changing:
         found = one.at(found, 1.0)
-    return replace(found, continuation=changing)
+    found = replace(found, continuation=changing)
+    if file.study:
+        for table in (file.study.vary, file.study.normal, file.study.uniform):
+            for key, _ in numbers.texts(table):
+                numbers.find(key, found)
+    return found

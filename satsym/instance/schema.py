@@ -6,7 +6,7 @@ it, so that what is checked and what is said cannot drift apart.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal, get_args, get_origin
 
@@ -14,6 +14,7 @@ import msgspec
 from msgspec import Meta
 
 from satsym import methods
+from satsym.choices import Checked, Command, Sampling
 from satsym.status import BadInput
 from satsym.wording import printable, shown, suggestion
 
@@ -56,6 +57,9 @@ class OneOf:
 
 
 Method = Annotated[str, OneOf(methods.names)]
+Commands = Annotated[str, OneOf(Command.names)]
+Certificates = Annotated[str, OneOf(Checked.names)]
+Samplings = Annotated[str, OneOf(Sampling.names)]
 Backend = Literal["auto", "python", "numba"]
 Backends = Annotated[Backend, Meta(description="one of " + ", ".join(f'"{b}"' for b in get_args(Backend)))]
 Count = Annotated[int, Meta(ge=1, le=10**7, description="a whole number from 1 to 10000000")]
@@ -144,16 +148,16 @@ class StudyTable(_Table, frozen=True):
     ] = {}
     uniform: Annotated[Variations, Key("a sample: LOW,HIGH, all as likely", STUDYING, "the model's", "KEY")] = {}
     sample: Annotated[Count | None, Key("size of a sample", STUDYING)] = None
-    method: Annotated[Name | None, Key("how a sample is drawn: sobol, lhs or random", STUDYING)] = None
+    method: Annotated[Samplings | None, Key("how a sample is drawn", STUDYING)] = None
     seed: Annotated[Seed | None, Key("what a sample is drawn from", STUDYING)] = None
-    command: Annotated[Name | None, Key("what is done with each: solve, simulate or lqr", STUDYING)] = None
-    certificate: Annotated[Name | None, Key("what is checked of each answer: none, local or full", STUDYING)] = None
+    command: Annotated[Commands | None, Key("what is done with each", STUDYING)] = None
+    certificate: Annotated[Certificates | None, Key("what is checked of each answer", STUDYING)] = None
     feedback: Annotated[Name | None, Key("the law of a simulation, as simulate --feedback", STUDYING)] = None
     trajectories: Annotated[Flag, Key("whether trajectories are kept", STUDYING)] = False
 
 
 class SolverOptions(_Table, frozen=True):
-    """What the solvers are told."""
+    """What solvers are given besides the problem."""
 
     method: Annotated[Method, Key("which solver; by default the one that fits", SOLVING)] = methods.AUTO
     tolerance: Annotated[Positive, Key("largest residual of an answer", MOVING, "1")] = 1e-9
@@ -195,7 +199,7 @@ class InstanceFile(_Table, frozen=True):
         ),
     ] = {}
     lqr: Annotated[LqrTable | None, Key("a linear-quadratic regulator", REGULATING)] = None
-    solver: Annotated[SolverOptions, Key("what the solvers are told", MOVING)] = SolverOptions()
+    solver: Annotated[SolverOptions, Key("options of the solvers", MOVING)] = SolverOptions()
     guess: Annotated[GuessTable, Key("where solvers may start", SOLVING)] = GuessTable()
     classical: Annotated[ClassicalTable | None, Key("a linear law that follows a command", _LAW)] = None
     limits: Annotated[
@@ -225,6 +229,18 @@ def check(tree: dict[str, Any]) -> InstanceFile:
         For the first key that is unknown, missing, or of another type.
     """
     checked: InstanceFile = _table(tree, InstanceFile, "")
+    return checked
+
+
+def study(tree: Mapping[str, Any]) -> StudyTable:
+    """What is asked of a study by the command line or in Python, checked as the table [study] is.
+
+    Raises
+    ------
+    BadInput
+        As :func:`check`.
+    """
+    checked: StudyTable = _table(dict(tree), StudyTable, "")
     return checked
 
 
@@ -265,10 +281,16 @@ def _value(value: Any, kind: Any, section: str, name: str) -> Any:
 
 def _chosen(value: Any, kind: Any) -> Any:
     """A value of a type, which may have to be one of some names."""
-    for meta in getattr(kind, "__metadata__", ()):
-        if isinstance(meta, OneOf) and value not in meta.names():
-            raise msgspec.ValidationError
+    names = names_of(kind)
+    if names and value is not None and value not in names:
+        raise msgspec.ValidationError
     return value
+
+
+def names_of(kind: Any) -> tuple[str, ...]:
+    """The names of which values of a type are one; none where any will do."""
+    metas = (meta for part in (kind, *get_args(kind)) for meta in getattr(part, "__metadata__", ()))
+    return next((meta.names() for meta in metas if isinstance(meta, OneOf)), ())
 
 
 def inner_table(kind: Any) -> type[_Table] | None:

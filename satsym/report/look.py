@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+
+from satsym.status import BadInput
+from satsym.wording import shown, suggestion
 
 FORMATS = ("png", "pdf", "svg")
 
@@ -21,6 +25,22 @@ class Look:
 
     formats: tuple[str, ...] = ("png",)
     titled: bool = True
+
+    def __post_init__(self) -> None:
+        for each in self.formats:
+            if each not in FORMATS:
+                raise BadInput(f"no pictures as {shown(each)}; {suggestion(str(each), FORMATS)}")
+
+    @classmethod
+    def of(cls, formats: str | Sequence[str], titled: bool = True) -> Look:
+        """For one kind of files, or several.
+
+        Raises
+        ------
+        BadInput
+            For one that is not known here.
+        """
+        return cls((formats,) if isinstance(formats, str) else tuple(formats), titled)
 
 
 SCREEN = Look()

@@ -4,27 +4,34 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterator
+import shutil
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
+from satsym.choices import Command
 from satsym.report.look import SCREEN, Look
 from satsym.report.results import sets, studies
 from satsym.report.results.files import Content, check_writable, opened, to_json, write_text
-from satsym.report.results.studies import ASKED, TABLE, Merged
+from satsym.report.results.set_list import ASKED, STUDY
+from satsym.report.results.studies import Merged
+from satsym.report.results.study_table import TABLE
 from satsym.status import BadInput
 from satsym.studies import parts
 from satsym.studies.asked import Study, differences
+from satsym.studies.parts import Parts
+from satsym.studies.rows import Failure
 from satsym.studies.running import Watch, run
 from satsym.wording import printable
 
 LOG = "times.log"
 """When chunks were done and how long they took: not of the results, for it is never twice the same."""
 
-LARGEST = 2**24
-"""Bytes of a study.json that are read."""
+LARGEST, NUMBER = 2**24, 8
+"""Bytes of a study.json that are read, and of a number."""
 
 
 def carry_out(
@@ -35,6 +42,7 @@ def carry_out(
     *,
     resume: bool = False,
     watch: Watch = lambda _: None,
+    more: Mapping[str, Content] = MappingProxyType({}),
 ) -> dict[str, Any]:
     """Carry out a study, or what is missing of it; what result.json holds.
 
@@ -51,44 +59,64 @@ def carry_out(
     resume
         Whether a study may be there, which must be this one.
     watch
-        Told after each chunk how far the study is.
+        Called after each chunk with how far the study is.
+    more
+        Files that belong to it besides.
 
     Raises
     ------
     BadInput
-        If there is a study already and it is not to be resumed, or is another one; or the folder cannot be written to.
+        If the folder holds anything else than this study, or that and it is not to be resumed, or cannot be written to.
     """
     check_writable(folder)
-    found = _found(study, folder, resume)
-    if found is not None:
+    _refuse_other(study, folder, resume)
+    if (done := _done(folder)) is not None:
         parts.remove(folder)  # which a process that was killed may have left
-        return found
+        return done
+    if not (folder / ASKED).exists():
+        _refuse_too_large(study, folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        if not (folder / ASKED).exists():
-            write_text(folder / ASKED, to_json(studies.asked_object(study)))
-        with parts.opened(folder) as kept, _log(folder) as log:
-            if len(kept.done) < study.chunks:
-                with executor() as workers:
-                    run(study, kept, workers, at_once, watch, log=log)
-            merged = Merged(study, kept)
-            result = studies.study_object(merged)
-            files: dict[str, Content] = {TABLE: studies.table(merged), **studies.trajectories(merged)}
-            sets.write(folder, result, files)
-        parts.remove(folder)
+        with parts.opened(folder, study.digest) as kept:
+            _refuse_other(study, folder, resume)  # again, for now no other process comes in between
+            if (done := _done(folder)) is None:
+                done = _carried_out(study, kept, folder, executor, at_once, watch, more)
+        if Failure.WORKER_DIED.value not in done["statuses"]:  # else the others are wanted once more
+            parts.remove(folder)
     except OSError as error:
         reason = error.strerror or "the path leads nowhere"
         raise BadInput(
-            f"{printable(str(folder))}: cannot be written ({reason}); see to it, and go on with --resume"
+            f"{printable(str(folder))}: cannot be written ({reason}); free some space, then repeat with --resume"
         ) from None
+    return done
+
+
+def _carried_out(
+    study: Study,
+    kept: Parts,
+    folder: Path,
+    executor: Callable[[], Executor],
+    at_once: int,
+    watch: Watch,
+    more: Mapping[str, Content],
+) -> dict[str, Any]:
+    if not (folder / ASKED).exists():
+        write_text(folder / ASKED, to_json(studies.asked_object(study)))
+    if len(kept.done) < study.chunks:
+        with _log(folder) as log, executor() as workers:
+            run(study, kept, workers, at_once, watch, log=log)
+    merged = Merged(study, kept)
+    result = studies.study_object(merged)
+    sets.write(folder, result, {**studies.files(merged), **more})
     return result
 
 
-def _found(study: Study, folder: Path, resume: bool) -> dict[str, Any] | None:
-    """What result.json holds of this very study, if that is done; refuses any other."""
+def _refuse_other(study: Study, folder: Path, resume: bool) -> None:
+    """Refuse a folder that holds anything else than this study, or it where it is not to be resumed."""
+    sets.keep_apart(folder, STUDY)
     before = asked(folder)
     if before is None:
-        return None
+        return
     if not resume:
         raise BadInput(f"{printable(str(folder))}: holds a study; add --resume to go on, or give another folder")
     if changed := differences(before, study.identity):
@@ -96,11 +124,41 @@ def _found(study: Study, folder: Path, resume: bool) -> dict[str, Any] | None:
         raise BadInput(
             f"{printable(str(folder))}: holds another study: {'; '.join(changed[:3])}{more}; give another folder"
         )
-    if sets.written_at(folder) is None or sets.command_of(folder) != "study":
+
+
+def _done(folder: Path) -> dict[str, Any] | None:
+    """What result.json holds of a study that is done: whole, and without rows that lost their workers."""
+    try:
+        found: dict[str, Any] = json.loads(sets.read(folder).result)
+    except BadInput:
         return None
-    found: dict[str, Any] = json.loads(sets.read(folder).result)
     found.pop("files")
-    return found
+    return None if Failure.WORKER_DIED.value in found["statuses"] else found
+
+
+def _refuse_too_large(study: Study, folder: Path) -> None:
+    """Refuse trajectories for which there is no room: first in chunks, then in files."""
+    if not study.trajectories:
+        return
+    spec, solver, rows = study.instance.model.spec, study.instance.solver, study.design.count
+    states = len(spec.states) * (2 if study.command is Command.SOLVE else 1)
+    wanted = 2 * rows * NUMBER * (solver.steps + 1) * (1 + states + len(spec.controls))
+    place = next(place for place in (folder, *folder.absolute().parents) if place.is_dir())
+    free = shutil.disk_usage(place).free
+    if wanted > free:
+        raise BadInput(
+            f"{printable(str(folder))}: trajectories of {rows} rows take {wanted / 1e9:.3g} GB, and there are "
+            f"{free / 1e9:.3g} GB left; ask for fewer rows or steps, or for no trajectories"
+        )
+
+
+def is_study(folder: Path) -> bool:
+    """Whether a folder holds a study, finished or not."""
+    try:
+        command = sets.command_of(folder)
+    except BadInput:
+        command = None
+    return command == STUDY or (command is None and (folder / ASKED).is_file())
 
 
 def draw(folder: Path, look: Look = SCREEN, out: Path | None = None) -> tuple[dict[str, Any], list[Path]]:
@@ -113,15 +171,16 @@ def draw(folder: Path, look: Look = SCREEN, out: Path | None = None) -> tuple[di
     """
     from satsym.report.plots import studies as plots
 
+    if sets.written_at(folder) is None:
+        raise BadInput(f"{printable(str(folder))}: that study is not done; go on with it: `satsym study X --resume`")
     found = sets.read(folder)
-    if found.command != "study" or TABLE not in found.listed:
+    if found.command != STUDY or TABLE not in found.listed:
         raise BadInput(f"{printable(str(folder))}: holds the result of {printable(found.command)}, and no study")
     said: dict[str, Any] = json.loads(found.result)
     pictures = plots.pictures(studies.numbers(folder / TABLE, said), look)
     if out is None or out.resolve() == folder.resolve():
         return said, sets.extend(found, pictures)
-    if (other := sets.command_of(out)) not in (None, "plot"):
-        raise BadInput(f"{printable(str(out))}: holds the result of {other}; give another folder for pictures")
+    sets.keep_apart(out, "plot")
     return said, sets.write(out, {**said, "command": "plot"}, pictures)[:-1]
 
 
@@ -141,7 +200,7 @@ def asked(folder: Path) -> dict[str, str] | None:
             said = json.loads(stream.read(min(size, LARGEST)))["asked"]
         return {str(name): str(value) for name, value in said.items()}
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
-        raise BadInput(f"{printable(str(path))}: cannot be read; give another folder, or remove this one") from None
+        raise BadInput(f"{printable(str(path))}: cannot be read; give another folder") from None
 
 
 @contextmanager

@@ -190,7 +190,7 @@ def _near(before: Solution, after: Solution) -> bool:
 
 
 def _values(instance: Instance, share: float) -> str:
-    return ", ".join(f"{one.key} = {one.value(share):.6g}" for one in instance.continuation)
+    return ", ".join(f"{one.key.short} = {one.value(share):.6g}" for one in instance.continuation)
 
 
 def _told(instance: Instance, found: Solution, message: str, answers: tuple[Solution, ...], began: float) -> Solution:

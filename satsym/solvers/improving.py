@@ -19,8 +19,9 @@ from satsym.status import Status, Verdict
 ROUNDS = 3
 """Cheaper competitors that are taken for the solution, one after the other."""
 
-CONSTRAINED = "boundary-arcs"
-"""The method whose extremals are not departed from: descents of other problems do not keep to path constraints."""
+CONSTRAINED, SWITCHED = "boundary-arcs", "bang-bang"
+"""Methods whose extremals are not departed from: descents of other problems keep neither to path constraints nor to
+controls that switch."""
 
 Solver = Callable[[Instance, Progress | None], Solution]
 
@@ -60,9 +61,16 @@ def improved(solver: Solver, instance: Instance, progress: Progress | None) -> S
     return replace(solution, certificate=certificate, wall_s=time.perf_counter() - began)
 
 
+def goes_on(solution: Solution) -> bool:
+    """Whether :func:`improved` looks for a lower cost than that of a solution whose certificate has no competitors."""
+    certificate, lasting = solution.certificate, (CONSTRAINED, SWITCHED)
+    extremal = certificate is not None and certificate.verdict is Verdict.EXTREMAL_ONLY
+    return extremal and solution.method not in lasting
+
+
 def bottomless(solution: Solution) -> Solution | None:
     """No answer, where what was found is stationary and other controls cost ever less; ``None`` where none shows."""
-    endless = None if solution.method == "bang-bang" else fall(solution)
+    endless = None if solution.method == SWITCHED else fall(solution)
     advice = "weigh the control or time more, shorten the time, or bound the control"
     return None if endless is None else without_minimiser(solution, f"{endless.message}; {advice}")
 
@@ -95,7 +103,7 @@ def starting_from(solution: Solution) -> Instance:
 
 def _departed(solver: Solver, solution: Solution, progress: Progress | None, deadline: float) -> Solution | None:
     """What a saddle's descents lead to; ``None`` where that is not cheaper."""
-    if solution.method == "bang-bang":
+    if solution.method == SWITCHED:
         return None
     for start in departures(solution):
         found = _again(replace(solution.instance, guess=start), solver, solution, progress, deadline)

@@ -6,9 +6,8 @@ import hashlib
 import json
 import math
 import platform
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
-from enum import Enum
 from functools import cached_property
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -18,38 +17,11 @@ import numpy as np
 
 from satsym import __version__, sources
 from satsym.arrays import Array
+from satsym.choices import Checked, Command
 from satsym.instance import Instance
+from satsym.instance.numbers import Key
 from satsym.kernels import Kernels
 from satsym.studies.design import Design, chain
-from satsym.studies.keys import Key
-
-
-class Command(str, Enum):
-    """What is done with each row."""
-
-    SOLVE = "solve"
-    SIMULATE = "simulate"
-    LQR = "lqr"
-
-
-class Checked(str, Enum):
-    """How much of a certificate answers get."""
-
-    NONE = "none"
-    LOCAL = "local"
-    FULL = "full"
-
-    @property
-    def meaning(self) -> str:
-        """For help."""
-        return _MEANING[self]
-
-
-_MEANING = {
-    Checked.NONE: "no certificate",
-    Checked.LOCAL: "all but competitors, at best a local minimum",
-    Checked.FULL: "as `satsym solve`",
-}
 
 LARGEST_CHUNK, FEWEST_CHUNKS = 256, 8
 """Rows of a chunk at most, and chunks that a study with enough rows has at least."""
@@ -58,7 +30,7 @@ LIBRARIES = ("numpy", "scipy", "numba")
 """Whose versions may change the last digits."""
 
 PLACES = ("name", "path", "title", "model")
-"""Of an instance, what no result depends on, and what is told otherwise."""
+"""Of an instance, what no result depends on, and the model, of which there is a digest."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,6 +53,8 @@ class Study:
         Whether kernels are compiled.
     trajectories
         Whether trajectories are kept.
+    subject
+        How a command line names the instance.
     """
 
     instance: Instance
@@ -90,6 +64,7 @@ class Study:
     feedback: str | None = None
     compiled: bool = False
     trajectories: bool = False
+    subject: str = ""
 
     @cached_property
     def size(self) -> int:
@@ -103,8 +78,13 @@ class Study:
 
     def chunk(self, number: int) -> Chunk:
         """A chunk by its number, from 0."""
+        start, count = self.place(number)
+        return Chunk(number, start, self.design.rows(start, start + count))
+
+    def place(self, number: int) -> tuple[int, int]:
+        """The first row of a chunk, and how many there are."""
         start = number * self.size
-        return Chunk(number, start, self.design.rows(start, min(start + self.size, self.design.count)))
+        return start, min(self.size, self.design.count - start)
 
     @cached_property
     def identity(self) -> dict[str, str]:
@@ -126,6 +106,11 @@ class Study:
             "machine": platform.machine(),
         }
         return found | {name: _version(name) for name in LIBRARIES}
+
+    @cached_property
+    def digest(self) -> str:
+        """Of all that."""
+        return _digest(self.identity)
 
     @property
     def row_digest(self) -> str:
@@ -179,6 +164,11 @@ class Chunk:
     def order(self) -> list[int]:
         """Places of the rows, neighbours after each other."""
         return list(chain(self.values))
+
+    def apart(self) -> Iterator[Chunk]:
+        """Each of its rows alone."""
+        for k in range(len(self.values)):
+            yield Chunk(self.number, self.start + k, self.values[k : k + 1])
 
 
 def key_of(row_digest: str, instance: Instance) -> str:

@@ -3,100 +3,107 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from enum import Enum
-from typing import Any, TypeVar
+from typing import Any
 
 import msgspec
 
+from satsym import instance as instances
 from satsym import methods
-from satsym.instance import Instance
+from satsym.choices import Checked, Command
+from satsym.instance import Instance, Written
 from satsym.instance.schema import StudyTable
+from satsym.instance.schema import study as checked
 from satsym.status import BadInput
 from satsym.studies import reading
-from satsym.studies.asked import Checked, Command, Study
-from satsym.studies.design import texts
-from satsym.studies.reading import Written
+from satsym.studies.asked import Study
 from satsym.wording import shown, suggestion
 
-Choice = TypeVar("Choice", bound=Enum)
+OF_COMMANDS = {
+    "certificate": (Command.SOLVE,),
+    "feedback": (Command.SIMULATE,),
+    "trajectories": (Command.SOLVE, Command.SIMULATE),
+}
+"""Options, and the commands that have them."""
 
 
-class Options(msgspec.Struct, frozen=True):
-    """What is said besides the design; ``None`` leaves it to the table, or to the default."""
-
-    command: str | None = None
-    certificate: str | None = None
-    feedback: str | None = None
-    trajectories: bool = False
-
-
-def asked(instance: Instance, table: Mapping[str, Any], design: Written, options: Options) -> Study:
+def asked(written: Written, case: Instance, said: Mapping[str, Any], subject: str = "") -> Study:
     """A study, every part of it checked.
 
     Parameters
     ----------
-    instance
-        What is varied.
-    table
-        Its ``[study]``, as it was written.
-    design
-        What varies; if anything does, the table's design is left aside.
-    options
-        Instead of the table's.
+    written, case
+        What is varied, as it was written and as it was read.
+    said
+        Keys of the table ``[study]`` and their values, instead of those there; ``None`` leaves a key to the table.
+        If anything varies by this, what varies by the table is left aside.
+    subject
+        How a command line names the instance.
 
     Raises
     ------
     BadInput
         With one line, before anything is computed or written.
     """
-    stated = StudyTable(**table)
-    written = design
-    if not design:
-        kinds: dict[str, Any] = {name: texts(getattr(stated, name)) for name in ("vary", "normal", "uniform")}
-        drawn: dict[str, Any] = {
-            name: getattr(stated, name) if (said := getattr(design, name)) is None else said
-            for name in ("sample", "method", "seed")
-        }
-        written = Written(**kinds, **drawn)
-    command = _one(Command, options.command or stated.command or Command.SOLVE.value, "command")
-    checked = _one(Checked, options.certificate or stated.certificate or Checked.LOCAL.value, "certificate")
-    feedback = options.feedback or stated.feedback
-    _refuse(instance, command, feedback)
-    found = reading.design(written, instance)
+    stated = checked(written.tree.get("study", {}))
+    given = checked({name: value for name, value in said.items() if value is not None})
+    design = given
+    if not (given.vary or given.normal or given.uniform):
+        drawn = {name: value for name in ("sample", "method", "seed") if (value := getattr(given, name)) is not None}
+        design = msgspec.structs.replace(stated, **drawn)
+    command = Command(given.command or stated.command or Command.SOLVE)
+    options = {name: _option(name, command, given, stated) for name in OF_COMMANDS}
+    _refuse(case, command, options["feedback"])
     return Study(
-        instance,
-        found,
+        case,
+        reading.design(design, case),
         command,
-        checked,
-        feedback,
-        compiled=instance.solver.backend == "numba",
-        trajectories=options.trajectories or stated.trajectories,
+        Checked(options["certificate"] or Checked.LOCAL),
+        options["feedback"],
+        compiled=case.solver.backend == "numba",
+        trajectories=bool(options["trajectories"]),
+        subject=subject,
     )
 
 
-def _refuse(instance: Instance, command: Command, feedback: str | None) -> None:
+def named(written: Written) -> str | None:
+    """How a command line names an instance; ``None`` where its tables are not those of a file."""
+    if written.model is not None:
+        return None
+    shipped = written.path == instances.files.SHIPPED / f"{written.name}.toml"
+    subject = written.name if shipped else str(written.path)
+    try:
+        same = instances.read(subject).tree == written.tree
+    except BadInput:
+        same = False
+    return subject if same else None
+
+
+def _option(name: str, command: Command, given: StudyTable, stated: StudyTable) -> Any:
+    """What is said of an option, but for what the table says of another command than the one that was asked for."""
+    fitting = command in OF_COMMANDS[name]
+    for table, binding in ((given, True), (stated, given.command in (None, stated.command))):
+        value = getattr(table, name)
+        if value and fitting:
+            return value
+        if value and binding:
+            wanted = " or ".join(f'"{each.value}"' for each in OF_COMMANDS[name])
+            raise BadInput(f'{name}: is for {wanted}, and this study is of "{command.value}"; remove it')
+    return None
+
+
+def _refuse(case: Instance, command: Command, feedback: str | None) -> None:
     """Refuse what no row can have."""
-    spec = instance.model.spec
-    if command is not Command.SIMULATE and feedback is not None:
-        raise BadInput(f'feedback: is for "simulate", and this study is of "{command.value}"; remove it')
+    spec = case.model.spec
     if command is Command.SOLVE:
         if not spec.has_cost:
-            raise BadInput(f"{instance.name}: model {spec.name} has no cost, so there is nothing to solve")
-        if refusal := methods.refusal(instance.solver.method, instance):
-            raise BadInput(f"{instance.name}: {refusal}")
+            raise BadInput(f"{case.name}: model {spec.name} has no cost, so there is nothing to solve")
+        if refusal := methods.refusal(case.solver.method, case):
+            raise BadInput(f"{case.name}: {refusal}")
         return
-    instance.require_numbers()
+    case.require_numbers()
     from satsym.analysis.regulator.feedback import FEEDBACKS
 
     if feedback is not None and feedback not in FEEDBACKS:
         raise BadInput(f"feedback: {shown(feedback)}: {suggestion(feedback, FEEDBACKS)}")
-    if (command is Command.LQR or feedback == "lqr") and instance.lqr is None:
-        raise BadInput(f"{instance.name}: has no table [lqr]; add one with Q and R")
-
-
-def _one(choices: type[Choice], name: str, key: str) -> Choice:
-    """A member of an enum by its value."""
-    known = [str(each.value) for each in choices]
-    if name not in known:
-        raise BadInput(f"{key}: {shown(name)}: {suggestion(name, known)}")
-    return choices(name)
+    if (command is Command.LQR or feedback == "lqr") and case.lqr is None:
+        raise BadInput(f"{case.name}: has no table [lqr]; add one with Q and R")

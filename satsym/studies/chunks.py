@@ -9,8 +9,9 @@ from functools import lru_cache
 import numpy as np
 
 from satsym.instance import Instance
+from satsym.instance import numbers as keys
 from satsym.status import BadInput
-from satsym.studies import keys, rows
+from satsym.studies import rows
 from satsym.studies.asked import Chunk, Command, Study, Task, key_of
 from satsym.studies.rows import Failure, Row, Work
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
@@ -11,10 +11,8 @@ from typing import TypeAlias
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.studies.keys import Key
-
-METHODS = ("sobol", "lhs", "random")
-"""Of sampling: Sobol' points with a random shift and scramble, Latin hypercubes, independent points."""
+from satsym.choices import Sampling
+from satsym.instance.numbers import Key
 
 
 @dataclass(frozen=True)
@@ -97,7 +95,7 @@ class Sample:
 
     distributions: tuple[Distribution, ...]
     count: int
-    method: str
+    method: Sampling
     seed: int
 
     @property
@@ -109,14 +107,15 @@ class Sample:
     def _shares(self) -> Array:
         """Points of the unit cube, inside it."""
         dimension = len(self.distributions)
-        if self.method == "random":
+        if self.method is Sampling.RANDOM:
             points = np.random.default_rng(self.seed).random((self.count, dimension))
         else:
             import warnings
 
             from scipy.stats import qmc
 
-            engine = {"sobol": qmc.Sobol, "lhs": qmc.LatinHypercube}[self.method](dimension, seed=self.seed)
+            kind = qmc.Sobol if self.method is Sampling.SOBOL else qmc.LatinHypercube
+            engine = kind(dimension, seed=self.seed)
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # numbers that are no powers of two are the user's choice
                 points = engine.random(self.count)
@@ -133,21 +132,10 @@ class Sample:
             f"{'normal' if one.normal else 'uniform'} {one.key.text}": f"{one.first!r},{one.second!r}"
             for one in self.distributions
         }
-        return {"sample": str(self.count), "method": self.method, "seed": str(self.seed)} | found
+        return {"sample": str(self.count), "method": self.method.value, "seed": str(self.seed)} | found
 
 
 Design: TypeAlias = Grid | Sample
-
-
-def texts(table: Mapping[str, str | Mapping[str, str]]) -> list[tuple[str, str]]:
-    """Keys and what is said of them, whether a table has ``"initial.r"`` or a table ``initial`` with ``r``."""
-    found: list[tuple[str, str]] = []
-    for name, value in table.items():
-        if isinstance(value, str):
-            found.append((name, value))
-        else:
-            found += [(f"{name}.{inner}", text) for inner, text in value.items()]
-    return found
 
 
 def scaled(values: Array) -> Array:

@@ -1,8 +1,8 @@
 """Chunks of a study that are done, in two files to which each is appended: rows as lines, trajectories as arrays.
 
-A line holds a chunk and a digest of itself, and is written after the arrays of its chunk; both are flushed to the disk
-before the chunk counts. Whatever ends the process in between leaves a tail that nobody counts, which is cut off before
-more is appended.
+A line holds a chunk, the study that it is of and a digest of itself, and is written after the arrays of its chunk; both
+are flushed to the disk before the chunk counts. Whatever ends the process in between leaves a tail that nobody counts,
+which is cut off before more is appended.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.status import BadInput, Status
-from satsym.studies.rows import Row
+from satsym.studies.rows import Failure, Row
 from satsym.wording import printable
 
 LINES, ARRAYS = "parts.jsonl", "parts.npz"
@@ -33,10 +33,11 @@ DIGEST = 16
 
 @dataclass(frozen=True)
 class Place:
-    """Where a chunk lies in both files."""
+    """Where the line of a chunk begins."""
 
     line: int
-    arrays: int
+    size: int
+    """Of its arrays, in bytes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +52,13 @@ class Part:
 class Parts:
     """The files of a folder, opened by :func:`opened`.
 
+    Parameters
+    ----------
+    lines, arrays
+        The files.
+    study
+        Digest of the study that they are of.
+
     Attributes
     ----------
     done
@@ -61,21 +69,34 @@ class Parts:
         All rows among them.
     """
 
-    def __init__(self, lines: IO[bytes], arrays: IO[bytes]) -> None:
-        self._lines, self._arrays = lines, arrays
+    def __init__(self, lines: IO[bytes], arrays: IO[bytes], study: str) -> None:
+        self._lines, self._arrays, self._study = lines, arrays, study
         self.done: dict[int, Place] = {}
         self.failures = self.rows = 0
 
     def recover(self) -> None:
-        """Find what counts, and cut off the rest."""
+        """Find what counts, and cut off what was not written whole.
+
+        Chunks with rows that lost their workers do not count, for those may have died of something else.
+
+        Raises
+        ------
+        BadInput
+            If there are chunks of another study.
+        """
         self._lines.seek(0)
         end = arrays_end = 0
         for line in self._lines:
             found = _decoded(line)
             if found is None or found["arrays"][0] + found["arrays"][1] > _size(self._arrays):
                 break
-            self.done[found["chunk"]] = Place(end, found["arrays"][0])
-            self._count(found["rows"])
+            if found.get("study") != self._study:
+                raise BadInput(
+                    f"{printable(self._lines.name)}: holds rows of another study; give another folder, or remove them"
+                )
+            if all(status != Failure.WORKER_DIED.value for _, status, *_ in found["rows"]):
+                self.done[found["chunk"]] = Place(end, found["arrays"][1])
+                self._count(found["rows"])
             end += len(line)
             arrays_end = max(arrays_end, found["arrays"][0] + found["arrays"][1])
         for stream, size in ((self._lines, end), (self._arrays, arrays_end)):
@@ -88,26 +109,22 @@ class Parts:
         Raises
         ------
         OSError
-            If it cannot be written; then it does not count.
+            If it cannot be written; then it does not count, and what was written of it is cut off by the next run.
         """
         kept = {place: row.trajectory for place, row in enumerate(rows) if row.trajectory}
         packed = _packed(kept)
         begin, size = self._arrays.tell(), self._lines.tell()
         entry: dict[str, Any] = {
+            "study": self._study,
             "chunk": number,
             "start": start,
             "arrays": [begin, len(packed)],
             "rows": [[row.key, row.status, row.message, dict(row.numbers)] for row in rows],
         }
-        try:
-            if packed:
-                _write(self._arrays, packed)
-            _write(self._lines, _encoded(entry))
-        except OSError:
-            self._lines.truncate(size)  # which needs no room
-            self._arrays.truncate(begin)
-            raise
-        self.done[number] = Place(size, begin)
+        if packed:
+            _write(self._arrays, packed)
+        _write(self._lines, _encoded(entry))
+        self.done[number] = Place(size, len(packed))
         self._count(entry["rows"])
 
     def read(self, number: int) -> Part:
@@ -115,9 +132,13 @@ class Parts:
         self._lines.seek(self.done[number].line)
         found = _decoded(self._lines.readline())
         if found is None:
-            raise BadInput(f"{printable(self._lines.name)}: has changed while it was read; start the study anew")
+            raise BadInput(f"{printable(self._lines.name)}: has changed while it was read; repeat with --resume")
         rows = tuple(Row(key, status, message, numbers) for key, status, message, numbers in found["rows"])
         return Part(found["chunk"], found["start"], rows)
+
+    def size(self, number: int) -> int:
+        """Bytes of the trajectories of a chunk."""
+        return self.done[number].size
 
     def trajectories(self, number: int) -> dict[int, dict[str, Array]]:
         """Of a chunk, by the place of the row in it."""
@@ -139,23 +160,28 @@ class Parts:
 
 
 @contextmanager
-def opened(folder: Path) -> Iterator[Parts]:
+def opened(folder: Path, study: str) -> Iterator[Parts]:
     """The parts in a folder, none at first; no other process can open them meanwhile.
+
+    Parameters
+    ----------
+    study
+        Digest of the study that they are of.
 
     Raises
     ------
     BadInput
-        If another process has them.
+        If another process has them, or they are of another study.
     """
     with (folder / LINES).open("a+b") as lines, (folder / ARRAYS).open("a+b") as arrays:
         _lock(lines, folder)
-        found = Parts(lines, arrays)
+        found = Parts(lines, arrays, study)
         found.recover()
         yield found
 
 
 def remove(folder: Path) -> None:
-    """Once all is merged: the arrays first, for lines tell what there was."""
+    """Once all is merged: the arrays first, for lines say which there were."""
     for name in (ARRAYS, LINES):
         (folder / name).unlink(missing_ok=True)
 
@@ -169,7 +195,9 @@ def _lock(stream: IO[bytes], folder: Path) -> None:
     try:
         fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
-        raise BadInput(f"{printable(str(folder))}: another process is at it; wait, or give another folder") from None
+        raise BadInput(
+            f"{printable(str(folder))}: in use by another process; wait for it, or give another folder"
+        ) from None
     except OSError:
         return  # a file system without locks
 

@@ -3,41 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
-import msgspec
-
+from satsym.choices import Sampling
 from satsym.instance import Instance
+from satsym.instance import numbers as keys
+from satsym.instance.numbers import Key, texts
+from satsym.instance.schema import StudyTable
 from satsym.status import BadInput
-from satsym.studies import keys
-from satsym.studies.design import METHODS, Axis, Design, Distribution, Grid, Sample
-from satsym.studies.keys import Key
-from satsym.wording import printable, shown, suggestion
+from satsym.studies.design import Axis, Design, Distribution, Grid, Sample
+from satsym.wording import printable, shown
 
 MOST_ROWS = 10**7
 
 RANGE = "LOW:HIGH:N or log:LOW:HIGH:N, such as 0.9:1.1:50"
 PAIR = {"normal": "MEAN,SD, such as 1.1,0.01", "uniform": "LOW,HIGH, such as 0.9,1.1"}
 
-Said = Sequence[tuple[str, str]]
-"""Keys, and what is said of each."""
 
-
-class Written(msgspec.Struct, frozen=True):
-    """A design as it was written."""
-
-    vary: Said = ()
-    normal: Said = ()
-    uniform: Said = ()
-    sample: int | None = None
-    method: str | None = None
-    seed: int | None = None
-
-    def __bool__(self) -> bool:
-        return bool(self.vary or self.normal or self.uniform)
-
-
-def design(written: Written, instance: Instance) -> Design:
+def design(asked: StudyTable, instance: Instance) -> Design:
     """What a study varies, checked against an instance.
 
     Raises
@@ -46,23 +28,24 @@ def design(written: Written, instance: Instance) -> Design:
         With one line, if nothing varies, a key does not exist or varies twice, a value lies outside its domain, there
         is both a grid and a sample, or there are too many rows.
     """
-    drawn = [(kind, key, text) for kind in PAIR for key, text in getattr(written, kind)]
-    if written.vary and (drawn or written.sample is not None):
+    vary = texts(asked.vary)
+    drawn = [(kind, key, text) for kind in PAIR for key, text in texts(getattr(asked, kind))]
+    if vary and (drawn or asked.sample is not None):
         raise BadInput("a study is a grid (vary) or a sample (sample, normal, uniform), not both; remove one of them")
-    if not written.vary and not drawn:
+    if not vary and not drawn:
         known = ", ".join(key.text for key in keys.known(instance.model.spec))
         raise BadInput(f"nothing varies; write --vary KEY={RANGE}; keys here: {printable(known, 300)}")
     seen: set[str] = set()
-    for key in (*(key for key, _ in written.vary), *(key for _, key, _ in drawn)):
+    for key in (*(key for key, _ in vary), *(key for _, key, _ in drawn)):
         if key in seen:
             raise BadInput(f"{printable(key)}: varies twice; remove one of the two")
         seen.add(key)
-    if written.vary:
-        if unused := [name for name in ("method", "seed") if getattr(written, name) is not None]:
+    if vary:
+        if unused := [name for name in ("method", "seed") if getattr(asked, name) is not None]:
             raise BadInput(f"{unused[0]}: is for a sample, and this is a grid; remove it")
-        found: Design = Grid(tuple(_axis(key, text, instance) for key, text in written.vary))
+        found: Design = Grid(tuple(_axis(key, text, instance) for key, text in vary))
     else:
-        found = _sample(written, tuple(_distribution(kind, key, text, instance) for kind, key, text in drawn))
+        found = _sample(asked, tuple(_distribution(kind, key, text, instance) for kind, key, text in drawn))
     if found.count > MOST_ROWS:
         raise BadInput(f"{found.count} rows are more than {MOST_ROWS}; write fewer values")
     return found
@@ -79,7 +62,7 @@ def _axis(name: str, text: str, instance: Instance) -> Axis:
     if logarithmic and not min(low, high) > 0.0:
         raise BadInput(f"{key.text}: {shown(text)} has no logarithm; write positive ends, or leave out log:")
     if (low == high) != (count == 1):
-        raise BadInput(f"{key.text}: {shown(text)} is {count} times the same or one of two; write {RANGE}")
+        raise BadInput(f"{key.text}: {shown(text)} has {count} values; LOW and HIGH must differ, or N must be 1")
     return Axis(key, low, high, count, logarithmic)
 
 
@@ -93,22 +76,14 @@ def _distribution(kind: str, name: str, text: str, instance: Instance) -> Distri
         return Distribution(key, first, key.spread(_number(parts[1], key), instance.model.spec), normal=True)
     second = _value(key, parts[1], instance)
     if not first < second:
-        raise BadInput(f"{key.text}: {shown(text)} does not go up; write {PAIR[kind]}")
+        raise BadInput(f"{key.text}: {shown(text)} LOW is not below HIGH; write {PAIR[kind]}")
     return Distribution(key, first, second, normal=False)
 
 
-def _sample(written: Written, distributions: tuple[Distribution, ...]) -> Sample:
-    if written.sample is None:
+def _sample(asked: StudyTable, distributions: tuple[Distribution, ...]) -> Sample:
+    if asked.sample is None:
         raise BadInput("how many rows to draw is not said; write --sample N")
-    if written.sample < 1:
-        raise BadInput(f"sample: {shown(written.sample)} rows are none; write a whole number from 1")
-    method = written.method or METHODS[0]
-    if method not in METHODS:
-        raise BadInput(f"method: {shown(method)}: {suggestion(method, METHODS)}")
-    seed = written.seed or 0
-    if not 0 <= seed < 2**32:
-        raise BadInput(f"seed: {shown(seed)} is no seed; write a whole number from 0 to 4294967295")
-    return Sample(distributions, written.sample, method, seed)
+    return Sample(distributions, asked.sample, Sampling(asked.method or Sampling.SOBOL), asked.seed or 0)
 
 
 def _value(key: Key, text: str, instance: Instance) -> float:
@@ -142,35 +117,27 @@ def _count(text: str, place: str) -> int:
     return count
 
 
-def read_pairs(entries: Sequence[str], option: str) -> Said:
+def read_pairs(entries: Sequence[str], option: str) -> dict[str, str]:
     """``KEY=VALUE`` arguments of an option."""
-    found: list[tuple[str, str]] = []
+    wanted = {"vary": RANGE, "set": "VALUE, such as initial.r=1.05", **PAIR}[option]
+    found: dict[str, str] = {}
     for entry in entries:
-        key, equals, value = entry.partition("=")
-        if not (equals and key.strip() and value.strip()):
-            wanted: Any = RANGE if option == "vary" else PAIR[option]
+        key, equals, value = (part.strip() for part in entry.partition("="))
+        if not (equals and key and value):
             raise BadInput(f"--{option} {printable(entry)}: write --{option} KEY={wanted}")
-        found.append((key.strip(), value.strip()))
+        if key in found:
+            raise BadInput(f"--{option} {printable(key)}: is there twice; remove one of the two")
+        found[key] = value
     return found
 
 
-def with_values(instance: Instance, entries: Sequence[str]) -> Instance:
-    """An instance with numbers that ``--set KEY=VALUE`` gives.
+def settings(instance: Instance, entries: Sequence[str]) -> dict[str, float]:
+    """What ``--set KEY=VALUE`` gives, by key, in the model's units.
 
     Raises
     ------
     BadInput
         If a key does not exist, or a value is not possible.
     """
-    chosen: list[Key] = []
-    values: list[float] = []
-    for entry in entries:
-        name, equals, text = entry.partition("=")
-        if not (equals and name.strip() and text.strip()):
-            raise BadInput(f"--set {printable(entry)}: write --set KEY=VALUE, such as --set initial.r=1.05")
-        key = keys.find(name.strip(), instance)
-        if key in chosen:
-            raise BadInput(f"{key.text}: is set twice; remove one of the two")
-        chosen.append(key)
-        values.append(key.value(_number(text, key), instance.model.spec))
-    return keys.at(instance, tuple(chosen), tuple(values)) if chosen else instance
+    pairs = [(keys.find(name, instance), text) for name, text in read_pairs(entries, "set").items()]
+    return {key.text: key.value(_number(text, key), instance.model.spec) for key, text in pairs}

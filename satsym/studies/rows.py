@@ -20,6 +20,28 @@ if TYPE_CHECKING:
 Scalar = float | str | None
 
 
+class Column(str, Enum):
+    """Columns of the table that are spoken of elsewhere."""
+
+    ROW = "row"
+    KEY = "key"
+    STATUS = "status"
+    MESSAGE = "message"
+    OBJECTIVE = "objective"
+    T_FINAL = "t_final"
+    T_INITIAL = "t_initial"
+    VERDICT = "verdict"
+    METHOD = "method"
+    ORIGIN = "origin"
+    COST_LOWER = "cost_interval.lower"
+    COST_UPPER = "cost_interval.upper"
+    COST_FROM_INITIAL = "cost_from_initial"
+
+
+TEXTS = (Column.KEY, Column.STATUS, Column.MESSAGE, Column.VERDICT, Column.METHOD, Column.ORIGIN)
+"""Columns that hold words; all others hold numbers."""
+
+
 class Failure(str, Enum):
     """How a row may end besides the statuses of solvers."""
 
@@ -90,15 +112,17 @@ def of_solution(key: str, solution: Solution, origin: str, kept: bool) -> Row:
     if solution.status.answered:
         verdict = solution.certificate.verdict.value if solution.certificate else None
         numbers = {
-            "objective": _plain(spec.objective(solution.objective)),
-            "t_final": _plain(solution.times[-1]),
-            "verdict": verdict,
+            Column.OBJECTIVE: _plain(spec.objective(solution.objective)),
+            Column.T_FINAL: _plain(solution.times[-1]),
+            Column.VERDICT: verdict,
             **_each("x_final", spec.state_names, solution.x, -1),
             **_each("costate_initial", spec.state_names, solution.lam, 0),
             **dict(_found(solution.instance)),
             "switching_times": float(len({t for times in solution.switching_times for t in times})),
-            "method": solution.method,
-            "origin": origin,
+            **dict(_interval(solution)),
+            "events": float(len(solution.events)),
+            Column.METHOD: solution.method,
+            Column.ORIGIN: origin,
         }
     message = "" if solution.status.answered else solution.status.explain(solution.message)
     trajectory = _kept(solution, solution.lam) if kept and solution.status.answered else {}
@@ -110,7 +134,7 @@ def of_simulation(key: str, simulation: Simulation, kept: bool) -> Row:
     spec = simulation.instance.model.spec
     numbers: dict[str, Scalar] = {}
     if simulation.status.answered:
-        numbers = {"t_final": _plain(simulation.times[-1]), **_each("x_final", spec.state_names, simulation.x, -1)}
+        numbers = {Column.T_FINAL: _plain(simulation.times[-1]), **_each("x_final", spec.state_names, simulation.x, -1)}
         numbers |= {f"metrics.{name}": _plain(value) for name, value in simulation.metrics.items()}
         numbers |= {f"drift.{name}": _plain(each.drift) for name, each in simulation.invariants.items()}
     message = "" if simulation.status.answered else simulation.message
@@ -121,7 +145,9 @@ def of_simulation(key: str, simulation: Simulation, kept: bool) -> Row:
 def of_regulator(key: str, design: Design) -> Row:
     """Of a linear feedback."""
     found, deviation = design.regulator, design.deviation
-    numbers: dict[str, Scalar] = {"cost_from_initial": None if deviation is None else _plain(found.cost(deviation))}
+    numbers: dict[str, Scalar] = {
+        Column.COST_FROM_INITIAL: None if deviation is None else _plain(found.cost(deviation))
+    }
     for i, name in enumerate(found.system.inputs):
         numbers |= {f"K.{name}.{state}": _plain(k) for state, k in zip(found.system.states, found.K[i], strict=True)}
     for i, value in enumerate(found.eigenvalues, 1):
@@ -138,8 +164,15 @@ def _kept(found: Solution | Simulation, lam: Array | None) -> dict[str, Array]:
 def _found(instance: Instance) -> Iterator[tuple[str, Scalar]]:
     """What the instance left free besides its end, as it was found."""
     for unknown in instance.free:
-        name = "t_initial" if unknown.place is Place.TIME else f"found.{unknown.name}"
+        name = Column.T_INITIAL.value if unknown.place is Place.TIME else f"found.{unknown.name}"
         yield name, _plain(unknown.of(instance))
+
+
+def _interval(solution: Solution) -> Iterator[tuple[str, Scalar]]:
+    """What the best objective lies between, in the author's sense, where only that is known."""
+    if solution.interval is not None:
+        spec, ends = solution.instance.model.spec, (solution.interval.lower, solution.interval.upper)
+        yield from zip((Column.COST_LOWER, Column.COST_UPPER), sorted(map(spec.objective, ends)), strict=True)
 
 
 def _each(name: str, states: tuple[str, ...], rows: Array, place: int) -> dict[str, Scalar]:

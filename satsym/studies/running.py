@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import Counter, deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from dataclasses import dataclass
 from typing import TypeAlias
@@ -15,7 +15,7 @@ from satsym.studies.parts import Parts
 from satsym.studies.rows import Failure, Row
 
 MOST_DEATHS = 3
-"""Workers that may die of a chunk before it is given up."""
+"""Workers that may die of a chunk before its rows are computed one by one, and of a row before it is given up."""
 
 
 @dataclass(frozen=True)
@@ -62,6 +62,8 @@ def run(
 ) -> None:
     """Compute what is missing.
 
+    A chunk that workers die of is computed row by row, so that only the row they die of is lost.
+
     Parameters
     ----------
     study
@@ -73,11 +75,11 @@ def run(
     at_once
         Chunks that are under way at a time.
     watch
-        Told after each chunk how far the study is.
+        Called after each chunk, and at times without one, with how far the study is.
     work
         What computes a chunk.
     log
-        Told of each chunk when it was kept, and of each worker that died.
+        Called with a line for each chunk that was kept, and for each worker that died.
 
     Raises
     ------
@@ -85,41 +87,53 @@ def run(
         If a chunk cannot be kept.
     """
     packed, total, before, began = chunks.pack(study), study.design.count, parts.rows, time.monotonic()
-    waiting = deque(number for number in range(study.chunks) if number not in parts.done)
-    deaths: Counter[int] = Counter()
+    missing = deque(number for number in range(study.chunks) if number not in parts.done)
+    again: deque[Chunk] = deque()
+    apart: dict[int, dict[int, Row]] = {}
+    deaths: Counter[Chunk] = Counter()
     under_way: dict[Future[list[Row]], tuple[Chunk, float]] = {}
 
-    def told() -> None:
+    def report() -> None:
         watch(Advance(parts.rows, parts.failures, total, before, time.monotonic() - began))
 
-    told()
-    while waiting or under_way:
-        while waiting and len(under_way) < at_once:
-            chunk = study.chunk(waiting.popleft())
+    report()
+    while missing or again or under_way:
+        while (missing or again) and len(under_way) < at_once:
+            chunk = again.popleft() if again else study.chunk(missing.popleft())
             under_way[executor.submit(work, packed, chunk)] = chunk, time.monotonic()
         for future in wait(under_way, timeout=PAUSE, return_when=FIRST_COMPLETED).done:
             chunk, since = under_way.pop(future)
             found = _result(future)
             if isinstance(found, int):
-                deaths[chunk.number] += found
-                log(f"chunk {chunk.number}: its worker died ({deaths[chunk.number]})")
-                if deaths[chunk.number] < MOST_DEATHS:
-                    waiting.appendleft(chunk.number)
+                deaths[chunk] += found
+                log(f"chunk {chunk.number}: its worker died ({deaths[chunk]})")
+                if deaths[chunk] < MOST_DEATHS:
+                    again.appendleft(chunk)
                     continue
-                found = _given_up(chunk)
-            parts.append(chunk.number, chunk.start, found)
+                if len(chunk.values) > 1:
+                    again.extend(chunk.apart())
+                    continue
+                found = [_lost()]
+            start, count = study.place(chunk.number)
+            if len(found) < count:
+                one_by_one = apart.setdefault(chunk.number, {})
+                one_by_one[chunk.start] = found[0]
+                if len(one_by_one) < count:
+                    continue
+                found = [row for _, row in sorted(apart.pop(chunk.number).items())]
+            parts.append(chunk.number, start, found)
             log(f"chunk {chunk.number}: {len(found)} rows in {time.monotonic() - since:.3f} s")
-        told()
+        report()
 
 
 PAUSE = 0.5
-"""Seconds after which it is told anew how far a study is, though nothing is new."""
+"""Seconds after which it is said again how far a study is, though nothing is new."""
 
 DEADLY = "KilledWorker"
 """What Dask calls a task of which so many workers died that it tries no other."""
 
 
-def _result(future: Future[list[Row]]) -> Sequence[Row] | int:
+def _result(future: Future[list[Row]]) -> list[Row] | int:
     """The rows of a chunk, or how many workers died of it. Anything else that a worker raises is raised here."""
     error = future.exception()
     if error is None:
@@ -131,7 +145,7 @@ def _result(future: Future[list[Row]]) -> Sequence[Row] | int:
     raise error
 
 
-def _given_up(chunk: Chunk) -> Sequence[Row]:
-    """The rows of a chunk that no worker survives."""
-    message = f"{MOST_DEATHS} workers died while they computed these {len(chunk.values)} rows; solve them one by one"
-    return [rows.failed("", Failure.WORKER_DIED, message) for _ in chunk.values]
+def _lost() -> Row:
+    """A row that no worker survives."""
+    message = f"{MOST_DEATHS} workers died while they computed this row; --resume tries it again"
+    return rows.failed("", Failure.WORKER_DIED, message)

@@ -8,14 +8,15 @@ from functools import lru_cache
 
 from satsym import methods, solvers
 from satsym.instance import Instance
+from satsym.instance.numbers import Table
 from satsym.solution import Certificate, Solution
 from satsym.solvers.certificate.bulk import certify_all
+from satsym.solvers.improving import goes_on
 from satsym.solvers.redundant_ends import redundant
 from satsym.solvers.repeated import Repeated
 from satsym.status import BadInput, Verdict
 from satsym.studies import rows
 from satsym.studies.asked import Checked, Task
-from satsym.studies.keys import Table
 from satsym.studies.rows import Cases, Row, Work
 
 ALONE = "single solver"
@@ -57,9 +58,7 @@ def alone(instance: Instance, checked: Checked) -> Solution:
     if checked is Checked.NONE:
         return replace(found, certificate=None)
     found = certified(found)
-    if found.certificate is None or found.certificate.verdict is Verdict.LOCAL_MINIMUM:
-        return found
-    return solvers.solve(instance)  # which goes on from what is no minimum
+    return solvers.solve(instance) if goes_on(found) else found
 
 
 def certified(solution: Solution) -> Solution:
@@ -108,5 +107,5 @@ def _again(repeated: Repeated, instance: Instance) -> tuple[Solution, str] | Non
         if not answer.status.answered:
             return None
         return replace(repeated.solution(answer), instance=instance), answer.origin.value
-    except Exception:  # the single solver tells what it is
+    except Exception:  # the single solver says what it is
         return None

@@ -12,9 +12,12 @@ from dataclasses import dataclass
 from multiprocessing import get_context
 from multiprocessing.connection import Connection, wait
 from queue import SimpleQueue
-from threading import Thread
+from threading import Lock, Thread
 from types import ModuleType
 from typing import Any
+
+from satsym.status import BadInput
+from satsym.wording import shown
 
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 """Read by libraries when they are loaded: on matrices as small as ours, threads cost several times what they save."""
@@ -46,6 +49,7 @@ class Workers(Executor):
 
     def __init__(self, count: int) -> None:
         self._all = [_begun() for _ in range(count)]
+        self._over, self._renewing = False, Lock()
         self._idle: SimpleQueue[int] = SimpleQueue()
         for k in range(count):
             self._idle.put(k)
@@ -54,21 +58,46 @@ class Workers(Executor):
         """As of ``Executor``, in an idle process."""
         k = self._idle.get()
         with _single_threaded(), _main_hidden():
-            future = self._all[k].pool.submit(fn, *args, **kwargs)
+            try:
+                future = self._all[k].pool.submit(fn, *args, **kwargs)
+            except BrokenExecutor:  # a process that died with nothing to do
+                self._renew(k)
+                future = self._all[k].pool.submit(fn, *args, **kwargs)
 
         def over(done: Future[Any]) -> None:
             if not done.cancelled() and isinstance(done.exception(), BrokenExecutor):
-                self._all[k].lifeline.close()
-                self._all[k] = _begun()
+                self._renew(k)
             self._idle.put(k)
 
         future.add_done_callback(over)
         return future
 
+    def _renew(self, k: int) -> None:
+        with self._renewing:  # while all end, which another thread may have them do
+            if not self._over:
+                self._all[k].lifeline.close()
+                self._all[k] = _begun()
+
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """End all processes, whatever they are at."""
+        with self._renewing:
+            self._over = True
         for process in self._all:
             process.end()
+
+
+def processes(wanted: int | None, chunks: int) -> int:
+    """How many processes compute so many chunks: by default one a processor that this one may use.
+
+    Raises
+    ------
+    BadInput
+        If less than one is wanted.
+    """
+    if wanted is not None and (not isinstance(wanted, int) or wanted < 1):
+        raise BadInput(f"workers: {shown(wanted)} compute nothing; write a whole number from 1, or leave it out")
+    able = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return min(wanted or able, chunks)
 
 
 def _begun() -> _Process:

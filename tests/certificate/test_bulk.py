@@ -56,7 +56,7 @@ def test_minima_are_confirmed_with_what_the_single_certificate_measures(populati
             assert abs(check.value - theirs[check.name].value) <= 0.01 * max(check.limit, 1e-10)
 
 
-@pytest.mark.parametrize("place", ["lam", "x", "u", "objective"])
+@pytest.mark.parametrize("place", ["lam", "u", "objective"])
 def test_what_is_wrong_with_one_is_seen_in_that_one_alone(population: list[Solution], place: str) -> None:
     spoilt = list(population[:4])
     if place == "objective":
@@ -66,11 +66,7 @@ def test_what_is_wrong_with_one_is_seen_in_that_one_alone(population: list[Solut
         rows[1, 0 if place == "lam" else 500] += 1e-5
         spoilt[2] = replace(spoilt[2], **{place: rows})
     found = bulk.certify_all(spoilt)
-    assert [one.verdict.value for one in found if one] == [
-        *["local minimum"] * 2,
-        *(["failed"] if place != "x" else [certified(spoilt[2])]),
-        "local minimum",
-    ]
+    assert [one.verdict.value for one in found if one] == [*["local minimum"] * 2, "failed", "local minimum"]
 
 
 def certified(solution: Solution) -> str:

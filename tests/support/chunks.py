@@ -1,19 +1,41 @@
-"""What workers may meet instead of a chunk of a study."""
+"""What may be met instead of a chunk of a study, and who computes it."""
 
 from __future__ import annotations
 
-import os
+from collections.abc import Callable
+from concurrent.futures import BrokenExecutor, Executor, Future
+from typing import Any
+
+import numpy as np
 
 from satsym.studies import rows
 from satsym.studies.asked import Chunk
 from satsym.studies.rows import Row
 
+Made = Callable[[bytes, Chunk], list[Row]]
 
-def deadly_in_one(packed: bytes, chunk: Chunk) -> list[Row]:
-    """Rows that say their values, but for chunk 1, of which every worker dies."""
-    if chunk.number == 1:
-        os._exit(9)
-    return [Row("", "converged", "", {"twice": 2.0 * value}) for (value,) in chunk.values.tolist()]
+
+def made(packed: bytes, chunk: Chunk) -> list[Row]:
+    """Rows that say their first values, at once."""
+    return [
+        Row(
+            f"{chunk.start + k}",
+            "converged",
+            "",
+            {"objective": 2.0 * value, "verdict": "local minimum"},
+            _arrays(value),
+        )
+        for k, (value, *_) in enumerate(chunk.values.tolist())
+    ]
+
+
+def _arrays(value: float) -> dict[str, Any]:
+    return {"t": np.linspace(0.0, 1.0, 3), "x": np.full((4, 3), value), "u": np.zeros((2, 3)), "lam": np.ones((4, 3))}
+
+
+def failing(packed: bytes, chunk: Chunk) -> list[Row]:
+    """The same, the last of a chunk a failure."""
+    return [*made(packed, chunk)[:-1], rows.failed("", rows.Failure.BAD_INPUT, "no")]
 
 
 def raising(packed: bytes, chunk: Chunk) -> list[Row]:
@@ -21,8 +43,47 @@ def raising(packed: bytes, chunk: Chunk) -> list[Row]:
     raise RuntimeError("a mistake")
 
 
-def quick(packed: bytes, chunk: Chunk) -> list[Row]:
-    """Rows that say their values, the last of a chunk a failure."""
-    found = [Row("", "converged", "", {"twice": 2.0 * value}) for (value,) in chunk.values.tolist()]
-    found[-1] = rows.failed("", rows.Failure.BAD_INPUT, "no")
-    return found
+class Here(Executor):
+    """Computes at once and here, by another function where one is given; knows which chunks it was given."""
+
+    def __init__(self, work: Made | None = made) -> None:
+        self.work, self.given = work, list[int]()
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        self.given.append(args[1].number)
+        future: Future[Any] = Future()
+        try:
+            future.set_result((self.work or fn)(*args))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+class Deadly(Here):
+    """Dies of the row with the value 5."""
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        if 5.0 not in args[1].values[:, 0]:
+            return super().submit(fn, *args, **kwargs)
+        future: Future[Any] = Future()
+        future.set_exception(BrokenExecutor())
+        return future
+
+
+class Backwards(Here):
+    """Holds chunks back, and gives out the one that it was given last whenever it is asked how far it is."""
+
+    def __init__(self, work: Made | None = made) -> None:
+        super().__init__(work)
+        self.waiting: list[tuple[Future[Any], tuple[Any, ...]]] = []
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        self.given.append(args[1].number)
+        self.waiting.append((Future(), args))
+        return self.waiting[-1][0]
+
+    def release(self, _: object) -> None:
+        """Compute one."""
+        if self.waiting:
+            future, args = self.waiting.pop()
+            future.set_result((self.work or made)(*args))

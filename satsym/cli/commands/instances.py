@@ -30,7 +30,7 @@ def instances(name: str | None, keys: bool, schema: bool, as_json: bool) -> Exit
     With X, show the file of that one.
     """
     if sum((name is not None, keys, schema)) > 1:
-        raise click.UsageError("X, --keys and --schema are three things to ask; give one of them.")
+        raise click.UsageError("Give one of X, --keys, --schema.")
     if keys or schema:
         _said(schema or as_json)
     elif name is not None:

@@ -39,21 +39,23 @@ def lqr(subject: str, values: tuple[str, ...], as_json: bool, out: Path | None, 
     """
     from satsym.analysis.regulator.feedback import designed
     from satsym.analysis.subject import find
+    from satsym.instance.numbers import changed
     from satsym.kernels import Kernels
     from satsym.report.results.linear import regulator_object
-    from satsym.report.results.objects import head_about
+    from satsym.report.results.objects import head_about, with_settings
     from satsym.report.terminal.linear import regulator_text
     from satsym.report.terminal.solution import with_files
-    from satsym.studies.reading import with_values
+    from satsym.studies.reading import settings
 
-    given = find(subject)
+    given, numbers = find(subject), dict[str, float]()
     if values:
         if isinstance(given, Kernels):
             raise BadInput(f"--set {printable(values[0])}: is for an instance, and {printable(subject)} is a model")
-        given = with_values(given, values)
+        numbers = settings(given, values)
+        given = changed(given, numbers)
     folder = folder_for(Path(subject).stem, "lqr", out, look)
     design = designed(given)
-    result = head_about("lqr", given, Status.CONVERGED) | regulator_object(design)
+    result = with_settings(head_about("lqr", given, Status.CONVERGED) | regulator_object(design), numbers)
     pictures: dict[str, Content] = {}
     if folder and look:
         from satsym.report.plots.systems import of_design

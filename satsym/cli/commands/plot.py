@@ -55,8 +55,8 @@ def plot(subject: str, source: Path | None, out: Path | None, look: Look, as_jso
 
     if (study := study_folder(subject, source)) is not None:
         said, drawn = draw(study, look, out)
-        told = said | {"command": "plot", "pictures": [str(path) for path in drawn]}
-        answer(as_json, told, lambda: with_files(f"{said['instance']}: study of {said['rows']} rows", drawn))
+        shown = said | {"command": "plot", "pictures": [str(path) for path in drawn]}
+        answer(as_json, shown, lambda: with_files(f"{said['instance']}: study of {said['rows']} rows", drawn))
         return ExitCode.DONE
     name, command = split(subject)
     case = instance.load(name)
@@ -82,7 +82,6 @@ def _save(folder: Path, found: Found, result: Solution | Simulation, pictures: M
 
     if folder.resolve() == found.folder.resolve():
         return sets.extend(found, pictures)
-    if (other := sets.command_of(folder)) not in (None, "plot"):
-        raise BadInput(f"{printable(str(folder))}: holds the result of {other}; give another folder for pictures")
+    sets.keep_apart(folder, "plot")
     case = result.instance
     return sets.write(folder, head("plot", case.model.spec, case.name, result.status), pictures)[:-1]

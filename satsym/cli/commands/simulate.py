@@ -51,14 +51,17 @@ def simulate(
     """
     from satsym import instance
     from satsym.analysis.regulator.feedback import simulate as simulated
-    from satsym.report.results.objects import simulation_object
+    from satsym.instance.numbers import changed
+    from satsym.report.results.objects import simulation_object, with_settings
     from satsym.report.terminal.solution import simulation_text, with_files
-    from satsym.studies.reading import with_values
+    from satsym.studies.reading import settings
 
-    case = with_values(instance.load(subject), values)
+    case = instance.load(subject)
+    given = settings(case, values)
+    case = changed(case, given)
     folder = folder_for(case.name, "simulate", out, look)
     simulation = simulated(case, feedback)
-    result = simulation_object(simulation)
+    result = with_settings(simulation_object(simulation), given)
     saved = save(folder, result, trajectory_files(folder, simulation, look))
     answer(as_json, result, lambda: with_files(simulation_text(simulation, in_colour()), saved))
     if simulation.status.answered:

@@ -81,13 +81,16 @@ def solve(
     [solver] says in the instance.
     """
     from satsym import instance, solvers
-    from satsym.report.results.objects import solution_object
+    from satsym.instance.numbers import changed
+    from satsym.report.results.objects import solution_object, with_settings
     from satsym.report.terminal.solution import progress_line, solution_text, with_files
-    from satsym.studies.reading import with_values
+    from satsym.studies.reading import settings
 
     written = instance.read(subject)
     written = replace(written, tree=_continued(written.tree, varied))
-    case = _changed(with_values(written.instance(), values), method=method, steps=steps, tolerance=tolerance)
+    case = written.instance()
+    given = settings(case, values)
+    case = _changed(changed(case, given), method=method, steps=steps, tolerance=tolerance)
     folder = folder_for(case.name, "solve", out, look)
     with live() as line:
         solution = solvers.solve(case, progress=lambda iteration: line.show(progress_line(iteration, case)))
@@ -95,7 +98,9 @@ def solve(
         from satsym.analysis.comparison import limits_noted
 
         solution = limits_noted(solution)
-    result = solution_object(solution)
+    on_the_way = {text.partition("=")[0] for text in varied}
+    given |= {one.key.text: one.end for one in case.continuation if one.key.short in on_the_way}
+    result = with_settings(solution_object(solution), given)
     saved = save(folder, result, trajectory_files(folder, solution, look))
     answer(as_json, result, lambda: with_files(solution_text(solution, in_colour()), saved))
     if not solution.status.answered:

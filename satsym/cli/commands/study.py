@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from satsym.choices import Checked, Choice, Command, Sampling
 from satsym.cli.options import json_option, place_option, plot_options, subject_argument
 from satsym.cli.output import answer, live
 from satsym.cli.saving import RESULTS
@@ -33,46 +33,50 @@ instance says the same: command, sample, method, seed, and [study.vary] "initial
 Exit codes: 0 done (rows that fail say so in the table), 3 the study cannot be carried out, 4 no row has an answer."""
 
 
+def _listed(choices: type[Choice]) -> str:
+    *others, last = choices.names()
+    return f"{', '.join(others)} or {last}"
+
+
 @click.command(epilog=EXAMPLES)
 @subject_argument
 @click.option("--vary", multiple=True, metavar="KEY=LOW:HIGH:N", help="A grid of N values; log: of equal ratio.")
 @click.option("--sample", type=int, metavar="N", help="Draw N rows, instead of a grid.")
 @click.option("--normal", multiple=True, metavar="KEY=MEAN,SD", help="A normal distribution to draw from.")
 @click.option("--uniform", multiple=True, metavar="KEY=LOW,HIGH", help="A uniform distribution to draw from.")
-@click.option("--method", metavar="METHOD", help="Of drawing: sobol (the default), lhs or random.")
+@click.option("--method", metavar="METHOD", help=f"Of drawing: {_listed(Sampling)}; by default sobol.")
 @click.option("--seed", type=int, metavar="S", help="Of drawing; 0 by default.")
-@click.option("--command", metavar="COMMAND", help="What is done with each row: solve (the default), simulate or lqr.")
+@click.option("--command", metavar="COMMAND", help=f"What is done with each row: {_listed(Command)}; by default solve.")
 @click.option(
     "--certificate",
     metavar="KIND",
-    help="Of solve: none, local (the default: all but competitors), or full (as `satsym solve`).",
+    help=f"Of solve: {_listed(Checked)}; by default local, that is all but competitors; full is as `satsym solve`.",
 )
 @click.option("--feedback", metavar="LAW", help="Of simulate, as `satsym simulate` has it.")
 @click.option("--trajectories", is_flag=True, help="Keep them, too, in few npz files.")
 @place_option("--out", metavar="DIR", help="Where it goes; by default results/NAME/study.")
 @click.option("--resume", is_flag=True, help="Go on with the study that is there, or begin it.")
-@click.option("--workers", type=click.IntRange(1, 1000), metavar="N", help="Processes; by default one a processor.")
+@click.option(
+    "--workers",
+    type=click.IntRange(1, 1000),
+    metavar="N",
+    help="Processes; by default one a processor.",
+)
 @click.option("--scheduler", metavar="ADDRESS", help="Of a Dask cluster that computes instead: tcp://HOST:PORT.")
 @plot_options("study")
 @json_option
 def study(
     subject: str,
     vary: tuple[str, ...],
-    sample: int | None,
     normal: tuple[str, ...],
     uniform: tuple[str, ...],
-    method: str | None,
-    seed: int | None,
-    command: str | None,
-    certificate: str | None,
-    feedback: str | None,
-    trajectories: bool,
     out: Path | None,
     resume: bool,
     workers: int | None,
     scheduler: str | None,
     look: Look | None,
     as_json: bool,
+    **options: Any,
 ) -> ExitCode:
     """Solve, simulate or regulate an instance for many values.
 
@@ -81,38 +85,37 @@ def study(
     goes on with it, and what has been computed is not computed again.
     """
     from satsym import instance
-    from satsym.report.results.studies import TABLE
+    from satsym.report.results.study_table import TABLE
     from satsym.report.study import carry_out, draw
     from satsym.report.terminal.solution import with_files
     from satsym.report.terminal.study import progress_line, study_text
-    from satsym.studies import reading
-    from satsym.studies.asking import Options, asked
+    from satsym.status import Status
+    from satsym.studies.asking import asked, named
+    from satsym.studies.reading import read_pairs
+    from satsym.studies.workers import processes
 
     written = instance.read(subject)
     case = written.instance()
-    design = reading.Written(
-        vary=reading.read_pairs(vary, "vary"),
-        normal=reading.read_pairs(normal, "normal"),
-        uniform=reading.read_pairs(uniform, "uniform"),
-        sample=sample,
-        method=method,
-        seed=seed,
-    )
-    options = Options(command=command, certificate=certificate, feedback=feedback, trajectories=trajectories)
-    found = asked(case, written.tree.get("study", {}), design, options)
+    said = {name: read_pairs(pairs, name) for name, pairs in (("vary", vary), ("normal", normal), ("uniform", uniform))}
+    found = asked(written, case, said | options, named(written) or subject)
     folder = out or Path(RESULTS, case.name, "study")
-    with _computing(scheduler, min(workers or os.cpu_count() or 1, found.chunks)) as (made, count), live() as line:
-        result = carry_out(
-            found,
-            folder,
-            made,
-            count,
-            resume=resume,
-            watch=lambda advance: line.show(progress_line(advance)),
-        )
+    with _computing(scheduler, processes(workers, found.chunks)) as (made, count), live() as line:
+        try:
+            result = carry_out(
+                found,
+                folder,
+                made,
+                count,
+                resume=resume,
+                watch=lambda advance: line.show(progress_line(advance)),
+            )
+        except KeyboardInterrupt as stop:
+            stop.add_note("--resume goes on with what is done")
+            raise
     drawn = draw(folder, look)[1] if look else []
-    answer(as_json, result, lambda: with_files(study_text(result), [folder / TABLE, *drawn]))
-    return ExitCode.DONE if result["status"] == "converged" else ExitCode.NO_ANSWER
+    pictures = {"pictures": [str(path) for path in drawn]} if look else {}
+    answer(as_json, result | pictures, lambda: with_files(study_text(result), [folder / TABLE, *drawn]))
+    return ExitCode.DONE if result["status"] == Status.CONVERGED.value else ExitCode.NO_ANSWER
 
 
 @contextmanager

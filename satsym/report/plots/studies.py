@@ -12,12 +12,11 @@ from satsym.report.look import SCREEN, Look
 from satsym.report.plots import legend, style
 from satsym.report.results import files
 from satsym.report.results.studies import Numbers
+from satsym.status import Status
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-ANSWERED = "converged"
 
 MARKS = ("x", "v", "s", "^", "P", "D", "*", "o")
 COLOURS = (style.VERMILION, style.PURPLE, style.INK, style.GREEN, style.BLUE, style.GREY)
@@ -26,7 +25,7 @@ COLOURS = (style.VERMILION, style.PURPLE, style.INK, style.GREEN, style.BLUE, st
 def figures(numbers: Numbers) -> dict[str, Figure]:
     """Figures by name: the quantities, and where rows failed if any did."""
     found = {"overview": _overview(numbers)}
-    if any(one != ANSWERED for one in numbers.status):
+    if any(one != Status.CONVERGED.value for one in numbers.status):
         found["failures"] = _failures(numbers)
     return found
 
@@ -108,7 +107,7 @@ def _failures(numbers: Numbers) -> Figure:
     looks: list[dict[str, Any]] = [{"marker": ".", "markersize": 3.0, "color": style.GREY}]
     pairs = zip(MARKS, COLOURS * 2, strict=False)
     looks += [{"marker": mark, "markersize": 5.0, "color": colour} for mark, colour in pairs]
-    kinds = [ANSWERED, *sorted(set(numbers.status) - {ANSWERED})]
+    kinds = [Status.CONVERGED.value, *sorted(set(numbers.status) - {Status.CONVERGED.value})]
     for kind, look in zip(kinds, looks, strict=False):
         own = status == kind
         if own.any():

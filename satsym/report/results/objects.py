@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from satsym import __version__
@@ -50,6 +50,11 @@ def head_about(command: str, given: Instance | Kernels, status: Status) -> dict[
     return head(command, model.spec, name, status)
 
 
+def with_settings(result: dict[str, Any], given: Mapping[str, float]) -> dict[str, Any]:
+    """An object with the numbers that were given beside the instance, by name; no key where there are none."""
+    return result | {"set": dict(given)} if given else result
+
+
 def solution_object(solution: Solution) -> dict[str, Any]:
     """What ``satsym solve --json`` prints.
 
@@ -94,7 +99,7 @@ def _continuation(solution: Solution) -> dict[str, list[dict[str, Any]]]:
     spec = solution.instance.model.spec
     rows = [
         {
-            **{one.key: plain(one.of(answer.instance)) for one in solution.instance.continuation},
+            **{one.key.short: plain(one.key.of(answer.instance)) for one in solution.instance.continuation},
             "objective": plain(spec.objective(answer.objective)),
             "t_final": _at(answer.times, -1),
             "costate_initial": _each(spec.state_names, answer.lam, 0),

@@ -17,8 +17,6 @@ LIST = "result.json"
 MOST_FILES = 200
 LONGEST_LIST = 2**24
 """Bytes of a result.json that are read."""
-LARGEST = 2**31
-"""Bytes of a file in a set."""
 LARGEST_READ = 2**28
 """Bytes of a file that is read into memory: what instances may ask for makes half of that at most."""
 BLOCK = 2**20
@@ -38,11 +36,23 @@ class _List(msgspec.Struct):
     command: str = ""
 
 
-def unusable(path: Path, why: str) -> BadInput:
-    """The complaint about a file of a set, with what writes such a set."""
-    return BadInput(
-        f"{printable(str(path), 120)}: {why}; `satsym solve X --out {printable(str(path.parent), 120)}` writes it anew"
-    )
+STUDY, ASKED = "study", "study.json"
+"""The command whose sets take long to compute, and what it writes first."""
+
+
+def unusable(path: Path, why: str, command: str = "", more: str = "") -> BadInput:
+    """The complaint about a file of a set, with what writes such a set.
+
+    Parameters
+    ----------
+    command, more
+        The command that wrote it, where that is known, and options that it had.
+    """
+    if not command.isalpha():
+        command = STUDY if (path.parent / ASKED).is_file() else "solve"
+    more += " --resume" if command == STUDY else ""
+    place = printable(str(path.parent), 120)
+    return BadInput(f"{printable(str(path), 120)}: {why}; `satsym {command} X{more} --out {place}` writes it anew")
 
 
 def decoded(path: Path) -> tuple[bytes, str, dict[str, Listed]]:
@@ -64,13 +74,11 @@ def decoded(path: Path) -> tuple[bytes, str, dict[str, Listed]]:
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise unusable(path, f"cannot be read ({printable(str(error))})") from None
     if found.files is None:
-        raise unusable(path, "does not list its files, as results of this version do")
-    wrong = next(
-        (name for name, each in found.files.items() if not (may_hold(name) and 0 <= each.bytes <= LARGEST)), None
-    )
+        raise unusable(path, "does not list its files, as results of this version do", found.command)
+    wrong = next((name for name, each in found.files.items() if not (may_hold(name) and each.bytes >= 0)), None)
     if wrong is not None or len(found.files) > MOST_FILES:
         which = shown(wrong) if wrong is not None else f"more than {MOST_FILES}"
-        raise unusable(path, f"lists files that no set has: {which}")
+        raise unusable(path, f"lists files that no set has: {which}", found.command)
     return raw, found.command, found.files
 
 

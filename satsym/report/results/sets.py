@@ -26,12 +26,15 @@ from typing import Any
 import msgspec
 
 from satsym.report.results.files import Content, store, text, to_json, unwritable
-from satsym.report.results.set_list import LIST, Listed, content, decoded, is_listed, listed_as, unusable
+from satsym.report.results.set_list import LIST, STUDY, Listed, content, decoded, is_listed, listed_as, unusable
 from satsym.status import BadInput
 from satsym.wording import printable
 
 NEXT = ".satsym-next"
 STAGING = ".satsym-new-"
+
+APART = (STUDY, "plot")
+"""Commands whose sets replace only their own kind."""
 
 
 @dataclass(frozen=True)
@@ -130,6 +133,27 @@ def command_of(folder: Path) -> str | None:
     return None if place is None else printable(decoded(place)[1])
 
 
+def keep_apart(folder: Path, command: str) -> None:
+    """Refuse a folder whose set one of another command must not replace.
+
+    A study is replaced by nothing else, for it may have taken days, and replaces nothing else; no more do pictures that
+    stand apart from their result.
+
+    Raises
+    ------
+    BadInput
+        If the folder holds such a set.
+    """
+    try:
+        other = command_of(folder)
+    except BadInput:
+        if command == "plot":
+            raise
+        return  # which is not whole, and is to be written anew
+    if other not in (None, command) and (other == STUDY or command in APART):
+        raise BadInput(f"{printable(str(folder))}: holds the result of {other}; give another folder")
+
+
 def _counting(folder: Path, wanted: Collection[str]) -> Found:
     """The set that counts: the next one if it is complete, else that in place."""
     with suppress(BadInput):
@@ -143,7 +167,7 @@ def _verified(folder: Path, path: Path, wanted: Collection[str]) -> Found:
     for name, each in listed.items():
         place = next((p for p in (path.parent / name, folder / name) if is_listed(p, each)), None)
         if place is None:
-            raise unusable(folder / name, f"is not the file that {LIST} lists, but missing or another")
+            raise unusable(folder / name, f"is not the file that {LIST} lists, but missing or another", command)
         if name in wanted:
             contents[name] = content(place, each)
     return Found(folder, command, raw, listed, contents)

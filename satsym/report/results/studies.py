@@ -1,14 +1,10 @@
-"""The table of a study, row by row from its chunks, its trajectories, and what is said of it as a whole."""
+"""The files of a study, made from its chunks: table, trajectories, and what is said of it as a whole."""
 
 from __future__ import annotations
 
-import csv
 import io
-import math
 import shlex
-import sys
 import zipfile
-from array import array
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -18,33 +14,29 @@ from typing import IO, Any
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.report.results.files import Content
+from satsym.choices import Command
+from satsym.report.results import study_table
+from satsym.report.results.files import Content, text, to_json
 from satsym.report.results.objects import head
-from satsym.report.results.unit_names import units
-from satsym.spec import ProblemSpec
+from satsym.report.results.set_list import ASKED
+from satsym.report.results.study_table import BEFORE, TABLE, table
 from satsym.status import Status
-from satsym.studies.asked import Command, Study
-from satsym.studies.keys import Table
+from satsym.studies.asked import Study
 from satsym.studies.parts import Parts
-from satsym.studies.rows import Row, Scalar
+from satsym.studies.rows import TEXTS, Column, Row
 from satsym.wording import counted
-
-TABLE, ASKED = "table.csv", "study.json"
-
-TEXTS = ("key", "status", "message", "verdict", "method", "origin")
-"""Columns that hold words."""
 
 SHOWN = 5
 """Worst rows, and rows without an answer, for which a command is given."""
 
-DRAWN, MOST_DRAWN = ("objective", "t_final", "cost_from_initial"), 3
+DRAWN_FIRST, MOST_DRAWN = (Column.OBJECTIVE, Column.T_FINAL, Column.COST_FROM_INITIAL), 3
 """Columns that are drawn first, and how many are."""
 
 MOST_READ, ROUNDING = 16, 1e-9
 """How many of them are looked at, and what may differ by rounding alone."""
 
-FEWEST_IN_FILE, MOST_FILES = 1000, 100
-"""Rows of a file of trajectories where there are not too many for that, and files of them."""
+LARGEST_FILE, FILES = 2**28, 100
+"""Bytes of a file of trajectories, larger where there would be more files of them than about this many."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,67 +77,32 @@ class Merged:
             for place, (own, row) in enumerate(zip(values, part.rows, strict=True)):
                 yield part.start + place, own, row
 
-    def columns(self) -> list[str]:
-        """Names of the numbers that any row has, in the order of their first row."""
-        found: dict[str, None] = {}
-        for _, _, row in self.rows():
-            found.update(dict.fromkeys(row.numbers))
-        return list(found)
 
-
-def table(merged: Merged) -> Content:
-    """The table as CSV, in UTF-8; empty where there is no number."""
-    keys = [key.text for key in merged.study.design.keys]
-    spec = merged.study.instance.model.spec
-
-    def written(stream: IO[bytes]) -> None:
-        columns = merged.columns()
-        text = io.TextIOWrapper(stream, encoding="utf-8", newline="", write_through=True)
-        out = csv.writer(text, lineterminator="\n")
-        out.writerow(header(spec, ["row", "key", *keys, "status", "message", *columns]))
-        for number, values, row in merged.rows():
-            numbers = (row.numbers.get(name) for name in columns)
-            out.writerow([number, row.key, *map(_cell, values), row.status, row.message, *map(_cell, numbers)])
-        text.flush()
-        text.detach()
-
-    return written
-
-
-def header(spec: ProblemSpec, names: Sequence[str]) -> list[str]:
-    """Names of columns with their units in brackets, but for plain numbers and words."""
-    known = _units(spec)
-    return [f"{name} [{unit}]" if (unit := known.get(name)) and unit != "1" else name for name in names]
-
-
-def _units(spec: ProblemSpec) -> dict[str, str | None]:
-    """The unit of each column that has one."""
-    own = units(spec)
-    found: dict[str, str | None] = dict.fromkeys(("t_final", "t_initial", "time.tf", "time.t0"), own["t"])
-    found["objective"] = own.get("objective")
-    for v in spec.states:
-        found |= dict.fromkeys((f"{Table.INITIAL.value}.{v.symbol}", f"{Table.FINAL.value}.{v.symbol}"), v.unit)
-        found |= {f"x_final.{v.symbol}": v.unit, f"found.{v.symbol}": v.unit}
-        found[f"costate_initial.{v.symbol}"] = own.get(f"lambda_{v.symbol}")
-    for v in spec.parameters:
-        found |= {f"{Table.PARAMETERS.value}.{v.symbol}": v.unit, f"found.{v.symbol}": v.unit}
-    found |= {f"drift.{v.symbol}": v.unit for v in spec.invariants}
-    if spec.controls:
-        found[f"{Table.CONTROL.value}.max_norm"] = spec.controls[0].unit
-    return found
+def files(merged: Merged) -> dict[str, Content]:
+    """Everything but result.json."""
+    study = merged.study
+    keys = [key.text for key in study.design.keys]
+    asked = {ASKED: text(to_json(asked_object(study)))}
+    return asked | {TABLE: table(study.instance.model.spec, keys, merged.rows)} | trajectories(merged)
 
 
 def trajectories(merged: Merged) -> dict[str, Content]:
     """Files of trajectories, few whatever the number of rows: arrays ``ROW.t``, ``ROW.x``, ``ROW.u``, ``ROW.lam``."""
-    study = merged.study
-    if not study.trajectories:
+    if not merged.study.trajectories:
         return {}
-    each = max(1, -(-max(FEWEST_IN_FILE, -(-study.design.count // MOST_FILES)) // study.size))
-    groups = [range(first, min(first + each, study.chunks)) for first in range(0, study.chunks, each)]
+    sizes = [merged.parts.size(number) for number in range(merged.study.chunks)]
+    most = max(LARGEST_FILE, sum(sizes) // FILES)
+    groups, last = [[0]], sizes[0]
+    for number, size in enumerate(sizes[1:], 1):
+        last += size
+        if last > most:
+            groups.append([])
+            last = size
+        groups[-1].append(number)
     return {f"trajectories-{k:03d}.npz": _trajectories(merged, group) for k, group in enumerate(groups)}
 
 
-def _trajectories(merged: Merged, group: range) -> Content:
+def _trajectories(merged: Merged, group: Sequence[int]) -> Content:
     def written(stream: IO[bytes]) -> None:
         with zipfile.ZipFile(stream, "w", zipfile.ZIP_STORED) as archive:
             for number in group:
@@ -183,9 +140,9 @@ def study_object(merged: Merged) -> dict[str, Any]:
                 said = {"status": row.status, "message": row.message}
                 failures.append(_case(study, number, values) | said)
             continue
-        if isinstance(verdict := row.numbers.get("verdict"), str):
+        if isinstance(verdict := row.numbers.get(Column.VERDICT), str):
             verdicts[verdict] += 1
-        if isinstance(cost := row.numbers.get("objective"), float):
+        if isinstance(cost := row.numbers.get(Column.OBJECTIVE), float):
             worst = sorted([*worst, (sense * cost, number, values)], reverse=True, key=lambda one: one[0])[:SHOWN]
     status = Status.CONVERGED if statuses[Status.CONVERGED.value] else Status.NOT_CONVERGED
     return head("study", spec, study.instance.name, status) | {
@@ -202,40 +159,34 @@ def study_object(merged: Merged) -> dict[str, Any]:
 
 
 def numbers(path: Path, said: Mapping[str, Any]) -> Numbers:
-    """The columns of a table that are drawn: what varies, and the first that tell of the whole.
+    """The columns of a table that are drawn: what varies, and the first that differ from row to row.
 
     Parameters
     ----------
     said
         What result.json holds.
     """
-    with path.open(encoding="utf-8", newline="") as stream:
-        rows = csv.reader(stream)
-        labels = next(rows)
-        names = [label.partition(" [")[0] for label in labels]
-        varied = [names.index(name) for name in said["varied"]]
-        drawn = [names.index(name) for name in DRAWN if name in names]
-        first = len(varied) + 4  # the number, the key, the status and its message stand before
-        drawn += [k for k in range(first, len(names)) if k not in drawn and names[k] not in TEXTS]
-        chosen, place = [*varied, *drawn[:MOST_READ]], names.index("status")
-        status: list[str] = []
-        values = array("d")
-        for row in rows:
-            status.append(sys.intern(row[place]))
-            values.extend(float(row[k]) if row[k] else math.nan for k in chosen)
-    table = np.array(values).reshape(-1, len(chosen))
-    columns = {labels[k]: table[:, place] for place, k in enumerate(chosen)}
+    labels, varied = study_table.labels(path), said["varied"]
+
+    def chosen(names: list[str]) -> list[str]:
+        drawn: list[str] = [name for name in DRAWN_FIRST if name in names]
+        drawn += [name for name in names if name not in (*drawn, *BEFORE, *varied, *TEXTS)]
+        return [*varied, *drawn[:MOST_READ], Column.STATUS]
+
+    found = study_table.columns(path, chosen)
+    status = found.pop(Column.STATUS)
+    columns = {labels[name]: values for name, values in found.items()}
     title = f"{said['instance']}: {said['each']} for {counted(said['rows'], 'row')}"
     return Numbers(
         title=title,
-        varied={labels[k]: columns[labels[k]] for k in varied},
-        quantities=telling({labels[k]: columns[labels[k]] for k in chosen[len(varied) :]}),
-        status=status,
+        varied={labels[name]: columns.pop(labels[name]) for name in varied},
+        quantities=distinguishing(columns),
+        status=status.tolist(),
         shape=tuple(said["grid"]) if said["grid"] else None,
     )
 
 
-def telling(quantities: Mapping[str, Array]) -> dict[str, Array]:
+def distinguishing(quantities: Mapping[str, Array]) -> dict[str, Array]:
     """The first of them that differ from row to row by more than rounding does; where none does, the first alone."""
 
     def varies(name: str, values: Array) -> bool:
@@ -258,21 +209,8 @@ def _case(study: Study, number: int, values: Sequence[float]) -> dict[str, Any]:
 
 
 def _reproduced(study: Study, values: dict[str, float]) -> str:
-    words = ["satsym", study.command.value, _subject(study)]
+    words = ["satsym", study.command.value, study.subject]
     if study.command is Command.SIMULATE and study.feedback:
         words += ["--feedback", study.feedback]
     words += [word for name, value in values.items() for word in ("--set", f"{name}={value!r}")]
     return shlex.join(words)
-
-
-def _subject(study: Study) -> str:
-    from satsym.instance import shipped
-
-    instance = study.instance
-    return instance.name if instance.name in shipped() else str(instance.path)
-
-
-def _cell(value: Scalar) -> str:
-    if value is None:
-        return ""
-    return value if isinstance(value, str) else repr(float(value))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.instance.numbers import changed
 from satsym.instance.unknowns import Place
 from satsym.report.results import arrays, sets
 from satsym.report.results.certificate import Stored as StoredCertificate
@@ -18,7 +20,7 @@ from satsym.report.results.certificate import absent
 from satsym.report.results.files import Content
 from satsym.report.results.set_list import LIST, unusable
 from satsym.solution import CostInterval, Event, Invariant, Iteration, Simulation, Solution
-from satsym.status import Status
+from satsym.status import BadInput, Status
 from satsym.wording import printable
 
 if TYPE_CHECKING:
@@ -59,6 +61,7 @@ class _Result(msgspec.Struct):
     command: str
     model: str
     instance: str
+    settings: dict[str, float] = msgspec.field(name="set", default_factory=dict)
     method: str = ""
     message: str = ""
     objective: float | None = None
@@ -142,17 +145,23 @@ def read(instance: Instance, folder: Path) -> tuple[Solution | Simulation, sets.
         raise unusable(listing, f"is of {theirs}, not of {instance.name} (model {spec.name})")
     if result.command not in COMMANDS or ARRAYS not in found.contents:
         raise unusable(listing, f"is of `satsym {printable(result.command)}`, which leaves no trajectory")
+    with_options = [f" --set {printable(name)}={value!r}" for name, value in result.settings.items()]
+    again = partial(unusable, command=result.command, more="".join(with_options))
     if not _LAW.match(result.method if result.command == "solve" else result.feedback):
-        raise unusable(listing, "names no method and no feedback")
+        raise again(listing, "names no method and no feedback")
     try:
         stored = arrays.unpacked(found.contents[ARRAYS])
     except ValueError as error:
-        raise unusable(place, f"cannot be read ({printable(str(error), 120)})") from None
+        raise again(place, f"cannot be read ({printable(str(error), 120)})") from None
     if not _fits(stored, spec, result.command == "solve"):
-        raise unusable(place, f"does not hold what a trajectory of {spec.name} has")
+        raise again(place, f"does not hold what a trajectory of {spec.name} has")
+    try:
+        instance = changed(instance, result.settings)
+    except BadInput as error:
+        raise again(listing, f"cannot be read ({printable(str(error), 200)})") from None
     instance = _with_found(instance, result.parameters_found, stored)
     if not _starts_at(stored["x"], instance.initial):
-        raise unusable(place, f"starts elsewhere than {instance.name}, which has changed since")
+        raise again(place, f"starts elsewhere than {instance.name}, which has changed since")
     make = _solution if result.command == "solve" else _flight
     return make(instance, result, stored), found
 

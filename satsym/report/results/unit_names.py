@@ -26,10 +26,14 @@ def time_unit(spec: ProblemSpec) -> str:
 
 def cost_per(unit: str, spec: ProblemSpec) -> str:
     """The unit of a costate: of the cost, per unit of the state."""
-    cost = spec.objective_unit or COST
-    if unit == "1":
-        return cost
-    return f"{cost}/({unit})" if re.search(r"[*/^]", unit) else f"{cost}/{unit}"
+    return per(spec.objective_unit or COST, unit) or COST
+
+
+def per(unit: str, other: str | None) -> str | None:
+    """A unit by another one; ``None`` where that is not clear."""
+    if other is None or other == "1":
+        return None if other is None else unit
+    return f"{unit}/({other})" if re.search(r"[*/^]", other) else f"{unit}/{other}"
 
 
 def units(spec: ProblemSpec) -> dict[str, str | None]:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from satsym.report.terminal.table import figure, table
+from satsym.status import Status
 from satsym.studies.running import Advance
 from satsym.wording import counted
 
@@ -23,7 +24,7 @@ def progress_line(advance: Advance) -> str:
 
 def study_text(said: Mapping[str, Any]) -> str:
     """Summary of a study from what its result.json holds."""
-    answered = said["statuses"].get("converged", 0)
+    failed = said["rows"] - said["statuses"].get(Status.CONVERGED.value, 0)
     lines = [
         f"{said['instance']}, model {said['model']}: {said['each']} for {counted(said['rows'], 'row')} of "
         f"{', '.join(said['varied'])}",
@@ -34,11 +35,11 @@ def study_text(said: Mapping[str, Any]) -> str:
         lines += ["", *table([("verdict", "rows"), *((k, str(v)) for k, v in said["verdicts"].items())], right=(1,))]
     if said["worst"]:
         rows = [(str(one["row"]), figure(one["objective"]), one["reproduce"]) for one in said["worst"]]
-        lines += ["", "worst:", *table([("row", "objective", "alone"), *rows], right=(0, 1))]
+        lines += ["", "worst:", *table([("row", "objective", "command"), *rows], right=(0, 1))]
     if said["failures"]:
         rows = [(str(one["row"]), one["status"], one["reproduce"]) for one in said["failures"]]
-        lines += ["", f"first of {said['rows'] - answered} that failed:"]
-        lines += table([("row", "status", "alone"), *rows], right=(0,))
+        lines += ["", f"{counted(failed, 'row')} failed{', among them' if len(rows) < failed else ''}:"]
+        lines += table([("row", "status", "command"), *rows], right=(0,))
     return "\n".join(lines)
 
 

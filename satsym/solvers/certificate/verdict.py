@@ -85,7 +85,7 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
     if solution.method == "boundary-arcs":
         from satsym.solvers.certificate.constrained import conditions as constrained
 
-        return constrained.certify(solution, seed), None
+        return constrained.certify(solution, seed, compared), None
     solution = revolutions.as_stated(solution)
     with np.errstate(all="ignore"):
         along = segments(solution)

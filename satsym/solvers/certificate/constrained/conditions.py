@@ -7,7 +7,8 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers.certificate import conditions
-from satsym.solvers.certificate.constrained.comparison import Comparison, compared
+from satsym.solvers.certificate.constrained.comparison import Comparison
+from satsym.solvers.certificate.constrained.comparison import compared as with_other_arcs
 from satsym.solvers.certificate.constrained.replay import Piece, Replay, replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
 from satsym.solvers.certificate.flow import FAINT, typical
@@ -29,7 +30,7 @@ STRICT = 1e-6
 """Least share of the largest multiplier at which one is strictly positive."""
 
 
-def certify(solution: Solution, seed: int = 0) -> Certificate:
+def certify(solution: Solution, seed: int = 0, compared: bool = True) -> Certificate:
     """Certify arcs on boundaries of path constraints; see :func:`satsym.solvers.certificate.certify`."""
     with np.errstate(all="ignore"):
         again = replay(solution)
@@ -46,10 +47,11 @@ def certify(solution: Solution, seed: int = 0) -> Certificate:
                 second.append(Check("not convex", 0.0, 0.0))
             else:
                 second += _sufficient(solution, again)
-                comparison = compared(solution, seed)
-                second += comparison.checks
+                if compared:
+                    comparison = with_other_arcs(solution, seed)
+                    second += comparison.checks
     return Certificate(
-        verdict=Verdict.of(all(c.passed for c in first), all(c.passed for c in second)),
+        verdict=Verdict.of(all(c.passed for c in first), all(c.passed for c in second), compared),
         **conditions.headlines(first),
         legendre_clebsch=conditions.legendre_clebsch(solution),
         conjugate_time=None,

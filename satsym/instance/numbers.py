@@ -1,19 +1,20 @@
-"""The numbers of an instance that a study may vary, by the names that instance files have for them."""
+"""The numbers of an instance that may be changed, by the names that instance files have for them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
-from typing import Any
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from satsym.instance import Instance
 from satsym.instance.resolve import parameters, quantity, time, value_of
 from satsym.spec import ProblemSpec, Variable
 from satsym.status import BadInput
 from satsym.wording import printable, shown, suggestion
+
+if TYPE_CHECKING:
+    from satsym.instance.types import Instance
 
 
 class Table(str, Enum):
@@ -38,22 +39,33 @@ class Key:
         """As it is asked for, and as tables name it."""
         return f"{self.table.value}.{self.name}"
 
-    def value(self, given: float | str, spec: ProblemSpec) -> float:
+    @property
+    def short(self) -> str:
+        """As continuations name it: parameters and times without their table."""
+        return self.name if self.table in (Table.PARAMETERS, Table.TIME) else self.text
+
+    def value(self, given: float | str, spec: ProblemSpec, place: str = "") -> float:
         """A number as it stands, or a quantity with its unit, in the model's unit and inside its domain.
+
+        Parameters
+        ----------
+        place
+            Where messages say that it stands; by default its name.
 
         Raises
         ------
         BadInput
             If it is no such number.
         """
+        place = place or self.text
         if self.table is Table.TIME:
-            return time(given, self.text, spec)
+            return time(given, place, spec)
         if self.table is Table.CONTROL:
-            number = quantity(given, spec.controls[0].unit, self.text)
+            number = quantity(given, spec.controls[0].unit, place)
             if number <= 0.0:
-                raise BadInput(f"{self.text}: {shown(given)} leaves no control; write a positive number")
+                raise BadInput(f"{place}: {shown(given)} leaves no control; write a positive number")
             return number
-        return value_of(self._variable(spec), given, self.text)
+        return value_of(self._variable(spec), given, place)
 
     def spread(self, given: float | str, spec: ProblemSpec) -> float:
         """A standard deviation in the model's unit."""
@@ -79,6 +91,24 @@ class Key:
             return instance.initial[spec.state_names.index(self.name)]
         return instance.parameters[spec.parameter_names.index(self.name)]
 
+    def given(self, instance: Instance) -> bool:
+        """Whether an instance gives a number for it, and leaves it neither out nor free."""
+        free = any(unknown.name == self.name and unknown.place.value == self.table.value for unknown in instance.free)
+        return not free and self.of(instance) is not None
+
+    def placed(self, instance: Instance, value: float) -> Instance:
+        """An instance with another value, which nothing checks."""
+        spec = instance.model.spec
+        if self.table is Table.TIME:
+            return replace(instance, t0=value) if self.name == "t0" else replace(instance, tf=value)
+        if self.table is Table.CONTROL:
+            return replace(instance, max_norm=value)
+        if self.table is Table.FINAL:
+            return replace(instance, final={**instance.final, self.name: value})
+        if self.table is Table.INITIAL:
+            return replace(instance, initial=_with(instance.initial, spec.state_names.index(self.name), value))
+        return replace(instance, parameters=_with(instance.parameters, spec.parameter_names.index(self.name), value))
+
     def unit(self, spec: ProblemSpec) -> str:
         """Its unit; of times nothing, for the model says what it counts them in."""
         if self.table is Table.TIME:
@@ -90,8 +120,12 @@ class Key:
         return next(v for v in variables if v.symbol == self.name)
 
 
+def _with(row: tuple[float, ...], place: int, value: float) -> tuple[float, ...]:
+    return (*row[:place], value, *row[place + 1 :])
+
+
 def known(spec: ProblemSpec) -> Iterator[Key]:
-    """All that a study may vary of an instance of a model."""
+    """All that may be changed of an instance of a model."""
     for table, names in (
         (Table.INITIAL, spec.state_names),
         (Table.PARAMETERS, spec.parameter_names),
@@ -115,8 +149,7 @@ def find(text: str, instance: Instance) -> Key:
     key = names.get(text)
     if key is None:
         raise BadInput(f"{printable(text)}: {printable(instance.name)} has no such number; {_instead(text, names)}")
-    free = any(unknown.name == key.name and unknown.place.value == key.table.value for unknown in instance.free)
-    if key.of(instance) is None or free:
+    if not key.given(instance):
         raise BadInput(f"{key.text}: {printable(instance.name)} gives no number for it; give it one there")
     return key
 
@@ -127,37 +160,45 @@ def _instead(text: str, names: dict[str, Key]) -> str:
     return f'did you mean "{ending[0]}"?' if ending else suggestion(text, names)
 
 
+def changed(instance: Instance, values: Mapping[str, float]) -> Instance:
+    """An instance with other values of some numbers, by their names; see :func:`at`."""
+    return at(instance, tuple(find(name, instance) for name in values), tuple(values.values()))
+
+
+def texts(table: Mapping[str, str | Mapping[str, str]]) -> list[tuple[str, str]]:
+    """Keys and what is said of them, whether a table has ``"initial.r"`` or a table ``initial`` with ``r``."""
+    found: list[tuple[str, str]] = []
+    for name, value in table.items():
+        if isinstance(value, str):
+            found.append((name, value))
+        else:
+            found += [(f"{name}.{inner}", text) for inner, text in value.items()]
+    return found
+
+
 def at(instance: Instance, keys: tuple[Key, ...], values: tuple[float, ...]) -> Instance:
     """An instance with other values of some numbers, checked anew as far as they go.
+
+    Where a continuation changes one of them, it ends at the new value.
 
     Raises
     ------
     BadInput
         If a value is outside its domain, or values do not fit together.
     """
-    spec = instance.model.spec
-    rows: dict[Table, dict[str, Any]] = {
-        Table.INITIAL: dict(zip(spec.state_names, instance.initial, strict=True)),
-        Table.PARAMETERS: dict(zip(spec.parameter_names, instance.parameters, strict=True)),
-        Table.FINAL: dict(instance.final),
-        Table.TIME: {"t0": instance.t0, "tf": instance.tf},
-        Table.CONTROL: {"max_norm": instance.max_norm},
-    }
-    for key, value in zip(keys, values, strict=True):
-        if not np.isfinite(value):
+    spec, found, ends = instance.model.spec, instance, dict(zip(keys, values, strict=True))
+    for key, value in ends.items():
+        if not math.isfinite(value):
             raise BadInput(f"{key.text}: {value} is not finite; give a number")
-        rows[key.table][key.name] = key.value(value, spec)
-    t0, tf = rows[Table.TIME]["t0"], rows[Table.TIME]["tf"]
-    if tf is not None and not tf > t0:
-        raise BadInput(f"time.tf: {tf:g} is not after t0 = {t0:g}; write a later time")
-    changed = {key.table for key in keys}
-    given = rows[Table.PARAMETERS]
-    return replace(
-        instance,
-        initial=tuple(rows[Table.INITIAL].values()),
-        parameters=parameters(given, spec) if Table.PARAMETERS in changed else instance.parameters,
-        final=rows[Table.FINAL] if Table.FINAL in changed else instance.final,
-        t0=t0,
-        tf=tf,
-        max_norm=rows[Table.CONTROL]["max_norm"],
-    )
+        found = key.placed(found, key.value(value, spec))
+    if any(key.table is Table.PARAMETERS for key in keys):
+        parameters(dict(zip(spec.parameter_names, found.parameters, strict=True)), spec)
+    ways = [replace(one, end=ends.get(one.key, one.end)) for one in instance.continuation]
+    found = replace(found, continuation=tuple(one for one in ways if one.begin != one.end))
+    begun = found
+    for one in found.continuation:
+        begun = one.key.placed(begun, one.begin)
+    for each in (found, begun):
+        if each.tf is not None and not each.tf > each.t0:
+            raise BadInput(f"time.tf: {each.tf:g} is not after t0 = {each.t0:g}; write a later time")
+    return found

@@ -1,0 +1,133 @@
+"""The table of a study as CSV: names and units of its columns, and numbers and words read back by these names."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import sys
+from array import array
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import IO, Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.instance.numbers import Table
+from satsym.report.results.files import Content
+from satsym.report.results.unit_names import COST, per, units
+from satsym.spec import ProblemSpec
+from satsym.studies.rows import TEXTS, Column, Row, Scalar
+
+TABLE = "table.csv"
+
+BEFORE, AFTER = (Column.ROW, Column.KEY), (Column.STATUS, Column.MESSAGE)
+"""Columns that stand before the values of what varies, and after them."""
+
+
+Rows: TypeAlias = Callable[[], Iterable[tuple[int, list[float], Row]]]
+"""Number from 0, values of what varies, and what came of it."""
+
+
+def table(spec: ProblemSpec, varied: Sequence[str], rows: Rows) -> Content:
+    """The table in UTF-8; empty where there is no number.
+
+    Parameters
+    ----------
+    varied
+        Names of what varies.
+    rows
+        Gone through twice.
+    """
+
+    def written(stream: IO[bytes]) -> None:
+        found: dict[str, None] = {}
+        for _, _, row in rows():
+            found.update(dict.fromkeys(row.numbers))
+        text = io.TextIOWrapper(stream, encoding="utf-8", newline="", write_through=True)
+        out = csv.writer(text, lineterminator="\n")
+        names = [*BEFORE, *varied, *AFTER, *found]
+        out.writerow(header(spec, [str(getattr(name, "value", name)) for name in names]))
+        for number, values, row in rows():
+            numbers = (row.numbers.get(name) for name in found)
+            out.writerow([number, row.key, *map(_cell, values), row.status, row.message, *map(_cell, numbers)])
+        text.flush()
+        text.detach()
+
+    return written
+
+
+def header(spec: ProblemSpec, names: Sequence[str]) -> list[str]:
+    """Names of columns with their units in brackets, but for plain numbers and words."""
+    known = dict(_units(spec))
+    return [f"{name} [{unit}]" if (unit := known.get(name)) and unit != "1" else name for name in names]
+
+
+def _units(spec: ProblemSpec) -> Iterator[tuple[str, str | None]]:
+    """The unit of each column that has one.
+
+    Numbers of steps, estimated errors and what laws measure besides have none.
+    """
+    own = units(spec)
+    time, costs = own["t"], (Column.COST_FROM_INITIAL.value, "metrics.lqr_cost", "metrics.lqr_cost_linear")
+    for name in (Column.T_FINAL.value, Column.T_INITIAL.value, f"{Table.TIME.value}.tf", f"{Table.TIME.value}.t0"):
+        yield name, time
+    for name in (Column.OBJECTIVE.value, Column.COST_LOWER.value, Column.COST_UPPER.value):
+        yield name, own.get("objective")
+    yield from dict.fromkeys(costs, COST).items()
+    yield "metrics.transition_time", time
+    for k in range(1, len(spec.states) + 1):
+        yield from dict.fromkeys((f"eigenvalue_{k}.re", f"eigenvalue_{k}.im"), per("1", time)).items()
+    for v in spec.states:
+        for place in (Table.INITIAL.value, Table.FINAL.value, "x_final", "found"):
+            yield f"{place}.{v.symbol}", v.unit
+        for kind in ("min", "max", "error"):
+            yield f"metrics.{v.symbol}_{kind}", v.unit
+        yield f"costate_initial.{v.symbol}", own.get(f"lambda_{v.symbol}")
+        for control in spec.controls:
+            yield f"K.{control.symbol}.{v.symbol}", per(control.unit, v.unit)
+    for v in spec.parameters:
+        yield f"{Table.PARAMETERS.value}.{v.symbol}", v.unit
+        yield f"found.{v.symbol}", v.unit
+    for v in spec.invariants:
+        yield f"drift.{v.symbol}", v.unit
+    if spec.controls:
+        yield f"{Table.CONTROL.value}.max_norm", spec.controls[0].unit
+
+
+def columns(path: Path, chosen: Callable[[list[str]], Iterable[str]] = lambda names: names) -> dict[str, NDArray[Any]]:
+    """Columns of a table by their names: numbers, NaN where there is none, or texts.
+
+    Parameters
+    ----------
+    chosen
+        Of all names those that are wanted.
+    """
+    with path.open(encoding="utf-8", newline="") as stream:
+        rows = csv.reader(stream)
+        names = list(labels_of(next(rows)))
+        wanted = [(names.index(name), name in TEXTS) for name in chosen(names)]
+        found: list[Any] = [[] if words else array("d") for _, words in wanted]
+        for row in rows:
+            for column, (place, words) in zip(found, wanted, strict=True):
+                cell = row[place]
+                column.append(sys.intern(cell) if words else float(cell) if cell else math.nan)
+    return {names[place]: np.array(column) for column, (place, _) in zip(found, wanted, strict=True)}
+
+
+def labels(path: Path) -> dict[str, str]:
+    """Names of columns -> these with their units."""
+    with path.open(encoding="utf-8", newline="") as stream:
+        return labels_of(next(csv.reader(stream)))
+
+
+def labels_of(header: Sequence[str]) -> dict[str, str]:
+    """The same of the first line of a table."""
+    return {label.partition(" [")[0]: label for label in header}
+
+
+def _cell(value: Scalar) -> str:
+    if value is None:
+        return ""
+    return value if isinstance(value, str) else repr(float(value))
