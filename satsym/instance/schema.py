@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import Annotated, Any, Literal, get_args, get_origin
 
 import msgspec
@@ -229,8 +230,7 @@ def check(tree: dict[str, Any]) -> InstanceFile:
 
 
 def _table(tree: dict[str, Any], table: type[Any], section: str) -> Any:
-    fields = {entry.name: entry for entry in msgspec.structs.fields(table)}
-    kinds = {name: apart(entry.type)[0] for name, entry in fields.items()}
+    fields, kinds = _declared(table)
     for name in tree:
         if name not in fields:
             raise BadInput(f"{_key(section, name)}: unknown key; {_instead(name, kinds, table)}")
@@ -238,6 +238,13 @@ def _table(tree: dict[str, Any], table: type[Any], section: str) -> Any:
         if entry.required and name not in tree:
             raise BadInput(f"{_key(section, name)}: missing; write {wanted(kinds[name], section, name)}")
     return table(**{name: _value(value, kinds[name], section, name) for name, value in tree.items()})
+
+
+@cache
+def _declared(table: type[Any]) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The keys of a table, and their types."""
+    fields = {entry.name: entry for entry in msgspec.structs.fields(table)}
+    return fields, {name: apart(entry.type)[0] for name, entry in fields.items()}
 
 
 def apart(kind: Any) -> tuple[Any, Key]:

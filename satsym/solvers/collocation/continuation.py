@@ -93,7 +93,9 @@ def by_bound(problem: TwoPoint, curve: Path) -> list[Array]:
     values = excess(tau)
     signs = np.where(np.isfinite(values).all(axis=1, keepdims=True), np.sign(values), 1.0)
     rows, at = np.nonzero(signs[:, :-1] * signs[:, 1:] < 0)
-    met = enclosed(lambda times: excess(times)[rows, np.arange(len(rows))], tau[at], tau[at + 1])
+    own = np.arange(len(rows))
+    ends = tau[at], tau[at + 1], values[rows, at], values[rows, at + 1]
+    met = enclosed(lambda times: excess(times)[rows, own], *ends)
     return [met[rows == row] for row in range(len(values))]
 
 
