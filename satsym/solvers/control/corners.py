@@ -37,8 +37,15 @@ def zeros(times: Array, values: Array) -> list[float]:
     return sorted(found)
 
 
-def enclosed(function: Callable[[Array], Array], low: Array, high: Array, at_low: Array, at_high: Array) -> Array:
-    """The zeros of continuous functions between points where the signs of each differ, to the last digits; shape (K,).
+def enclosed(
+    function: Callable[[Array], Array],
+    low: Array,
+    high: Array,
+    at_low: Array,
+    at_high: Array,
+    within: float = LAST_DIGITS,
+) -> Array:
+    """The zeros of continuous functions between points where the signs of each differ, shape (K,).
 
     Secant steps that keep each zero enclosed (the method of Anderson and Bjorck), all at once. The library function for
     this would cost an import several times longer than solving.
@@ -49,6 +56,8 @@ def enclosed(function: Callable[[Array], Array], low: Array, high: Array, at_low
         The value of each at a time of its own, from shape (K,) to (K,).
     at_low, at_high
         Their values at the points.
+    within
+        Last step, by default in the last digits.
     """
     left = np.ones(len(low), dtype=bool)
     for _ in range(MOST_STEPS):
@@ -64,7 +73,7 @@ def enclosed(function: Callable[[Array], Array], low: Array, high: Array, at_low
         low, at_low = np.where(crossed, high, low), np.where(crossed, at_high, lessened)
         moved = np.abs(between - high)
         high, at_high = between, value
-        left &= moved > LAST_DIGITS * np.maximum(np.abs(high), 1.0)
+        left &= moved > within * np.maximum(np.abs(high), 1.0)
     return high
 
 
