@@ -40,7 +40,7 @@ PROGRAMMES, SATISFIED = 300, 1e-6
 """Steps of the programme at most, and by how much of their size ends may be missed after it."""
 
 FLAT = (1e-6, 1e-8)
-"""Relative changes of the cost at which it ends: Newton's method mostly goes on from the first, else from the second."""
+"""Relative changes of the cost at which it ends: Newton's method mostly goes on from the first, else the second."""
 
 MESHES = (30, 60, 120)
 """Intervals with which Newton's method is tried."""
