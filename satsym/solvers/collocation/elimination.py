@@ -221,11 +221,10 @@ class Matching:
         half = len(start)
         finish = finish if self._mixing is None else self._mixed(finish)
         nodes = self._between.solve(-np.concatenate([start, defects.ravel(), finish[:half]])[:, None])[:, 0]
-        theta = np.zeros(0)
-        if self._columns is not None:
-            theta = np.linalg.solve(self.reduced(), -(finish[half:] + self._lower @ nodes[-2 * half :]))
-            nodes = nodes + self._columns @ theta
-        return nodes.reshape(-1, 2 * half), theta
+        if self._columns is None:
+            return nodes.reshape(-1, 2 * half), np.zeros(0)
+        theta = np.linalg.solve(self.reduced(), -(finish[half:] + self._lower @ nodes[-2 * half :]))
+        return (nodes + self._columns @ theta).reshape(-1, 2 * half), theta
 
     def _mixed(self, finish: Array) -> Array:
         """Rows at the end with the last ones added to the others."""
