@@ -229,7 +229,7 @@ def check(tree: dict[str, Any]) -> InstanceFile:
     return checked
 
 
-def _table(tree: dict[str, Any], table: type[Any], section: str) -> Any:
+def _table(tree: dict[str, Any], table: Any, section: str) -> Any:
     fields, kinds = _declared(table)
     for name in tree:
         if name not in fields:
@@ -241,7 +241,7 @@ def _table(tree: dict[str, Any], table: type[Any], section: str) -> Any:
 
 
 @cache
-def _declared(table: type[Any]) -> tuple[dict[str, Any], dict[str, Any]]:
+def _declared(table: Any) -> tuple[dict[str, Any], dict[str, Any]]:
     """The keys of a table, and their types."""
     fields = {entry.name: entry for entry in msgspec.structs.fields(table)}
     return fields, {name: apart(entry.type)[0] for name, entry in fields.items()}
