@@ -42,9 +42,19 @@ def shipped() -> list[Path]:
 
 def models() -> list[str]:
     """Names of the generated models that come with satsym, without importing them."""
+    found = {file.stem for folder in _generated() for file in folder.glob(f"*{SUFFIX}")}
+    return sorted(name for name in found if is_name(name))
+
+
+def is_model(name: str) -> bool:
+    """Whether a generated model of this name comes with satsym."""
+    return is_name(name) and any((folder / f"{name}{SUFFIX}").is_file() for folder in _generated())
+
+
+def _generated() -> list[Path]:
+    """Where the modules lie."""
     found = find_spec(GENERATED)
-    folders = (found and found.submodule_search_locations) or ()
-    return sorted({file.stem for folder in folders for file in Path(folder).glob(f"*{SUFFIX}") if is_name(file.stem)})
+    return [Path(folder) for folder in (found and found.submodule_search_locations) or ()]
 
 
 def documents() -> list[Path]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
+from functools import cached_property
 from math import isfinite
 from typing import Any, Literal
 
@@ -285,22 +286,22 @@ class ProblemSpec:
         """What the author calls the objective, where the cost is this; and the other way round."""
         return -cost if self.maximise else cost
 
-    @property
+    @cached_property
     def directional(self) -> bool:
         """Whether some controls are directions, which nothing decides where H does not depend on them."""
         return any(part.directed for part in self.control_parts)
 
-    @property
+    @cached_property
     def stationary(self) -> bool:
         """Whether H depends on some controls neither linearly nor quadratically."""
         return any(part.branch == "stationary" for part in self.control_parts)
 
-    @property
+    @cached_property
     def throttled(self) -> bool:
         """Whether H depends on the norm of such controls as well, so that they may be none at all."""
         return any(part.branch == "throttled" for part in self.control_parts)
 
-    @property
+    @cached_property
     def regularising(self) -> int:
         """How many numbers at the end of the argument ``bounds`` say what is regularised."""
         balls = sum(part.branch == "throttled" and part.kind == "ball" for part in self.control_parts)

@@ -40,9 +40,9 @@ def locate(name_or_path: str) -> Path:
     BadInput
         If it is neither a shipped name nor looks like a path.
     """
-    if name_or_path in shipped():
-        return SHIPPED / f"{name_or_path}.toml"
     path = Path(name_or_path)
+    if path.name == name_or_path and _exists(own := SHIPPED / f"{name_or_path}.toml"):
+        return own
     if path.suffix == ".toml" or len(path.parts) > 1 or _exists(path):
         return path
     instead = suggestion(name_or_path, shipped())

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import Annotated, Any, Literal, get_args, get_origin
 
 import msgspec
@@ -244,9 +245,8 @@ def study(tree: Mapping[str, Any]) -> StudyTable:
     return checked
 
 
-def _table(tree: dict[str, Any], table: type[Any], section: str) -> Any:
-    fields = {entry.name: entry for entry in msgspec.structs.fields(table)}
-    kinds = {name: apart(entry.type)[0] for name, entry in fields.items()}
+def _table(tree: dict[str, Any], table: Any, section: str) -> Any:
+    fields, kinds = _declared(table)
     for name in tree:
         if name not in fields:
             raise BadInput(f"{_key(section, name)}: unknown key; {_instead(name, kinds, table)}")
@@ -254,6 +254,13 @@ def _table(tree: dict[str, Any], table: type[Any], section: str) -> Any:
         if entry.required and name not in tree:
             raise BadInput(f"{_key(section, name)}: missing; write {wanted(kinds[name], section, name)}")
     return table(**{name: _value(value, kinds[name], section, name) for name, value in tree.items()})
+
+
+@cache
+def _declared(table: Any) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The keys of a table, and their types."""
+    fields = {entry.name: entry for entry in msgspec.structs.fields(table)}
+    return fields, {name: apart(entry.type)[0] for name, entry in fields.items()}
 
 
 def apart(kind: Any) -> tuple[Any, Key]:

@@ -59,7 +59,7 @@ def load(model: str, folder: Path | None = None) -> Kernels:
     """
     folder = folder or Path()
     if "/" not in model:
-        if is_name(model) and model in shipped():
+        if sources.is_model(model):
             found = _load_shipped(model)
             _refuse_older(model, *_lying(model))
             return found
@@ -121,7 +121,7 @@ def _refuse_older(model: str, text: str, folder: Path) -> None:
     if (found := changed(text, folder)) is None:
         return
     edited, stating, out = (printable(os.path.relpath(path.resolve()), 150) for path in (*found, folder))
-    ours = "/" not in model and model in shipped()
+    ours = sources.is_model(model)
     command = "satsym derive" if ours else shlex.join(["satsym", "derive", stating, "--out", out])
     raise BadInput(f"{shown(model)}: {edited} has changed since this was derived from it; run `{command}`")
 

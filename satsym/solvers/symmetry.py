@@ -9,13 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from satsym.arrays import Array
+from satsym.control_set import Row
 from satsym.instance import Instance
+from satsym.kernels import Kernels
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import straight
 
@@ -64,11 +67,17 @@ class Rotation:
 
 def rotation(instance: Instance) -> Rotation | None:
     """The rotation that follows the motion at the initial state best; ``None`` where there is none."""
-    n, rng = len(instance.initial), np.random.default_rng(0)
-    start = np.array(instance.initial)
+    return _rotation(instance.model, instance.t0, instance.initial, instance.parameters)
+
+
+@lru_cache(maxsize=8)
+def _rotation(model: Kernels, t0: float, initial: Row, parameters: Row) -> Rotation | None:
+    """The same; it is asked for again with every duration."""
+    n, rng = len(initial), np.random.default_rng(0)
+    start = np.array(initial)
     size = np.maximum(np.abs(start), np.abs(start).max() * 1e-3 + 1e-300)
     x = start[:, None] + size.mean() * rng.uniform(-0.5, 0.5, (n, DRAWN * n))
-    rates, slopes = _motion(instance, x)
+    rates, slopes = _motion(model, t0, parameters, x)
     if not np.isfinite(rates).all() or not np.isfinite(slopes).all() or _linear(slopes):
         return None
     # One row a component of G f - f_x G x, one column an entry of G.
@@ -78,7 +87,7 @@ def rotation(instance: Instance) -> Rotation | None:
     found = basis[values <= NONE * values[0]].reshape(-1, n, n)
     if not len(found):
         return None
-    here, _ = _motion(instance, start[:, None])
+    here, _ = _motion(model, t0, parameters, start[:, None])
     weights = np.linalg.lstsq((found @ start).T, here[:, 0], rcond=1e-9)[0]
     matrix = np.tensordot(weights, found, 1)
     angular, axes = np.linalg.eig(matrix)
@@ -171,8 +180,10 @@ class _Between:
     def _steady(self, rate: float, state: Array) -> Array | None:
         """The state next to another one whose free motion is the rotation at that rate, if there is one."""
         unit, turning = self.problem.scale.state[:, None], rate * self.around.matrix
+        instance = self.problem.instance
+        model = instance.model
         for _ in range(CORRECTIONS):
-            rates, slopes = _motion(self.problem.instance, state)
+            rates, slopes = _motion(model, instance.t0, instance.parameters, state)
             missing = (rates - turning @ state) / unit
             if not np.isfinite(missing).all():
                 return None
@@ -185,18 +196,18 @@ class _Between:
 
 def _rate(instance: Instance, around: Rotation, state: Array) -> float:
     """The angular rate of the free motion at a state."""
-    rates, _ = _motion(instance, state)
+    rates, _ = _motion(instance.model, instance.t0, instance.parameters, state)
     turning = around.generator(state)
     return float((turning * rates).sum() / max(float((turning**2).sum()), 1e-300))
 
 
-def _motion(instance: Instance, x: Array) -> tuple[Array, Array]:
+def _motion(model: Kernels, t0: float, parameters: Row, x: Array) -> tuple[Array, Array]:
     """Rates of the free motion and their derivatives at states (n, M)."""
-    none = np.zeros((len(instance.model.spec.controls), x.shape[1]))
-    t = np.full(x.shape[1], instance.t0)
+    none = np.zeros((len(model.spec.controls), x.shape[1]))
+    t = np.full(x.shape[1], t0)
     with np.errstate(all="ignore"):
-        rates = instance.model.dynamics_batch(t, x, none, instance.parameters)
-        slopes = instance.model.jacobian_x_batch(t, x, none, instance.parameters)
+        rates = model.dynamics_batch(t, x, none, parameters)
+        slopes = model.jacobian_x_batch(t, x, none, parameters)
     return rates, slopes
 
 

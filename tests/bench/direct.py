@@ -7,7 +7,9 @@ bounds. The mesh is doubled until the optimum is met that is known beforehand: n
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from time import perf_counter
 from typing import Any
 
@@ -27,12 +29,12 @@ FIRST = 1.0
 
 @dataclass(frozen=True)
 class Direct:
-    """What came of it: the objective and mesh of the last try, the time that this try took, or why there is none."""
+    """What came of it: the objective and mesh of the last try, whether that is good enough, and how to do it again."""
 
     objective: float
     intervals: int
-    seconds: float
     reached: bool
+    again: Callable[[], float]
 
 
 @dataclass(frozen=True)
@@ -104,12 +106,11 @@ def solve(case: Instance, optimum: float, within: float, patience: float) -> Dir
     (problem, _), begun = loader.problem(case.model.spec.name), perf_counter()
     functions, intervals = stated(problem, case), FEWEST
     while True:
-        began = perf_counter()
-        objective = tried(problem, functions, case, intervals)
-        seconds = perf_counter() - began
+        again = partial(tried, problem, functions, case, intervals)
+        objective = again()
         reached = abs(objective - optimum) <= within * abs(optimum)
         if reached or 2 * intervals > MOST or perf_counter() - begun > patience:
-            return Direct(objective, intervals, seconds, reached)
+            return Direct(objective, intervals, reached, again)
         intervals *= 2
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 
@@ -39,8 +39,8 @@ LONGEST, LOOKED = 30.0, 400
 PROGRAMMES, SATISFIED = 300, 1e-6
 """Steps of the programme at most, and by how much of their size ends may be missed after it."""
 
-FLAT = 1e-8
-"""Relative change of the cost at which it ends."""
+FLAT = (1e-6, 1e-8)
+"""Relative changes of the cost at which it ends: Newton's method mostly goes on from the first, else the second."""
 
 MESHES = (30, 60, 120)
 """Intervals with which Newton's method is tried."""
@@ -68,12 +68,6 @@ class Programme:
         return np.array([float(self.instance.final[names[i]]) for i in self.fixed])
 
     @cached_property
-    def hats(self) -> Array:
-        """The share of each knot in the control at nodes and midpoints, shape (knots, 2 N + 1)."""
-        tau = np.linspace(0.0, 1.0, 2 * STEPS * (KNOTS - 1) + 1)
-        return np.array([np.interp(tau, np.linspace(0.0, 1.0, KNOTS), row) for row in np.eye(KNOTS)])
-
-    @property
     def scales(self) -> Array:
         """Units of the controls, shape (m,)."""
         low, high = _ends(self.instance)
@@ -83,7 +77,7 @@ class Programme:
         """Controls at nodes and midpoints, shape (m, 2 N + 1), and the duration."""
         m, free = len(self.scales), self.instance.tf is None
         duration = float(unknown[-1]) if free else float(self.instance.tf - self.instance.t0)  # type: ignore[operator]
-        return (unknown[: m * KNOTS].reshape(m, KNOTS) * self.scales[:, None]) @ self.hats, duration
+        return (unknown[: m * KNOTS].reshape(m, KNOTS) * self.scales[:, None]) @ _hats(), duration
 
     def simulated(self, u: Array, duration: float) -> tuple[Array, Array, Array, float]:
         """Times, states at nodes and midpoints, and the whole cost."""
@@ -101,6 +95,18 @@ class Programme:
         smoothing = self.instance.control_set.smoothing
         return smoothing if smoothing > UNSMOOTHED else 0.0
 
+    def along(self, unknown: Array) -> tuple[Array, Array, Array, float]:
+        """What :meth:`simulated` finds for the unknowns; the last ones are remembered, as cost and ends both ask."""
+        key = unknown.tobytes()
+        if key not in self._last:
+            self._last.clear()
+            self._last[key] = self.simulated(*self.taken(unknown))
+        return self._last[key]
+
+    @cached_property
+    def _last(self) -> dict[bytes, tuple[Array, Array, Array, float]]:
+        return {}
+
     def _weights(self, count: int, duration: float) -> Array:
         """Simpson's, of nodes and midpoints."""
         weights = np.where(np.arange(count) % 2, 4.0, 2.0) * duration / (3.0 * (count - 1))
@@ -113,13 +119,13 @@ class Programme:
 
     def values(self, unknown: Array) -> Array:
         """The cost, then by how much the end is missed."""
-        _, x, _, cost = self.simulated(*self.taken(unknown))
+        _, x, _, cost = self.along(unknown)
         return np.concatenate([[cost], self.missed(x)])
 
     def costates(self, unknown: Array) -> tuple[Array, Array, list[Array], Array]:
         """Times, states, the costates of the cost and of each end, and the derivatives of :meth:`values`."""
         u, duration = self.taken(unknown)
-        times, x, x_mid, _ = self.simulated(u, duration)
+        times, x, x_mid, _ = self.along(unknown)
         model, p = self.instance.model, self.instance.parameters
         n = len(x)
         slope = np.array(model.terminal_gradient(times[-1], tuple(x[:, -1].tolist()), p))
@@ -127,14 +133,18 @@ class Programme:
         tau, states = np.empty(u.shape[1]), np.empty((n, u.shape[1]))
         tau[::2], tau[1::2] = times, (times[1:] + times[:-1]) / 2.0
         states[:, ::2], states[:, 1::2] = x, x_mid
-        weights = self._weights(len(tau), duration)
-        rows, nodes = [], []
+        onto = self._weights(len(tau), duration)[:, None] * _hats().T
+        rows: list[Array] = []
+        nodes: list[Array] = []
         for end in ends:
+            if rows and not end.any():  # no terminal cost
+                rows, nodes = [*rows, rows[0]], [*nodes, nodes[0]]
+                continue
             lam, lam_mid = model.backward(times, tuple(end.tolist()), x, x_mid, u[:, ::2], u[:, 1::2], p)
             both = np.empty_like(states)
             both[:, ::2], both[:, 1::2] = lam, lam_mid
             slopes = self._stationarity(tau, states, u, both)
-            rows.append(((slopes * weights) @ self.hats.T * self.scales[:, None]).ravel())
+            rows.append((slopes @ onto * self.scales[:, None]).ravel())
             nodes.append(lam)
         found = np.array([rows[1], *(row - rows[0] for row in rows[2:])])
         if self.instance.tf is None:
@@ -161,6 +171,13 @@ class Programme:
         return found + ([(SMALLEST, None)] if self.instance.tf is None else [])
 
 
+@cache
+def _hats() -> Array:
+    """The share of each knot in the control at nodes and midpoints, shape (knots, 2 N + 1)."""
+    tau = np.linspace(0.0, 1.0, 2 * STEPS * (KNOTS - 1) + 1)
+    return np.array([np.interp(tau, np.linspace(0.0, 1.0, KNOTS), row) for row in np.eye(KNOTS)])
+
+
 def direct(instance: Instance, limits: Limits, seed: int = 0) -> tuple[TwoPoint, Start] | None:
     """An extremal to which a direct method leads, and its problem; ``None`` where there is none.
 
@@ -177,10 +194,12 @@ def direct(instance: Instance, limits: Limits, seed: int = 0) -> tuple[TwoPoint,
         if limits.expired:
             break
         limits.spend(KNOTS * STEPS * PROGRAMMES)
-        solved = _solved(programme, start)
-        extremal = None if solved is None else _extremal(programme, solved)
-        if extremal is not None:
-            return extremal
+        for flat in FLAT:
+            solved = _solved(programme, start, flat)
+            extremal = None if solved is None else _extremal(programme, solved)
+            if extremal is not None:
+                return extremal
+            start = start if solved is None else solved
     return None
 
 
@@ -231,8 +250,8 @@ def _begun(instance: Instance, knots: Array) -> tuple[float, Programme, Array] |
     return float(np.abs(programme.missed(x)).max(initial=0.0)), programme, knots
 
 
-def _solved(programme: Programme, start: Array) -> Array | None:
-    """The unknowns to which sequential quadratic programming leads."""
+def _solved(programme: Programme, start: Array, flat: float) -> Array | None:
+    """The unknowns to which sequential quadratic programming leads until the cost is so flat."""
     from scipy.optimize import minimize
 
     cost = max(abs(float(programme.values(start)[0])), 1e-3)
@@ -263,7 +282,7 @@ def _solved(programme: Programme, start: Array) -> Array | None:
         ],
         constraints=[ends] if programme.fixed else [],
         method="SLSQP",
-        options={"maxiter": PROGRAMMES, "ftol": FLAT},
+        options={"maxiter": PROGRAMMES, "ftol": flat},
     )
     found = np.asarray(answer.x) * unit
     values = programme.values(found)

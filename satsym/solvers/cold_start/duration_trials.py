@@ -128,7 +128,7 @@ class Trials:
 
     def freed(self, near: Try) -> Minimum | None:
         """The minimum over the duration to which Newton's method leads from a given one."""
-        problem, curve = self.free(near.duration), near.start.found.curve
+        problem, curve = replace(near.problem, instance=self.instance), near.start.found.curve
         curve = replace(curve, theta=np.append(curve.theta, near.duration))
         found = self._settled(problem, curve, near.start.found.hard)
         if found is None:
@@ -158,13 +158,13 @@ class Trials:
 
     def _tried(self, problem: TwoPoint, start: Start) -> Try:
         duration, curve = problem.duration, start.found.curve
-        free = self.free(duration)
+        free = replace(problem, instance=self.instance)
         residual = free.boundary(curve.nodes[:, -1], np.append(curve.theta, duration))
         idle = curve.flat.copy()
         idle[problem.states :] = 0.0
         tau = stage_times(curve.mesh, curve.order).ravel()
         floor = problem.running_cost(tau, idle, curve.theta).min() * problem.scale.cost
-        slope = residual[-1] * free.scale.cost / duration
+        slope = residual[-1] * problem.scale.cost / duration
         floor = floor if floor > NEGLIGIBLE * problem.scale.cost / duration else 0.0  # idle costates are not quite zero
         return Try(problem, start, float(start.found.cost * problem.scale.cost), float(slope), float(floor))
 

@@ -18,8 +18,9 @@ from satsym.solvers.iteration import Limits
 STRAIGHT_THROUGH = 15
 """Steps within which the straight line leads to a minimum if it does so easily."""
 
-TOLERANCES = (3e-2, 1e-3, 1e-7)
-"""Sizes of the last step after which the mesh is laid anew; the last one ends the minimisation."""
+ROUGHLY, TOLERANCE = 3e-2, 1e-7
+"""Sizes of the last step: after the first the mesh is laid anew if the way was hard, the other ends the minimisation.
+"""
 
 
 def from_path(
@@ -27,19 +28,18 @@ def from_path(
 ) -> Attempt:
     """Minimise from a path of states, shape (n, M) for M times; the mesh is laid anew as the curve takes shape."""
     curve = paths.curve(problem, path)
-    steps, hard, stage = 0, False, 0
+    steps, hard, tolerance = 0, False, ROUGHLY
     while True:
         system = System(problem, curve.mesh, STAGES)
-        found = minimise(system, curve, limits, TOLERANCES[stage], max(most - steps, 1), meshes.COARSEST)
+        found = minimise(system, curve, limits, tolerance, max(most - steps, 1), meshes.COARSEST)
         steps, hard = steps + found.iterations, hard or found.hard
         found = replace(found, iterations=steps, hard=hard)
         extremal = found.reason in (Reason.MINIMUM, Reason.SADDLE)
         if not (extremal or found.reason is Reason.OUTGROWN) or not found.curve.in_domain(problem.positive):
             return found
-        if extremal and stage == len(TOLERANCES) - 1:
+        if extremal and tolerance == TOLERANCE:
             return found
         if steps >= most or limits.expired:
             return replace(found, reason=Reason.NO_CONVERGENCE, facts=(steps,))
-        if extremal:
-            stage = stage + 1 if hard else len(TOLERANCES) - 1
+        tolerance = TOLERANCE if extremal else ROUGHLY
         curve = found.curve if extremal and not hard else found.curve.on(meshes.laid(problem, found.curve), STAGES)

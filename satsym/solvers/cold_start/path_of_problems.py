@@ -82,7 +82,7 @@ def followed(problem: TwoPoint, path: Callable[[float], TwoPoint], curve: Curve,
             at, curve = there, found.curve
             if last:
                 return replace(found, iterations=steps, hard=True)
-            tangent = _tangent(Point(path, at, curve))
+            tangent = _tangent(Point(path, at, curve, known=found.linearised))
             mesh = meshes.laid(problem, curve)
             if abs(len(mesh) - len(curve.mesh)) > 0.15 * len(curve.mesh):
                 curve, tangent = curve.on(mesh, STAGES), None

@@ -125,6 +125,8 @@ class Point:
     """Where on it, and the curve."""
     taken: int = 0
     """Linearisations that it took to come here."""
+    known: Linearised | None = None
+    """The equations next to it, if they are at hand."""
 
     @cached_property
     def problem(self) -> TwoPoint:
@@ -144,7 +146,7 @@ class Point:
     @cached_property
     def linearised(self) -> Linearised:
         """The equations here, linearised; LinAlgError where they are singular."""
-        return linearise(self.system, self.curve, self.residual, self.system.jacobian(self.curve))
+        return self.known or linearise(self.system, self.curve, self.residual, self.system.jacobian(self.curve))
 
     @property
     def minimum(self) -> bool:

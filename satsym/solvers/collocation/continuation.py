@@ -16,7 +16,7 @@ from satsym.solvers.collocation.curve import Curve, Path, stage_times
 from satsym.solvers.collocation.newton import newton
 from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.system import System
-from satsym.solvers.control.corners import enclosed
+from satsym.solvers.control.corners import LAST_DIGITS, enclosed
 from satsym.solvers.iteration import Limits
 
 FIRST_FRACTION = 0.35
@@ -31,6 +31,9 @@ SHORTEST = 1e-4
 
 SAMPLES = 12
 """Points in each interval between which a corner is looked for."""
+
+ROUGHLY = 1e-6
+"""Accuracy of solutions on the way, and of the corners at which their nodes lie."""
 
 STILL = 1e-11
 SETTLING = 12
@@ -57,8 +60,8 @@ def tighten(problem: TwoPoint, free: Curve, order: int, limits: Limits) -> Attem
         narrower = max(width - move, 0.0)
         narrower = 0.0 if narrower < 1e-3 * worst else narrower
         step = problem.relaxed(narrower)
-        mesh = through(corners(step, curve), count)
-        outcome = newton(System(step, mesh, order), curve.on(mesh, order), tolerance=1e-6, most=15)
+        mesh = through(corners(step, curve, ROUGHLY), count)
+        outcome = newton(System(step, mesh, order), curve.on(mesh, order), tolerance=ROUGHLY, most=15)
         limits.spend((outcome.iterations if outcome else 1) * (len(mesh) - 1) * order)
         if outcome is None or not outcome.solved:
             move /= 2.0
@@ -74,12 +77,12 @@ def tighten(problem: TwoPoint, free: Curve, order: int, limits: Limits) -> Attem
     return replace(found, iterations=total + found.iterations)
 
 
-def corners(problem: TwoPoint, curve: Path) -> Array:
+def corners(problem: TwoPoint, curve: Path, within: float = LAST_DIGITS) -> Array:
     """Times in (0, 1) at which the control law of a curve meets or leaves a bound, increasing."""
-    return np.unique(np.concatenate([np.zeros(0), *by_bound(problem, curve)]))
+    return np.unique(np.concatenate([np.zeros(0), *by_bound(problem, curve, within)]))
 
 
-def by_bound(problem: TwoPoint, curve: Path) -> list[Array]:
+def by_bound(problem: TwoPoint, curve: Path, within: float = LAST_DIGITS) -> list[Array]:
     """The same, bound by bound, in the order of :func:`satsym.control_set.ControlSet.excess`."""
     if not problem.control_set.bounded:
         return []
@@ -93,7 +96,9 @@ def by_bound(problem: TwoPoint, curve: Path) -> list[Array]:
     values = excess(tau)
     signs = np.where(np.isfinite(values).all(axis=1, keepdims=True), np.sign(values), 1.0)
     rows, at = np.nonzero(signs[:, :-1] * signs[:, 1:] < 0)
-    met = enclosed(lambda times: excess(times)[rows, np.arange(len(rows))], tau[at], tau[at + 1])
+    own = np.arange(len(rows))
+    ends = tau[at], tau[at + 1], values[rows, at], values[rows, at + 1]
+    met = enclosed(lambda times: excess(times)[rows, own], *ends, within)
     return [met[rows == row] for row in range(len(values))]
 
 

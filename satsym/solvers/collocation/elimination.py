@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from satsym.arrays import Array
 
 AT_ONCE = 2
-"""Times that the stages are solved for without keeping factors."""
+"""Times that the stages, and the nodes, are solved for without keeping factors or an inverse."""
 
 FEW = 128
 """Unknowns up to which the system of the nodes is left to NumPy."""
@@ -81,10 +81,10 @@ class Nodes:
 
     def __init__(self, transition: Array, final: Array) -> None:
         count, n = transition.shape[:2]
-        half, self._size = n // 2, n
+        half = n // 2
         self._whole: Array | None = None
         self._inverse: Array | None = None
-        self._fresh = True
+        self._solved = 0
         if n * (count + 1) <= FEW:
             whole = _without_transitions(half, count).copy()
             whole.reshape(-1)[_places(half, count)] = transition
@@ -104,23 +104,21 @@ class Nodes:
         if info:
             raise np.linalg.LinAlgError("singular")
 
-    def solve(self, start: Array, between: Array, finish: Array) -> Array:
-        """Nodes for right-hand sides of the three kinds of rows, shape (N+1, 2n).
+    def solve(self, right: Array) -> Array:
+        """Nodes for right-hand sides, initial rows first, shape (2n (N+1), columns); in that shape.
 
-        Few unknowns are solved for at once the first time, and from the second on with the inverse.
+        Few unknowns are solved for at once the first times, and after that with the inverse.
         """
-        right = np.concatenate([start, between.ravel(), finish])
         if self._whole is not None:
-            if self._fresh:
-                self._fresh = False
-                return np.linalg.solve(self._whole, right).reshape(-1, self._size)
+            if self._inverse is None and self._solved < AT_ONCE:
+                self._solved += 1
+                return np.asarray(np.linalg.solve(self._whole, right))
             if self._inverse is None:
                 self._inverse = np.linalg.inv(self._whole)
-            return (self._inverse @ right).reshape(-1, self._size)
+            return self._inverse @ right
         from scipy.linalg.lapack import dgbtrs
 
-        nodes, _ = dgbtrs(self._factors, *self._band, right, self._pivots)
-        return nodes.reshape(-1, self._size)
+        return np.asarray(dgbtrs(self._factors, *self._band, right, self._pivots)[0])
 
 
 @lru_cache
@@ -203,11 +201,12 @@ class Matching:
             self._mixing = np.repeat(np.cos(np.arange(1.0, half + 1.0))[:, None], by_theta.shape[2], axis=1)
             finish_by_end, finish_by_theta = self._mixed(finish_by_end), self._mixed(finish_by_theta)
         self.transition, self._lower, self._slopes = transition, finish_by_end[half:], finish_by_theta[half:]
-        self._between, nothing = Nodes(transition, finish_by_end[:half]), np.zeros(half)
-        self._columns = [
-            self._between.solve(nothing, -by_theta[:, :, j], -finish_by_theta[:half, j])
-            for j in range(by_theta.shape[2])
-        ]
+        self._between, extra = Nodes(transition, finish_by_end[:half]), by_theta.shape[2]
+        self._columns: Array | None = None
+        if extra:
+            between = by_theta.reshape(-1, extra)
+            right = np.concatenate([np.zeros((half, extra)), between, finish_by_theta[:half]])
+            self._columns = self._between.solve(-right)
 
     def correction(self, defects: Array, start: Array, finish: Array) -> tuple[Array, Array]:
         """Corrections of the nodes, shape (N+1, 2n), and of the extra unknowns, shape (e,).
@@ -221,13 +220,11 @@ class Matching:
         """
         half = len(start)
         finish = finish if self._mixing is None else self._mixed(finish)
-        nodes = self._between.solve(-start, -defects, -finish[:half])
-        if not self._columns:
-            return nodes, np.zeros(0)
-        theta = np.linalg.solve(self.reduced(), -(finish[half:] + self._lower @ nodes[-1]))
-        for value, column in zip(theta, self._columns, strict=True):
-            nodes = nodes + value * column
-        return nodes, theta
+        nodes = self._between.solve(-np.concatenate([start, defects.ravel(), finish[:half]])[:, None])[:, 0]
+        if self._columns is None:
+            return nodes.reshape(-1, 2 * half), np.zeros(0)
+        theta = np.linalg.solve(self.reduced(), -(finish[half:] + self._lower @ nodes[-2 * half :]))
+        return (nodes + self._columns @ theta).reshape(-1, 2 * half), theta
 
     def _mixed(self, finish: Array) -> Array:
         """Rows at the end with the last ones added to the others."""
@@ -237,4 +234,6 @@ class Matching:
 
     def reduced(self) -> Array:
         """The last residuals by the extra unknowns, all else solved for, shape (e, e)."""
-        return self._slopes + np.stack([self._lower @ column[-1] for column in self._columns], axis=1)
+        if self._columns is None:
+            return self._slopes
+        return np.asarray(self._slopes + self._lower @ self._columns[-self.transition.shape[1] :])

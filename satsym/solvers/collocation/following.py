@@ -44,7 +44,7 @@ def follow(
     at, move, count = 0.0, 1.0, max(8, min(len(curve.mesh) - 1, 60))
     while at < 1.0 and move >= shortest and not limits.expired:
         there = problem(min(at + move, 1.0))
-        mesh = through(corners(there, curve), count)
+        mesh = through(corners(there, curve, ROUGHLY), count)
         limits.spend(FOLLOWED * STAGES * len(mesh))
         outcome = newton(System(there, mesh, STAGES), curve.on(mesh, STAGES), tolerance=ROUGHLY, most=10)
         if outcome is None or not outcome.solved or not outcome.curve.in_domain(there.positive):

@@ -5,6 +5,8 @@ With the stages eliminated, what remains couples neighbouring nodes only.
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from satsym.arrays import Array
@@ -38,7 +40,7 @@ class Linearised:
     def step(self, residual: Residual) -> Step:
         """The Newton correction for a residual."""
         local = self._local(residual)
-        defects = np.einsum("j,ija->ia", self.system.scheme.end, local) - residual.ends.T
+        defects = self.system.scheme.end @ local - residual.ends.T
         nodes, theta = self.matching.correction(defects, residual.start, residual.finish)
         stages = local + self.spread(nodes, theta, None)
         return Step(nodes.T, stages.transpose(2, 0, 1), theta)
@@ -59,8 +61,8 @@ class Linearised:
         """
         count, s, n = self.system.intervals, self.system.order, self.system.rows
         inner = (nodes[:-1, None] @ self._response).reshape(count, s, n)
-        for value, extra in zip(theta, self._extra.transpose(1, 0, 2, 3), strict=True):
-            inner = inner + value * extra
+        for k, value in enumerate(theta):
+            inner += value * self._extra[:, k]
         if onto is None:
             return inner
         return onto[:, 1:] @ inner + onto[:, :1] * nodes[:-1, None]
@@ -95,21 +97,27 @@ def linearise(system: System, curve: Curve, residual: Residual, jacobian: Array)
     matrix = (grown[:, :, None, :, None] * by_stage[:, None]).reshape(count, s * n, s * n)
     matrix.reshape(count, -1)[:, :: s * n + 1] += 1.0
     blocks = Blocks(matrix)
-    by_stages = np.zeros((count, n + 1 + e, s, n))
-    by_stages[:, np.arange(n), :, np.arange(n)] = 1.0
-    right: Array = by_stages.reshape(count, n + 1 + e, s * n)
+    right = _by_nodes(count, s, n, e).copy()
     right[:, n] = residual.by_interval
     if system.problem.free_time:
         right[:, -1] = _by_duration(system, curve, residual).transpose(1, 2, 0).reshape(count, -1)
     solved = blocks.solve(right)
     response = solved[:, :n]
-    transition = np.einsum("j,ibja->iab", system.scheme.end, response.reshape(count, n, s, n))
-    transition[:, np.arange(n), np.arange(n)] += 1.0 - system.scheme.end.sum()
+    transition = np.ascontiguousarray((system.scheme.end @ response.reshape(count, n, s, n)).swapaxes(1, 2))
+    transition.reshape(count, -1)[:, :: n + 1] += 1.0 - system.scheme.end.sum()
     extra = solved[:, n + 1 :].reshape(count, e, s, n)
     by_theta = (system.scheme.end @ extra).swapaxes(1, 2)
     ends = system.problem.boundary_slopes(curve.nodes[:, -1], curve.theta)
     matching = Matching(transition, by_theta, *ends, mixed=system.problem.homogeneous)
     return Linearised(system, blocks, matching, response, extra, residual, solved[:, n])
+
+
+@lru_cache
+def _by_nodes(count: int, stages: int, n: int, extra: int) -> Array:
+    """Right-hand sides of the stages by the start of their interval; then room for a residual and extra unknowns."""
+    right = np.zeros((count, n + 1 + extra, stages, n))
+    right[:, np.arange(n), :, np.arange(n)] = 1.0
+    return right.reshape(count, n + 1 + extra, stages * n)
 
 
 def _by_duration(system: System, curve: Curve, residual: Residual) -> Array:

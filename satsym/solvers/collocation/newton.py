@@ -50,7 +50,9 @@ def newton(system: System, start: Curve, tolerance: float = 1e-12, most: int = 1
             if length < SHORTEST:
                 return Attempt(curve, Reason.NO_CONVERGENCE, iteration, linearised=linearised, facts=(iteration,))
         curve = trial
-        if size < tolerance or (size < FLOOR and size > 0.2 * before):
+        # Corrections shrink faster and faster: where the next one is small enough it is not made.
+        ahead = size * min(size / before, 1.0) if np.isfinite(before) and length == 1.0 else size
+        if ahead < tolerance or (size < FLOOR and size > 0.2 * before):
             return Attempt(curve, Reason.EXTREMAL, iteration, linearised=linearised)
         before = size
     return Attempt(curve, Reason.NO_CONVERGENCE, most, linearised=linearised, facts=(most,))

@@ -71,12 +71,12 @@ class TwoPoint:
     forcing: Callable[[Array], Array] | None = None
     """What is added to the rates of the states, scaled, shape (n, N) at times tau (N,); nothing by default."""
 
-    @property
+    @cached_property
     def states(self) -> int:
         """Number n of states."""
         return len(self.instance.model.spec.states)
 
-    @property
+    @cached_property
     def free_time(self) -> bool:
         """Whether the duration is unknown."""
         return self.instance.tf is None

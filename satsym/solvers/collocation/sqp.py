@@ -93,18 +93,19 @@ def minimise(
             return Attempt(curve, Reason.TIME_UP, iteration, cost)
         limits.tell(cost * problem.scale.cost, size)
         if size < tolerance:
-            curve = curve.moved(step, 1.0)
-            return Attempt(curve, _kind(system, curve), iteration + 1, system.cost(curve), hard)
+            curve, known = curve.moved(step, 1.0), linearised if newton else None
+            reason, known = _kind(system, curve, known, sure=newton and not close)
+            return Attempt(curve, reason, iteration + 1, system.cost(curve), hard, known)
         close = newton and size < CLOSE and fraction == 1.0
         penalty = _raised(penalty, _multipliers(curve, step, n, len(violated)))
         at = _Merit(system, curve, cost, violated, penalty, linearised, step)
         found = _searched(at, within_domain(problem, curve, step), whole=close)
         if found is None:
             return Attempt(curve, Reason.NO_DESCENT, iteration, cost)
-        curve, residual, fraction, halved = found
+        curve, residual, cost, violated = found.curve, found.residual, found.cost, found.violated
+        fraction, halved = found.fraction, found.halved
         limits.spend(int(curve.flat.shape[1] * -np.log2(fraction)) if halved else 0)
         hard = hard or halved
-        cost, violated = system.cost(curve), system.infeasibility(residual)
     return Attempt(curve, Reason.NO_CONVERGENCE, most, cost, facts=(most,))
 
 
@@ -130,14 +131,31 @@ class _Merit:
         ahead = self.curve.moved(self.step, PROBE)
         return float((self.system.cost(ahead) - self.cost) / PROBE - self.penalty @ self.violated)
 
-    def measured(self, curve: Curve, residual: Residual) -> float:
-        """Its value at another curve; infinite where it is not a number."""
-        value = self.system.cost(curve) + self.penalty @ self.system.infeasibility(residual)
-        return float(value) if np.isfinite(value) else float("inf")
+    def measured(self, curve: Curve, fraction: float, halved: bool) -> _Trial:
+        """Another curve, that after a share of the step."""
+        residual = self.system.residual(curve)
+        cost, violated = self.system.cost(curve), self.system.infeasibility(residual)
+        value = float(cost + self.penalty @ violated)
+        return _Trial(curve, residual, cost, violated, value if np.isfinite(value) else float("inf"), fraction, halved)
 
 
-def _searched(at: _Merit, fraction: float, whole: bool) -> tuple[Curve, Residual, float, bool] | None:
-    """The curve after the largest share of the step that descends, its residual, the share, and whether it was halved.
+@dataclass(frozen=True, eq=False)
+class _Trial:
+    """A curve after a share of a step."""
+
+    curve: Curve
+    residual: Residual
+    cost: float
+    violated: Array
+    value: float
+    """Of the penalty function; infinite where it is not a number."""
+    fraction: float
+    halved: bool
+    """The share, and whether it is less than the first one."""
+
+
+def _searched(at: _Merit, fraction: float, whole: bool) -> _Trial | None:
+    """The curve after the largest share of the step that descends.
 
     Parameters
     ----------
@@ -146,18 +164,15 @@ def _searched(at: _Merit, fraction: float, whole: bool) -> tuple[Curve, Residual
     whole
         Whether that is taken as it is.
     """
-    slope, value, tried = min(at.slope(), 0.0), at.value, 0
+    slope, value, tried = 0.0 if whole else min(at.slope(), 0.0), at.value, 0
     while fraction >= SHORTEST:
-        trial = at.curve.moved(at.step, fraction)
-        residual = at.system.residual(trial)
+        trial = at.measured(at.curve.moved(at.step, fraction), fraction, tried > 0)
         enough = value + SUFFICIENT * fraction * slope + 1e-9 * abs(value)
-        if whole or at.measured(trial, residual) <= enough:
-            return trial, residual, fraction, tried > 0
-        corrected = _corrected(at.system, at.curve, trial, residual, at.linearised) if tried < CORRECTED else None
-        if corrected is not None:
-            residual = at.system.residual(corrected)
-            if at.measured(corrected, residual) <= enough:
-                return corrected, residual, fraction, tried > 0
+        if whole or trial.value <= enough:
+            return trial
+        corrected = _corrected(at, trial) if tried < CORRECTED else None
+        if corrected is not None and (trial := at.measured(corrected, fraction, tried > 0)).value <= enough:
+            return trial
         tried, fraction = tried + 1, fraction / 2.0
     return None
 
@@ -168,16 +183,14 @@ def _direction(
     """The linearisation to step with, and whether it is Newton's."""
     n = system.problem.states
     without_costates = not curve.stages[n:].any()
-    bare = jacobian
-    if not without_costates:
-        stages, nodes = curve.stages.copy(), curve.nodes.copy()
-        stages[n:], nodes[n:] = 0.0, 0.0
-        bare = jacobian.copy()
-        bare[n:, :n] = system.jacobian(replace(curve, stages=stages, nodes=nodes))[n:, :n]
     fractions = (0.0,) if without_costates else (1.0, 0.0) if trusted else FRACTIONS[int(avoid) :]
+    bare: Array | None = jacobian if without_costates else None
     for fraction in fractions:
+        if fraction < 1.0 and bare is None:
+            bare = _without_costates(system, curve, jacobian)
         try:
-            linearised = linearise(system, curve, residual, fraction * jacobian + (1.0 - fraction) * bare)
+            slopes = jacobian if bare is None else fraction * jacobian + (1.0 - fraction) * bare
+            linearised = linearise(system, curve, residual, slopes)
             if trusted or fraction == 0.0 or negative_directions(system.problem, curve, linearised.matching) == 0:
                 return linearised, fraction == 1.0
         except np.linalg.LinAlgError:
@@ -185,14 +198,30 @@ def _direction(
     return None, False
 
 
-def _kind(system: System, curve: Curve) -> Reason:
-    """Whether an extremal is a minimum."""
+def _without_costates(system: System, curve: Curve, jacobian: Array) -> Array:
+    """The Jacobian, but for the costates' own rates by the states: those without costates."""
+    n, bare = system.problem.states, jacobian.copy()
+    stages, nodes = curve.stages.copy(), curve.nodes.copy()
+    stages[n:], nodes[n:] = 0.0, 0.0
+    bare[n:, :n] = system.jacobian(replace(curve, stages=stages, nodes=nodes))[n:, :n]
+    return bare
+
+
+def _kind(system: System, curve: Curve, near: Linearised | None, sure: bool) -> tuple[Reason, Linearised | None]:
+    """Whether an extremal is a minimum, and the equations by which that is judged: those next to it, if at hand.
+
+    Parameters
+    ----------
+    sure
+        Whether these were found to be those of a minimum.
+    """
     try:
-        linearised = linearise(system, curve, system.residual(curve), system.jacobian(curve))
-        negative = negative_directions(system.problem, curve, linearised.matching)
+        if near is None:
+            near = linearise(system, curve, system.residual(curve), system.jacobian(curve))
+        minimum = sure or negative_directions(system.problem, curve, near.matching) == 0
     except np.linalg.LinAlgError:
-        return Reason.SINGULAR
-    return Reason.MINIMUM if negative == 0 else Reason.SADDLE
+        return Reason.SINGULAR, None
+    return Reason.MINIMUM if minimum else Reason.SADDLE, near
 
 
 def _multipliers(curve: Curve, step: Step, n: int, count: int) -> Array:
@@ -211,14 +240,15 @@ def _raised(penalty: Array, multipliers: Array) -> Array:
     return found
 
 
-def _corrected(system: System, curve: Curve, trial: Curve, residual: Residual, linearised: Linearised) -> Curve | None:
+def _corrected(at: _Merit, trial: _Trial) -> Curve | None:
     """The trial after a second-order correction of the equations of motion; ``None`` outside the domain."""
-    n = system.problem.states
-    stages, ends = residual.stages.copy(), residual.ends.copy()
+    n = at.system.problem.states
+    stages, ends = trial.residual.stages.copy(), trial.residual.ends.copy()
     stages[n:], ends[n:] = 0.0, 0.0
-    corrected = trial.moved(linearised.step(replace(residual, stages=stages, ends=ends)), 1.0)
-    for i in system.problem.positive:
-        if not (corrected.stages[i] > 0.1 * curve.stages[i]).all():
+    missing = replace(trial.residual, stages=stages, ends=ends)
+    corrected = trial.curve.moved(at.linearised.step(missing), 1.0)
+    for i in at.system.problem.positive:
+        if not (corrected.stages[i] > 0.1 * at.curve.stages[i]).all():
             return None
     return corrected
 

@@ -37,20 +37,29 @@ def zeros(times: Array, values: Array) -> list[float]:
     return sorted(found)
 
 
-def enclosed(function: Callable[[Array], Array], low: Array, high: Array) -> Array:
-    """The zeros of continuous functions between points where the signs of each differ, to the last digits; shape (K,).
+def enclosed(
+    function: Callable[[Array], Array],
+    low: Array,
+    high: Array,
+    at_low: Array,
+    at_high: Array,
+    within: float = LAST_DIGITS,
+) -> Array:
+    """The zeros of continuous functions between points where the signs of each differ, shape (K,).
 
-    Secant steps that keep each zero enclosed (the Illinois method), all at once. The library function for this would
-    cost an import several times longer than solving.
+    Secant steps that keep each zero enclosed (the method of Anderson and Bjorck), all at once. The library function for
+    this would cost an import several times longer than solving.
 
     Parameters
     ----------
     function
         The value of each at a time of its own, from shape (K,) to (K,).
+    at_low, at_high
+        Their values at the points.
+    within
+        Last step, by default in the last digits.
     """
-    if not len(low):
-        return np.zeros(0)
-    at_low, at_high, left = function(low), function(high), np.ones(len(low), dtype=bool)
+    left = np.ones(len(low), dtype=bool)
     for _ in range(MOST_STEPS):
         left &= (at_high != 0.0) & (high != low)
         if not left.any():
@@ -59,10 +68,12 @@ def enclosed(function: Callable[[Array], Array], low: Array, high: Array) -> Arr
         between = np.where(left, high - at_high * (high - low) / rise, high)
         value = np.where(left, function(between), at_high)
         crossed = left & (value * at_high < 0.0)
-        low, at_low = np.where(crossed, high, low), np.where(crossed, at_high, np.where(left, at_low / 2.0, at_low))
+        share = 1.0 - value / np.where(left, at_high, 1.0)
+        lessened = at_low * np.where(left, np.where(share > 0.0, share, 0.5), 1.0)
+        low, at_low = np.where(crossed, high, low), np.where(crossed, at_high, lessened)
         moved = np.abs(between - high)
         high, at_high = between, value
-        left &= moved > LAST_DIGITS * np.maximum(np.abs(high), 1.0)
+        left &= moved > within * np.maximum(np.abs(high), 1.0)
     return high
 
 

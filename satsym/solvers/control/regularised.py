@@ -37,7 +37,7 @@ class Regularised(Instance):
 
 def sloping(instance: Instance, lam: Array) -> Array:
     """Costates without zeros, shape (n, N): where a switching function vanishes, a law with |u| shows no slope."""
-    if not instance.model.spec.regularising:
+    if not instance.model.spec.regularising or lam.all():
         return lam
     tiny = TINY * np.arange(1.0, len(lam) + 1.0)[:, None]
     return np.where(lam == 0.0, tiny, lam)

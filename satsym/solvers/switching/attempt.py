@@ -15,7 +15,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.failures import FAILURES, tried
 from satsym.solvers.iteration import Limits
-from satsym.solvers.switching.newton import Equations, Refined, solve
+from satsym.solvers.switching.newton import ROUGH, Equations, Refined, solve
 from satsym.solvers.switching.structure import Guess
 from satsym.solvers.switching.trajectory import Trajectory, Violation, violations
 
@@ -157,7 +157,7 @@ def sizes(instance: Instance, at: Guess) -> Array:
     states = given(instance)
     equations = Equations(instance, at.structure, np.ones(2 * n), at.end - instance.t0)
     try:
-        arcs = equations.arcs(equations.start(at.costates, at.times, at.end), slopes=False)
+        arcs = equations.arcs(equations.start(at.costates, at.times, at.end), slopes=False, tolerance=ROUGH)
         for arc in arcs:
             states = np.maximum(states, np.abs(arc.after[:n]))
     except FAILURES:

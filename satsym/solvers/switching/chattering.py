@@ -170,7 +170,9 @@ def _corners(problem: TwoPoint, curve: Curve) -> Array:
     size = np.abs(sigma)
     seen = np.maximum(size[:, :-1], size[:, 1:]) > FAINT * size.max(axis=1, keepdims=True)
     rows, at = np.nonzero(seen & (np.sign(sigma[:, :-1]) * np.sign(sigma[:, 1:]) < 0))
-    return enclosed(lambda times: values(times)[rows, np.arange(len(rows))], tau[at], tau[at + 1])
+    own = np.arange(len(rows))
+    ends = tau[at], tau[at + 1], sigma[rows, at], sigma[rows, at + 1]
+    return enclosed(lambda times: values(times)[rows, own], *ends)
 
 
 def _interval(instance: Instance, problem: TwoPoint, curve: Curve, edges: Array) -> CostInterval:

@@ -19,7 +19,7 @@ from satsym.solvers.switching.structure import SINGULAR, Structure
 
 MOST = 20
 NEAR, ROUGH = 1e-2, 1e-7
-"""Arcs need no more than this accuracy until a correction is smaller than that."""
+"""Until a correction is smaller than the first, arcs need no more than the second as their accuracy."""
 
 SETTLED = 1e-7
 """The first correction below this is the last."""
@@ -29,6 +29,9 @@ LOST = 1e4
 
 FREE, GROWN = 4, 2.0
 """After so many corrections none may be so many times larger than the one before."""
+
+STEADY, EVEN = 3, 0.8
+"""Corrections that shrink evenly: each by at least this share of the factor of the one before."""
 
 BOLD = 0.5
 """Share of the duration by which times may move at once."""
@@ -218,8 +221,9 @@ def solve(equations: Equations, start: Unknowns, watch: Callable[[float, float],
     watch
         Told the size of each correction, and NaN for the cost, which is not known on the way.
     """
-    at, before = start, float("inf")
+    at, seen = start, [float("inf")]
     for iteration in range(1, MOST + 1):
+        before = seen[-1]
         try:
             close = before < NEAR
             arcs = equations.arcs(at, tolerance=TOLERANCE if close else ROUGH)
@@ -230,7 +234,8 @@ def solve(equations: Equations, start: Unknowns, watch: Callable[[float, float],
         size = float(np.abs(step).max(initial=0.0))
         if watch:
             watch(math.nan, size)
-        if not size < LOST or (iteration > FREE and size > GROWN * before):
+        seen.append(size)
+        if not size < LOST or (iteration > FREE and size > GROWN * before) or _too_slow(seen):
             return None
         if close and size < SETTLED:  # what is left to correct is about its square
             at = equations.moved(at, step)
@@ -241,11 +246,20 @@ def solve(equations: Equations, start: Unknowns, watch: Callable[[float, float],
         n = len(at.costates)
         span = float(np.abs(step[n : n + len(at.times) + equations.free_time]).max(initial=0.0))
         turn = float(np.abs(step[:n]).max(initial=0.0))
-        at, before = equations.moved(at, step * min(1.0, BOLD / max(span, 1e-300), TURNED / max(turn, 1e-300))), size
+        at = equations.moved(at, step * min(1.0, BOLD / max(span, 1e-300), TURNED / max(turn, 1e-300)))
         if equations.free_time and not at.end > equations.instance.t0:
             return None
         equations = replace(equations, sizes=_resized(equations.sizes, arcs))
     return None
+
+
+def _too_slow(seen: list[float]) -> bool:
+    """Whether corrections shrink evenly, as where an arc vanishes, and cannot settle in those that are left."""
+    if not SETTLED <= seen[-1] < NEAR:
+        return False
+    factors = [after / before for before, after in pairwise(seen[-STEADY - 1 :])]
+    even = all(after > EVEN * before for before, after in pairwise(factors))
+    return even and seen[-1] * factors[-1] ** (MOST + 1 - len(seen)) > SETTLED
 
 
 def _least_squares(matrix: Array, right: Array) -> Array:
