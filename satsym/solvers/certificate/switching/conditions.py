@@ -50,9 +50,11 @@ def certify(solution: Solution, compare: bool = True) -> Certificate:
     except OutOfTime:
         check = Check("time was up before: flow from the initial costates", 1.0, 0.0)
         return _without_flow(Verdict.EXTREMAL_ONLY, check, tuple(allowed(solution.instance)))
+    first = [] if again is None else _first_order(solution, again)
+    if not first or not all(c.passed for c in first):
+        again, first = _in_parts(solution, limits) or (again, first)
     if again is None:
         return _without_flow(Verdict.FAILED, Check(failed, 1.0, 0.0), ())
-    first = _first_order(solution, again)
     second: list[Check] = []
     comparison = Comparison()
     if all(c.passed for c in first):
@@ -68,6 +70,18 @@ def certify(solution: Solution, compare: bool = True) -> Certificate:
         competitors=comparison.competitors,
         not_checked=comparison.not_checked,
     )
+
+
+def _in_parts(solution: Solution, limits: Limits) -> tuple[Replay, list[Check]] | None:
+    """The same where flows grow so much that they lose their digits: part by part, without gaps; ``None`` if not so."""
+    try:
+        again = replay(solution, limits, in_parts=True)
+    except (TooMuchWork, OutOfTime):
+        return None
+    if again is None:
+        return None
+    first = [Check("gaps where the flow begins anew", again.gap, RESIDUAL), *_first_order(solution, again)]
+    return (again, first) if all(c.passed for c in first) else None
 
 
 def _without_flow(verdict: Verdict, check: Check, not_checked: tuple[Kind, ...]) -> Certificate:

@@ -17,6 +17,7 @@ from satsym.solution import Solution
 from satsym.solvers.certificate.flow import typical
 from satsym.solvers.certificate.switching.integration import Integration, Span
 from satsym.solvers.certificate.switching.next_switch import at_once, next_switch
+from satsym.solvers.certificate.switching.restarts import restarts
 from satsym.solvers.certificate.switching.stated_arcs import Stated, arcs, decided_by_none
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.iteration import Limits
@@ -64,14 +65,21 @@ class Replay:
     """The solver's nodes, and the ends of the arcs: shapes (K,), (2n, K), (m, K)."""
     cost: float
     """Of the motion, the terminal cost included."""
+    gap: float = 0.0
+    """Where it began anew, the largest difference to what was reached, relative to sizes."""
 
     def switching_times(self, control: int) -> list[float]:
         """Of one control."""
         return [piece.end for piece in self.pieces if piece.switched == control]
 
 
-def replay(solution: Solution, within: Limits | None = None) -> Replay | None:
-    """Integrate again; ``None`` where the motion is not finite or switches without end.
+def replay(solution: Solution, within: Limits | None = None, in_parts: bool = False) -> Replay | None:
+    """Integrate again; ``None`` where the motion is not finite or switches without end, or has no parts.
+
+    Parameters
+    ----------
+    in_parts
+        Whether to begin anew where flows grow.
 
     Raises
     ------
@@ -81,11 +89,16 @@ def replay(solution: Solution, within: Limits | None = None) -> Replay | None:
     within = within or Limits(MOST_SWITCHES, float("inf"))
     limits = replace(within, work=within.meter.spent + EVALUATIONS)
     controls = range(len(solution.instance.control_set.switching[0]))
+    stated = [arcs(solution, control) for control in controls]
+    anew = restarts(solution, stated) if in_parts else []
+    if in_parts and not anew:
+        return None
     again = _Again(
         solution,
-        [arcs(solution, control) for control in controls],
+        stated,
         [decided_by_none(solution, control) for control in controls],
         Integration(np.concatenate(typical(solution)), limits),
+        anew,
     )
     try:
         return again.replayed()
@@ -105,6 +118,8 @@ class _Again:
     """Of each control whether these stand, for no sign shows its switches."""
     by: Integration
     """The integration."""
+    anew: list[tuple[float, Array]]
+    """When it begins anew, and from which values."""
 
     @property
     def instance(self) -> Instance:
@@ -121,17 +136,22 @@ class _Again:
         levels = self._first_levels(z, t, end)
         pieces: list[Piece] = []
         rows: list[tuple[Array, Array, Array]] = []
-        cost = 0.0
+        cost = gap = 0.0
+        anew: list[tuple[float, Array]] = [*self.anew, (end, z)]
+        whole = True
         while len(pieces) <= MOST_SWITCHES:
-            piece, levels = self._piece(Span(equations(instance, levels), t, end, z))
-            pieces.append(piece)
+            piece, levels = self._piece(Span(equations(instance, levels), t, anew[0][0], z))
             row, added = self._stations(piece, stations)
             rows.append(row)
-            t, z, cost = piece.end, piece.after, cost + added
-            if piece.switched is None:
+            pieces = [*pieces, piece] if whole else [*pieces[:-1], _joined(pieces[-1], piece)]
+            t, z, cost, whole = piece.end, piece.after, cost + added, piece.switched is not None
+            if t >= anew[0][0] and len(anew) > 1:
+                (_, value), *anew = anew
+                gap, z = max(gap, float((np.abs(value - z) / self.by.sizes).max())), value
+            elif piece.switched is None:
                 times, values, controls = (np.concatenate(part, axis=-1) for part in zip(*rows, strict=True))
                 cost += float(instance.model.terminal_cost(t, z[: len(instance.initial)].tolist(), instance.parameters))
-                return Replay(pieces, times, values, controls, cost)
+                return Replay(pieces, times, values, controls, cost, gap)
         return None
 
     def _first_levels(self, z: Array, t: float, end: float) -> tuple[int, ...]:
@@ -161,7 +181,7 @@ class _Again:
             (now[1], i, after[2])
             for i, row in enumerate(self.stated)
             for now, after in pairwise(row)
-            if (self.settled[i] or SINGULAR in (now[2], after[2])) and now[1] > start + 1e-12 * span.lasting
+            if (self.settled[i] or SINGULAR in (now[2], after[2])) and start + 1e-12 * span.lasting < now[1] <= span.end
         ]
         until, switched, level = min(known, default=(span.end, None, None))
         met = next_switch(span.until(until), self.settled, self.by)
@@ -196,6 +216,11 @@ class _Again:
             found = self.by.solved(rates, span, start, scale, t_eval=times)
             z[:, 1:-1], cost = found.y[:rows, 1:-1], float(found.y[rows, -1])
         return (times, z, field.along(times, z)[0]), cost
+
+
+def _joined(first: Piece, second: Piece) -> Piece:
+    """Two parts of one arc."""
+    return replace(second, start=first.start, before=first.before, transition=second.transition @ first.transition)
 
 
 def _with(levels: tuple[int, ...], control: int, level: int) -> tuple[int, ...]:
