@@ -170,10 +170,10 @@ def test_an_extremal_that_begins_anew_has_no_gaps(tmp_path: Path) -> None:
     exact = attempt(read(tmp_path), rough, LIMITS)
     assert exact is not None
     found = answered(exact.trajectory.arcs[0].field.instance, exact, (), 0.0)
-    again = replay(found, in_parts=True)
+    again = replay(found, closely=True)
     assert again is not None
     assert again.gap < 1e-10
     assert len(again.pieces) == 3
     lam = found.lam + np.where(found.times > 9.0, 1e-6, 0.0)
-    again = replay(replace(found, lam=lam), in_parts=True)
+    again = replay(replace(found, lam=lam), closely=True)
     assert again is None or again.gap > 1e-8

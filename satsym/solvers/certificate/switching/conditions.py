@@ -52,7 +52,7 @@ def certify(solution: Solution, compare: bool = True) -> Certificate:
         return _without_flow(Verdict.EXTREMAL_ONLY, check, tuple(allowed(solution.instance)))
     first = [] if again is None else _first_order(solution, again)
     if not first or not all(c.passed for c in first):
-        again, first = _in_parts(solution, limits) or (again, first)
+        again, first = _closely(solution, limits) or (again, first)
     if again is None:
         return _without_flow(Verdict.FAILED, Check(failed, 1.0, 0.0), ())
     second: list[Check] = []
@@ -72,10 +72,10 @@ def certify(solution: Solution, compare: bool = True) -> Certificate:
     )
 
 
-def _in_parts(solution: Solution, limits: Limits) -> tuple[Replay, list[Check]] | None:
-    """The same where flows grow so much that they lose their digits: part by part, without gaps; ``None`` if not so."""
+def _closely(solution: Solution, limits: Limits) -> tuple[Replay, list[Check]] | None:
+    """The same where one flow loses its digits: part by part, without gaps; ``None`` where that fails as well."""
     try:
-        again = replay(solution, limits, in_parts=True)
+        again = replay(solution, limits, closely=True)
     except (TooMuchWork, OutOfTime):
         return None
     if again is None:

@@ -31,6 +31,9 @@ MOST_SWITCHES = 200
 EVALUATIONS = 1_000_000
 """Of the rates that it may take."""
 
+UNTOLD = 1e-12
+"""Share of its size up to which rounding makes a switching function what it is."""
+
 TOUCHING = 1e-4
 """A change of sign so shortly before a singular arc, as a share of the arc before it, is where its zero is touched."""
 
@@ -73,13 +76,14 @@ class Replay:
         return [piece.end for piece in self.pieces if piece.switched == control]
 
 
-def replay(solution: Solution, within: Limits | None = None, in_parts: bool = False) -> Replay | None:
-    """Integrate again; ``None`` where the motion is not finite or switches without end, or has no parts.
+def replay(solution: Solution, within: Limits | None = None, closely: bool = False) -> Replay | None:
+    """Integrate again; ``None`` where the motion is not finite or switches without end.
 
     Parameters
     ----------
-    in_parts
-        Whether to begin anew where flows grow.
+    closely
+        Whether to begin anew where flows grow, and to take switching times as they are stated where the switching
+        function vanishes there to the last digits: where it is flat its sign tells fewer of the time.
 
     Raises
     ------
@@ -90,15 +94,13 @@ def replay(solution: Solution, within: Limits | None = None, in_parts: bool = Fa
     limits = replace(within, work=within.meter.spent + EVALUATIONS)
     controls = range(len(solution.instance.control_set.switching[0]))
     stated = [arcs(solution, control) for control in controls]
-    anew = restarts(solution, stated) if in_parts else []
-    if in_parts and not anew:
-        return None
     again = _Again(
         solution,
         stated,
         [decided_by_none(solution, control) for control in controls],
         Integration(np.concatenate(typical(solution)), limits),
-        anew,
+        restarts(solution, stated) if closely else [],
+        closely,
     )
     try:
         return again.replayed()
@@ -120,6 +122,8 @@ class _Again:
     """The integration."""
     anew: list[tuple[float, Array]]
     """When it begins anew, and from which values."""
+    closely: bool
+    """Whether times are taken as stated where no sign tells more digits."""
 
     @property
     def instance(self) -> Instance:
@@ -187,7 +191,7 @@ class _Again:
         met = next_switch(span.until(until), self.settled, self.by)
         touching = met is not None and met[1] == switched and until - met[0] < TOUCHING * (until - start)
         if met is not None and not touching:
-            until, switched = met
+            until, switched = (self._stated(span, *met) if self.closely else met[0]), met[1]
             level = None
         after, transition = self.by.transition(span.until(until))
         piece = Piece(field, start, until, span.z, after, switched, transition)
@@ -199,6 +203,16 @@ class _Again:
             weight = field.weight(until, after.tolist(), switched)
             level = int(best_levels(field.instance, switched, np.array([ahead]), np.array([weight]))[0])
         return piece, _with(field.levels, switched, level)
+
+    def _stated(self, span: Span, found: float, control: int) -> float:
+        """The stated time of a switch that was found, if its switching function is as good as zero there."""
+        near = min((end for _, end, _ in self.stated[control][:-1]), key=lambda t: abs(t - found), default=found)
+        if not span.start < near < span.end:
+            return found
+        z = self.by.end(span.until(near)).tolist()
+        off = abs(abs(span.field.sigma(near, z, control)) - span.field.weight(near, z, control))
+        size = float(np.abs(span.field.gradient(near, z, control)) @ self.by.sizes)
+        return near if off <= UNTOLD * size else found
 
     def _stations(self, piece: Piece, nodes: Array) -> tuple[tuple[Array, Array, Array], float]:
         """The arc at its ends and at the nodes between, as SciPy interpolates its steps; and its running cost."""
