@@ -54,6 +54,7 @@ class Origin(Enum):
     DRAWN = "switching times that were drawn"
     SMOOTHED = "the regularised problem, smoothed by {:.1e}"
     MINIMUM_TIME = "the structure of the minimum time"
+    GIVEN = "exact arcs in a given time"
     EASIER = "exact arcs of an easier problem"
 
 
