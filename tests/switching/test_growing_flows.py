@@ -80,7 +80,7 @@ def singular_rate(z: np.ndarray) -> float:
     return misfit[0] / (misfit[0] - misfit[1])
 
 
-def flown(start: float, end: float, z: np.ndarray, rates: Rates) -> np.ndarray:
+def simulated(start: float, end: float, z: np.ndarray, rates: Rates) -> np.ndarray:
     """At some times on the way, shape (5, N)."""
     times = np.linspace(start, end, NODES)
     return solve_ivp(rates, (start, end), z, method="DOP853", t_eval=times, rtol=1e-12, atol=1e-13).y
@@ -89,12 +89,12 @@ def flown(start: float, end: float, z: np.ndarray, rates: Rates) -> np.ndarray:
 def motion(times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """No fishing, full and singular fishing; costates of the former two from those where the latter begins."""
     first, second = times
-    resting = flown(0.0, first, np.array([0.5, 0.7, 0.0, 0.0, 0.0]), lambda t, z: fished(t, z, 0.0))
-    full = flown(first, second, resting[:, -1], lambda t, z: fished(t, z, 1.0))
+    resting = simulated(0.0, first, np.array([0.5, 0.7, 0.0, 0.0, 0.0]), lambda t, z: fished(t, z, 0.0))
+    full = simulated(first, second, resting[:, -1], lambda t, z: fished(t, z, 1.0))
     begin = on_singular(full[:, -1])
-    last = flown(second, END, begin, lambda t, z: fished(t, on_singular(z), singular_rate(z)))
-    full = flown(second, first, begin, lambda t, z: fished(t, z, 1.0))[:, ::-1]
-    return flown(first, 0.0, full[:, 0], lambda t, z: fished(t, z, 0.0))[:, ::-1], full, last
+    last = simulated(second, END, begin, lambda t, z: fished(t, on_singular(z), singular_rate(z)))
+    full = simulated(second, first, begin, lambda t, z: fished(t, z, 1.0))[:, ::-1]
+    return simulated(first, 0.0, full[:, 0], lambda t, z: fished(t, z, 0.0))[:, ::-1], full, last
 
 
 @cache

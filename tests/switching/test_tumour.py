@@ -56,7 +56,9 @@ def followed(tumour: float, vessels: float, amount: float, first: float) -> tupl
 
     def rates(y: np.ndarray, dose: float) -> np.ndarray:
         p, q, _ = y
-        return np.array([-0.084 * p * log(p / q), 5.85 * p - (0.02 + 0.00873 * p ** (2 / 3)) * q - 0.15 * q * dose, dose])
+        return np.array(
+            [-0.084 * p * log(p / q), 5.85 * p - (0.02 + 0.00873 * p ** (2 / 3)) * q - 0.15 * q * dose, dose]
+        )
 
     def off(y: np.ndarray) -> float:
         p, q, _ = y

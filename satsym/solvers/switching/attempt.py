@@ -132,8 +132,8 @@ def _solved(instance: Instance, at: Guess, limits: Limits) -> Refined | None:
         residual = _residual(instance, own)
         if residual <= SOLVED or last:
             return replace(own, residual=residual) if residual <= SOLVED else None
-        equations, at = _equations(instance, own), own.at
-        found = solve(equations, equations.start(at.costates, at.times, at.end, at.stops), limits.watch)
+        equations, known = _equations(instance, own), own.at
+        found = solve(equations, equations.start(known.costates, known.times, known.end, known.stops), limits.watch)
     return None
 
 

@@ -121,7 +121,7 @@ def extremal(
     """
     n, end_column = len(instance.initial), len(instance.initial) + structure.switches
     z = np.concatenate([instance.initial, at.costates])
-    total = np.zeros((2 * n, end_column + 1 + 2 * n * len(stops)))
+    total: Array = np.zeros((2 * n, end_column + 1 + 2 * n * len(stops)))
     total[n:, :n] = np.eye(n)
     unit = np.eye(total.shape[1])
     number, begin, moving = [0] * len(structure.levels), instance.t0, np.zeros(len(unit))
