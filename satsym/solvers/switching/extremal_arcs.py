@@ -43,8 +43,8 @@ class Stop:
     """Where an arc begins anew from values of its own, as the flow grows too much for one to the end."""
 
     piece: int
-    share: float
-    """Which of the pieces between any switches, and after which share of it."""
+    fraction: float
+    """Which of the pieces between any switches, and after which fraction of it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,8 +133,11 @@ def extremal(
         for stop in (*(k for k, one in enumerate(stops) if one.piece == piece), None):
             until, until_moving = end, end_moving
             if stop is not None:
-                share = stops[stop].share
-                until, until_moving = first + share * (end - first), (1.0 - share) * first_moving + share * end_moving
+                fraction = stops[stop].fraction
+                until, until_moving = (
+                    first + fraction * (end - first),
+                    (1.0 - fraction) * first_moving + fraction * end_moving,
+                )
             after, matrix = _piece(equations_here, begin, until, z, accuracy)
             if accuracy.slopes:
                 total = matrix @ (total - np.outer(equations_here.rates(begin, z.tolist()), moving))
