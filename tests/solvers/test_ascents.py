@@ -116,6 +116,35 @@ def test_the_least_mass_is_burnt_where_only_the_end_costs(tmp_path: Path) -> Non
     assert found.certificate.verdict is Verdict.CERTIFIED
 
 
+def coasted(start: np.ndarray, end: float) -> tuple[float, np.ndarray]:
+    """Burn, coast, burn, from costates of two states and two times: the objective and the times."""
+
+    def missed(unknown: np.ndarray) -> list[float]:
+        first, second = unknown[2:]
+        arcs = [(first, THRUST), (second - first, 0.0), (end - second, THRUST)]
+        z, grown = moved(np.array([unknown[0], unknown[1], -1.0]), arcs)
+        return [*(z[:3] - END), grown[1] - grown[0]]
+
+    found = root(missed, start, tol=1e-13).x
+    assert np.abs(missed(found)).max() < 1e-10
+    return FLOW * THRUST * (end - found[3] + found[2]) - 1.0, found[2:]
+
+
+@pytest.mark.slow
+def test_hardly_any_time_to_spare_is_no_failure(tmp_path: Path) -> None:
+    """In a coast so short the switching function is flat: its sign tells the times of the switches to nine digits."""
+    end = 0.40609721
+    found = solve(replace(throttled(tmp_path), tf=end))
+    lam = found.lam[:, 0] / abs(found.lam[2, 0])
+    least, switches = coasted(np.array([*lam[:2], *found.switching_times[0]]), end)
+    assert found.objective == pytest.approx(least, rel=1e-9)
+    assert found.switching_times[0] == pytest.approx(switches, abs=1e-7)
+    assert found.certificate is not None
+    assert found.certificate.verdict is Verdict.EXTREMAL_ONLY
+    failed = [check.name for check in found.certificate.checks if not check.passed]
+    assert failed == ["second variation in lengths of arcs and directions"]
+
+
 @pytest.mark.study
 def test_little_time_to_spare_makes_a_short_coast_and_less_than_the_least_is_infeasible(tmp_path: Path) -> None:
     """Burn, coast, burn: the switching function is as large at the end of the coast as at its start."""
@@ -125,18 +154,10 @@ def test_little_time_to_spare_makes_a_short_coast_and_less_than_the_least_is_inf
     assert found.certificate is not None
     assert found.certificate.verdict is Verdict.CERTIFIED
 
-    def missed(unknown: np.ndarray) -> list[float]:
-        first, second = unknown[2:]
-        arcs = [(first, THRUST), (second - first, 0.0), (0.435 - second, THRUST)]
-        z, grown = moved(np.array([unknown[0], unknown[1], -1.0]), arcs)
-        return [*(z[:3] - END), grown[1] - grown[0]]
-
     lam = found.lam[:, 0] / abs(found.lam[2, 0])
-    expected = root(missed, [*lam[:2], 0.36, 0.39], tol=1e-13)
-    assert expected.success
-    burnt = FLOW * THRUST * (0.435 - expected.x[3] + expected.x[2])
-    assert found.objective == pytest.approx(-(1.0 - burnt), rel=1e-9)
-    assert found.switching_times[0] == pytest.approx(expected.x[2:], abs=1e-8)
+    least, switches = coasted(np.array([*lam[:2], 0.36, 0.39]), 0.435)
+    assert found.objective == pytest.approx(least, rel=1e-9)
+    assert found.switching_times[0] == pytest.approx(switches, abs=1e-8)
     hurried = solve(replace(case, tf=0.38))
     assert hurried.status is Status.INFEASIBLE, hurried.message
     assert "times as large are the minimum with which an extremal arrives in time" in hurried.message

@@ -185,6 +185,27 @@ def test_a_point_is_pushed_coasts_and_is_stopped(tmp_path: Path):
     assert failed(found) == []
 
 
+@pytest.mark.slow
+def test_fuel_alone_has_no_minimiser_in_a_free_time_and_has_one_where_time_is_weighed(tmp_path: Path):
+    """The longer it takes the shorter are the pushes; with a weight w of time T / sqrt(T^2 - 4 d) = 1 + w."""
+    free = BETWEEN.replace("tf = 10.0", 'tf = "free"')
+    endless = solve(build(tmp_path, pushed("endless", FREELY), free))
+    assert endless.status is Status.NO_MINIMISER, endless.message
+    assert "longer is always cheaper: cost" in endless.message
+    weight, d = 0.1, math.sqrt(5.0)
+    weighed = replace(pushed("timed", FREELY), running_cost=sqrt(ux**2 + uy**2) + weight)
+    timed = solve(build(tmp_path, weighed, free))
+
+    def cost(duration: float) -> float:
+        return duration - math.sqrt(duration**2 - 4.0 * d) + weight * duration
+
+    best = (1.0 + weight) * math.sqrt(4.0 * d / ((1.0 + weight) ** 2 - 1.0))
+    assert cost(best) < min(cost(0.99 * best), cost(1.01 * best))
+    assert timed.times[-1] - 3.0 == pytest.approx(best, rel=1e-9)
+    assert timed.objective == pytest.approx(cost(best), rel=1e-11)
+    assert failed(timed) == []
+
+
 def test_a_vector_in_an_annulus_has_its_least_or_its_largest_norm(tmp_path: Path):
     ring = pushed("ring", FREELY, control_sets={"thrust": Annulus("ux", "uy")})
     start = BETWEEN.replace("vy = 0.0\n[final]", "vy = 0.3\n[final]").replace("x = 1.0", "x = 2.0")

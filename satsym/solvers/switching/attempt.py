@@ -15,8 +15,10 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.failures import FAILURES, tried
 from satsym.solvers.iteration import Limits
-from satsym.solvers.switching.newton import ROUGH, Equations, Refined, solve
-from satsym.solvers.switching.structure import Guess
+from satsym.solvers.switching.extremal_arcs import ROUGH
+from satsym.solvers.switching.newton import Equations, Refined, solve
+from satsym.solvers.switching.stops import stops
+from satsym.solvers.switching.structure import SINGULAR, Guess
 from satsym.solvers.switching.trajectory import Trajectory, Violation, violations
 
 REPAIRS = 8
@@ -37,6 +39,10 @@ EVALUATED = 250
 NO_TIME = 1e-11
 """An arc shorter than this share of the duration is none."""
 
+FLEETING = 1e-4
+"""The same beside a singular arc, if there is an extremal without: there a switching function has a double zero, and
+within so little time it comes to nothing that could be seen."""
+
 
 class Origin(Enum):
     """From where exact arcs were found, in the words of messages."""
@@ -49,6 +55,7 @@ class Origin(Enum):
     DRAWN = "switching times that were drawn"
     SMOOTHED = "the regularised problem, smoothed by {:.1e}"
     MINIMUM_TIME = "the structure of the minimum time"
+    GIVEN = "exact arcs in a given time"
     EASIER = "exact arcs of an easier problem"
 
 
@@ -80,9 +87,9 @@ def _attempt(instance: Instance, first: Guess, limits: Limits) -> Exact | None:
         iterations += found.iterations
         limits.spend(EVALUATED * found.iterations * len(found.arcs))
         start, end = instance.t0, found.at.end
-        shortest = _shortest(found, start)
-        if shortest is not None and shortest[0] < -NO_TIME * (end - start):
-            at = _dropped(found, *shortest[1:])
+        shortest, none = _shortest(found, start), NO_TIME * (end - start)
+        if shortest is not None and shortest[0] < (none if found.stops else -none):
+            at = replace(_dropped(found, *shortest[1:]), course=at.course)
         else:
             exact = _collapsed(instance, found)
             if exact is None:
@@ -91,30 +98,34 @@ def _attempt(instance: Instance, first: Guess, limits: Limits) -> Exact | None:
             if limits.watch:
                 limits.watch(exact[1].cost(instance), max((fault.amount for fault in faults), default=found.residual))
             if not faults:
-                return Exact(*exact, iterations)
+                return _plainer(instance, exact[0], at, limits) or Exact(*exact, iterations)
             worst = max(faults, key=lambda fault: fault.amount)
-            at = _inserted(exact[0], exact[1], worst)
+            at = replace(_inserted(exact[0], exact[1], worst), course=at.course)
         if at.structure in met:
             return None
         met.add(at.structure)
     return None
 
 
-def nearest(instance: Instance, at: Guess, limits: Limits, known: Array | None = None) -> Refined | None:
-    """The extremal of a structure, or what comes nearest to one by least squares; ``None`` where nothing settles.
+def _plainer(instance: Instance, found: Refined, at: Guess, limits: Limits) -> Exact | None:
+    """The same without an arc that is next to nothing beside a singular one, if that is an extremal as well."""
+    lengths, lasting = found.structure.durations(found.at.times, instance.t0, found.at.end), found.at.end - instance.t0
+    for control, (row, own) in enumerate(zip(found.structure.levels, lengths, strict=True)):
+        for arc in np.flatnonzero(own < FLEETING * lasting).tolist():
+            if SINGULAR in row[max(arc - 1, 0) : arc + 2] and row[arc] != SINGULAR:
+                return attempt(instance, replace(_dropped(found, control, arc), course=at.course), limits)
+    return None
 
-    Parameters
-    ----------
-    known
-        Sizes of states and costates, if not those of the guess.
-    """
-    equations = Equations(instance, at.structure, sizes(instance, at) if known is None else known, at.end - instance.t0)
+
+def nearest(instance: Instance, at: Guess, limits: Limits) -> Refined | None:
+    """The extremal of a structure, or what comes nearest to one by least squares; ``None`` where nothing settles."""
+    equations = Equations(instance, at.structure, sizes(instance, at), at.end - instance.t0)
     return solve(equations, equations.start(at.costates, at.times, at.end), limits.watch)
 
 
 def _solved(instance: Instance, at: Guess, limits: Limits) -> Refined | None:
     """The extremal of a structure, exact in units of its own states: those of a guess may be far larger."""
-    found = nearest(instance, at, limits)
+    found = nearest(instance, at, limits) or _in_parts(instance, at, limits)
     for last in (False, True):
         if found is None or found.residual > SOLVED or not found.at.end > instance.t0:
             return None
@@ -122,14 +133,33 @@ def _solved(instance: Instance, at: Guess, limits: Limits) -> Refined | None:
         residual = _residual(instance, own)
         if residual <= SOLVED or last:
             return replace(own, residual=residual) if residual <= SOLVED else None
-        here = Guess(found.structure, found.at.times, found.at.costates, found.at.end)
-        found = nearest(instance, here, limits, own.sizes)
+        equations, known = _equations(instance, own), own.at
+        found = solve(equations, equations.start(known.costates, known.times, known.end, known.stops), limits.watch)
     return None
+
+
+def _in_parts(instance: Instance, at: Guess, limits: Limits) -> Refined | None:
+    """The same where deviations grow so much that arcs have to begin anew; ``None`` where they do not."""
+    course, n = at.course, len(instance.initial)
+    if course is None:
+        return None
+    known = course.sizes()
+    own = _sized(np.maximum(known[:n], given(instance)), known[n:])
+    places, times = stops(instance, at, course, own)
+    if not places:
+        return None
+    equations = Equations(instance, at.structure, own, at.end - instance.t0, places)
+    values = np.array([course.at(time) for time in times])
+    return solve(equations, equations.start(at.costates, at.times, at.end, values), limits.watch)
+
+
+def _equations(instance: Instance, found: Refined) -> Equations:
+    return Equations(instance, found.structure, found.sizes, found.at.end - instance.t0, found.stops)
 
 
 def _residual(instance: Instance, found: Refined) -> float:
     """The largest residual of arcs, relative to their sizes."""
-    equations = Equations(instance, found.structure, found.sizes, found.at.end - instance.t0)
+    equations = _equations(instance, found)
     return float(np.abs(equations.residual(found.at, found.arcs)[0]).max(initial=0.0))
 
 
@@ -162,8 +192,12 @@ def sizes(instance: Instance, at: Guess) -> Array:
             states = np.maximum(states, np.abs(arc.after[:n]))
     except FAILURES:
         pass
+    return _sized(states, np.abs(at.costates))
+
+
+def _sized(states: Array, costates: Array) -> Array:
+    """Sizes of both, none of them zero."""
     states = np.where(states > FAINT * states.max(), states, 1.0)
-    costates = np.abs(at.costates)
     cost = float((states * costates).max())
     return np.concatenate([states, np.maximum(costates, 1e-3 * cost / states if cost > 0.0 else 1.0)])
 

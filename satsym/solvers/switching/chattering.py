@@ -28,7 +28,7 @@ from satsym.solvers.control.regularised import smoothed_law
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.cold_start.minimum_effort import Smoothed
-from satsym.solvers.switching.cold_start.recognition import INSIDE, Sample
+from satsym.solvers.switching.cold_start.recognition import FAINT, Sample
 from satsym.solvers.switching.throttled import signs
 from satsym.solvers.switching.trajectory import runs
 from satsym.status import Status
@@ -39,8 +39,8 @@ POINTS = 12
 LEVELS = 5
 """Of the least smoothed problems that are solved accurately, one after the other, until one is."""
 
-FAINT = 1e-9
-"""Share of its size at which a switching function is as good as none."""
+INSIDE = 0.03
+"""Share of the width of its range by which a control is off both bounds, where it may chatter."""
 
 NARROW = 1e-8
 """Width of the cost interval, relative to the cost, at which no less is smoothed."""

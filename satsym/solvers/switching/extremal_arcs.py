@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from itertools import count
 
 import numpy as np
 
 from satsym.arrays import Array
 from satsym.instance import Instance
+from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import integrate
 from satsym.solvers.switching.field import Field
 from satsym.solvers.switching.structure import Event, Structure
@@ -16,6 +19,9 @@ from satsym.solvers.switching.throttled import equations
 
 TOLERANCE = 3e-14
 """Error of a step, relative to the size of each component."""
+
+ROUGH = 1e-7
+"""The same where no more is asked for."""
 
 ROUNDING = 1e-14
 """Relative length of a piece in which nothing happens."""
@@ -32,6 +38,15 @@ MOST = 2000
 become ever smaller."""
 
 
+@dataclass(frozen=True)
+class Stop:
+    """Where an arc begins anew from values of its own, as the flow grows too much for one to the end."""
+
+    piece: int
+    fraction: float
+    """Which of the pieces between any switches, and after which fraction of it."""
+
+
 @dataclass(frozen=True, eq=False)
 class Unknowns:
     """What an extremal of a structure is found by."""
@@ -44,11 +59,13 @@ class Unknowns:
     """The final time."""
     multipliers: Array
     """Of terminal constraints."""
+    stops: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    """States and costates at the stops, shape (M, 2n)."""
 
 
 @dataclass(frozen=True, eq=False)
 class Arc:
-    """A piece between two switches of any control."""
+    """A piece between two switches of any control, or the part of one between stops."""
 
     field: Field
     """Its equations."""
@@ -61,8 +78,10 @@ class Arc:
     event: Event | None
     """The switch that ends it; ``None`` for the last."""
     slopes: Array
-    """Derivatives of ``after`` by the initial costates, the switching times and the final time, the piece's end moving
-    with these: shape (2n, n + K + 1). Meaningless where they were not asked for."""
+    """Derivatives of ``after`` by the initial costates, the switching times, the final time and the values at stops,
+    the piece's end moving with these: shape (2n, n + K + 1 + 2nM). Meaningless where they were not asked for."""
+    stop: int | None = None
+    """The number of the stop that ends it, if one does."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +96,9 @@ class Accuracy:
     """Error of a step, relative to the size of each component."""
 
 
-def extremal(instance: Instance, structure: Structure, at: Unknowns, accuracy: Accuracy) -> list[Arc]:
+def extremal(
+    instance: Instance, structure: Structure, at: Unknowns, accuracy: Accuracy, stops: Sequence[Stop] = ()
+) -> list[Arc]:
     """Follow the extremal from arc to arc.
 
     Parameters
@@ -90,35 +111,55 @@ def extremal(instance: Instance, structure: Structure, at: Unknowns, accuracy: A
         Costates and times.
     accuracy
         How arcs are integrated.
+    stops
+        Where they begin anew, in order of time.
 
     Raises
     ------
     ArithmeticError, ValueError, satsym.solvers.simulation.extrapolation.NotFinite
         If it is not finite.
     """
-    n, switches = len(instance.initial), structure.switches
+    n, end_column = len(instance.initial), len(instance.initial) + structure.switches
     z = np.concatenate([instance.initial, at.costates])
-    total = np.zeros((2 * n, n + switches + 1))
+    total: Array = np.zeros((2 * n, end_column + 1 + 2 * n * len(stops)))
     total[n:, :n] = np.eye(n)
-    number, begin, begun = [0] * len(structure.levels), instance.t0, -1
+    unit = np.eye(total.shape[1])
+    number, begin, moving = [0] * len(structure.levels), instance.t0, np.zeros(len(unit))
     arcs: list[Arc] = []
-    for event in (*structure.events(at.times), None):
-        levels = tuple(row[k] for row, k in zip(structure.levels, number, strict=True))
-        field = equations(instance, levels)
-        end = at.end if event is None else event.time
-        after, matrix = _piece(field, begin, end, z, accuracy)
-        if accuracy.slopes:
-            total = total.copy()
-            if begun >= 0:
-                total[:, begun] -= field.rates(begin, z.tolist())
-            total = matrix @ total
-            begun = n + switches if event is None else n + event.column
-            total[:, begun] += field.rates(end, after.tolist())
-        arcs.append(Arc(field, begin, end, z, after, event, total))
-        z, begin = after, end
+    for piece, event in enumerate((*structure.events(at.times), None)):
+        equations_here = equations(instance, tuple(row[k] for row, k in zip(structure.levels, number, strict=True)))
+        first, first_moving = begin, moving
+        end, end_moving = (at.end, unit[end_column]) if event is None else (event.time, unit[n + event.column])
+        for stop in (*(k for k, one in enumerate(stops) if one.piece == piece), None):
+            until, until_moving = end, end_moving
+            if stop is not None:
+                fraction = stops[stop].fraction
+                until, until_moving = (
+                    first + fraction * (end - first),
+                    (1.0 - fraction) * first_moving + fraction * end_moving,
+                )
+            after, matrix = _piece(equations_here, begin, until, z, accuracy)
+            if accuracy.slopes:
+                total = matrix @ (total - np.outer(equations_here.rates(begin, z.tolist()), moving))
+                total += np.outer(equations_here.rates(until, after.tolist()), until_moving)
+            arcs.append(Arc(equations_here, begin, until, z, after, event if stop is None else None, total, stop))
+            z, begin, moving = after, until, until_moving
+            if stop is not None:
+                own = end_column + 1 + 2 * n * stop
+                z, total = at.stops[stop], unit[own : own + 2 * n]
         if event is not None:
             number[event.control] += 1
     return arcs
+
+
+def growth(field: Field, start: float, end: float, z: Array, sizes: Array) -> float:
+    """By how much the flow of an arc enlarges deviations in units of ``sizes``; infinite where it goes nowhere."""
+    try:
+        _, matrix = _piece(field, start, end, z, Accuracy(sizes, tolerance=ROUGH))
+    except FAILURES:
+        return math.inf
+    found = float(np.abs(matrix * (sizes / sizes[:, None])).max())
+    return found if math.isfinite(found) else math.inf
 
 
 def _piece(field: Field, start: float, end: float, z: Array, accuracy: Accuracy) -> tuple[Array, Array]:

@@ -13,13 +13,13 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.failures import FAILURES
-from satsym.solvers.switching.extremal_arcs import TOLERANCE, Accuracy, Arc, Unknowns, extremal
+from satsym.solvers.switching.extremal_arcs import ROUGH, TOLERANCE, Accuracy, Arc, Stop, Unknowns, extremal
 from satsym.solvers.switching.field import Field
 from satsym.solvers.switching.structure import SINGULAR, Structure
 
 MOST = 20
-NEAR, ROUGH = 1e-2, 1e-7
-"""Until a correction is smaller than the first, arcs need no more than the second as their accuracy."""
+NEAR = 1e-2
+"""Arcs need no more than rough accuracy until a correction is smaller than that."""
 
 SETTLED = 1e-7
 """The first correction below this is the last."""
@@ -58,6 +58,8 @@ class Refined:
     """Corrections."""
     sizes: Array
     """Of states and costates, which residuals are relative to, shape (2n,)."""
+    stops: tuple[Stop, ...] = ()
+    """Where arcs begin anew."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,32 +73,33 @@ class Equations:
     """Of states and costates, shape (2n,)."""
     duration: float
     """Typical."""
+    stops: tuple[Stop, ...] = ()
+    """Where arcs begin anew."""
 
     @property
     def free_time(self) -> bool:
         """Whether the final time is unknown."""
         return self.instance.tf is None
 
-    def start(self, costates: Array, times: Array, end: float) -> Unknowns:
+    def start(self, costates: Array, times: Array, end: float, stops: Array | None = None) -> Unknowns:
         """Unknowns with vanishing multipliers."""
-        return Unknowns(
-            np.asarray(costates), np.asarray(times), end, np.zeros(len(self.instance.model.spec.multipliers))
-        )
+        none = np.zeros(len(self.instance.model.spec.multipliers))
+        values = np.zeros((0, len(self.sizes))) if stops is None else stops
+        return Unknowns(np.asarray(costates), np.asarray(times), end, none, values)
 
     def arcs(self, at: Unknowns, slopes: bool = True, tolerance: float = TOLERANCE) -> list[Arc]:
         """The extremal; raises as :func:`extremal`."""
-        return extremal(self.instance, self.structure, at, Accuracy(self.sizes, slopes, tolerance))
+        return extremal(self.instance, self.structure, at, Accuracy(self.sizes, slopes, tolerance), self.stops)
 
     def residual(self, at: Unknowns, arcs: list[Arc]) -> tuple[Array, Array]:
         """Residuals and their derivatives by all unknowns, in units of :attr:`scale`: shapes (r,) and (r, v)."""
-        n, last = len(self.instance.initial), arcs[-1]
-        values, slopes = self._end(at, last)
-        inner = [row for before, after in pairwise(arcs) for row in self._switch(before, after)]
+        values, slopes = self._end(at, arcs[-1])
+        inner = [row for before, after in pairwise(arcs) for row in self._junction(before, after)]
         inner += self._singular_start(arcs[0])
-        columns = n + self.structure.switches
         table = np.zeros((len(inner), slopes.shape[1]))
         for k, (_, row) in enumerate(inner):
-            table[k, : columns + self.free_time] = row[: columns + self.free_time]
+            own = self._known(row)
+            table[k, : len(own)] = own
         both = np.concatenate([slopes, table]) * self.scale
         return np.concatenate([values, [value for value, _ in inner]]), both
 
@@ -106,15 +109,17 @@ class Equations:
         n = len(self.instance.initial)
         times = np.full(self.structure.switches + self.free_time, self.duration)
         cost = float((self.sizes[:n] * self.sizes[n:]).max())
-        return np.concatenate([self.sizes[n:], times, np.full(len(self.instance.model.spec.multipliers), cost)])
+        multipliers = np.full(len(self.instance.model.spec.multipliers), cost)
+        return np.concatenate([self.sizes[n:], times, np.tile(self.sizes, len(self.stops)), multipliers])
 
     def moved(self, at: Unknowns, step: Array) -> Unknowns:
         """Unknowns after a step in units of :attr:`scale`."""
         n, k = len(at.costates), len(at.times)
         change = step * self.scale
         end = at.end + float(change[n + k]) if self.free_time else at.end
-        rest = change[n + k + self.free_time :]
-        return Unknowns(at.costates + change[:n], at.times + change[n : n + k], end, at.multipliers + rest)
+        stops, multipliers = np.split(change[n + k + self.free_time :], [at.stops.size])
+        at = replace(at, stops=at.stops + stops.reshape(at.stops.shape), multipliers=at.multipliers + multipliers)
+        return replace(at, costates=at.costates + change[:n], times=at.times + change[n : n + k], end=end)
 
     def _end(self, at: Unknowns, last: Arc) -> tuple[Array, Array]:
         """Rows of the generated boundary function, with the control of the last arc kept."""
@@ -127,9 +132,9 @@ class Equations:
         count = len(at.multipliers)
         by_end, by_multipliers, by_time = by[:, : 2 * n], by[:, 2 * n : 2 * n + count], by[:, -1]
         slopes = by_end @ last.slopes
-        slopes[:, -1] += by_time
+        slopes[:, n + self.structure.switches] += by_time
         if not self.free_time:
-            slopes, residual, by_multipliers = slopes[:-1, :-1], residual[:-1], by_multipliers[:-1]
+            slopes, residual, by_multipliers = self._known(slopes[:-1]), residual[:-1], by_multipliers[:-1]
         sizes = np.abs(by_end) @ self.sizes
         rows = np.maximum(sizes[: len(residual)], 1e-300)
         if self.free_time:
@@ -137,6 +142,21 @@ class Equations:
             rows[-1] = max(float(self.sizes[n:] @ rates[:n]), 1e-300)
         together = np.concatenate([slopes, by_multipliers], axis=1)
         return residual / rows, together / rows[:, None]
+
+    def _known(self, row: Array) -> Array:
+        """Derivatives without those by a final time that is given."""
+        place = len(self.instance.initial) + self.structure.switches
+        return row if self.free_time else np.delete(row, place, axis=-1)
+
+    def _junction(self, before: Arc, after: Arc) -> list[tuple[float, Array]]:
+        """What must vanish between two arcs: the gap at a stop, or what a switch asks for."""
+        if before.stop is None:
+            return self._switch(before, after)
+        slopes, size = before.slopes.copy(), len(self.sizes)
+        begin = len(self.instance.initial) + self.structure.switches + 1 + before.stop * size
+        slopes[:, begin : begin + size] -= np.eye(size)
+        gap = (before.after - after.before) / self.sizes
+        return list(zip(gap.tolist(), slopes / self.sizes[:, None], strict=True))
 
     def _switch(self, before: Arc, after: Arc) -> list[tuple[float, Array]]:
         """What must vanish at a switch: nothing where a singular arc ends."""
@@ -242,7 +262,7 @@ def solve(equations: Equations, start: Unknowns, watch: Callable[[float, float],
             arcs = equations.arcs(at, slopes=False)
             values, _ = equations.residual(at, arcs)
             worst = float(np.abs(values).max(initial=0.0))
-            return Refined(equations.structure, at, arcs, worst, iteration, equations.sizes)
+            return Refined(equations.structure, at, arcs, worst, iteration, equations.sizes, equations.stops)
         n = len(at.costates)
         span = float(np.abs(step[n : n + len(at.times) + equations.free_time]).max(initial=0.0))
         turn = float(np.abs(step[:n]).max(initial=0.0))

@@ -189,7 +189,7 @@ def _signs(instance: Instance, near: minimum_effort.Smoothed) -> Guess:
     """The structure of a motion of least effort, as its signs show it."""
     seen = sample(near.problem, near.curve)
     first = guess(instance, replace(seen, weight=0.0 * seen.weight))
-    return replace(first, costates=first.costates * near.scaled)
+    return replace(first, costates=first.costates * near.scaled, course=None)
 
 
 def _found(instance: Instance, limits: Limits) -> Exact | homotopy.Stopped:

@@ -87,6 +87,23 @@ class Structure:
 
 
 @dataclass(frozen=True, eq=False)
+class Course:
+    """States and costates along something near an extremal."""
+
+    times: Array
+    z: Array
+    """Shapes (N,) and (2n, N)."""
+
+    def at(self, time: float) -> Array:
+        """Between its times, shape (2n,)."""
+        return np.array([np.interp(time, self.times, row) for row in self.z])
+
+    def sizes(self) -> Array:
+        """Of states and costates, shape (2n,)."""
+        return np.asarray(np.abs(self.z).max(axis=1))
+
+
+@dataclass(frozen=True, eq=False)
 class Guess:
     """Where to look for an extremal of exact arcs."""
 
@@ -97,3 +114,5 @@ class Guess:
     """At the start."""
     end: float
     """The final time."""
+    course: Course | None = None
+    """Where it leads, if that is known better than by following it."""

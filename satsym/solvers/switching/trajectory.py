@@ -86,7 +86,8 @@ class Trajectory:
             times = np.concatenate([[arc.start], inside, [arc.end]])
             z, u = self.at(which, times)
             z[:, 0], z[:, -1] = arc.before, arc.after
-            parts.append((times, z, u))
+            new = int(which > 0 and self.arcs[which - 1].stop is not None)
+            parts.append((times[new:], z[:, new:], u[:, new:]))
         return tuple(np.concatenate(rows, axis=-1) for rows in zip(*parts, strict=True))  # type: ignore[return-value]
 
 

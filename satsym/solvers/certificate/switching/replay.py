@@ -17,6 +17,7 @@ from satsym.solution import Solution
 from satsym.solvers.certificate.flow import typical
 from satsym.solvers.certificate.switching.integration import Integration, Span
 from satsym.solvers.certificate.switching.next_switch import at_once, next_switch
+from satsym.solvers.certificate.switching.restarts import restarts
 from satsym.solvers.certificate.switching.stated_arcs import Stated, arcs, decided_by_none
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.iteration import Limits
@@ -29,6 +30,9 @@ MOST_SWITCHES = 200
 
 EVALUATIONS = 1_000_000
 """Of the rates that it may take."""
+
+UNTOLD = 1e-12
+"""Share of its size up to which rounding makes a switching function what it is."""
 
 TOUCHING = 1e-4
 """A change of sign so shortly before a singular arc, as a share of the arc before it, is where its zero is touched."""
@@ -64,14 +68,22 @@ class Replay:
     """The solver's nodes, and the ends of the arcs: shapes (K,), (2n, K), (m, K)."""
     cost: float
     """Of the motion, the terminal cost included."""
+    gap: float = 0.0
+    """Where it began anew, the largest difference to what was reached, relative to sizes."""
 
     def switching_times(self, control: int) -> list[float]:
         """Of one control."""
         return [piece.end for piece in self.pieces if piece.switched == control]
 
 
-def replay(solution: Solution, within: Limits | None = None) -> Replay | None:
+def replay(solution: Solution, within: Limits | None = None, closely: bool = False) -> Replay | None:
     """Integrate again; ``None`` where the motion is not finite or switches without end.
+
+    Parameters
+    ----------
+    closely
+        Whether to begin anew where flows grow, and to take switching times as they are stated where the switching
+        function vanishes there to the last digits: where it is flat its sign tells fewer of the time.
 
     Raises
     ------
@@ -81,11 +93,14 @@ def replay(solution: Solution, within: Limits | None = None) -> Replay | None:
     within = within or Limits(MOST_SWITCHES, float("inf"))
     limits = replace(within, work=within.meter.spent + EVALUATIONS)
     controls = range(len(solution.instance.control_set.switching[0]))
+    stated = [arcs(solution, control) for control in controls]
     again = _Again(
         solution,
-        [arcs(solution, control) for control in controls],
+        stated,
         [decided_by_none(solution, control) for control in controls],
         Integration(np.concatenate(typical(solution)), limits),
+        restarts(solution, stated) if closely else [],
+        closely,
     )
     try:
         return again.replayed()
@@ -105,6 +120,10 @@ class _Again:
     """Of each control whether these stand, for no sign shows its switches."""
     by: Integration
     """The integration."""
+    anew: list[tuple[float, Array]]
+    """When it begins anew, and from which values."""
+    closely: bool
+    """Whether times are taken as stated where no sign tells more digits."""
 
     @property
     def instance(self) -> Instance:
@@ -121,17 +140,22 @@ class _Again:
         levels = self._first_levels(z, t, end)
         pieces: list[Piece] = []
         rows: list[tuple[Array, Array, Array]] = []
-        cost = 0.0
+        cost = gap = 0.0
+        anew: list[tuple[float, Array]] = [*self.anew, (end, z)]
+        whole = True
         while len(pieces) <= MOST_SWITCHES:
-            piece, levels = self._piece(Span(equations(instance, levels), t, end, z))
-            pieces.append(piece)
+            piece, levels = self._piece(Span(equations(instance, levels), t, anew[0][0], z))
             row, added = self._stations(piece, stations)
             rows.append(row)
-            t, z, cost = piece.end, piece.after, cost + added
-            if piece.switched is None:
+            pieces = [*pieces, piece] if whole else [*pieces[:-1], _joined(pieces[-1], piece)]
+            t, z, cost, whole = piece.end, piece.after, cost + added, piece.switched is not None
+            if t >= anew[0][0] and len(anew) > 1:
+                (_, value), *anew = anew
+                gap, z = max(gap, float((np.abs(value - z) / self.by.sizes).max())), value
+            elif piece.switched is None:
                 times, values, controls = (np.concatenate(part, axis=-1) for part in zip(*rows, strict=True))
                 cost += float(instance.model.terminal_cost(t, z[: len(instance.initial)].tolist(), instance.parameters))
-                return Replay(pieces, times, values, controls, cost)
+                return Replay(pieces, times, values, controls, cost, gap)
         return None
 
     def _first_levels(self, z: Array, t: float, end: float) -> tuple[int, ...]:
@@ -161,13 +185,13 @@ class _Again:
             (now[1], i, after[2])
             for i, row in enumerate(self.stated)
             for now, after in pairwise(row)
-            if (self.settled[i] or SINGULAR in (now[2], after[2])) and now[1] > start + 1e-12 * span.lasting
+            if (self.settled[i] or SINGULAR in (now[2], after[2])) and start + 1e-12 * span.lasting < now[1] <= span.end
         ]
         until, switched, level = min(known, default=(span.end, None, None))
         met = next_switch(span.until(until), self.settled, self.by)
         touching = met is not None and met[1] == switched and until - met[0] < TOUCHING * (until - start)
         if met is not None and not touching:
-            until, switched = met
+            until, switched = (self._stated(span, *met) if self.closely else met[0]), met[1]
             level = None
         after, transition = self.by.transition(span.until(until))
         piece = Piece(field, start, until, span.z, after, switched, transition)
@@ -179,6 +203,16 @@ class _Again:
             weight = field.weight(until, after.tolist(), switched)
             level = int(best_levels(field.instance, switched, np.array([ahead]), np.array([weight]))[0])
         return piece, _with(field.levels, switched, level)
+
+    def _stated(self, span: Span, found: float, control: int) -> float:
+        """The stated time of a switch that was found, if its switching function is as good as zero there."""
+        near = min((end for _, end, _ in self.stated[control][:-1]), key=lambda t: abs(t - found), default=found)
+        if not span.start < near < span.end:
+            return found
+        z = self.by.end(span.until(near)).tolist()
+        off = abs(abs(span.field.sigma(near, z, control)) - span.field.weight(near, z, control))
+        size = float(np.abs(span.field.gradient(near, z, control)) @ self.by.sizes)
+        return near if off <= UNTOLD * size else found
 
     def _stations(self, piece: Piece, nodes: Array) -> tuple[tuple[Array, Array, Array], float]:
         """The arc at its ends and at the nodes between, as SciPy interpolates its steps; and its running cost."""
@@ -196,6 +230,11 @@ class _Again:
             found = self.by.solved(rates, span, start, scale, t_eval=times)
             z[:, 1:-1], cost = found.y[:rows, 1:-1], float(found.y[rows, -1])
         return (times, z, field.along(times, z)[0]), cost
+
+
+def _joined(first: Piece, second: Piece) -> Piece:
+    """Two parts of one arc."""
+    return replace(second, start=first.start, before=first.before, transition=second.transition @ first.transition)
 
 
 def _with(levels: tuple[int, ...], control: int, level: int) -> tuple[int, ...]:

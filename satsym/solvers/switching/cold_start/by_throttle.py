@@ -14,6 +14,7 @@ from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
 from satsym.solvers.switching.cold_start.arcs_of_norms import arcs
+from satsym.solvers.switching.cold_start.by_duration import by_duration
 from satsym.solvers.switching.cold_start.by_easier import followed
 from satsym.solvers.switching.cold_start.homotopy import Stopped
 from satsym.solvers.switching.structure import LOWER, Structure
@@ -53,6 +54,9 @@ def _first(instance: Instance, limits: Limits) -> Exact | Stopped:
     found = directed(instance, limits, False, arcs)
     if isinstance(found, Exact):
         return found
+    timed = by_duration(instance, limits) if instance.tf is None and not instance.guess else None
+    if timed is not None:
+        return timed
     message = ""
     near = followed(instance, limits) if instance.tf is not None and not instance.guess else None
     if near is not None and not near.fraction:

@@ -11,14 +11,18 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.collocation.curve import Path
 from satsym.solvers.collocation.problem import TwoPoint
-from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER, Guess, Structure
+from satsym.solvers.switching.structure import LOWER, REST, SINGULAR, UPPER, Course, Guess, Structure
 from satsym.solvers.switching.throttled import signs
 
 SAMPLES = 12
 """Points in each interval of a mesh at which switching functions are looked at."""
 
-INSIDE = 0.03
-"""Share of the width of its range by which a control is off both bounds, where it may be singular."""
+INSIDE = 1e-6
+"""Share of the width of its range by which a control is off both bounds, where it may be singular: bounds are met
+exactly, and on its way to an equilibrium a singular control may come as near to one as it likes."""
+
+FAINT = 1e-9
+"""Share of its size at which a switching function is as good as none."""
 
 LONG = 0.02
 """Share of the duration that a singular arc has at least; shorter ones are switches that are smoothed."""
@@ -66,7 +70,8 @@ def guess(instance: Instance, seen: Sample, singular: NDArray[np.bool_] | None =
         rows.append(row)
         times += switches
     n = len(instance.initial)
-    return Guess(Structure(tuple(rows)), np.array(times), seen.z[n:, 0], float(seen.times[-1]))
+    course = Course(seen.times, seen.z)
+    return Guess(Structure(tuple(rows)), np.array(times), seen.z[n:, 0], float(seen.times[-1]), course)
 
 
 def levels(instance: Instance, control: int, sigma: Array, weight: Array) -> NDArray[np.int64]:
@@ -88,11 +93,13 @@ def inside(instance: Instance, seen: Sample) -> NDArray[np.bool_]:
     off = INSIDE * (high - low)
     free = (seen.u > low + off) & (seen.u < high - off) & (seen.weight == 0.0)
     least = LONG * (seen.times[-1] - seen.times[0])
-    for row in free:
+    for row, sigma in zip(free, seen.sigma, strict=True):
         edges = np.flatnonzero(np.diff(np.concatenate([[0], row.astype(int), [0]])))
         for first, last in zip(edges[::2], edges[1::2] - 1, strict=True):
             if seen.times[last] - seen.times[first] < least:
                 row[first : last + 1] = False
+            elif seen.times[-1] - seen.times[last] < least and abs(sigma[-1]) <= FAINT * np.abs(sigma).max():
+                row[last:] = True  # at free ends costates vanish, and smoothing alone makes an arc of that
     return np.asarray(free)
 
 
