@@ -19,7 +19,15 @@ from satsym.symbolic.derivation import Derivation, DerivationError, resolved
 from satsym.symbolic.linear import regulator, stability, structure
 from satsym.symbolic.model import MaybeStep, Model, Problem, variables_of
 from satsym.symbolic.motion import steps
-from satsym.symbolic.principle import effort, minimised, path_constraints, pontryagin, product, transversality
+from satsym.symbolic.principle import (
+    effort,
+    minimised,
+    mixed_constraints,
+    path_constraints,
+    pontryagin,
+    product,
+    transversality,
+)
 from satsym.symbolic.switching import curve as switching_curve
 from satsym.symbolic.switching import functions as switching
 from satsym.symbolic.switching import singular
@@ -40,6 +48,8 @@ MINIMUM_PRINCIPLE: tuple[MaybeStep, ...] = (
     path_constraints.constraint_multiplier,
     path_constraints.constrained_costates,
     path_constraints.junction_conditions,
+    mixed_constraints.mixed_constraints,
+    mixed_constraints.mixed_costates,
     pontryagin.boundary_conditions,
     transversality.boundary_residual,
     effort.exact_differential,

@@ -47,8 +47,9 @@ def _refuse_at(instance: Instance, time: float, state: tuple[float, ...], key: s
     """At a state that is known as a whole."""
     model, p = instance.model, instance.parameters
     _refuse_values(instance, time, state, key, np.ones(len(model.spec.path_constraints), bool))
-    g = np.array(model.path_constraints(time, state, p))
-    rates = np.array(model.path_rates(time, state, (0.0,) * len(model.spec.controls), p)).reshape(-1, 2)[:, 0]
+    rest = (0.0,) * len(model.spec.controls)
+    g = np.array(model.path_constraints(time, state, rest, p, instance.control_set.arguments))
+    rates = np.array(model.path_rates(time, state, rest, p)).reshape(-1, 2)[:, 0]
     for one, value, rate in zip(model.spec.path_constraints, g, rates, strict=True):
         if one.order > 1 and abs(value) <= ROUNDING and direction * rate > 0.0:
             when = "after the start" if direction > 0 else "before the end"
@@ -66,10 +67,11 @@ def _refuse_values(
     which: NDArray[np.bool_],
 ) -> None:
     model, p = instance.model, instance.parameters
-    g = np.array(model.path_constraints(time, state, p))
-    size = np.abs(np.array(model.path_gradient(time, state, p)).reshape(len(g), -1)) @ np.abs(state)
+    rest = (0.0,) * len(model.spec.controls)
+    g = np.array(model.path_constraints(time, state, rest, p, instance.control_set.arguments))
+    size = np.abs(np.array(model.path_gradient(time, state, rest, p)).reshape(len(g), -1)) @ np.abs(state)
     for one, value, scale, counts in zip(model.spec.path_constraints, g, size, which, strict=True):
-        if counts and value > ROUNDING * max(float(scale), 1e-300):
+        if counts and one.order and value > ROUNDING * max(float(scale), 1e-300):
             raise BadInput(
                 f"{instance.name}: {key}: path constraint {one.name} is {value:.6g} there and may not be positive; "
                 "change that state, or the constraint's parameters"

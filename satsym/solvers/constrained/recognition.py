@@ -10,13 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.arrays import Array
+from satsym.solvers.constrained.arcs import values
 from satsym.solvers.constrained.interior_point import Path
+from satsym.solvers.constrained.slopes import constraint_slopes
 from satsym.solvers.constrained.structure import Contact, Structure
 from satsym.solvers.constrained.transcription import Program
 from satsym.solvers.switching.trajectory import runs
 
 CLOSE = 1e-3
 """A slack of this share of the largest is small: nodes meet a boundary only nearly."""
+
+SMALL = 1e-4
+"""Where no slack is larger than this share of a constraint's terms, these are what slacks are measured by."""
 
 NOTHING = 1e-6
 """Share of the costates below which what a constraint adds to them is nothing."""
@@ -29,20 +34,21 @@ def recognised(program: Program, path: Path) -> Structure:
     """Contacts with all constraints, those of an order of one as arcs."""
     found: list[Contact] = []
     model, at = program.instance.model, path.at
-    times = np.real(program.times(at.duration, middle=False))
-    g_x = np.asarray(model.path_gradient_batch(times, at.x[:, 1:], program.p))
-    g_x = np.broadcast_to(g_x.reshape(len(at.s), len(at.x), -1), (len(at.s), len(at.x), len(times)))
+    nodes, between = (np.real(program.times(at.duration, middle)) for middle in (False, True))
+    g_x, g_u = constraint_slopes(program, at)
+    terms = (np.abs(g_x) * np.abs(at.x[:, 1:])).sum(axis=1) + (np.abs(g_u) * np.abs(at.u)).sum(axis=1)
     costates = np.abs(at.y).max(axis=1)
     for k, one in enumerate(model.spec.path_constraints):
         s, z = at.s[k], at.z[k] * program.kept[k]
-        near = (s < CLOSE * s.max()) & (program.kept[k] > 0.0)
+        room = max(float(s.max()), SMALL * float(terms[k].max()))
+        near = (s < CLOSE * room) & (program.kept[k] > 0.0)
         pushing = (np.abs(g_x[k]) * z / np.maximum(costates[:, None], NOTHING * costates.max() + 1e-300)).max(axis=0)
-        counts = near & (z / max(float(z.max()), 1e-300) > s / s.max())
+        counts = near & (z / max(float(z.max()), 1e-300) > s / room)
         for first, last in runs(_bridged(counts)):
-            if pushing[first : last + 1].sum() > NOTHING:
-                found.append(_contact(k, one.order, times, z, first, last))
+            if one.order == 0 or pushing[first : last + 1].sum() > NOTHING:
+                found.append(_contact(k, one.order, between if one.order == 0 else nodes, z, first, last))
     found.sort(key=lambda contact: contact.middle)
-    return _with_ends(program, tuple(found), times)
+    return _with_ends(program, tuple(found), nodes)
 
 
 def _bridged(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -71,12 +77,20 @@ def _with_ends(program: Program, contacts: tuple[Contact, ...], times: Array) ->
     if not contacts:
         return Structure(())
     one, step = program.instance, 1.5 * float(times[1] - times[0])
-    begun = np.array(one.model.path_constraints(one.t0, one.initial, program.p))
     first, last = contacts[0], contacts[-1]
-    starts = not first.touches and first.start - one.t0 < step and abs(float(begun[first.constraint])) < 1e-9
+    starts = not first.touches and first.start - one.t0 < step and _on_boundary(program, first.constraint)
     order, end = one.model.spec.path_constraints[last.constraint].order, float(times[-1])
     if end - last.end >= step or (order > 1 and not last.touches):
         return Structure(contacts, starts)
     alone = end - last.start <= step
     kept = Contact(last.constraint, end if alone else last.start, end, last.jumps)
     return Structure((*contacts[:-1], kept), starts, ends=True)
+
+
+def _on_boundary(program: Program, constraint: int) -> bool:
+    """Whether a constraint is on its boundary at the start, or may be because it holds a control."""
+    if program.holding[constraint]:
+        return True
+    one, t = program.instance, np.array([program.instance.t0])
+    u = np.zeros((len(one.model.spec.controls), 1))
+    return bool(abs(values(one, t, np.array(one.initial)[:, None], u)[constraint, 0]) < 1e-9)

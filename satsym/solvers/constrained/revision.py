@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.solvers.constrained.arcs import Arcs, gradient, values
-from satsym.solvers.constrained.structure import Contact, Event, Structure
+from satsym.solvers.constrained.arcs import Arcs, control, gradient, multipliers, values
+from satsym.solvers.constrained.structure import FREE, Contact, Event, Structure
 from satsym.solvers.switching.trajectory import runs
 
 SLACK = 1e-9
@@ -62,11 +62,17 @@ def along(arcs: Arcs, arc: int) -> tuple[Array, Array]:
 
 def sizes(arcs: Arcs) -> Array:
     """Of each constraint along the way, shape (h,)."""
-    n, found = arcs.n, []
+    found = []
     for arc in range(len(arcs.intervals)):
-        times, z = along(arcs, arc)
-        found.append(np.abs(values(arcs.instance, times, z[:n])).max(axis=1))
+        found.append(np.abs(constrained(arcs, arc)[1]).max(axis=1))
     return np.maximum(np.max(found, axis=0), 1e-300)
+
+
+def constrained(arcs: Arcs, arc: int) -> tuple[Array, Array]:
+    """Times between the nodes of an arc and all constraints there, shape (h, N)."""
+    times, z = along(arcs, arc)
+    u = control(arcs.instance, arcs.structure.arcs[arc], times, z)
+    return times, values(arcs.instance, times, z[: arcs.n], u)
 
 
 def _order(arcs: Arcs, constraint: int) -> int:
@@ -122,11 +128,7 @@ def _resting(arcs: Arcs) -> tuple[str, list[Structure]] | None:
             continue
         first, second = known[k : k + 2]
         if first.touches and second.touches and first.constraint == second.constraint:
-            times, z = along(arcs, arc)
-            if (
-                np.abs(values(arcs.instance, times, z[: arcs.n])[first.constraint]).max()
-                < SLACK * room[first.constraint]
-            ):
+            if np.abs(constrained(arcs, arc)[1][first.constraint]).max() < SLACK * room[first.constraint]:
                 one = Contact(first.constraint, first.start, second.start, (first.jumps[0], second.jumps[0]))
                 return "a free arc lies on a boundary", [_instead(arcs, slice(k, k + 2), one)]
     return None
@@ -141,7 +143,7 @@ def _rising(arcs: Arcs) -> tuple[str, list[Structure]] | None:
     ):
         one, t = contacts(arcs)[place], arcs.times[junction + 1 : junction + 2]
         for z in (arcs.node(junction, -1)[:, None], arcs.node(junction + 1, 0)[:, None]):
-            u = instance.model.control_law_batch(t, z[:n], z[n:], instance.parameters, instance.control_set.arguments)
+            u = control(instance, FREE, t, z)
             rates = np.asarray(instance.model.path_rates_batch(t, z[:n], u, instance.parameters)).reshape(-1, 2)
             if rates[one.constraint, 1] * lasting**2 > STEEP * room[one.constraint]:
                 half = 0.5 * np.sqrt(float(rates[one.constraint, 1]) * lasting**2 / room[one.constraint])
@@ -153,10 +155,10 @@ def _rising(arcs: Arcs) -> tuple[str, list[Structure]] | None:
 
 def _violated(arcs: Arcs) -> tuple[str, list[Structure]] | None:
     """Constraints that are positive between contacts."""
-    room, n, worst = sizes(arcs), arcs.n, None
+    room, worst = sizes(arcs), None
     for arc, boundary in enumerate(arcs.structure.arcs):
-        times, z = along(arcs, arc)
-        g = values(arcs.instance, times, z[:n]) / room[:, None]
+        times, g = constrained(arcs, arc)
+        g = g / room[:, None]
         if boundary >= 0:
             g[boundary] = 0.0
         constraint = int(g.max(axis=1).argmax())
@@ -178,7 +180,7 @@ def _violated(arcs: Arcs) -> tuple[str, list[Structure]] | None:
             found.append(_instead(arcs, place, Contact(constraint, low, high, (one.jumps[0] / 2,) * 2)))
     gap = slice((first := sum(one.middle < 0.5 * (start + end) for one in known)), first)
     own = Contact(constraint, start, end)
-    added = [own] if _order(arcs, constraint) == 1 else [_touch(own), own]
+    added = [own] if _order(arcs, constraint) < 2 else [_touch(own), own]
     return reason, found + [_instead(arcs, gap, each) for each in added]
 
 
@@ -205,19 +207,25 @@ def _pulling_along(arcs: Arcs) -> tuple[str, list[Structure]] | None:
         if multiplier(arcs, arc).min() >= -SLACK * _pressure(arcs):
             continue
         one, reason = known[place], "a multiplier along a boundary is negative"
-        if _order(arcs, boundary) == 1:
-            return reason, [_instead(arcs, place)]
+        if _order(arcs, boundary) < 2:
+            return reason, [_instead(arcs, place, *_pushing(arcs, arc, one))]
         ends = [Contact(boundary, t, t, (jump, 0.0)) for t, jump in zip((one.start, one.end), one.jumps, strict=True)]
         return reason, [_instead(arcs, place, *ends), _instead(arcs, place, _touch(one))]
     return None
 
 
+def _pushing(arcs: Arcs, arc: int, one: Contact) -> list[Contact]:
+    """Where the multiplier along an arc is positive; of a constraint on states alone nowhere, as it has to be kept."""
+    if _order(arcs, one.constraint) > 0:
+        return []
+    times = along(arcs, arc)[0]
+    return [Contact(one.constraint, float(times[a]), float(times[b])) for a, b in runs(multiplier(arcs, arc) > 0.0)]
+
+
 def multiplier(arcs: Arcs, arc: int) -> Array:
     """eta along an arc on a boundary, shape (N,)."""
     times, z = along(arcs, arc)
-    n, constraint = arcs.n, arcs.structure.arcs[arc]
-    found = np.asarray(arcs.instance.model.path_multiplier_batch(times, z[:n], z[n:], arcs.instance.parameters))
-    return np.broadcast_to(found[constraint], times.shape)
+    return multipliers(arcs.instance, times, z)[arcs.structure.arcs[arc]]
 
 
 def _pressure(arcs: Arcs) -> float:

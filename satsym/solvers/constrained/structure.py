@@ -107,21 +107,21 @@ class Structure:
 def stated_arcs(solution: Solution) -> list[int]:
     """The constraint on whose boundary each arc between events runs, or that none does."""
     names = [one.name for one in solution.instance.model.spec.path_constraints]
-    events = within(solution)
-    first = names.index(events[0].name) if events and events[0].kind == "exit" else FREE
-    found = [first]
-    for one in events:
+    begun = [one.name for one in solution.events if one.t <= solution.times[0]]
+    found = [names.index(begun[0]) if begun else FREE]
+    for one in within(solution):
         found.append(names.index(one.name) if one.kind == "entry" else FREE)
     return found
 
 
 def within(solution: Solution) -> tuple[Happening, ...]:
-    """The events before the end, where arcs meet."""
-    return tuple(one for one in solution.events if one.t < solution.times[-1])
+    """The events between start and end, where arcs meet."""
+    return tuple(one for one in solution.events if solution.times[0] < one.t < solution.times[-1])
 
 
 def pressing(solution: Solution) -> int:
-    """The constraint that may push at the end: that of the last arc, or that is touched there; or none."""
+    """The constraint on states that may push at the end: that of the last arc, or that is touched there; or none."""
     names = [one.name for one in solution.instance.model.spec.path_constraints]
-    last = solution.events[-1:]
-    return names.index(last[0].name) if last and last != within(solution)[-1:] else stated_arcs(solution)[-1]
+    last = [one for one in solution.events if one.t >= solution.times[-1]]
+    found = names.index(last[0].name) if last else stated_arcs(solution)[-1]
+    return FREE if found != FREE and solution.instance.model.spec.path_constraints[found].order == 0 else found
