@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from satsym.arrays import Array
 from satsym.solvers.constrained.arcs import values
 from satsym.solvers.constrained.interior_point import Path
-from satsym.solvers.constrained.slopes import constraint_slopes
+from satsym.solvers.constrained.slopes import constraint_slopes, rooms
 from satsym.solvers.constrained.structure import Contact, Structure
 from satsym.solvers.constrained.transcription import Program
 from satsym.solvers.switching.trajectory import runs
@@ -35,12 +35,11 @@ def recognised(program: Program, path: Path) -> Structure:
     found: list[Contact] = []
     model, at = program.instance.model, path.at
     nodes, between = (np.real(program.times(at.duration, middle)) for middle in (False, True))
-    g_x, g_u = constraint_slopes(program, at)
-    terms = (np.abs(g_x) * np.abs(at.x[:, 1:])).sum(axis=1) + (np.abs(g_u) * np.abs(at.u)).sum(axis=1)
+    g_x, terms = constraint_slopes(program, at)[0], rooms(program, at)
     costates = np.abs(at.y).max(axis=1)
     for k, one in enumerate(model.spec.path_constraints):
         s, z = at.s[k], at.z[k] * program.kept[k]
-        room = max(float(s.max()), SMALL * float(terms[k].max()))
+        room = max(float(s.max()), SMALL * float(terms[k, 0]))
         near = (s < CLOSE * room) & (program.kept[k] > 0.0)
         pushing = (np.abs(g_x[k]) * z / np.maximum(costates[:, None], NOTHING * costates.max() + 1e-300)).max(axis=0)
         counts = near & (z / max(float(z.max()), 1e-300) > s / room)

@@ -170,6 +170,13 @@ def constraint_slopes(program: Program, at: Point) -> tuple[Array, Array]:
     return by_x * program.kept[:, None], by_u * program.kept[:, None]
 
 
+def rooms(program: Program, at: Point) -> Array:
+    """What each constraint is measured by, shape (h, 1): itself, or its terms where these are larger."""
+    g_x, g_u = constraint_slopes(program, at)
+    terms = (np.abs(g_x) * np.abs(at.x[:, 1:])).sum(axis=1) + (np.abs(g_u) * np.abs(at.u)).sum(axis=1)
+    return np.maximum(np.maximum(np.abs(program.constraints(at)), terms).max(axis=1, keepdims=True), 1e-300)
+
+
 def _forces(program: Program, t: Array, x: Array, u: Array, y: Array) -> tuple[Array, Array]:
     """H_x and H_u at midpoints."""
     model, p = program.instance.model, program.p
