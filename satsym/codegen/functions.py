@@ -181,7 +181,9 @@ def _of_path_constraints(derivation: Derivation) -> list[Function]:
     if not (found := inequalities.every(derivation)):
         return []
     states, controls = symbols_of(derivation.model.states), symbols_of(derivation.model.controls)
-    steps = [name for name in ("constraint_multiplier", "boundary_control", mixed_constraints.STEP) if name in derivation]
+    steps = [
+        name for name in ("constraint_multiplier", "boundary_control", mixed_constraints.STEP) if name in derivation
+    ]
     stated = {e.name: e.rhs for name in steps for e in derivation.step(name).equations}
     rates = [[*one.rates[1:], *(sp.Integer(0),) * 2][:2] for one in found]
     vanishing = [

@@ -125,7 +125,8 @@ def constraints(scene: Scene) -> list[Series]:
     if not spec.path_constraints:
         return []
     with np.errstate(all="ignore"):
-        rows = curves.clean(instance.model.path_constraints_batch(scene.nodes, scene.x, instance.parameters))
+        given = scene.nodes, scene.x, scene.u, instance.parameters, instance.control_set.arguments
+        rows = curves.clean(instance.model.path_constraints_batch(*given))
     met = getattr(scene.result, "events", ())
     return [
         Series(

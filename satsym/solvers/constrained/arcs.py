@@ -13,6 +13,9 @@ from satsym.solvers.collocation.gauss import STAGES, lagrange, scheme
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.constrained.structure import FREE, Junction, Structure
 
+OF_TERMS = 1e-3
+"""Share of its terms that a constraint is measured by where it is hardly ever off its boundary."""
+
 
 def holds_control(instance: Instance, constraint: int) -> bool:
     """Whether it is a constraint that holds a control; none is not."""
@@ -79,6 +82,14 @@ def values(instance: Instance, t: Array, x: Array, u: Array) -> Array:
     found = instance.model.path_constraints_batch(t, x, u, instance.parameters, instance.control_set.arguments)
     found = np.broadcast_to(np.asarray(found), (len(instance.model.spec.path_constraints), len(t)))
     return np.where(np.isinf(found), -1.0, found)
+
+
+def sizes(instance: Instance, t: Array, x: Array, u: Array) -> Array:
+    """What each constraint is measured by, shape (h,): the largest it is, at least a share of its terms."""
+    push = (np.abs(gradients(instance, t, x, u)) * np.abs(x)).sum(axis=1)
+    terms = push + (np.abs(effects(instance, t, x)) * np.abs(u)).sum(axis=1)
+    found = np.maximum(np.abs(values(instance, t, x, u)), OF_TERMS * terms)
+    return np.asarray(np.maximum(found.max(axis=1), 1e-300))
 
 
 def _row(found: Array, constraints: int, columns: int) -> Array:

@@ -175,9 +175,7 @@ def at_end(instance: Instance, constraint: int, t: Array, z: Array, nu: tuple[An
     x, lam = z[:n], z[n:]
     found = np.array(model.boundary_batch(t, x, lam, nu, p, free.arguments, final_argument(instance)))
     if holds_control(instance, constraint):
-        ours, other = (
-            model.hamiltonian_batch(t, x, control(instance, k, t, z), lam, p) for k in (constraint, FREE)
-        )
+        ours, other = (model.hamiltonian_batch(t, x, control(instance, k, t, z), lam, p) for k in (constraint, FREE))
         found[-1] += np.asarray(ours) - np.asarray(other)
     return found
 

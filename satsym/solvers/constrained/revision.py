@@ -6,6 +6,7 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.solvers.constrained.arcs import Arcs, control, gradient, multipliers, values
+from satsym.solvers.constrained.arcs import sizes as measured
 from satsym.solvers.constrained.structure import FREE, Contact, Event, Structure
 from satsym.solvers.switching.trajectory import runs
 
@@ -62,17 +63,20 @@ def along(arcs: Arcs, arc: int) -> tuple[Array, Array]:
 
 def sizes(arcs: Arcs) -> Array:
     """Of each constraint along the way, shape (h,)."""
-    found = []
-    for arc in range(len(arcs.intervals)):
-        found.append(np.abs(constrained(arcs, arc)[1]).max(axis=1))
-    return np.maximum(np.max(found, axis=0), 1e-300)
+    places = (_with_controls(arcs, arc) for arc in range(len(arcs.intervals)))
+    return np.asarray(np.max([measured(arcs.instance, *place) for place in places], axis=0))
 
 
 def constrained(arcs: Arcs, arc: int) -> tuple[Array, Array]:
     """Times between the nodes of an arc and all constraints there, shape (h, N)."""
+    place = _with_controls(arcs, arc)
+    return place[0], values(arcs.instance, *place)
+
+
+def _with_controls(arcs: Arcs, arc: int) -> tuple[Array, Array, Array]:
+    """Times between the nodes, states and controls there."""
     times, z = along(arcs, arc)
-    u = control(arcs.instance, arcs.structure.arcs[arc], times, z)
-    return times, values(arcs.instance, times, z[: arcs.n], u)
+    return times, z[: arcs.n], control(arcs.instance, arcs.structure.arcs[arc], times, z)
 
 
 def _order(arcs: Arcs, constraint: int) -> int:
@@ -127,10 +131,12 @@ def _resting(arcs: Arcs) -> tuple[str, list[Structure]] | None:
         if boundary >= 0 or not 0 <= k < len(known) - 1:
             continue
         first, second = known[k : k + 2]
-        if first.touches and second.touches and first.constraint == second.constraint:
-            if np.abs(constrained(arcs, arc)[1][first.constraint]).max() < SLACK * room[first.constraint]:
-                one = Contact(first.constraint, first.start, second.start, (first.jumps[0], second.jumps[0]))
-                return "a free arc lies on a boundary", [_instead(arcs, slice(k, k + 2), one)]
+        both = first.constraint
+        if not (first.touches and second.touches and second.constraint == both):
+            continue
+        if np.abs(constrained(arcs, arc)[1][both]).max() < SLACK * room[both]:
+            one = Contact(both, first.start, second.start, (first.jumps[0], second.jumps[0]))
+            return "a free arc lies on a boundary", [_instead(arcs, slice(k, k + 2), one)]
     return None
 
 

@@ -93,6 +93,18 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     return _answered(instance, found, relaxed, time.perf_counter() - began)
 
 
+def cheaper(solution: Solution, deadline: float) -> Solution | None:
+    """The extremal to which paths about an answer without boundary arcs lead; ``None`` where none is cheaper."""
+    began = time.perf_counter()
+    if began >= deadline or convex(solution.instance):
+        return None
+    with np.errstate(all="ignore"):
+        found = tried(partial(_best, solution.instance, solution, watched(solution.instance, None)[0]))
+    if not isinstance(found, Arcs) or not found.cost() < solution.objective:
+        return None
+    return _answered(solution.instance, found, solution, time.perf_counter() - began)
+
+
 def _best(instance: Instance, relaxed: Solution, limits: Limits) -> Arcs | Stopped:
     """The cheapest extremal to which regularised paths lead."""
     worth = relaxed.objective if relaxed.status.answered and relaxed.objective else 1.0
@@ -205,7 +217,9 @@ def _answered(instance: Instance, arcs: Arcs, relaxed: Solution, wall_s: float) 
         z[:, 0], z[:, -1] = arcs.node(arc, 0), arcs.node(arc, -1)
         parts.append((np.concatenate([[a], inside, [b]]), z))
     times, z = np.concatenate([t for t, _ in parts]), np.concatenate([v for _, v in parts], axis=1)
-    u = np.concatenate([control(instance, k, t, v) for k, (t, v) in zip(arcs.structure.arcs, parts, strict=True)], axis=1)
+    u = np.concatenate(
+        [control(instance, k, t, v) for k, (t, v) in zip(arcs.structure.arcs, parts, strict=True)], axis=1
+    )
     status = Status.CONVERGED if instance.model.in_domain(z[:n]) else Status.LEFT_DOMAIN
     names = [one.name for one in instance.model.spec.path_constraints]
     events = tuple(

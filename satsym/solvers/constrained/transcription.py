@@ -54,8 +54,10 @@ class Program:
 
     @cached_property
     def kept(self) -> Array:
-        """Which constraints are looked at, shape (h, N): not at an end where given states decide them, and no bound that
-        is infinite."""
+        """Which constraints are looked at, shape (h, N).
+
+        Not at an end where given states decide them, and no bound that is infinite.
+        """
         (x, given), end = self._target(), np.array([self.final_time(self.guessed)])
         table = np.ones((len(self.holding), self.intervals))
         for k, holds in enumerate(self.holding):

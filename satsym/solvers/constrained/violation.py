@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from satsym.solution import Solution
-from satsym.solvers.constrained.arcs import values
+from satsym.solvers.constrained.arcs import sizes, values
 
 BETWEEN = 8
 """Places between two nodes."""
@@ -26,5 +26,5 @@ def violation(solution: Solution) -> float:
         times, x = t[:-1] + s * h, between[:n]
         u = np.asarray(model.control_law_batch(times, x, between[n:], p, bounds))
         found.append(values(instance, times, x, np.broadcast_to(u, (len(solution.u), len(times)))))
-    g = np.concatenate(found, axis=1)
-    return float((g.max(axis=1) / np.maximum(np.abs(g).max(axis=1), 1e-300)).max())
+    g, room = np.concatenate(found, axis=1), sizes(instance, t, solution.x, solution.u)
+    return float((g.max(axis=1) / np.maximum(room, np.abs(g).max(axis=1))).max())

@@ -17,9 +17,9 @@ def every(so_far: Derivation) -> list[path_constraints.Constraint]:
 
 
 def linear_quadratic(so_far: Derivation) -> bool:
-    """Whether the motion is linear in states and controls, costs are quadratic and constraints linear or quadratic.
+    """Whether there are constraints, linear or quadratic ones, the motion is linear and the costs are quadratic.
 
-    Where there are no constraints it is not asked, and so not said. What is left to make the problem convex are signs of matrices, which depend on the parameters.
+    What is left to make the problem convex are signs of matrices, which depend on the parameters.
     """
     problem, found, states = so_far.problem, every(so_far), symbols_of(so_far.model.states)
     if problem is None or not found:

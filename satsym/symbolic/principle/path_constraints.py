@@ -104,7 +104,10 @@ def constraint_multiplier(so_far: Derivation) -> Step | None:
         chain = (found.rates[-2], *vanishing, sp.Integer(0))
         checks.append(_rates_along(chain, {x: r.xreplace({eta: value}) for x, r in moving.items()}))
         checks.append(adjoined(so_far, found, [moving[lam] for lam in costates(so_far)], law))
-    rule, sources = worded("keep the law on the boundary", problem_of(so_far)), (STEP, "control_law", "costate_equations")
+    rule, sources = (
+        worded("keep the law on the boundary", problem_of(so_far)),
+        (STEP, "control_law", "costate_equations"),
+    )
     return Step("constraint_multiplier", rule, tuple(equations), sources, tuple(checks))
 
 
@@ -205,9 +208,7 @@ def _uncontrolled(rate: sp.Expr, motion: Mapping[sp.Symbol, sp.Expr], controls: 
     return True
 
 
-def affine(
-    so_far: Derivation, found: Constraint, controls: tuple[sp.Symbol, ...]
-) -> tuple[sp.Matrix, sp.Expr]:
+def affine(so_far: Derivation, found: Constraint, controls: tuple[sp.Symbol, ...]) -> tuple[sp.Matrix, sp.Expr]:
     """What multiplies the controls in g^(q), and the rest."""
     effect = sp.Matrix(gradient(found.rates[-1], controls)).applyfunc(simplified)
     if any(e.free_symbols & set(controls) for e in effect):
@@ -246,6 +247,7 @@ def _canonical(so_far: Derivation, found: Constraint) -> dict[sp.Symbol, sp.Expr
 
 
 def motion_of(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
+    """The rate of each state."""
     return dict(zip(symbols_of(so_far.model.states), so_far.rhs("first_order"), strict=True))
 
 
@@ -265,9 +267,7 @@ def _rates_along(rates: tuple[sp.Expr, ...], motion: Mapping[sp.Symbol, sp.Expr]
     return compare("numeric rates along the motion", symbols, sides)
 
 
-def adjoined(
-    so_far: Derivation, found: Constraint, rates: list[sp.Expr], law: Mapping[sp.Symbol, sp.Expr]
-) -> Check:
+def adjoined(so_far: Derivation, found: Constraint, rates: list[sp.Expr], law: Mapping[sp.Symbol, sp.Expr]) -> Check:
     """Costate rates under a law against numeric derivatives of H with the constraint and its positive multiplier."""
     states = symbols_of(so_far.model.states)
     rates = [rate.xreplace(dict(law)) for rate in rates]
@@ -306,5 +306,6 @@ def _cheapest_on_boundary(so_far: Derivation, found: Constraint, laws: list[sp.E
 
 
 def problem_of(so_far: Derivation) -> Problem:
+    """The problem, which there is."""
     assert so_far.problem is not None
     return so_far.problem

@@ -9,6 +9,7 @@ from satsym.symbolic.model import Problem, Requirement, symbols_of
 from satsym.symbolic.notation import HAMILTONIAN, costate_of
 from satsym.symbolic.principle import control_sets
 
+
 def of_states(problem: Problem) -> dict[str, sp.Expr]:
     """What is stated on states alone."""
     return {name: g for name, g in _declared(problem).items() if not _holds_control(problem, g)}

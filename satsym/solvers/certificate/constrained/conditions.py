@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from satsym.arrays import Array
@@ -11,7 +13,7 @@ from satsym.solvers.certificate.constrained.comparison import Comparison, compar
 from satsym.solvers.certificate.constrained.replay import Piece, Replay, replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
 from satsym.solvers.certificate.flow import FAINT, typical
-from satsym.solvers.constrained.arcs import control, holds_control, multipliers, values, vanishing
+from satsym.solvers.constrained.arcs import control, holds_control, multipliers, sizes, values, vanishing
 from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.constrained.structure import FREE, within
 from satsym.status import Verdict
@@ -63,7 +65,11 @@ def certify(solution: Solution, seed: int = 0) -> Certificate:
 def _first_order(solution: Solution, again: Replay) -> list[Check]:
     flow = again.flow(solution)
     checks = [
-        Check(conditions.BOUNDARY, conditions.boundary_residual(solution, flow, more=_more_at_end(solution, again)), RESIDUAL),
+        Check(
+            conditions.BOUNDARY,
+            conditions.boundary_residual(solution, flow, more=_more_at_end(solution, again)),
+            RESIDUAL,
+        ),
         Check(conditions.OF_FLOW, _defect(solution, again), DEFECT),
         Check(conditions.STATIONARITY, _stationarity(solution, again), STATIONARY),
         Check("cost", conditions.off_cost(solution, flow), COST),
@@ -123,8 +129,7 @@ def _defect(solution: Solution, again: Replay) -> float:
 
 def _sizes(solution: Solution, again: Replay) -> Array:
     """Of each constraint along the way."""
-    found = [np.abs(values(solution.instance, *_controls(solution, p))).max(axis=1) for p in again.pieces]
-    return np.maximum(np.max(found, axis=0), 1e-300)
+    return np.asarray(np.max([sizes(solution.instance, *_controls(solution, p)) for p in again.pieces], axis=0))
 
 
 def _violated(solution: Solution, again: Replay) -> float:
@@ -238,7 +243,8 @@ def _drift(solution: Solution, again: Replay) -> float | None:
     x, lam = again.z[:n], again.z[n:]
     parts = [control(instance, one.constraint, t[one.nodes], again.z[:, one.nodes]) for one in again.pieces]
     u = np.concatenate(parts, axis=1)
-    if not model.spec.autonomous or np.imag(values(instance, t + 1e-30j, x, u)).any():
+    moving: Any = t + 1e-30j
+    if not model.spec.autonomous or np.imag(values(instance, moving, x, u)).any():
         return None
     h = np.broadcast_to(model.hamiltonian_batch(t, x, u, lam, p), t.shape)
     terms = np.abs(lam * model.dynamics_batch(t, x, u, p)).sum(axis=0).max()
