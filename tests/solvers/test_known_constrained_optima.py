@@ -114,6 +114,31 @@ def test_a_satellite_touches_the_end_of_its_slot_twice():
     check("return-in-slot", simulated(found)[0][8], found[[4, 6]])
 
 
+@pytest.mark.slow
+def test_rayleighs_oscillator_is_damped_with_its_control_bounded_by_the_state():
+    """While u = -x1 / 6, lambda_1 falls by mu / 6 besides; mu = -2 u - 4 lambda_2 vanishes at its ends."""
+
+    def damped(bounded: bool) -> Rates:
+        def rates(t: float, z: Sequence[float]) -> list[float]:
+            a, b, p, q, _ = z
+            u = -a / 6 if bounded else -2 * q
+            moved = [b, -a + b * (1.4 - 0.14 * b * b) + 4 * u]
+            return [*moved, q - 2 * a + (2 * u + 4 * q) / 6, -p - q * (1.4 - 0.42 * b * b), u * u + a * a]
+
+        return rates
+
+    def simulated(v: np.ndarray) -> tuple[np.ndarray, list[float]]:
+        z, missed, begun = np.array([-5.0, -5.0, *v[:2], 0.0]), list[float](), 0.0
+        for bounded, until in zip((True, False, True, False), (*v[2:], 4.5), strict=True):
+            z = along(damped(bounded), begun, until, z)
+            missed.append(z[0] / 6 - 2 * z[3])
+            begun = until
+        return z, [*missed[:-1], *z[2:4]]
+
+    found = shot(lambda v: np.array(simulated(v)[1]), [-10.678, -4.191, 1.27, 2.978, 4.295])
+    check("rayleigh-mixed", simulated(found)[0][4], [0.0, *found[2:]])
+
+
 def test_a_rendezvous_slides_along_its_approach_cone():
     """The Clohessy-Wiltshire equations, and g = -x1 + x3 / 2 - 0.001."""
 

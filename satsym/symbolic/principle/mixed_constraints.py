@@ -45,7 +45,7 @@ def mixed_constraints(so_far: Derivation) -> Step | None:
     slopes, weight = sp.Matrix([h]).jacobian(controls).T, sp.hessian(h, controls).applyfunc(sp.simplify)
     hats = free_law(so_far)
     for name, g in stated.items():
-        found = Constraint(name, (tidy(g, controls),))
+        found = Constraint(name, (g,))
         effect, _ = affine(so_far, found, controls)
         turned = weight.LUsolve(effect)
         missed, unit = tidy(simplified(found.rates[0].xreplace(hats))), (effect.T * turned)[0]
