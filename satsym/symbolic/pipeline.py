@@ -206,10 +206,10 @@ def _principle(motion_derived: Derivation) -> tuple[MaybeStep, ...]:
     """What follows from the motion: the principle that suits the cost, or linear theory where there is none."""
     if motion_derived.problem is None:
         return LINEAR
+    if motion_derived.problem.path_constraints:  # no other has steps for them
+        return MINIMUM_PRINCIPLE
     if product.applies(motion_derived):
         return PRODUCT_PRINCIPLE
-    if motion_derived.problem.path_constraints:
-        return MINIMUM_PRINCIPLE
     return SWITCHING_PRINCIPLE if switching.applies(motion_derived) else MINIMUM_PRINCIPLE
 
 

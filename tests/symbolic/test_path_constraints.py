@@ -112,6 +112,8 @@ def test_it_is_typeset(language: str):
     [
         (kept(e - 1), "no control influences it, so nothing can keep it"),
         (kept(a - 1), "its order is more than 2"),
+        (kept(b - 1, running_cost=sp.exp(u) + sp.exp(-u)), "H is not quadratic in the controls"),
+        (kept(b - 1, running_cost=sp.sqrt(1 + u**2)), "H is not quadratic in the controls"),
         (kept(b - u**2), "the controls enter it otherwise than linearly"),
         (kept(b - sp.Symbol("q", real=True)), "uses undeclared symbols: q"),
         (kept(b - 1, control_set="box"), "beside bounds of the controls they are not derived"),

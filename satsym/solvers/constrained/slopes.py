@@ -171,10 +171,11 @@ def constraint_slopes(program: Program, at: Point) -> tuple[Array, Array]:
 
 
 def rooms(program: Program, at: Point) -> Array:
-    """What each constraint is measured by, shape (h, 1): itself, or its terms where these are larger."""
+    """What each constraint is measured by, shape (h, 1): itself, or its terms where these are larger; one without any."""
     g_x, g_u = constraint_slopes(program, at)
     terms = (np.abs(g_x) * np.abs(at.x[:, 1:])).sum(axis=1) + (np.abs(g_u) * np.abs(at.u)).sum(axis=1)
-    return np.maximum(np.maximum(np.abs(program.constraints(at)), terms).max(axis=1, keepdims=True), 1e-300)
+    found = np.maximum(np.abs(program.constraints(at)), terms).max(axis=1, keepdims=True)
+    return np.where(found > 0.0, found, 1.0)
 
 
 def _forces(program: Program, t: Array, x: Array, u: Array, y: Array) -> tuple[Array, Array]:

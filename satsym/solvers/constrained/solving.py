@@ -10,6 +10,7 @@ from functools import partial
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.control_set import bound_names
 from satsym.instance import Instance
 from satsym.solution import Event, Progress, Solution
 from satsym.solvers import iteration, two_point
@@ -242,7 +243,10 @@ def _answered(instance: Instance, arcs: Arcs, relaxed: Solution, wall_s: float) 
         x=z[:n],
         u=u,
         lam=z[n:],
-        switching_times=tuple(() for _ in instance.model.spec.controls),
+        switching_times=tuple(
+            tuple(one.t for one in events if one.name in bounds and instance.t0 < one.t)
+            for bounds in bound_names(instance.model.spec)
+        ),
         iterations=len(relaxed.history),
         history=relaxed.history,
         wall_s=wall_s,
