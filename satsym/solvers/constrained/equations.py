@@ -115,7 +115,7 @@ class System:
             if jump is not None:
                 gap[n:] = gap[n:] + v[2 * d + 1] * gradient(arcs.instance, constraint, t, left[:n])
             if holds_control(arcs.instance, constraint):
-                return np.concatenate([gap, vanishing(arcs.instance, constraint, t, left)])
+                return np.concatenate([gap, changing(arcs.instance, arcs.structure.arcs[k], constraint, t, left)])
             if junction.event is Event.EXIT:
                 return gap
             pinned = junction.event is Event.ENTRY and arcs.pinned and k == len(arcs.junctions) - 1
@@ -164,6 +164,17 @@ class System:
         self.residuals.append(value)
         self._add(self.height + np.arange(len(value))[:, None], np.array(columns), slopes)
         self.height += len(value)
+
+
+def changing(instance: Instance, before: int, constraint: int, t: Array, z: Array) -> Array:
+    """What vanishes where a constraint that holds a control becomes active after an arc, or inactive, shape (1, N).
+
+    Where another one is active before, that is the constraint itself under the control that keeps the other.
+    """
+    if before in (FREE, constraint):
+        return vanishing(instance, constraint, t, z)
+    u = control(instance, before, t, z)
+    return values(instance, t, z[: len(instance.initial)], u)[[constraint]]
 
 
 def at_end(instance: Instance, constraint: int, t: Array, z: Array, nu: tuple[Any, ...]) -> Array:

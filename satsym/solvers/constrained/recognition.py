@@ -6,6 +6,9 @@ boundary arc vanishes are taken for one arc later (:mod:`satsym.solvers.constrai
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -76,6 +79,7 @@ def _with_ends(program: Program, contacts: tuple[Contact, ...], times: Array) ->
     if not contacts:
         return Structure(())
     one, step = program.instance, 1.5 * float(times[1] - times[0])
+    contacts = _meeting(program, contacts, times)
     first, last = contacts[0], contacts[-1]
     starts = not first.touches and first.start - one.t0 < step and _on_boundary(program, first.constraint)
     order, end = one.model.spec.path_constraints[last.constraint].order, float(times[-1])
@@ -84,6 +88,18 @@ def _with_ends(program: Program, contacts: tuple[Contact, ...], times: Array) ->
     alone = end - last.start <= step
     kept = Contact(last.constraint, end if alone else last.start, end, last.jumps)
     return Structure((*contacts[:-1], kept), starts, ends=True)
+
+
+def _meeting(program: Program, contacts: tuple[Contact, ...], times: Array) -> tuple[Contact, ...]:
+    """Without the gaps of a step between constraints that hold controls, one of which follows the other."""
+    found, step = list(contacts), 1.5 * float(times[1] - times[0])
+    for k, (one, other) in enumerate(pairwise(contacts)):
+        held = program.holding[one.constraint] and program.holding[other.constraint]
+        if held and one.constraint != other.constraint and other.start - one.end < step:
+            middle = 0.5 * (one.end + other.start)
+            if found[k].start < middle < other.end:
+                found[k], found[k + 1] = replace(found[k], end=middle), replace(found[k + 1], start=middle)
+    return tuple(found)
 
 
 def _on_boundary(program: Program, constraint: int) -> bool:

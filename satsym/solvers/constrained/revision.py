@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from satsym.arrays import Array
@@ -44,9 +46,13 @@ def contacts(arcs: Arcs) -> list[Contact]:
             k += 1
             continue
         start, end, jumps = float(times[0]), float(times[-1]), [0.0, 0.0]
+        if number > 0 and arcs.structure.joined(number - 1):
+            k -= 1  # the end of the one before is its entry
         if not (number == 0 and arcs.structure.starts):
             start, jumps[0], k = float(times[k + 1]), arcs.jump(k), k + 1
-        if not (last and arcs.structure.ends):
+        if arcs.structure.joined(number):
+            end, k = float(times[k + 1]), k + 1
+        elif not (last and arcs.structure.ends):
             end, jumps[1], k = float(times[k + 1]), arcs.jump(k), k + 1
         else:
             jumps[1] = pressed[0]
@@ -105,8 +111,20 @@ def _disordered(arcs: Arcs) -> tuple[str, list[Structure]] | None:
             return "an arc on a boundary has no length", [*tries, _instead(arcs, place)]
     if np.diff(arcs.times).min() <= 0.0:
         known = contacts(arcs)
-        return "contacts change places", [_instead(arcs, place) for place in range(len(known))]
+        joins = [_joined(arcs, k) for k in range(len(known) - 1) if known[k].end >= known[k + 1].start]
+        others = [_instead(arcs, place) for place in range(len(known))]
+        return "contacts change places", [*(one for one in joins if one is not None), *others]
     return None
+
+
+def _joined(arcs: Arcs, place: int) -> Structure | None:
+    """With no free arc between two contacts, of constraints that hold controls."""
+    first, second = contacts(arcs)[place : place + 2]
+    if _order(arcs, first.constraint) + _order(arcs, second.constraint) > 0:
+        return None
+    middle = 0.5 * (first.end + second.start)
+    kept = replace(first, end=middle), replace(second, start=middle)
+    return _instead(arcs, slice(place, place + 2), *kept)
 
 
 def _pulling(arcs: Arcs) -> tuple[str, list[Structure]] | None:
@@ -184,10 +202,25 @@ def _violated(arcs: Arcs) -> tuple[str, list[Structure]] | None:
             half = max(abs(start - one.start), abs(end - one.start), 0.01 * lasting)
             low, high = max(one.start - half, arcs.times[0]), min(one.start + half, arcs.times[-1])
             found.append(_instead(arcs, place, Contact(constraint, low, high, (one.jumps[0] / 2,) * 2)))
+    if (within := _instead_of_active(arcs, constraint, start, end)) is not None:
+        return reason, [within, *found]
     gap = slice((first := sum(one.middle < 0.5 * (start + end) for one in known)), first)
     own = Contact(constraint, start, end)
     added = [own] if _order(arcs, constraint) < 2 else [_touch(own), own]
     return reason, found + [_instead(arcs, gap, each) for each in added]
+
+
+def _instead_of_active(arcs: Arcs, constraint: int, start: float, end: float) -> Structure | None:
+    """With a constraint active in place of another while it is violated, both of which hold controls."""
+    for place, one in enumerate(contacts(arcs)):
+        if one.touches or not one.start <= 0.5 * (start + end) <= one.end:
+            continue
+        if _order(arcs, constraint) + _order(arcs, one.constraint) > 0:
+            return None
+        low, high = max(start, one.start), min(end, one.end)
+        parts = [replace(one, end=low), Contact(constraint, low, high), replace(one, start=high)]
+        return _instead(arcs, place, *(part for part in parts if part.end > part.start))
+    return None
 
 
 def _merged(arcs: Arcs, constraint: int, start: float, end: float) -> list[Structure]:

@@ -66,8 +66,7 @@ class Structure:
 
     def junctions(self, instance: Instance) -> list[Junction]:
         """Where arcs meet."""
-        orders = [one.order for one in instance.model.spec.path_constraints]
-        found = []
+        orders, found = [one.order for one in instance.model.spec.path_constraints], list[Junction]()
         for k, one in enumerate(self.contacts):
             jumps = one.jumps if orders[one.constraint] > 1 else (None, None)
             if one.touches and self.ends and k == len(self.contacts) - 1:
@@ -77,31 +76,36 @@ class Structure:
                 continue
             if not (k == 0 and self.starts):
                 found.append(Junction(Event.ENTRY, one.constraint, one.start, jumps[0]))
-            if not (k == len(self.contacts) - 1 and self.ends):
+            if not (k == len(self.contacts) - 1 and self.ends) and not self.joined(k):
                 found.append(Junction(Event.EXIT, one.constraint, one.end, jumps[1]))
         return found
+
+    def joined(self, contact: int) -> bool:
+        """Whether the next contact begins where this one ends: from one boundary directly to another."""
+        return contact + 1 < len(self.contacts) and self.contacts[contact].end == self.contacts[contact + 1].start
 
     @property
     def arcs(self) -> list[int]:
         """The constraint on whose boundary each arc runs, or that none does."""
         found = [] if self.starts else [FREE]
-        for one in self.contacts:
-            found += [FREE] if one.touches else [one.constraint, FREE]
+        for k, one in enumerate(self.contacts):
+            found += [FREE] if one.touches else [one.constraint] if self.joined(k) else [one.constraint, FREE]
         return found[:-1] if self.ends else found
 
     def name(self, instance: Instance) -> str:
         """For messages: ``free, wall, free``; touch points in brackets."""
         spec = instance.model.spec.path_constraints
         words = [] if self.starts else ["free"]
-        for one in self.contacts:
+        for k, one in enumerate(self.contacts):
             name = spec[one.constraint].name
-            words += [f"[{name}]" if one.touches else name, "free"]
+            words += [f"[{name}]" if one.touches else name, *([] if self.joined(k) else ["free"])]
         return ", ".join(words[:-1] if self.ends else words)
 
     @property
     def key(self) -> tuple[object, ...]:
         """What two of them have in common that differ in times only."""
-        return (self.starts, self.ends, *((one.constraint, one.touches) for one in self.contacts))
+        contacts = ((one.constraint, one.touches, self.joined(k)) for k, one in enumerate(self.contacts))
+        return (self.starts, self.ends, *contacts)
 
 
 def stated_arcs(solution: Solution) -> list[int]:

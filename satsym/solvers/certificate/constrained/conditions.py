@@ -15,6 +15,7 @@ from satsym.solvers.certificate.constrained.second_variation import curvature
 from satsym.solvers.certificate.flow import FAINT, typical
 from satsym.solvers.constrained.arcs import control, holds_control, multipliers, sizes, values, vanishing
 from satsym.solvers.constrained.convexity import convex
+from satsym.solvers.constrained.equations import changing
 from satsym.solvers.constrained.structure import FREE, within
 from satsym.status import Verdict
 
@@ -151,7 +152,8 @@ def _off_boundary(solution: Solution, again: Replay) -> float:
 def _off_tangency(solution: Solution, again: Replay) -> float:
     """Largest constraint, or its rate over the duration, at entries and touch points, relative to its size.
 
-    Of one that holds a control what decides whether it is active, at entries and exits.
+    Of one that holds a control what decides whether it is active, at entries and exits; itself where it follows
+    another directly.
     """
     instance, n, sizes, worst = solution.instance, len(solution.x), _sizes(solution, again), 0.0
     lasting = float(solution.times[-1] - solution.times[0])
@@ -159,7 +161,7 @@ def _off_tangency(solution: Solution, again: Replay) -> float:
     for event, piece in zip(met, again.pieces, strict=False):
         which, t, z = _number(solution, event.name), piece.times[-1:], piece.z[:, -1:]
         if holds_control(instance, which):
-            found = [abs(float(vanishing(instance, which, t, z)[0, 0]))]
+            found = [abs(float(changing(instance, piece.constraint, which, t, z)[0, 0]))]
         else:
             found = [abs(float(values(instance, t, z[:n], control(instance, FREE, t, z))[which, 0]))]
         if instance.model.spec.path_constraints[which].order > 1 and event.t < solution.times[-1]:
