@@ -141,6 +141,35 @@ def test_beside_a_bound_on_the_speed_each_has_its_arc(bound: float):
     assert kinds(found) == [("entry", "up"), ("exit", "up"), ("entry", "speed"), ("exit", "speed")]
 
 
+@pytest.mark.parametrize("bound", [5.0, 7.0])
+def test_beside_a_box_its_bounds_have_arcs_like_constraints(bound: float):
+    """Before a wall, from (0, 1) to (0, -1): u = -B for a time s, then rises in a line to 0 where the body rests."""
+    wall = 1 / 9
+
+    def ramp(s: float) -> float:
+        return 2 * (1 - bound * s) / bound
+
+    def short(s: float) -> float:
+        return s - bound * s * s / 2 + (1 - bound * s) * ramp(s) - bound * ramp(s) ** 2 / 3 - wall
+
+    free = bound * wall >= 2 / 3  # the largest deceleration is 2 / (3 l)
+    s = 0.0 if free else brentq(short, 0.0, 1 / bound)
+    optimum = 4 / (9 * wall) if free else bound**2 * (s + ramp(s) / 3)
+    problem = replace(kept("walled_in", second=True, wall=x - a), control_set="box")
+    found = certified(
+        problem,
+        parameters={"a": wall},
+        initial={"x": 0.0, "v": 1.0},
+        final={"x": 0.0, "v": -1.0},
+        tf=1.0,
+        control={"u": [-bound, bound]},
+    )
+    assert found.objective == pytest.approx(optimum, rel=1e-9)
+    bounds = [one.t for one in found.events if one.name == "u_min"]
+    assert bounds == ([] if free else pytest.approx([0.0, s, 1 - s], abs=1e-8))
+    assert found.to_dict()["switching_times"] == ([] if free else pytest.approx([s, 1 - s], abs=1e-8))
+
+
 def test_what_can_hardly_be_kept_is_not_said_to_be_infeasible():
     """Only u = 1 reaches the end within the bound, and nothing is between it and the boundary."""
     problem, ends = kept("hurried", cap=u - a), {"initial": {"x": 0.0}, "final": {"x": 1.0}, "tf": 1.0}

@@ -99,6 +99,15 @@ def test_a_constraint_that_holds_a_control_decides_it_where_the_law_would_violat
     assert sp.simplify(pushed + sign * y * sp.Symbol("eta_cap", real=True)) == 0
 
 
+def test_bounds_of_a_box_are_constraints_like_others():
+    found = derived(kept(d - 1, control_set="box"))
+    step, top = values(found.step("mixed_constraints")), sp.Symbol("u_max", real=True)
+    assert step["u_max"] == sp.Symbol("u", real=True) - top
+    assert step["u_max_u"] == top
+    assert sp.simplify(step["u_max_eta"] - step["u_max_vanishing"]) == 0
+    assert r"u^{\max}" in render(found, "en")
+
+
 @pytest.mark.parametrize("language", ["en", "id"])
 def test_it_is_typeset(language: str):
     text = render(shipped("return_in_slot"), language)
@@ -116,7 +125,8 @@ def test_it_is_typeset(language: str):
         (kept(b - 1, running_cost=sp.sqrt(1 + u**2)), "H is not quadratic in the controls"),
         (kept(b - u**2), "the controls enter it otherwise than linearly"),
         (kept(b - sp.Symbol("q", real=True)), "uses undeclared symbols: q"),
-        (kept(b - 1, control_set="box"), "beside bounds of the controls they are not derived"),
+        (kept(b - 1, control_set="ball"), "beside bounds of the controls other than those of a box"),
+        (replace(kept(b - 1, control_set="box"), path_constraints={"u_max": b - 1}), "is the name of a bound"),
         (replace(kept(b - 1), path_constraints={"no name": b - 1}), "a constraint's name is"),
         (replace(kept(b - 1), path_constraints=(b - 1,)), "write a name for each"),  # type: ignore[arg-type]
     ],

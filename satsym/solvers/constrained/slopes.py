@@ -171,7 +171,7 @@ def constraint_slopes(program: Program, at: Point) -> tuple[Array, Array]:
 
 
 def rooms(program: Program, at: Point) -> Array:
-    """What each constraint is measured by, shape (h, 1): itself, or its terms where these are larger; one without any."""
+    """What each constraint is measured by, shape (h, 1): itself or, where these are larger, its terms."""
     g_x, g_u = constraint_slopes(program, at)
     terms = (np.abs(g_x) * np.abs(at.x[:, 1:])).sum(axis=1) + (np.abs(g_u) * np.abs(at.u)).sum(axis=1)
     found = np.maximum(np.abs(program.constraints(at)), terms).max(axis=1, keepdims=True)
