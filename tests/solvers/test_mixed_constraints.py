@@ -170,6 +170,16 @@ def test_beside_a_box_its_bounds_have_arcs_like_constraints(bound: float):
     assert found.to_dict()["switching_times"] == ([] if free else pytest.approx([s, 1 - s], abs=1e-8))
 
 
+def test_a_free_duration_ends_where_h_vanishes_under_the_active_constraint():
+    """At u = 2 time would be worth it; with u <= 1 the way of 1 takes a time of 1, and costs 2 + 1/2."""
+    problem, ends = kept("timed", cost=u**2 / 2 + 2, cap=u - a), {"initial": {"x": 0.0}, "final": {"x": 1.0}}
+    found = satsym.solve(satsym.Instance.of(problem, tf="free", tf_guess=1.2, **ends))
+    assert found.objective == pytest.approx(2.5, rel=1e-10)
+    assert found.to_dict()["t_final"] == pytest.approx(1.0, rel=1e-9)
+    assert found.certificate is not None
+    assert found.certificate.verdict is Verdict.EXTREMAL_ONLY  # the second variation with a free time is not seen to
+
+
 def test_what_can_hardly_be_kept_is_not_said_to_be_infeasible():
     """Only u = 1 reaches the end within the bound, and nothing is between it and the boundary."""
     problem, ends = kept("hurried", cap=u - a), {"initial": {"x": 0.0}, "final": {"x": 1.0}, "tf": 1.0}
