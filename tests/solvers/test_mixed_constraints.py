@@ -82,6 +82,7 @@ def test_a_bound_that_grows_with_time_is_left_where_it_exceeds_the_mean():
     assert found.events[-1].t == pytest.approx(k / 2, abs=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("bound", [1.51, 1.6])
 def test_a_power_that_is_bounded_makes_the_body_slower_the_farther_it_is(bound: float):
     """x x' <= a, from 1 to 2 in unit time: x' = k until x = a / k, then x^2 grows by 2 a."""
