@@ -5,7 +5,7 @@ Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend tha
 Source: ../derivations/examples/kept_orbit.py e89be9172e891c8e79a7325f3458710f
 Source: ../derivations/clohessy_wiltshire.py 52520f4e0a2f16c4858ba5a6515ea5d0
 Source: ../derivations/polar_orbit.py eea94ffce26c74c68c16f37511ae1eb3
-Digest: 066b51dbca3699ec3d46a27063dd92c5e64bf9c7ed0651f08251f34a68bc0281
+Digest: bb8bffb3030590f1657f3f790c22e71ce64cd0b99e8d0fbc63f350f77c3d6dba
 """
 
 import math
@@ -199,9 +199,10 @@ def costate_rate(t, x, u, lam, p):
     )
 
 
-def path_constraints(t, x, p):
+def path_constraints(t, x, u, p, bounds):
     """What may not be positive along the way."""
     x1, x2, x3, x4 = x
+    u1, u2 = u
     sigma, omega, slope, mouth = p
     return (
         slope*x3 + x1 - mouth,
@@ -209,9 +210,10 @@ def path_constraints(t, x, p):
     )
 
 
-def path_gradient(t, x, p):
+def path_gradient(t, x, u, p):
     """Its derivatives by the states, row by row."""
     x1, x2, x3, x4 = x
+    u1, u2 = u
     sigma, omega, slope, mouth = p
     return (
         1.0,
@@ -225,8 +227,20 @@ def path_gradient(t, x, p):
     )
 
 
+def path_effect(t, x, p):
+    """Its derivatives by the controls, row by row."""
+    x1, x2, x3, x4 = x
+    sigma, omega, slope, mouth = p
+    return (
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+    )
+
+
 def path_rates(t, x, u, p):
-    """Its first and second rates of change; 0 for a second after the control."""
+    """Its first and second rates of change; 0 for those after the control."""
     x1, x2, x3, x4 = x
     u1, u2 = u
     sigma, omega, slope, mouth = p
@@ -241,8 +255,8 @@ def path_rates(t, x, u, p):
     )
 
 
-def path_vanishing(t, x, lam, p):
-    """What vanishes besides on the boundary, and its rate, row by row."""
+def path_vanishing(t, x, lam, p, bounds):
+    """What vanishes besides on the boundary, or where it begins and ends, and its rate, row by row."""
     x1, x2, x3, x4 = x
     lambda_x1, lambda_x2, lambda_x3, lambda_x4 = lam
     sigma, omega, slope, mouth = p
@@ -263,7 +277,7 @@ def path_vanishing(t, x, lam, p):
     )
 
 
-def path_multiplier(t, x, lam, p):
+def path_multiplier(t, x, lam, p, bounds):
     """The multiplier of each while it is on its boundary."""
     x1, x2, x3, x4 = x
     lambda_x1, lambda_x2, lambda_x3, lambda_x4 = lam
@@ -284,7 +298,7 @@ def path_multiplier(t, x, lam, p):
     )
 
 
-def boundary_control(t, x, lam, p):
+def boundary_control(t, x, lam, p, bounds):
     """The controls on the boundary of each, row by row."""
     x1, x2, x3, x4 = x
     lambda_x1, lambda_x2, lambda_x3, lambda_x4 = lam
@@ -830,25 +844,27 @@ def costate_rate_batch(t, x, u, lam, p, out=None):
     return out
 
 
-def path_constraints_batch(t, x, p, out=None):
+def path_constraints_batch(t, x, u, p, bounds, out=None):
     """What may not be positive along the way. Batch form."""
     x1, x2, x3, x4 = x
+    u1, u2 = u
     sigma, omega, slope, mouth = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((2, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
+        out = np.empty((2, *shape), np.result_type(float, t, x, u, *p, *bounds))
     out[0] = slope*x3 + x1 - mouth
     out[1] = slope*x3 - mouth - x1
     return out
 
 
-def path_gradient_batch(t, x, p, out=None):
+def path_gradient_batch(t, x, u, p, out=None):
     """Its derivatives by the states, row by row. Batch form."""
     x1, x2, x3, x4 = x
+    u1, u2 = u
     sigma, omega, slope, mouth = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((2, 4, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
+        out = np.empty((2, 4, *shape), np.result_type(float, t, x, u, *p))
     out[0, 0] = 1.0
     out[0, 1] = 0.0
     out[0, 2] = slope
@@ -860,8 +876,22 @@ def path_gradient_batch(t, x, p, out=None):
     return out
 
 
+def path_effect_batch(t, x, p, out=None):
+    """Its derivatives by the controls, row by row. Batch form."""
+    x1, x2, x3, x4 = x
+    sigma, omega, slope, mouth = p
+    if out is None:
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
+        out = np.empty((2, 2, *shape), np.result_type(float, t, x, *p))
+    out[0, 0] = 0.0
+    out[0, 1] = 0.0
+    out[1, 0] = 0.0
+    out[1, 1] = 0.0
+    return out
+
+
 def path_rates_batch(t, x, u, p, out=None):
-    """Its first and second rates of change; 0 for a second after the control. Batch form."""
+    """Its first and second rates of change; 0 for those after the control. Batch form."""
     x1, x2, x3, x4 = x
     u1, u2 = u
     sigma, omega, slope, mouth = p
@@ -878,14 +908,14 @@ def path_rates_batch(t, x, u, p, out=None):
     return out
 
 
-def path_vanishing_batch(t, x, lam, p, out=None):
-    """What vanishes besides on the boundary, and its rate, row by row. Batch form."""
+def path_vanishing_batch(t, x, lam, p, bounds, out=None):
+    """What vanishes besides on the boundary, or where it begins and ends, and its rate, row by row. Batch form."""
     x1, x2, x3, x4 = x
     lambda_x1, lambda_x2, lambda_x3, lambda_x4 = lam
     sigma, omega, slope, mouth = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((2, 2, *shape), np.result_type(float, t, x, lam, *p))
+        out = np.empty((2, 2, *shape), np.result_type(float, t, x, lam, *p, *bounds))
     omega_sq = omega*omega
     w = 3.0*omega_sq*x1
     twice_omega = 2.0*omega
@@ -902,14 +932,14 @@ def path_vanishing_batch(t, x, lam, p, out=None):
     return out
 
 
-def path_multiplier_batch(t, x, lam, p, out=None):
+def path_multiplier_batch(t, x, lam, p, bounds, out=None):
     """The multiplier of each while it is on its boundary. Batch form."""
     x1, x2, x3, x4 = x
     lambda_x1, lambda_x2, lambda_x3, lambda_x4 = lam
     sigma, omega, slope, mouth = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((2, *shape), np.result_type(float, t, x, lam, *p))
+        out = np.empty((2, *shape), np.result_type(float, t, x, lam, *p, *bounds))
     w = 4.0*lambda_x3
     w_2 = 3.0*omega*omega*omega*x1
     omega_sq = omega*omega
@@ -925,14 +955,14 @@ def path_multiplier_batch(t, x, lam, p, out=None):
     return out
 
 
-def boundary_control_batch(t, x, lam, p, out=None):
+def boundary_control_batch(t, x, lam, p, bounds, out=None):
     """The controls on the boundary of each, row by row. Batch form."""
     x1, x2, x3, x4 = x
     lambda_x1, lambda_x2, lambda_x3, lambda_x4 = lam
     sigma, omega, slope, mouth = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((2, 2, *shape), np.result_type(float, t, x, lam, *p))
+        out = np.empty((2, 2, *shape), np.result_type(float, t, x, lam, *p, *bounds))
     slope_sq = slope*slope
     w = slope_sq + 1.0
     inv_w = 1.0/w

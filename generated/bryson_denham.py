@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/bryson_denham.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/bryson_denham.py
 Source: ../derivations/examples/bryson_denham.py 40d7dac073b1a99986530fae9830d7de
-Digest: 159646682f0a7773a59d5a629423a13d15a12d15f4954d8e272c7ddb10e907ca
+Digest: b559b4221fa82a49b4b61af32d5fcc6ad7c19affddefba989ba22c486b284b7f
 """
 
 import math
@@ -154,18 +154,20 @@ def costate_rate(t, x, u, lam, p):
     )
 
 
-def path_constraints(t, x, p):
+def path_constraints(t, x, u, p, bounds):
     """What may not be positive along the way."""
     x_value, v = x
+    (u_value,) = u
     (l,) = p
     return (
         x_value - l,
     )
 
 
-def path_gradient(t, x, p):
+def path_gradient(t, x, u, p):
     """Its derivatives by the states, row by row."""
     x_value, v = x
+    (u_value,) = u
     (l,) = p
     return (
         1.0,
@@ -173,8 +175,17 @@ def path_gradient(t, x, p):
     )
 
 
+def path_effect(t, x, p):
+    """Its derivatives by the controls, row by row."""
+    x_value, v = x
+    (l,) = p
+    return (
+        0.0,
+    )
+
+
 def path_rates(t, x, u, p):
-    """Its first and second rates of change; 0 for a second after the control."""
+    """Its first and second rates of change; 0 for those after the control."""
     x_value, v = x
     (u_value,) = u
     (l,) = p
@@ -184,8 +195,8 @@ def path_rates(t, x, u, p):
     )
 
 
-def path_vanishing(t, x, lam, p):
-    """What vanishes besides on the boundary, and its rate, row by row."""
+def path_vanishing(t, x, lam, p, bounds):
+    """What vanishes besides on the boundary, or where it begins and ends, and its rate, row by row."""
     x_value, v = x
     lambda_x, lambda_v = lam
     (l,) = p
@@ -195,7 +206,7 @@ def path_vanishing(t, x, lam, p):
     )
 
 
-def path_multiplier(t, x, lam, p):
+def path_multiplier(t, x, lam, p, bounds):
     """The multiplier of each while it is on its boundary."""
     x_value, v = x
     lambda_x, lambda_v = lam
@@ -205,7 +216,7 @@ def path_multiplier(t, x, lam, p):
     )
 
 
-def boundary_control(t, x, lam, p):
+def boundary_control(t, x, lam, p, bounds):
     """The controls on the boundary of each, row by row."""
     x_value, v = x
     lambda_x, lambda_v = lam
@@ -522,31 +533,44 @@ def costate_rate_batch(t, x, u, lam, p, out=None):
     return out
 
 
-def path_constraints_batch(t, x, p, out=None):
+def path_constraints_batch(t, x, u, p, bounds, out=None):
     """What may not be positive along the way. Batch form."""
     x_value, v = x
+    (u_value,) = u
     (l,) = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((1, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
+        out = np.empty((1, *shape), np.result_type(float, t, x, u, *p, *bounds))
     out[0] = x_value - l
     return out
 
 
-def path_gradient_batch(t, x, p, out=None):
+def path_gradient_batch(t, x, u, p, out=None):
     """Its derivatives by the states, row by row. Batch form."""
     x_value, v = x
+    (u_value,) = u
     (l,) = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((1, 2, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
+        out = np.empty((1, 2, *shape), np.result_type(float, t, x, u, *p))
     out[0, 0] = 1.0
     out[0, 1] = 0.0
     return out
 
 
+def path_effect_batch(t, x, p, out=None):
+    """Its derivatives by the controls, row by row. Batch form."""
+    x_value, v = x
+    (l,) = p
+    if out is None:
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
+        out = np.empty((1, 1, *shape), np.result_type(float, t, x, *p))
+    out[0, 0] = 0.0
+    return out
+
+
 def path_rates_batch(t, x, u, p, out=None):
-    """Its first and second rates of change; 0 for a second after the control. Batch form."""
+    """Its first and second rates of change; 0 for those after the control. Batch form."""
     x_value, v = x
     (u_value,) = u
     (l,) = p
@@ -558,39 +582,39 @@ def path_rates_batch(t, x, u, p, out=None):
     return out
 
 
-def path_vanishing_batch(t, x, lam, p, out=None):
-    """What vanishes besides on the boundary, and its rate, row by row. Batch form."""
+def path_vanishing_batch(t, x, lam, p, bounds, out=None):
+    """What vanishes besides on the boundary, or where it begins and ends, and its rate, row by row. Batch form."""
     x_value, v = x
     lambda_x, lambda_v = lam
     (l,) = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((1, 2, *shape), np.result_type(float, t, x, lam, *p))
+        out = np.empty((1, 2, *shape), np.result_type(float, t, x, lam, *p, *bounds))
     out[0, 0] = -lambda_v
     out[0, 1] = lambda_x
     return out
 
 
-def path_multiplier_batch(t, x, lam, p, out=None):
+def path_multiplier_batch(t, x, lam, p, bounds, out=None):
     """The multiplier of each while it is on its boundary. Batch form."""
     x_value, v = x
     lambda_x, lambda_v = lam
     (l,) = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((1, *shape), np.result_type(float, t, x, lam, *p))
+        out = np.empty((1, *shape), np.result_type(float, t, x, lam, *p, *bounds))
     out[0] = 0.0
     return out
 
 
-def boundary_control_batch(t, x, lam, p, out=None):
+def boundary_control_batch(t, x, lam, p, bounds, out=None):
     """The controls on the boundary of each, row by row. Batch form."""
     x_value, v = x
     lambda_x, lambda_v = lam
     (l,) = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((1, 1, *shape), np.result_type(float, t, x, lam, *p))
+        out = np.empty((1, 1, *shape), np.result_type(float, t, x, lam, *p, *bounds))
     out[0, 0] = 0.0
     return out
 

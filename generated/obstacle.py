@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/obstacle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/obstacle.py
 Source: ../derivations/examples/obstacle.py 935b9e8d2400951ac21806daa850147f
-Digest: 2cb398b5444230d89c6850fcd88390f95650f5e58cb7429aa5e12fcf32726735
+Digest: dd39387e335f74c3416786291e15cc79d4fcb8aab06e48f4452897635a34e4ff
 """
 
 import math
@@ -192,9 +192,10 @@ def costate_rate(t, x, u, lam, p):
     )
 
 
-def path_constraints(t, x, p):
+def path_constraints(t, x, u, p, bounds):
     """What may not be positive along the way."""
     x_value, y, vx, vy = x
+    ux, uy = u
     x_1, y_1, radius_1, x_2, y_2, radius_2 = p
     w = -x_value
     w_2 = -w - x_1
@@ -207,9 +208,10 @@ def path_constraints(t, x, p):
     )
 
 
-def path_gradient(t, x, p):
+def path_gradient(t, x, u, p):
     """Its derivatives by the states, row by row."""
     x_value, y, vx, vy = x
+    ux, uy = u
     x_1, y_1, radius_1, x_2, y_2, radius_2 = p
     w = -2.0*x_value
     twice_y = 2.0*y
@@ -225,8 +227,20 @@ def path_gradient(t, x, p):
     )
 
 
+def path_effect(t, x, p):
+    """Its derivatives by the controls, row by row."""
+    x_value, y, vx, vy = x
+    x_1, y_1, radius_1, x_2, y_2, radius_2 = p
+    return (
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+    )
+
+
 def path_rates(t, x, u, p):
-    """Its first and second rates of change; 0 for a second after the control."""
+    """Its first and second rates of change; 0 for those after the control."""
     x_value, y, vx, vy = x
     ux, uy = u
     x_1, y_1, radius_1, x_2, y_2, radius_2 = p
@@ -245,8 +259,8 @@ def path_rates(t, x, u, p):
     )
 
 
-def path_vanishing(t, x, lam, p):
-    """What vanishes besides on the boundary, and its rate, row by row."""
+def path_vanishing(t, x, lam, p, bounds):
+    """What vanishes besides on the boundary, or where it begins and ends, and its rate, row by row."""
     x_value, y, vx, vy = x
     lambda_x, lambda_y, lambda_vx, lambda_vy = lam
     x_1, y_1, radius_1, x_2, y_2, radius_2 = p
@@ -264,7 +278,7 @@ def path_vanishing(t, x, lam, p):
     )
 
 
-def path_multiplier(t, x, lam, p):
+def path_multiplier(t, x, lam, p, bounds):
     """The multiplier of each while it is on its boundary."""
     x_value, y, vx, vy = x
     lambda_x, lambda_y, lambda_vx, lambda_vy = lam
@@ -283,7 +297,7 @@ def path_multiplier(t, x, lam, p):
     )
 
 
-def boundary_control(t, x, lam, p):
+def boundary_control(t, x, lam, p, bounds):
     """The controls on the boundary of each, row by row."""
     x_value, y, vx, vy = x
     lambda_x, lambda_y, lambda_vx, lambda_vy = lam
@@ -771,13 +785,14 @@ def costate_rate_batch(t, x, u, lam, p, out=None):
     return out
 
 
-def path_constraints_batch(t, x, p, out=None):
+def path_constraints_batch(t, x, u, p, bounds, out=None):
     """What may not be positive along the way. Batch form."""
     x_value, y, vx, vy = x
+    ux, uy = u
     x_1, y_1, radius_1, x_2, y_2, radius_2 = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((2, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
+        out = np.empty((2, *shape), np.result_type(float, t, x, u, *p, *bounds))
     w = -x_value
     w_2 = -w - x_1
     w_3 = y - y_1
@@ -788,13 +803,14 @@ def path_constraints_batch(t, x, p, out=None):
     return out
 
 
-def path_gradient_batch(t, x, p, out=None):
+def path_gradient_batch(t, x, u, p, out=None):
     """Its derivatives by the states, row by row. Batch form."""
     x_value, y, vx, vy = x
+    ux, uy = u
     x_1, y_1, radius_1, x_2, y_2, radius_2 = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((2, 4, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
+        out = np.empty((2, 4, *shape), np.result_type(float, t, x, u, *p))
     w = -2.0*x_value
     twice_y = 2.0*y
     out[0, 0] = w + 2.0*x_1
@@ -808,8 +824,22 @@ def path_gradient_batch(t, x, p, out=None):
     return out
 
 
+def path_effect_batch(t, x, p, out=None):
+    """Its derivatives by the controls, row by row. Batch form."""
+    x_value, y, vx, vy = x
+    x_1, y_1, radius_1, x_2, y_2, radius_2 = p
+    if out is None:
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
+        out = np.empty((2, 2, *shape), np.result_type(float, t, x, *p))
+    out[0, 0] = 0.0
+    out[0, 1] = 0.0
+    out[1, 0] = 0.0
+    out[1, 1] = 0.0
+    return out
+
+
 def path_rates_batch(t, x, u, p, out=None):
-    """Its first and second rates of change; 0 for a second after the control. Batch form."""
+    """Its first and second rates of change; 0 for those after the control. Batch form."""
     x_value, y, vx, vy = x
     ux, uy = u
     x_1, y_1, radius_1, x_2, y_2, radius_2 = p
@@ -830,14 +860,14 @@ def path_rates_batch(t, x, u, p, out=None):
     return out
 
 
-def path_vanishing_batch(t, x, lam, p, out=None):
-    """What vanishes besides on the boundary, and its rate, row by row. Batch form."""
+def path_vanishing_batch(t, x, lam, p, bounds, out=None):
+    """What vanishes besides on the boundary, or where it begins and ends, and its rate, row by row. Batch form."""
     x_value, y, vx, vy = x
     lambda_x, lambda_y, lambda_vx, lambda_vy = lam
     x_1, y_1, radius_1, x_2, y_2, radius_2 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((2, 2, *shape), np.result_type(float, t, x, lam, *p))
+        out = np.empty((2, 2, *shape), np.result_type(float, t, x, lam, *p, *bounds))
     twice_lambda_vx = 2.0*lambda_vx
     twice_lambda_vy = 2.0*lambda_vy
     w = 2.0*vx*vx + 2.0*vy*vy - 2.0*lambda_vx*x_value - 2.0*lambda_vy*y
@@ -851,14 +881,14 @@ def path_vanishing_batch(t, x, lam, p, out=None):
     return out
 
 
-def path_multiplier_batch(t, x, lam, p, out=None):
+def path_multiplier_batch(t, x, lam, p, bounds, out=None):
     """The multiplier of each while it is on its boundary. Batch form."""
     x_value, y, vx, vy = x
     lambda_x, lambda_y, lambda_vx, lambda_vy = lam
     x_1, y_1, radius_1, x_2, y_2, radius_2 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((2, *shape), np.result_type(float, t, x, lam, *p))
+        out = np.empty((2, *shape), np.result_type(float, t, x, lam, *p, *bounds))
     twice_x_value = 2.0*x_value
     twice_y = 2.0*y
     w = x_value*x_value + y*y
@@ -872,14 +902,14 @@ def path_multiplier_batch(t, x, lam, p, out=None):
     return out
 
 
-def boundary_control_batch(t, x, lam, p, out=None):
+def boundary_control_batch(t, x, lam, p, bounds, out=None):
     """The controls on the boundary of each, row by row. Batch form."""
     x_value, y, vx, vy = x
     lambda_x, lambda_y, lambda_vx, lambda_vy = lam
     x_1, y_1, radius_1, x_2, y_2, radius_2 = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((2, 2, *shape), np.result_type(float, t, x, lam, *p))
+        out = np.empty((2, 2, *shape), np.result_type(float, t, x, lam, *p, *bounds))
     x_1_sq = x_1*x_1
     y_1_sq = y_1*y_1
     twice_x_value = 2.0*x_value

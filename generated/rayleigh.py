@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/oscillators.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/oscillators.py
-Source: ../derivations/examples/oscillators.py d0e938ffb5c78926407020b6e7393e3e
-Digest: 67f5b24a30e9e873d266378ba60c2bf4150af2e3fa0213bc0a9de3288ee7be01
+Source: ../derivations/examples/oscillators.py f7bd65b4a3ceeb7d53ceb7dea4512271
+Digest: 08063bf02551afc5d75ab5bbe70439dde763e6573358313bb4b8b6c4679b487f
 """
 
 import math

@@ -5,7 +5,7 @@ Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend tha
 Source: ../derivations/examples/kept_orbit.py e89be9172e891c8e79a7325f3458710f
 Source: ../derivations/clohessy_wiltshire.py 52520f4e0a2f16c4858ba5a6515ea5d0
 Source: ../derivations/polar_orbit.py eea94ffce26c74c68c16f37511ae1eb3
-Digest: 102208734bc3273581098f8dd99e11a5aa98628f3ff6704d2e4405fb74ead582
+Digest: 49387dd96ad8cc5de2f4ba09df574f11f1dd462bd7ceb1d68582c29747169b8e
 """
 
 import math
@@ -267,18 +267,20 @@ def costate_rate(t, x, u, lam, p):
     )
 
 
-def path_constraints(t, x, p):
+def path_constraints(t, x, u, p, bounds):
     """What may not be positive along the way."""
     r, r_dot, theta, theta_dot = x
+    u1, u2 = u
     sigma, omega, c1, c2, r_min = p
     return (
         r_min - r,
     )
 
 
-def path_gradient(t, x, p):
+def path_gradient(t, x, u, p):
     """Its derivatives by the states, row by row."""
     r, r_dot, theta, theta_dot = x
+    u1, u2 = u
     sigma, omega, c1, c2, r_min = p
     return (
         -1.0,
@@ -288,8 +290,18 @@ def path_gradient(t, x, p):
     )
 
 
+def path_effect(t, x, p):
+    """Its derivatives by the controls, row by row."""
+    r, r_dot, theta, theta_dot = x
+    sigma, omega, c1, c2, r_min = p
+    return (
+        0.0,
+        0.0,
+    )
+
+
 def path_rates(t, x, u, p):
-    """Its first and second rates of change; 0 for a second after the control."""
+    """Its first and second rates of change; 0 for those after the control."""
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
     sigma, omega, c1, c2, r_min = p
@@ -301,8 +313,8 @@ def path_rates(t, x, u, p):
     )
 
 
-def path_vanishing(t, x, lam, p):
-    """What vanishes besides on the boundary, and its rate, row by row."""
+def path_vanishing(t, x, lam, p, bounds):
+    """What vanishes besides on the boundary, or where it begins and ends, and its rate, row by row."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
     sigma, omega, c1, c2, r_min = p
@@ -318,7 +330,7 @@ def path_vanishing(t, x, lam, p):
     )
 
 
-def path_multiplier(t, x, lam, p):
+def path_multiplier(t, x, lam, p, bounds):
     """The multiplier of each while it is on its boundary."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
@@ -340,7 +352,7 @@ def path_multiplier(t, x, lam, p):
     )
 
 
-def boundary_control(t, x, lam, p):
+def boundary_control(t, x, lam, p, bounds):
     """The controls on the boundary of each, row by row."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
@@ -1020,24 +1032,26 @@ def costate_rate_batch(t, x, u, lam, p, out=None):
     return out
 
 
-def path_constraints_batch(t, x, p, out=None):
+def path_constraints_batch(t, x, u, p, bounds, out=None):
     """What may not be positive along the way. Batch form."""
     r, r_dot, theta, theta_dot = x
+    u1, u2 = u
     sigma, omega, c1, c2, r_min = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((1, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
+        out = np.empty((1, *shape), np.result_type(float, t, x, u, *p, *bounds))
     out[0] = r_min - r
     return out
 
 
-def path_gradient_batch(t, x, p, out=None):
+def path_gradient_batch(t, x, u, p, out=None):
     """Its derivatives by the states, row by row. Batch form."""
     r, r_dot, theta, theta_dot = x
+    u1, u2 = u
     sigma, omega, c1, c2, r_min = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((1, 4, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
+        out = np.empty((1, 4, *shape), np.result_type(float, t, x, u, *p))
     out[0, 0] = -1.0
     out[0, 1] = 0.0
     out[0, 2] = 0.0
@@ -1045,8 +1059,20 @@ def path_gradient_batch(t, x, p, out=None):
     return out
 
 
+def path_effect_batch(t, x, p, out=None):
+    """Its derivatives by the controls, row by row. Batch form."""
+    r, r_dot, theta, theta_dot = x
+    sigma, omega, c1, c2, r_min = p
+    if out is None:
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
+        out = np.empty((1, 2, *shape), np.result_type(float, t, x, *p))
+    out[0, 0] = 0.0
+    out[0, 1] = 0.0
+    return out
+
+
 def path_rates_batch(t, x, u, p, out=None):
-    """Its first and second rates of change; 0 for a second after the control. Batch form."""
+    """Its first and second rates of change; 0 for those after the control. Batch form."""
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
     sigma, omega, c1, c2, r_min = p
@@ -1060,14 +1086,14 @@ def path_rates_batch(t, x, u, p, out=None):
     return out
 
 
-def path_vanishing_batch(t, x, lam, p, out=None):
-    """What vanishes besides on the boundary, and its rate, row by row. Batch form."""
+def path_vanishing_batch(t, x, lam, p, bounds, out=None):
+    """What vanishes besides on the boundary, or where it begins and ends, and its rate, row by row. Batch form."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
     sigma, omega, c1, c2, r_min = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((1, 2, *shape), np.result_type(float, t, x, lam, *p))
+        out = np.empty((1, 2, *shape), np.result_type(float, t, x, lam, *p, *bounds))
     inv_c1 = 1.0/c1
     inv_r = 1.0/r
     theta_dot_sq = theta_dot*theta_dot
@@ -1079,14 +1105,14 @@ def path_vanishing_batch(t, x, lam, p, out=None):
     return out
 
 
-def path_multiplier_batch(t, x, lam, p, out=None):
+def path_multiplier_batch(t, x, lam, p, bounds, out=None):
     """The multiplier of each while it is on its boundary. Batch form."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
     sigma, omega, c1, c2, r_min = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((1, *shape), np.result_type(float, t, x, lam, *p))
+        out = np.empty((1, *shape), np.result_type(float, t, x, lam, *p, *bounds))
     inv_c2 = 1.0/c2
     inv_r = 1.0/r
     inv_r_sq = inv_r*inv_r
@@ -1103,14 +1129,14 @@ def path_multiplier_batch(t, x, lam, p, out=None):
     return out
 
 
-def boundary_control_batch(t, x, lam, p, out=None):
+def boundary_control_batch(t, x, lam, p, bounds, out=None):
     """The controls on the boundary of each, row by row. Batch form."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
     sigma, omega, c1, c2, r_min = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((1, 2, *shape), np.result_type(float, t, x, lam, *p))
+        out = np.empty((1, 2, *shape), np.result_type(float, t, x, lam, *p, *bounds))
     inv_r = 1.0/r
     mu = omega*omega*sigma*sigma*sigma
     inv_c2 = 1.0/c2

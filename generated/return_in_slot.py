@@ -5,7 +5,7 @@ Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend tha
 Source: ../derivations/examples/kept_orbit.py e89be9172e891c8e79a7325f3458710f
 Source: ../derivations/clohessy_wiltshire.py 52520f4e0a2f16c4858ba5a6515ea5d0
 Source: ../derivations/polar_orbit.py eea94ffce26c74c68c16f37511ae1eb3
-Digest: bc0b52f6452d9660c894820f8d9d346fd56fe319425c9c999fe3c101914ed756
+Digest: 6a91d9e182b07c8b713b288bac9bf2070d3bccc8d143e84860772988e4a491d2
 """
 
 import math
@@ -268,9 +268,10 @@ def costate_rate(t, x, u, lam, p):
     )
 
 
-def path_constraints(t, x, p):
+def path_constraints(t, x, u, p, bounds):
     """What may not be positive along the way."""
     r, r_dot, theta, theta_dot = x
+    u1, u2 = u
     sigma, omega, c1, c2, slot = p
     omega_t = omega*t
     return (
@@ -279,9 +280,10 @@ def path_constraints(t, x, p):
     )
 
 
-def path_gradient(t, x, p):
+def path_gradient(t, x, u, p):
     """Its derivatives by the states, row by row."""
     r, r_dot, theta, theta_dot = x
+    u1, u2 = u
     sigma, omega, c1, c2, slot = p
     return (
         0.0,
@@ -295,8 +297,20 @@ def path_gradient(t, x, p):
     )
 
 
+def path_effect(t, x, p):
+    """Its derivatives by the controls, row by row."""
+    r, r_dot, theta, theta_dot = x
+    sigma, omega, c1, c2, slot = p
+    return (
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+    )
+
+
 def path_rates(t, x, u, p):
-    """Its first and second rates of change; 0 for a second after the control."""
+    """Its first and second rates of change; 0 for those after the control."""
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
     sigma, omega, c1, c2, slot = p
@@ -311,8 +325,8 @@ def path_rates(t, x, u, p):
     )
 
 
-def path_vanishing(t, x, lam, p):
-    """What vanishes besides on the boundary, and its rate, row by row."""
+def path_vanishing(t, x, lam, p, bounds):
+    """What vanishes besides on the boundary, or where it begins and ends, and its rate, row by row."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
     sigma, omega, c1, c2, slot = p
@@ -336,7 +350,7 @@ def path_vanishing(t, x, lam, p):
     )
 
 
-def path_multiplier(t, x, lam, p):
+def path_multiplier(t, x, lam, p, bounds):
     """The multiplier of each while it is on its boundary."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
@@ -360,7 +374,7 @@ def path_multiplier(t, x, lam, p):
     )
 
 
-def boundary_control(t, x, lam, p):
+def boundary_control(t, x, lam, p, bounds):
     """The controls on the boundary of each, row by row."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
@@ -1042,26 +1056,28 @@ def costate_rate_batch(t, x, u, lam, p, out=None):
     return out
 
 
-def path_constraints_batch(t, x, p, out=None):
+def path_constraints_batch(t, x, u, p, bounds, out=None):
     """What may not be positive along the way. Batch form."""
     r, r_dot, theta, theta_dot = x
+    u1, u2 = u
     sigma, omega, c1, c2, slot = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((2, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
+        out = np.empty((2, *shape), np.result_type(float, t, x, u, *p, *bounds))
     omega_t = omega*t
     out[0] = theta - omega_t - slot
     out[1] = omega_t - slot - theta
     return out
 
 
-def path_gradient_batch(t, x, p, out=None):
+def path_gradient_batch(t, x, u, p, out=None):
     """Its derivatives by the states, row by row. Batch form."""
     r, r_dot, theta, theta_dot = x
+    u1, u2 = u
     sigma, omega, c1, c2, slot = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((2, 4, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
+        out = np.empty((2, 4, *shape), np.result_type(float, t, x, u, *p))
     out[0, 0] = 0.0
     out[0, 1] = 0.0
     out[0, 2] = 1.0
@@ -1073,8 +1089,22 @@ def path_gradient_batch(t, x, p, out=None):
     return out
 
 
+def path_effect_batch(t, x, p, out=None):
+    """Its derivatives by the controls, row by row. Batch form."""
+    r, r_dot, theta, theta_dot = x
+    sigma, omega, c1, c2, slot = p
+    if out is None:
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
+        out = np.empty((2, 2, *shape), np.result_type(float, t, x, *p))
+    out[0, 0] = 0.0
+    out[0, 1] = 0.0
+    out[1, 0] = 0.0
+    out[1, 1] = 0.0
+    return out
+
+
 def path_rates_batch(t, x, u, p, out=None):
-    """Its first and second rates of change; 0 for a second after the control. Batch form."""
+    """Its first and second rates of change; 0 for those after the control. Batch form."""
     r, r_dot, theta, theta_dot = x
     u1, u2 = u
     sigma, omega, c1, c2, slot = p
@@ -1091,14 +1121,14 @@ def path_rates_batch(t, x, u, p, out=None):
     return out
 
 
-def path_vanishing_batch(t, x, lam, p, out=None):
-    """What vanishes besides on the boundary, and its rate, row by row. Batch form."""
+def path_vanishing_batch(t, x, lam, p, bounds, out=None):
+    """What vanishes besides on the boundary, or where it begins and ends, and its rate, row by row. Batch form."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
     sigma, omega, c1, c2, slot = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((2, 2, *shape), np.result_type(float, t, x, lam, *p))
+        out = np.empty((2, 2, *shape), np.result_type(float, t, x, lam, *p, *bounds))
     inv_r = 1.0/r
     twice_theta_dot = 2.0*theta_dot
     inv_r_twice_theta_dot = inv_r*twice_theta_dot
@@ -1118,14 +1148,14 @@ def path_vanishing_batch(t, x, lam, p, out=None):
     return out
 
 
-def path_multiplier_batch(t, x, lam, p, out=None):
+def path_multiplier_batch(t, x, lam, p, bounds, out=None):
     """The multiplier of each while it is on its boundary. Batch form."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
     sigma, omega, c1, c2, slot = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((2, *shape), np.result_type(float, t, x, lam, *p))
+        out = np.empty((2, *shape), np.result_type(float, t, x, lam, *p, *bounds))
     inv_r = 1.0/r
     inv_c1 = 1.0/c1
     inv_c2 = 1.0/c2
@@ -1144,14 +1174,14 @@ def path_multiplier_batch(t, x, lam, p, out=None):
     return out
 
 
-def boundary_control_batch(t, x, lam, p, out=None):
+def boundary_control_batch(t, x, lam, p, bounds, out=None):
     """The controls on the boundary of each, row by row. Batch form."""
     r, r_dot, theta, theta_dot = x
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
     sigma, omega, c1, c2, slot = p
     if out is None:
         shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((2, 2, *shape), np.result_type(float, t, x, lam, *p))
+        out = np.empty((2, 2, *shape), np.result_type(float, t, x, lam, *p, *bounds))
     inv_c1 = 1.0/c1
     w = -inv_c1*lambda_r_dot
     w_2 = 2.0*r_dot*theta_dot

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/oscillators.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/oscillators.py
-Source: ../derivations/examples/oscillators.py d0e938ffb5c78926407020b6e7393e3e
-Digest: b8a49640a5f015644aa447c45074b876aaa2d4a933996c459eb71de7f15a8a11
+Source: ../derivations/examples/oscillators.py f7bd65b4a3ceeb7d53ceb7dea4512271
+Digest: 7f06169da2f4daaefeeb6aca98c27d0dad871385cfd0533d218f1f9c28bd0ed7
 """
 
 import math

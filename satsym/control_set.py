@@ -23,6 +23,18 @@ Norms = Mapping[str, tuple[float, float]]
 """By the name of a set, the least and the largest norm of its controls."""
 
 
+def bound_names(spec: ProblemSpec) -> tuple[tuple[str, ...], ...]:
+    """What the bounds of each control are called; nothing where the control set is no box."""
+    ends = ("min", "max") if spec.control_set == "box" else ()
+    return tuple(tuple(f"{name}_{end}" for end in ends) for name in spec.control_names)
+
+
+def stated_constraints(spec: ProblemSpec) -> dict[str, int]:
+    """Path constraints that are no bounds of the controls, and their places among all."""
+    bounds = {name for names in bound_names(spec) for name in names}
+    return {one.name: k for k, one in enumerate(spec.path_constraints) if one.name not in bounds}
+
+
 @dataclass(frozen=True)
 class ControlSet:
     """Which controls are admissible, and how much of a regularisation there is."""

@@ -180,14 +180,14 @@ class ControlPart:
 
 @dataclass(frozen=True)
 class PathConstraint:
-    """An inequality on the state that must hold all along.
+    """An inequality that must hold all along.
 
     Attributes
     ----------
     name
         As the model states it.
     order
-        How often it is differentiated until a control appears: 1 or 2.
+        How often it is differentiated until a control appears: 1 or 2, or 0 where it holds one itself.
     """
 
     name: str

@@ -2,9 +2,11 @@
 
 The first is the example of CasADi (Andersson et al., Mathematical Programming Computation 11, 2019): from (0, 1) in a
 time of 10 with u in [-0.75, 1]. The second is a tunnel diode (Jacobson and Mayne, Differential Dynamic Programming,
-1970; Maurer and Augustin, in Online Optimization of Large Scale Systems, 2001), without its mixed constraint: from
-(-5, -5) in a time of 4.5.
+1970; Maurer and Augustin, in Online Optimization of Large Scale Systems, 2001), from (-5, -5) in a time of 4.5, without
+the mixed constraint u + x1/6 <= 0 and with it.
 """
+
+from dataclasses import replace
 
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 
@@ -42,4 +44,11 @@ rayleigh = Problem(
     running_cost=u**2 + x1**2,
 )
 
-PROBLEMS = (van_der_pol_boxed, rayleigh)
+rayleigh_mixed = replace(
+    rayleigh,
+    name="rayleigh_mixed",
+    title="Damping of Rayleigh's oscillator with a control bounded by the state",
+    path_constraints={"bound": u + x1 / 6},
+)
+
+PROBLEMS = (van_der_pol_boxed, rayleigh, rayleigh_mixed)

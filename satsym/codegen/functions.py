@@ -16,7 +16,7 @@ from satsym.symbolic.kepler.central_force import inertial_state, strength_of
 from satsym.symbolic.linear.notation import matrix_symbols
 from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.notation import costate_of, given, multipliers, on_reference, target
-from satsym.symbolic.principle import path_constraints, path_notation, product, set_laws
+from satsym.symbolic.principle import inequalities, mixed_constraints, path_notation, product, set_laws
 from satsym.symbolic.principle.parts import FRACTION, SMOOTHING, limits_of, minimum_norm_of
 from satsym.symbolic.switching.notation import REGULARISED
 
@@ -172,39 +172,45 @@ def _cost_functions(derivation: Derivation) -> list[Function]:
             "t x u lam p",
             derivation.rhs("costate_equations"),
         ),
-        *(_of_path_constraints(derivation) if path_constraints.STEP in derivation else []),
+        *_of_path_constraints(derivation),
     ]
 
 
 def _of_path_constraints(derivation: Derivation) -> list[Function]:
     """Functions of constraints along the way, a row for each of these."""
-    found = path_constraints.constraints(derivation)
+    if not (found := inequalities.every(derivation)):
+        return []
     states, controls = symbols_of(derivation.model.states), symbols_of(derivation.model.controls)
-    stated = {e.name: e.rhs for e in derivation.step("constraint_multiplier").equations}
-    rates = [[*one.rates[1:], sp.Integer(0)][:2] for one in found]
+    steps = [
+        name for name in ("constraint_multiplier", "boundary_control", mixed_constraints.STEP) if name in derivation
+    ]
+    stated = {e.name: e.rhs for name in steps for e in derivation.step(name).equations}
+    rates = [[*one.rates[1:], *(sp.Integer(0),) * 2][:2] for one in found]
     vanishing = [
         [stated.get(path_notation.vanishing_entry(one.name, k), sp.Integer(0)) for k in range(2)] for one in found
     ]
     multiplier = sp.Matrix([stated[f"{one.name}_eta"] for one in found])
     g = sp.Matrix([one.rates[0] for one in found])
-    laws = [[derivation.equation(f"boundary_control.{one.name}_{u.name}").rhs for u in controls] for one in found]
+    laws = [[stated[f"{one.name}_{u.name}"] for u in controls] for one in found]
+    on_boundary = "t x lam p bounds"
     return [
-        _vector("path_constraints", "What may not be positive along the way.", "t x p", g),
-        _matrix("path_gradient", "Its derivatives by the states, row by row.", "t x p", g.jacobian(states)),
+        _vector("path_constraints", "What may not be positive along the way.", "t x u p bounds", g),
+        _matrix("path_gradient", "Its derivatives by the states, row by row.", "t x u p", g.jacobian(states)),
+        _matrix("path_effect", "Its derivatives by the controls, row by row.", "t x p", g.jacobian(controls)),
         _matrix(
             "path_rates",
-            "Its first and second rates of change; 0 for a second after the control.",
+            "Its first and second rates of change; 0 for those after the control.",
             "t x u p",
             sp.Matrix(rates),
         ),
         _matrix(
             "path_vanishing",
-            "What vanishes besides on the boundary, and its rate, row by row.",
-            "t x lam p",
+            "What vanishes besides on the boundary, or where it begins and ends, and its rate, row by row.",
+            on_boundary,
             sp.Matrix(vanishing),
         ),
-        _vector("path_multiplier", "The multiplier of each while it is on its boundary.", "t x lam p", multiplier),
-        _matrix("boundary_control", "The controls on the boundary of each, row by row.", "t x lam p", sp.Matrix(laws)),
+        _vector("path_multiplier", "The multiplier of each while it is on its boundary.", on_boundary, multiplier),
+        _matrix("boundary_control", "The controls on the boundary of each, row by row.", on_boundary, sp.Matrix(laws)),
     ]
 
 

@@ -20,7 +20,7 @@ from satsym.spec import PRODUCT, Condition, ControlPart, PathConstraint, Problem
 from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.kepler.central_force import strength_of
 from satsym.symbolic.model import Demand, t, variables_of
-from satsym.symbolic.principle import path_constraints, product, set_laws
+from satsym.symbolic.principle import inequalities, product, set_laws
 from satsym.symbolic.roots import Root, Vertex
 from satsym.symbolic.switching.curve import states_of
 from satsym.symbolic.switching.singular import chattering
@@ -73,8 +73,8 @@ def spec(derivation: Derivation, source: str) -> ProblemSpec:
         maximise=bool(problem and problem.maximise),
         objective_unit=problem.unit if problem else "",
         has_reference=bool(model.reference),
-        path_constraints=tuple(PathConstraint(one.name, one.order) for one in _path_constraints(derivation)),
-        linear_quadratic=path_constraints.STEP in derivation and path_constraints.linear_quadratic(derivation),
+        path_constraints=tuple(PathConstraint(one.name, one.order) for one in inequalities.every(derivation)),
+        linear_quadratic=inequalities.linear_quadratic(derivation),
         autonomous=not any(
             e.has(t) for e in (*derivation.rhs("first_order"), sp.sympify(problem.running_cost if problem else 0))
         ),
@@ -110,11 +110,6 @@ def _parts(derivation: Derivation) -> tuple[ControlPart, ...]:
         )
         for one in set_laws.found(derivation)
     )
-
-
-def _path_constraints(derivation: Derivation) -> list[path_constraints.Constraint]:
-    """Those of the derivation, if it has any."""
-    return path_constraints.constraints(derivation) if path_constraints.STEP in derivation else []
 
 
 def _condition(demand: Demand) -> Condition:

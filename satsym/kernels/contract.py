@@ -84,15 +84,17 @@ THROTTLES = {"throttle_slope": _signature("t x lam p", "r")}
 """What such a problem has besides in which vectors may be none: their norms switch by its sign."""
 
 PATH_CONSTRAINTS = {
-    "path_constraints": _signature("t x p", "h"),
-    "path_gradient": _signature("t x p", "hn"),
+    "path_constraints": _signature("t x u p bounds", "h"),
+    "path_gradient": _signature("t x u p", "hn"),
+    "path_effect": _signature("t x p", "hm"),
     "path_rates": _signature("t x u p", "hw"),
-    "path_vanishing": _signature("t x lam p", "hw"),
-    "path_multiplier": _signature("t x lam p", "h"),
-    "boundary_control": _signature("t x lam p", "hm"),
+    "path_vanishing": _signature("t x lam p bounds", "hw"),
+    "path_multiplier": _signature("t x lam p bounds", "h"),
+    "boundary_control": _signature("t x lam p bounds", "hm"),
 }
-"""What a problem has besides whose states must keep to inequalities along the way, see
-:mod:`satsym.symbolic.principle.path_constraints`; second rates of constraints of order one are 0."""
+"""What a problem has besides that must keep to inequalities along the way, see
+:mod:`satsym.symbolic.principle.path_constraints` and :mod:`satsym.symbolic.principle.mixed_constraints`; second rates
+of constraints of order one are 0, and of those of order zero, which hold a control, all are."""
 
 CURVE = {
     "beyond_switching_curve": _signature("t x p bounds final"),

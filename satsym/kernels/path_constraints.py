@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -14,31 +15,56 @@ from satsym.kernels.relations import Relation, along, derivative
 def of_path_constraints(of: Evaluation) -> Iterator[Relation]:
     """Gradients and rates are derivatives; what vanishes on the boundary stays there with the multiplier."""
     orders = np.array([one.order for one in of.kernels.spec.path_constraints])
-    second = orders > 1
+    second, derived = orders > 1, orders > 0
     yield from derivative(of, "path_gradient", "path_constraints", ("x",))
-    rates, law = of("path_rates"), of("control_law")
+    yield from derivative(of, "path_effect", "path_constraints", ("u",))
+    rates, law = of("path_rates"), of("control_law", bounds=_none(of))
     first, terms = along(of, "path_constraints", of("dynamics"))
-    yield Relation("path_rates", "first rates of the constraints", rates[:, 0], first, terms)
+    wanted = np.where(derived[:, None], first, 0.0)
+    yield Relation("path_rates", "first rates of the constraints", rates[:, 0], wanted, terms)
     faster, terms = along(of, "path_rates", of("dynamics"))
     wanted = np.where(second[:, None], faster[:, 0], 0.0)
     yield Relation("path_rates", "second rates of the constraints", rates[:, 1], wanted, terms[:, 0])
-    vanishing, last = of("path_vanishing"), of("path_rates", u=law)
-    wanted = np.where(second[:, None], last[:, 1], last[:, 0])
-    yield Relation("path_vanishing", "the last rate under the law", vanishing[:, 0], wanted, FAINT * size(last).max())
+    vanishing, last, own = of("path_vanishing"), of("path_rates", u=law), of("path_constraints", u=law)
+    wanted = np.where(second[:, None], last[:, 1], np.where(derived[:, None], last[:, 0], own))
+    faint = FAINT * max(size(last).max(), size(own).max())
+    yield Relation("path_vanishing", "the last rate under the law", vanishing[:, 0], wanted, faint)
     for k, order in enumerate(orders):
-        found, terms = _rates_on_boundary(of, k)
-        if order > 1:
-            yield Relation("path_vanishing", "and its rate", vanishing[k, 1], found[k, 0], terms[k, 0])
-        zero = found[k, order - 1]
-        yield Relation("path_multiplier", "keeps to the boundary", zero, np.zeros_like(zero), terms[k, order - 1])
-        kept = of("path_rates", u=of("boundary_control")[k])[k, order - 1]
-        sizes = np.abs(of.slope("path_rates", "u") * of("boundary_control")[k]).sum(axis=-2)[k, order - 1]
-        yield Relation("boundary_control", "keeps the last rate zero", kept, np.zeros_like(kept), sizes)
+        yield from _while_active(of, k) if order == 0 else _on_boundary(of, k, order)
+
+
+def _none(of: Evaluation) -> Any:
+    """Bounds where there are none."""
+    bounds = of.at["bounds"]
+    return tuple(np.full(len(of.at["t"]), np.inf if 2 * k >= len(bounds) else -np.inf) for k in range(len(bounds)))
+
+
+def _while_active(of: Evaluation, which: int) -> Iterator[Relation]:
+    """Of a constraint that holds controls: with its multiplier they are stationary, and keep it zero."""
+    u, eta, effect = of("boundary_control")[which], of("path_multiplier")[which], of("path_effect")[which]
+    kept, sizes = of("path_constraints", u=u)[which], np.abs(effect * u).sum(axis=0)
+    yield Relation("boundary_control", "keeps the constraint", kept, np.zeros_like(kept), sizes)
+    slope = of("stationarity", u=u)
+    yield Relation("path_multiplier", "makes the control stationary", slope, -eta * effect, np.abs(slope))
+
+
+def _on_boundary(of: Evaluation, which: int, order: int) -> Iterator[Relation]:
+    """Of a constraint on states alone."""
+    vanishing = of("path_vanishing")
+    found, terms = _rates_on_boundary(of, which)
+    if order > 1:
+        yield Relation("path_vanishing", "and its rate", vanishing[which, 1], found[which, 0], terms[which, 0])
+    zero = found[which, order - 1]
+    yield Relation("path_multiplier", "keeps to the boundary", zero, np.zeros_like(zero), terms[which, order - 1])
+    u = of("boundary_control")[which]
+    kept = of("path_rates", u=u)[which, order - 1]
+    sizes = np.abs(of.slope("path_rates", "u") * u).sum(axis=-2)[which, order - 1]
+    yield Relation("boundary_control", "keeps the last rate zero", kept, np.zeros_like(kept), sizes)
 
 
 def _rates_on_boundary(of: Evaluation, which: int) -> tuple[Array, Array]:
     """Rates of what vanishes along the extremal on the boundary of one constraint, and sizes of their terms."""
-    law = of("control_law")
+    law = of("control_law", bounds=_none(of))
     eta, push = of("path_multiplier")[which], of("path_gradient")[which]
     forced = of("costate_rate", u=law) - eta * push
     by_state, terms = along(of, "path_vanishing", of("dynamics", u=law))

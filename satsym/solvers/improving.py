@@ -52,7 +52,7 @@ def improved(solver: Solver, instance: Instance, progress: Progress | None) -> S
         certificate, better = examined(again, deadline, seed)
         solution = again
     if certificate is not None and certificate.verdict is Verdict.EXTREMAL_ONLY and solution.method != CONSTRAINED:
-        endless = bottomless(solution)
+        endless = None if solution.instance.model.spec.path_constraints else bottomless(solution)
         if endless is not None:
             return endless
         lower = None if instance.guess else _departed(solver, solution, progress, deadline)
@@ -105,6 +105,10 @@ def _departed(solver: Solver, solution: Solution, progress: Progress | None, dea
     """What a saddle's descents lead to; ``None`` where that is not cheaper."""
     if solution.method == SWITCHED:
         return None
+    if solution.instance.model.spec.path_constraints:
+        from satsym.solvers.constrained.solving import cheaper
+
+        return cheaper(solution, deadline)
     for start in departures(solution):
         found = _again(replace(solution.instance, guess=start), solver, solution, progress, deadline)
         if found is not None:

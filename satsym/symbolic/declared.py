@@ -13,8 +13,8 @@ from satsym.symbolic.algebra import constants_of
 from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.linear import notation as linear_notation
 from satsym.symbolic.model import Model, Problem, symbols_of, variables_of
+from satsym.symbolic.principle import control_sets, path_notation
 from satsym.symbolic.principle import notation as principle_notation
-from satsym.symbolic.principle import path_notation
 from satsym.symbolic.principle.parts import limits_of
 from satsym.symbolic.switching import notation as switching_notation
 from satsym.wording import shown
@@ -68,9 +68,14 @@ def _refuse_constraints(problem: Problem) -> None:
     for name in constraints:
         if not is_name(name) or "__" in name:
             raise DerivationError(f"{what}: got {shown(name)}; a constraint's name is {NAMES}", ("path_constraints",))
-    if constraints and (problem.control_set != "free" or problem.control_sets):
+    controls = problem.model.controls if problem.control_set == "box" else ()
+    if taken := [b.symbol for b in control_sets.bounds("box", controls) if b.symbol in constraints]:
+        message = f"{taken[0]} is the name of a bound of the controls; take another"
+        raise DerivationError(f"{what}: {message}", ("path_constraints",))
+    if constraints and (problem.control_set not in ("free", "box") or problem.control_sets):
         message = (
-            "beside bounds of the controls they are not derived; leave out the control set, or state no constraints"
+            "beside bounds of the controls other than those of a box they are not derived; "
+            "leave out the control set, or state no constraints"
         )
         raise DerivationError(f"{what}: {message}", ("path_constraints", "control_set", "control_sets"))
 
@@ -110,12 +115,7 @@ def refuse_foreign_symbols(derivation: Derivation) -> None:
         refuse("the terminal cost", [problem.terminal_cost], motion, "terminal_cost")
         refuse("a terminal constraint", problem.terminal_constraints, motion, "terminal_constraints")
         for name, stated in problem.path_constraints.items():
-            if mixed := sp.sympify(stated).free_symbols & set(symbols_of(model.controls)):
-                message = (
-                    f"depends on the control {min(s.name for s in mixed)}; state one of states, time and parameters"
-                )
-                raise DerivationError(f"{derivation.name}: path_constraints {name}: {message}", ("path_constraints",))
-            refuse(f"the path constraint {name}", [stated], motion, "path_constraints")
+            refuse(f"the path constraint {name}", [stated], everything, "path_constraints")
 
 
 def _complaint(foreign: set[sp.Symbol], everything: set[sp.Symbol]) -> str:

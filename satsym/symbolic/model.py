@@ -268,7 +268,7 @@ class Problem:
     terminal_constraints
         Expressions psi(x, t, p) that vanish at the final time.
     path_constraints
-        Expressions g(x, t, p) by name, none of which may ever be positive: ``{"ceiling": h - h_max}``.
+        Expressions g(x, u, t, p) by name, none of which may ever be positive: ``{"ceiling": h - h_max}``.
     control_set
         ``"free"``, ``"box"`` (each control between its bounds) or ``"ball"`` (a bound on the norm); the
         numbers belong to the instance.

@@ -19,7 +19,15 @@ from satsym.symbolic.derivation import Derivation, DerivationError, resolved
 from satsym.symbolic.linear import regulator, stability, structure
 from satsym.symbolic.model import MaybeStep, Model, Problem, variables_of
 from satsym.symbolic.motion import steps
-from satsym.symbolic.principle import effort, minimised, path_constraints, pontryagin, product, transversality
+from satsym.symbolic.principle import (
+    effort,
+    minimised,
+    mixed_constraints,
+    path_constraints,
+    pontryagin,
+    product,
+    transversality,
+)
 from satsym.symbolic.switching import curve as switching_curve
 from satsym.symbolic.switching import functions as switching
 from satsym.symbolic.switching import singular
@@ -40,6 +48,8 @@ MINIMUM_PRINCIPLE: tuple[MaybeStep, ...] = (
     path_constraints.constraint_multiplier,
     path_constraints.constrained_costates,
     path_constraints.junction_conditions,
+    mixed_constraints.mixed_constraints,
+    mixed_constraints.mixed_costates,
     pontryagin.boundary_conditions,
     transversality.boundary_residual,
     effort.exact_differential,
@@ -196,10 +206,10 @@ def _principle(motion_derived: Derivation) -> tuple[MaybeStep, ...]:
     """What follows from the motion: the principle that suits the cost, or linear theory where there is none."""
     if motion_derived.problem is None:
         return LINEAR
+    if motion_derived.problem.path_constraints:  # no other has steps for them
+        return MINIMUM_PRINCIPLE
     if product.applies(motion_derived):
         return PRODUCT_PRINCIPLE
-    if motion_derived.problem.path_constraints:
-        return MINIMUM_PRINCIPLE
     return SWITCHING_PRINCIPLE if switching.applies(motion_derived) else MINIMUM_PRINCIPLE
 
 

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,9 +18,11 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from scipy.optimize import root
 
+import satsym
 from satsym import instance
 from satsym.solvers import solve
 from satsym.status import Verdict
+from satsym.symbolic import loader
 
 KNOWN = tomllib.loads((Path(__file__).parents[1] / "bench" / "optima.toml").read_text(encoding="utf-8"))
 WITHIN = 1e-9
@@ -33,6 +37,11 @@ def check(name: str, optimum: float, events: Sequence[float]) -> None:
     assert [one.t for one in ours.events] == pytest.approx(list(events), abs=1e-6)
     assert ours.certificate is not None
     assert ours.certificate.verdict is Verdict(KNOWN[name]["verdict"]), ours.certificate
+
+
+def oscillators() -> tuple[Any, ...]:
+    """The problems of the file."""
+    return loader.load(Path(__file__).parents[2] / "derivations" / "examples" / "oscillators.py")
 
 
 def along(rates: Rates, start: float, end: float, z: np.ndarray) -> np.ndarray:
@@ -112,6 +121,58 @@ def test_a_satellite_touches_the_end_of_its_slot_twice():
 
     found = shot(misses, [0.5494, 0.3406, -0.361, 0.025, 1.0258, 0.3437, 2.5928, 0.0106])
     check("return-in-slot", simulated(found)[0][8], found[[4, 6]])
+
+
+def damped(arcs: Sequence[str], bound: float, near: Sequence[float]) -> tuple[float, np.ndarray]:
+    """Rayleigh's oscillator, and its costates and junctions: the least cost with arcs on u = -x1 / 6 and on bounds.
+
+    On the first, lambda_1 falls by mu / 6 besides, mu = -2 u - 4 lambda_2. The control is continuous.
+    """
+
+    def control(arc: str, z: Sequence[float]) -> float:
+        return {"state": -z[0] / 6, "free": -2 * z[3], "upper": bound, "lower": -bound}[arc]
+
+    def rates(arc: str) -> Rates:
+        def found(t: float, z: Sequence[float]) -> list[float]:
+            a, b, p, q, _ = z
+            u, falls = control(arc, z), arc == "state"
+            pushed = q - 2 * a + falls * (2 * u + 4 * q) / 6
+            return [b, -a + b * (1.4 - 0.14 * b * b) + 4 * u, pushed, -p - q * (1.4 - 0.42 * b * b), u * u + a * a]
+
+        return found
+
+    def simulated(v: np.ndarray) -> tuple[np.ndarray, list[float]]:
+        z, missed, begun = np.array([-5.0, -5.0, *v[:2], 0.0]), list[float](), 0.0
+        for arc, after, until in zip(arcs, (*arcs[1:], "free"), (*v[2:], 4.5), strict=True):
+            z = along(rates(arc), begun, until, z)
+            missed.append(control(arc, z) - control(after, z))
+            begun = until
+        return z, [*missed[:-1], *z[2:4]]
+
+    found = shot(lambda v: np.array(simulated(v)[1]), near)
+    return simulated(found)[0][4], found
+
+
+@pytest.mark.slow
+def test_rayleighs_oscillator_is_damped_with_its_control_bounded_by_the_state():
+    cost, found = damped(["state", "free", "state", "free"], 0.0, [-10.678, -4.191, 1.27, 2.978, 4.295])
+    check("rayleigh-mixed", cost, [0.0, *found[2:]])
+
+
+@pytest.mark.slow
+def test_where_a_bound_and_a_constraint_cross_one_follows_the_other():
+    arcs = ["upper", "state", "free", "lower", "free", "state", "free"]
+    near = [-12.94158, -4.79831, 1.08886, 1.27113, 1.71322, 3.26966, 3.4852, 4.30121]
+    cost, found = damped(arcs, 0.8, near)
+    rayleigh = next(one for one in oscillators() if one.name == "rayleigh_mixed")
+    boxed = replace(rayleigh, name="rayleigh_boxed", control_set="box")
+    start = {"x1": -5.0, "x2": -5.0}
+    ours = satsym.solve(satsym.Instance.of(boxed, control={"u": [-0.8, 0.8]}, initial=start, tf=4.5)).found
+    assert ours.objective == pytest.approx(cost, rel=1e-10)
+    assert [one.t for one in ours.events] == pytest.approx([0.0, *found[2:]], abs=1e-7)
+    assert [one.kind for one in ours.events] == ["entry", "entry", "exit", "entry", "exit", "entry", "exit"]
+    assert ours.certificate is not None
+    assert ours.certificate.verdict is Verdict.CERTIFIED
 
 
 def test_a_rendezvous_slides_along_its_approach_cone():

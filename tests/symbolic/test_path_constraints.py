@@ -11,6 +11,7 @@ import sympy as sp
 from satsym.report.latex.document import render
 from satsym.symbolic import FirstOrder, Problem, Variable, derive, symbols_of
 from satsym.symbolic.derivation import DerivationError, Step
+from satsym.symbolic.model import Convention
 from satsym.symbolic.principle import path_constraints as steps
 from tests.support.derived import derived, shipped, stated
 
@@ -23,6 +24,16 @@ CHAIN = FirstOrder(
     controls=(Variable("u", "u"),),
     parameters=(),
     rates={a: b, b: d, d: u, e: -e},
+)
+
+
+TWO = FirstOrder(
+    name="two_of_two",
+    title="Two integrators",
+    states=(Variable("x", "x"), Variable("y", "y")),
+    controls=(Variable("v", "v"), Variable("w", "w")),
+    parameters=(),
+    rates=dict(zip(sp.symbols("x y", real=True), sp.symbols("v w", real=True), strict=True)),
 )
 
 
@@ -64,6 +75,39 @@ def test_with_the_maximum_convention_costates_change_their_sign_and_multipliers_
     assert values(found.step("constrained_costates"))["wall_lambda_x"] == sp.Symbol("eta_wall", real=True)
 
 
+@pytest.mark.parametrize("direction", ["minimum", "maximum"])
+def test_a_constraint_that_holds_a_control_decides_it_where_the_law_would_violate_it(direction: Convention):
+    """With both controls in it they share what is too much by their weights."""
+    states, controls = symbols_of(TWO.states), symbols_of(TWO.controls)
+    (x, y), (v, w) = states, controls
+    found = derived(
+        Problem(
+            name="shared",
+            title="",
+            model=TWO,
+            running_cost=v**2 / 2 + w**2,
+            path_constraints={"cap": v + 2 * w + x * y - 1},
+            convention=direction,
+        )
+    )
+    step, sign = values(found.step("mixed_constraints")), 1 if direction == "minimum" else -1
+    by_x, by_y = (sp.Symbol(f"lambda_{name}", real=True) * sign for name in ("x", "y"))
+    free = -by_x - by_y + x * y - 1
+    wanted = {"cap_vanishing": free, "cap_eta": free / 3, "cap_v": -by_x - free / 3, "cap_w": -by_y / 2 - free / 3}
+    assert {name: sp.simplify(step[name] - value) for name, value in wanted.items()} == dict.fromkeys(wanted, 0)
+    pushed = values(found.step("mixed_costates"))["cap_lambda_x"]
+    assert sp.simplify(pushed + sign * y * sp.Symbol("eta_cap", real=True)) == 0
+
+
+def test_bounds_of_a_box_are_constraints_like_others():
+    found = derived(kept(d - 1, control_set="box"))
+    step, top = values(found.step("mixed_constraints")), sp.Symbol("u_max", real=True)
+    assert step["u_max"] == sp.Symbol("u", real=True) - top
+    assert step["u_max_u"] == top
+    assert sp.simplify(step["u_max_eta"] - step["u_max_vanishing"]) == 0
+    assert r"u^{\max}" in render(found, "en")
+
+
 @pytest.mark.parametrize("language", ["en", "id"])
 def test_it_is_typeset(language: str):
     text = render(shipped("return_in_slot"), language)
@@ -77,9 +121,12 @@ def test_it_is_typeset(language: str):
     [
         (kept(e - 1), "no control influences it, so nothing can keep it"),
         (kept(a - 1), "its order is more than 2"),
-        (kept(b - u), "depends on the control u"),
+        (kept(b - 1, running_cost=sp.exp(u) + sp.exp(-u)), "H is not quadratic in the controls"),
+        (kept(b - 1, running_cost=sp.sqrt(1 + u**2)), "H is not quadratic in the controls"),
+        (kept(b - u**2), "the controls enter it otherwise than linearly"),
         (kept(b - sp.Symbol("q", real=True)), "uses undeclared symbols: q"),
-        (kept(b - 1, control_set="box"), "beside bounds of the controls they are not derived"),
+        (kept(b - 1, control_set="ball"), "beside bounds of the controls other than those of a box"),
+        (replace(kept(b - 1, control_set="box"), path_constraints={"u_max": b - 1}), "is the name of a bound"),
         (replace(kept(b - 1), path_constraints={"no name": b - 1}), "a constraint's name is"),
         (replace(kept(b - 1), path_constraints=(b - 1,)), "write a name for each"),  # type: ignore[arg-type]
     ],
@@ -101,8 +148,8 @@ def test_a_wrong_equation_fails_its_check(wrong: str, monkeypatch: pytest.Monkey
         true_change = steps.sign
         monkeypatch.setattr(steps, "sign", lambda problem: 2 * true_change(problem))
     else:
-        true_law = steps._affine
-        monkeypatch.setattr(steps, "_affine", lambda found, controls: (true_law(found, controls)[0], sp.Integer(1)))
+        true_law = steps.affine
+        monkeypatch.setattr(steps, "affine", lambda *of: (true_law(*of)[0], sp.Integer(1)))
     with pytest.raises(DerivationError, match="failed its check"):
         derive(kept(d - a**2))
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.arrays import Array
+from satsym.control_set import stated_constraints
 from satsym.report.display import formula, plain
 from satsym.report.plots import curves
 from satsym.report.plots.scene import Scene
@@ -122,25 +123,26 @@ def controls(scene: Scene) -> list[Series]:
 def constraints(scene: Scene) -> list[Series]:
     """The path constraints, none of which may be positive, with the times at which they are met and left."""
     instance, spec = scene.instance, scene.spec
-    if not spec.path_constraints:
+    if not (stated := stated_constraints(spec)):
         return []
     with np.errstate(all="ignore"):
-        rows = curves.clean(instance.model.path_constraints_batch(scene.nodes, scene.x, instance.parameters))
+        given = scene.nodes, scene.x, scene.u, instance.parameters, instance.control_set.arguments
+        rows = curves.clean(instance.model.path_constraints_batch(*given))
     met = getattr(scene.result, "events", ())
     return [
         Series(
-            rf"\mathrm{{{one.name.replace('_', ' ')}}}",
-            one.name,
+            rf"\mathrm{{{name.replace('_', ' ')}}}",
+            name,
             "1",
-            f"path constraint {one.name.replace('_', ' ')}, never positive",
-            row,
+            f"path constraint {name.replace('_', ' ')}, never positive",
+            rows[k],
             upper=0.0,
-            active=row >= -ON_BOUND * _largest(row),
-            switching=tuple(event.t / scene.time_factor for event in met if event.name == one.name),
+            active=rows[k] >= -ON_BOUND * _largest(rows[k]),
+            switching=tuple(event.t / scene.time_factor for event in met if event.name == name),
             said="met",
             from_zero=True,
         )
-        for one, row in zip(spec.path_constraints, rows, strict=True)
+        for name, k in stated.items()
     ]
 
 

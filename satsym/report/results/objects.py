@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from satsym import __version__
+from satsym.control_set import stated_constraints
 from satsym.instance.unknowns import Place
 from satsym.report.results.certificate import certificate_object, plain
 from satsym.report.results.unit_names import units
@@ -122,6 +123,7 @@ def simulation_object(simulation: Simulation) -> dict[str, Any]:
 
 def model_object(spec: ProblemSpec) -> dict[str, Any]:
     """A model, as ``satsym models --json`` lists it."""
+    stated = list(stated_constraints(spec).values())
     return {
         "name": spec.name,
         "title": spec.title,
@@ -131,7 +133,7 @@ def model_object(spec: ProblemSpec) -> dict[str, Any]:
         "parameters": [_variable(v) | {"default": v.default} for v in spec.parameters],
         "control_set": spec.control_set,
         **({"control_sets": [_set(part) for part in spec.control_parts]} if spec.control_parts else {}),
-        **({"path_constraints": [plain(one) for one in spec.path_constraints]} if spec.path_constraints else {}),
+        **({"path_constraints": [plain(spec.path_constraints[k]) for k in stated]} if stated else {}),
         "has_cost": spec.has_cost,
         "has_terminal_cost": spec.has_terminal_cost,
         "has_reference": spec.has_reference,

@@ -39,7 +39,7 @@ def headlines(checks: Iterable[Check]) -> dict[str, Any]:
     }
 
 
-def boundary_residual(solution: Solution, flow: Flow, without: Array | None = None) -> float:
+def boundary_residual(solution: Solution, flow: Flow, without: Array | None = None, more: float = 0.0) -> float:
     """Largest residual at the right end of the flow, each relative to the size of what it compares.
 
     A given state is compared with its own size or, where the control moves the end by less, with that, down to a
@@ -52,6 +52,8 @@ def boundary_residual(solution: Solution, flow: Flow, without: Array | None = No
     ----------
     without
         Where the motion would end without control, if that is known already.
+    more
+        By how much H at the end exceeds that under the law.
     """
     instance, model = solution.instance, solution.instance.model
     n = len(instance.initial)
@@ -71,7 +73,7 @@ def boundary_residual(solution: Solution, flow: Flow, without: Array | None = No
     parts = [*found, *constraints]
     if instance.tf is None:
         rates = np.array(model.canonical(tf, x, lam, instance.parameters, instance.control_set.arguments))
-        parts.append(abs(residual[-1]) / max(float(costate @ np.abs(rates[:n])), 1e-300))
+        parts.append(abs(residual[-1] + more) / max(float(costate @ np.abs(rates[:n])), 1e-300))
     return float(max(parts))
 
 

@@ -99,7 +99,7 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
             first.append(Check("path constraint violated", max(0.0, violation(solution)), VIOLATED))
         field = conjugate(solution, along)
         second: list[Check] = []
-        close, others = None, Comparison((), ())
+        close, others, kept = None, Comparison((), ()), None
         if all(c.passed for c in first):
             close = neighbours(solution)
             second = _sufficient(solution, field, close)
@@ -113,6 +113,11 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
                     if math.isfinite(kind.margin)
                 ]
                 second += [Check(f"time was up before: {kind.value}", 1.0, 0.0) for kind in others.interrupted]
+            if compared and solution.instance.model.spec.path_constraints and all(c.passed for c in second):
+                from satsym.solvers.certificate.constrained import comparison
+
+                kept = comparison.compared(solution, seed)
+                second += kept.checks
     verdict = Verdict.of(all(c.passed for c in first), all(c.passed for c in second), compared)
     certificate = Certificate(
         verdict=verdict,
@@ -120,8 +125,12 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
         legendre_clebsch=conditions.legendre_clebsch(solution),
         conjugate_time=field.time,
         checks=(*first, *second),
-        competitors=(*((close.competitors,) if close else ()), *(kind.summary for kind in others.kinds)),
-        not_checked=others.not_checked,
+        competitors=(
+            *((close.competitors,) if close else ()),
+            *(kind.summary for kind in others.kinds),
+            *(kept.competitors if kept else ()),
+        ),
+        not_checked=(*others.not_checked, *(kept.not_checked if kept else ())),
     )
     return certificate, others.better
 

@@ -13,28 +13,89 @@ from satsym.solvers.collocation.gauss import STAGES, lagrange, scheme
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.constrained.structure import FREE, Junction, Structure
 
+OF_TERMS = 1e-3
+"""Share of its terms that a constraint is measured by where it is hardly ever off its boundary."""
+
+
+def holds_control(instance: Instance, constraint: int) -> bool:
+    """Whether it is a constraint that holds a control; none is not."""
+    return constraint != FREE and instance.model.spec.path_constraints[constraint].order == 0
+
+
+def control(instance: Instance, constraint: int, t: Array, z: Array) -> Array:
+    """Controls, shape (m, N), on the boundary of a constraint or on none."""
+    model, n, p = instance.model, len(instance.initial), instance.parameters
+    if holds_control(instance, constraint):
+        found = model.boundary_control_batch(t, z[:n], z[n:], p, instance.control_set.arguments)
+        return _row(np.asarray(found), len(model.spec.path_constraints), len(t))[constraint]
+    found = model.control_law_batch(t, z[:n], z[n:], p, instance.control_set.without_bounds.arguments)
+    return np.broadcast_to(np.asarray(found), (len(model.spec.controls), len(t)))
+
 
 def field(instance: Instance, constraint: int, t: Array, z: Array) -> Array:
     """Rates of states and costates, shape (2n, N), on the boundary of a constraint or on none."""
     model, p, n = instance.model, instance.parameters, len(instance.initial)
     x, lam = z[:n], z[n:]
-    rates = np.array(model.canonical_batch(t, x, lam, p, instance.control_set.arguments))
-    if constraint != FREE:
-        eta = np.asarray(model.path_multiplier_batch(t, x, lam, p))[constraint]
-        rates[n:] -= eta * gradient(instance, constraint, t, x)
-    return rates
+    if constraint == FREE:
+        return np.array(model.canonical_batch(t, x, lam, p, instance.control_set.without_bounds.arguments))
+    u = control(instance, constraint, t, z)
+    rates = (model.dynamics_batch(t, x, u, p), model.costate_rate_batch(t, x, u, lam, p))
+    force = multipliers(instance, t, z)[constraint] * gradient(instance, constraint, t, x, u)
+    return np.concatenate([np.broadcast_to(rates[0], x.shape), np.broadcast_to(rates[1], x.shape) - force])
 
 
-def gradient(instance: Instance, constraint: int, t: Array, x: Array) -> Array:
-    """g_x of one constraint, shape (n, N)."""
-    return np.asarray(instance.model.path_gradient_batch(t, x, instance.parameters)).reshape(-1, len(x), len(t))[
-        constraint
-    ]
+def multipliers(instance: Instance, t: Array, z: Array) -> Array:
+    """What eta of each constraint is on its boundary, shape (h, N)."""
+    model, n = instance.model, len(instance.initial)
+    found = model.path_multiplier_batch(t, z[:n], z[n:], instance.parameters, instance.control_set.arguments)
+    return np.broadcast_to(np.asarray(found), (len(model.spec.path_constraints), len(t)))
 
 
-def values(instance: Instance, t: Array, x: Array) -> Array:
-    """All constraints, shape (h, N)."""
-    return np.asarray(instance.model.path_constraints_batch(t, x, instance.parameters))
+def vanishing(instance: Instance, constraint: int, t: Array, z: Array) -> Array:
+    """What vanishes besides on the boundary, shape (q, N); of what holds a control that where it begins and ends."""
+    model, n = instance.model, len(instance.initial)
+    found = model.path_vanishing_batch(t, z[:n], z[n:], instance.parameters, instance.control_set.arguments)
+    every = _row(np.asarray(found), len(model.spec.path_constraints), len(t))
+    return every[constraint, : max(1, model.spec.path_constraints[constraint].order)]
+
+
+def gradient(instance: Instance, constraint: int, t: Array, x: Array, u: Array | None = None) -> Array:
+    """g_x of one constraint, shape (n, N); of one on states alone without controls."""
+    u = np.zeros((len(instance.model.spec.controls), len(t))) if u is None else u
+    return gradients(instance, t, x, u)[constraint]
+
+
+def gradients(instance: Instance, t: Array, x: Array, u: Array) -> Array:
+    """g_x of all constraints, shape (h, n, N)."""
+    found = np.asarray(instance.model.path_gradient_batch(t, x, u, instance.parameters))
+    return _row(found, len(instance.model.spec.path_constraints), len(t))
+
+
+def effects(instance: Instance, t: Array, x: Array) -> Array:
+    """g_u of all constraints, shape (h, m, N)."""
+    found = np.asarray(instance.model.path_effect_batch(t, x, instance.parameters))
+    return _row(found, len(instance.model.spec.path_constraints), len(t))
+
+
+def values(instance: Instance, t: Array, x: Array, u: Array) -> Array:
+    """All constraints, shape (h, N); bounds that are infinite are kept as if by the size of one."""
+    found = instance.model.path_constraints_batch(t, x, u, instance.parameters, instance.control_set.arguments)
+    found = np.broadcast_to(np.asarray(found), (len(instance.model.spec.path_constraints), len(t)))
+    return np.where(np.isinf(found), -1.0, found)
+
+
+def sizes(instance: Instance, t: Array, x: Array, u: Array) -> Array:
+    """What each constraint is measured by, shape (h,): the largest it is, at least a share of its terms."""
+    push = (np.abs(gradients(instance, t, x, u)) * np.abs(x)).sum(axis=1)
+    terms = push + (np.abs(effects(instance, t, x)) * np.abs(u)).sum(axis=1)
+    found = np.maximum(np.abs(values(instance, t, x, u)), OF_TERMS * terms)
+    return np.asarray(np.maximum(found.max(axis=1), 1e-300))
+
+
+def _row(found: Array, constraints: int, columns: int) -> Array:
+    """A table of several entries for each constraint, shape (h, entries, N)."""
+    table = found.reshape(constraints, -1, found.shape[-1])
+    return np.broadcast_to(table, (*table.shape[:2], columns))
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +144,7 @@ class Arcs:
     @cached_property
     def pinned(self) -> bool:
         """Whether given final states keep the constraint of the last contact at the end by themselves."""
-        if not self.structure.ends:
+        if not self.structure.ends or holds_control(self.instance, self.structure.contacts[-1].constraint):
             return False
         given = np.array(final_argument(self.instance)).reshape(3, -1)[:2].sum(axis=0)
         end = np.array([self.end]), self.node(len(self.intervals) - 1, -1)[: self.n, None]
@@ -94,7 +155,8 @@ class Arcs:
     @property
     def pressed(self) -> bool:
         """Whether the constraint of the last contact pushes at the end."""
-        return self.structure.ends and not self.pinned
+        last = self.structure.contacts[-1:]
+        return self.structure.ends and not self.pinned and not holds_control(self.instance, last[0].constraint)
 
     def nodes(self, arc: int) -> Array:
         """Values at beginnings of intervals with those at their stages, and at the end: (K (stages + 1) + 1, 2n)."""
@@ -141,7 +203,7 @@ class Arcs:
         one, n, total = self.instance, self.n, 0.0
         for arc, k in enumerate(self.intervals):
             t, z = self.stages(arc)[0].ravel(), self.stages(arc)[1].reshape(-1, 2 * n).T
-            u = one.model.control_law_batch(t, z[:n], z[n:], one.parameters, one.control_set.arguments)
+            u = control(one, self.structure.arcs[arc], t, z)
             cost = np.broadcast_to(one.model.running_cost_batch(t, z[:n], u, one.parameters), t.shape)
             weights = np.tile(scheme(STAGES).weights, k) * (self.times[arc + 1] - self.times[arc]) / k
             total += float(cost @ weights)

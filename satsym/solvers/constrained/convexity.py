@@ -11,6 +11,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.kernels.evaluation import COMPLEX_STEP
+from satsym.solvers.constrained.arcs import effects, gradients
 
 ROUNDING = 1e-12
 """Share of the largest eigenvalue by which the least may be negative."""
@@ -43,9 +44,12 @@ def convex(instance: Instance) -> bool:
     final = _second(lambda y: np.asarray(model.terminal_gradient_batch(end, y, p)).reshape(len(x), -1), x[:, -1:])
     tables = [running, final]
     for k in range(len(model.spec.path_constraints)):
-        tables.append(
-            _second(lambda y, k=k: np.asarray(model.path_gradient_batch(t, y, p)).reshape(-1, *y.shape)[k], x)
-        )
+
+        def pushes(y: Array, k: int = k) -> Array:
+            by_x, by_u = gradients(instance, t, y[: len(x)], y[len(x) :])[k], effects(instance, t, y[: len(x)])[k]
+            return np.concatenate([by_x, by_u])
+
+        tables.append(_second(pushes, np.concatenate([x, u])))
     return strict and all(map(_never_negative, tables))
 
 

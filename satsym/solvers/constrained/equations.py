@@ -14,8 +14,8 @@ from satsym.instance import Instance
 from satsym.kernels.evaluation import COMPLEX_STEP
 from satsym.solvers.collocation.gauss import STAGES, scheme
 from satsym.solvers.collocation.scaling import final_argument
-from satsym.solvers.constrained.arcs import Arcs, field, gradient, values
-from satsym.solvers.constrained.structure import Event, Junction
+from satsym.solvers.constrained.arcs import Arcs, control, field, gradient, holds_control, values, vanishing
+from satsym.solvers.constrained.structure import FREE, Event, Junction
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_matrix
@@ -97,10 +97,10 @@ class System:
         self.residuals.append(arcs.node(0, 0)[:n] - np.array(arcs.instance.initial))
         self._add(self.height + np.arange(n), np.arange(n), 1.0)
         self.height += n
-        if arcs.structure.starts:
+        if arcs.structure.starts and not holds_control(arcs.instance, arcs.structure.contacts[0].constraint):
             constraint = arcs.structure.contacts[0].constraint
             time = np.array([arcs.instance.t0])
-            self._conditions(lambda v: _vanishing(arcs.instance, constraint, time, v), list(range(2 * n)))
+            self._conditions(lambda v: vanishing(arcs.instance, constraint, time, v), list(range(2 * n)))
 
     def _junction(self, k: int, junction: Junction) -> None:
         """States continue, costates jump; tangency, and what is held on a boundary after it."""
@@ -114,6 +114,8 @@ class System:
             gap = right - left
             if jump is not None:
                 gap[n:] = gap[n:] + v[2 * d + 1] * gradient(arcs.instance, constraint, t, left[:n])
+            if holds_control(arcs.instance, constraint):
+                return np.concatenate([gap, changing(arcs.instance, arcs.structure.arcs[k], constraint, t, left)])
             if junction.event is Event.EXIT:
                 return gap
             pinned = junction.event is Event.ENTRY and arcs.pinned and k == len(arcs.junctions) - 1
@@ -121,7 +123,7 @@ class System:
             if not pinned:
                 found.append(_tangency(arcs.instance, constraint, t, left[:n]))
             if junction.event is Event.ENTRY:
-                found.append(_vanishing(arcs.instance, constraint, t, right))
+                found.append(vanishing(arcs.instance, constraint, t, right))
             return np.concatenate(found)
 
         self._conditions(conditions, columns)
@@ -132,7 +134,6 @@ class System:
         rest, last = arcs.rest, arcs.places[-1] - d
         free = [] if rest.end is None else [rest.end]
         columns = [*range(last, last + d), *range(rest.nu, rest.size), *free]
-        final = final_argument(one)
 
         def conditions(v: Array) -> Array:
             z, nu, t = v[:d], v[d : d + rest.constraints], v[-1] if free else np.full(1, one.tf, dtype=complex)
@@ -140,12 +141,12 @@ class System:
             if rest.pressed:
                 constraint = arcs.structure.contacts[-1].constraint
                 lam = lam - v[d + rest.constraints] * gradient(one, constraint, t, z[:n])
-            bounds = one.control_set.arguments
-            found = np.asarray(one.model.boundary_batch(t, z[:n], lam, tuple(nu), one.parameters, bounds, final))
-            rows = found if free else found[:-1]
+            rows = at_end(one, arcs.structure.arcs[-1], t, np.concatenate([z[:n], lam]), tuple(nu))
+            rows = rows if free else rows[:-1]
             if not (rest.pressed and arcs.structure.contacts[-1].touches):
                 return rows
-            return np.concatenate([rows, values(one, t, z[:n])[arcs.structure.contacts[-1].constraint][None]])
+            u = np.zeros((len(one.model.spec.controls), 1))
+            return np.concatenate([rows, values(one, t, z[:n], u)[arcs.structure.contacts[-1].constraint][None]])
 
         self._conditions(conditions, columns)
 
@@ -165,21 +166,39 @@ class System:
         self.height += len(value)
 
 
+def changing(instance: Instance, before: int, constraint: int, t: Array, z: Array) -> Array:
+    """What vanishes where a constraint that holds a control becomes active after an arc, or inactive, shape (1, N).
+
+    Where another one is active before, that is the constraint itself under the control that keeps the other.
+    """
+    if before in (FREE, constraint):
+        return vanishing(instance, constraint, t, z)
+    u = control(instance, before, t, z)
+    return values(instance, t, z[: len(instance.initial)], u)[[constraint]]
+
+
+def at_end(instance: Instance, constraint: int, t: Array, z: Array, nu: tuple[Any, ...]) -> Array:
+    """The boundary residuals, that of a free final time last, after an arc on the boundary of a constraint or on none.
+
+    In that one H stands under the control of that arc.
+    """
+    model, n, p, free = instance.model, len(instance.initial), instance.parameters, instance.control_set.without_bounds
+    x, lam = z[:n], z[n:]
+    found = np.array(model.boundary_batch(t, x, lam, nu, p, free.arguments, final_argument(instance)))
+    if holds_control(instance, constraint):
+        ours, other = (model.hamiltonian_batch(t, x, control(instance, k, t, z), lam, p) for k in (constraint, FREE))
+        found[-1] += np.asarray(ours) - np.asarray(other)
+    return found
+
+
 def _tangency(instance: Instance, constraint: int, t: Array, x: Array) -> Array:
     """g, and its first rate where the order is two, shape (q, 1)."""
     model, p = instance.model, instance.parameters
-    found = [values(instance, t, x)[constraint]]
+    rest = np.zeros((len(model.spec.controls), 1))
+    found = [values(instance, t, x, rest)[constraint]]
     if model.spec.path_constraints[constraint].order > 1:
-        rest = np.zeros((len(model.spec.controls), 1))
         found.append(np.asarray(model.path_rates_batch(t, x, rest, p)).reshape(-1, 2, 1)[constraint, 0])
     return np.array(found)
-
-
-def _vanishing(instance: Instance, constraint: int, t: Array, z: Array) -> Array:
-    """What vanishes besides on a boundary, shape (q, 1)."""
-    model, n = instance.model, len(instance.initial)
-    found = np.asarray(model.path_vanishing_batch(t, z[:n], z[n:], instance.parameters)).reshape(-1, 2, 1)[constraint]
-    return found[: model.spec.path_constraints[constraint].order]
 
 
 def _derivatives(

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.instance import Instance
-from satsym.solvers.constrained.slopes import Slopes
+from satsym.solvers.constrained.slopes import Slopes, rooms
+from satsym.solvers.constrained.starts import straight
 from satsym.solvers.constrained.transcription import Point, Program
 from satsym.status import BadInput
 
@@ -20,8 +21,9 @@ ROUNDING = 1e-12
 WEIGHTS, NEWTON = (1e2, 1e4, 1e6, 1e8), 40
 """Of squared violations, relative to the cost, and steps for each."""
 
-REMAINING = 0.5
-"""Share of a violation that a hundred times the weight leaves where it cannot be avoided."""
+REMAINING, VIOLATED = 0.5, 1e-7
+"""Share of a violation that a hundred times the weight leaves where it cannot be avoided, and steps of half the length;
+and the least that is one."""
 
 
 def refuse(instance: Instance) -> None:
@@ -47,8 +49,9 @@ def _refuse_at(instance: Instance, time: float, state: tuple[float, ...], key: s
     """At a state that is known as a whole."""
     model, p = instance.model, instance.parameters
     _refuse_values(instance, time, state, key, np.ones(len(model.spec.path_constraints), bool))
-    g = np.array(model.path_constraints(time, state, p))
-    rates = np.array(model.path_rates(time, state, (0.0,) * len(model.spec.controls), p)).reshape(-1, 2)[:, 0]
+    rest = (0.0,) * len(model.spec.controls)
+    g = np.array(model.path_constraints(time, state, rest, p, instance.control_set.arguments))
+    rates = np.array(model.path_rates(time, state, rest, p)).reshape(-1, 2)[:, 0]
     for one, value, rate in zip(model.spec.path_constraints, g, rates, strict=True):
         if one.order > 1 and abs(value) <= ROUNDING and direction * rate > 0.0:
             when = "after the start" if direction > 0 else "before the end"
@@ -66,10 +69,11 @@ def _refuse_values(
     which: NDArray[np.bool_],
 ) -> None:
     model, p = instance.model, instance.parameters
-    g = np.array(model.path_constraints(time, state, p))
-    size = np.abs(np.array(model.path_gradient(time, state, p)).reshape(len(g), -1)) @ np.abs(state)
+    rest = (0.0,) * len(model.spec.controls)
+    g = np.array(model.path_constraints(time, state, rest, p, instance.control_set.arguments))
+    size = np.abs(np.array(model.path_gradient(time, state, rest, p)).reshape(len(g), -1)) @ np.abs(state)
     for one, value, scale, counts in zip(model.spec.path_constraints, g, size, which, strict=True):
-        if counts and value > ROUNDING * max(float(scale), 1e-300):
+        if counts and one.order and value > ROUNDING * max(float(scale), 1e-300):
             raise BadInput(
                 f"{instance.name}: {key}: path constraint {one.name} is {value:.6g} there and may not be positive; "
                 "change that state, or the constraint's parameters"
@@ -80,21 +84,28 @@ def impossible(program: Program, start: Point, worth: float) -> str:
     """What stands against each other where no path of a convex problem is admissible; empty where that is not shown.
 
     Violations are penalised by their squares, more and more: where some path is admissible they vanish like one over
-    the weight, else they tend to the least that there are.
+    the weight, else they tend to the least that there are. What the discretisation alone violates is less on a finer
+    mesh.
     """
-    room = np.maximum(np.abs(program.constraints(start)).max(axis=1, keepdims=True), 1e-300)
-    at, found = start, list[Array]()
+    finer = Program(program.instance, 2 * program.intervals)
+    coarse, fine = _remaining(program, start, worth), _remaining(finer, straight(finer), worth)
+    if coarse is None or fine is None or not fine.max() > max(REMAINING * coarse.max(), VIOLATED):
+        return ""
+    names = [one.name for one in program.instance.model.spec.path_constraints]
+    violated = ", ".join(name for name, left in zip(names, fine, strict=True) if left > 0.01 * fine.max())
+    return f"no motion to the given end keeps to the path constraints ({violated}): one of them is always violated"
+
+
+def _remaining(program: Program, start: Point, worth: float) -> Array | None:
+    """By how much each constraint stays violated, relative to its size; ``None`` where violations vanish."""
+    room, at, found = rooms(program, start), start, list[Array]()
     for weight in WEIGHTS:
         at = _penalised(program, at, weight * max(abs(worth), 1e-12) / room**2 / program.intervals)
         if not np.isfinite(at.x).all():
-            return ""
+            return None
         found.append(np.maximum(program.constraints(at) * program.kept / room, 0.0).max(axis=1))
     before, last = found[-2:]
-    if not last.max() > REMAINING * before.max() > 0.0:
-        return ""
-    names = [one.name for one in program.instance.model.spec.path_constraints]
-    violated = ", ".join(name for name, left in zip(names, last, strict=True) if left > 0.01 * last.max())
-    return f"no motion to the given end keeps to the path constraints ({violated}): one of them is always violated"
+    return last if last.max() > REMAINING * before.max() > 0.0 else None
 
 
 def _penalised(program: Program, start: Point, weight: Array) -> Point:

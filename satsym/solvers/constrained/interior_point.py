@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.solvers.constrained.slopes import Slopes
+from satsym.solvers.constrained.slopes import Slopes, rooms
 from satsym.solvers.constrained.transcription import Point, Program
 from satsym.solvers.iteration import Limits
 
@@ -51,7 +51,8 @@ def regularised(program: Program, start: Point, worth: float, limits: Limits) ->
         The size of costs.
     """
     g = program.constraints(start)
-    room = np.maximum(np.abs(g).max(axis=1, keepdims=True), 1e-300)
+    room = np.abs(g).max(axis=1, keepdims=True)
+    room = np.where(room > 0.0, room, rooms(program, start))
     at = replace(start, s=np.maximum(-g, 0.1 * room))
     first = max(abs(worth), 1e-12) / program.intervals
     weight, at = first, replace(at, z=first / at.s)
@@ -88,9 +89,8 @@ def _violation(program: Program, at: Point) -> float:
     size = np.abs(at.x).max(axis=1, keepdims=True) + 1e-300
     size = np.maximum(size, 1e-3 * size.max())
     slack = (program.constraints(at) + at.s) * program.kept
-    room = np.maximum(np.abs(program.constraints(at)).max(initial=0.0), 1e-300)
     parts = [np.abs(program.gaps(at) / size).max(), np.abs(program.ends(at)).max(initial=0.0) / size.max()]
-    return float(max(*parts, np.abs(slack).max(initial=0.0) / room))
+    return float(max(*parts, np.abs(slack / rooms(program, at)).max(initial=0.0)))
 
 
 def _stepped(

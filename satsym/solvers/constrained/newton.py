@@ -20,7 +20,7 @@ ACCURATE = 1e-12
 """Size of Newton's step at which it ends, relative to the sizes of what is unknown."""
 
 SETTLED = 1e-10
-"""Change of times and cost from one mesh to the next that is none."""
+"""Change of times, cost and initial costates from one mesh to the next that is none."""
 
 ITERATIONS, HALVINGS = 25, 6
 DENSITY, MESHES = 24, 4
@@ -146,7 +146,9 @@ def _refined(arcs: Arcs) -> Arcs:
 
 
 def _distance(one: Arcs, other: Arcs) -> float:
-    """Largest change of times, relative to the duration, and of the cost."""
+    """Largest change of times, of the cost and of the initial costates, each relative to its size."""
     lasting = abs(other.end - other.instance.t0)
     cost = abs(one.cost() - other.cost()) / max(abs(other.cost()), 1e-300)
-    return max(float(np.abs(one.times - other.times).max()) / lasting, cost)
+    first, again = (each.node(0, 0)[each.n :] for each in (one, other))
+    begun = float(np.abs(first - again).max() / max(np.abs(again).max(), 1e-300))
+    return max(float(np.abs(one.times - other.times).max()) / lasting, cost, begun)

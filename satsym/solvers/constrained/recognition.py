@@ -6,17 +6,25 @@ boundary arc vanishes are taken for one arc later (:mod:`satsym.solvers.constrai
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import NDArray
 
 from satsym.arrays import Array
+from satsym.solvers.constrained.arcs import values
 from satsym.solvers.constrained.interior_point import Path
+from satsym.solvers.constrained.slopes import constraint_slopes, rooms
 from satsym.solvers.constrained.structure import Contact, Structure
 from satsym.solvers.constrained.transcription import Program
 from satsym.solvers.switching.trajectory import runs
 
 CLOSE = 1e-3
 """A slack of this share of the largest is small: nodes meet a boundary only nearly."""
+
+SMALL = 1e-4
+"""Where no slack is larger than this share of a constraint's terms, these are what slacks are measured by."""
 
 NOTHING = 1e-6
 """Share of the costates below which what a constraint adds to them is nothing."""
@@ -29,20 +37,20 @@ def recognised(program: Program, path: Path) -> Structure:
     """Contacts with all constraints, those of an order of one as arcs."""
     found: list[Contact] = []
     model, at = program.instance.model, path.at
-    times = np.real(program.times(at.duration, middle=False))
-    g_x = np.asarray(model.path_gradient_batch(times, at.x[:, 1:], program.p))
-    g_x = np.broadcast_to(g_x.reshape(len(at.s), len(at.x), -1), (len(at.s), len(at.x), len(times)))
+    nodes, between = (np.real(program.times(at.duration, middle)) for middle in (False, True))
+    g_x, terms = constraint_slopes(program, at)[0], rooms(program, at)
     costates = np.abs(at.y).max(axis=1)
     for k, one in enumerate(model.spec.path_constraints):
         s, z = at.s[k], at.z[k] * program.kept[k]
-        near = (s < CLOSE * s.max()) & (program.kept[k] > 0.0)
+        room = max(float(s.max()), SMALL * float(terms[k, 0]))
+        near = (s < CLOSE * room) & (program.kept[k] > 0.0)
         pushing = (np.abs(g_x[k]) * z / np.maximum(costates[:, None], NOTHING * costates.max() + 1e-300)).max(axis=0)
-        counts = near & (z / max(float(z.max()), 1e-300) > s / s.max())
+        counts = near & (z / max(float(z.max()), 1e-300) > s / room)
         for first, last in runs(_bridged(counts)):
-            if pushing[first : last + 1].sum() > NOTHING:
-                found.append(_contact(k, one.order, times, z, first, last))
+            if one.order == 0 or pushing[first : last + 1].sum() > NOTHING:
+                found.append(_contact(k, one.order, between if one.order == 0 else nodes, z, first, last))
     found.sort(key=lambda contact: contact.middle)
-    return _with_ends(program, tuple(found), times)
+    return _with_ends(program, tuple(found), nodes)
 
 
 def _bridged(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -71,12 +79,33 @@ def _with_ends(program: Program, contacts: tuple[Contact, ...], times: Array) ->
     if not contacts:
         return Structure(())
     one, step = program.instance, 1.5 * float(times[1] - times[0])
-    begun = np.array(one.model.path_constraints(one.t0, one.initial, program.p))
+    contacts = _meeting(program, contacts, times)
     first, last = contacts[0], contacts[-1]
-    starts = not first.touches and first.start - one.t0 < step and abs(float(begun[first.constraint])) < 1e-9
+    starts = not first.touches and first.start - one.t0 < step and _on_boundary(program, first.constraint)
     order, end = one.model.spec.path_constraints[last.constraint].order, float(times[-1])
     if end - last.end >= step or (order > 1 and not last.touches):
         return Structure(contacts, starts)
     alone = end - last.start <= step
     kept = Contact(last.constraint, end if alone else last.start, end, last.jumps)
     return Structure((*contacts[:-1], kept), starts, ends=True)
+
+
+def _meeting(program: Program, contacts: tuple[Contact, ...], times: Array) -> tuple[Contact, ...]:
+    """Without the gaps of a step between constraints that hold controls, one of which follows the other."""
+    found, step = list(contacts), 1.5 * float(times[1] - times[0])
+    for k, (one, other) in enumerate(pairwise(contacts)):
+        held = program.holding[one.constraint] and program.holding[other.constraint]
+        if held and one.constraint != other.constraint and other.start - one.end < step:
+            middle = 0.5 * (one.end + other.start)
+            if found[k].start < middle < other.end:
+                found[k], found[k + 1] = replace(found[k], end=middle), replace(found[k + 1], start=middle)
+    return tuple(found)
+
+
+def _on_boundary(program: Program, constraint: int) -> bool:
+    """Whether a constraint is on its boundary at the start, or may be because it holds a control."""
+    if program.holding[constraint]:
+        return True
+    one, t = program.instance, np.array([program.instance.t0])
+    u = np.zeros((len(one.model.spec.controls), 1))
+    return bool(abs(values(one, t, np.array(one.initial)[:, None], u)[constraint, 0]) < 1e-9)

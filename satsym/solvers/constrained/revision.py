@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.solvers.constrained.arcs import Arcs, gradient, values
-from satsym.solvers.constrained.structure import Contact, Event, Structure
+from satsym.solvers.constrained.arcs import Arcs, control, gradient, multipliers, values
+from satsym.solvers.constrained.arcs import sizes as measured
+from satsym.solvers.constrained.structure import FREE, Contact, Event, Structure
 from satsym.solvers.switching.trajectory import runs
 
 SLACK = 1e-9
@@ -43,9 +46,13 @@ def contacts(arcs: Arcs) -> list[Contact]:
             k += 1
             continue
         start, end, jumps = float(times[0]), float(times[-1]), [0.0, 0.0]
+        if number > 0 and arcs.structure.joined(number - 1):
+            k -= 1  # the end of the one before is its entry
         if not (number == 0 and arcs.structure.starts):
             start, jumps[0], k = float(times[k + 1]), arcs.jump(k), k + 1
-        if not (last and arcs.structure.ends):
+        if arcs.structure.joined(number):
+            end, k = float(times[k + 1]), k + 1
+        elif not (last and arcs.structure.ends):
             end, jumps[1], k = float(times[k + 1]), arcs.jump(k), k + 1
         else:
             jumps[1] = pressed[0]
@@ -62,11 +69,20 @@ def along(arcs: Arcs, arc: int) -> tuple[Array, Array]:
 
 def sizes(arcs: Arcs) -> Array:
     """Of each constraint along the way, shape (h,)."""
-    n, found = arcs.n, []
-    for arc in range(len(arcs.intervals)):
-        times, z = along(arcs, arc)
-        found.append(np.abs(values(arcs.instance, times, z[:n])).max(axis=1))
-    return np.maximum(np.max(found, axis=0), 1e-300)
+    places = (_with_controls(arcs, arc) for arc in range(len(arcs.intervals)))
+    return np.asarray(np.max([measured(arcs.instance, *place) for place in places], axis=0))
+
+
+def constrained(arcs: Arcs, arc: int) -> tuple[Array, Array]:
+    """Times between the nodes of an arc and all constraints there, shape (h, N)."""
+    place = _with_controls(arcs, arc)
+    return place[0], values(arcs.instance, *place)
+
+
+def _with_controls(arcs: Arcs, arc: int) -> tuple[Array, Array, Array]:
+    """Times between the nodes, states and controls there."""
+    times, z = along(arcs, arc)
+    return times, z[: arcs.n], control(arcs.instance, arcs.structure.arcs[arc], times, z)
 
 
 def _order(arcs: Arcs, constraint: int) -> int:
@@ -95,8 +111,20 @@ def _disordered(arcs: Arcs) -> tuple[str, list[Structure]] | None:
             return "an arc on a boundary has no length", [*tries, _instead(arcs, place)]
     if np.diff(arcs.times).min() <= 0.0:
         known = contacts(arcs)
-        return "contacts change places", [_instead(arcs, place) for place in range(len(known))]
+        joins = [_joined(arcs, k) for k in range(len(known) - 1) if known[k].end >= known[k + 1].start]
+        others = [_instead(arcs, place) for place in range(len(known))]
+        return "contacts change places", [*(one for one in joins if one is not None), *others]
     return None
+
+
+def _joined(arcs: Arcs, place: int) -> Structure | None:
+    """With no free arc between two contacts, of constraints that hold controls."""
+    first, second = contacts(arcs)[place : place + 2]
+    if _order(arcs, first.constraint) + _order(arcs, second.constraint) > 0:
+        return None
+    middle = 0.5 * (first.end + second.start)
+    kept = replace(first, end=middle), replace(second, start=middle)
+    return _instead(arcs, slice(place, place + 2), *kept)
 
 
 def _pulling(arcs: Arcs) -> tuple[str, list[Structure]] | None:
@@ -121,14 +149,12 @@ def _resting(arcs: Arcs) -> tuple[str, list[Structure]] | None:
         if boundary >= 0 or not 0 <= k < len(known) - 1:
             continue
         first, second = known[k : k + 2]
-        if first.touches and second.touches and first.constraint == second.constraint:
-            times, z = along(arcs, arc)
-            if (
-                np.abs(values(arcs.instance, times, z[: arcs.n])[first.constraint]).max()
-                < SLACK * room[first.constraint]
-            ):
-                one = Contact(first.constraint, first.start, second.start, (first.jumps[0], second.jumps[0]))
-                return "a free arc lies on a boundary", [_instead(arcs, slice(k, k + 2), one)]
+        both = first.constraint
+        if not (first.touches and second.touches and second.constraint == both):
+            continue
+        if np.abs(constrained(arcs, arc)[1][both]).max() < SLACK * room[both]:
+            one = Contact(both, first.start, second.start, (first.jumps[0], second.jumps[0]))
+            return "a free arc lies on a boundary", [_instead(arcs, slice(k, k + 2), one)]
     return None
 
 
@@ -141,7 +167,7 @@ def _rising(arcs: Arcs) -> tuple[str, list[Structure]] | None:
     ):
         one, t = contacts(arcs)[place], arcs.times[junction + 1 : junction + 2]
         for z in (arcs.node(junction, -1)[:, None], arcs.node(junction + 1, 0)[:, None]):
-            u = instance.model.control_law_batch(t, z[:n], z[n:], instance.parameters, instance.control_set.arguments)
+            u = control(instance, FREE, t, z)
             rates = np.asarray(instance.model.path_rates_batch(t, z[:n], u, instance.parameters)).reshape(-1, 2)
             if rates[one.constraint, 1] * lasting**2 > STEEP * room[one.constraint]:
                 half = 0.5 * np.sqrt(float(rates[one.constraint, 1]) * lasting**2 / room[one.constraint])
@@ -153,10 +179,10 @@ def _rising(arcs: Arcs) -> tuple[str, list[Structure]] | None:
 
 def _violated(arcs: Arcs) -> tuple[str, list[Structure]] | None:
     """Constraints that are positive between contacts."""
-    room, n, worst = sizes(arcs), arcs.n, None
+    room, worst = sizes(arcs), None
     for arc, boundary in enumerate(arcs.structure.arcs):
-        times, z = along(arcs, arc)
-        g = values(arcs.instance, times, z[:n]) / room[:, None]
+        times, g = constrained(arcs, arc)
+        g = g / room[:, None]
         if boundary >= 0:
             g[boundary] = 0.0
         constraint = int(g.max(axis=1).argmax())
@@ -176,10 +202,25 @@ def _violated(arcs: Arcs) -> tuple[str, list[Structure]] | None:
             half = max(abs(start - one.start), abs(end - one.start), 0.01 * lasting)
             low, high = max(one.start - half, arcs.times[0]), min(one.start + half, arcs.times[-1])
             found.append(_instead(arcs, place, Contact(constraint, low, high, (one.jumps[0] / 2,) * 2)))
+    if (within := _instead_of_active(arcs, constraint, start, end)) is not None:
+        return reason, [within, *found]
     gap = slice((first := sum(one.middle < 0.5 * (start + end) for one in known)), first)
     own = Contact(constraint, start, end)
-    added = [own] if _order(arcs, constraint) == 1 else [_touch(own), own]
+    added = [own] if _order(arcs, constraint) < 2 else [_touch(own), own]
     return reason, found + [_instead(arcs, gap, each) for each in added]
+
+
+def _instead_of_active(arcs: Arcs, constraint: int, start: float, end: float) -> Structure | None:
+    """With a constraint active in place of another while it is violated, both of which hold controls."""
+    for place, one in enumerate(contacts(arcs)):
+        if one.touches or not one.start <= 0.5 * (start + end) <= one.end:
+            continue
+        if _order(arcs, constraint) + _order(arcs, one.constraint) > 0:
+            return None
+        low, high = max(start, one.start), min(end, one.end)
+        parts = [replace(one, end=low), Contact(constraint, low, high), replace(one, start=high)]
+        return _instead(arcs, place, *(part for part in parts if part.end > part.start))
+    return None
 
 
 def _merged(arcs: Arcs, constraint: int, start: float, end: float) -> list[Structure]:
@@ -205,19 +246,25 @@ def _pulling_along(arcs: Arcs) -> tuple[str, list[Structure]] | None:
         if multiplier(arcs, arc).min() >= -SLACK * _pressure(arcs):
             continue
         one, reason = known[place], "a multiplier along a boundary is negative"
-        if _order(arcs, boundary) == 1:
-            return reason, [_instead(arcs, place)]
+        if _order(arcs, boundary) < 2:
+            return reason, [_instead(arcs, place, *_pushing(arcs, arc, one))]
         ends = [Contact(boundary, t, t, (jump, 0.0)) for t, jump in zip((one.start, one.end), one.jumps, strict=True)]
         return reason, [_instead(arcs, place, *ends), _instead(arcs, place, _touch(one))]
     return None
 
 
+def _pushing(arcs: Arcs, arc: int, one: Contact) -> list[Contact]:
+    """Where the multiplier along an arc is positive; of a constraint on states alone nowhere, as it has to be kept."""
+    if _order(arcs, one.constraint) > 0:
+        return []
+    times = along(arcs, arc)[0]
+    return [Contact(one.constraint, float(times[a]), float(times[b])) for a, b in runs(multiplier(arcs, arc) > 0.0)]
+
+
 def multiplier(arcs: Arcs, arc: int) -> Array:
     """eta along an arc on a boundary, shape (N,)."""
     times, z = along(arcs, arc)
-    n, constraint = arcs.n, arcs.structure.arcs[arc]
-    found = np.asarray(arcs.instance.model.path_multiplier_batch(times, z[:n], z[n:], arcs.instance.parameters))
-    return np.broadcast_to(found[constraint], times.shape)
+    return multipliers(arcs.instance, times, z)[arcs.structure.arcs[arc]]
 
 
 def _pressure(arcs: Arcs) -> float:

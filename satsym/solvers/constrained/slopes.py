@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.kernels.evaluation import COMPLEX_STEP
+from satsym.solvers.constrained.arcs import effects, gradients
 from satsym.solvers.constrained.transcription import Point, Program, middles
 
 if TYPE_CHECKING:
@@ -35,8 +36,7 @@ class Slopes:
         a, b = np.broadcast_to(a.reshape(n, n, -1), (n, n, count)), np.broadcast_to(b.reshape(n, m, -1), (n, m, count))
         h_x, h_u = _forces(program, t, x, at.u, at.y)
         second = _second(program, t, x, at.u, at.y)
-        g_x = np.asarray(model.path_gradient_batch(program.times(at.duration, middle=False), at.x[:, 1:], p))
-        g_x = np.broadcast_to(g_x.reshape(-1, n, g_x.shape[-1]), (len(at.s), n, count)) * program.kept[:, None]
+        g_x, g_u = constraint_slopes(program, at)
         psi_x, s_x = program.end_rows(at, at.duration)[1:]
         size = (n + m) * count + program.free_time
         gradient = np.zeros(size)
@@ -50,12 +50,13 @@ class Slopes:
         by_x[program.given, -1] += at.v[: len(program.given)]
         by_u += h * h_u
         blocks = _Blocks(n, m, count)
-        blocks.lagrangian(h * second)
+        curved, held = _constraint_curvature(program, at)
+        blocks.lagrangian(h * second + held)
         blocks.last(program.curvature_at_end(at))
-        blocks.constraint_curvature(_constraint_curvature(program, at))
+        blocks.constraint_curvature(curved)
         blocks.dynamics(h * a, h * b)
         blocks.ends(program.given, psi_x)
-        blocks.constraints(g_x)
+        blocks.constraints(g_x, g_u, program.holding)
         if program.free_time:
             gradient[-1] = _by_duration(program, at, blocks)
         rows = n * count + len(program.given) + len(psi_x)
@@ -146,11 +147,35 @@ class _Blocks:
         row = first + len(given) + np.arange(len(psi_x))[:, None]
         self.equalities.add(row, self.state(j, self.count), psi_x)
 
-    def constraints(self, g_x: Array) -> None:
-        """Gradients at nodes from 1 on, shape (h, n, N)."""
-        j, node = np.arange(self.n)[None, :, None], np.arange(1, self.count + 1)
+    def constraints(self, g_x: Array, g_u: Array, holding: NDArray[np.bool_]) -> None:
+        """Gradients, shapes (h, n, N) and (h, m, N), at nodes from 1 on, or at midpoints where they hold a control."""
+        j, c, node = np.arange(self.n)[None, :, None], np.arange(self.m)[None, :, None], np.arange(1, self.count + 1)
         row = np.arange(len(g_x))[:, None, None] * self.count + node - 1
-        self.inequalities.add(row, self.state(j, node), g_x)
+        at_nodes, between = np.flatnonzero(~holding), np.flatnonzero(holding)
+        self.inequalities.add(row[at_nodes], self.state(j, node), g_x[at_nodes])
+        self.inequalities.add(row[between], self.state(j, node), g_x[between] / 2)
+        self.inequalities.add(row[between][..., 1:], self.state(j, node[:-1]), g_x[between][..., 1:] / 2)
+        self.inequalities.add(row[between], self.control(c, node - 1), g_u[between])
+
+
+def constraint_slopes(program: Program, at: Point) -> tuple[Array, Array]:
+    """Gradients of constraints by states and controls, shapes (h, n, N) and (h, m, N)."""
+    t, x = program.times(at.duration, middle=False), at.x[:, 1:]
+    by_x, holding = gradients(program.instance, t, x, at.u), program.holding[:, None, None]
+    by_u = np.zeros((len(holding), len(at.u), program.intervals))
+    if holding.any():
+        t, x = program.times(at.duration, middle=True), middles(at.x)
+        by_x = np.where(holding, gradients(program.instance, t, x, at.u), by_x)
+        by_u = np.where(holding, effects(program.instance, t, x), by_u)
+    return by_x * program.kept[:, None], by_u * program.kept[:, None]
+
+
+def rooms(program: Program, at: Point) -> Array:
+    """What each constraint is measured by, shape (h, 1): itself or, where these are larger, its terms."""
+    g_x, g_u = constraint_slopes(program, at)
+    terms = (np.abs(g_x) * np.abs(at.x[:, 1:])).sum(axis=1) + (np.abs(g_u) * np.abs(at.u)).sum(axis=1)
+    found = np.maximum(np.abs(program.constraints(at)), terms).max(axis=1, keepdims=True)
+    return np.where(found > 0.0, found, 1.0)
 
 
 def _forces(program: Program, t: Array, x: Array, u: Array, y: Array) -> tuple[Array, Array]:
@@ -172,17 +197,28 @@ def _second(program: Program, t: Array, x: Array, u: Array, y: Array) -> Array:
     return (found + found.swapaxes(0, 1)) / 2
 
 
-def _constraint_curvature(program: Program, at: Point) -> Array:
-    """Second derivatives of the constraints with their multipliers, shape (n, n, N)."""
-    n, t = len(at.x), program.times(at.duration, middle=False)
-    found = np.empty((n, n, len(t)))
-    for j in range(n):
-        moved = at.x[:, 1:].astype(complex)
-        moved[j] += 1j * COMPLEX_STEP
-        g_x = np.asarray(program.instance.model.path_gradient_batch(t, moved, program.p))
-        g_x = np.broadcast_to(g_x.reshape(-1, n, g_x.shape[-1]), (len(at.z), n, len(t)))
-        found[:, j] = np.imag((g_x * (at.z * program.kept)[:, None]).sum(axis=0)) / COMPLEX_STEP
-    return (found + found.swapaxes(0, 1)) / 2
+def _constraint_curvature(program: Program, at: Point) -> tuple[Array, Array]:
+    """Second derivatives of constraints with their multipliers: at nodes (n, n, N), at midpoints (n + m, n + m, N)."""
+    n, m, one, weights = len(at.x), len(at.u), program.instance, (at.z * program.kept)[:, None]
+    curved, held = np.zeros((n, n, program.intervals)), np.zeros((n + m, n + m, program.intervals))
+    nodes, between = (program.times(at.duration, middle) for middle in (False, True))
+    own, holding = weights[~program.holding], weights[program.holding]
+    for j in range(n if len(own) else 0):
+        by_x = gradients(one, nodes, _moved(at.x[:, 1:], j), at.u)[~program.holding]
+        curved[:, j] = np.imag((by_x * own).sum(axis=0)) / COMPLEX_STEP
+    for j in range(n if len(holding) else 0):
+        x = _moved(middles(at.x), j)
+        by_x, by_u = (f[program.holding] for f in (gradients(one, between, x, at.u), effects(one, between, x)))
+        held[:n, j] = np.imag((by_x * holding).sum(axis=0)) / COMPLEX_STEP
+        held[n:, j] = held[j, n:] = np.imag((by_u * holding).sum(axis=0)) / COMPLEX_STEP
+    return (curved + curved.swapaxes(0, 1)) / 2, (held + held.swapaxes(0, 1)) / 2
+
+
+def _moved(x: Array, component: int) -> NDArray[Any]:
+    """By a complex step in one component."""
+    moved = x.astype(complex)
+    moved[component] += 1j * COMPLEX_STEP
+    return moved
 
 
 def _by_duration(program: Program, at: Point, blocks: _Blocks) -> float:

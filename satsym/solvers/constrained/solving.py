@@ -10,10 +10,11 @@ from functools import partial
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.control_set import bound_names
 from satsym.instance import Instance
 from satsym.solution import Event, Progress, Solution
 from satsym.solvers import iteration, two_point
-from satsym.solvers.constrained.arcs import Arcs
+from satsym.solvers.constrained.arcs import Arcs, control
 from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.constrained.feasibility import impossible, refuse
 from satsym.solvers.constrained.interior_point import Path, regularised
@@ -91,6 +92,18 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         nothing = iteration.unsolved(instance, METHOD, time.perf_counter() - began)
         return replace(nothing, status=status, message=found.message, history=relaxed.history)
     return _answered(instance, found, relaxed, time.perf_counter() - began)
+
+
+def cheaper(solution: Solution, deadline: float) -> Solution | None:
+    """The extremal to which paths about an answer without boundary arcs lead; ``None`` where none is cheaper."""
+    began = time.perf_counter()
+    if began >= deadline or convex(solution.instance):
+        return None
+    with np.errstate(all="ignore"):
+        found = tried(partial(_best, solution.instance, solution, watched(solution.instance, None)[0]))
+    if not isinstance(found, Arcs) or not found.cost() < solution.objective:
+        return None
+    return _answered(solution.instance, found, solution, time.perf_counter() - began)
 
 
 def _best(instance: Instance, relaxed: Solution, limits: Limits) -> Arcs | Stopped:
@@ -205,13 +218,17 @@ def _answered(instance: Instance, arcs: Arcs, relaxed: Solution, wall_s: float) 
         z[:, 0], z[:, -1] = arcs.node(arc, 0), arcs.node(arc, -1)
         parts.append((np.concatenate([[a], inside, [b]]), z))
     times, z = np.concatenate([t for t, _ in parts]), np.concatenate([v for _, v in parts], axis=1)
-    u = instance.model.control_law_batch(times, z[:n], z[n:], instance.parameters, instance.control_set.arguments)
+    u = np.concatenate(
+        [control(instance, k, t, v) for k, (t, v) in zip(arcs.structure.arcs, parts, strict=True)], axis=1
+    )
     status = Status.CONVERGED if instance.model.in_domain(z[:n]) else Status.LEFT_DOMAIN
     names = [one.name for one in instance.model.spec.path_constraints]
     events = tuple(
         Event(one.event.value, names[one.constraint], float(t))
         for one, t in zip(arcs.junctions, arcs.times[1:-1], strict=True)
     )
+    if arcs.structure.starts:
+        events = (Event("entry", names[arcs.structure.contacts[0].constraint], instance.t0), *events)
     if arcs.structure.ends and arcs.structure.contacts[-1].touches:
         events += (Event("touch", names[arcs.structure.contacts[-1].constraint], float(arcs.end)),)
     lasting = ", ".join(f"{names[c.constraint]} {c.end - c.start:.4g} long" for c in contacts(arcs) if not c.touches)
@@ -224,9 +241,12 @@ def _answered(instance: Instance, arcs: Arcs, relaxed: Solution, wall_s: float) 
         objective=arcs.cost(),
         times=times,
         x=z[:n],
-        u=np.broadcast_to(u, (len(instance.model.spec.controls), len(times))).copy(),
+        u=u,
         lam=z[n:],
-        switching_times=tuple(() for _ in instance.model.spec.controls),
+        switching_times=tuple(
+            tuple(one.t for one in events if one.name in bounds and instance.t0 < one.t)
+            for bounds in bound_names(instance.model.spec)
+        ),
         iterations=len(relaxed.history),
         history=relaxed.history,
         wall_s=wall_s,

@@ -66,8 +66,7 @@ class Structure:
 
     def junctions(self, instance: Instance) -> list[Junction]:
         """Where arcs meet."""
-        orders = [one.order for one in instance.model.spec.path_constraints]
-        found = []
+        orders, found = [one.order for one in instance.model.spec.path_constraints], list[Junction]()
         for k, one in enumerate(self.contacts):
             jumps = one.jumps if orders[one.constraint] > 1 else (None, None)
             if one.touches and self.ends and k == len(self.contacts) - 1:
@@ -77,51 +76,56 @@ class Structure:
                 continue
             if not (k == 0 and self.starts):
                 found.append(Junction(Event.ENTRY, one.constraint, one.start, jumps[0]))
-            if not (k == len(self.contacts) - 1 and self.ends):
+            if not (k == len(self.contacts) - 1 and self.ends) and not self.joined(k):
                 found.append(Junction(Event.EXIT, one.constraint, one.end, jumps[1]))
         return found
+
+    def joined(self, contact: int) -> bool:
+        """Whether the next contact begins where this one ends: from one boundary directly to another."""
+        return contact + 1 < len(self.contacts) and self.contacts[contact].end == self.contacts[contact + 1].start
 
     @property
     def arcs(self) -> list[int]:
         """The constraint on whose boundary each arc runs, or that none does."""
         found = [] if self.starts else [FREE]
-        for one in self.contacts:
-            found += [FREE] if one.touches else [one.constraint, FREE]
+        for k, one in enumerate(self.contacts):
+            found += [FREE] if one.touches else [one.constraint] if self.joined(k) else [one.constraint, FREE]
         return found[:-1] if self.ends else found
 
     def name(self, instance: Instance) -> str:
         """For messages: ``free, wall, free``; touch points in brackets."""
         spec = instance.model.spec.path_constraints
         words = [] if self.starts else ["free"]
-        for one in self.contacts:
+        for k, one in enumerate(self.contacts):
             name = spec[one.constraint].name
-            words += [f"[{name}]" if one.touches else name, "free"]
+            words += [f"[{name}]" if one.touches else name, *([] if self.joined(k) else ["free"])]
         return ", ".join(words[:-1] if self.ends else words)
 
     @property
     def key(self) -> tuple[object, ...]:
         """What two of them have in common that differ in times only."""
-        return (self.starts, self.ends, *((one.constraint, one.touches) for one in self.contacts))
+        contacts = ((one.constraint, one.touches, self.joined(k)) for k, one in enumerate(self.contacts))
+        return (self.starts, self.ends, *contacts)
 
 
 def stated_arcs(solution: Solution) -> list[int]:
     """The constraint on whose boundary each arc between events runs, or that none does."""
     names = [one.name for one in solution.instance.model.spec.path_constraints]
-    events = within(solution)
-    first = names.index(events[0].name) if events and events[0].kind == "exit" else FREE
-    found = [first]
-    for one in events:
+    begun = [one.name for one in solution.events if one.t <= solution.times[0]]
+    found = [names.index(begun[0]) if begun else FREE]
+    for one in within(solution):
         found.append(names.index(one.name) if one.kind == "entry" else FREE)
     return found
 
 
 def within(solution: Solution) -> tuple[Happening, ...]:
-    """The events before the end, where arcs meet."""
-    return tuple(one for one in solution.events if one.t < solution.times[-1])
+    """The events between start and end, where arcs meet."""
+    return tuple(one for one in solution.events if solution.times[0] < one.t < solution.times[-1])
 
 
 def pressing(solution: Solution) -> int:
-    """The constraint that may push at the end: that of the last arc, or that is touched there; or none."""
+    """The constraint on states that may push at the end: that of the last arc, or that is touched there; or none."""
     names = [one.name for one in solution.instance.model.spec.path_constraints]
-    last = solution.events[-1:]
-    return names.index(last[0].name) if last and last != within(solution)[-1:] else stated_arcs(solution)[-1]
+    last = [one for one in solution.events if one.t >= solution.times[-1]]
+    found = names.index(last[0].name) if last else stated_arcs(solution)[-1]
+    return FREE if found != FREE and solution.instance.model.spec.path_constraints[found].order == 0 else found

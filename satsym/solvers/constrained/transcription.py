@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.collocation.scaling import final_argument
+from satsym.solvers.constrained.arcs import gradient, values
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +33,8 @@ class Point:
     """Of the conditions at the end."""
     s: Array
     z: Array
-    """Slacks of the constraints at the nodes after the first, and their multipliers, shape (h, N)."""
+    """Slacks of the constraints, and their multipliers, shape (h, N): at the nodes after the first, of constraints that
+    hold a control at midpoints."""
 
     def moved(self, dw: Array, dy: Array, dv: Array, length: float) -> Point:
         """After a step in states, controls and duration, shapes as those of the program's vector."""
@@ -52,12 +54,26 @@ class Program:
 
     @cached_property
     def kept(self) -> Array:
-        """Which constraints are looked at, shape (h, N): not at an end where given states decide them."""
-        model, (x, given) = self.instance.model, self._target()
-        gradient = np.array(model.path_gradient(self.final_time(self.guessed), x, self.p)).reshape(-1, len(x))
-        table = np.ones((len(gradient), self.intervals))
-        table[~(np.abs(gradient) * (given == 0.0)).any(axis=1), -1] = 0.0
+        """Which constraints are looked at, shape (h, N).
+
+        Not at an end where given states decide them, and no bound that is infinite.
+        """
+        (x, given), end = self._target(), np.array([self.final_time(self.guessed)])
+        table = np.ones((len(self.holding), self.intervals))
+        for k, holds in enumerate(self.holding):
+            pushed = np.abs(gradient(self.instance, k, end, np.array(x)[:, None]))[:, 0]
+            if not (holds or (pushed * (given == 0.0)).any()):
+                table[k, -1] = 0.0
+        u = np.zeros((len(self.instance.model.spec.controls), 1))
+        bounds = self.instance.control_set.arguments
+        found = self.instance.model.path_constraints_batch(end, np.array(x)[:, None], u, self.p, bounds)
+        table[np.isinf(np.broadcast_to(np.asarray(found), (len(table), 1))[:, 0])] = 0.0
         return table
+
+    @cached_property
+    def holding(self) -> NDArray[np.bool_]:
+        """Which constraints hold a control, shape (h,)."""
+        return np.array([one.order == 0 for one in self.instance.model.spec.path_constraints])
 
     @cached_property
     def guessed(self) -> float:
@@ -121,10 +137,13 @@ class Program:
         return np.asarray(at.x[:, :-1] + h * f - at.x[:, 1:])
 
     def constraints(self, at: Point, duration: complex | None = None) -> Array:
-        """Constraints at the nodes after the first, shape (h, N)."""
-        t = self.times(at.duration if duration is None else duration, middle=False)
-        found = np.asarray(self.instance.model.path_constraints_batch(t, at.x[:, 1:], self.p))
-        return np.broadcast_to(found, (len(found), self.intervals)) * self.kept
+        """Constraints at the nodes after the first, or at midpoints where they hold a control, shape (h, N)."""
+        one, lasting = self.instance, at.duration if duration is None else duration
+        found = values(one, self.times(lasting, middle=False), at.x[:, 1:], at.u)
+        if self.holding.any():
+            held = values(one, self.times(lasting, middle=True), middles(at.x), at.u)
+            found = np.where(self.holding[:, None], held, found)
+        return np.asarray(found * self.kept)
 
     def ends(self, at: Point, duration: complex | None = None) -> Array:
         """Conditions at the end: given states, then terminal constraints."""

@@ -1,10 +1,11 @@
-"""By how much a trajectory violates path constraints, between its nodes as well."""
+"""By how much a trajectory without boundary arcs violates path constraints, between its nodes as well."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from satsym.solution import Solution
+from satsym.solvers.constrained.arcs import sizes, values
 
 BETWEEN = 8
 """Places between two nodes."""
@@ -13,13 +14,17 @@ BETWEEN = 8
 def violation(solution: Solution) -> float:
     """Largest violation of a path constraint at the nodes and between them, relative to its size along the way.
 
-    Between two nodes a constraint is followed as the cubic with its values and rates at both.
+    Between two nodes states and costates are followed as the cubics with their values and rates at both.
     """
-    model, p, t = solution.instance.model, solution.instance.parameters, solution.times
-    g = np.asarray(model.path_constraints_batch(t, solution.x, p))
-    rates = np.asarray(model.path_rates_batch(t, solution.x, solution.u, p)).reshape(len(g), 2, -1)[:, 0]
-    h, found = np.diff(t), [g.max(axis=1)]
+    instance, n, t = solution.instance, len(solution.x), solution.times
+    model, p, bounds = instance.model, instance.parameters, instance.control_set.arguments
+    z, h, found = np.concatenate([solution.x, solution.lam]), np.diff(t), [values(instance, t, solution.x, solution.u)]
+    rates = np.asarray(model.canonical_batch(t, z[:n], z[n:], p, bounds))
     for s in np.linspace(0.0, 1.0, BETWEEN + 2)[1:-1]:
-        parts = (1 + 2 * s) * (1 - s) ** 2 * g[:, :-1] + s * s * (3 - 2 * s) * g[:, 1:]
-        found.append((parts + h * (s * (1 - s) ** 2 * rates[:, :-1] - s * s * (1 - s) * rates[:, 1:])).max(axis=1))
-    return float((np.max(found, axis=0) / np.maximum(np.abs(g).max(axis=1), 1e-300)).max())
+        between = (1 + 2 * s) * (1 - s) ** 2 * z[:, :-1] + s * s * (3 - 2 * s) * z[:, 1:]
+        between += h * (s * (1 - s) ** 2 * rates[:, :-1] - s * s * (1 - s) * rates[:, 1:])
+        times, x = t[:-1] + s * h, between[:n]
+        u = np.asarray(model.control_law_batch(times, x, between[n:], p, bounds))
+        found.append(values(instance, times, x, np.broadcast_to(u, (len(solution.u), len(times)))))
+    g, room = np.concatenate(found, axis=1), sizes(instance, t, solution.x, solution.u)
+    return float((g.max(axis=1) / np.maximum(room, np.abs(g).max(axis=1))).max())

@@ -50,10 +50,10 @@ class Constraint:
 
 def constraint_order(so_far: Derivation) -> Step | None:
     """Rates of each constraint along the motion, up to the first in which a control appears."""
-    if not _problem(so_far).path_constraints:
+    if not (stated := pn.of_states(problem_of(so_far))):
         return None
-    motion, equations, checks = _motion(so_far), list[Equation](), []
-    for found in (_differentiated(so_far, name) for name in _problem(so_far).path_constraints):
+    motion, equations, checks = motion_of(so_far), list[Equation](), []
+    for found in (_differentiated(so_far, name) for name in stated):
         equations += [
             Equation(pn.entry(found.name, k), pn.rate(found.name, k), rate) for k, rate in enumerate(found.rates)
         ]
@@ -65,12 +65,12 @@ def boundary_control(so_far: Derivation) -> Step | None:
     """The control that minimises H among those that keep g^(q) = 0."""
     if STEP not in so_far:
         return None
-    problem, controls = _problem(so_far), symbols_of(so_far.model.controls)
+    problem, controls = problem_of(so_far), symbols_of(so_far.model.controls)
     h, equations, checks = so_far.equation("hamiltonian.H").rhs, list[Equation](), []
     free = sp.Matrix([so_far.equation(f"stationarity.{u.name}_hat").rhs for u in controls])
     weight = sp.hessian(h, controls).applyfunc(sp.simplify)
     for found in constraints(so_far):
-        effect, rest = _affine(found, controls)
+        effect, rest = affine(so_far, found, controls)
         turned = weight.LUsolve(effect)
         missed = (effect.T * free)[0] + rest
         laws = [tidy(simplified(law)) for law in free - turned * missed / (effect.T * turned)[0]]
@@ -90,7 +90,7 @@ def constraint_multiplier(so_far: Derivation) -> Step | None:
     """The multiplier with which the control that minimises H keeps to the boundary, and what vanishes there."""
     if STEP not in so_far:
         return None
-    equations, checks = list[Equation](), []
+    equations, checks, law = list[Equation](), [], free_law(so_far)
     for found in constraints(so_far):
         vanishing = _vanishing(so_far, found)
         moving = _canonical(so_far, found)
@@ -103,8 +103,11 @@ def constraint_multiplier(so_far: Derivation) -> Step | None:
         equations.append(Equation(f"{found.name}_eta", eta, value))
         chain = (found.rates[-2], *vanishing, sp.Integer(0))
         checks.append(_rates_along(chain, {x: r.xreplace({eta: value}) for x, r in moving.items()}))
-        checks.append(_adjoined(so_far, found, [moving[lam] for lam in costates(so_far)]))
-    rule, sources = worded("keep the law on the boundary", _problem(so_far)), (STEP, "control_law", "costate_equations")
+        checks.append(adjoined(so_far, found, [moving[lam] for lam in costates(so_far)], law))
+    rule, sources = (
+        worded("keep the law on the boundary", problem_of(so_far)),
+        (STEP, "control_law", "costate_equations"),
+    )
     return Step("constraint_multiplier", rule, tuple(equations), sources, tuple(checks))
 
 
@@ -113,18 +116,18 @@ def constrained_costates(so_far: Derivation) -> Step | None:
     if STEP not in so_far:
         return None
     states, equations, drifts, checks = symbols_of(so_far.model.states), list[Equation](), [], []
-    law = _law(so_far)
+    law = free_law(so_far)
     for found in constraints(so_far):
         moving = _canonical(so_far, found)
         equations += [Equation(f"{found.name}_{lam.name}", n.rate_of(lam), moving[lam]) for lam in costates(so_far)]
         h = so_far.equation("hamiltonian.H").rhs.xreplace(law)
         g, eta = found.rates[0], pn.multiplier(found.name)
-        shift = sign(_problem(so_far)) * eta * sum(sp.diff(g, x) * moving[x] for x in states)
+        shift = sign(problem_of(so_far)) * eta * sum(sp.diff(g, x) * moving[x] for x in states)
         change = sum(sp.diff(h, v) * rate for v, rate in moving.items())
         drifts.append(change + shift)
-        checks.append(_adjoined(so_far, found, [moving[lam] for lam in costates(so_far)]))
+        checks.append(adjoined(so_far, found, [moving[lam] for lam in costates(so_far)], law))
     checks.append(identity("H changes on the boundary with the constraint", drifts))
-    rule = worded("adjoin the constraint", _problem(so_far))
+    rule = worded("adjoin the constraint", problem_of(so_far))
     return Step("constrained_costates", rule, tuple(equations), (STEP, "costate_equations"), tuple(checks))
 
 
@@ -136,8 +139,8 @@ def junction_conditions(so_far: Derivation) -> Step | None:
     """
     if STEP not in so_far:
         return None
-    problem, states, lam = _problem(so_far), symbols_of(so_far.model.states), costates(so_far)
-    law, equations, kept = _law(so_far), list[Equation](), []
+    problem, states, lam = problem_of(so_far), symbols_of(so_far.model.states), costates(so_far)
+    law, equations, kept = free_law(so_far), list[Equation](), []
     h = so_far.equation("hamiltonian.H").rhs.xreplace(law)
     for found in constraints(so_far):
         g, zeta = found.rates[0], pn.jump(found.name)
@@ -169,41 +172,20 @@ def junction_conditions(so_far: Derivation) -> Step | None:
 
 
 def constraints(so_far: Derivation) -> list[Constraint]:
-    """All of them, with their rates as the step has them."""
+    """All on states alone, with their rates as the step has them; none where there are none."""
+    if STEP not in so_far:
+        return []
     stated = {e.name: e.rhs for e in so_far.step(STEP).equations}
     found = []
-    for name in _problem(so_far).path_constraints:
+    for name in pn.of_states(problem_of(so_far)):
         orders = [k for k in range(HIGHEST + 1) if pn.entry(name, k) in stated]
         found.append(Constraint(name, tuple(stated[pn.entry(name, k)] for k in orders)))
     return found
 
 
-def linear_quadratic(so_far: Derivation) -> bool:
-    """Whether the motion is linear in states and controls, costs are quadratic and constraints linear or quadratic.
-
-    What is left to make the problem convex are signs of matrices, which depend on the parameters.
-    """
-    problem, states = _problem(so_far), symbols_of(so_far.model.states)
-    moving = (*states, *symbols_of(so_far.model.controls))
-
-    def settled(expressions: list[Any], order: int) -> bool:
-        """Whether derivatives of this order are free of states and controls."""
-        table = [sp.sympify(e) for e in expressions]
-        for _ in range(order):
-            table = [sp.diff(e, v) for e in table for v in moving]
-        return not any(sp.simplify(e).free_symbols & set(moving) for e in table)
-
-    return (
-        settled(list(so_far.rhs("first_order")), 1)
-        and settled(list(problem.terminal_constraints), 1)
-        and settled([problem.running_cost, problem.terminal_cost], 2)
-        and settled([found.rates[0] for found in constraints(so_far)], 2)
-    )
-
-
 def _differentiated(so_far: Derivation, name: str) -> Constraint:
-    problem = _problem(so_far)
-    motion, controls = _motion(so_far), set(symbols_of(so_far.model.controls))
+    problem = problem_of(so_far)
+    motion, controls = motion_of(so_far), set(symbols_of(so_far.model.controls))
     what = f"{so_far.name}: path_constraints {name}"
     rates = [sp.sympify(problem.path_constraints[name])]
     for _ in range(HIGHEST):
@@ -226,19 +208,19 @@ def _uncontrolled(rate: sp.Expr, motion: Mapping[sp.Symbol, sp.Expr], controls: 
     return True
 
 
-def _affine(found: Constraint, controls: tuple[sp.Symbol, ...]) -> tuple[sp.Matrix, sp.Expr]:
+def affine(so_far: Derivation, found: Constraint, controls: tuple[sp.Symbol, ...]) -> tuple[sp.Matrix, sp.Expr]:
     """What multiplies the controls in g^(q), and the rest."""
-    effect = sp.Matrix(gradient(found.rates[-1], controls))
+    effect = sp.Matrix(gradient(found.rates[-1], controls)).applyfunc(simplified)
     if any(e.free_symbols & set(controls) for e in effect):
         raise DerivationError(
-            f"path_constraints {found.name}: the controls enter its rate otherwise than linearly, "
-            "for which the boundary control is not derived",
+            f"{so_far.name}: path_constraints {found.name}: the controls enter {'its rate' if found.order else 'it'} "
+            "otherwise than linearly, for which the boundary control is not derived",
             ("path_constraints",),
         )
     return effect, found.rates[-1].xreplace(dict.fromkeys(controls, sp.Integer(0)))
 
 
-def _law(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
+def free_law(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
     """The control that minimises H, without bounds."""
     controls = symbols_of(so_far.model.controls)
     return {u: so_far.equation(f"stationarity.{u.name}_hat").rhs for u in controls}
@@ -246,7 +228,7 @@ def _law(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
 
 def _vanishing(so_far: Derivation, found: Constraint) -> tuple[sp.Expr, ...]:
     """What must vanish on the boundary besides g and its rates: g^(q) under the law, and its first q - 1 rates."""
-    vanishing = [tidy(simplified(found.rates[-1].xreplace(_law(so_far))))]
+    vanishing = [tidy(simplified(found.rates[-1].xreplace(free_law(so_far))))]
     moving = _canonical(so_far, found)
     for _ in range(found.order - 1):
         vanishing.append(tidy(simplified(total_derivative(vanishing[-1], moving))))
@@ -255,16 +237,17 @@ def _vanishing(so_far: Derivation, found: Constraint) -> tuple[sp.Expr, ...]:
 
 def _canonical(so_far: Derivation, found: Constraint) -> dict[sp.Symbol, sp.Expr]:
     """Rates of states and costates on the boundary, the multiplier being a symbol."""
-    states, law = symbols_of(so_far.model.states), _law(so_far)
-    force = -sign(_problem(so_far)) * pn.multiplier(found.name)
+    states, law = symbols_of(so_far.model.states), free_law(so_far)
+    force = -sign(problem_of(so_far)) * pn.multiplier(found.name)
     rates = so_far.rhs("costate_equations")
-    moving = {x: rate.xreplace(law) for x, rate in _motion(so_far).items()}
+    moving = {x: rate.xreplace(law) for x, rate in motion_of(so_far).items()}
     for x, lam, rate in zip(states, costates(so_far), rates, strict=True):
         moving[lam] = tidy(rate.xreplace(law) + force * sp.diff(found.rates[0], x))
     return moving
 
 
-def _motion(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
+def motion_of(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
+    """The rate of each state."""
     return dict(zip(symbols_of(so_far.model.states), so_far.rhs("first_order"), strict=True))
 
 
@@ -284,12 +267,13 @@ def _rates_along(rates: tuple[sp.Expr, ...], motion: Mapping[sp.Symbol, sp.Expr]
     return compare("numeric rates along the motion", symbols, sides)
 
 
-def _adjoined(so_far: Derivation, found: Constraint, rates: list[sp.Expr]) -> Check:
-    """Costate rates against numeric derivatives of H with the constraint adjoined, whose multiplier is positive."""
-    states, law = symbols_of(so_far.model.states), _law(so_far)
+def adjoined(so_far: Derivation, found: Constraint, rates: list[sp.Expr], law: Mapping[sp.Symbol, sp.Expr]) -> Check:
+    """Costate rates under a law against numeric derivatives of H with the constraint and its positive multiplier."""
+    states = symbols_of(so_far.model.states)
+    rates = [rate.xreplace(dict(law)) for rate in rates]
     penalty = pn.multiplier(found.name) * found.rates[0]
     h = so_far.equation("hamiltonian.H").rhs
-    whole = h + penalty if _problem(so_far).convention == "minimum" else h - penalty
+    whole = h + penalty if problem_of(so_far).convention == "minimum" else h - penalty
     value, controls, derived = numeric([whole]), numeric(list(law.values())), numeric(rates)
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
@@ -303,7 +287,7 @@ def _adjoined(so_far: Derivation, found: Constraint, rates: list[sp.Expr]) -> Ch
 def _cheapest_on_boundary(so_far: Derivation, found: Constraint, laws: list[sp.Expr], direction: int) -> Check:
     """H against that of other controls that keep g^(q) = 0: the law moved, and brought back along its effect."""
     controls, h = symbols_of(so_far.model.controls), so_far.equation("hamiltonian.H").rhs
-    effect, _ = _affine(found, controls)
+    effect, _ = affine(so_far, found, controls)
     value, chosen, push = numeric([h]), numeric(laws), numeric(list(effect))
 
     def margins(point: Point, rng: random.Random) -> list[Any]:
@@ -318,9 +302,10 @@ def _cheapest_on_boundary(so_far: Derivation, found: Constraint, laws: list[sp.E
         return found
 
     symbols = h.free_symbols.union(*(e.free_symbols for e in (*laws, *effect)))
-    return never_below(worded("cheapest on the boundary", _problem(so_far)), symbols, margins)
+    return never_below(worded("cheapest on the boundary", problem_of(so_far)), symbols, margins)
 
 
-def _problem(so_far: Derivation) -> Problem:
+def problem_of(so_far: Derivation) -> Problem:
+    """The problem, which there is."""
     assert so_far.problem is not None
     return so_far.problem

@@ -7,6 +7,37 @@ import sympy as sp
 from satsym.symbolic.dimension_algebra import Dimension, over
 from satsym.symbolic.model import Problem, Requirement, symbols_of
 from satsym.symbolic.notation import HAMILTONIAN, costate_of
+from satsym.symbolic.principle import control_sets
+
+
+def of_states(problem: Problem) -> dict[str, sp.Expr]:
+    """What is stated on states alone."""
+    return {name: g for name, g in _declared(problem).items() if not _holds_control(problem, g)}
+
+
+def mixed(problem: Problem) -> dict[str, sp.Expr]:
+    """What holds a control; beside path constraints the bounds of a box are among these, by their symbols."""
+    found = {name: g for name, g in _declared(problem).items() if _holds_control(problem, g)}
+    return found | {b.name: h for b, h in _bounds(problem).items()}
+
+
+def _declared(problem: Problem) -> dict[str, sp.Expr]:
+    return {name: sp.sympify(g) for name, g in problem.path_constraints.items()}
+
+
+def _holds_control(problem: Problem, g: sp.Expr) -> bool:
+    return bool(g.free_symbols & set(symbols_of(problem.model.controls)))
+
+
+def _bounds(problem: Problem) -> dict[sp.Symbol, sp.Expr]:
+    if not problem.path_constraints or problem.control_set != "box":
+        return {}
+    controls = symbols_of(problem.model.controls)
+    limits = symbols_of(control_sets.bounds("box", problem.model.controls))
+    low, high = limits[: len(controls)], limits[len(controls) :]
+    found = {b: b - u for b, u in zip(low, controls, strict=True)}
+    return found | {b: u - b for b, u in zip(high, controls, strict=True)}
+
 
 RATES = 2
 """Rates of a constraint that have symbols."""
@@ -60,8 +91,9 @@ def names(problem: Problem) -> dict[str, str]:
     for v in problem.model.states:
         lam = rf"\lambda_{{{v.latex}}}"
         found[change(costate_of(symbols_of((v,))[0])).name] = rf"{lam}(t^-) - {lam}(t^+)"
-    several = len(problem.path_constraints) > 1
-    for k, name in enumerate(problem.path_constraints, start=1):
+    every = of_states(problem) | mixed(problem)
+    for k, name in enumerate(every, start=1):
+        several = len(every) > 1
         foot = f"_{{{k}}}" if several else ""
         found |= {rate(name, order).name: f"{dots}h{foot}" for order, dots in enumerate(("", r"\dot ", r"\ddot "))}
         found |= {vanishing(name, order).name: rf"{dots}\varphi{foot}" for order, dots in enumerate(("", r"\dot"))}
@@ -85,7 +117,7 @@ def declare(
     second, total
         Of time and of the cost.
     """
-    for name, stated in problem.path_constraints.items():
+    for name, stated in (of_states(problem) | mixed(problem)).items():
         found = require(f"the path constraint {name}", stated)
         known[rate(name, 0).name] = found
         known[rate(name, 1).name] = over(found, second)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from satsym.solution import Check, Competitors, Kind, Solution
+from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.constrained.solving import others
 
 MARGIN = 1e-9
@@ -23,7 +24,9 @@ class Comparison:
 
 
 def compared(solution: Solution, seed: int) -> Comparison:
-    """Hold a solution against extremals from paths that are drawn."""
+    """Hold a solution against extremals from paths that are drawn; a convex problem has no others."""
+    if convex(solution.instance):
+        return Comparison((), (), ())
     tried, costs = others(solution.instance, solution.objective, seed + 1)
     found = Competitors(Kind.ARCS, tried, len(costs), min(costs, default=float("nan")))
     if not costs:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from satsym.arrays import Array
@@ -12,8 +14,9 @@ from satsym.solvers.certificate.constrained.comparison import compared as with_o
 from satsym.solvers.certificate.constrained.replay import Piece, Replay, replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
 from satsym.solvers.certificate.flow import FAINT, typical
-from satsym.solvers.constrained.arcs import values
+from satsym.solvers.constrained.arcs import control, holds_control, multipliers, sizes, values, vanishing
 from satsym.solvers.constrained.convexity import convex
+from satsym.solvers.constrained.equations import changing
 from satsym.solvers.constrained.structure import FREE, within
 from satsym.status import Verdict
 
@@ -26,8 +29,9 @@ VIOLATED, SIGN = 1e-9, 1e-9
 CURVED = 1e-7
 """Least curvature with the active arcs held, relative to that without costs but of the control."""
 
-STRICT = 1e-6
-"""Least share of the largest multiplier at which one is strictly positive."""
+STRICT, BESIDE = 1e-6, 1e-6
+"""Least share of the largest multiplier at which one is strictly positive, and share of an arc beside its ends within
+which nobody looks."""
 
 
 def certify(solution: Solution, seed: int = 0, compared: bool = True) -> Certificate:
@@ -64,9 +68,13 @@ def certify(solution: Solution, seed: int = 0, compared: bool = True) -> Certifi
 def _first_order(solution: Solution, again: Replay) -> list[Check]:
     flow = again.flow(solution)
     checks = [
-        Check(conditions.BOUNDARY, conditions.boundary_residual(solution, flow), RESIDUAL),
+        Check(
+            conditions.BOUNDARY,
+            conditions.boundary_residual(solution, flow, more=_more_at_end(solution, again)),
+            RESIDUAL,
+        ),
         Check(conditions.OF_FLOW, _defect(solution, again), DEFECT),
-        Check(conditions.STATIONARITY, conditions.stationarity(solution), STATIONARY),
+        Check(conditions.STATIONARITY, _stationarity(solution, again), STATIONARY),
         Check("cost", conditions.off_cost(solution, flow), COST),
         Check("domain violation", float(not solution.instance.model.in_domain(flow.x)), 0.0),
         Check("path constraint violated", _violated(solution, again), VIOLATED),
@@ -82,10 +90,38 @@ def _first_order(solution: Solution, again: Replay) -> list[Check]:
 def _sufficient(solution: Solution, again: Replay) -> list[Check]:
     """Each is a deficit that must not be positive."""
     least, most = _least_multiplier(solution, again)
+    strict = least > STRICT * most and min(_pushed(solution, again, tent=True), default=np.inf) > STRICT
     return [
-        Check("multiplier vanishes on a boundary", float(not least > STRICT * most), 0.0),
+        Check("multiplier vanishes on a boundary", float(not strict), 0.0),
         Check("second variation with the active arcs fixed", float(not curvature(solution, again) > CURVED), 0.0),
     ]
+
+
+def _controls(solution: Solution, piece: Piece) -> tuple[Array, Array, Array]:
+    """Times, states and controls between the nodes of an arc."""
+    u = control(solution.instance, piece.constraint, piece.times, piece.dense)
+    return piece.times, piece.dense[: len(solution.x)], u
+
+
+def _stationarity(solution: Solution, again: Replay) -> float:
+    """Largest difference of the control from the one that minimises H and keeps what is active, relative."""
+    z = np.concatenate([solution.x, solution.lam])
+    parts = [control(solution.instance, p.constraint, solution.times[p.nodes], z[:, p.nodes]) for p in again.pieces]
+    law = np.concatenate(parts, axis=1)
+    size = max(float(np.abs(solution.u).max()), float(np.abs(law).max()))
+    return float(np.abs(law - solution.u).max() / size) if size > 0.0 else 0.0
+
+
+def _more_at_end(solution: Solution, again: Replay) -> float:
+    """H at the end under the control of the last arc less that under the law, which boundary residuals have in them."""
+    instance, model, n = solution.instance, solution.instance.model, len(solution.x)
+    t, z, p = solution.times[-1:], again.end[:, None], instance.parameters
+    law = model.control_law_batch(t, z[:n], z[n:], p, instance.control_set.arguments)
+    ours, other = (
+        float(np.asarray(model.hamiltonian_batch(t, z[:n], u, z[n:], p)).sum())
+        for u in (control(instance, again.pieces[-1].constraint, t, z), np.asarray(law))
+    )
+    return ours - other
 
 
 def _defect(solution: Solution, again: Replay) -> float:
@@ -96,36 +132,40 @@ def _defect(solution: Solution, again: Replay) -> float:
 
 def _sizes(solution: Solution, again: Replay) -> Array:
     """Of each constraint along the way."""
-    n = len(solution.x)
-    found = [np.abs(values(solution.instance, p.times, p.dense[:n])).max(axis=1) for p in again.pieces]
-    return np.maximum(np.max(found, axis=0), 1e-300)
+    return np.asarray(np.max([sizes(solution.instance, *_controls(solution, p)) for p in again.pieces], axis=0))
 
 
 def _violated(solution: Solution, again: Replay) -> float:
     """Largest value of a constraint along the flow, relative to its size."""
-    n = len(solution.x)
-    found = [values(solution.instance, p.times, p.dense[:n]).max(axis=1) for p in again.pieces]
+    found = [values(solution.instance, *_controls(solution, p)).max(axis=1) for p in again.pieces]
     return max(0.0, float((np.max(found, axis=0) / _sizes(solution, again)).max()))
 
 
 def _off_boundary(solution: Solution, again: Replay) -> float:
     """Largest distance from the boundary on its arcs, relative."""
-    n, sizes, worst = len(solution.x), _sizes(solution, again), 0.0
+    sizes, worst = _sizes(solution, again), 0.0
     for piece in again.pieces:
         if piece.constraint != FREE:
-            g = values(solution.instance, piece.times, piece.dense[:n])[piece.constraint]
+            g = values(solution.instance, *_controls(solution, piece))[piece.constraint]
             worst = max(worst, float(np.abs(g).max()) / sizes[piece.constraint])
     return float(worst)
 
 
 def _off_tangency(solution: Solution, again: Replay) -> float:
-    """Largest constraint, or its rate over the duration, at entries and touch points, relative to its size."""
+    """Largest constraint, or its rate over the duration, at entries and touch points, relative to its size.
+
+    Of one that holds a control what decides whether it is active, at entries and exits; itself where it follows
+    another directly.
+    """
     instance, n, sizes, worst = solution.instance, len(solution.x), _sizes(solution, again), 0.0
     lasting = float(solution.times[-1] - solution.times[0])
-    for event, piece in zip(solution.events, again.pieces, strict=False):
-        which = _number(solution, event.name)
-        x, t = piece.z[:n, -1:], piece.times[-1:]
-        found = [abs(float(values(instance, t, x)[which, 0]))]
+    met = [one for one in solution.events if one.t > solution.times[0]]
+    for event, piece in zip(met, again.pieces, strict=False):
+        which, t, z = _number(solution, event.name), piece.times[-1:], piece.z[:, -1:]
+        if holds_control(instance, which):
+            found = [abs(float(changing(instance, piece.constraint, which, t, z)[0, 0]))]
+        else:
+            found = [abs(float(values(instance, t, z[:n], control(instance, FREE, t, z))[which, 0]))]
         if instance.model.spec.path_constraints[which].order > 1 and event.t < solution.times[-1]:
             found.append(abs(_rates(solution, piece, -1)[which, 0]) * lasting)
         worst = max(worst, max(found) / sizes[which])
@@ -140,33 +180,54 @@ def _rates(solution: Solution, piece: Piece, place: int) -> Array:
     """First and second rates of all constraints at an end of an arc, shape (h, 2)."""
     instance, n = solution.instance, len(solution.x)
     t, z = np.array([piece.times[place]]), piece.z[:, [place]]
-    u = instance.model.control_law_batch(t, z[:n], z[n:], instance.parameters, instance.control_set.arguments)
+    u = control(instance, FREE, t, z)
     return np.asarray(instance.model.path_rates_batch(t, z[:n], u, instance.parameters)).reshape(-1, 2)
 
 
 def _multipliers(solution: Solution, again: Replay) -> list[Array]:
-    """eta along each arc on a boundary."""
-    n, found = len(solution.x), []
+    """eta along each arc on a boundary of a constraint on states alone."""
+    return [
+        multipliers(solution.instance, piece.times, piece.dense)[piece.constraint]
+        for piece in again.pieces
+        if piece.constraint != FREE and not holds_control(solution.instance, piece.constraint)
+    ]
+
+
+def _pushed(solution: Solution, again: Replay, tent: bool) -> list[float]:
+    """Least of what makes each constraint active that holds a control, on its arcs, relative to its size.
+
+    Parameters
+    ----------
+    tent
+        Whether it is related to the share of the arc since its entry, and until its exit, where it vanishes.
+    """
+    found, sizes, (begin, end) = list[float](), _sizes(solution, again), solution.times[[0, -1]]
     for piece in again.pieces:
-        if piece.constraint != FREE:
-            eta = solution.instance.model.path_multiplier_batch(
-                piece.times, piece.dense[:n], piece.dense[n:], solution.instance.parameters
-            )
-            found.append(np.broadcast_to(np.asarray(eta)[piece.constraint], piece.times.shape))
+        if not holds_control(solution.instance, piece.constraint):
+            continue
+        t, (a, b) = piece.times, piece.times[[0, -1]]
+        push = vanishing(solution.instance, piece.constraint, t, piece.dense)[0] / sizes[piece.constraint]
+        if tent:
+            share = np.minimum(t - a if a > begin else np.inf, b - t if b < end else np.inf) / (b - a)
+            push = (push / np.minimum(share, 1.0))[share > BESIDE]
+        found.append(float(push.min()))
     return found
 
 
 def _negative(solution: Solution, again: Replay) -> float:
     """Largest negative multiplier along an arc or at a junction, relative to the largest there is.
 
-    A touch point at which the constraint would rise on either side counts as one.
+    Of constraints that hold a control it is what makes them active, relative to their size.
     """
     least, most = _least_multiplier(solution, again)
-    return max(0.0, float(-least / most))
+    return max(0.0, float(-least / most), -min(_pushed(solution, again, tent=False), default=0.0))
 
 
 def _least_multiplier(solution: Solution, again: Replay) -> tuple[float, float]:
-    """The least multiplier, those at junctions over the duration, and the largest magnitude of any."""
+    """The least multiplier, those at junctions over the duration, and the largest magnitude of any.
+
+    Of constraints on states alone; infinite and one where none of these is ever active.
+    """
     lasting = float(solution.times[-1] - solution.times[0])
     jumping = [
         abs(jump) > 0.0 or solution.instance.model.spec.path_constraints[_number(solution, event.name)].order > 1
@@ -176,7 +237,7 @@ def _least_multiplier(solution: Solution, again: Replay) -> tuple[float, float]:
     jumps += [jump / lasting for jump in again.jumps[len(jumping) :]]
     along = [float(eta.min()) for eta in _multipliers(solution, again)]
     sizes = [float(np.abs(eta).max()) for eta in _multipliers(solution, again)]
-    return float(min([*jumps, *along], default=0.0)), float(max([*map(abs, jumps), *sizes, 1e-300]))
+    return float(min([*jumps, *along], default=np.inf)), float(max([*map(abs, jumps), *sizes], default=1.0)) or 1e-300
 
 
 def _drift(solution: Solution, again: Replay) -> float | None:
@@ -184,10 +245,11 @@ def _drift(solution: Solution, again: Replay) -> float | None:
     instance, n = solution.instance, len(solution.x)
     model, p, t = instance.model, instance.parameters, solution.times
     x, lam = again.z[:n], again.z[n:]
-    moving = np.imag(np.asarray(model.path_constraints_batch(t + 1e-30j, x, p))).any()
-    if not model.spec.autonomous or moving:
+    parts = [control(instance, one.constraint, t[one.nodes], again.z[:, one.nodes]) for one in again.pieces]
+    u = np.concatenate(parts, axis=1)
+    moving: Any = t + 1e-30j
+    if not model.spec.autonomous or np.imag(values(instance, moving, x, u)).any():
         return None
-    u = model.control_law_batch(t, x, lam, p, instance.control_set.arguments)
     h = np.broadcast_to(model.hamiltonian_batch(t, x, u, lam, p), t.shape)
     terms = np.abs(lam * model.dynamics_batch(t, x, u, p)).sum(axis=0).max()
     return float(np.abs(h - h[0]).max() / max(terms, np.abs(h).max(), 1e-300))

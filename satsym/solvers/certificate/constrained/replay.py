@@ -15,7 +15,7 @@ from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solvers.certificate.end_form import fixed_states
 from satsym.solvers.certificate.flow import FAINT, TOLERANCE, Flow, typical
-from satsym.solvers.constrained.arcs import field, gradient
+from satsym.solvers.constrained.arcs import control, field, gradient, holds_control
 from satsym.solvers.constrained.structure import FREE, pressing, stated_arcs, within
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import integrate, leap
@@ -82,7 +82,7 @@ def replay(solution: Solution) -> Replay | None:
                 jumps.append(zeta)
                 off = max(off, left)
                 which = _of_event(solution, k)
-                t = np.array([solution.events[k].t])
+                t = np.array([events[k].t])
                 value[n:] -= zeta * gradient(instance, which, t, value[:n, None])[:, 0]
     except FAILURES:
         return None
@@ -97,15 +97,17 @@ def replay(solution: Solution) -> Replay | None:
 
 def _of_event(solution: Solution, k: int) -> int:
     names = [one.name for one in solution.instance.model.spec.path_constraints]
-    return names.index(solution.events[k].name)
+    return names.index(within(solution)[k].name)
 
 
 def _jump(solution: Solution, event: int, node: int, sizes: Array) -> tuple[float, float]:
     """The multiplier of the solution's jump, and what of the jump it leaves; none where the order is one."""
     instance, n, which = solution.instance, len(solution.x), _of_event(solution, event)
     change = solution.lam[:, node] - solution.lam[:, node + 1]
+    if holds_control(instance, which):
+        return 0.0, float((np.abs(change) / sizes[n:]).max())
     g_x = gradient(instance, which, solution.times[node : node + 1], solution.x[:, node : node + 1])[:, 0]
-    lasts = instance.model.spec.path_constraints[which].order > 1 or solution.events[event].kind == "touch"
+    lasts = instance.model.spec.path_constraints[which].order > 1 or within(solution)[event].kind == "touch"
     zeta = float(change @ g_x / (g_x @ g_x)) if lasts else 0.0
     return zeta, float((np.abs(change - zeta * g_x) / sizes[n:]).max())
 
@@ -127,11 +129,11 @@ def _piece(
     instance: Instance, constraint: int, nodes: Array, start: Array, sizes: Array, place: slice
 ) -> tuple[Piece, float]:
     """Integrate an arc, and leap from its steps to the nodes and between them."""
-    n, model, p, bounds = len(instance.initial), instance.model, instance.parameters, instance.control_set.arguments
+    n, model, p = len(instance.initial), instance.model, instance.parameters
 
     def rates(t: Array, y: Array) -> Array:
         z = y[:-1]
-        u = model.control_law_batch(t, z[:n], z[n:], p, bounds)
+        u = control(instance, constraint, t, z)
         cost = np.broadcast_to(model.running_cost_batch(t, z[:n], u, p), t.shape)
         return np.concatenate([field(instance, constraint, t, z), cost[None]])
 

@@ -1,7 +1,8 @@
 """The second variation with the active arcs held: whether it is positive for all variations that keep to these.
 
 Variations of the control are constant between nodes of a mesh, those of the state follow by the linearised motion. They
-keep to given ends, to g_x dx = 0 along boundary arcs and at touch points. To the form along the way a touch point of
+keep to given ends, to g_x dx = 0 along boundary arcs and at touch points, to g_x dx + g_u du = 0 while a constraint is
+active that holds a control. To the form along the way a touch point of
 order two adds - zeta (d/dt g_x dx)^2 / g'' with g'' < 0 (Bonnans and Hermant, SIAM J. Control Optim. 46, 2007): where
 it moves with the variation, the constraint is harder to keep. Boundary arcs add the curvature of g times its
 multiplier.
@@ -11,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
@@ -22,8 +22,8 @@ from satsym.solution import Solution
 from satsym.solvers.certificate.constrained.replay import Replay
 from satsym.solvers.certificate.end_form import end_form
 from satsym.solvers.certificate.flow import unit_sizes
-from satsym.solvers.constrained.arcs import gradient
-from satsym.solvers.constrained.structure import FREE
+from satsym.solvers.constrained.arcs import control, effects, gradient, holds_control, multipliers
+from satsym.solvers.constrained.structure import FREE, within
 
 MESH = 160
 """Intervals."""
@@ -43,15 +43,17 @@ def curvature(solution: Solution, again: Replay) -> float:
     size, form, pure = m * count, np.zeros((m * count, m * count)), np.zeros((m * count, m * count))
     state, ties, events = np.zeros((n, size)), [], _events(solution, again)
     for k in range(count):
-        control = np.zeros((m, size))
-        control[:, m * k : m * (k + 1)] = np.eye(m)
-        after = moves[k] @ state + inputs[k] @ control
-        both = np.vstack([(state + after) / 2, control])
+        moved = np.zeros((m, size))
+        moved[:, m * k : m * (k + 1)] = np.eye(m)
+        after = moves[k] @ state + inputs[k] @ moved
+        both = np.vstack([(state + after) / 2, moved])
         form += h[k] * both.T @ second[k] @ both
-        pure += h[k] * control.T @ weight[k] @ control
+        if holds_control(instance, which[k]):
+            ties.append(_held(solution, which[k], middles[k : k + 1], z[:, k : k + 1]) @ both)
+        pure += h[k] * moved.T @ weight[k] @ moved
         state = after
         at = times[k + 1]
-        if which[k] != FREE:
+        if which[k] != FREE and not holds_control(instance, which[k]):
             ties.append(gradient(instance, which[k], np.array([at]), _values(again, np.array([at]))[:n])[:, 0] @ state)
         for met in [one for one in events if abs(one.time - at) < 1e-12 * max(1.0, abs(at))]:
             ties.append(met.gradient @ state)
@@ -71,7 +73,16 @@ def _least(form: Array, pure: Array, ties: Array) -> float:
     rows = ties / np.maximum(np.abs(ties).max(axis=1, keepdims=True), 1e-300)
     _, strengths, kept = np.linalg.svd(rows)
     basis = kept[int((strengths > 1e-9 * strengths.max(initial=0.0)).sum()) :].T
+    if not basis.size:
+        return float("inf")
     return float(eigh(basis.T @ form @ basis, basis.T @ pure @ basis, eigvals_only=True, subset_by_index=[0, 0])[0])
+
+
+def _held(solution: Solution, constraint: int, t: Array, z: Array) -> Array:
+    """g_x and g_u of a constraint that holds a control, in one row."""
+    instance, x = solution.instance, z[: len(solution.x)]
+    u = control(instance, constraint, t, z)
+    return np.concatenate([gradient(instance, constraint, t, x, u), effects(instance, t, x)[constraint]])[:, 0]
 
 
 def _mesh(solution: Solution, again: Replay) -> tuple[Array, list[int]]:
@@ -97,8 +108,10 @@ def _along(solution: Solution, t: Array, z: Array, which: list[int]) -> tuple[Ar
     """Jacobians of the motion, second derivatives of H + eta g by state and control, and H_uu, at midpoints."""
     instance, n = solution.instance, len(solution.x)
     model, p, x, lam = instance.model, instance.parameters, z[:n], z[n:]
-    u = np.asarray(model.control_law_batch(t, x, lam, p, instance.control_set.arguments))
-    m, count = len(u), len(t)
+    m, count, where = len(model.spec.controls), len(t), np.array(which)
+    u = np.empty((m, count))
+    for k in set(which):
+        u[:, where == k] = control(instance, k, t[where == k], z[:, where == k])
     a = np.broadcast_to(np.asarray(model.jacobian_x_batch(t, x, u, p)).reshape(n, n, -1), (n, n, count))
     b = np.broadcast_to(np.asarray(model.jacobian_u_batch(t, x, u, p)).reshape(n, m, -1), (n, m, count))
 
@@ -108,10 +121,14 @@ def _along(solution: Solution, t: Array, z: Array, which: list[int]) -> tuple[Ar
         return np.concatenate([np.broadcast_to(by_x, x.shape), np.broadcast_to(by_u, u.shape)])
 
     table = _slopes(slopes, np.concatenate([x, u]))
-    eta = np.asarray(model.path_multiplier_batch(t, x, lam, p))
+    eta = multipliers(instance, t, z)
     for k in {one for one in which if one != FREE}:
-        curved = _slopes(partial(gradient, instance, k, t), x)
-        table[:n, :n] += curved * np.where(np.array(which) == k, np.broadcast_to(eta[k], t.shape), 0.0)
+
+        def pushes(y: Array, k: int = k) -> Array:
+            by_x = gradient(instance, k, t, y[:n], y[n:])
+            return np.concatenate([by_x, np.broadcast_to(effects(instance, t, y[:n])[k], u.shape)])
+
+        table += _slopes(pushes, np.concatenate([x, u])) * np.where(where == k, eta[k], 0.0)
     second = list(np.moveaxis((table + table.swapaxes(0, 1)) / 2, -1, 0))
     return np.moveaxis(a, -1, 0), np.moveaxis(b, -1, 0), second, [one[n:, n:] for one in second]
 
@@ -149,7 +166,8 @@ def _events(solution: Solution, again: Replay) -> list[Met]:
             float(zeta),
             event.kind == "touch" and event.t < solution.times[-1],
         )
-        for event, piece, zeta in zip(solution.events, again.pieces, again.jumps, strict=False)
+        for event, piece, zeta in zip(within(solution), again.pieces, again.jumps, strict=False)
+        if not holds_control(solution.instance, names.index(event.name))
         # at the end a constraint is not moved along
     ]
 
@@ -158,7 +176,7 @@ def _met(instance: Instance, constraint: int, time: float, z: Array, zeta: float
     """The junction of a constraint at a time, with states and costates before it."""
     model, p, n, t = instance.model, instance.parameters, len(instance.initial), np.array([time])
     x, factor = z[:n], 0.0
-    u = np.asarray(model.control_law_batch(t, x, z[n:], p, instance.control_set.arguments))
+    u = control(instance, FREE, t, z)
 
     def rates(y: Array) -> Array:
         return np.asarray(model.path_rates_batch(t, y, u.astype(y.dtype), p)).reshape(-1, 2, 1)[constraint]

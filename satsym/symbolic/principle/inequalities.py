@@ -1,0 +1,41 @@
+"""All inequalities along the way, on states alone and mixed ones, bounds of controls beside them included."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import sympy as sp
+
+from satsym.symbolic.derivation import Derivation
+from satsym.symbolic.model import symbols_of
+from satsym.symbolic.principle import mixed_constraints, path_constraints
+
+
+def every(so_far: Derivation) -> list[path_constraints.Constraint]:
+    """Those on states alone first; none where there are none."""
+    return [*path_constraints.constraints(so_far), *mixed_constraints.constraints(so_far)]
+
+
+def linear_quadratic(so_far: Derivation) -> bool:
+    """Whether there are constraints, linear or quadratic ones, the motion is linear and the costs are quadratic.
+
+    What is left to make the problem convex are signs of matrices, which depend on the parameters.
+    """
+    problem, found, states = so_far.problem, every(so_far), symbols_of(so_far.model.states)
+    if problem is None or not found:
+        return False
+    moving = (*states, *symbols_of(so_far.model.controls))
+
+    def settled(expressions: list[Any], order: int) -> bool:
+        """Whether derivatives of this order are free of states and controls."""
+        table = [sp.sympify(e) for e in expressions]
+        for _ in range(order):
+            table = [sp.diff(e, v) for e in table for v in moving]
+        return not any(sp.simplify(e).free_symbols & set(moving) for e in table)
+
+    return (
+        settled(list(so_far.rhs("first_order")), 1)
+        and settled(list(problem.terminal_constraints), 1)
+        and settled([problem.running_cost, problem.terminal_cost], 2)
+        and settled([one.rates[0] for one in found], 2)
+    )

@@ -1,0 +1,135 @@
+"""Inequalities that hold controls, g(x, u, t, p) <= 0, linear in these: the law on the boundary, and its multiplier.
+
+H is minimised over the controls that keep the constraint. Where the law without it keeps to it, that is the law; else
+the constraint is active, and with H + mu g the conditions g = 0 and H_u + mu g_u = 0 give controls and mu >= 0 (Hartl,
+Sethi and Vickson, SIAM Review 37, 1995, theorem 4.1). Nothing jumps at entry and exit, where mu vanishes. One
+constraint is active at a time.
+"""
+
+from __future__ import annotations
+
+import random
+from typing import Any
+
+import sympy as sp
+
+from satsym.symbolic.algebra import simplified, tidy, total_derivative
+from satsym.symbolic.checks import Check, Point, identity, never_below, numeric
+from satsym.symbolic.convention import sign, worded
+from satsym.symbolic.derivation import Derivation, Equation, Step
+from satsym.symbolic.model import symbols_of, t
+from satsym.symbolic.notation import rate_of
+from satsym.symbolic.principle import path_notation as pn
+from satsym.symbolic.principle.path_constraints import (
+    COMPETITORS,
+    Constraint,
+    adjoined,
+    affine,
+    free_law,
+    motion_of,
+    problem_of,
+)
+from satsym.symbolic.principle.pontryagin import costates
+
+STEP = "mixed_constraints"
+"""The step that only derivations of such problems have."""
+
+
+def mixed_constraints(so_far: Derivation) -> Step | None:
+    """What decides whether each constraint is active, and if it is, the controls and the multiplier."""
+    problem = problem_of(so_far)
+    if not (stated := pn.mixed(problem)):
+        return None
+    controls, h = symbols_of(so_far.model.controls), so_far.equation("hamiltonian.H").rhs
+    equations, checks = list[Equation](), []
+    slopes, weight = sp.Matrix([h]).jacobian(controls).T, sp.hessian(h, controls).applyfunc(sp.simplify)
+    hats = free_law(so_far)
+    for name, g in stated.items():
+        found = Constraint(name, (g,))
+        effect, _ = affine(so_far, found, controls)
+        turned = weight.LUsolve(effect)
+        missed, unit = tidy(simplified(found.rates[0].xreplace(hats))), (effect.T * turned)[0]
+        value = tidy(simplified(sign(problem) * missed / unit))
+        laws = {u: tidy(simplified(hats[u] - turned[k] * missed / unit)) for k, u in enumerate(controls)}
+        equations += [
+            Equation(name, pn.rate(name, 0), found.rates[0]),
+            Equation(pn.vanishing_entry(name, 0), pn.vanishing(name, 0), missed),
+            *(Equation(f"{name}_{u.name}", pn.boundary_control(name, u), law) for u, law in laws.items()),
+            Equation(f"{name}_eta", pn.multiplier(name), value),
+        ]
+        conditions = [found.rates[0], *(slopes + sign(problem) * value * effect)]
+        checks.append(identity("active with a stationary control", [e.xreplace(laws) for e in conditions]))
+        parted = [hats[u] - laws[u] - sign(problem) * value * turned[k] for k, u in enumerate(controls)]
+        checks.append(identity("enters and leaves without a jump", parted))
+        checks.append(_cheapest(so_far, found, laws))
+    rule = worded("keep what holds a control", problem)
+    return Step(STEP, rule, tuple(equations), ("hamiltonian", "stationarity"), tuple(checks))
+
+
+def mixed_costates(so_far: Derivation) -> Step | None:
+    """The costate equations while each constraint is active."""
+    if STEP not in so_far:
+        return None
+    problem, states, lam = problem_of(so_far), symbols_of(so_far.model.states), costates(so_far)
+    h, equations, checks, drifts = so_far.equation("hamiltonian.H").rhs, list[Equation](), [], []
+    for found in constraints(so_far):
+        laws, value = _active(so_far, found)
+        eta, g = pn.multiplier(found.name), found.rates[0]
+        pushed = [
+            tidy(rate - sign(problem) * eta * sp.diff(g, x), lam)
+            for x, rate in zip(states, so_far.rhs("costate_equations"), strict=True)
+        ]
+        equations += [
+            Equation(f"{found.name}_{costate.name}", rate_of(costate), rate)
+            for costate, rate in zip(lam, pushed, strict=True)
+        ]
+        checks.append(adjoined(so_far, found, pushed, laws))
+        moving = {x: rate.xreplace(laws) for x, rate in motion_of(so_far).items()}
+        moving |= {c: r.xreplace({eta: value}).xreplace(laws) for c, r in zip(lam, pushed, strict=True)}
+        by_time = (sp.diff(h, t) + sign(problem) * value * sp.diff(g, t)).xreplace(laws)
+        drifts.append(total_derivative(h.xreplace(laws), moving) - by_time)
+    checks.append(identity("H changes on the boundary with the constraint", drifts))
+    rule, sources = worded("adjoin what holds a control", problem), (STEP, "costate_equations")
+    return Step("mixed_costates", rule, tuple(equations), sources, tuple(checks))
+
+
+def constraints(so_far: Derivation) -> list[Constraint]:
+    """All that hold a control, of order zero; none where there are none."""
+    if STEP not in so_far:
+        return []
+    stated = {e.name: e.rhs for e in so_far.step(STEP).equations}
+    return [Constraint(name, (stated[name],)) for name in pn.mixed(problem_of(so_far))]
+
+
+def _active(so_far: Derivation, found: Constraint) -> tuple[dict[sp.Symbol, sp.Expr], sp.Expr]:
+    """Controls and multiplier while it is."""
+    stated = {e.name: e.rhs for e in so_far.step(STEP).equations}
+    controls = symbols_of(so_far.model.controls)
+    return {u: stated[f"{found.name}_{u.name}"] for u in controls}, stated[f"{found.name}_eta"]
+
+
+def _cheapest(so_far: Derivation, found: Constraint, active: dict[sp.Symbol, sp.Expr]) -> Check:
+    """H against that of other controls that keep the constraint: random ones, moved along its effect until they do."""
+    problem, h, g = problem_of(so_far), so_far.equation("hamiltonian.H").rhs, found.rates[0]
+    controls, hats = tuple(active), free_law(so_far)
+    effect, _ = affine(so_far, found, controls)
+    value, kept, push = numeric([h]), numeric([g]), numeric(list(effect))
+    free, bound = numeric([hats[u] for u in controls]), numeric(list(active.values()))
+
+    def margins(point: Point, rng: random.Random) -> list[Any]:
+        def at(law: list[Any]) -> Point:
+            return {**point, **dict(zip(controls, law, strict=True))}
+
+        along = push(point)
+        law = free(point) if kept(at(free(point)))[0] <= 0 else bound(point)
+        size, best = sum(a * a for a in along), value(at(law))[0]
+        found = []
+        for _ in range(COMPETITORS):
+            moved = [u + rng.uniform(-1.0, 1.0) for u in law]
+            over = max(kept(at(moved))[0], 0) / size
+            other = [u - over * a for u, a in zip(moved, along, strict=True)]
+            found.append(sign(problem) * (value(at(other))[0] - best))
+        return found
+
+    symbols = h.free_symbols.union(g.free_symbols, *(e.free_symbols for e in (*hats.values(), *active.values())))
+    return never_below(worded("cheapest that keeps it", problem), symbols, margins)
