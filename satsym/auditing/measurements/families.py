@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from satsym.auditing.measurements import value
 from satsym.auditing.propositions.values import Family, Record
 
 _SEED = 20
@@ -35,7 +34,6 @@ BLOCKS: Mapping[str, list[list[str]]] = {
 """Blocks with every kind of eigenvalue: real and complex, simple and multiple, with all eigenvectors and with fewer."""
 
 
-@value
 def linear() -> Family:
     """Systems x' = A x: every block by itself, and pairs of them, mixed by a change of basis; exact matrices."""
     rng = np.random.default_rng(_SEED)
@@ -49,7 +47,6 @@ def linear() -> Family:
     return Family("LINEAR", "linear systems", tuple(members))
 
 
-@value
 def controlled() -> Family:
     """Systems x' = A x + B u, y = C x with two or four states; in half of them inputs miss a part, outputs another."""
     rng = np.random.default_rng(_SEED)
@@ -72,7 +69,6 @@ def controlled() -> Family:
     return Family("CONTROLLED", "linear systems with inputs and outputs", tuple(members))
 
 
-@value
 def symmetric() -> Family:
     """Symmetric matrices of every kind: with positive, with negative eigenvalues, with both, and with zero."""
     rng = np.random.default_rng(_SEED)

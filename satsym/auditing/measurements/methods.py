@@ -15,7 +15,6 @@ import numpy as np
 
 from satsym import kernels
 from satsym.arrays import Array
-from satsym.auditing.measurements import measurement, value
 from satsym.auditing.program import text as programs
 from satsym.auditing.program.run import run
 from satsym.auditing.propositions.values import Record, Undecided, undecided_if_refused
@@ -32,7 +31,6 @@ _SPAN = (0.0, 1.25)
 _SEED = 3
 
 
-@value
 def rk4() -> list[str]:
     """The classical method of order four for y' = f(x, y)."""
     weighted = " + ".join(f"{b}*k{s}" for s, b in enumerate(classical_weights(), start=1))
@@ -40,19 +38,16 @@ def rk4() -> list[str]:
     return ["k1 = f(x_n, y_n)", *stages, f"y_n1 = y_n + h*({weighted})"]
 
 
-@value
 def heun() -> list[str]:
     """Heun's method for y' = f(x, y)."""
     return ["k1 = f(x_n, y_n)", "k2 = f(x_n + h, y_n + h*k1)", "y_n1 = y_n + h/2*(k1 + k2)"]
 
 
-@value
 def euler() -> list[str]:
     """Euler's method for y' = f(x, y)."""
     return ["y_n1 = y_n + h*f(x_n, y_n)"]
 
 
-@measurement
 def runge_kutta(unknown: Sequence[str], others: Sequence[str] = (), previous: bool = False) -> list[str]:
     """The classical method for several unknowns, in stages ``k1_x = h*f1(...)``; with what else the rates depend on.
 
@@ -71,7 +66,6 @@ def runge_kutta(unknown: Sequence[str], others: Sequence[str] = (), previous: bo
     return lines
 
 
-@measurement
 def with_line(lines: Sequence[str], line: str) -> list[str]:
     """A method in which one line stands in the place of that which gives the same name its value."""
     name = line.partition("=")[0].strip()
@@ -80,7 +74,6 @@ def with_line(lines: Sequence[str], line: str) -> list[str]:
     return [line if other.partition("=")[0].strip() == name else other for other in lines]
 
 
-@measurement
 def moving(
     model: str,
     states: Sequence[str],
@@ -96,7 +89,6 @@ def moving(
     return _motion(model, tuple(states), tuple(controls), tuple(costates), coupled)
 
 
-@measurement
 def order(lines: Sequence[str], along: Record | None = None) -> int:
     """The order of a method, by the errors that steps of it make along a known motion; without one, of y' = cos(x) y.
 
@@ -112,7 +104,6 @@ def order(lines: Sequence[str], along: Record | None = None) -> int:
     return round(found)
 
 
-@measurement
 def error(lines: Sequence[str], steps: int) -> float:
     """The error that so many steps of a method leave on the way from x = 0 to x = 1, for y' = cos(x) y."""
     known, h = _growth(), 1.0 / steps

@@ -11,7 +11,7 @@ import numpy as np
 
 from satsym import instance as instances
 from satsym.arrays import Array
-from satsym.auditing.measurements import linear, linear_motions, measurement
+from satsym.auditing.measurements import linear, linear_motions
 from satsym.auditing.measurements.linear_motions import STEPS
 from satsym.auditing.propositions.values import Record, Undecided
 from satsym.status import BadInput, Status
@@ -25,21 +25,21 @@ _SEED = 20
 _SWEEPS = 60
 _SETTLED = 1e-10
 
+loaded = cache(instances.load)
+"""A shipped instance, read once."""
 
-@measurement
+
 def start(instance: str) -> Record:
     """The initial state of an instance."""
     case = loaded(instance)
     return _state(case, case.initial, f"the start of {instance}")
 
 
-@measurement
 def end(instance: str) -> Record:
     """The final state of the optimum of an instance."""
-    return _state(loaded(instance), solved(instance).x[:, -1], f"the end of {instance}")
+    return _state(loaded(instance), _solved(instance).x[:, -1], f"the end of {instance}")
 
 
-@measurement
 def reference(instance: str, t: float | None = None) -> Record:
     """The state on the reference of an instance, at the final time or another."""
     case = loaded(instance)
@@ -49,7 +49,6 @@ def reference(instance: str, t: float | None = None) -> Record:
     return _state(case, case.model.reference(time, case.parameters), f"the reference of {instance}")
 
 
-@measurement
 def parameter(instance: str, name: str) -> float:
     """A parameter of an instance."""
     case = loaded(instance)
@@ -59,14 +58,13 @@ def parameter(instance: str, name: str) -> float:
     return float(case.parameters[names.index(name)])
 
 
-@measurement
 def least_cost(instance: str, **parameters: float) -> Record:
     """The optimum of an instance, or of one with other parameters.
 
     Its parts are J, the terminal cost S and the running cost V, the times, the final one, states, controls, costates.
     """
     parameters = {name: float(value) for name, value in parameters.items()}
-    found = solved(instance, **parameters)
+    found = _solved(instance, **parameters)
     if found.status is not Status.CONVERGED:
         raise Undecided(f"{instance}: {found.status}")
     spec = loaded(instance).model.spec
@@ -88,13 +86,11 @@ def least_cost(instance: str, **parameters: float) -> Record:
     )
 
 
-@measurement
 def steered(instance: str, controls: Sequence[float] | float = 0.0) -> Record:
     """The motion of an instance under constant controls: ``t`` and the states by name, and its ``end``."""
     return _steered(loaded(instance), controls)
 
 
-@measurement
 def displaced(instance: str, **by: float) -> Record:
     """The motion without control that begins on the reference of an instance, with some states displaced by so much."""
     case = loaded(instance)
@@ -120,7 +116,6 @@ def _steered(case: Instance, controls: Sequence[float] | float) -> Record:
     )
 
 
-@measurement
 def free_deviation(model: str, instance: str) -> Record:
     """The trajectory without control in a linear model, from the start of an instance taken for deviations."""
     case, found = loaded(instance), linear.system(model)
@@ -131,7 +126,6 @@ def free_deviation(model: str, instance: str) -> Record:
     return linear_motions.trajectory(Record(model, {**found.parts, "A": a}), case.initial, case.tf - case.t0)
 
 
-@measurement
 def given_at_end(instance: str) -> list[str]:
     """States and costates whose final values the boundary conditions give as numbers."""
     case = loaded(instance)
@@ -144,7 +138,6 @@ def given_at_end(instance: str) -> list[str]:
     return [*case.final, *free]
 
 
-@measurement
 def swept(instance: str, guess: float = 0.0) -> Record:
     """Where forward-backward sweeps end that begin with constant controls and replace them by the law: J and controls.
 
@@ -170,7 +163,6 @@ def swept(instance: str, guess: float = 0.0) -> Record:
     raise Undecided(f"after {_SWEEPS} sweeps the controls still change by {change:.2g}")
 
 
-@measurement
 def difference(one: Record, other: Record) -> Record:
     """What one state has more than another, state by state."""
     names = one.part("names")
@@ -178,7 +170,6 @@ def difference(one: Record, other: Record) -> Record:
     return Record(f"the difference of {one.name} and {other.name}", {**parts, "names": names})
 
 
-@measurement
 def distance(one: Record, other: Record, states: Sequence[str] = ()) -> float:
     """The largest difference of two states, relative where a value exceeds 1; of all but angles, or of some."""
     angles = one.parts.get("angles", ())
@@ -187,13 +178,7 @@ def distance(one: Record, other: Record, states: Sequence[str] = ()) -> float:
 
 
 @cache
-def loaded(name: str) -> Instance:
-    """A shipped instance."""
-    return instances.load(name)
-
-
-@cache
-def solved(name: str, **parameters: float) -> Solution:
+def _solved(name: str, **parameters: float) -> Solution:
     """The optimum of a shipped instance, with other parameters where some are given."""
     from satsym.solvers import solve
 
