@@ -49,7 +49,7 @@ def used_early(lines: str | Sequence[str]) -> list[str]:
     """Names that some line gives a value, but that another line uses before."""
     program = _program(lines)
     given = {name for statement in program.statements for name in programs.given_names(statement)}
-    return sorted({loose.name for loose in programs.loose_names(program)} & given)
+    return sorted(given & {*programs.loose_names(program)})
 
 
 def _program(lines: str | Sequence[str]) -> Program:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING, Any
@@ -51,11 +51,9 @@ def reference(instance: str, t: float | None = None) -> Record:
 
 def parameter(instance: str, name: str) -> float:
     """A parameter of an instance."""
-    case = loaded(instance)
-    names = _parameters(case)
-    if name not in names:
-        raise BadInput(f"{instance} has no parameter {shown(name)}; {suggestion(name, names)}")
-    return float(case.parameters[names.index(name)])
+    known = _parameters(loaded(instance))
+    _refuse_unknown(instance, "parameter", [name], known)
+    return known[name]
 
 
 def least_cost(instance: str, **parameters: float) -> Record:
@@ -64,26 +62,18 @@ def least_cost(instance: str, **parameters: float) -> Record:
     Its parts are J, the terminal cost S and the running cost V, the times, the final one, states, controls, costates.
     """
     parameters = {name: float(value) for name, value in parameters.items()}
-    found = _solved(instance, **parameters)
+    case, found = loaded(instance), _solved(instance, **parameters)
     if found.status is not Status.CONVERGED:
         raise Undecided(f"{instance}: {found.status}")
-    spec = loaded(instance).model.spec
-    curves = {v.symbol: np.asarray(row) for v, row in zip(spec.states, np.asarray(found.x), strict=True)}
-    curves |= {v.symbol: np.asarray(row) for v, row in zip(spec.controls, np.asarray(found.u), strict=True)}
-    curves |= {f"lambda_{v.symbol}": np.asarray(r) for v, r in zip(spec.states, np.asarray(found.lam), strict=True)}
-    times, case = np.asarray(found.times), loaded(instance)
-    p = tuple({**dict(zip(_parameters(case), case.parameters, strict=True)), **parameters}.values())
-    last = float(times[-1])
-    curves["V"] = np.array(
-        [
-            case.model.running_cost(float(t), tuple(x), tuple(u), p)
-            for t, x, u in zip(times, np.asarray(found.x).T, np.asarray(found.u).T, strict=True)
-        ]
-    )
-    final = float(case.model.terminal_cost(last, tuple(found.x[:, -1]), p))
-    return Record(
-        f"the optimum of {instance}", {"J": found.objective, "S": final, "t": times, "t_final": last, **curves}
-    )
+    spec, x, u, times = case.model.spec, np.asarray(found.x), np.asarray(found.u), np.asarray(found.times)
+    names = [*spec.state_names, *spec.control_names, *(f"lambda_{name}" for name in spec.state_names)]
+    curves = dict(zip(names, (*x, *u, *np.asarray(found.lam)), strict=True))
+    p, last = tuple((_parameters(case) | parameters).values()), float(times[-1])
+    running = [
+        case.model.running_cost(float(t), tuple(a), tuple(b), p) for t, a, b in zip(times, x.T, u.T, strict=True)
+    ]
+    ends = {"J": found.objective, "S": float(case.model.terminal_cost(last, tuple(x[:, -1]), p)), "t_final": last}
+    return Record(f"the optimum of {instance}", {**ends, "t": times, **curves, "V": np.array(running)})
 
 
 def steered(instance: str, controls: Sequence[float] | float = 0.0) -> Record:
@@ -95,9 +85,7 @@ def displaced(instance: str, **by: float) -> Record:
     """The motion without control that begins on the reference of an instance, with some states displaced by so much."""
     case = loaded(instance)
     names = case.model.spec.state_names
-    for name in by:
-        if name not in names:
-            raise BadInput(f"{instance} has no state {shown(name)}; {suggestion(name, names)}")
+    _refuse_unknown(instance, "state", by, names)
     on = case.model.reference(case.t0, case.parameters)
     return _steered(replace(case, initial=tuple(x + by.get(n, 0.0) for n, x in zip(names, on, strict=True))), 0.0)
 
@@ -121,7 +109,7 @@ def free_deviation(model: str, instance: str) -> Record:
     case, found = loaded(instance), linear.system(model)
     if case.tf is None:
         raise BadInput(f"{instance} has a free final time")
-    known = dict(zip(_parameters(case), case.parameters, strict=True))
+    known = _parameters(case)
     a = found.part("A").subs({s: known[s.name] for s in found.part("A").free_symbols if s.name in known})
     return linear_motions.trajectory(Record(model, {**found.parts, "A": a}), case.initial, case.tf - case.t0)
 
@@ -183,16 +171,19 @@ def _solved(name: str, **parameters: float) -> Solution:
     from satsym.solvers import solve
 
     case = loaded(name)
-    names = _parameters(case)
-    for other in parameters:
-        if other not in names:
-            raise BadInput(f"{name} has no parameter {shown(other)}; {suggestion(other, names)}")
-    values = dict(zip(names, case.parameters, strict=True)) | parameters
-    return solve(replace(case, parameters=tuple(values[n] for n in names)))
+    known = _parameters(case)
+    _refuse_unknown(name, "parameter", parameters, known)
+    return solve(replace(case, parameters=tuple((known | parameters).values())))
 
 
-def _parameters(case: Instance) -> list[str]:
-    return [v.symbol for v in case.model.spec.parameters]
+def _parameters(case: Instance) -> dict[str, float]:
+    return dict(zip(case.model.spec.parameter_names, map(float, case.parameters), strict=True))
+
+
+def _refuse_unknown(instance: str, what: str, names: Iterable[str], known: Iterable[str]) -> None:
+    for name in names:
+        if name not in known:
+            raise BadInput(f"{instance} has no {what} {shown(name)}; {suggestion(name, known)}")
 
 
 def _state(case: Instance, values: Sequence[float] | Array, name: str) -> Record:

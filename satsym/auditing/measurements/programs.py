@@ -69,7 +69,7 @@ def stops(program: Sequence[str]) -> list[str]:
 
 def unassigned(program: Sequence[str]) -> list[str]:
     """Names that have no value yet where a line uses them."""
-    return list(dict.fromkeys(loose.name for loose in programs.loose_names(_read(program))))
+    return list(dict.fromkeys(programs.loose_names(_read(program))))
 
 
 def assigned(program: Sequence[str]) -> list[str]:

@@ -9,15 +9,17 @@ from __future__ import annotations
 import ast
 import operator
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeAlias
 
 import numpy as np
 
+from satsym.auditing.program.library import BINARY
 from satsym.auditing.propositions.reading import (
     CONNECTIVES,
     ITEMS,
+    LOOKUPS,
     MEANINGS,
     PRINTED,
     QUANTIFIERS,
@@ -31,10 +33,7 @@ from satsym.status import BadInput
 
 Truth: TypeAlias = bool | None
 """True, false, or ``None`` where it is undecided."""
-_OPERATORS: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = {
-    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
-    ast.Pow: operator.pow, ast.MatMult: operator.matmul,
-}  # fmt: skip
+_OPERATORS = {**BINARY, ast.MatMult: operator.matmul}
 _MAX_POWER = 64
 _TOLD = 4
 """Members of a list for each of which what is measured is told."""
@@ -221,7 +220,7 @@ class Evaluation:
             return self._part(node, bound)
         if isinstance(node, ast.Subscript):
             return self._entry(node, bound)
-        if isinstance(node, ast.Call):
+        if isinstance(node, ast.Call) and _text(node.func) not in (*QUANTIFIERS, *CONNECTIVES):
             return self._called(node, bound)
         if isinstance(node, ast.BinOp):
             return self._worked_out(node, bound)
@@ -247,12 +246,8 @@ class Evaluation:
         return whole.part(node.attr)
 
     def _entry(self, node: ast.Subscript, bound: Mapping[str, Any]) -> Any:
-        if isinstance(node.value, ast.Name) and node.value.id == "row":
-            return self._document.row(row_key(node))
-        if isinstance(node.value, ast.Name) and node.value.id == "text":
-            return self._document.text(row_key(node))
-        if isinstance(node.value, ast.Name) and node.value.id == MEANINGS and isinstance(node.slice, ast.Constant):
-            return self._document.meanings(str(node.slice.value))
+        if isinstance(node.value, ast.Name) and node.value.id in (*LOOKUPS, MEANINGS):
+            return getattr(self._document, node.value.id)(row_key(node))
         whole, index = self._value(node.value, bound), self._value(node.slice, bound)
         try:
             return (
@@ -264,17 +259,10 @@ class Evaluation:
             raise BadInput(f"{_text(node)}: there is no such entry in {in_words(whole)}") from None
 
     def _called(self, node: ast.Call, bound: Mapping[str, Any]) -> Any:
-        assert isinstance(node.func, ast.Name)
-        name = node.func.id
-        if name in (*QUANTIFIERS, *CONNECTIVES):
-            found = self._judge(node, bound)
-            if found.truth is None:
-                raise Undecided("; ".join(found.reasons))
-            return found.truth
         arguments = [self._value(argument, bound) for argument in node.args]
         named = {str(keyword.arg): self._value(keyword.value, bound) for keyword in node.keywords}
         try:
-            return self._words.functions[name](*arguments, **named)
+            return self._words.functions[_text(node.func)](*arguments, **named)
         except (BadInput, Undecided):
             raise
         except _BREAKS as error:
