@@ -10,7 +10,7 @@ import pytest
 
 from satsym.auditing import measurements
 from satsym.auditing.measurements.linear import eigenvalues
-from satsym.auditing.propositions.evaluation import Answer, Document, Evaluation
+from satsym.auditing.propositions.evaluation import Answer, Evaluation
 from satsym.auditing.propositions.reading import proposition
 from satsym.auditing.propositions.values import Undecided
 from satsym.status import BadInput
@@ -29,7 +29,7 @@ def half_life() -> Iterator[None]:
 
 def answer(text: str) -> Answer:
     words = measurements.words()
-    return Evaluation(words, Document()).answer(proposition(text, words))
+    return Evaluation(words).answer(proposition(text, words))
 
 
 def test_claims_speak_of_it_and_quantify_over_it(half_life: None) -> None:

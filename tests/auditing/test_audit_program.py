@@ -80,7 +80,7 @@ def test_what_a_program_does_is_what_python_would_do():
     )
     assert found.values["x"] == [-2, -9.0]
     np.testing.assert_array_equal(found.values["m"], [[0.0, 1.0, 2.5], [0.0, 0.0, 0.0]])
-    assert found.said == ("n is 3, low",)
+    assert found.said == ["n is 3, low"]
 
 
 def test_names_are_followed():

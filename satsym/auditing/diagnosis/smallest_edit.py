@@ -229,17 +229,9 @@ def _entry_by_entry(plan: Equal, wrong: Sequence[int]) -> Remedy | None:
         return None
     edits: list[tuple[int, Edit]] = []
     for i in wrong:
-        found = next(
-            (
-                edit
-                for edit in _edits(plan, i)
-                if plan.alone(i).may_hold((edit.result,)) and plan.cell_holds(i, edit.result)
-            ),
-            None,
-        )
-        if found is None:
-            found = _whole(plan, i)
-        edits.append((i, found))
+        alone = plan.alone(i)
+        right = (e for e in _edits(plan, i) if alone.may_hold((e.result,)) and alone.cell_holds(0, e.result))
+        edits.append((i, next(right, None) or _whole(plan, i)))
     fixed = dict(edits)
     return Remedy(tuple(edits), tuple(fixed[i].result if i in fixed else cell for i, cell in enumerate(plan.printed)))
 

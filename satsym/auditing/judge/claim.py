@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -9,8 +10,8 @@ from satsym.auditing import measurements
 from satsym.auditing.judge.bench import Bench
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
-from satsym.auditing.propositions.evaluation import Answer, Document, Evaluation
-from satsym.auditing.propositions.reading import Proposition, Words, matching, proposition
+from satsym.auditing.propositions.evaluation import Answer, Evaluation
+from satsym.auditing.propositions.reading import Proposition, matching, proposition
 from satsym.auditing.propositions.relations import Fit
 from satsym.formula.budget import OverBudget
 from satsym.formula.values import Matrix, Relation
@@ -44,19 +45,18 @@ def judge(bench: Bench, row: Row) -> Outcome:
     )
 
 
-class Pages(Document):
+class Pages:
     """The document as a proposition of one of its rows sees it."""
 
     def __init__(self, bench: Bench, row: Row) -> None:
         self._bench, self._row = bench, row
-        self.items = bench.ledger.document.numbers
 
     def answer(self, proposition: Proposition) -> Answer:
         """Whether a proposition is true; one that looks nothing up in the document is asked once for all rows."""
         if proposition.stands_alone:
             return _alone(proposition.text)
         try:
-            return Evaluation(self._words, self, _listed(self._row.table.printed)).answer(proposition)
+            return self._evaluation.answer(proposition)
         except OverBudget:
             raise
         except BadInput as error:
@@ -66,12 +66,17 @@ class Pages(Document):
 
     def explained(self, why: tuple[str | Proposition, ...]) -> str:
         """A sentence with what its terms measure."""
-        evaluation = Evaluation(self._words, self, _listed(self._row.table.printed))
-        return "".join(part if isinstance(part, str) else evaluation.term(part) for part in why)
+        return "".join(part if isinstance(part, str) else self._evaluation.term(part) for part in why)
 
     @cached_property
-    def _words(self) -> Words:
-        return measurements.words(self._bench.scope(self._row).meanings)
+    def _evaluation(self) -> Evaluation:
+        lookups = {name: getattr(self, name) for name in ("row", "text", "meanings", "items", "symbol")}
+        words = measurements.words(self._bench.scope(self._row).meanings)
+        return Evaluation(words, lookups, _listed(self._row.table.printed))
+
+    def items(self, _: str) -> Sequence[str]:
+        """What the document numbers."""
+        return self._bench.ledger.document.numbers
 
     def row(self, key: str) -> Any:
         """The printed formula of a row in our names; of an equality the right-hand side."""
@@ -106,7 +111,7 @@ class Pages(Document):
 @lru_cache(maxsize=4096)
 def _alone(text: str) -> Answer:
     words = measurements.words()
-    return Evaluation(words, Document()).answer(proposition(text, words))
+    return Evaluation(words).answer(proposition(text, words))
 
 
 def _listed(printed: Any) -> Any:

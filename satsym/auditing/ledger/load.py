@@ -87,7 +87,7 @@ class _Reader:
         self._scales = Scales()
         self._derived = self._entries("derived", self._expression, self._derived)
         self._scopes = self._read_scopes()
-        self._own = vocabulary.declared(self._symbols, self._scopes)
+        self._own = {*self._symbols, *notation.self_named(self._scopes), *notation.CONSTANTS}
         self._check_scopes()
         tables = self._tree.get("row", [])
         if not isinstance(tables, list) or not tables:

@@ -41,7 +41,8 @@ def linear() -> Family:
     pairs = [(a, b) for i, a in enumerate(names) for b in names[i + 1 :] if len(BLOCKS[a]) + len(BLOCKS[b]) <= 4]
     members = [Record(name, {"A": _exact(BLOCKS[name])}) for name in names]
     for a, b in pairs:
-        whole = _diagonal(BLOCKS[a], BLOCKS[b])
+        one, other = _exact(BLOCKS[a]), _exact(BLOCKS[b])
+        whole = one.diag(one, other)
         basis = _basis(rng, whole.rows)
         members.append(Record(f"{a}; {b}", {"A": basis * whole * basis.inv()}))
     return Family("LINEAR", "linear systems", tuple(members))
@@ -86,11 +87,6 @@ def _exact(rows: list[list[str]]) -> Any:
     from satsym.symbolic.lookup import formulas
 
     return formulas.exact_matrix(rows)
-
-
-def _diagonal(one: list[list[str]], other: list[list[str]]) -> Any:
-    n, m = len(one), len(other)
-    return _exact([row + ["0"] * m for row in one] + [["0"] * n + row for row in other])
 
 
 def _basis(rng: np.random.Generator, n: int) -> Any:

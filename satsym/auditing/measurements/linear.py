@@ -19,7 +19,7 @@ from satsym.wording import shown, suggestion
 
 _INTERVAL = 2.0
 """Over which inputs act, and outputs are seen, to tell whether they do all that they can."""
-_ZERO = 1e-9
+_ZERO, _DEPENDENT = 1e-9, 1e-7
 
 
 def system(of: Any) -> Record:
@@ -48,9 +48,12 @@ def _of_model(name: str) -> Record:
 
 
 def inputs_of(of: Any, inputs: Sequence[str]) -> Record:
-    """A system with some of its inputs alone."""
+    """A system with some of its inputs alone, if they are named."""
     whole = system(of)
-    return Record(whole.name, {**whole.parts, "B": _columns(whole, inputs), "inputs": list(inputs)})
+    if not inputs:
+        return whole
+    chosen, b = [_place(whole, "inputs", name) for name in inputs], whole.part("B")
+    return Record(whole.name, {**whole.parts, "B": b.extract(list(range(b.rows)), chosen), "inputs": list(inputs)})
 
 
 def dual(of: Any) -> Record:
@@ -73,18 +76,16 @@ def eigenvalues(of: Any) -> list[Any]:
 def closed_loop(of: Any, gain: Any, inputs: Sequence[str] = ()) -> Record:
     """x' = (A - B K) x, of some inputs alone; letters of A are taken as 1."""
     whole = system(of)
-    a = numbers(whole.part("A")) - numbers(_columns(whole, inputs)) @ numbers(gain)
+    a = numbers(whole.part("A")) - numbers(inputs_of(whole, inputs).part("B")) @ numbers(gain)
     return Record(f"{whole.name} with feedback", {**whole.parts, "A": a})
 
 
 def stabilisable(of: Any, inputs: Sequence[str] = ()) -> bool:
     """Whether some feedback makes all real parts negative: by Hautus' test at each eigenvalue that is not so."""
-    whole = system(of)
-    a, b = numbers(whole.part("A")), numbers(_columns(whole, inputs))
-    lost = [
-        v for v in np.linalg.eigvals(a) if v.real > -_ZERO and _rank(np.hstack([v * np.eye(len(a)) - a, b])) < len(a)
-    ]
-    return not lost
+    whole = inputs_of(of, inputs)
+    a, b = numbers(whole.part("A")), numbers(whole.part("B"))
+    left = [np.hstack([v * np.eye(len(a)) - a, b]) for v in np.linalg.eigvals(a) if v.real > -_ZERO]
+    return all(int(np.linalg.matrix_rank(each, tol=_DEPENDENT)) == len(a) for each in left)
 
 
 def algebraic(eigenvalue: Any, of: Any) -> int:
@@ -152,8 +153,8 @@ def dimension(of: Any) -> int:
 
 def controllability(of: Any, inputs: Sequence[str] = ()) -> Any:
     """The matrix [B, AB, ..., A^(n-1) B], of some inputs alone."""
-    whole = system(of)
-    return _krylov(whole.part("A"), _columns(whole, inputs))
+    whole = inputs_of(of, inputs)
+    return _krylov(whole.part("A"), whole.part("B"))
 
 
 def observability(of: Any, outputs: Sequence[str] = ()) -> Any:
@@ -167,14 +168,12 @@ def observability(of: Any, outputs: Sequence[str] = ()) -> Any:
 
 def controllable(of: Any, inputs: Sequence[str] = ()) -> bool:
     """Whether some input carries every state to every other: by the Gramian, not by a rank."""
-    whole = inputs_of(of, inputs) if inputs else system(of)
-    return _definite(gramian(whole, _INTERVAL))
+    return _definite(gramian(inputs_of(of, inputs), _INTERVAL))
 
 
 def observable(of: Any) -> bool:
     """Whether the output over an interval tells the state it began at: by the Gramian, not by a rank."""
-    whole = system(of)
-    return _definite(gramian(Record(whole.name, {"A": whole.part("A").T, "B": whole.part("C").T}), _INTERVAL))
+    return controllable(dual(of))
 
 
 def gramian(of: Any, t: float) -> Array:
@@ -208,22 +207,11 @@ def _eigenvalue(value: Any, of: Any) -> Any:
     raise BadInput(f"{value} is no eigenvalue of {system(of).name}")
 
 
-def _rank(of: Any) -> int:
-    return int(np.linalg.matrix_rank(of, tol=1e-7))
-
-
 def _place(whole: Record, of: str, name: str) -> int:
     known = whole.part(of)
     if name not in known:
         raise BadInput(f"{whole.name} has no {shown(name)}; {suggestion(name, known)}")
     return int(known.index(name))
-
-
-def _columns(whole: Record, inputs: Sequence[str]) -> Any:
-    b = whole.part("B")
-    if not inputs:
-        return b
-    return b.extract(list(range(b.rows)), [_place(whole, "inputs", name) for name in inputs])
 
 
 def _krylov(a: Any, b: Any) -> Any:

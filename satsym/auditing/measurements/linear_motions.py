@@ -50,7 +50,7 @@ def flow_rate(of: Any, t: float) -> Array:
 
 def limit(values: Sequence[Any]) -> Any:
     """The limit of a sequence whose steps are halved from one entry to the next: by Richardson's extrapolation."""
-    column = [_dense(entry) for entry in values]
+    column = [np.asarray(numeric(entry), dtype=float) for entry in values]
     for power in range(1, len(values)):
         column = [(2.0**power * b - a) / (2.0**power - 1.0) for a, b in pairwise(column)]
     return column[0]
@@ -139,10 +139,6 @@ def _followed(rates: Callable[[float, Array], Array], start: Any, t: float) -> A
     begin = np.asarray(numeric(start), dtype=float).ravel()
     found = solve_ivp(rates, (0.0, t), begin, rtol=1e-11, atol=1e-12, method="DOP853")
     return np.asarray(found.y[:, -1])
-
-
-def _dense(of: Any) -> Array:
-    return np.asarray(numeric(of), dtype=float)
 
 
 @kept

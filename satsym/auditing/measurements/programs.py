@@ -15,8 +15,8 @@ import numpy as np
 
 from satsym.auditing import quantities
 from satsym.auditing.program import text as programs
-from satsym.auditing.program.library import Module
-from satsym.auditing.program.run import Run, run
+from satsym.auditing.program.library import Module, Run
+from satsym.auditing.program.run import run
 from satsym.auditing.program.text import Program, Stops
 from satsym.auditing.propositions.values import Record, is_exact, measured, undecided_if_refused
 from satsym.status import BadInput

@@ -105,9 +105,7 @@ def costate(of: Any, start: Any, t: float) -> Array:
 
 def _parts(of: Any, inputs: Sequence[str] = (), Q: Any = None, R: Any = None) -> tuple[Array, Array, Array, Array]:
     """A, B, Q and R with numbers."""
-    whole = linear.system(of)
-    if inputs:
-        whole = linear.inputs_of(whole, inputs)
+    whole = linear.inputs_of(of, inputs)
     a, b = numbers(whole.part("A")), numbers(whole.part("B"))
     q = whole.parts.get("Q", np.eye(len(a))) if Q is None else numeric(Q)
     r = whole.parts.get("R", np.eye(b.shape[1])) if R is None else numeric(R)

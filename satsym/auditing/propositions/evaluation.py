@@ -9,8 +9,9 @@ from __future__ import annotations
 import ast
 import operator
 import warnings
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -37,30 +38,9 @@ _OPERATORS = {**BINARY, ast.MatMult: operator.matmul}
 _MAX_POWER = 64
 _TOLD = 4
 """Members of a list for each of which what is measured is told."""
+Lookups: TypeAlias = Mapping[str, Callable[[str], Any]]
+"""What a proposition may look up in its document: ``row``, ``text``, ``meanings``, ``items`` and ``symbol``."""
 _BREAKS = (ArithmeticError, ValueError, TypeError, LookupError, AttributeError, np.linalg.LinAlgError)
-
-
-class Document:
-    """What a proposition may look up in the document that it stands in; this one is for those that look nothing up."""
-
-    items: Sequence[str] = ()
-    """What the document numbers."""
-
-    def row(self, key: str) -> Any:
-        """The printed formula of a row, as an exact expression or matrix."""
-        raise LookupError(key)
-
-    def text(self, key: str) -> Any:
-        """What a row prints, letter by letter."""
-        raise LookupError(key)
-
-    def symbol(self, name: str) -> Any:
-        """What a symbol of the notation means."""
-        raise LookupError(name)
-
-    def meanings(self, letter: str) -> list[str]:
-        """What the document uses a letter for."""
-        raise LookupError(letter)
 
 
 @dataclass(frozen=True)
@@ -87,10 +67,10 @@ class Answer:
 
 
 class Evaluation:
-    """Evaluates propositions in certain words, in a document; ``own`` is what the row itself prints."""
+    """Evaluates propositions in certain words, in a document if any; ``own`` is what the row itself prints."""
 
-    def __init__(self, words: Words, document: Document, own: Any = None) -> None:
-        self._words, self._document, self._own = words, document, own
+    def __init__(self, words: Words, lookups: Lookups = MappingProxyType({}), own: Any = None) -> None:
+        self._words, self._lookups, self._own = words, lookups, own
 
     def answer(self, proposition: Proposition) -> Answer:
         """Whether a proposition is true."""
@@ -235,9 +215,11 @@ class Evaluation:
     def _named(self, name: str, bound: Mapping[str, Any]) -> Any:
         if name in bound:
             return bound[name]
-        if name in (PRINTED, ITEMS):
-            return self._own if name == PRINTED else self._document.items
-        return self._words.values[name]() if name in self._words.values else self._document.symbol(name)
+        if name == PRINTED:
+            return self._own
+        if name in self._words.values:
+            return self._words.values[name]()
+        return self._lookups[ITEMS if name == ITEMS else "symbol"](name)
 
     def _part(self, node: ast.Attribute, bound: Mapping[str, Any]) -> Any:
         whole = self._value(node.value, bound)
@@ -247,7 +229,7 @@ class Evaluation:
 
     def _entry(self, node: ast.Subscript, bound: Mapping[str, Any]) -> Any:
         if isinstance(node.value, ast.Name) and node.value.id in (*LOOKUPS, MEANINGS):
-            return getattr(self._document, node.value.id)(row_key(node))
+            return self._lookups[node.value.id](row_key(node))
         whole, index = self._value(node.value, bound), self._value(node.slice, bound)
         try:
             return (
