@@ -90,11 +90,6 @@ def stated(key: str, what: str = "") -> Said:
     return joined([say(key), f": {what}." if what else "."], "")
 
 
-def unsound(items: Sequence[str], instead: str = "") -> Said:
-    """The result is right, but not for the reason given; what follows instead."""
-    return joined([say("unsound", items), say("instead", instead) if instead else "", "."], "")
-
-
 def sentence(clause: str) -> Said:
     """A clause as a sentence of its own, where it does not begin with a symbol; nothing for none."""
     return Said(*map(_with_capital, (clause, in_indonesian(clause))))

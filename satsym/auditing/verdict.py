@@ -18,7 +18,7 @@ from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
 from satsym.auditing.propositions.reading import shape
 from satsym.auditing.propositions.values import in_words
-from satsym.auditing.sentences import joined, say, sentence, stated, unsound
+from satsym.auditing.sentences import joined, say, sentence, stated
 from satsym.formula import budget
 from satsym.formula.cells import Formula, names_in
 from satsym.formula.tree import ONE, Mul, Neg, Node, Num, Sym
@@ -51,7 +51,7 @@ class _Context:
         verdict, sayings = self._verdict(outcome)
         said = joined(sayings if verdict != "confirmed" else ())
         row, document = outcome.row, self._bench.ledger.document.key
-        command = recompute(self._bench.ledger.name, row.key)
+        command = f'satsym audit {self._bench.ledger.name} --item "{row.key}"'
         numbers = "; ".join(f"{name} = {in_words(value)}" for name, value in outcome.evidence.items())
         return Judged(
             document=document,
@@ -86,7 +86,8 @@ class _Context:
         if not outcome.right:
             return "imprecise" if outcome.near else "wrong", [outcome.remark]
         if row.follows is not None and not self._follows(row, {}) and not self._follows_once_corrected(row):
-            return "unsound", [unsound(row.uses, self._instead(row))]
+            instead = self._instead(row)
+            return "unsound", [joined([say("unsound", row.uses), say("instead", instead) if instead else "", "."], "")]
         return "confirmed", []
 
     def _of_claim(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
@@ -160,8 +161,8 @@ class _Context:
             for value in (self._bench.follows(row, right).exact, self._bench.target(row).exact)
         )
         if isinstance(found, Matrix) and isinstance(target, Matrix) and found.shape == target.shape:
-            entries = [[entry for line in matrix.rows for entry in line] for matrix in (found, target)]
-            return all(formulas.is_zero(one - other) for one, other in zip(*entries, strict=True))
+            pairs = zip(found.entries, target.entries, strict=True)
+            return all(formulas.is_zero(one - other) for one, other in pairs)
         no_formula = (Roots, Kernel, Matrix)
         if isinstance(found, no_formula) or isinstance(target, no_formula):
             return False
@@ -214,11 +215,6 @@ class _Context:
         if key not in self._right:
             self._right[key] = corrected(self._outcomes[key])
         return self._right[key]
-
-
-def recompute(document: str, key: str) -> str:
-    """The command that recomputes a row."""
-    return f'satsym audit {document} --item "{key}"'
 
 
 def _same(one: Outcome, other: Outcome) -> bool:

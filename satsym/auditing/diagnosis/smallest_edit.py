@@ -252,18 +252,15 @@ def _exchanged(plan: Plan) -> Remedy | None:
 def _exchanges(m: int, n: int) -> Iterator[tuple[str, list[int]]]:
     """What may be exchanged in a matrix, in words, with the places of its entries then."""
     place = np.arange(m * n).reshape(m, n)
-    for i, k in combinations(range(m), 2):
-        order = place.copy()
-        order[[i, k]] = order[[k, i]]
-        yield f"rows {i + 1} and {k + 1} are exchanged", order.ravel().tolist()
-    for i, k in combinations(range(n), 2):
-        order = place.copy()
-        order[:, [i, k]] = order[:, [k, i]]
-        yield f"columns {i + 1} and {k + 1} are exchanged", order.ravel().tolist()
+    for axis, lines in enumerate(("rows", "columns")):
+        for i, k in combinations(range(place.shape[axis]), 2):
+            order = np.arange(place.shape[axis])
+            order[[i, k]] = k, i
+            yield f"{lines} {i + 1} and {k + 1} are exchanged", place.take(order, axis).ravel().tolist()
     if m == n:
         yield "rows stand for columns", place.T.ravel().tolist()
     for a, b in combinations(range(m * n), 2):
-        order = place.copy()
-        order.flat[[a, b]] = b, a
+        order = np.arange(m * n)
+        order[[a, b]] = b, a
         one, other = (f"({k // n + 1}, {k % n + 1})" for k in (a, b))
-        yield f"the entries {one} and {other} are exchanged", order.ravel().tolist()
+        yield f"the entries {one} and {other} are exchanged", order.tolist()

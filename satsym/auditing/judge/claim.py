@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -18,7 +17,7 @@ from satsym.formula.values import Matrix, Relation
 from satsym.formula.writing import written
 from satsym.status import BadInput
 from satsym.symbolic.lookup import formulas
-from satsym.wording import shown, suggestion
+from satsym.wording import refuse_unknown, shown
 
 
 def judge(bench: Bench, row: Row) -> Outcome:
@@ -70,19 +69,15 @@ class Pages:
 
     @cached_property
     def _evaluation(self) -> Evaluation:
-        lookups = {name: getattr(self, name) for name in ("row", "text", "meanings", "items", "symbol")}
+        looked = {"row": self.row, "text": self.text, "meanings": self.meanings, "symbol": self.symbol}
+        lookups = {**looked, "items": lambda _: self._bench.ledger.document.numbers}
         words = measurements.words(self._bench.scope(self._row).meanings)
         return Evaluation(words, lookups, _listed(self._row.table.printed))
 
-    def items(self, _: str) -> Sequence[str]:
-        """What the document numbers."""
-        return self._bench.ledger.document.numbers
-
     def row(self, key: str) -> Any:
         """The printed formula of a row in our names; of an equality the right-hand side."""
-        other = self._bench.rows.get(key)
-        if other is None:
-            raise BadInput(f"there is no row {shown(key)}; {suggestion(key, self._bench.rows)}")
+        refuse_unknown("there is no row", key, self._bench.rows)
+        other = self._bench.rows[key]
         if other.printed is None:
             raise BadInput(f"row {key} prints no formula; text['{key}'] is what stands there")
         return _exact(self._bench.of_row(other))
@@ -91,7 +86,7 @@ class Pages:
         """What a row prints, letter by letter; of a key that ends in a star all rows that begin so, in order."""
         found = [_listed(row.table.printed) for name, row in self._bench.rows.items() if matching(key)(name)]
         if not found:
-            raise BadInput(f"there is no row {shown(key)}; {suggestion(key, self._bench.rows)}")
+            refuse_unknown("there is no row", key, self._bench.rows)
         return found if key.endswith("*") else found[0]
 
     def symbol(self, name: str) -> Any:

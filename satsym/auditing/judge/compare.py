@@ -83,11 +83,7 @@ def _of_matrix(bench: Bench, row: Row, printed: tuple[tuple[Node, ...], ...], ta
         return columns if m == long else Never(columns, f"columns of {m} are printed, they are of {long}")
     if not isinstance(trees, Matrix):
         raise BadInput("a matrix is held against an expression; hold it against a matrix")
-    targets = [
-        Both(one, other)
-        for rows in zip(trees.rows, target.exact.rows, strict=True)
-        for one, other in zip(*rows, strict=True)
-    ]
+    targets = list(map(Both, trees.entries, target.exact.entries))
     entries = Equal(bench, row, cells, labels, targets)
     if trees.shape != (m, n):
         return Never(entries, f"{m} by {n} is printed, it is {trees.shape[0]} by {trees.shape[1]}")

@@ -71,8 +71,7 @@ def corrected(outcome: Outcome) -> Formula:
     if isinstance(row.printed, Equality):
         if isinstance(compared, Multiple):
             return Equality(cells[0], cells[1])
-        lhs = scope.ours(row.printed.lhs)
-        return Equality(lhs, cells[0])
+        return Equality(scope.ours(row.printed.lhs), cells[0])
     return cells[0]
 
 

@@ -78,7 +78,7 @@ class Spans(Plan):
         """Whether the columns are mapped to zero, and are as many as there are independent ones."""
         basis = Matrix(shaped(cells, self._columns))
         image = engine.product(matrix, basis)
-        if not all(is_zero(entry) for line in image.rows for entry in line):
+        if not all(map(is_zero, image.entries)):
             return False
         nullity = matrix.shape[1] - engine.rank(matrix)
         return engine.rank(basis) == nullity == basis.shape[1]
@@ -104,13 +104,9 @@ class EqualMatrix(Plan):
         found = self.both(cells[0])
         if not isinstance(found.trees, Matrix) or found.trees.shape != self.target.trees.shape:
             return False
-        for one, other, mine, aim in zip(
-            found.trees.rows, self.target.trees.rows, found.exact.rows, self.target.exact.rows, strict=True
-        ):
-            for a, b, c, d in zip(one, other, mine, aim, strict=True):
-                if not self.vanish(difference(a, b), c - d):
-                    return False
-        return True
+        sides = (found.trees, self.target.trees, found.exact, self.target.exact)
+        places = zip(*(matrix.entries for matrix in sides), strict=True)
+        return all(self.vanish(difference(a, b), c - d) for a, b, c, d in places)
 
     def residuals(self, point: BoundPoint, cells: Cells) -> Iterator[list[int]]:
         try:
@@ -122,6 +118,5 @@ class EqualMatrix(Plan):
             return
         yield [
             (point.base.value(a) - point.base.value(b)) % field.PRIME
-            for one, other in zip(found.rows, self.target.trees.rows, strict=True)
-            for a, b in zip(one, other, strict=True)
+            for a, b in zip(found.entries, self.target.trees.entries, strict=True)
         ]

@@ -127,7 +127,7 @@ class Plan(ABC):
             If it divides by zero, whatever its symbols are.
         """
         found = self.bench.printed(self.row, node)
-        entries = [e for line in found.exact.rows for e in line] if isinstance(found.exact, Matrix) else [found.exact]
+        entries = found.exact.entries if isinstance(found.exact, Matrix) else [found.exact]
         if not all(map(formulas.has_a_value, entries)):
             raise formulas.NotAFormula(written(node))
         return found

@@ -15,8 +15,7 @@ from satsym.auditing import quantities
 from satsym.auditing.constants import PUBLISHED
 from satsym.auditing.propositions.values import Family, Record
 from satsym.auditing.quantities import Quantity
-from satsym.status import BadInput
-from satsym.wording import shown, suggestion
+from satsym.wording import refuse_unknown
 
 _MOMENTS = 360
 _STATION = math.radians(30.0), math.radians(20.0)
@@ -31,8 +30,7 @@ def quantity(text: str) -> Quantity:
 
 def constant(name: str) -> Quantity:
     """A published constant, such as ``mu_earth``."""
-    if name not in PUBLISHED:
-        raise BadInput(f"no published constant {shown(name)}; {suggestion(name, PUBLISHED)}")
+    refuse_unknown("no published constant", name, PUBLISHED)
     return quantities.in_base_units(PUBLISHED[name].quantity)
 
 

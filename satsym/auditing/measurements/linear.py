@@ -15,7 +15,7 @@ from satsym.arrays import Array, kept
 from satsym.auditing.propositions.relations import equal
 from satsym.auditing.propositions.values import Record, Undecided, is_exact, numbers
 from satsym.status import BadInput
-from satsym.wording import shown, suggestion
+from satsym.wording import refuse_unknown
 
 _INTERVAL = 2.0
 """Over which inputs act, and outputs are seen, to tell whether they do all that they can."""
@@ -209,8 +209,7 @@ def _eigenvalue(value: Any, of: Any) -> Any:
 
 def _place(whole: Record, of: str, name: str) -> int:
     known = whole.part(of)
-    if name not in known:
-        raise BadInput(f"{whole.name} has no {shown(name)}; {suggestion(name, known)}")
+    refuse_unknown(f"{whole.name} has no", name, known)
     return int(known.index(name))
 
 

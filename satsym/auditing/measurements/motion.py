@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING, Any
@@ -15,7 +15,7 @@ from satsym.auditing.measurements import linear, linear_motions
 from satsym.auditing.measurements.linear_motions import STEPS
 from satsym.auditing.propositions.values import Record, Undecided
 from satsym.status import BadInput, Status
-from satsym.wording import shown, suggestion
+from satsym.wording import refuse_unknown
 
 if TYPE_CHECKING:
     from satsym.instance import Instance
@@ -52,7 +52,7 @@ def reference(instance: str, t: float | None = None) -> Record:
 def parameter(instance: str, name: str) -> float:
     """A parameter of an instance."""
     known = _parameters(loaded(instance))
-    _refuse_unknown(instance, "parameter", [name], known)
+    refuse_unknown(f"{instance} has no parameter", name, known)
     return known[name]
 
 
@@ -85,7 +85,8 @@ def displaced(instance: str, **by: float) -> Record:
     """The motion without control that begins on the reference of an instance, with some states displaced by so much."""
     case = loaded(instance)
     names = case.model.spec.state_names
-    _refuse_unknown(instance, "state", by, names)
+    for other in by:
+        refuse_unknown(f"{instance} has no state", other, names)
     on = case.model.reference(case.t0, case.parameters)
     return _steered(replace(case, initial=tuple(x + by.get(n, 0.0) for n, x in zip(names, on, strict=True))), 0.0)
 
@@ -172,18 +173,13 @@ def _solved(name: str, **parameters: float) -> Solution:
 
     case = loaded(name)
     known = _parameters(case)
-    _refuse_unknown(name, "parameter", parameters, known)
+    for other in parameters:
+        refuse_unknown(f"{name} has no parameter", other, known)
     return solve(replace(case, parameters=tuple((known | parameters).values())))
 
 
 def _parameters(case: Instance) -> dict[str, float]:
     return dict(zip(case.model.spec.parameter_names, map(float, case.parameters), strict=True))
-
-
-def _refuse_unknown(instance: str, what: str, names: Iterable[str], known: Iterable[str]) -> None:
-    for name in names:
-        if name not in known:
-            raise BadInput(f"{instance} has no {what} {shown(name)}; {suggestion(name, known)}")
 
 
 def _state(case: Instance, values: Sequence[float] | Array, name: str) -> Record:

@@ -20,7 +20,7 @@ from satsym.arrays import Array
 from satsym.auditing.measurements import motion
 from satsym.auditing.propositions.values import Family, Record, numbers
 from satsym.status import BadInput
-from satsym.wording import shown, suggestion
+from satsym.wording import refuse_unknown, shown
 
 _SEED = 47
 _PLACES = 400
@@ -133,6 +133,5 @@ def _model(name: str, parameters: dict[str, float]) -> tuple[Any, tuple[float, .
     model = kernels.load(name)
     known = {v.symbol: float(v.default) if v.default is not None else 1.0 for v in model.spec.parameters}
     for other in parameters:
-        if other not in known:
-            raise BadInput(f"{name} has no parameter {shown(other)}; {suggestion(other, known)}")
+        refuse_unknown(f"{name} has no parameter", other, known)
     return model, tuple(float(v) for v in (known | parameters).values())

@@ -19,7 +19,7 @@ from satsym.arrays import Array
 from satsym.auditing.measurements import motion
 from satsym.auditing.propositions.values import Record
 from satsym.status import BadInput
-from satsym.wording import shown, suggestion
+from satsym.wording import refuse_unknown
 
 _TIGHT = 1e-11
 _LAGS = 5000.0
@@ -34,8 +34,7 @@ def valued(formula: Any, instance: str, **more: float) -> float:
     known = _numbers(instance) | more
     letters = {s.name: s for s in formula.free_symbols}
     for name in letters:
-        if name not in known:
-            raise BadInput(f"no number for {shown(name)}; {suggestion(name, known)}")
+        refuse_unknown("no number for", name, known)
     return float(formula.xreplace({s: known[name] for name, s in letters.items()}))
 
 

@@ -72,7 +72,7 @@ def modules(left: Run) -> Mapping[str, Module]:
             "sqrt": _sqrt,
             "array": _array,
             "hstack": _hstack,
-            "linspace": _linspace,
+            "linspace": lambda first, last, number: np.linspace(first, last, _shape(number)[0]),
             "zeros": lambda shape: np.zeros(_shape(shape)),
             "eye": lambda n: np.eye(_shape((n, n))[0]),
             "linalg": Module("numpy.linalg", {"norm": lambda a: np.linalg.norm(numeric(a))}),
@@ -125,10 +125,6 @@ def _hstack(parts: Sequence[Any]) -> Any:
     found = [numeric(part) for part in parts]
     made(sum(part.size for part in found))
     return np.hstack(found)
-
-
-def _linspace(first: float, last: float, number: int) -> Any:
-    return np.linspace(first, last, _shape(number)[0])
 
 
 def _noted(left: Run, name: str) -> Callable[..., None]:

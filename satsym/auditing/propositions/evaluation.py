@@ -36,6 +36,7 @@ Truth: TypeAlias = bool | None
 """True, false, or ``None`` where it is undecided."""
 _OPERATORS = {**BINARY, ast.MatMult: operator.matmul}
 _MAX_POWER = 64
+_text = ast.unparse
 _TOLD = 4
 """Members of a list for each of which what is measured is told."""
 Lookups: TypeAlias = Mapping[str, Callable[[str], Any]]
@@ -269,12 +270,12 @@ def _plain(node: ast.expr, entry: Any) -> Answer:
 
 
 def _iterated(part: ast.comprehension, family: Any) -> Iterable[Any]:
-    if isinstance(family, str | Record):
-        raise BadInput(f"{_text(part.iter)} is {in_words(family)}, and no family or list")
     try:
-        return list(family)
+        if not isinstance(family, str | Record):
+            return list(family)
     except TypeError:
-        raise BadInput(f"{_text(part.iter)} is {in_words(family)}, and no family or list") from None
+        pass
+    raise BadInput(f"{_text(part.iter)} is {in_words(family)}, and no family or list")
 
 
 def _unpacked(target: ast.expr, member: Any) -> dict[str, Any]:
@@ -323,7 +324,3 @@ def _equivalent(first: Answer, second: Answer) -> Answer:
     both = {**first.evidence, **second.evidence}
     reasons = tuple(dict.fromkeys((*first.reasons, *second.reasons)))
     return Answer(first.truth is second.truth, reasons, both, max(first.members, second.members))
-
-
-def _text(node: ast.AST) -> str:
-    return ast.unparse(node)

@@ -14,7 +14,7 @@ from satsym.arrays import Array
 from satsym.auditing.quantities import Quantity
 from satsym.formula.budget import OverBudget
 from satsym.status import BadInput
-from satsym.wording import shown, suggestion
+from satsym.wording import refuse_unknown
 
 _LISTED = 6
 """Entries of a list that are shown."""
@@ -46,8 +46,7 @@ class Record:
 
     def part(self, name: str) -> Any:
         """One of its values."""
-        if name not in self.parts:
-            raise BadInput(f"{self.name} has no {shown(name)}; {suggestion(name, self.parts)}")
+        refuse_unknown(f"{self.name} has no", name, self.parts)
         return self.parts[name]
 
 
