@@ -85,9 +85,9 @@ def in_words(edit: Edit) -> Said:
     return say(known, written(old), written(new), _signed(term), str(edit.times), table=table)
 
 
-def stated(key: str, what: str = "") -> Said:
-    """A sentence, and after a colon what there is to it."""
-    return joined([say(key), f": {what}." if what else "."], "")
+def stated(said: Said, what: str = "") -> Said:
+    """A sentence without its full stop, and after a colon what there is to it."""
+    return joined([said, f": {what}." if what else "."], "")
 
 
 def sentence(clause: str) -> Said:

@@ -76,7 +76,7 @@ class _Context:
     def _verdict(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
         row = outcome.row
         if not row.table.legible:
-            return "illegible", [stated("unread", row.table.says)]
+            return "illegible", [stated(say("unread"), row.table.says)]
         if row.claims is not None:
             return self._of_claim(outcome)
         if outcome.unit:
@@ -101,11 +101,11 @@ class _Context:
         if outcome.artefact:
             return "artefact", [say("artefact", derived), remark]
         if outcome.row.table.kind == "unit":
-            return "unit error", [stated("denied", derived), remark]
+            return "unit error", [stated(say("denied"), derived), remark]
         by_role: dict[str, Verdict] = {"citation": "misprint", "notation": "notation"}
         verdict = by_role.get(outcome.row.table.role, "wrong")
         verdict = "imprecise" if outcome.near else "unit error" if outcome.unit else verdict
-        return verdict, [stated("denied", derived), remark]
+        return verdict, [stated(say("denied"), derived), remark]
 
     def _of_wrong_formula(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
         row = outcome.row
