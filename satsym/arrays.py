@@ -18,10 +18,10 @@ def kept(function: Callable[..., T]) -> Callable[..., T]:
     known: dict[Any, T] = {}
 
     @wraps(function)
-    def asked(*arguments: Any) -> T:
-        key = tuple(map(_key, arguments))
+    def asked(*arguments: Any, **named: Any) -> T:
+        key = (*map(_key, arguments), *((name, _key(argument)) for name, argument in named.items()))
         if key not in known:
-            known[key] = function(*arguments)
+            known[key] = function(*arguments, **named)
         return known[key]
 
     return asked

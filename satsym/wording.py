@@ -7,8 +7,10 @@ megabyte of anything. Nothing of it reaches a message except through here.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from difflib import get_close_matches
+
+from satsym.status import BadInput
 
 LIMIT = 60
 """Characters of a foreign value that a message repeats."""
@@ -59,6 +61,12 @@ def suggestion(name: str, known: Iterable[str]) -> str:
     if near:
         return f'did you mean "{near[0]}"?'
     return f"known here: {some(known)}" if known else "remove it, nothing may stand here"
+
+
+def refuse_unknown(what: str, name: str, known: Collection[str]) -> None:
+    """Refuse a name that is none of those known, after some words on what it is the name of."""
+    if name not in known:
+        raise BadInput(f"{what} {shown(name)}; {suggestion(name, known)}")
 
 
 def unlike(wanted: Iterable[object], given: Iterable[object], missing: str, foreign: str) -> str:

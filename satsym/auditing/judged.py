@@ -24,6 +24,8 @@ Verdict: TypeAlias = Literal[
     "illegible",
 ]
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
+AS_STATED = ("item", "part", "kind", "says", "where", "printed", "role", "original")
+"""Attributes that a row has from its ledger as they stand there."""
 
 
 @dataclass(frozen=True)
@@ -32,10 +34,8 @@ class Judged:
 
     Attributes
     ----------
-    document, item, part, kind, says, where, role, original
+    document, item, part, kind, says, where, printed, role, original
         As the ledger has them.
-    printed
-        Verbatim.
     derived
         What is right.
     diagnosis, diagnosis_id

@@ -35,8 +35,6 @@ _BASES = {
 }
 _FLOATS = {name: getattr(math, name) for name in "sin cos tan sqrt exp log asin acos atan sinh cosh tanh atan2".split()}
 _FLOATS |= {"abs": abs, "min": min, "max": max}
-
-
 _ROOTS = 12
 """The highest root that is taken of a unit."""
 

@@ -33,7 +33,6 @@ def audit(ledger: Ledger, items: Sequence[str] = (), announce: Callable[[str], N
     BadInput
         If a row names what no derivation has, or is held against what it cannot be compared with.
     """
-    from satsym.auditing import refusal
     from satsym.auditing.judge.bench import Bench
     from satsym.auditing.verdict import verdicts
 
@@ -45,7 +44,7 @@ def audit(ledger: Ledger, items: Sequence[str] = (), announce: Callable[[str], N
     for i, row in enumerate(rows, start=1):
         announce(f"{ledger.document.key}: row {i} of {len(rows)}, {printable(row.key)}")
         limit = budget.FORMULA if row.claims is None else budget.CLAIM
-        outcomes.append(refusal.named(bench, row, limit, partial(_outcome, bench, row)))
+        outcomes.append(bench.within(limit, row, partial(_outcome, bench, row)))
     return verdicts(bench, outcomes, wanted)
 
 
@@ -63,8 +62,6 @@ def _outcome(bench: Bench, row: Row) -> Outcome:
 
 def _bearing(bench: Bench, wanted: Sequence[str]) -> set[str]:
     """Keys of rows that the verdicts of some rows depend on: what they use, what uses them, and the same target."""
-    from satsym.auditing import refusal
-
     rows = bench.ledger.rows
     found = set(wanted)
     for row in (bench.rows[key] for key in wanted):
@@ -72,6 +69,6 @@ def _bearing(bench: Bench, wanted: Sequence[str]) -> set[str]:
         for other in rows:
             if row.key in other.uses:
                 found.update([other.key, *other.uses])
-            if refusal.named(bench, other, budget.FORMULA, partial(bench.same_target, row, other)):
+            if bench.within(budget.FORMULA, other, partial(bench.same_target, row, other)):
                 found.add(other.key)
     return found

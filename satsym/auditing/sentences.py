@@ -85,19 +85,9 @@ def in_words(edit: Edit) -> Said:
     return say(known, written(old), written(new), _signed(term), str(edit.times), table=table)
 
 
-def false_claim(derived: str) -> Said:
-    """A claim does not hold."""
-    return joined([say("denied"), f": {derived}." if derived else "."], "")
-
-
-def unsound(items: Sequence[str], instead: str = "") -> Said:
-    """The result is right, but not for the reason given; what follows instead."""
-    return joined([say("unsound", items), say("instead", instead) if instead else "", "."], "")
-
-
-def illegible(reason: str) -> Said:
-    """A row cannot be read."""
-    return joined([say("unread"), f": {reason}." if reason else "."], "")
+def stated(said: Said, what: str = "") -> Said:
+    """A sentence without its full stop, and after a colon what there is to it."""
+    return joined([said, f": {what}." if what else "."], "")
 
 
 def sentence(clause: str) -> Said:

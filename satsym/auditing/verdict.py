@@ -7,19 +7,18 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
 
-from satsym.auditing import refusal
 from satsym.auditing.causes import SILENT, with_causes
 from satsym.auditing.diagnosis.edits import Change, Edit
 from satsym.auditing.judge.bench import Bench, Both
 from satsym.auditing.judge.claim import Pages
 from satsym.auditing.judge.compare import plans
-from satsym.auditing.judge.formula import corrected, shown
-from satsym.auditing.judged import Judged, Verdict
+from satsym.auditing.judge.formula import corrected, in_rows, shown
+from satsym.auditing.judged import AS_STATED, Judged, Verdict
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
 from satsym.auditing.propositions.reading import shape
 from satsym.auditing.propositions.values import in_words
-from satsym.auditing.sentences import false_claim, illegible, joined, say, sentence, unsound
+from satsym.auditing.sentences import joined, say, sentence, stated
 from satsym.formula import budget
 from satsym.formula.cells import Formula, names_in
 from satsym.formula.tree import ONE, Mul, Neg, Node, Num, Sym
@@ -36,7 +35,7 @@ def verdicts(bench: Bench, outcomes: Sequence[Outcome], wanted: Sequence[str] | 
     by_key = {outcome.row.key: outcome for outcome in outcomes}
     context = _Context(bench, by_key)
     chosen = [o for o in outcomes if wanted is None or o.row.key in wanted]
-    return with_causes([refusal.named(bench, o.row, budget.VERDICT, partial(context.judged, o)) for o in chosen])
+    return with_causes([bench.within(budget.VERDICT, o.row, partial(context.judged, o)) for o in chosen])
 
 
 class _Context:
@@ -52,23 +51,16 @@ class _Context:
         verdict, sayings = self._verdict(outcome)
         said = joined(sayings if verdict != "confirmed" else ())
         row, document = outcome.row, self._bench.ledger.document.key
-        command = recompute(self._bench.ledger.name, row.key)
+        command = f'satsym audit {self._bench.ledger.name} --item "{row.key}"'
         numbers = "; ".join(f"{name} = {in_words(value)}" for name, value in outcome.evidence.items())
         return Judged(
             document=document,
-            item=row.table.item,
-            part=row.table.part,
-            kind=row.table.kind,
-            says=row.table.says,
-            where=row.table.where,
-            printed=row.table.printed,
+            **{name: getattr(row.table, name) for name in AS_STATED},
             derived=shown(outcome.plan, None) if outcome.plan and self._takes_over(outcome) else outcome.derived,
             verdict=verdict,
             diagnosis=str(said),
             diagnosis_id=said.indonesian,
             evidence=f"{numbers}; {command}" if numbers else command,
-            role=row.table.role,
-            original=row.table.original,
             why=str(sentence(self._why(outcome))) if verdict not in SILENT else "",
             by_formula=row.claims is None,
             form=_form(outcome),
@@ -84,7 +76,7 @@ class _Context:
     def _verdict(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
         row = outcome.row
         if not row.table.legible:
-            return "illegible", [illegible(row.table.says)]
+            return "illegible", [stated(say("unread"), row.table.says)]
         if row.claims is not None:
             return self._of_claim(outcome)
         if outcome.unit:
@@ -94,7 +86,8 @@ class _Context:
         if not outcome.right:
             return "imprecise" if outcome.near else "wrong", [outcome.remark]
         if row.follows is not None and not self._follows(row, {}) and not self._follows_once_corrected(row):
-            return "unsound", [unsound(row.uses, self._instead(row))]
+            instead = self._instead(row)
+            return "unsound", [joined([say("unsound", row.uses), say("instead", instead) if instead else "", "."], "")]
         return "confirmed", []
 
     def _of_claim(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
@@ -108,11 +101,11 @@ class _Context:
         if outcome.artefact:
             return "artefact", [say("artefact", derived), remark]
         if outcome.row.table.kind == "unit":
-            return "unit error", [false_claim(derived), remark]
+            return "unit error", [stated(say("denied"), derived), remark]
         by_role: dict[str, Verdict] = {"citation": "misprint", "notation": "notation"}
         verdict = by_role.get(outcome.row.table.role, "wrong")
         verdict = "imprecise" if outcome.near else "unit error" if outcome.unit else verdict
-        return verdict, [false_claim(derived), remark]
+        return verdict, [stated(say("denied"), derived), remark]
 
     def _of_wrong_formula(self, outcome: Outcome) -> tuple[Verdict, list[str]]:
         row = outcome.row
@@ -168,8 +161,8 @@ class _Context:
             for value in (self._bench.follows(row, right).exact, self._bench.target(row).exact)
         )
         if isinstance(found, Matrix) and isinstance(target, Matrix) and found.shape == target.shape:
-            entries = [[entry for line in matrix.rows for entry in line] for matrix in (found, target)]
-            return all(formulas.is_zero(one - other) for one, other in zip(*entries, strict=True))
+            pairs = zip(found.entries, target.entries, strict=True)
+            return all(formulas.is_zero(one - other) for one, other in pairs)
         no_formula = (Roots, Kernel, Matrix)
         if isinstance(found, no_formula) or isinstance(target, no_formula):
             return False
@@ -184,7 +177,7 @@ class _Context:
         asked = row.key, tuple(replacements)
         if asked not in self._known:
             work = partial(self._follows_from, row, replacements)
-            self._known[asked] = refusal.named(self._bench, row, budget.VERDICT, work, "from")
+            self._known[asked] = self._bench.within(budget.VERDICT, row, work, "from")
         return self._known[asked]
 
     def _instead(self, row: Row) -> str:
@@ -194,13 +187,9 @@ class _Context:
         if isinstance(found, Roots | Kernel):
             return ""
 
-        def told(exact: Any) -> str:
-            return written(self._bench.theirs(row, formulas.to_tree(exact)))
-
-        if not isinstance(found, Matrix):
-            return told(found)
-        lines = [", ".join(map(told, line)) for line in found.rows]
-        return f"[{', '.join(f'[{line}]' for line in lines)}]"
+        lines = found.rows if isinstance(found, Matrix) else ((found,),)
+        trees = tuple(tuple(self._bench.theirs(row, formulas.to_tree(entry)) for entry in line) for line in lines)
+        return in_rows(trees) if isinstance(found, Matrix) else written(trees[0][0])
 
     def _follows_from(self, row: Row, replacements: Mapping[str, Formula]) -> bool:
         assert row.printed is not None
@@ -226,11 +215,6 @@ class _Context:
         if key not in self._right:
             self._right[key] = corrected(self._outcomes[key])
         return self._right[key]
-
-
-def recompute(document: str, key: str) -> str:
-    """The command that recomputes a row."""
-    return f'satsym audit {document} --item "{key}"'
 
 
 def _same(one: Outcome, other: Outcome) -> bool:

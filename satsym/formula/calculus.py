@@ -87,8 +87,7 @@ class Calculus(Engine[Node]):
 
     def _weighed(self, tree: Node) -> Node:
         """The tree, unless it is too heavy for what sympy, or the field, would be asked to do with it next."""
-        self._scales.checked(tree)
-        return tree
+        return self._scales.checked(tree)
 
 
 def total(terms: Sequence[Node]) -> Node:

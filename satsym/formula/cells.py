@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import TypeAlias
+from collections.abc import Callable, Iterator, Sequence
+from typing import TypeAlias, TypeVar
 
 from satsym.formula.tree import Call, Equality, Node, calls, symbols
 
+T = TypeVar("T")
 Formula: TypeAlias = Node | Equality | tuple[tuple[Node, ...], ...]
 
 
@@ -17,6 +18,11 @@ def cells(formula: Formula | None) -> list[Node]:
     if isinstance(formula, tuple):
         return [entry for line in formula for entry in line]
     return [formula.lhs, formula.rhs] if isinstance(formula, Equality) else [formula]
+
+
+def shaped(entries: Sequence[T], columns: int) -> tuple[tuple[T, ...], ...]:
+    """Entries of a matrix, row by row, as its rows."""
+    return tuple(tuple(entries[i : i + columns]) for i in range(0, len(entries), columns))
 
 
 def each(formula: Formula, function: Callable[[Node], Node]) -> Formula:

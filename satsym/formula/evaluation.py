@@ -187,7 +187,7 @@ class Engine(ABC, Generic[S]):
     def _call(self, tree: Call) -> Value:
         operation = OPERATIONS.get(tree.function)
         if operation is not None:
-            return operation(self, tree)
+            return operation.meaning(self, tree)
         return self.function(tree.function, [self.scalar(argument) for argument in tree.arguments])
 
     def relation(self, tree: Node) -> Relation[S]:

@@ -1,8 +1,9 @@
-"""Functions that formulas over derived and printed things may call; each derives, none holds an answer."""
+"""What formulas over derived and printed things may call; each function derives, none holds an answer."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +14,8 @@ from satsym.status import BadInput
 
 if TYPE_CHECKING:
     from satsym.formula.evaluation import Engine
+
+MANY = 20
 
 
 def _symbol(engine: Engine[S], tree: Node) -> str:
@@ -81,12 +84,12 @@ def _minor(engine: Engine[S], tree: Call) -> Value:
 
 
 def _zeros(engine: Engine[S], tree: Call) -> Value:
-    sizes = [_index(argument, 20) + 1 for argument in tree.arguments]
+    sizes = [_index(argument, MANY) + 1 for argument in tree.arguments]
     return Matrix(tuple((engine.number(Fraction(0)),) * sizes[-1] for _ in range(sizes[0])))
 
 
 def _eye(engine: Engine[S], tree: Call) -> Value:
-    return engine.identity(_index(tree.arguments[0], 20) + 1)
+    return engine.identity(_index(tree.arguments[0], MANY) + 1)
 
 
 def _reached(engine: Engine[S], tree: Call) -> Value:
@@ -119,33 +122,52 @@ def _increment(engine: Engine[S], tree: Call) -> Value:
     return engine.add([engine.multiply([engine.number(w), k]) for w, k in zip(weights, slopes, strict=True)])
 
 
-OPERATIONS: Mapping[str, Callable[[Any, Call], Value]] = {
-    "row": _row,
-    "at": _at,
-    "lhs": lambda engine, tree: engine.relation(tree.arguments[0]).lhs,
-    "rhs": lambda engine, tree: engine.relation(tree.arguments[0]).rhs,
-    "diff": _diff,
-    "subs": _subs,
-    "solve": lambda engine, tree: engine.solution(engine.value(tree.arguments[0]), _symbol(engine, tree.arguments[1])),
-    "matrix": lambda engine, tree: engine.matrix(tree.arguments[0]),
-    "norm": _norm,
-    "entry": _entry,
-    "minor": _minor,
-    "transpose": lambda engine, tree: transposed(engine.matrix(tree.arguments[0])),
-    "det": lambda engine, tree: engine.determinant(engine.matrix(tree.arguments[0])),
-    "rank": lambda engine, tree: engine.number(Fraction(engine.rank(engine.matrix(tree.arguments[0])))),
-    "inverse": lambda engine, tree: engine.inverse(engine.matrix(tree.arguments[0])),
-    "charpoly": lambda engine, tree: engine.characteristic(
-        engine.matrix(tree.arguments[0]), engine.scalar(tree.arguments[1])
-    ),
-    "eigenvalues": lambda engine, tree: Roots(engine.matrix(tree.arguments[0])),
-    "nullspace": lambda engine, tree: Kernel(engine.matrix(tree.arguments[0])),
-    "eye": _eye,
-    "zeros": _zeros,
-    "hstack": lambda engine, tree: stacked([engine.matrix(argument) for argument in tree.arguments], beside=True),
-    "vstack": lambda engine, tree: stacked([engine.matrix(argument) for argument in tree.arguments], beside=False),
-    "controllability": _reached,
-    "observability": _observed,
-    "jacobian": _jacobian,
-    "rk4_increment": _increment,
+def _solve(engine: Engine[S], tree: Call) -> Value:
+    return engine.solution(engine.value(tree.arguments[0]), _symbol(engine, tree.arguments[1]))
+
+
+def _stack(engine: Engine[S], tree: Call, beside: bool) -> Value:
+    return stacked([engine.matrix(argument) for argument in tree.arguments], beside=beside)
+
+
+def _characteristic(engine: Engine[S], tree: Call) -> Value:
+    return engine.characteristic(engine.matrix(tree.arguments[0]), engine.scalar(tree.arguments[1]))
+
+
+@dataclass(frozen=True)
+class Operation:
+    """What a call means, and how many arguments it takes."""
+
+    meaning: Callable[[Any, Call], Value]
+    fewest: int = 1
+    most: int = 1
+
+
+OPERATIONS: Mapping[str, Operation] = {
+    "row": Operation(_row, 1, 2),  # what a row prints
+    "at": Operation(_at),  # the right-hand side, or the matrix, at an address
+    "lhs": Operation(lambda engine, tree: engine.relation(tree.arguments[0]).lhs),
+    "rhs": Operation(lambda engine, tree: engine.relation(tree.arguments[0]).rhs),
+    "diff": Operation(_diff, 2, MANY),
+    "subs": Operation(_subs),  # subs(e, x=..., y=...), all at once
+    "solve": Operation(_solve, 2, 2),  # the only solution of a linear equation for a symbol
+    "matrix": Operation(lambda engine, tree: engine.matrix(tree.arguments[0])),
+    "norm": Operation(_norm),
+    "entry": Operation(_entry, 3, 3),
+    "minor": Operation(_minor, 3, 3),  # without a row and a column, counted from one
+    "transpose": Operation(lambda engine, tree: transposed(engine.matrix(tree.arguments[0]))),
+    "det": Operation(lambda engine, tree: engine.determinant(engine.matrix(tree.arguments[0]))),
+    "rank": Operation(lambda engine, tree: engine.number(Fraction(engine.rank(engine.matrix(tree.arguments[0]))))),
+    "inverse": Operation(lambda engine, tree: engine.inverse(engine.matrix(tree.arguments[0]))),
+    "charpoly": Operation(_characteristic, 2, 2),  # det(x I - A)
+    "eigenvalues": Operation(lambda engine, tree: Roots(engine.matrix(tree.arguments[0]))),  # repeated ones, too
+    "nullspace": Operation(lambda engine, tree: Kernel(engine.matrix(tree.arguments[0]))),  # a basis, as columns
+    "eye": Operation(_eye),
+    "zeros": Operation(_zeros, 1, 2),
+    "hstack": Operation(lambda engine, tree: _stack(engine, tree, beside=True), 1, MANY),
+    "vstack": Operation(lambda engine, tree: _stack(engine, tree, beside=False), 1, MANY),
+    "controllability": Operation(_reached, 2, 2),  # [B, AB, A^2 B, ...]
+    "observability": Operation(_observed, 2, 2),  # [C; CA; C A^2; ...]
+    "jacobian": Operation(_jacobian, 2, 2),  # of a column by a list of symbols
+    "rk4_increment": Operation(_increment, 4, 4),  # the weighted mean of four slopes that gives order four
 }

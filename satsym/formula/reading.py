@@ -14,6 +14,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import TypeAlias
 
+from satsym.formula.functions import OPERATIONS
 from satsym.formula.tree import Add, Call, Div, Equality, Grid, Mul, Neg, Node, Num, Pow, Sym, Text, constant
 from satsym.formula.weight import MAX_TERMS, Scales
 from satsym.status import BadInput
@@ -38,6 +39,8 @@ FUNCTIONS: Functions = {
     "norm": (1, 1),  # of a column
 }
 """What a printed formula may call."""
+_JUDGING = {**{name: (found.fewest, found.most) for name, found in OPERATIONS.items()}, **FUNCTIONS}
+"""What the formulas of a ledger may call."""
 _OF_LIBRARIES = {"np.sqrt": "sqrt", "np.linalg.norm": "norm"}
 """What printed programs call some of them."""
 
@@ -69,18 +72,16 @@ _WORDS = {
 }
 
 
-def expression(text: str, functions: Functions = FUNCTIONS, *, judging: bool = False) -> Node:
+def expression(text: str, *, judging: bool = False) -> Node:
     """Read one expression.
 
     Parameters
     ----------
     text
         Numbers, names, ``+ - * / **``, brackets and calls.
-    functions
-        Functions that may be called, each with the least and the largest number of its arguments.
     judging
-        Whether lists, quoted texts, ``row['item']``, ``@`` and arguments by name are allowed, too: in what a
-        formula is held against, not in what is printed.
+        Whether lists, quoted texts, ``row['item']``, ``@``, arguments by name and what derives are allowed, too: in
+        what a formula is held against, not in what is printed.
 
     Raises
     ------
@@ -89,12 +90,10 @@ def expression(text: str, functions: Functions = FUNCTIONS, *, judging: bool = F
     """
     measured(text, judging)
     line = _LAMBDA.sub(_STAND_IN, text.strip().replace("\n", " "))
-    tree = _Reader(line, functions, judging).node(parsed(line, text, "a formula"))
-    Scales(MAX_TERMS).checked(tree)
-    return tree
+    return Scales(MAX_TERMS).checked(_Reader(line, judging).node(parsed(line, text, "a formula")))
 
 
-def statement(text: str, functions: Functions = FUNCTIONS, *, judging: bool = False) -> Node | Equality:
+def statement(text: str, *, judging: bool = False) -> Node | Equality:
     """Read one expression, or an equality ``lhs = rhs`` of two.
 
     Raises
@@ -106,7 +105,7 @@ def statement(text: str, functions: Functions = FUNCTIONS, *, judging: bool = Fa
     sides = _sides(text)
     if len(sides) > 2:
         raise BadInput("has several equality signs; write a row for each equality")
-    read = [expression(side, functions, judging=judging) for side in sides]
+    read = [expression(side, judging=judging) for side in sides]
     return read[0] if len(read) == 1 else Equality(read[0], read[1])
 
 
@@ -187,9 +186,9 @@ def parsed(line: str, text: str, what: str) -> ast.expr:
 class _Reader:
     """Translates what Python's parser found, and refuses whatever is not listed."""
 
-    def __init__(self, text: str, functions: Functions, judging: bool) -> None:
+    def __init__(self, text: str, judging: bool) -> None:
         self._text = text
-        self._functions = functions
+        self._functions = _JUDGING if judging else FUNCTIONS
         self._judging = judging
 
     def node(self, found: ast.expr, depth: int = 0) -> Node:

@@ -22,6 +22,11 @@ class Matrix(Generic[S]):
         """Numbers of rows and columns."""
         return len(self.rows), len(self.rows[0]) if self.rows else 0
 
+    @property
+    def entries(self) -> list[S]:
+        """All of them, row by row."""
+        return [entry for row in self.rows for entry in row]
+
 
 @dataclass(frozen=True)
 class Relation(Generic[S]):

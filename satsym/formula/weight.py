@@ -10,10 +10,12 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import TypeVar
 
 from satsym.formula.budget import OverBudget
 from satsym.formula.tree import Add, Call, Div, Equality, Mul, Neg, Node, Num, Pow, Sym, children, constant
 
+T = TypeVar("T", bound=Node | Equality)
 MAX_NODES = 50_000
 """Nodes of the tree, each part as often as it is printed; the shipped ledgers have up to 578."""
 MAX_DEPTH = 110
@@ -63,8 +65,8 @@ class Scales:
     """Terms that a tree may have once multiplied out."""
     _known: dict[int, tuple[Node, Weight]] = field(default_factory=dict)
 
-    def checked(self, tree: Node | Equality) -> None:
-        """Refuse what is too heavy.
+    def checked(self, tree: T) -> T:
+        """A tree as it is given; what is too heavy is refused.
 
         Raises
         ------
@@ -73,6 +75,7 @@ class Scales:
         """
         for side in (tree.lhs, tree.rhs) if isinstance(tree, Equality) else (tree,):
             self.weight(side)
+        return tree
 
     def weight(self, node: Node) -> Weight:
         """The weight of a tree that is not too heavy; see :meth:`checked`."""

@@ -9,9 +9,8 @@ from typing import Any
 import pytest
 
 from satsym.auditing import measurements
-from satsym.auditing.measurements import measurement
 from satsym.auditing.measurements.linear import eigenvalues
-from satsym.auditing.propositions.evaluation import Answer, Document, Evaluation
+from satsym.auditing.propositions.evaluation import Answer, Evaluation
 from satsym.auditing.propositions.reading import proposition
 from satsym.auditing.propositions.values import Undecided
 from satsym.status import BadInput
@@ -22,14 +21,15 @@ from tests.support.contributing import example
 def half_life() -> Iterator[None]:
     """The measurement as CONTRIBUTING prints it."""
     scope: dict[str, Any] = {"Any": Any, "Undecided": Undecided, "eigenvalues": eigenvalues, "math": math}
-    exec(example("A measurement", "python"), scope | {"measurement": measurement})  # noqa: S102
+    exec(example("A measurement", "python"), scope)  # noqa: S102
+    measurements.enter(scope["half_life"])
     yield
     del measurements.words().functions["half_life"]  # type: ignore[attr-defined]
 
 
 def answer(text: str) -> Answer:
     words = measurements.words()
-    return Evaluation(words, Document()).answer(proposition(text, words))
+    return Evaluation(words).answer(proposition(text, words))
 
 
 def test_claims_speak_of_it_and_quantify_over_it(half_life: None) -> None:

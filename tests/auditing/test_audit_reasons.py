@@ -80,7 +80,7 @@ def test_a_letter_takes_a_plain_quantity_and_no_length() -> None:
     words = measurements.words()
 
     def value(text: str) -> str:
-        return Evaluation(words, None).term(proposition(text, words))  # type: ignore[arg-type]
+        return Evaluation(words).term(proposition(text, words))
 
     rate = "rates('clohessy_wiltshire')[1]"
     assert value(f"subs({rate}, omega=quantity('2 km')/quantity('1000 m'), x1=1, x4=0, u1=0)").rstrip("0") == "12."

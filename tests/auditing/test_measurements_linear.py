@@ -11,7 +11,7 @@ import sympy as sp
 
 from satsym.auditing.measurements import earth, formulas, linear, linear_motions, listings, matrices, regulators
 from satsym.auditing.measurements import words as all_words
-from satsym.auditing.propositions.values import Record, Undecided
+from satsym.auditing.propositions.values import Record, Undecided, numbers
 
 M = sp.ImmutableMatrix
 INTEGRATOR = Record("integrator", {"A": M([[0]]), "B": M([[1]])})
@@ -61,9 +61,7 @@ def test_gains_place_what_can_be_placed() -> None:
     gain = linear_motions.placing_gain(DOUBLE, [1, 5, 6])
     assert gain.tolist() == [[-6, -5]]
     assert linear.characteristic(DOUBLE.part("A") + DOUBLE.part("B") * gain) == [1, 5, 6]
-    kept = np.linalg.eigvals(
-        linear.numbers(HALF.part("A")) + linear.numbers(HALF.part("B")) @ linear_motions.stabilising_gain(HALF)
-    )
+    kept = np.linalg.eigvals(numbers(HALF.part("A")) + numbers(HALF.part("B")) @ linear_motions.stabilising_gain(HALF))
     assert sorted(kept.real)[1] == pytest.approx(2)
     assert min(kept.real) < 0
     assert not linear.stabilisable(HALF)

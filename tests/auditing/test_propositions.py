@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import inspect
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -16,23 +17,14 @@ from satsym.auditing.propositions.values import Family, Record, Undecided
 from satsym.auditing.quantities import in_base_units, printed_number
 from satsym.status import BadInput
 
-
-class _Page:
-    """A document with one row and one letter."""
-
-    items = ["2.1", "theorem 3"]
-
-    def row(self, key: str) -> Any:
-        return {"a": 3.0}[key]
-
-    def text(self, key: str) -> Any:
-        return {"a": ["line 1", "line 2"]}[key]
-
-    def symbol(self, name: str) -> Any:
-        return {"s": 5.0}[name]
-
-    def meanings(self, letter: str) -> list[str]:
-        return {"s": ["r", "r - sigma"]}[letter]
+PAGE: dict[str, Callable[[str], Any]] = {
+    "row": {"a": 3.0}.__getitem__,
+    "text": {"a": ["line 1", "line 2"]}.__getitem__,
+    "symbol": {"s": 5.0}.__getitem__,
+    "meanings": {"s": ["r", "r - sigma"]}.__getitem__,
+    "items": lambda _: ["2.1", "theorem 3"],
+}
+"""A document with one row and one letter."""
 
 
 def unknown() -> float:
@@ -49,7 +41,7 @@ WORDS = Words(
 
 
 def answer(text: str) -> Answer:
-    return Evaluation(WORDS, _Page(), ("a", "b")).answer(proposition(text, WORDS, own=True))
+    return Evaluation(WORDS, PAGE, ("a", "b")).answer(proposition(text, WORDS, own=True))
 
 
 TRUE = [
@@ -213,7 +205,7 @@ def test_a_sentence_holds_terms_in_braces() -> None:
     first, term, last = explanation("it is {double(2)}, no more", WORDS)
     assert (first, last) == ("it is ", ", no more")
     assert not isinstance(term, str)
-    assert Evaluation(WORDS, _Page()).term(term) == "4"
+    assert Evaluation(WORDS, PAGE).term(term) == "4"
     with pytest.raises(BadInput, match="brace"):
         explanation("it is {double(2)", WORDS)
 

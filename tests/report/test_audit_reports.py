@@ -311,7 +311,7 @@ def test_diagnoses_are_said_in_both_languages() -> None:
     fault = sentences.joined([sentences.say("carried_on", ["1", "2"]), "", sentences.say("same_slip", ["3"])])
     assert fault == "The error is carried on into 1 and 2. The same slip is in 3."
     assert fault.indonesian == "Kekeliruan ini terbawa ke 1 dan 2. Kekeliruan yang sama ada di 3."
-    assert sentences.false_claim("{x}").indonesian == "Tidak benar demikian: {x}."
+    assert sentences.stated(sentences.say("denied"), "{x}").indonesian == "Tidak benar demikian: {x}."
     assert sentence("x is measured") == sentences.in_indonesian("x is measured.")
 
 

@@ -113,11 +113,8 @@ def mean_edits(formula: Node) -> Iterator[Edit]:
     """One end in the place of the mean of two symbols, wherever such a mean stands."""
     places = [path for path, node in walk(formula) if _ends(node)]
     for end in (0, 1) if places else ():
-        result = formula
-        for path in sorted(places, key=lambda path: (len(path), path), reverse=True):  # the inner places first
-            result = replaced(result, path, _without_mean(at(result, path), end))
         old = at(formula, places[-1])
-        yield Edit(Change.MEAN, (), old, _without_mean(old, end), result, len(places))
+        yield _everywhere(Change.MEAN, formula, places, old, lambda node: _without_mean(node, end))  # noqa: B023
 
 
 def _ends(node: Node) -> tuple[Node, ...]:
@@ -139,7 +136,7 @@ def _everywhere(change: Change, formula: Node, places: Sequence[Path], old: Node
     result = formula
     for path in sorted(places, key=lambda path: (len(path), path), reverse=True):  # the inner places first
         result = replaced(result, path, rule(at(result, path)))
-    return Edit(change, (), old, rule(old) if change is Change.INDEX else ONE, result, len(places))
+    return Edit(change, (), old, ONE if change is Change.DROPPED_FACTOR else rule(old), result, len(places))
 
 
 def _choices(places: Sequence[Path]) -> Iterator[tuple[Path, ...]]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from satsym.auditing.diagnosis.edits import Change, Edit
-from satsym.auditing.judge.equations import Equal, Multiple
 from satsym.auditing.judge.plan import Plan
 from satsym.auditing.ledger.scopes import CONSTANTS
 from satsym.formula.angles import TooManyTerms, terms_of
@@ -40,7 +39,7 @@ def mended_terms(plan: Plan, indices: Sequence[int]) -> list[tuple[int, Edit]]:
     """
     found: list[tuple[int, int, int, int, Edit]] = []
     for i in indices:
-        for gap in () if isinstance(plan.printed[i], Num) else _gaps(plan, i):
+        for gap in () if isinstance(plan.printed[i], Num) else plan.gaps(i):
             for path, node, slope in _linear_places(plan.printed[i]):
                 for change, at, old, new, term in _mended(plan, gap, path, node, slope):
                     edit = Edit(change, at, old, new, replaced(plan.printed[i], at, new))
@@ -75,14 +74,6 @@ def _is_multiple(term: Node, other: Node) -> bool:
         return list(terms_of(Div(term, other)).coefficients) == [()]
     except TooManyTerms:
         return False
-
-
-def _gaps(plan: Plan, index: int) -> Iterator[Node]:
-    """What a cell lacks, in our names."""
-    if isinstance(plan, Equal):
-        yield plan.gap(index)
-    elif isinstance(plan, Multiple):
-        yield from plan.gaps(index)
 
 
 def _linear_places(formula: Node) -> Iterator[tuple[Path, Node, Node]]:

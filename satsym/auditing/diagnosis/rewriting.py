@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from fractions import Fraction
 from functools import partial
 
-from satsym.formula.tree import ONE, Add, Div, Mul, Neg, Node, Num, Sym, constant, number
+from satsym.formula.tree import ONE, Add, Div, Mul, Neg, Node, Num, Sym, constant, number, replaced
 
 
 def regrouped(node: Node) -> Iterator[Node]:
@@ -16,7 +16,7 @@ def regrouped(node: Node) -> Iterator[Node]:
     if isinstance(node, Mul):
         for i, factor in enumerate(node.factors):
             if isinstance(factor, Add):
-                yield from _split(factor, partial(_in_place, node.factors, i))
+                yield from _split(factor, partial(replaced, node, (i,)))
     if isinstance(node, Add):
         *before, last = node.terms
         negative, inner = isinstance(last, Neg), last.operand if isinstance(last, Neg) else last
@@ -27,8 +27,8 @@ def regrouped(node: Node) -> Iterator[Node]:
             yield Mul((Add((*before, Neg(first) if negative else first)), *others))
 
 
-def _in_place(factors: tuple[Node, ...], index: int, part: Node) -> Node:
-    return Mul((*factors[:index], part, *factors[index + 1 :]))
+def _but(parts: tuple[Node, ...], index: int) -> tuple[Node, ...]:
+    return (*parts[:index], *parts[index + 1 :])
 
 
 def _split(bracket: Add, around: Callable[[Node], Node]) -> Iterator[Node]:
@@ -48,20 +48,19 @@ def shortened(node: Node) -> Iterator[tuple[bool, Node]]:
     """A product without a factor, a sum without a term; and whether it is a term that is gone."""
     if isinstance(node, Mul):
         for i in range(len(node.factors)):
-            yield False, combined(Mul, (*node.factors[:i], *node.factors[i + 1 :]))
+            yield False, combined(Mul, _but(node.factors, i))
     if isinstance(node, Div):
         yield False, node.numerator
         yield False, Div(ONE, node.denominator)
     if isinstance(node, Add):
         for i in range(len(node.terms)):
-            yield True, combined(Add, (*node.terms[:i], *node.terms[i + 1 :]))
+            yield True, combined(Add, _but(node.terms, i))
 
 
 def without_factor(node: Node, factor: Node) -> Node:
     """A product without a factor it has."""
     assert isinstance(node, Mul)
-    place = node.factors.index(factor)
-    return combined(Mul, (*node.factors[:place], *node.factors[place + 1 :]))
+    return combined(Mul, _but(node.factors, node.factors.index(factor)))
 
 
 def times(node: Node, factor: Fraction) -> Node:

@@ -229,17 +229,9 @@ def _entry_by_entry(plan: Equal, wrong: Sequence[int]) -> Remedy | None:
         return None
     edits: list[tuple[int, Edit]] = []
     for i in wrong:
-        found = next(
-            (
-                edit
-                for edit in _edits(plan, i)
-                if plan.alone(i).may_hold((edit.result,)) and plan.cell_holds(i, edit.result)
-            ),
-            None,
-        )
-        if found is None:
-            found = _whole(plan, i)
-        edits.append((i, found))
+        alone = plan.alone(i)
+        right = (e for e in _edits(plan, i) if alone.may_hold((e.result,)) and alone.cell_holds(0, e.result))
+        edits.append((i, next(right, None) or _whole(plan, i)))
     fixed = dict(edits)
     return Remedy(tuple(edits), tuple(fixed[i].result if i in fixed else cell for i, cell in enumerate(plan.printed)))
 
@@ -260,18 +252,15 @@ def _exchanged(plan: Plan) -> Remedy | None:
 def _exchanges(m: int, n: int) -> Iterator[tuple[str, list[int]]]:
     """What may be exchanged in a matrix, in words, with the places of its entries then."""
     place = np.arange(m * n).reshape(m, n)
-    for i, k in combinations(range(m), 2):
-        order = place.copy()
-        order[[i, k]] = order[[k, i]]
-        yield f"rows {i + 1} and {k + 1} are exchanged", order.ravel().tolist()
-    for i, k in combinations(range(n), 2):
-        order = place.copy()
-        order[:, [i, k]] = order[:, [k, i]]
-        yield f"columns {i + 1} and {k + 1} are exchanged", order.ravel().tolist()
+    for axis, lines in enumerate(("rows", "columns")):
+        for i, k in combinations(range(place.shape[axis]), 2):
+            order = np.arange(place.shape[axis])
+            order[[i, k]] = k, i
+            yield f"{lines} {i + 1} and {k + 1} are exchanged", place.take(order, axis).ravel().tolist()
     if m == n:
         yield "rows stand for columns", place.T.ravel().tolist()
     for a, b in combinations(range(m * n), 2):
-        order = place.copy()
-        order.flat[[a, b]] = b, a
+        order = np.arange(m * n)
+        order[[a, b]] = b, a
         one, other = (f"({k // n + 1}, {k % n + 1})" for k in (a, b))
-        yield f"the entries {one} and {other} are exchanged", order.ravel().tolist()
+        yield f"the entries {one} and {other} are exchanged", order.tolist()

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 from satsym.auditing.ledger import documents
 from satsym.auditing.ledger.contents import Ledger, Row
 from satsym.auditing.ledger.scopes import Scope, self_named
 from satsym.auditing.ledger.vocabulary import is_address
-from satsym.formula.budget import Allowance, OverBudget
+from satsym.formula.budget import Allowance, Limit, OverBudget
 from satsym.formula.calculus import Calculus
 from satsym.formula.cells import Formula, cells, each, names_in
-from satsym.formula.evaluation import Engine
+from satsym.formula.field import Undecided
 from satsym.formula.tree import Equality, Node, Sym, Text, substituted, symbols, walk
 from satsym.formula.values import Matrix, Relation, Sources, Value
 from satsym.formula.writing import written
@@ -22,10 +22,15 @@ from satsym.status import BadInput
 from satsym.symbolic.lookup import library
 from satsym.symbolic.lookup.library import Names
 from satsym.symbolic.lookup.operations import Sympy
-from satsym.wording import shown, suggestion
+from satsym.wording import printable, shown, suggestion
 
+T = TypeVar("T")
 Replacements: TypeAlias = Mapping[str, Formula]
 """Key of a row -> what is taken instead of what it prints, in our names."""
+
+
+class Refused(BadInput):
+    """A row cannot be judged, for bad input or more work than it may take; the message names it."""
 
 
 @dataclass(frozen=True)
@@ -48,6 +53,21 @@ class Bench:
         self._meanings: dict[str, Mapping[str, Node]] = {}
         self._derived: dict[tuple[str, str], Both] = {}
         self._targets: dict[str, Both] = {}
+
+    def within(self, limit: Limit, row: Row, work: Callable[[], T], where: str = "") -> T:
+        """Do some work for a row, within a limit; refused with its line and name, and the key that is to blame.
+
+        Where the work met another row that is refused, it is that one which is named.
+        """
+        try:
+            return self.allowance.within(limit, work)
+        except Refused:
+            raise
+        except (BadInput, Undecided) as error:
+            why = str(error)
+        except (RecursionError, MemoryError):
+            why = "is nested too deep, or too large; split it into rows"
+        raise Refused(f"{row.place}: row {printable(row.key)}: {f'{where}: ' if where else ''}{why}")
 
     def scope(self, row: Row) -> Scope:
         """The notation of a row."""
@@ -91,7 +111,7 @@ class Bench:
         formula = row.holds
         assert formula is not None
         if row.key not in self._targets:
-            self._targets[row.key] = self._both(row, lambda engine: engine.value(formula), self._ours)
+            self._targets[row.key] = self._both(row, formula)
         return self._targets[row.key]
 
     def same_target(self, one: Row, other: Row) -> bool:
@@ -122,12 +142,11 @@ class Bench:
         """What follows from the rows it is said to follow from."""
         formula = row.follows
         assert formula is not None
-        return self._both(row, lambda engine: engine.value(formula), self._theirs, replacements or {})
+        return self._both(row, formula, theirs=True, replacements=replacements)
 
     def printed(self, row: Row, formula: Node) -> Both:
         """A part of what a row prints."""
-        ours = self.scope(row).ours(formula)
-        return self._both(row, lambda engine: engine.value(ours), self._ours)
+        return self._both(row, self.scope(row).ours(formula))
 
     def in_ours(self, row: Row) -> Formula:
         """What a row prints, in our names."""
@@ -140,7 +159,7 @@ class Bench:
         if known is not None:
             return known
         found: dict[str, Node] = {}
-        engine = self._engine(row, Calculus, self._ours, {})
+        engine = self._engine(row, Calculus)
         for name, meaning in self.scope(row).meanings.items():
             try:
                 value = engine.value(meaning)
@@ -178,42 +197,35 @@ class Bench:
 
     def engines(self, row: Row) -> tuple[Calculus, Sympy]:
         """Both engines, for formulas in our names."""
-        return self._engine(row, Calculus, self._ours, {}), self._engine(row, Sympy, self._ours, {})
+        return self._engine(row, Calculus), self._engine(row, Sympy)
 
     def unused(self) -> str:
         """A name that no formula has."""
         taken = {*self.names.symbols, *(name for scope in self.ledger.scopes.values() for name in scope.meanings)}
         return next(name for name in ("s", *(f"s{i}" for i in range(1000))) if name not in taken)
 
-    def _both(
-        self,
-        row: Row,
-        evaluate: Callable[[Engine], Value],
-        naming: Callable[..., Any],
-        replacements: Replacements | None = None,
-    ) -> Both:
-        trees, exact = (self._engine(row, kind, naming, replacements or {}) for kind in (Calculus, Sympy))
-        return Both(evaluate(trees), evaluate(exact))
+    def _both(self, row: Row, formula: Node | Equality, **how: Any) -> Both:
+        trees, exact = (self._engine(row, kind, **how).value(formula) for kind in (Calculus, Sympy))
+        return Both(trees, exact)
 
-    def _engine(self, row: Row, kind: type, naming: Callable[..., Any], replacements: Replacements) -> Any:
-        by_trees = kind is Calculus
-        shared = self.names
+    def _engine(self, row: Row, kind: type, theirs: bool = False, replacements: Replacements | None = None) -> Any:
+        """An engine for formulas in our names, or in the document's symbols."""
 
         def name(text: str) -> Any:
-            return naming(row, text, kind)
+            return (self._theirs if theirs else self._ours)(row, text, kind)
 
         def address(text: str) -> Any:
             found = self._at(row, text)
-            return found.trees if by_trees else found.exact
+            return found.trees if kind is Calculus else found.exact
 
         def other(key: str) -> Any:
-            return self.of_row(self.rows[key], kind, replacements.get(key))
+            return self.of_row(self.rows[key], kind, (replacements or {}).get(key))
 
         def symbol(text: str) -> str:
-            return self._symbol_meant(row, text) if naming == self._theirs else text
+            return self._symbol_meant(row, text) if theirs else text
 
         sources: Sources[Any] = Sources(name, address, other, symbol)
-        return Calculus(sources, shared.positive) if by_trees else Sympy(sources)
+        return Calculus(sources, self.names.positive) if kind is Calculus else Sympy(sources)
 
     def _at(self, row: Row, address: str) -> Both:
         """A derived thing in the order of the document, looked up once for each notation."""
@@ -236,7 +248,7 @@ class Bench:
         meaning = self.scope(row).meanings.get(name)
         if meaning is None:
             return self._ours(row, name, kind)
-        return self._engine(row, kind, self._ours, {}).value(meaning)
+        return self._engine(row, kind).value(meaning)
 
     def _symbol_meant(self, row: Row, name: str) -> str:
         """The symbol of ours that a symbol of the document means."""
@@ -247,7 +259,7 @@ class Bench:
 
     def of_row(self, row: Row, kind: type = Sympy, instead: Formula | None = None) -> Any:
         """What a row prints, or what is taken instead, in our names; as sympy has it, or the other engine."""
-        engine = self._engine(row, kind, self._ours, {})
+        engine = self._engine(row, kind)
         formula = instead if instead is not None else self.in_ours(row)
         if isinstance(formula, tuple):
             return Matrix(tuple(tuple(engine.scalar(entry) for entry in line) for line in formula))

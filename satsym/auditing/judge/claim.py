@@ -9,15 +9,15 @@ from satsym.auditing import measurements
 from satsym.auditing.judge.bench import Bench
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
-from satsym.auditing.propositions.evaluation import Answer, Document, Evaluation
-from satsym.auditing.propositions.reading import Proposition, Words, matching, proposition
+from satsym.auditing.propositions.evaluation import Answer, Evaluation
+from satsym.auditing.propositions.reading import Proposition, matching, proposition
 from satsym.auditing.propositions.relations import Fit
 from satsym.formula.budget import OverBudget
 from satsym.formula.values import Matrix, Relation
 from satsym.formula.writing import written
 from satsym.status import BadInput
 from satsym.symbolic.lookup import formulas
-from satsym.wording import shown, suggestion
+from satsym.wording import refuse_unknown, shown
 
 
 def judge(bench: Bench, row: Row) -> Outcome:
@@ -44,19 +44,18 @@ def judge(bench: Bench, row: Row) -> Outcome:
     )
 
 
-class Pages(Document):
+class Pages:
     """The document as a proposition of one of its rows sees it."""
 
     def __init__(self, bench: Bench, row: Row) -> None:
         self._bench, self._row = bench, row
-        self.items = bench.ledger.document.numbers
 
     def answer(self, proposition: Proposition) -> Answer:
         """Whether a proposition is true; one that looks nothing up in the document is asked once for all rows."""
         if proposition.stands_alone:
             return _alone(proposition.text)
         try:
-            return Evaluation(self._words, self, _listed(self._row.table.printed)).answer(proposition)
+            return self._evaluation.answer(proposition)
         except OverBudget:
             raise
         except BadInput as error:
@@ -66,18 +65,19 @@ class Pages(Document):
 
     def explained(self, why: tuple[str | Proposition, ...]) -> str:
         """A sentence with what its terms measure."""
-        evaluation = Evaluation(self._words, self, _listed(self._row.table.printed))
-        return "".join(part if isinstance(part, str) else evaluation.term(part) for part in why)
+        return "".join(part if isinstance(part, str) else self._evaluation.term(part) for part in why)
 
     @cached_property
-    def _words(self) -> Words:
-        return measurements.words(self._bench.scope(self._row).meanings)
+    def _evaluation(self) -> Evaluation:
+        looked = {"row": self.row, "text": self.text, "meanings": self.meanings, "symbol": self.symbol}
+        lookups = {**looked, "items": lambda _: self._bench.ledger.document.numbers}
+        words = measurements.words(self._bench.scope(self._row).meanings)
+        return Evaluation(words, lookups, _listed(self._row.table.printed))
 
     def row(self, key: str) -> Any:
         """The printed formula of a row in our names; of an equality the right-hand side."""
-        other = self._bench.rows.get(key)
-        if other is None:
-            raise BadInput(f"there is no row {shown(key)}; {suggestion(key, self._bench.rows)}")
+        refuse_unknown("there is no row", key, self._bench.rows)
+        other = self._bench.rows[key]
         if other.printed is None:
             raise BadInput(f"row {key} prints no formula; text['{key}'] is what stands there")
         return _exact(self._bench.of_row(other))
@@ -86,7 +86,7 @@ class Pages(Document):
         """What a row prints, letter by letter; of a key that ends in a star all rows that begin so, in order."""
         found = [_listed(row.table.printed) for name, row in self._bench.rows.items() if matching(key)(name)]
         if not found:
-            raise BadInput(f"there is no row {shown(key)}; {suggestion(key, self._bench.rows)}")
+            refuse_unknown("there is no row", key, self._bench.rows)
         return found if key.endswith("*") else found[0]
 
     def symbol(self, name: str) -> Any:
@@ -106,7 +106,7 @@ class Pages(Document):
 @lru_cache(maxsize=4096)
 def _alone(text: str) -> Answer:
     words = measurements.words()
-    return Evaluation(words, Document()).answer(proposition(text, words))
+    return Evaluation(words).answer(proposition(text, words))
 
 
 def _listed(printed: Any) -> Any:

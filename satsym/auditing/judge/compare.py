@@ -26,7 +26,7 @@ def plans(bench: Bench, row: Row, printed: Formula, target: Both) -> list[Plan]:
         side = printed.rhs if isinstance(printed, Equality) and isinstance(printed.lhs, Sym) else printed
         if isinstance(side, Equality):
             raise BadInput("an equation between matrices: print the matrix of one side")
-        return [EqualMatrix(bench, row, side, target)]
+        return [EqualMatrix(bench, row, (side,), ("",), target)]
     if isinstance(trees, Relation):
         return _of_relation(bench, row, printed, target)
     if not isinstance(printed, Equality):
@@ -73,23 +73,18 @@ def _of_matrix(bench: Bench, row: Row, printed: tuple[tuple[Node, ...], ...], ta
     labels = [f"{i}, {j}" for i in range(1, m + 1) for j in range(1, n + 1)]
     trees = target.trees
     if isinstance(trees, Roots):
+        roots = SameRoots(bench, row, cells, target)
         if len(cells) != trees.of.shape[0]:
-            roots = SameRoots(bench, row, cells, target).targets
-            return Never(bench, row, cells, labels, roots, f"{len(cells)} are printed, there are {len(roots)}")
-        return SameRoots(bench, row, cells, target)
+            return Never(roots, f"{len(cells)} are printed, there are {len(roots.targets)}")
+        return roots
     if isinstance(trees, Kernel):
-        columns = Spans(bench, row, cells, labels, n, target)
-        if m != (long := trees.of.shape[1]):
-            return Never(bench, row, cells, labels, columns.targets, f"columns of {m} are printed, they are of {long}")
-        return columns
+        columns = Spans(bench, row, cells, labels, target)
+        long = trees.of.shape[1]
+        return columns if m == long else Never(columns, f"columns of {m} are printed, they are of {long}")
     if not isinstance(trees, Matrix):
         raise BadInput("a matrix is held against an expression; hold it against a matrix")
-    targets = [
-        Both(one, other)
-        for rows in zip(trees.rows, target.exact.rows, strict=True)
-        for one, other in zip(*rows, strict=True)
-    ]
+    targets = list(map(Both, trees.entries, target.exact.entries))
+    entries = Equal(bench, row, cells, labels, targets)
     if trees.shape != (m, n):
-        why = f"{m} by {n} is printed, it is {trees.shape[0]} by {trees.shape[1]}"
-        return Never(bench, row, cells, labels, [formulas.to_tree(t.exact) for t in targets], why)
-    return Equal(bench, row, cells, labels, targets)
+        return Never(entries, f"{m} by {n} is printed, it is {trees.shape[0]} by {trees.shape[1]}")
+    return entries

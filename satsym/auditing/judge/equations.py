@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from fractions import Fraction
 from functools import cached_property
 
@@ -26,36 +26,27 @@ _LONGEST = 120
 
 
 class Equal(Plan):
-    """Each cell equals its target."""
-
-    def __init__(self, bench: Bench, row: Row, printed: Cells, labels: Sequence[str], target: Sequence[Both]) -> None:
-        super().__init__(bench, row, printed, labels)
-        self._target = tuple(target)
-
-    @property
-    def targets(self) -> list[Node]:
-        return [formulas.to_tree(target.exact) for target in self._target]
+    """Each cell equals its target, one of :class:`Both`."""
 
     @cached_property
-    def _aims(self) -> list[Node]:
-        return self.targets
+    def targets(self) -> list[Node]:
+        return [formulas.to_tree(target.exact) for target in self.target]
 
     def holds(self, cells: Cells) -> bool:
         return all(self.cell_holds(i, cell) for i, cell in enumerate(cells))
 
     def alone(self, index: int) -> Equal:
         """The plan of one cell."""
-        return Equal(self.bench, self.row, (self.printed[index],), (self.labels[index],), (self._target[index],))
+        return Equal(self.bench, self.row, (self.printed[index],), (self.labels[index],), (self.target[index],))
 
-    def gap(self, index: int) -> Node:
-        """What a cell lacks to be right, in our names."""
-        return difference(self._aims[index], self.normal(self.printed[index]))
+    def gaps(self, index: int) -> Iterator[Node]:
+        yield difference(self.targets[index], self.normal(self.printed[index]))
 
     def difference(self) -> str:
         if len(self.printed) > 1:
             return ""
         try:
-            lacking = formulas.short(self._target[0].exact - self.both(self.printed[0]).exact)
+            lacking = formulas.short(self.target[0].exact - self.both(self.printed[0]).exact)
         except formulas.NotAFormula:
             return ""
         text = written(self.bench.theirs(self.row, formulas.to_tree(lacking)))
@@ -63,7 +54,7 @@ class Equal(Plan):
 
     def cell_holds(self, index: int, cell: Node) -> bool:
         """Whether one cell would be right."""
-        found, target = self.both(cell), self._target[index]
+        found, target = self.both(cell), self.target[index]
         if isinstance(found.exact, Matrix):
             raise BadInput("a symbol that means a matrix stands where it is held against an expression")
         return self.vanish(difference(found.trees, target.trees), found.exact - target.exact)
@@ -71,7 +62,7 @@ class Equal(Plan):
     def residuals(self, point: BoundPoint, cells: Cells) -> Iterator[list[int]]:
         yield [
             (point.value(cell) - point.base.value(aim)) % field.PRIME
-            for cell, aim in zip(cells, self._aims, strict=True)
+            for cell, aim in zip(cells, self.targets, strict=True)
         ]
 
 
@@ -79,15 +70,14 @@ class Multiple(Plan):
     """The difference of two sides is that of the target's, times a factor that never vanishes."""
 
     def __init__(self, bench: Bench, row: Row, sides: Equality, target: Both) -> None:
-        super().__init__(bench, row, (sides.lhs, sides.rhs), ("left-hand side", "right-hand side"))
+        super().__init__(bench, row, (sides.lhs, sides.rhs), ("left-hand side", "right-hand side"), target.exact)
         self._trees = difference(target.trees.lhs, target.trees.rhs)
         self._exact = target.exact.lhs - target.exact.rhs
-        self._relation = target.exact
         self._aim = formulas.to_tree(self._exact)
 
     @property
     def targets(self) -> list[Node]:
-        return [formulas.to_tree(self._relation.lhs), formulas.to_tree(self._relation.rhs)]
+        return [formulas.to_tree(self.target.lhs), formulas.to_tree(self.target.rhs)]
 
     @cached_property
     def factors(self) -> list[Node]:
@@ -107,7 +97,6 @@ class Multiple(Plan):
         return list(found)[:_MOST_FACTORS]
 
     def gaps(self, index: int) -> Iterator[Node]:
-        """What one side lacks to be right, in our names, for the simplest factors."""
         found = formulas.to_tree(self.both_sides(self.printed).exact)
         for factor in self.factors[:_SIMPLEST]:
             gap = difference(product([factor, self._aim]), found)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from satsym.auditing.diagnosis.smallest_edit import remedy
 from satsym.auditing.judge.bench import Bench
 from satsym.auditing.judge.compare import plans
@@ -10,8 +12,8 @@ from satsym.auditing.judge.plan import Never, Plan
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
 from satsym.auditing.sentences import joined, say, wrong_formula
-from satsym.formula.cells import Formula, cells
-from satsym.formula.tree import Equality, Node
+from satsym.formula.cells import Formula, cells, shaped
+from satsym.formula.tree import Equality, Grid, Node
 from satsym.formula.writing import written
 from satsym.symbolic.lookup import library
 
@@ -43,16 +45,19 @@ def shown(compared: Plan, cells: tuple[Node, ...] | None) -> str:
         cells = tuple(compared.bench.theirs(row, target) for target in compared.targets)
         if len(cells) != len(compared.printed):
             return ", ".join(map(written, cells))
-    texts = [written(cell) for cell in cells]
     if isinstance(row.printed, tuple):
-        columns = len(row.printed[0])
-        lines = [texts[i : i + columns] for i in range(0, len(texts), columns)]
-        return "[" + ", ".join(f"[{', '.join(line)}]" for line in lines) + "]"
+        return in_rows(shaped(cells, len(row.printed[0])))
+    texts = [written(cell) for cell in cells]
     if isinstance(row.printed, Equality) and len(texts) == 1:
         sides = row.printed
         reversed_ = texts and sides.rhs not in compared.printed
         return f"{texts[0]} = {written(sides.rhs)}" if reversed_ else f"{written(sides.lhs)} = {texts[0]}"
     return " = ".join(texts)
+
+
+def in_rows(lines: Iterable[tuple[Node, ...]]) -> str:
+    """A matrix as text."""
+    return written(Grid(tuple(map(Grid, lines))))
 
 
 def corrected(outcome: Outcome) -> Formula:
@@ -62,13 +67,11 @@ def corrected(outcome: Outcome) -> Formula:
     scope = compared.bench.scope(row)
     cells = tuple(map(scope.ours, outcome.remedy.cells)) if outcome.remedy else tuple(compared.targets)
     if isinstance(row.printed, tuple):
-        columns = len(row.printed[0])
-        return tuple(cells[i : i + columns] for i in range(0, len(cells), columns))
+        return shaped(cells, len(row.printed[0]))
     if isinstance(row.printed, Equality):
         if isinstance(compared, Multiple):
             return Equality(cells[0], cells[1])
-        lhs = scope.ours(row.printed.lhs)
-        return Equality(lhs, cells[0])
+        return Equality(scope.ours(row.printed.lhs), cells[0])
     return cells[0]
 
 

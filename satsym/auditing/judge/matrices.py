@@ -11,6 +11,7 @@ from satsym.auditing.ledger.contents import Row
 from satsym.formula import field
 from satsym.formula.bound import BoundPoint
 from satsym.formula.calculus import difference, product
+from satsym.formula.cells import shaped
 from satsym.formula.evaluation import Engine
 from satsym.formula.tree import Node, Sym
 from satsym.formula.values import Matrix
@@ -22,7 +23,7 @@ class SameRoots(Plan):
     """The cells are the eigenvalues of a matrix, in any order."""
 
     def __init__(self, bench: Bench, row: Row, printed: Cells, target: Both) -> None:
-        super().__init__(bench, row, printed, [f"eigenvalue {i}" for i in range(1, len(printed) + 1)])
+        super().__init__(bench, row, printed, [f"eigenvalue {i}" for i in range(1, len(printed) + 1)], target)
         trees, exact = bench.engines(row)
         variable = bench.unused()
         self._variable = Sym(variable)
@@ -51,15 +52,13 @@ class SameRoots(Plan):
 class Spans(Plan):
     """The cells are columns that span the null space of a matrix, none of them too many."""
 
-    def __init__(
-        self, bench: Bench, row: Row, printed: Cells, labels: Sequence[str], columns: int, target: Both
-    ) -> None:
-        super().__init__(bench, row, printed, labels)
-        self._columns, self._target = columns, target
+    @property
+    def _columns(self) -> int:
+        return len(self.row.printed[0]) if isinstance(self.row.printed, tuple) else 1
 
     @property
     def targets(self) -> list[Node]:
-        columns = formulas.nullspace(self._target.exact.of.rows)
+        columns = formulas.nullspace(self.target.exact.of.rows)
         return [formulas.to_tree(entry) for line in zip(*columns, strict=True) for entry in line]
 
     def holds(self, cells: Cells) -> bool:
@@ -68,25 +67,25 @@ class Spans(Plan):
         positive = self.bench.names.positive
         return self._spans(
             by_trees,
-            self._target.trees.of,
+            self.target.trees.of,
             [cell.trees for cell in found],
             lambda entry: field.vanishes(entry, "kernel", positive),
-        ) and self._spans(by_sympy, self._target.exact.of, [cell.exact for cell in found], formulas.is_zero)
+        ) and self._spans(by_sympy, self.target.exact.of, [cell.exact for cell in found], formulas.is_zero)
 
     def _spans(
         self, engine: Engine[Any], matrix: Matrix[Any], cells: Sequence[Any], is_zero: Callable[[Any], bool]
     ) -> bool:
         """Whether the columns are mapped to zero, and are as many as there are independent ones."""
-        basis = Matrix(_rows(cells, self._columns))
+        basis = Matrix(shaped(cells, self._columns))
         image = engine.product(matrix, basis)
-        if not all(is_zero(entry) for line in image.rows for entry in line):
+        if not all(map(is_zero, image.entries)):
             return False
         nullity = matrix.shape[1] - engine.rank(matrix)
         return engine.rank(basis) == nullity == basis.shape[1]
 
     def residuals(self, point: BoundPoint, cells: Cells) -> Iterator[list[int]]:
-        basis = _rows([point.value(cell) for cell in cells], self._columns)
-        matrix = [[point.base.value(entry) for entry in line] for line in self._target.trees.of.rows]
+        basis = shaped([point.value(cell) for cell in cells], self._columns)
+        matrix = [[point.base.value(entry) for entry in line] for line in self.target.trees.of.rows]
         yield [
             sum(a * line[k] for a, line in zip(entries, basis, strict=True)) % field.PRIME
             for entries in matrix
@@ -97,40 +96,27 @@ class Spans(Plan):
 class EqualMatrix(Plan):
     """A formula whose value is a matrix, such as a product, equals the target."""
 
-    def __init__(self, bench: Bench, row: Row, printed: Node, target: Both) -> None:
-        super().__init__(bench, row, (printed,), ("",))
-        self._target = target
-
     @property
     def targets(self) -> list[Node]:
         return []
 
     def holds(self, cells: Cells) -> bool:
         found = self.both(cells[0])
-        if not isinstance(found.trees, Matrix) or found.trees.shape != self._target.trees.shape:
+        if not isinstance(found.trees, Matrix) or found.trees.shape != self.target.trees.shape:
             return False
-        for one, other, mine, aim in zip(
-            found.trees.rows, self._target.trees.rows, found.exact.rows, self._target.exact.rows, strict=True
-        ):
-            for a, b, c, d in zip(one, other, mine, aim, strict=True):
-                if not self.vanish(difference(a, b), c - d):
-                    return False
-        return True
+        sides = (found.trees, self.target.trees, found.exact, self.target.exact)
+        places = zip(*(matrix.entries for matrix in sides), strict=True)
+        return all(self.vanish(difference(a, b), c - d) for a, b, c, d in places)
 
     def residuals(self, point: BoundPoint, cells: Cells) -> Iterator[list[int]]:
         try:
             found = self.bench.engines(self.row)[0].value(self.bench.scope(self.row).ours(cells[0]))
         except BadInput:
             found = None
-        if not isinstance(found, Matrix) or found.shape != self._target.trees.shape:
+        if not isinstance(found, Matrix) or found.shape != self.target.trees.shape:
             yield [1]
             return
         yield [
             (point.base.value(a) - point.base.value(b)) % field.PRIME
-            for one, other in zip(found.rows, self._target.trees.rows, strict=True)
-            for a, b in zip(one, other, strict=True)
+            for a, b in zip(found.entries, self.target.trees.entries, strict=True)
         ]
-
-
-def _rows(entries: Sequence[Any], columns: int) -> tuple[tuple[Any, ...], ...]:
-    return tuple(tuple(entries[i : i + columns]) for i in range(0, len(entries), columns))

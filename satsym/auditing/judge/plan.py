@@ -29,8 +29,8 @@ QUICK = 2
 class Plan(ABC):
     """When printed cells are right; labels say which is which: empty, a side of an equation, or ``"1, 2"``."""
 
-    def __init__(self, bench: Bench, row: Row, printed: Cells, labels: Sequence[str]) -> None:
-        self.bench, self.row = bench, row
+    def __init__(self, bench: Bench, row: Row, printed: Cells, labels: Sequence[str], target: Any) -> None:
+        self.bench, self.row, self.target = bench, row, target
         self.printed, self.labels = tuple(printed), tuple(labels)
 
     @abstractmethod
@@ -49,6 +49,10 @@ class Plan(ABC):
     def difference(self) -> str:
         """What the printed thing lacks, in the document's symbols, if that is one short expression."""
         return ""
+
+    def gaps(self, _: int) -> Iterator[Node]:
+        """What a cell lacks to be right, in our names, so far as that is known; alternatives."""
+        yield from ()
 
     @cached_property
     def meanings(self) -> Mapping[str, Node]:
@@ -123,7 +127,7 @@ class Plan(ABC):
             If it divides by zero, whatever its symbols are.
         """
         found = self.bench.printed(self.row, node)
-        entries = [e for line in found.exact.rows for e in line] if isinstance(found.exact, Matrix) else [found.exact]
+        entries = found.exact.entries if isinstance(found.exact, Matrix) else [found.exact]
         if not all(map(formulas.has_a_value, entries)):
             raise formulas.NotAFormula(written(node))
         return found
@@ -142,17 +146,15 @@ class Plan(ABC):
 
 
 class Never(Plan):
-    """Sizes differ, so that no edit of a cell helps."""
+    """In the place of a plan where sizes differ, so that no edit of a cell helps."""
 
-    def __init__(
-        self, bench: Bench, row: Row, printed: Cells, labels: Sequence[str], target: Sequence[Node], why: str
-    ) -> None:
-        super().__init__(bench, row, printed, labels)
-        self._target, self.why = list(target), why
+    def __init__(self, plan: Plan, why: str) -> None:
+        super().__init__(plan.bench, plan.row, plan.printed, plan.labels, plan.targets)
+        self.why = why
 
     @property
     def targets(self) -> list[Node]:
-        return self._target
+        return list(self.target)
 
     def holds(self, cells: Cells) -> bool:
         return False

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from satsym import sources
 from satsym.status import BadInput
-from satsym.wording import printable, shown, suggestion
+from satsym.wording import printable, refuse_unknown, suggestion
 
 if TYPE_CHECKING:
     from satsym.auditing.ledger.contents import Ledger
@@ -53,5 +53,4 @@ def refuse_unknown_items(ledgers: Sequence[Ledger], items: Sequence[str]) -> Non
     """Refuse items that no ledger has."""
     known = dict.fromkeys(name for x in ledgers for row in x.rows for name in (row.table.item, row.key))
     for item in items:
-        if item not in known:
-            raise BadInput(f"no row {shown(item)}; {suggestion(item, known)}")
+        refuse_unknown("no row", item, known)

@@ -12,7 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from satsym.auditing import language, measurements, quantities
+from satsym.auditing import measurements, quantities
 from satsym.auditing.ledger import documents, rows, schema, vocabulary
 from satsym.auditing.ledger import scopes as notation
 from satsym.auditing.ledger.contents import Ledger, Row, row_key
@@ -26,7 +26,7 @@ from satsym.formula.tree import Node, substituted
 from satsym.formula.weight import Scales
 from satsym.instance import files
 from satsym.status import BadInput
-from satsym.wording import printable, shown, suggestion
+from satsym.wording import printable, refuse_unknown, shown, suggestion
 
 REASONS = ("because", "produced")
 TABLES = ("format", "document", "scope", "symbols", "inputs", "derived", "row")
@@ -87,7 +87,7 @@ class _Reader:
         self._scales = Scales()
         self._derived = self._entries("derived", self._expression, self._derived)
         self._scopes = self._read_scopes()
-        self._own = vocabulary.declared(self._symbols, self._scopes)
+        self._own = {*self._symbols, *notation.self_named(self._scopes), *notation.CONSTANTS}
         self._check_scopes()
         tables = self._tree.get("row", [])
         if not isinstance(tables, list) or not tables:
@@ -129,9 +129,7 @@ class _Reader:
     def _expression(self, entry: object) -> Node:
         if not isinstance(entry, str):
             raise BadInput(f"got {shown(entry)}; write an expression in quotes")
-        found = substituted(reading.expression(entry, language.JUDGING, judging=True), self._derived)
-        self._scales.checked(found)
-        return found
+        return self._scales.checked(substituted(reading.expression(entry, judging=True), self._derived))
 
     def _read_scopes(self) -> dict[str, Scope]:
         tables = {"main": {}, **self._mapping("scope")}
@@ -158,8 +156,7 @@ class _Reader:
         key = f"{table.item} {table.part}".strip()
         row = Row(table, key, self._place("row", index))
         with self._telling("row", "scope", index, key):
-            if table.scope not in self._scopes:
-                raise BadInput(f"no scope {shown(table.scope)}; {suggestion(table.scope, self._scopes)}")
+            refuse_unknown("no scope", table.scope, self._scopes)
         if not table.legible:
             return row
         scope = self._scopes[table.scope]

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import Any
 
-from satsym.auditing import language, quantities
+from satsym.auditing import quantities
 from satsym.auditing.ledger import vocabulary
 from satsym.auditing.ledger.schema import RowTable
 from satsym.auditing.ledger.scopes import Scope
 from satsym.formula import reading
-from satsym.formula.cells import Formula, cells, each, names_in
+from satsym.formula.cells import Formula, each, names_in
 from satsym.formula.tree import Equality, Node, Text, substituted
 from satsym.formula.weight import Scales
 from satsym.status import BadInput
@@ -57,7 +57,7 @@ def held_against(
     if vocabulary.is_address(table.holds):
         formula: Node | Equality = Text(table.holds.strip())
     else:
-        formula = _with(reading.statement(table.holds, language.JUDGING, judging=True), derived)
+        formula = _with(reading.statement(table.holds, judging=True), derived)
     if table.kind == "number" and quantities.is_numeric(formula):
         quantities.check(formula, {**inputs, **table.inputs})
     else:
@@ -67,7 +67,7 @@ def held_against(
 
 def follows(table: RowTable, derived: Mapping[str, Node], own: Collection[str], scope: Scope) -> Node | Equality:
     """How a row is said to follow from others."""
-    formula = _with(reading.statement(str(table.follows), language.JUDGING, judging=True), derived)
+    formula = _with(reading.statement(str(table.follows), judging=True), derived)
     _refuse_unknown(formula, scope, own)
     return formula
 
@@ -86,7 +86,4 @@ def _refuse_unknown(formula: Formula, scope: Scope, own: Collection[str] | None 
 
 
 def _with(formula: Formula, derived: Mapping[str, Node]) -> Any:
-    found = each(formula, lambda cell: substituted(cell, derived))
-    for cell in cells(found):
-        Scales().checked(cell)
-    return found
+    return each(formula, lambda cell: Scales().checked(substituted(cell, derived)))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from satsym.auditing.language import JUDGING
 from satsym.formula import reading
 from satsym.formula.tree import Node, Sym, calls, substituted
 from satsym.formula.weight import Scales
@@ -35,9 +34,7 @@ class Scope:
 
     def ours(self, printed: Node) -> Node:
         """A printed formula in our names."""
-        found = substituted(printed, self.meanings)
-        Scales().checked(found)
-        return found
+        return Scales().checked(substituted(printed, self.meanings))
 
     def family(self, name: str) -> list[str]:
         """Symbols that differ from this one by their index alone, as ``x1`` and ``x2`` do; then the others."""
@@ -93,8 +90,7 @@ def _scope(name: str, table: Mapping[str, object], below: Scope | None, derived:
             raise WrongScope(name, key, f"got {shown(value)}; write our expression in quotes")
         try:
             reading.checked_name(key)
-            meanings[key] = substituted(reading.expression(value, JUDGING, judging=True), derived)
-            Scales().checked(meanings[key])
+            meanings[key] = Scales().checked(substituted(reading.expression(value, judging=True), derived))
         except BadInput as error:
             raise WrongScope(name, key, str(error)) from None
         if any(call.function == "row" for call in calls(meanings[key])):

@@ -7,11 +7,10 @@ after all is refused once it has been derived.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 from functools import cache
 from importlib.resources import files
 
-from satsym.auditing.ledger.scopes import CONSTANTS, Scope, self_named
 from satsym.formula.cells import Formula, cells
 from satsym.formula.reading import MAX_NAME
 from satsym.formula.tree import Call, Sym, Text, walk
@@ -68,11 +67,6 @@ def check_model(name: str) -> None:
     """Refuse the name of a model that no derivation file has."""
     if name not in _words():
         raise BadInput(f"no derivation {shown(name)}; `satsym models` lists the models")
-
-
-def declared(symbols: Mapping[str, object], scopes: Mapping[str, Scope]) -> frozenset[str]:
-    """Names that a ledger declares as its own."""
-    return frozenset({*symbols, *self_named(scopes), *CONSTANTS})
 
 
 @cache

@@ -10,49 +10,41 @@ from typing import Any
 
 import numpy as np
 
-from satsym.auditing.measurements import measurement
 from satsym.auditing.propositions.relations import equal
 from satsym.auditing.propositions.relations import order as ordered
 from satsym.auditing.propositions.values import Undecided, is_exact
 
 
-@measurement
 def abs_(x: Any) -> Any:
     """Size of a number, of each point of a curve."""
     return abs(x)
 
 
-@measurement
 def re(z: Any) -> Any:
     """Real part."""
     return z.as_real_imag()[0] if is_exact(z) else np.real(z)
 
 
-@measurement
 def im(z: Any) -> Any:
     """Imaginary part."""
     return z.as_real_imag()[1] if is_exact(z) else np.imag(z)
 
 
-@measurement
 def min_(values: Sequence[Any]) -> Any:
     """The smallest of a list, or of a curve."""
     return _extreme(values, -1)
 
 
-@measurement
 def max_(values: Sequence[Any]) -> Any:
     """The largest of a list, or of a curve."""
     return _extreme(values, 1)
 
 
-@measurement
 def len_(values: Sequence[Any]) -> int:
     """How many there are."""
     return len(values)
 
 
-@measurement
 def sum_(values: Sequence[Any]) -> Any:
     """The sum of a list."""
     total = values[0]
@@ -61,7 +53,6 @@ def sum_(values: Sequence[Any]) -> Any:
     return total
 
 
-@measurement
 def different(values: Sequence[Any]) -> list[Any]:
     """The entries of a list, each once."""
     found: list[Any] = []
@@ -71,7 +62,6 @@ def different(values: Sequence[Any]) -> list[Any]:
     return found
 
 
-@measurement
 def sqrt(x: Any) -> Any:
     """Square root."""
     if hasattr(x, "sqrt"):
@@ -83,37 +73,31 @@ def sqrt(x: Any) -> Any:
     return formulas.function("sqrt", [x])
 
 
-@measurement
 def first(values: Sequence[Any]) -> Any:
     """The first entry."""
     return values[0]
 
 
-@measurement
 def last(values: Sequence[Any]) -> Any:
     """The last entry."""
     return values[-1]
 
 
-@measurement
 def mean(values: Sequence[float]) -> float:
     """The mean of a curve."""
     return float(np.mean(values))
 
 
-@measurement
 def early(curve: Sequence[Any]) -> Sequence[Any]:
     """The first tenth of a curve."""
     return curve[: max(1, len(curve) // 10)]
 
 
-@measurement
 def late(curve: Sequence[Any]) -> Sequence[Any]:
     """The last tenth of a curve."""
     return curve[-max(1, len(curve) // 10) :]
 
 
-@measurement
 def area(curve: Sequence[float], t: Sequence[float]) -> float:
     """The integral of a curve over its times, by a cubic spline."""
     from scipy.interpolate import CubicSpline
@@ -121,7 +105,6 @@ def area(curve: Sequence[float], t: Sequence[float]) -> float:
     return float(CubicSpline(t, curve).integrate(t[0], t[-1]))
 
 
-@measurement
 def defined(of: Any, **values: float) -> bool:
     """Whether a formula has a value where its letters have these, those that are not named being 1."""
     from satsym.symbolic.lookup import formulas
@@ -132,7 +115,6 @@ def defined(of: Any, **values: float) -> bool:
     return bool(of.xreplace(known).is_finite)
 
 
-@measurement
 def turning_points(curve: Sequence[float]) -> int:
     """How often a curve turns from rising to falling or back."""
     slopes = np.diff(np.asarray(curve, dtype=float))
@@ -148,7 +130,6 @@ def _extreme(values: Any, sign: int) -> Any:
     return best
 
 
-@measurement
 def norm(of: Any) -> Any:
     """The Euclidean length of a list of numbers, or of a column."""
     if isinstance(of, np.ndarray):
@@ -156,32 +137,27 @@ def norm(of: Any) -> Any:
     return sqrt(sum_([entry * entry for entry in _flat(of)]))
 
 
-@measurement
 def cosine(one: Any, other: Any) -> Any:
     """The cosine of the angle between two lists of numbers, or columns."""
     pairs = zip(_flat(one), _flat(other), strict=True)
     return sum_([a * b for a, b in pairs]) / (norm(one) * norm(other))
 
 
-@measurement
 def sign(x: Any) -> int:
     """-1, 0 or 1."""
     return ordered(x, 0)
 
 
-@measurement
 def part(values: Sequence[Any], start: int, stop: int) -> Any:
     """The entries of a list from one place up to, but without, another; the first place is 0."""
     return values[start:stop]
 
 
-@measurement
 def steps(values: Sequence[Any]) -> list[Any]:
     """By how much each entry exceeds the one before it."""
     return [b - a for a, b in pairwise(values)]
 
 
-@measurement
 def convergence_order(errors: Sequence[float]) -> float:
     """The power of the step with which errors fall as it is halved again and again, to one decimal."""
     if min(errors[-2:]) <= 0.0:

@@ -13,11 +13,9 @@ from satsym.analysis.orbits.kepler import propagate
 from satsym.arrays import Array
 from satsym.auditing import quantities
 from satsym.auditing.constants import PUBLISHED
-from satsym.auditing.measurements import measurement, value
 from satsym.auditing.propositions.values import Family, Record
 from satsym.auditing.quantities import Quantity
-from satsym.status import BadInput
-from satsym.wording import shown, suggestion
+from satsym.wording import refuse_unknown
 
 _MOMENTS = 360
 _STATION = math.radians(30.0), math.radians(20.0)
@@ -25,21 +23,17 @@ _STATION = math.radians(30.0), math.radians(20.0)
 _SEED = 11
 
 
-@measurement
 def quantity(text: str) -> Quantity:
     """A number with a unit, taken as exact."""
     return quantities.in_base_units(text)
 
 
-@measurement
 def constant(name: str) -> Quantity:
     """A published constant, such as ``mu_earth``."""
-    if name not in PUBLISHED:
-        raise BadInput(f"no published constant {shown(name)}; {suggestion(name, PUBLISHED)}")
+    refuse_unknown("no published constant", name, PUBLISHED)
     return quantities.in_base_units(PUBLISHED[name].quantity)
 
 
-@value
 def orbits() -> Family:
     """Orbits of the Earth: periods of half a turn of the Earth, one and two; circles and ellipses; all inclinations."""
     day, rng = constant("sidereal_day").value, np.random.default_rng(_SEED)
@@ -48,32 +42,27 @@ def orbits() -> Family:
     return Family("ORBITS", "orbits", tuple(_orbit(p * day, *rest) for p, *rest in (*plain, *random.tolist())))
 
 
-@value
 def geostationary() -> Record:
     """The circle in the plane of the equator whose period is that of the Earth's rotation."""
     return _orbit(constant("sidereal_day").value)
 
 
-@measurement
 def circular(altitude: str) -> Record:
     """The circular orbit over the equator at an altitude."""
     radius = quantity(altitude).value + constant("R_earth").value
     return _orbit(2.0 * math.pi * math.sqrt(radius**3 / constant("mu_earth").value))
 
 
-@measurement
 def gravity(orbit: Record) -> Quantity:
     """The acceleration by the Earth's attraction at the mean distance of an orbit."""
     return constant("mu_earth") / orbit.part("axis") ** 2
 
 
-@measurement
 def ground_swing(orbit: Record) -> float:
     """The largest angle (degrees) by which the point below a satellite moves over the Earth in a day."""
     return _swing(_fixed(orbit))
 
 
-@measurement
 def antenna_swing(orbit: Record) -> float:
     """The largest angle (degrees) by which a ground station has to turn its antenna in a day to follow a satellite."""
     latitude, east = _STATION
@@ -81,7 +70,6 @@ def antenna_swing(orbit: Record) -> float:
     return _swing(_fixed(orbit) - station[:, None] * constant("R_earth").value)
 
 
-@measurement
 def signal_time(orbit: Record, legs: int, elevation: float) -> Quantity:
     """How long a signal takes so many times between the ground and a circular orbit; seen at an elevation (degrees)."""
     ground, axis = constant("R_earth").value, orbit.part("axis").value
@@ -91,14 +79,12 @@ def signal_time(orbit: Record, legs: int, elevation: float) -> Quantity:
     )
 
 
-@measurement
 def distance_after(orbit: Record, share: float) -> Quantity:
     """The distance from the Earth's centre after a share of a revolution from the perigee on."""
     place = _places(orbit, np.array([share * orbit.part("period").value]))
     return Quantity(float(np.linalg.norm(place)), orbit.part("axis").dimension)
 
 
-@measurement
 def seen_latitude(orbit: Record) -> float:
     """The latitude (degrees) up to which a satellite on a circle over the equator is above the horizon."""
     return math.degrees(math.acos(constant("R_earth").value / orbit.part("axis").value))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from satsym.arrays import Array, kept
-from satsym.auditing.measurements import linear, linear_motions, measurement, value
+from satsym.auditing.measurements import linear, linear_motions
 from satsym.auditing.propositions.values import Family, Record
 from satsym.formula import reading
 
@@ -49,7 +49,6 @@ one side of it go once round before.
 """
 
 
-@value
 def equilibria() -> Family:
     """Equilibria of nonlinear systems in the plane: textbook ones, and at random with linear parts that decide."""
     rng = np.random.default_rng(_SEED)
@@ -64,7 +63,6 @@ def equilibria() -> Family:
     return Family("EQUILIBRIA", "equilibria of nonlinear systems", tuple(members))
 
 
-@measurement
 @kept
 def followed(of: Any, start: ArrayLike | None = None) -> Record:
     """The motion of a member of a family from a state, or from near its equilibrium.
@@ -72,7 +70,7 @@ def followed(of: Any, start: ArrayLike | None = None) -> Record:
     Its parts are ``t``, ``x1``, ``x2``, ..., its distance from the equilibrium, ``size``, and from its start, ``gone``.
     What goes far away is not followed beyond.
     """
-    whole = linear.system_of(of)
+    whole = linear.system(of)
     n = linear.dimension(whole)
     rest = np.asarray(whole.parts.get("rest", np.zeros(n)))
     begin = rest + _NEAR_BY * _way(n) if start is None else np.asarray(start, dtype=float)
@@ -84,20 +82,6 @@ def followed(of: Any, start: ArrayLike | None = None) -> Record:
     curves = {f"x{i + 1}": row for i, row in enumerate(x)}
     sizes = {"size": np.linalg.norm(x.T - rest, axis=1), "gone": np.linalg.norm(x.T - begin, axis=1)}
     return Record(f"a motion of {whole.name}", {"t": t, **sizes, **curves})
-
-
-def rates(of: Record, x: ArrayLike) -> Array:
-    """The rates of a member in some state."""
-    if "formulas" not in of.parts:
-        return linear.numbers(of.part("A")) @ np.asarray(x, dtype=float)
-    return np.array(of.part("formulas")(*np.asarray(x, dtype=float)))
-
-
-def jacobian(of: Record, x: ArrayLike) -> Array:
-    """Their derivatives by the states."""
-    if "slopes" not in of.parts:
-        return linear.numbers(of.part("A"))
-    return np.array(of.part("slopes")(*np.asarray(x, dtype=float))).reshape(2, 2)
 
 
 def _member(name: str, texts: tuple[str, str], rest: tuple[int, int], stability: str) -> Record:

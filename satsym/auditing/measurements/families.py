@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from satsym.auditing.measurements import value
 from satsym.auditing.propositions.values import Family, Record
 
 _SEED = 20
@@ -35,7 +34,6 @@ BLOCKS: Mapping[str, list[list[str]]] = {
 """Blocks with every kind of eigenvalue: real and complex, simple and multiple, with all eigenvectors and with fewer."""
 
 
-@value
 def linear() -> Family:
     """Systems x' = A x: every block by itself, and pairs of them, mixed by a change of basis; exact matrices."""
     rng = np.random.default_rng(_SEED)
@@ -43,13 +41,13 @@ def linear() -> Family:
     pairs = [(a, b) for i, a in enumerate(names) for b in names[i + 1 :] if len(BLOCKS[a]) + len(BLOCKS[b]) <= 4]
     members = [Record(name, {"A": _exact(BLOCKS[name])}) for name in names]
     for a, b in pairs:
-        whole = _diagonal(BLOCKS[a], BLOCKS[b])
+        one, other = _exact(BLOCKS[a]), _exact(BLOCKS[b])
+        whole = one.diag(one, other)
         basis = _basis(rng, whole.rows)
         members.append(Record(f"{a}; {b}", {"A": basis * whole * basis.inv()}))
     return Family("LINEAR", "linear systems", tuple(members))
 
 
-@value
 def controlled() -> Family:
     """Systems x' = A x + B u, y = C x with two or four states; in half of them inputs miss a part, outputs another."""
     rng = np.random.default_rng(_SEED)
@@ -72,7 +70,6 @@ def controlled() -> Family:
     return Family("CONTROLLED", "linear systems with inputs and outputs", tuple(members))
 
 
-@value
 def symmetric() -> Family:
     """Symmetric matrices of every kind: with positive, with negative eigenvalues, with both, and with zero."""
     rng = np.random.default_rng(_SEED)
@@ -90,11 +87,6 @@ def _exact(rows: list[list[str]]) -> Any:
     from satsym.symbolic.lookup import formulas
 
     return formulas.exact_matrix(rows)
-
-
-def _diagonal(one: list[list[str]], other: list[list[str]]) -> Any:
-    n, m = len(one), len(other)
-    return _exact([row + ["0"] * m for row in one] + [["0"] * n + row for row in other])
 
 
 def _basis(rng: np.random.Generator, n: int) -> Any:

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from satsym.auditing.measurements import measurement
 from satsym.auditing.propositions.values import Record, is_exact
 from satsym.auditing.quantities import Quantity
 from satsym.formula import reading
@@ -18,27 +17,23 @@ from satsym.wording import shown
 _POINTS = 2000
 
 
-@measurement
 def diff(of: Any, by: Any, times: int = 1) -> Any:
     """The derivative of a formula, or of each entry of a matrix, by a letter."""
     return of.diff(_letter(of, by), times) if is_exact(of) else 0
 
 
-@measurement
 def subs(of: Any, **values: Any) -> Any:
     """A formula with values for some of its letters, all put in at once."""
     places = {s: values[s.name] for s in of.free_symbols if s.name in values} if is_exact(of) else {}
     return of.xreplace({s: _exact(v) for s, v in places.items()}) if places else of
 
 
-@measurement
 def left(equation: str) -> list[str]:
     """The letters on the left-hand side of an equation as it is printed; none where it has but one side."""
     formula = reading.statement(equation)
     return sorted(symbols(formula.lhs)) if isinstance(formula, Equality) else []
 
 
-@measurement
 def solutions(of: Any, by: Any) -> list[Any]:
     """For which real values of a letter a formula is zero."""
     from satsym.symbolic.lookup import formulas
@@ -46,20 +41,17 @@ def solutions(of: Any, by: Any) -> list[Any]:
     return formulas.solutions(of, _letter(of, by))
 
 
-@measurement
 def integral(of: Any, by: Any, start: Any, end: Any) -> Any:
     """The integral of a formula over a letter, exactly."""
     return of.integrate((_letter(of, by), _exact(start), _exact(end)))
 
 
-@measurement
 def blocks(rows: Any) -> Any:
     """The matrix that is made up of rows of blocks."""
     lines = [row[0].hstack(*row) for row in rows]
     return lines[0].vstack(*lines)
 
 
-@measurement
 def rates(model: str) -> list[Any]:
     """The rates of the states of a model, exact."""
     from satsym.symbolic.lookup.library import derivation
@@ -67,7 +59,6 @@ def rates(model: str) -> list[Any]:
     return [e.rhs for e in derivation(model).step("first_order").equations]
 
 
-@measurement
 def variables(model: str) -> list[str]:
     """Names of the states and controls of a model."""
     from satsym.symbolic.lookup.library import derivation
@@ -76,7 +67,6 @@ def variables(model: str) -> list[str]:
     return [v.symbol for v in (*model_.states, *model_.controls)]
 
 
-@measurement
 def integrated(rates: Sequence[Any], names: Sequence[str], start: Sequence[float], until: float) -> Record:
     """The motion that exact rates of these states make from a start on: ``t`` and the states by name."""
     from scipy.integrate import solve_ivp

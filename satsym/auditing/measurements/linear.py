@@ -6,121 +6,119 @@ Wherever a system is asked for, the name of a model, a member of a family or a s
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cache, lru_cache
+from functools import cache
 from typing import Any
 
 import numpy as np
 
 from satsym.arrays import Array, kept
-from satsym.auditing.measurements import measurement
 from satsym.auditing.propositions.relations import equal
-from satsym.auditing.propositions.values import Record, Undecided, is_exact, measured
+from satsym.auditing.propositions.values import Record, Undecided, is_exact, numbers
 from satsym.status import BadInput
-from satsym.wording import shown, suggestion
+from satsym.wording import refuse_unknown
 
 _INTERVAL = 2.0
 """Over which inputs act, and outputs are seen, to tell whether they do all that they can."""
-_ZERO = 1e-9
+_ZERO, _DEPENDENT = 1e-9, 1e-7
 
 
-@measurement
+def system(of: Any) -> Record:
+    """A linear model: its exact matrices A, B and C, and the names of its states, inputs and outputs.
+
+    A member of a family is one as it stands, a matrix one without inputs.
+    """
+    if isinstance(of, str):
+        return _of_model(of)
+    return of if isinstance(of, Record) else Record("the system", {"A": of})
+
+
 @cache
-def system(model: str) -> Record:
-    """A linear model: its exact matrices A, B and C, and the names of its states, inputs and outputs."""
+def _of_model(name: str) -> Record:
     from satsym.symbolic import DerivationError
     from satsym.symbolic.linear.matrices import system_of
     from satsym.symbolic.lookup.library import derivation
 
     try:
-        found = system_of(derivation(model))
+        found = system_of(derivation(name))
     except DerivationError as error:
         raise Undecided(str(error)) from None
     parts = {"A": found.a, "B": found.b, "C": found.c}
     names = {"states": list(found.states), "inputs": list(found.inputs), "outputs": list(found.outputs)}
-    return Record(model, {**parts, **names})
+    return Record(name, {**parts, **names})
 
 
-@measurement
 def inputs_of(of: Any, inputs: Sequence[str]) -> Record:
-    """A system with some of its inputs alone."""
-    whole = system_of(of)
-    return Record(whole.name, {**whole.parts, "B": _columns(whole, inputs), "inputs": list(inputs)})
+    """A system with some of its inputs alone, if they are named."""
+    whole = system(of)
+    if not inputs:
+        return whole
+    chosen, b = [_place(whole, "inputs", name) for name in inputs], whole.part("B")
+    return Record(whole.name, {**whole.parts, "B": b.extract(list(range(b.rows)), chosen), "inputs": list(inputs)})
 
 
-@measurement
 def dual(of: Any) -> Record:
     """The system with A', C' and B' for A, B and C: inputs and outputs change places."""
-    whole = system_of(of)
+    whole = system(of)
     return Record(f"the dual of {whole.name}", {"A": whole.part("A").T, "B": whole.part("C").T, "C": whole.part("B").T})
 
 
-@measurement
 def eigenvalues(of: Any) -> list[Any]:
     """All eigenvalues, each as often as it is a root of the characteristic polynomial; exact if the matrix is.
 
     Those of a matrix with plain numbers are sorted by their real parts, and then downwards by their imaginary parts.
     """
-    a = matrix(of)
+    a = system(of).part("A")
     if is_exact(a):
-        return [e.value for e in spectrum_of(a).eigenvalues for _ in range(e.algebraic)]
+        return [e.value for e in _spectrum(a).eigenvalues for _ in range(e.algebraic)]
     return sorted(np.linalg.eigvals(a).tolist(), key=lambda z: (round(z.real, 9), -z.imag))
 
 
-@measurement
 def closed_loop(of: Any, gain: Any, inputs: Sequence[str] = ()) -> Record:
     """x' = (A - B K) x, of some inputs alone; letters of A are taken as 1."""
-    whole = system_of(of)
-    a = numbers(whole.part("A")) - numbers(_columns(whole, inputs)) @ numbers(gain)
+    whole = system(of)
+    a = numbers(whole.part("A")) - numbers(inputs_of(whole, inputs).part("B")) @ numbers(gain)
     return Record(f"{whole.name} with feedback", {**whole.parts, "A": a})
 
 
-@measurement
 def stabilisable(of: Any, inputs: Sequence[str] = ()) -> bool:
     """Whether some feedback makes all real parts negative: by Hautus' test at each eigenvalue that is not so."""
-    whole = system_of(of)
-    a, b = numbers(whole.part("A")), numbers(_columns(whole, inputs))
-    lost = [
-        v for v in np.linalg.eigvals(a) if v.real > -_ZERO and _rank(np.hstack([v * np.eye(len(a)) - a, b])) < len(a)
-    ]
-    return not lost
+    whole = inputs_of(of, inputs)
+    a, b = numbers(whole.part("A")), numbers(whole.part("B"))
+    left = [np.hstack([v * np.eye(len(a)) - a, b]) for v in np.linalg.eigvals(a) if v.real > -_ZERO]
+    return all(int(np.linalg.matrix_rank(each, tol=_DEPENDENT)) == len(a) for each in left)
 
 
-@measurement
 def algebraic(eigenvalue: Any, of: Any) -> int:
     """How often an eigenvalue is a root of the characteristic polynomial."""
     return int(_eigenvalue(eigenvalue, of).algebraic)
 
 
-@measurement
 def geometric(eigenvalue: Any, of: Any) -> int:
     """How many independent eigenvectors an eigenvalue has."""
     return int(_eigenvalue(eigenvalue, of).geometric)
 
 
-@measurement
 @kept
 def eigenvectors(of: Any) -> list[Record]:
     """Independent eigenvectors as columns, each with its eigenvalue: ``value``, ``vector``; exact."""
-    a = matrix(of)
+    a = system(of).part("A")
     return [
         Record(f"eigenvector {k + 1} for {e.value}", {"value": e.value, "vector": column})
-        for e in spectrum_of(a).eigenvalues
+        for e in _spectrum(a).eigenvalues
         for k, column in enumerate((a - e.value * a.eye(a.rows)).nullspace(simplify=True))
     ]
 
 
-@measurement
 def jordan(of: Any) -> Record:
     """A basis P of chains of an exact matrix, as columns, and the eigenvalue that belongs to each."""
     from satsym.symbolic.analysis.jordan import jordan_form
 
-    found = jordan_form(spectrum_of(matrix(of)))
+    found = jordan_form(_spectrum(system(of).part("A")))
     if found is None:
         raise Undecided("no closed form of the eigenvalues")
     return Record("the Jordan form", {"P": found.basis, "values": [found.form[i, i] for i in range(found.form.rows)]})
 
 
-@measurement
 def routh(coefficients: Sequence[Any]) -> list[list[Any]]:
     """The rows of Routh's array by its plain rule, padded with zeros, up to one that begins with zero.
 
@@ -137,98 +135,65 @@ def routh(coefficients: Sequence[Any]) -> list[list[Any]]:
     return found
 
 
-@measurement
 def characteristic(of: Any) -> list[Any]:
     """Coefficients of det(s I - A), the highest power first."""
-    a = matrix(of)
+    a = system(of).part("A")
     return list(a.charpoly().all_coeffs()) if is_exact(a) else list(np.poly(a))
 
 
-@measurement
 def rank(of: Any) -> int:
     """Rank of a matrix, exact where its entries are."""
     return int(of.rank()) if is_exact(of) else int(np.linalg.matrix_rank(np.asarray(of, dtype=float)))
 
 
-@measurement
 def dimension(of: Any) -> int:
     """How many states a system has, or rows a matrix."""
-    return int(matrix(of).shape[0])
+    return int(system(of).part("A").shape[0])
 
 
-@measurement
 def controllability(of: Any, inputs: Sequence[str] = ()) -> Any:
     """The matrix [B, AB, ..., A^(n-1) B], of some inputs alone."""
-    whole = system_of(of)
-    return _krylov(whole.part("A"), _columns(whole, inputs))
+    whole = inputs_of(of, inputs)
+    return _krylov(whole.part("A"), whole.part("B"))
 
 
-@measurement
 def observability(of: Any, outputs: Sequence[str] = ()) -> Any:
     """The matrix [C; CA; ...; C A^(n-1)], of some outputs alone."""
-    whole = system_of(of)
+    whole = system(of)
     rows = whole.part("C")
     if outputs:
         rows = rows.extract([_place(whole, "outputs", name) for name in outputs], list(range(rows.cols)))
     return _krylov(whole.part("A").T, rows.T).T
 
 
-@measurement
 def controllable(of: Any, inputs: Sequence[str] = ()) -> bool:
     """Whether some input carries every state to every other: by the Gramian, not by a rank."""
-    whole = inputs_of(of, inputs) if inputs else system_of(of)
-    return _definite(gramian(whole, _INTERVAL))
+    return _definite(gramian(inputs_of(of, inputs), _INTERVAL))
 
 
-@measurement
 def observable(of: Any) -> bool:
     """Whether the output over an interval tells the state it began at: by the Gramian, not by a rank."""
-    whole = system_of(of)
-    return _definite(gramian(Record(whole.name, {"A": whole.part("A").T, "B": whole.part("C").T}), _INTERVAL))
+    return controllable(dual(of))
 
 
-@measurement
 def gramian(of: Any, t: float) -> Array:
     """The integral of e^(-As) B B' e^(-A's) over [0, t]: from one exponential of twice the size (Van Loan)."""
-    whole = system_of(of)
+    whole = system(of)
     a, b = -numbers(whole.part("A")), numbers(whole.part("B"))
     n = len(a)
     both = flow(np.block([[-a, b @ b.T], [np.zeros((n, n)), a.T]]), t)
     return np.asarray(both[n:, n:].T @ both[:n, n:])
 
 
-@measurement
 def flow(of: Any, t: float) -> Array:
     """e^(At), by scaling and squaring; letters of A are taken as 1."""
     from scipy.linalg import expm
 
-    return np.asarray(expm(t * numbers(matrix(of))))
-
-
-def system_of(of: Any) -> Record:
-    """A system by its name, or as it stands; a matrix is one without inputs."""
-    if isinstance(of, str):
-        return system(of)
-    return of if isinstance(of, Record) else Record("the system", {"A": of})
-
-
-def matrix(of: Any) -> Any:
-    """A of a system, or a matrix as it stands."""
-    return system_of(of).part("A")
-
-
-def numbers(of: Any) -> Array:
-    """A matrix with numbers, its letters taken as 1."""
-    return _numbers(of) if is_exact(of) else np.asarray(of, dtype=float)
-
-
-@lru_cache(maxsize=4096)
-def _numbers(of: Any) -> Array:
-    return np.asarray(measured(of.subs(dict.fromkeys(of.free_symbols, 1)))).reshape(of.shape)
+    return np.asarray(expm(t * numbers(system(of).part("A"))))
 
 
 @cache
-def spectrum_of(a: Any) -> Any:
+def _spectrum(a: Any) -> Any:
     """The exact eigenvalues of a matrix, with their multiplicities."""
     from satsym.symbolic.analysis import spectrum
 
@@ -236,28 +201,16 @@ def spectrum_of(a: Any) -> Any:
 
 
 def _eigenvalue(value: Any, of: Any) -> Any:
-    for entry in spectrum_of(matrix(of)).eigenvalues:
+    for entry in _spectrum(system(of).part("A")).eigenvalues:
         if entry.value == value or (not is_exact(value) and abs(complex(entry.value) - complex(value)) < _ZERO):
             return entry
-    raise BadInput(f"{value} is no eigenvalue of {system_of(of).name}")
-
-
-def _rank(of: Any) -> int:
-    return int(np.linalg.matrix_rank(of, tol=1e-7))
+    raise BadInput(f"{value} is no eigenvalue of {system(of).name}")
 
 
 def _place(whole: Record, of: str, name: str) -> int:
     known = whole.part(of)
-    if name not in known:
-        raise BadInput(f"{whole.name} has no {shown(name)}; {suggestion(name, known)}")
+    refuse_unknown(f"{whole.name} has no", name, known)
     return int(known.index(name))
-
-
-def _columns(whole: Record, inputs: Sequence[str]) -> Any:
-    b = whole.part("B")
-    if not inputs:
-        return b
-    return b.extract(list(range(b.rows)), [_place(whole, "inputs", name) for name in inputs])
 
 
 def _krylov(a: Any, b: Any) -> Any:

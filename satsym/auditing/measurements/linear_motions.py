@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from satsym.arrays import Array, kept
-from satsym.auditing.measurements import linear, measurement
-from satsym.auditing.measurements.matrices import dense
-from satsym.auditing.propositions.values import Record
+from satsym.auditing.measurements import linear
+from satsym.auditing.measurements.matrices import numeric
+from satsym.auditing.propositions.values import Record, numbers
 
 _LATE, _GROWN = 80.0, 1.5
 _ENDLESS = 1e100
@@ -23,17 +23,15 @@ STEPS = 4000
 _LOST, _DEAD = 1e-9, 1e-3
 
 
-@measurement
 def motion(of: Any, start: Any, t: float) -> Array:
     """The state at a time from a start on, of x' = A x: by integration, of all unit vectors at once."""
-    return np.asarray(_transition(linear.numbers(linear.matrix(of)), t) @ dense(start))
+    return np.asarray(_transition(numbers(linear.system(of).part("A")), t) @ numeric(start))
 
 
-@measurement
 def trajectory(of: Any, start: Any, until: float) -> Record:
     """The motion of x' = A x from a start on, by e^(At): ``t``, states by name, all ``curves``, and their ``size``."""
-    system = linear.system_of(of)
-    advance, path = linear.flow(system, until / STEPS), [np.asarray(dense(start), dtype=float).ravel()]
+    system = linear.system(of)
+    advance, path = linear.flow(system, until / STEPS), [np.asarray(numeric(start), dtype=float).ravel()]
     for _ in range(STEPS):
         path.append(advance @ path[-1])
     curves, times = np.array(path).T, np.linspace(0.0, until, STEPS + 1)
@@ -42,54 +40,47 @@ def trajectory(of: Any, start: Any, until: float) -> Record:
     return Record(f"the motion of {system.name}", {**parts, **dict(zip(names, curves, strict=True))})
 
 
-@measurement
 def flow_rate(of: Any, t: float) -> Array:
     """The derivative of e^(At) by t: by Cauchy's integral around t."""
     from scipy.linalg import expm
 
-    a, points = linear.numbers(linear.matrix(of)), np.exp(2j * math.pi * np.arange(16) / 16)
+    a, points = numbers(linear.system(of).part("A")), np.exp(2j * math.pi * np.arange(16) / 16)
     return np.asarray(np.real(np.mean([expm(a * (t + 0.2 * z)) / (0.2 * z) for z in points], axis=0)))
 
 
-@measurement
 def limit(values: Sequence[Any]) -> Any:
     """The limit of a sequence whose steps are halved from one entry to the next: by Richardson's extrapolation."""
-    column = [_dense(entry) for entry in values]
+    column = [np.asarray(numeric(entry), dtype=float) for entry in values]
     for power in range(1, len(values)):
         column = [(2.0**power * b - a) / (2.0**power - 1.0) for a, b in pairwise(column)]
     return column[0]
 
 
-@measurement
 def farthest(of: Any, size: float) -> float:
     """How far motions get that start no farther from zero than this; infinite where that has no bound."""
-    largest, bounded = _reach(linear.numbers(linear.matrix(of)))
+    largest, bounded = _reach(numbers(linear.system(of).part("A")))
     return size * largest if bounded else math.inf
 
 
-@measurement
 def remaining(of: Any, size: float) -> float:
     """How far motions that start so far from zero are in the end; infinite where that has no bound."""
-    a = linear.numbers(linear.matrix(of))
+    a = numbers(linear.system(of).part("A"))
     if not _reach(a)[1]:
         return math.inf
     left = max(float(np.linalg.norm(linear.flow(a, t), 2)) for t in _late(a) * np.linspace(1.0, 1.2, 20))
     return 0.0 if left < _LOST else size * left
 
 
-@measurement
 def stable(of: Any) -> bool:
     """Whether motions that start near zero stay near it: by e^(At) itself, later and later."""
     return farthest(of, 1.0) < math.inf
 
 
-@measurement
 def asymptotically_stable(of: Any) -> bool:
     """Whether motions that start near zero stay near it and die out: by e^(At) itself, later and later."""
     return remaining(of, 1.0) < _DEAD
 
 
-@measurement
 def quadrature(start: float, end: float, nodes: int = 24) -> list[list[float]]:
     """Places and weights that integrate a smooth function over an interval, by Gauss and Legendre."""
     places, weights = np.polynomial.legendre.leggauss(nodes)
@@ -97,52 +88,46 @@ def quadrature(start: float, end: float, nodes: int = 24) -> list[list[float]]:
     return [[float(start + half * (p + 1.0)), float(half * w)] for p, w in zip(places, weights, strict=True)]
 
 
-@measurement
 def wave(of: Any, t: float) -> Array:
     """An input that is not special in any way, at a time."""
-    return np.array([math.cos(3.0 * t + k) + k * t for k in range(linear.system_of(of).part("B").shape[1])])
+    return np.array([math.cos(3.0 * t + k) + k * t for k in range(linear.system(of).part("B").shape[1])])
 
 
-@measurement
 def driven(of: Any, t: float) -> Array:
     """The state at a time, from zero under the ``wave``: by integration."""
-    system = linear.system_of(of)
-    a, b = linear.numbers(system.part("A")), linear.numbers(system.part("B"))
+    system = linear.system(of)
+    a, b = numbers(system.part("A")), numbers(system.part("B"))
     return _followed(lambda s, x: np.asarray(a @ x + b @ wave(system, s)), np.zeros(len(a)), t)
 
 
-@measurement
 def least_energy(of: Any, start: Any, t: float) -> float:
     """The least integral of the inputs squared that brings a state to zero within a time, however large they are."""
-    x = dense(start)
+    x = numeric(start)
     return float(x @ np.linalg.solve(linear.gramian(of, t), x))
 
 
-@measurement
 def steered_to(of: Any, start: Any, aim: Any) -> Array:
     """The state after 1, under the input of least energy that comes as near to an aim as any does: by integration."""
-    a, b = (linear.numbers(linear.system_of(of).part(name)) for name in "AB")
+    a, b = (numbers(linear.system(of).part(name)) for name in "AB")
     moved, pushed, effort = _steering(a, b)
-    return np.asarray(moved @ dense(start) + pushed @ (effort @ (dense(aim) - moved @ dense(start))))
+    return np.asarray(moved @ numeric(start) + pushed @ (effort @ (numeric(aim) - moved @ numeric(start))))
 
 
-@measurement
 def placing_gain(of: Any, coefficients: Sequence[float]) -> Any:
     """K such that det(s I - A - B K) has these coefficients, of a system with one input: by Ackermann's formula."""
-    system = linear.system_of(of)
+    system = linear.system(of)
     a, b = system.part("A"), system.part("B")
     wanted = sum((a ** (a.rows - k) * c for k, c in enumerate(coefficients)), a * 0)
     last = a.zeros(1, a.rows - 1).row_join(a.eye(1))
     return -last * linear.controllability(Record("", {"A": a, "B": b})).inv() * wanted
 
 
-@measurement
 def stabilising_gain(of: Any) -> Array:
     """K such that A + B K moves all that inputs move to the left: by Bass' equation."""
     from scipy.linalg import solve_continuous_lyapunov
 
-    system = linear.system_of(of)
-    a, b = linear.numbers(system.part("A")), linear.numbers(system.part("B"))
+    system = linear.system(of)
+    a, b = numbers(system.part("A")), numbers(system.part("B"))
     shift = 1.0 + float(np.linalg.norm(a, 2))
     weight = solve_continuous_lyapunov(a + shift * np.eye(len(a)), 2.0 * b @ b.T)
     return np.asarray(-b.T @ np.linalg.pinv(weight, rcond=1e-10, hermitian=True))
@@ -151,13 +136,9 @@ def stabilising_gain(of: Any) -> Array:
 def _followed(rates: Callable[[float, Array], Array], start: Any, t: float) -> Array:
     from scipy.integrate import solve_ivp
 
-    begin = np.asarray(dense(start), dtype=float).ravel()
+    begin = np.asarray(numeric(start), dtype=float).ravel()
     found = solve_ivp(rates, (0.0, t), begin, rtol=1e-11, atol=1e-12, method="DOP853")
     return np.asarray(found.y[:, -1])
-
-
-def _dense(of: Any) -> Array:
-    return np.asarray(dense(of), dtype=float)
 
 
 @kept

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from satsym.auditing.measurements import measurement, value
 from satsym.auditing.program import text as programs
 from satsym.auditing.program.run import run
 from satsym.auditing.program.text import Program
@@ -22,7 +21,6 @@ _ENTRY = re.compile(r"\(([ij](?:\+1)?)\)")
 _SEED = 11
 
 
-@measurement
 def matlab(lines: str | Sequence[str], **given: Any) -> Record:
     """The values that lines give to names; ``again`` tells whether a loop ``while(...)`` goes round once more."""
     world = {name: np.array(v, dtype=float) if isinstance(v, list) else v for name, v in given.items()}
@@ -32,7 +30,6 @@ def matlab(lines: str | Sequence[str], **given: Any) -> Record:
     return Record("the lines", {name: value for name, value in found.values.items() if name not in _FUNCTIONS})
 
 
-@value
 def iterates() -> Family:
     """Controls before and after an iteration, which changed by shares of their size from nothing to all of it."""
     rng, members = np.random.default_rng(_SEED), []
@@ -43,18 +40,16 @@ def iterates() -> Family:
     return Family("ITERATES", "iterations", tuple(members))
 
 
-@measurement
 def count(text: str, sign: str) -> int:
     """How often a sign stands in a text."""
     return text.count(sign)
 
 
-@measurement
 def used_early(lines: str | Sequence[str]) -> list[str]:
     """Names that some line gives a value, but that another line uses before."""
     program = _program(lines)
     given = {name for statement in program.statements for name in programs.given_names(statement)}
-    return sorted({loose.name for loose in programs.loose_names(program)} & given)
+    return sorted(given & {*programs.loose_names(program)})
 
 
 def _program(lines: str | Sequence[str]) -> Program:

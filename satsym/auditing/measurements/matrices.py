@@ -9,31 +9,26 @@ from typing import Any
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.auditing.measurements import measurement
 from satsym.auditing.propositions.values import is_exact, is_number, measured
 
 _SEED = 3
 
 
-@measurement
 def det(of: Any) -> Any:
     """The determinant, exact where the matrix has letters."""
-    return of.det(method="berkowitz") if is_exact(of) and of.free_symbols else np.linalg.det(dense(of))
+    return of.det(method="berkowitz") if is_exact(of) and of.free_symbols else np.linalg.det(numeric(of))
 
 
-@measurement
 def inverse(of: Any) -> Any:
     """The inverse, exact where the matrix has letters."""
-    return of.inv() if is_exact(of) and of.free_symbols else np.linalg.inv(dense(of))
+    return of.inv() if is_exact(of) and of.free_symbols else np.linalg.inv(numeric(of))
 
 
-@measurement
 def transpose(of: Any) -> Any:
     """The transpose."""
     return of.T
 
 
-@measurement
 def eye(size: int) -> Any:
     """The identity."""
     from satsym.symbolic.lookup import formulas
@@ -41,32 +36,27 @@ def eye(size: int) -> Any:
     return formulas.exact_matrix([[str(int(i == j)) for j in range(size)] for i in range(size)])
 
 
-@measurement
 def shape(of: Any) -> list[int]:
     """Numbers of rows and columns."""
     return [int(size) for size in of.shape]
 
 
-@measurement
 def entries(of: Any) -> list[Any]:
     """All entries, row by row."""
     return list(of) if is_exact(of) else np.asarray(of).ravel().tolist()
 
 
-@measurement
 def rows(of: Any, places: Sequence[int]) -> Any:
     """Some rows of a matrix, counted from one."""
     chosen = [place - 1 for place in places]
     return of.extract(chosen, list(range(of.cols))) if is_exact(of) else np.asarray(of)[chosen]
 
 
-@measurement
 def hstack(parts: Sequence[Any]) -> Any:
     """Matrices beside each other."""
-    return parts[0].hstack(*parts) if all(map(is_exact, parts)) else np.column_stack([dense(part) for part in parts])
+    return parts[0].hstack(*parts) if all(map(is_exact, parts)) else np.column_stack([numeric(part) for part in parts])
 
 
-@measurement
 def diagonal(parts: Sequence[Any]) -> Any:
     """Numbers, or square matrices, along the diagonal of a matrix that is zero elsewhere."""
     from satsym.symbolic.lookup import formulas
@@ -77,20 +67,18 @@ def diagonal(parts: Sequence[Any]) -> Any:
         return formulas.matrix_of([[parts[i] if i == j else zero for j in range(size)] for i in range(size)])
     from scipy.linalg import block_diag
 
-    return np.asarray(block_diag(*[np.atleast_2d(dense(part)) for part in parts]))
+    return np.asarray(block_diag(*[np.atleast_2d(numeric(part)) for part in parts]))
 
 
-@measurement
 def kernel(of: Any) -> list[Any]:
     """Columns that span what a matrix maps to zero, exact where it has letters."""
     if is_exact(of) and of.free_symbols:
         return list(of.nullspace(simplify=True))
     from scipy.linalg import null_space
 
-    return list(null_space(dense(of), rcond=1e-9).T)
+    return list(null_space(numeric(of), rcond=1e-9).T)
 
 
-@measurement
 def exp(x: Any) -> Any:
     """The exponential of a number, or of each point of a curve; exact of an exact number."""
     from satsym.symbolic.lookup import formulas
@@ -98,19 +86,16 @@ def exp(x: Any) -> Any:
     return formulas.function("exp", [x]) if is_exact(x) else np.exp(x)
 
 
-@measurement
 def factorial(n: int) -> int:
     """1 times 2 times ... times n."""
     return math.factorial(n)
 
 
-@measurement
 def naturals(count: int) -> list[int]:
     """0, 1, 2, ...: so many."""
     return list(range(count))
 
 
-@measurement
 def vectors(of: Any) -> list[Array]:
     """Vectors to try with a square matrix, or of a size: zero, units, random ones, and the matrix's own directions.
 
@@ -121,16 +106,10 @@ def vectors(of: Any) -> list[Array]:
     found = [np.zeros(size), *np.eye(size), *rng.normal(size=(2 * size, size))]
     if isinstance(of, int):
         return found
-    a = dense(of)
+    a = numeric(of)
     return [*found, *(np.linalg.eigh(a)[1].T if (a == a.T).all() else kernel(a))]
 
 
-@measurement
 def numeric(of: Any) -> Array:
-    """A matrix with plain numbers."""
-    return dense(of)
-
-
-def dense(of: Any) -> Array:
     """A matrix, a column or a number with plain numbers."""
     return np.asarray(measured(of) if is_exact(of) else of)

@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 
 from satsym import kernels
-from satsym.arrays import Array
-from satsym.auditing.measurements import measurement, value
+from satsym.arrays import Array, kept
 from satsym.auditing.program import text as programs
 from satsym.auditing.program.run import run
 from satsym.auditing.propositions.values import Record, Undecided, undecided_if_refused
@@ -32,7 +31,6 @@ _SPAN = (0.0, 1.25)
 _SEED = 3
 
 
-@value
 def rk4() -> list[str]:
     """The classical method of order four for y' = f(x, y)."""
     weighted = " + ".join(f"{b}*k{s}" for s, b in enumerate(classical_weights(), start=1))
@@ -40,19 +38,16 @@ def rk4() -> list[str]:
     return ["k1 = f(x_n, y_n)", *stages, f"y_n1 = y_n + h*({weighted})"]
 
 
-@value
 def heun() -> list[str]:
     """Heun's method for y' = f(x, y)."""
     return ["k1 = f(x_n, y_n)", "k2 = f(x_n + h, y_n + h*k1)", "y_n1 = y_n + h/2*(k1 + k2)"]
 
 
-@value
 def euler() -> list[str]:
     """Euler's method for y' = f(x, y)."""
     return ["y_n1 = y_n + h*f(x_n, y_n)"]
 
 
-@measurement
 def runge_kutta(unknown: Sequence[str], others: Sequence[str] = (), previous: bool = False) -> list[str]:
     """The classical method for several unknowns, in stages ``k1_x = h*f1(...)``; with what else the rates depend on.
 
@@ -71,7 +66,6 @@ def runge_kutta(unknown: Sequence[str], others: Sequence[str] = (), previous: bo
     return lines
 
 
-@measurement
 def with_line(lines: Sequence[str], line: str) -> list[str]:
     """A method in which one line stands in the place of that which gives the same name its value."""
     name = line.partition("=")[0].strip()
@@ -80,7 +74,7 @@ def with_line(lines: Sequence[str], line: str) -> list[str]:
     return [line if other.partition("=")[0].strip() == name else other for other in lines]
 
 
-@measurement
+@kept
 def moving(
     model: str,
     states: Sequence[str],
@@ -93,10 +87,44 @@ def moving(
     ``f1``, ``f2``, ... are the rates of the states, or of the costates where these are named, for lines of a method;
     ``coupled`` adds to each a term with all these states, or costates, so that no argument is without effect.
     """
-    return _motion(model, tuple(states), tuple(controls), tuple(costates), coupled)
+    from scipy.integrate import solve_ivp
+
+    system, rng = kernels.load(model), np.random.default_rng(_SEED)
+    n, m = len(states), len(system.spec.controls)
+    if n != len(system.spec.states) or len(controls) not in (0, m) or len(costates) not in (0, n):
+        raise BadInput(f"{model} has {len(system.spec.states)} states and {m} controls; name all of a kind, or none")
+    letters = {v.symbol: 1.0 for v in system.spec.parameters if v.default}
+    p = tuple(letters.get(v.symbol, 0.0) for v in system.spec.parameters)
+    phases, still = np.arange(m), (0.0,) * m
+
+    def u(t: Any) -> Array:
+        return 0.05 * np.cos(3.0 * np.asarray(t)[..., None] + phases) * bool(controls)
+
+    def states_rate(x: Array, v: Array) -> Array:
+        return np.array(system.dynamics(0.0, tuple(x), tuple(v) or still, p)) + np.sin(mixing @ x) * (not costates)
+
+    def costates_rate(lam: Array, x: Array, v: Array) -> Array:
+        return np.array(system.costate_rate(0.0, tuple(x), tuple(v) or still, tuple(lam), p)) + np.sin(mixing @ lam)
+
+    def both(t: float, y: Array) -> Array:
+        rate = states_rate(y[:n], u(t))
+        return np.concatenate([rate, costates_rate(y[n:], y[:n], u(t))]) if costates else rate
+
+    start = rng.uniform(0.8, 1.2, n + len(costates))
+    mixing = rng.uniform(0.2, 0.5, (n, n)) * coupled
+    found = solve_ivp(both, _SPAN, start, method="DOP853", rtol=1e-13, atol=1e-14, max_step=1 / 64, dense_output=True)
+
+    def component(of: Callable[[Array], Array], k: int) -> Callable[[Array], Array]:
+        return lambda t: of(t)[k]
+
+    curves = {name: component(found.sol, k) for k, name in enumerate((*states, *costates))}
+    curves |= {name: component(lambda t: u(t).T, k) for k, name in enumerate(controls)}
+    rates = _components(
+        costates_rate if costates else states_rate, (n, n, len(controls)) if costates else (n, len(controls))
+    )
+    return Record(f"a motion of {model}", {"curves": curves, **letters, **rates})
 
 
-@measurement
 def order(lines: Sequence[str], along: Record | None = None) -> int:
     """The order of a method, by the errors that steps of it make along a known motion; without one, of y' = cos(x) y.
 
@@ -112,7 +140,6 @@ def order(lines: Sequence[str], along: Record | None = None) -> int:
     return round(found)
 
 
-@measurement
 def error(lines: Sequence[str], steps: int) -> float:
     """The error that so many steps of a method leave on the way from x = 0 to x = 1, for y' = cos(x) y."""
     known, h = _growth(), 1.0 / steps
@@ -151,48 +178,6 @@ def _growth() -> Record:
     """y' = cos(x) y."""
     curves = {"x": lambda t: t, "y": lambda t: np.exp(np.sin(t))}
     return Record("y' = cos(x) y", {"curves": curves, "f": lambda x, y: np.cos(x) * y})
-
-
-@cache
-def _motion(
-    model: str, states: tuple[str, ...], controls: tuple[str, ...], costates: tuple[str, ...], coupled: bool
-) -> Record:
-    from scipy.integrate import solve_ivp
-
-    system, rng = kernels.load(model), np.random.default_rng(_SEED)
-    n, m = len(states), len(system.spec.controls)
-    if n != len(system.spec.states) or len(controls) not in (0, m) or len(costates) not in (0, n):
-        raise BadInput(f"{model} has {len(system.spec.states)} states and {m} controls; name all of a kind, or none")
-    letters = {v.symbol: 1.0 for v in system.spec.parameters if v.default}
-    p = tuple(letters.get(v.symbol, 0.0) for v in system.spec.parameters)
-    phases, still = np.arange(m), (0.0,) * m
-
-    def u(t: Any) -> Array:
-        return 0.05 * np.cos(3.0 * np.asarray(t)[..., None] + phases) * bool(controls)
-
-    def states_rate(x: Array, v: Array) -> Array:
-        return np.array(system.dynamics(0.0, tuple(x), tuple(v) or still, p)) + np.sin(mixing @ x) * (not costates)
-
-    def costates_rate(lam: Array, x: Array, v: Array) -> Array:
-        return np.array(system.costate_rate(0.0, tuple(x), tuple(v) or still, tuple(lam), p)) + np.sin(mixing @ lam)
-
-    def both(t: float, y: Array) -> Array:
-        rate = states_rate(y[:n], u(t))
-        return np.concatenate([rate, costates_rate(y[n:], y[:n], u(t))]) if costates else rate
-
-    start = rng.uniform(0.8, 1.2, n + len(costates))
-    mixing = rng.uniform(0.2, 0.5, (n, n)) * coupled
-    found = solve_ivp(both, _SPAN, start, method="DOP853", rtol=1e-13, atol=1e-14, max_step=1 / 64, dense_output=True)
-
-    def component(of: Callable[[Array], Array], k: int) -> Callable[[Array], Array]:
-        return lambda t: of(t)[k]
-
-    curves = {name: component(found.sol, k) for k, name in enumerate((*states, *costates))}
-    curves |= {name: component(lambda t: u(t).T, k) for k, name in enumerate(controls)}
-    rates = _components(
-        costates_rate if costates else states_rate, (n, n, len(controls)) if costates else (n, len(controls))
-    )
-    return Record(f"a motion of {model}", {"curves": curves, **letters, **rates})
 
 
 def _components(rate: Callable[..., Array], sizes: Sequence[int]) -> Mapping[str, Callable[..., Array]]:

@@ -11,11 +11,11 @@ import numpy as np
 
 from satsym import instance as instances
 from satsym.arrays import Array
-from satsym.auditing.measurements import linear, linear_motions, measurement
+from satsym.auditing.measurements import linear, linear_motions
 from satsym.auditing.measurements.linear_motions import STEPS
 from satsym.auditing.propositions.values import Record, Undecided
 from satsym.status import BadInput, Status
-from satsym.wording import shown, suggestion
+from satsym.wording import refuse_unknown
 
 if TYPE_CHECKING:
     from satsym.instance import Instance
@@ -25,21 +25,21 @@ _SEED = 20
 _SWEEPS = 60
 _SETTLED = 1e-10
 
+loaded = cache(instances.load)
+"""A shipped instance, read once."""
 
-@measurement
+
 def start(instance: str) -> Record:
     """The initial state of an instance."""
     case = loaded(instance)
     return _state(case, case.initial, f"the start of {instance}")
 
 
-@measurement
 def end(instance: str) -> Record:
     """The final state of the optimum of an instance."""
-    return _state(loaded(instance), solved(instance).x[:, -1], f"the end of {instance}")
+    return _state(loaded(instance), _solved(instance).x[:, -1], f"the end of {instance}")
 
 
-@measurement
 def reference(instance: str, t: float | None = None) -> Record:
     """The state on the reference of an instance, at the final time or another."""
     case = loaded(instance)
@@ -49,59 +49,44 @@ def reference(instance: str, t: float | None = None) -> Record:
     return _state(case, case.model.reference(time, case.parameters), f"the reference of {instance}")
 
 
-@measurement
 def parameter(instance: str, name: str) -> float:
     """A parameter of an instance."""
-    case = loaded(instance)
-    names = _parameters(case)
-    if name not in names:
-        raise BadInput(f"{instance} has no parameter {shown(name)}; {suggestion(name, names)}")
-    return float(case.parameters[names.index(name)])
+    known = _parameters(loaded(instance))
+    refuse_unknown(f"{instance} has no parameter", name, known)
+    return known[name]
 
 
-@measurement
 def least_cost(instance: str, **parameters: float) -> Record:
     """The optimum of an instance, or of one with other parameters.
 
     Its parts are J, the terminal cost S and the running cost V, the times, the final one, states, controls, costates.
     """
     parameters = {name: float(value) for name, value in parameters.items()}
-    found = solved(instance, **parameters)
+    case, found = loaded(instance), _solved(instance, **parameters)
     if found.status is not Status.CONVERGED:
         raise Undecided(f"{instance}: {found.status}")
-    spec = loaded(instance).model.spec
-    curves = {v.symbol: np.asarray(row) for v, row in zip(spec.states, np.asarray(found.x), strict=True)}
-    curves |= {v.symbol: np.asarray(row) for v, row in zip(spec.controls, np.asarray(found.u), strict=True)}
-    curves |= {f"lambda_{v.symbol}": np.asarray(r) for v, r in zip(spec.states, np.asarray(found.lam), strict=True)}
-    times, case = np.asarray(found.times), loaded(instance)
-    p = tuple({**dict(zip(_parameters(case), case.parameters, strict=True)), **parameters}.values())
-    last = float(times[-1])
-    curves["V"] = np.array(
-        [
-            case.model.running_cost(float(t), tuple(x), tuple(u), p)
-            for t, x, u in zip(times, np.asarray(found.x).T, np.asarray(found.u).T, strict=True)
-        ]
-    )
-    final = float(case.model.terminal_cost(last, tuple(found.x[:, -1]), p))
-    return Record(
-        f"the optimum of {instance}", {"J": found.objective, "S": final, "t": times, "t_final": last, **curves}
-    )
+    spec, x, u, times = case.model.spec, np.asarray(found.x), np.asarray(found.u), np.asarray(found.times)
+    names = [*spec.state_names, *spec.control_names, *(f"lambda_{name}" for name in spec.state_names)]
+    curves = dict(zip(names, (*x, *u, *np.asarray(found.lam)), strict=True))
+    p, last = tuple((_parameters(case) | parameters).values()), float(times[-1])
+    running = [
+        case.model.running_cost(float(t), tuple(a), tuple(b), p) for t, a, b in zip(times, x.T, u.T, strict=True)
+    ]
+    ends = {"J": found.objective, "S": float(case.model.terminal_cost(last, tuple(x[:, -1]), p)), "t_final": last}
+    return Record(f"the optimum of {instance}", {**ends, "t": times, **curves, "V": np.array(running)})
 
 
-@measurement
 def steered(instance: str, controls: Sequence[float] | float = 0.0) -> Record:
     """The motion of an instance under constant controls: ``t`` and the states by name, and its ``end``."""
     return _steered(loaded(instance), controls)
 
 
-@measurement
 def displaced(instance: str, **by: float) -> Record:
     """The motion without control that begins on the reference of an instance, with some states displaced by so much."""
     case = loaded(instance)
     names = case.model.spec.state_names
-    for name in by:
-        if name not in names:
-            raise BadInput(f"{instance} has no state {shown(name)}; {suggestion(name, names)}")
+    for other in by:
+        refuse_unknown(f"{instance} has no state", other, names)
     on = case.model.reference(case.t0, case.parameters)
     return _steered(replace(case, initial=tuple(x + by.get(n, 0.0) for n, x in zip(names, on, strict=True))), 0.0)
 
@@ -120,18 +105,16 @@ def _steered(case: Instance, controls: Sequence[float] | float) -> Record:
     )
 
 
-@measurement
 def free_deviation(model: str, instance: str) -> Record:
     """The trajectory without control in a linear model, from the start of an instance taken for deviations."""
     case, found = loaded(instance), linear.system(model)
     if case.tf is None:
         raise BadInput(f"{instance} has a free final time")
-    known = dict(zip(_parameters(case), case.parameters, strict=True))
+    known = _parameters(case)
     a = found.part("A").subs({s: known[s.name] for s in found.part("A").free_symbols if s.name in known})
     return linear_motions.trajectory(Record(model, {**found.parts, "A": a}), case.initial, case.tf - case.t0)
 
 
-@measurement
 def given_at_end(instance: str) -> list[str]:
     """States and costates whose final values the boundary conditions give as numbers."""
     case = loaded(instance)
@@ -144,7 +127,6 @@ def given_at_end(instance: str) -> list[str]:
     return [*case.final, *free]
 
 
-@measurement
 def swept(instance: str, guess: float = 0.0) -> Record:
     """Where forward-backward sweeps end that begin with constant controls and replace them by the law: J and controls.
 
@@ -170,7 +152,6 @@ def swept(instance: str, guess: float = 0.0) -> Record:
     raise Undecided(f"after {_SWEEPS} sweeps the controls still change by {change:.2g}")
 
 
-@measurement
 def difference(one: Record, other: Record) -> Record:
     """What one state has more than another, state by state."""
     names = one.part("names")
@@ -178,7 +159,6 @@ def difference(one: Record, other: Record) -> Record:
     return Record(f"the difference of {one.name} and {other.name}", {**parts, "names": names})
 
 
-@measurement
 def distance(one: Record, other: Record, states: Sequence[str] = ()) -> float:
     """The largest difference of two states, relative where a value exceeds 1; of all but angles, or of some."""
     angles = one.parts.get("angles", ())
@@ -187,27 +167,19 @@ def distance(one: Record, other: Record, states: Sequence[str] = ()) -> float:
 
 
 @cache
-def loaded(name: str) -> Instance:
-    """A shipped instance."""
-    return instances.load(name)
-
-
-@cache
-def solved(name: str, **parameters: float) -> Solution:
+def _solved(name: str, **parameters: float) -> Solution:
     """The optimum of a shipped instance, with other parameters where some are given."""
     from satsym.solvers import solve
 
     case = loaded(name)
-    names = _parameters(case)
+    known = _parameters(case)
     for other in parameters:
-        if other not in names:
-            raise BadInput(f"{name} has no parameter {shown(other)}; {suggestion(other, names)}")
-    values = dict(zip(names, case.parameters, strict=True)) | parameters
-    return solve(replace(case, parameters=tuple(values[n] for n in names)))
+        refuse_unknown(f"{name} has no parameter", other, known)
+    return solve(replace(case, parameters=tuple((known | parameters).values())))
 
 
-def _parameters(case: Instance) -> list[str]:
-    return [v.symbol for v in case.model.spec.parameters]
+def _parameters(case: Instance) -> dict[str, float]:
+    return dict(zip(case.model.spec.parameter_names, map(float, case.parameters), strict=True))
 
 
 def _state(case: Instance, values: Sequence[float] | Array, name: str) -> Record:

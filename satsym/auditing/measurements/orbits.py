@@ -17,16 +17,15 @@ from satsym import kernels
 from satsym.analysis.orbits.elements import elements
 from satsym.analysis.orbits.kepler import propagate
 from satsym.arrays import Array
-from satsym.auditing.measurements import equilibria, measurement, motion, value
-from satsym.auditing.propositions.values import Family, Record
+from satsym.auditing.measurements import motion
+from satsym.auditing.propositions.values import Family, Record, numbers
 from satsym.status import BadInput
-from satsym.wording import shown, suggestion
+from satsym.wording import refuse_unknown, shown
 
 _SEED = 47
 _PLACES = 400
 
 
-@value
 def motions() -> Family:
     """Motions about a centre: circle, ellipses, parabola and hyperbola through one place, others, and random ones."""
     rng, across = np.random.default_rng(_SEED), (0.0, 1.0, 0.0)
@@ -45,7 +44,6 @@ def motions() -> Family:
     return Family("MOTIONS", "motions about a centre", tuple(_motion(name, *start) for name, start in starts.items()))
 
 
-@measurement
 def orbit(of: Any, velocity: ArrayLike | None = None, mu: float | None = None) -> Record:
     """The orbit of a motion, or of a position, a velocity and mu.
 
@@ -59,7 +57,6 @@ def orbit(of: Any, velocity: ArrayLike | None = None, mu: float | None = None) -
     return Record(f"the orbit, {found.conic.value}", {"conic": found.conic.value, **parts, **there})
 
 
-@measurement
 def coasted(of: Any, t: Any, velocity: ArrayLike | None = None, mu: float | None = None) -> Array:
     """Position and velocity after a time, or at many times as columns: in closed form."""
     position, speed, pull = _start(of, velocity, mu)
@@ -68,7 +65,6 @@ def coasted(of: Any, t: Any, velocity: ArrayLike | None = None, mu: float | None
     return np.vstack([np.asarray(p) for p in propagate(position[:, None], speed[:, None], pull, np.asarray(t))])
 
 
-@measurement
 def turned(of: Any, t: float, velocity: ArrayLike | None = None, mu: float | None = None) -> float:
     """The angle by which the position has turned after a time."""
     start = _start(of, velocity, mu)
@@ -78,28 +74,29 @@ def turned(of: Any, t: float, velocity: ArrayLike | None = None, mu: float | Non
     return float(np.arctan2(across, (one * next_).sum(axis=0)).sum())
 
 
-@measurement
 def rates_at(of: Any, x: ArrayLike, controls: Sequence[float] = (), **parameters: float) -> Array:
     """The rates of a model, by default without control, or of a member of a family, in some state."""
     if isinstance(of, Record):
-        return equilibria.rates(of, x)
+        if "formulas" not in of.parts:
+            return numbers(of.part("A")) @ np.asarray(x, dtype=float)
+        return np.array(of.part("formulas")(*np.asarray(x, dtype=float)))
     model, p = _model(of, parameters)
     u = tuple(map(float, controls or (0.0,) * len(model.spec.controls)))
     return np.array(model.dynamics(0.0, tuple(np.asarray(x, dtype=float)), u, p))
 
 
-@measurement
 def jacobian_at(of: Any, x: ArrayLike, **parameters: float) -> Array:
     """The derivatives of these rates by the states."""
     if isinstance(of, Record):
-        return equilibria.jacobian(of, x)
+        if "slopes" not in of.parts:
+            return numbers(of.part("A"))
+        return np.array(of.part("slopes")(*np.asarray(x, dtype=float))).reshape(2, 2)
     model, p = _model(of, parameters)
     n = len(model.spec.states)
     found = model.jacobian_x(0.0, tuple(np.asarray(x, dtype=float)), (0.0,) * len(model.spec.controls), p)
     return np.array(found).reshape(n, n)
 
 
-@measurement
 def approaching(x: ArrayLike) -> list[Array]:
     """Points nearer and nearer to a point, each half as far from it as the one before."""
     centre = np.asarray(x, dtype=float)
@@ -136,6 +133,5 @@ def _model(name: str, parameters: dict[str, float]) -> tuple[Any, tuple[float, .
     model = kernels.load(name)
     known = {v.symbol: float(v.default) if v.default is not None else 1.0 for v in model.spec.parameters}
     for other in parameters:
-        if other not in known:
-            raise BadInput(f"{name} has no parameter {shown(other)}; {suggestion(other, known)}")
+        refuse_unknown(f"{name} has no parameter", other, known)
     return model, tuple(float(v) for v in (known | parameters).values())

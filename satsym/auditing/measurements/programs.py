@@ -14,10 +14,9 @@ from typing import Any
 import numpy as np
 
 from satsym.auditing import quantities
-from satsym.auditing.measurements import measurement
 from satsym.auditing.program import text as programs
-from satsym.auditing.program.library import Module
-from satsym.auditing.program.run import Run, run
+from satsym.auditing.program.library import Module, Run
+from satsym.auditing.program.run import run
 from satsym.auditing.program.text import Program, Stops
 from satsym.auditing.propositions.values import Record, is_exact, measured, undecided_if_refused
 from satsym.status import BadInput
@@ -27,14 +26,12 @@ _BRACKET = re.compile(r"\(([^)]*)\)")
 _MAIN = ("x", "y", "z")
 
 
-@measurement
 def values(program: Sequence[str], **given: Any) -> Record:
     """The variables of a program by name, once it has gone through."""
     found = _walked(program, given)
     return Record("the program", {name: _plain(value) for name, value in found.values.items()})
 
 
-@measurement
 def called(program: Sequence[str], name: str, *arguments: Any, **given: Any) -> Any:
     """What a function of a program returns."""
     found = _walked(program, given).values.get(name)
@@ -46,13 +43,11 @@ def called(program: Sequence[str], name: str, *arguments: Any, **given: Any) -> 
         return np.asarray(found(*(np.asarray(a) if isinstance(a, list) else a for a in arguments)))
 
 
-@measurement
 def output(program: Sequence[str], **given: Any) -> list[str]:
     """The lines that a program prints."""
     return list(_walked(program, given).said)
 
 
-@measurement
 def drawn(program: Sequence[str], call: str, **given: Any) -> list[Record]:
     """Each call of one of matplotlib's functions: its arguments x, y, ... in order, and those that have names."""
     return [
@@ -62,7 +57,6 @@ def drawn(program: Sequence[str], call: str, **given: Any) -> list[Record]:
     ]
 
 
-@measurement
 def stops(program: Sequence[str]) -> list[str]:
     """Why a program would stop before its end, as Python would; empty where it goes through."""
     with undecided_if_refused():
@@ -73,31 +67,26 @@ def stops(program: Sequence[str]) -> list[str]:
     return []
 
 
-@measurement
 def unassigned(program: Sequence[str]) -> list[str]:
     """Names that have no value yet where a line uses them."""
-    return list(dict.fromkeys(loose.name for loose in programs.loose_names(_read(program))))
+    return list(dict.fromkeys(programs.loose_names(_read(program))))
 
 
-@measurement
 def assigned(program: Sequence[str]) -> list[str]:
     """Names that the lines give a value, imports and functions among them."""
     return list(_assigned(_read(program)))
 
 
-@measurement
 def used(program: Sequence[str]) -> list[str]:
     """Names that the lines use."""
     return sorted({name for statement in _read(program).statements for name in programs.names_in(statement)})
 
 
-@measurement
 def sources(program: Sequence[str], name: str) -> list[str]:
     """Names that a value is made from, directly or by others."""
     return sorted(programs.sources(_read(program), [name]) - {name})
 
 
-@measurement
 def unit_in(label: str) -> float:
     """How many base units the unit is that a label has in brackets."""
     found = _BRACKET.search(label)

@@ -11,14 +11,13 @@ from typing import Any
 import numpy as np
 
 from satsym.arrays import Array, kept
-from satsym.auditing.measurements import linear, measurement, value
-from satsym.auditing.measurements.matrices import dense
-from satsym.auditing.propositions.values import Family, Record, Undecided, undecided_if_refused
+from satsym.auditing.measurements import linear
+from satsym.auditing.measurements.matrices import numeric
+from satsym.auditing.propositions.values import Family, Record, Undecided, numbers, undecided_if_refused
 
 _SEED = 19
 
 
-@value
 def regulators() -> Family:
     """Systems that inputs can steer, with weights: the textbooks', and others at random, some of which are unstable."""
     rng = np.random.default_rng(_SEED)
@@ -40,7 +39,6 @@ def regulators() -> Family:
     return Family("REGULATORS", "systems with weights", tuple(members))
 
 
-@measurement
 def regulator(of: Any, inputs: Sequence[str] = (), Q: Any = None, R: Any = None) -> Record:
     """The regulator of a system, of some inputs alone: the gain K of u = -K x, P, and the closed loop's matrix A."""
     found = _parts(of, inputs, Q, R)
@@ -48,26 +46,23 @@ def regulator(of: Any, inputs: Sequence[str] = (), Q: Any = None, R: Any = None)
     return Record("the regulator", {"K": K, "P": P, "A": found[0] - found[1] @ K})
 
 
-@measurement
 def matlab_lqr(A: Any, B: Any, Q: Any, R: Any) -> list[Any]:
     """What MATLAB's lqr(A, B, Q, R) gives back, in its order [K, S, e] (Control System Toolbox, page of lqr)."""
-    found = regulator(Record("the system", {"A": linear.numbers(A), "B": linear.numbers(B)}), Q=Q, R=R)
+    found = regulator(Record("the system", {"A": numbers(A), "B": numbers(B)}), Q=Q, R=R)
     return [found.part("K"), found.part("P"), linear.eigenvalues(found)]
 
 
-@measurement
 def cost(of: Any, gain: Any, start: Any) -> float:
     """The integral of x'Qx + u'Ru from a start on, without an end, along u = -K x: by Liapunov's equation."""
     from scipy.linalg import solve_continuous_lyapunov
 
-    (a, b, q, r), gains = _parts(of), np.atleast_2d(dense(gain)).astype(float)
-    loop, x = a - b @ gains, np.asarray(dense(start), dtype=float).ravel()
+    (a, b, q, r), gains = _parts(of), np.atleast_2d(numeric(gain)).astype(float)
+    loop, x = a - b @ gains, np.asarray(numeric(start), dtype=float).ravel()
     if np.linalg.eigvals(loop).real.max() >= 0.0:
         raise Undecided("the loop is not stable, and what it costs has no bound")
     return float(x @ solve_continuous_lyapunov(loop.T, -(q + gains.T @ r @ gains)) @ x)
 
 
-@measurement
 def other_gains(of: Any, inputs: Sequence[str] = ()) -> list[Array]:
     """Gains near the regulator's and farther from it, all of which make the loop stable."""
     found = _parts(of, inputs)
@@ -80,14 +75,12 @@ def other_gains(of: Any, inputs: Sequence[str] = ()) -> list[Array]:
     return gains
 
 
-@measurement
 def hamiltonian(of: Any, Q: Any = None) -> Array:
     """[A, -B R^-1 B'; -Q, -A'], which moves states and costates of the optimum."""
     a, b, q, r = _parts(of, (), Q)
     return np.block([[a, -b @ np.linalg.solve(r, b.T)], [-q, -a.T]])
 
 
-@measurement
 def riccati(of: Any, t: float) -> Array:
     """P at a time before the end of a finite interval, at whose end it is 0: -P' = A'P + PA + Q - P B R^-1 B'P."""
     from scipy.integrate import solve_ivp
@@ -103,22 +96,19 @@ def riccati(of: Any, t: float) -> Array:
     return np.asarray(found.y[:, -1].reshape(n, n))
 
 
-@measurement
 def costate(of: Any, start: Any, t: float) -> Array:
     """The costate at the start of the optimum over a finite interval, of the cost with 1/2; 0 at its end: by e^(Ht)."""
     whole = linear.flow(hamiltonian(of), t)
     n = len(whole) // 2
-    return -np.linalg.solve(whole[n:, n:], whole[n:, :n] @ dense(start))
+    return -np.linalg.solve(whole[n:, n:], whole[n:, :n] @ numeric(start))
 
 
 def _parts(of: Any, inputs: Sequence[str] = (), Q: Any = None, R: Any = None) -> tuple[Array, Array, Array, Array]:
     """A, B, Q and R with numbers."""
-    whole = linear.system_of(of)
-    if inputs:
-        whole = linear.inputs_of(whole, inputs)
-    a, b = linear.numbers(whole.part("A")), linear.numbers(whole.part("B"))
-    q = whole.parts.get("Q", np.eye(len(a))) if Q is None else dense(Q)
-    r = whole.parts.get("R", np.eye(b.shape[1])) if R is None else dense(R)
+    whole = linear.inputs_of(of, inputs)
+    a, b = numbers(whole.part("A")), numbers(whole.part("B"))
+    q = whole.parts.get("Q", np.eye(len(a))) if Q is None else numeric(Q)
+    r = whole.parts.get("R", np.eye(b.shape[1])) if R is None else numeric(R)
     return a, b, np.asarray(q, dtype=float), np.asarray(r, dtype=float)
 
 

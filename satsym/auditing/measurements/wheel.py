@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.auditing.measurements import measurement, motion
+from satsym.auditing.measurements import motion
 from satsym.auditing.propositions.values import Record
 from satsym.status import BadInput
-from satsym.wording import shown, suggestion
+from satsym.wording import refuse_unknown
 
 _TIGHT = 1e-11
 _LAGS = 5000.0
@@ -29,18 +29,15 @@ _PHASES = np.linspace(4.0, 200.0, 800)
 """Frequencies of a panel times the duration of the manoeuvre."""
 
 
-@measurement
 def valued(formula: Any, instance: str, **more: float) -> float:
     """The value of a formula with the numbers of an instance, and others by name."""
     known = _numbers(instance) | more
     letters = {s.name: s for s in formula.free_symbols}
     for name in letters:
-        if name not in known:
-            raise BadInput(f"no number for {shown(name)}; {suggestion(name, known)}")
+        refuse_unknown("no number for", name, known)
     return float(formula.xreplace({s: known[name] for name, s in letters.items()}))
 
 
-@measurement
 @cache
 def classical(instance: str, differentiator: float = 0.0) -> Record:
     """The motion under the classical law after a step of the command.
@@ -58,7 +55,6 @@ def classical(instance: str, differentiator: float = 0.0) -> Record:
     return _recorded(instance, found.times, found.x, found.u[0], law.loop(case).impulse)
 
 
-@measurement
 def switched(instance: str, torque: float = 0.0, duration: float = 0.0, share: float = 0.0) -> Record:
     """A square wave of torque of one period: the motion of least time from rest to rest, with that torque or duration.
 
@@ -72,7 +68,6 @@ def switched(instance: str, torque: float = 0.0, duration: float = 0.0, share: f
     return _pushed(instance, [(half, push, push), (half, -push, -push)], share * push * half / n["I_y"])
 
 
-@measurement
 def gentle(instance: str, duration: float) -> Record:
     """The motion of least heat from rest to rest in some time, by the derived law."""
     from satsym.symbolic.lookup.library import derivation
@@ -84,14 +79,12 @@ def gentle(instance: str, duration: float) -> Record:
     return _pushed(instance, [(duration, first, last)])
 
 
-@measurement
 def settled(motion: Record, aim: float, band: float) -> float:
     """When a motion's angle is within a share of its aim for good."""
     off = np.flatnonzero(np.abs(motion.part("angle") / aim - 1.0) > band)
     return float(motion.part("t")[off[-1]]) if len(off) else 0.0
 
 
-@measurement
 def swinging(motion: Record) -> float:
     """How far panels swing after a motion, at most over their frequencies, as an acceleration of the body."""
     t, pushes = motion.part("t"), np.diff(motion.part("rate"))
@@ -105,7 +98,6 @@ def swinging(motion: Record) -> float:
     return float(largest)
 
 
-@measurement
 def crossing_time(shares: list[float], controls: list[float]) -> float:
     """How long a body of inertia 1 takes over the distance 1 from rest to rest, under forces at shares of the time.
 

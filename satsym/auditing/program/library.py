@@ -55,16 +55,16 @@ class Module:
     attributes: Mapping[str, Any]
 
 
-@dataclass
-class Outside:
-    """What a program leaves behind beside its variables: printed lines, drawings, and how often rates were asked."""
+@dataclass(frozen=True, eq=False)
+class Run:
+    """What a program leaves behind: its variables, what it printed and drew."""
 
+    values: dict[str, Any]
     said: list[str] = field(default_factory=list)
     drawn: list[Drawing] = field(default_factory=list)
-    evaluations: list[int] = field(default_factory=list)
 
 
-def modules(outside: Outside) -> Mapping[str, Module]:
+def modules(left: Run) -> Mapping[str, Module]:
     """The modules that a program may import, by their full names."""
     numpy = Module(
         "numpy",
@@ -72,30 +72,30 @@ def modules(outside: Outside) -> Mapping[str, Module]:
             "sqrt": _sqrt,
             "array": _array,
             "hstack": _hstack,
-            "linspace": _linspace,
+            "linspace": lambda first, last, number: np.linspace(first, last, _shape(number)[0]),
             "zeros": lambda shape: np.zeros(_shape(shape)),
             "eye": lambda n: np.eye(_shape((n, n))[0]),
             "linalg": Module("numpy.linalg", {"norm": lambda a: np.linalg.norm(numeric(a))}),
             "pi": math.pi,
         },
     )
-    draw = {name: _noted(outside, name) for name in DRAWING}
+    draw = {name: _noted(left, name) for name in DRAWING}
     return {
         "numpy": numpy,
         "matplotlib.pyplot": Module("matplotlib.pyplot", draw),
-        "scipy.integrate": Module("scipy.integrate", {"solve_ivp": _solver(outside)}),
+        "scipy.integrate": Module("scipy.integrate", {"solve_ivp": _solve_ivp}),
         "scipy.linalg": Module("scipy.linalg", {"eig": _eig}),
     }
 
 
-def builtins(outside: Outside) -> Mapping[str, Any]:
+def builtins(left: Run) -> Mapping[str, Any]:
     """Functions that need no import."""
     return {
         "all": all,
         "any": any,
         "abs": abs,
         "len": len,
-        "print": lambda *a: outside.said.append(formatted([" ".join(map(str, a))])),
+        "print": lambda *a: left.said.append(formatted([" ".join(map(str, a))])),
     }
 
 
@@ -127,13 +127,9 @@ def _hstack(parts: Sequence[Any]) -> Any:
     return np.hstack(found)
 
 
-def _linspace(first: float, last: float, number: int) -> Any:
-    return np.linspace(first, last, _shape(number)[0])
-
-
-def _noted(outside: Outside, name: str) -> Callable[..., None]:
+def _noted(left: Run, name: str) -> Callable[..., None]:
     def note(*arguments: Any, **named: Any) -> None:
-        outside.drawn.append(Drawing(name, arguments, named))
+        left.drawn.append(Drawing(name, arguments, named))
 
     return note
 
@@ -147,27 +143,23 @@ def _eig(matrix: Any) -> tuple[Any, Any]:
     return values, vectors
 
 
-def _solver(outside: Outside) -> Callable[..., Module]:
-    def solve_ivp(rates: Callable[..., Any], span: Any, start: Any, **named: Any) -> Module:
-        from scipy import integrate
+def _solve_ivp(rates: Callable[..., Any], span: Any, start: Any, **named: Any) -> Module:
+    from scipy import integrate
 
-        if unknown := set(named) - _KEYWORDS:
-            raise BadInput(f"solve_ivp with {', '.join(sorted(unknown))}; known are {', '.join(sorted(_KEYWORDS))}")
-        count = numeric(start).size
-        if count > MAX_STATES:
-            raise OverBudget(f"solve_ivp with more than {MAX_STATES} states")
-        made(count * numeric(named.get("t_eval", ())).size)
+    if unknown := set(named) - _KEYWORDS:
+        raise BadInput(f"solve_ivp with {', '.join(sorted(unknown))}; known are {', '.join(sorted(_KEYWORDS))}")
+    count = numeric(start).size
+    if count > MAX_STATES:
+        raise OverBudget(f"solve_ivp with more than {MAX_STATES} states")
+    made(count * numeric(named.get("t_eval", ())).size)
 
-        def counted(t: float, y: Any) -> Any:
-            budget.charge(numbers=10 * count)
-            return rates(t, y)
+    def counted(t: float, y: Any) -> Any:
+        budget.charge(numbers=10 * count)
+        return rates(t, y)
 
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # such as a tolerance that is raised to what is possible
-            done = integrate.solve_ivp(counted, span, start, **named)
-        if not done.success:
-            raise BadInput(f"solve_ivp: {done.message}")
-        outside.evaluations.append(int(done.nfev))
-        return Module("solution", {"t": done.t, "y": done.y})
-
-    return solve_ivp
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # such as a tolerance that is raised to what is possible
+        done = integrate.solve_ivp(counted, span, start, **named)
+    if not done.success:
+        raise BadInput(f"solve_ivp: {done.message}")
+    return Module("solution", {"t": done.t, "y": done.y})

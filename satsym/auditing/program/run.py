@@ -10,12 +10,11 @@ from __future__ import annotations
 import ast
 import operator
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from satsym.auditing.program.library import BINARY, COMPARED, Drawing, Module, Outside, builtins, modules
+from satsym.auditing.program.library import BINARY, COMPARED, Module, Run, builtins, modules
 from satsym.auditing.program.sizes import broadcast, extent, formatted, indexed, made
 from satsym.auditing.program.text import Program, Stops
 from satsym.formula import budget
@@ -28,16 +27,6 @@ MAX_CALLS = 30
 _NUMBERS = (int, float, complex, np.number)
 _LARGEST = 2**53
 _PARTS = ("real", "imag")
-
-
-@dataclass(frozen=True, eq=False)
-class Run:
-    """What a program left behind: its variables, what it printed and drew, how often each solver asked for rates."""
-
-    values: Mapping[str, Any]
-    said: tuple[str, ...]
-    drawn: tuple[Drawing, ...]
-    evaluations: tuple[int, ...]
 
 
 def run(
@@ -75,8 +64,7 @@ def run(
                 walker.statement(statement)
                 if until and until in walker.world:
                     break
-        out = walker.outside
-        return Run(walker.world, tuple(out.said), tuple(out.drawn), tuple(out.evaluations))
+        return walker.left
 
     return budget.within(budget.CLAIM, walk)
 
@@ -88,9 +76,9 @@ class _Returned(Exception):
 class _Walker:
     def __init__(self, program: Program, given: Mapping[str, Any], world: Mapping[str, Any]) -> None:
         self.world: dict[str, Any] = dict(world)
-        self.outside = Outside()
+        self.left = Run(self.world)
         self._program, self._given = program, given
-        self._modules, self._builtins = modules(self.outside), builtins(self.outside)
+        self._modules, self._builtins = modules(self.left), builtins(self.left)
         self._steps = self._calls = 0
 
     def statement(self, found: ast.stmt) -> None:

@@ -57,15 +57,7 @@ def read(lines: Sequence[object]) -> Program:
         raise BadInput("the program is nested too deep") from None
 
 
-@dataclass(frozen=True)
-class Loose:
-    """A name that is used where nothing has given it a value: the line, and the name."""
-
-    line: str
-    name: str
-
-
-def loose_names(program: Program) -> list[Loose]:
+def loose_names(program: Program) -> list[str]:
     """Names that have no value yet where they are used, in the order of the lines.
 
     The body of a function is looked at with what the whole program defines, for it runs when it is called.
@@ -73,10 +65,8 @@ def loose_names(program: Program) -> list[Loose]:
     everywhere = {name for statement in program.statements for name in given_names(statement)}
     known, found = set(dir(builtins)), []
     for statement in program.statements:
-        inside = known
-        if isinstance(statement, ast.FunctionDef):
-            inside = known | everywhere
-        found += [Loose(program.line(node), name) for node, name in _used_names(statement) if name not in inside]
+        inside = known | everywhere if isinstance(statement, ast.FunctionDef) else known
+        found += [name for name in _used_names(statement) if name not in inside]
         known |= set(given_names(statement))
     return found
 
@@ -96,9 +86,8 @@ def sources(program: Program, names: Iterable[str]) -> set[str]:
     """Names that the values of some names are made from, directly or not; a function from what its body uses."""
     made_from: dict[str, set[str]] = {}
     for statement in program.statements:
-        used = {name for _, name in _used_names(statement)}
         for name in given_names(statement):
-            made_from.setdefault(name, set()).update(used)
+            made_from.setdefault(name, set()).update(_used_names(statement))
     found, left = set(), list(names)
     while left:
         name = left.pop()
@@ -113,7 +102,7 @@ def names_in(node: ast.AST) -> set[str]:
     return {part.id for part in ast.walk(node) if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Load)}
 
 
-def _used_names(statement: ast.stmt) -> Iterator[tuple[ast.Name, str]]:
+def _used_names(statement: ast.stmt) -> Iterator[str]:
     """Names that come from outside a statement: neither parameters of a function nor given in it."""
     own: set[str] = set()
     for node in ast.walk(statement):
@@ -125,4 +114,4 @@ def _used_names(statement: ast.stmt) -> Iterator[tuple[ast.Name, str]]:
         own.update(name for inner in statement.body for name in given_names(inner))
     for node in ast.walk(statement):
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load) and node.id not in own:
-            yield node, node.id
+            yield node.id

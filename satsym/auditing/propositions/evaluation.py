@@ -9,15 +9,18 @@ from __future__ import annotations
 import ast
 import operator
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 from typing import Any, TypeAlias
 
 import numpy as np
 
+from satsym.auditing.program.library import BINARY
 from satsym.auditing.propositions.reading import (
     CONNECTIVES,
     ITEMS,
+    LOOKUPS,
     MEANINGS,
     PRINTED,
     QUANTIFIERS,
@@ -31,37 +34,14 @@ from satsym.status import BadInput
 
 Truth: TypeAlias = bool | None
 """True, false, or ``None`` where it is undecided."""
-_OPERATORS: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = {
-    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
-    ast.Pow: operator.pow, ast.MatMult: operator.matmul,
-}  # fmt: skip
+_OPERATORS = {**BINARY, ast.MatMult: operator.matmul}
 _MAX_POWER = 64
+_text = ast.unparse
 _TOLD = 4
 """Members of a list for each of which what is measured is told."""
+Lookups: TypeAlias = Mapping[str, Callable[[str], Any]]
+"""What a proposition may look up in its document: ``row``, ``text``, ``meanings``, ``items`` and ``symbol``."""
 _BREAKS = (ArithmeticError, ValueError, TypeError, LookupError, AttributeError, np.linalg.LinAlgError)
-
-
-class Document:
-    """What a proposition may look up in the document that it stands in; this one is for those that look nothing up."""
-
-    items: Sequence[str] = ()
-    """What the document numbers."""
-
-    def row(self, key: str) -> Any:
-        """The printed formula of a row, as an exact expression or matrix."""
-        raise LookupError(key)
-
-    def text(self, key: str) -> Any:
-        """What a row prints, letter by letter."""
-        raise LookupError(key)
-
-    def symbol(self, name: str) -> Any:
-        """What a symbol of the notation means."""
-        raise LookupError(name)
-
-    def meanings(self, letter: str) -> list[str]:
-        """What the document uses a letter for."""
-        raise LookupError(letter)
 
 
 @dataclass(frozen=True)
@@ -88,10 +68,10 @@ class Answer:
 
 
 class Evaluation:
-    """Evaluates propositions in certain words, in a document; ``own`` is what the row itself prints."""
+    """Evaluates propositions in certain words, in a document if any; ``own`` is what the row itself prints."""
 
-    def __init__(self, words: Words, document: Document, own: Any = None) -> None:
-        self._words, self._document, self._own = words, document, own
+    def __init__(self, words: Words, lookups: Lookups = MappingProxyType({}), own: Any = None) -> None:
+        self._words, self._lookups, self._own = words, lookups, own
 
     def answer(self, proposition: Proposition) -> Answer:
         """Whether a proposition is true."""
@@ -221,7 +201,7 @@ class Evaluation:
             return self._part(node, bound)
         if isinstance(node, ast.Subscript):
             return self._entry(node, bound)
-        if isinstance(node, ast.Call):
+        if isinstance(node, ast.Call) and _text(node.func) not in (*QUANTIFIERS, *CONNECTIVES):
             return self._called(node, bound)
         if isinstance(node, ast.BinOp):
             return self._worked_out(node, bound)
@@ -236,9 +216,11 @@ class Evaluation:
     def _named(self, name: str, bound: Mapping[str, Any]) -> Any:
         if name in bound:
             return bound[name]
-        if name in (PRINTED, ITEMS):
-            return self._own if name == PRINTED else self._document.items
-        return self._words.values[name]() if name in self._words.values else self._document.symbol(name)
+        if name == PRINTED:
+            return self._own
+        if name in self._words.values:
+            return self._words.values[name]()
+        return self._lookups[ITEMS if name == ITEMS else "symbol"](name)
 
     def _part(self, node: ast.Attribute, bound: Mapping[str, Any]) -> Any:
         whole = self._value(node.value, bound)
@@ -247,12 +229,8 @@ class Evaluation:
         return whole.part(node.attr)
 
     def _entry(self, node: ast.Subscript, bound: Mapping[str, Any]) -> Any:
-        if isinstance(node.value, ast.Name) and node.value.id == "row":
-            return self._document.row(row_key(node))
-        if isinstance(node.value, ast.Name) and node.value.id == "text":
-            return self._document.text(row_key(node))
-        if isinstance(node.value, ast.Name) and node.value.id == MEANINGS and isinstance(node.slice, ast.Constant):
-            return self._document.meanings(str(node.slice.value))
+        if isinstance(node.value, ast.Name) and node.value.id in (*LOOKUPS, MEANINGS):
+            return self._lookups[node.value.id](row_key(node))
         whole, index = self._value(node.value, bound), self._value(node.slice, bound)
         try:
             return (
@@ -264,17 +242,10 @@ class Evaluation:
             raise BadInput(f"{_text(node)}: there is no such entry in {in_words(whole)}") from None
 
     def _called(self, node: ast.Call, bound: Mapping[str, Any]) -> Any:
-        assert isinstance(node.func, ast.Name)
-        name = node.func.id
-        if name in (*QUANTIFIERS, *CONNECTIVES):
-            found = self._judge(node, bound)
-            if found.truth is None:
-                raise Undecided("; ".join(found.reasons))
-            return found.truth
         arguments = [self._value(argument, bound) for argument in node.args]
         named = {str(keyword.arg): self._value(keyword.value, bound) for keyword in node.keywords}
         try:
-            return self._words.functions[name](*arguments, **named)
+            return self._words.functions[_text(node.func)](*arguments, **named)
         except (BadInput, Undecided):
             raise
         except _BREAKS as error:
@@ -299,12 +270,12 @@ def _plain(node: ast.expr, entry: Any) -> Answer:
 
 
 def _iterated(part: ast.comprehension, family: Any) -> Iterable[Any]:
-    if isinstance(family, str | Record):
-        raise BadInput(f"{_text(part.iter)} is {in_words(family)}, and no family or list")
     try:
-        return list(family)
+        if not isinstance(family, str | Record):
+            return list(family)
     except TypeError:
-        raise BadInput(f"{_text(part.iter)} is {in_words(family)}, and no family or list") from None
+        pass
+    raise BadInput(f"{_text(part.iter)} is {in_words(family)}, and no family or list")
 
 
 def _unpacked(target: ast.expr, member: Any) -> dict[str, Any]:
@@ -353,7 +324,3 @@ def _equivalent(first: Answer, second: Answer) -> Answer:
     both = {**first.evidence, **second.evidence}
     reasons = tuple(dict.fromkeys((*first.reasons, *second.reasons)))
     return Answer(first.truth is second.truth, reasons, both, max(first.members, second.members))
-
-
-def _text(node: ast.AST) -> str:
-    return ast.unparse(node)

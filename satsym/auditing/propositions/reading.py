@@ -185,7 +185,7 @@ class _Check(ast.NodeVisitor):
             row_key(node)
             return
         if isinstance(node.value, ast.Name) and node.value.id == MEANINGS:
-            if not isinstance(node.slice, ast.Constant):
+            if not (isinstance(node.slice, ast.Constant) and isinstance(node.slice.value, str)):
                 raise BadInput(f"name one letter in quotes, such as meanings['x1']{_column(node)}")
             self.symbols[MEANINGS] = None
             return

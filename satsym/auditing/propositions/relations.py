@@ -210,15 +210,9 @@ def _is_sequence(value: Any) -> bool:
 
 
 def _entries(value: Any) -> list[Any]:
-    if getattr(value, "is_Matrix", False):
-        return list(value.tolist())
-    if isinstance(value, np.ndarray):
-        return list(value.tolist())
-    if isinstance(value, list | tuple):
-        return list(value)
-    if isinstance(value, str):
-        raise BadInput(f"{in_words(value)} is no list")
     try:
-        return list(value)
+        if not isinstance(value, str):
+            return list(value.tolist() if hasattr(value, "tolist") else value)
     except TypeError:
-        raise BadInput(f"{in_words(value)} is no list") from None
+        pass
+    raise BadInput(f"{in_words(value)} is no list")

@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from satsym.arrays import Array
 from satsym.auditing.quantities import Quantity
 from satsym.formula.budget import OverBudget
 from satsym.status import BadInput
-from satsym.wording import shown, suggestion
+from satsym.wording import refuse_unknown
 
 _LISTED = 6
 """Entries of a list that are shown."""
@@ -45,8 +46,7 @@ class Record:
 
     def part(self, name: str) -> Any:
         """One of its values."""
-        if name not in self.parts:
-            raise BadInput(f"{self.name} has no {shown(name)}; {suggestion(name, self.parts)}")
+        refuse_unknown(f"{self.name} has no", name, self.parts)
         return self.parts[name]
 
 
@@ -87,6 +87,16 @@ def measured(of: Any) -> Any:
     found = found if np.imag(found).any() else np.real(found)
     found.flags.writeable = False
     return found
+
+
+def numbers(of: Any) -> Array:
+    """A matrix with numbers, its letters taken as 1."""
+    return _numbers(of) if is_exact(of) else np.asarray(of, dtype=float)
+
+
+@lru_cache(maxsize=4096)
+def _numbers(of: Any) -> Array:
+    return np.asarray(measured(of.subs(dict.fromkeys(of.free_symbols, 1)))).reshape(of.shape)
 
 
 def alike(left: Any, right: Any) -> tuple[Any, Any]:
