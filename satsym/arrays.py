@@ -29,5 +29,5 @@ def kept(function: Callable[..., T]) -> Callable[..., T]:
 
 def _key(argument: Any) -> Any:
     if isinstance(argument, np.ndarray):
-        return argument.tobytes(), argument.shape
+        return argument.tobytes(), argument.shape, argument.dtype.str
     return tuple(map(_key, argument)) if isinstance(argument, list) else argument
