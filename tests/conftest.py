@@ -26,7 +26,7 @@ hypothesis.settings.register_profile(WHOLE, deadline=None, derandomize=True)
 hypothesis.settings.register_profile("sample", hypothesis.settings.get_profile(WHOLE), max_examples=40)
 
 
-FEW, SHARE = 4, 3
+FEW, SHARE = 2, 3
 """Of a slow test with more than that many cases every third runs, unless all are asked for."""
 
 

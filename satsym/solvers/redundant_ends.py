@@ -42,7 +42,7 @@ DRIFTING = 1e-3
 """Share of the largest slope of the motion below which its eigenvalues are none."""
 
 MET = 1e-6
-"""Miss of a final state that was left out, relative to its size, with which it is met."""
+"""Miss of a final state that was left out, relative to its largest size on the way, with which it is met."""
 
 
 @dataclass(frozen=True)
@@ -65,11 +65,16 @@ class Redundant:
 
     def met(self, solution: Solution) -> bool:
         """Whether there is an answer, and it ends there all the same."""
-        return solution.status.answered and abs(self.reached(solution) - self.given) <= MET * max(1.0, abs(self.given))
+        size = float(np.abs(solution.x[self._row]).max())
+        return solution.status.answered and abs(self.reached(solution) - self.given) <= MET * max(size, abs(self.given))
+
+    @property
+    def _row(self) -> int:
+        return self.instance.model.spec.state_names.index(self.state)
 
     def reached(self, solution: Solution) -> float:
         """Where it ends."""
-        return float(solution.x[self.instance.model.spec.state_names.index(self.state), -1])
+        return float(solution.x[self._row, -1])
 
     def missed(self, solution: Solution) -> str:
         """What an answer that does not end there means."""
@@ -143,7 +148,9 @@ def _spans_less(instance: Instance, end: Array, rng: np.random.Generator) -> boo
     for i in range(DRAWN):
         for j in range(i):
             one, other = slopes[j] @ rates[:, i], slopes[i] @ rates[:, j]
-            columns.append((one - other, np.abs(slopes[j]) @ np.abs(rates[:, i]) + np.abs(slopes[i] @ rates[:, j])))
+            columns.append(
+                (one - other, np.abs(slopes[j]) @ np.abs(rates[:, i]) + np.abs(slopes[i]) @ np.abs(rates[:, j]))
+            )
     # what cancels but for rounding must not count: each column is relative to what it is made of
     table = np.array([column / size / max(float((terms / size).max()), 1e-300) for column, terms in columns]).T
     if not np.isfinite(table).all():

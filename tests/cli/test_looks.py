@@ -25,6 +25,7 @@ DRAWING = (
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", DRAWING)
 def test_pictures_of_every_kind_of_file_come_with_any_command_that_draws(
     run: Run, tmp_path: Path, command: str

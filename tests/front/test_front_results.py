@@ -35,6 +35,7 @@ def ending_in_a_singular_arc(problem: satsym.Problem, initial: dict[str, float])
     return satsym.Instance.of(problem, initial=initial, tf=4, control={"u1": [-1, 1]}, name="singular")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "steps", "limit"),
     [

@@ -166,6 +166,7 @@ def solutions() -> dict[str, Solution]:
     return {(found := solve(instance.load(name))).instance.model.spec.name: found for name in names}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "model", ["polar_orbit", "polar_orbit_ball", "double_integrator_energy", "double_integrator_time"]
 )

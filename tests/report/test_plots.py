@@ -217,6 +217,7 @@ def test_a_flight_with_feedback_shows_its_controls(tmp_path: Path) -> None:
     assert stems(save(fed_back(case(model(2, 1))), tmp_path)) == ["overview", "states", "controls"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("given", "pictures"),
     [

@@ -67,6 +67,7 @@ def slopes(steps: tuple[int, ...], errors: list[list[float]]) -> np.ndarray:
     return -np.polyfit(np.log(steps), np.log(errors), 1)[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("bounds", BOUNDS)
 def test_switching_times_cost_and_costates_are_those_of_shooting(bounds):
     solution = solved(bounds)

@@ -78,6 +78,7 @@ def backwards(rates: Callable[[np.ndarray, float], list[float]], arcs: Sequence[
     return [float(value) for value in state]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "arcs",
     [

@@ -77,6 +77,7 @@ def searched(inertias, h):
     return kept
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("h", "count"), [("1/2", 24), ("5/2", 16), ("5", 8)])
 def test_a_gyrostat_of_inertias_3_2_1_has_24_then_16_then_8_equilibria(h, count):
     found, equilibria = all_of(gyrostat().at(numbers(3, 2, 1, h)))
