@@ -7,6 +7,7 @@ costates are minus the velocity, and on the rim eta = w^2 / (2 R^2).
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import msgspec
@@ -16,6 +17,8 @@ import pytest
 import satsym
 from satsym.solution import Event, Solution
 from satsym.solvers.certificate import certify
+from satsym.solvers.certificate.constrained.replay import replay
+from satsym.solvers.certificate.constrained.second_variation import curvature
 from satsym.status import Status, Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 
@@ -33,6 +36,12 @@ DISC = Problem(
     terminal_cost=c * x + k * (x**2 + y**2) / 2,
     path_constraints={"disc": 1 - x**2 - y**2},
 )
+
+
+@cache
+def in_the_plane() -> satsym.Instance:
+    """One case, whose beginning and end the motions below replace."""
+    return satsym.Instance.of(DISC, initial={"x": -2.0, "y": 0.0}, tf=1.0)
 
 
 def at(angle: Any) -> np.ndarray:
@@ -92,8 +101,7 @@ LEADING, RIM, AWAY = (0.3, False), (0.4, True), (0.3, False)
 @pytest.fixture(scope="module")
 def round_the_disc() -> Solution:
     """From one side to the other, both ends given."""
-    anywhere = satsym.Instance.of(DISC, initial={"x": -2.0, "y": 0.0}, tf=1.0)
-    free = motion(anywhere, LEADING, RIM, AWAY, first=2.0, speed=3.0)
+    free = motion(in_the_plane(), LEADING, RIM, AWAY, first=2.0, speed=3.0)
     end = dict(zip("xy", free.x[:, -1].tolist(), strict=True))
     return replace(free, instance=replace(free.instance, final=end))
 
@@ -115,3 +123,23 @@ def test_nothing_is_certified_that_nobody_had_the_time_to_compare(round_the_disc
     assert verdict is Verdict.EXTREMAL_ONLY
     assert failed == {"time was up before: structure of boundary arcs"}
     assert judged(round_the_disc, compared=False) == (Verdict.LOCAL_MINIMUM, set())
+
+
+def to_the_rim(c: float) -> Solution:
+    """Straight, then on the rim until an angle of 0.2, where c x is stationary along it: w = c sin(0.2)."""
+    speed = c * np.sin(0.2)
+    given = in_the_plane().with_(parameters={"c": c, "k": 4.0})
+    return motion(given, (0.25, False), (0.75, True), first=0.2 - 0.75 * speed, speed=-speed)
+
+
+@pytest.mark.parametrize(("c", "minimum"), [(1.0, True), (1.05, False)])
+def test_a_boundary_on_which_the_motion_ends_curves_the_form_there(c: float, minimum: bool):
+    """J = w^2 / 2 + c cos(angle) along paths that end elsewhere on the rim, the second derivative 1 - c cos(0.2)."""
+    found = to_the_rim(c)
+    assert (1 - c * np.cos(0.2) > 0) == minimum
+    again = replay(found)
+    assert again is not None
+    assert (curvature(found, again) > 0.0) == minimum
+    verdict, failed = judged(limited(found, 1e-9))
+    assert verdict is Verdict.EXTREMAL_ONLY
+    assert ("second variation with the active arcs fixed" in failed) == (not minimum)

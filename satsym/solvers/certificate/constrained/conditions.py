@@ -231,10 +231,10 @@ def _least_multiplier(solution: Solution, again: Replay) -> tuple[float, float]:
     lasting = float(solution.times[-1] - solution.times[0])
     jumping = [
         abs(jump) > 0.0 or solution.instance.model.spec.path_constraints[_number(solution, event.name)].order > 1
-        for event, jump in zip(within(solution), again.jumps, strict=False)
+        for event, jump in zip(within(solution), again.jumps, strict=True)
     ]
-    jumps = [jump / lasting for jump, counts in zip(again.jumps, jumping, strict=False) if counts]
-    jumps += [jump / lasting for jump in again.jumps[len(jumping) :]]
+    jumps = [jump / lasting for jump, counts in zip(again.jumps, jumping, strict=True) if counts]
+    jumps += [] if again.pressed is None else [again.pressed / lasting]
     along = [float(eta.min()) for eta in _multipliers(solution, again)]
     sizes = [float(np.abs(eta).max()) for eta in _multipliers(solution, again)]
     return float(min([*jumps, *along], default=np.inf)), float(max([*map(abs, jumps), *sizes], default=1.0)) or 1e-300
