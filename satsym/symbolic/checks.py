@@ -203,15 +203,22 @@ def identity(claim: str, expressions: Iterable[sp.Expr]) -> Check:
 
 def _rounds_to_zero(claim: str, expression: sp.Expr) -> bool:
     """Whether an expression with decimals is no larger at random points than the rounding of its terms."""
-    terms = sp.Add.make_args(expression)
-    value = numeric(list(terms))
+    value = numeric([expression, _in_all(expression)])
 
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
-        found = value(point)
-        size = sum(abs(v) for v in found)
-        return [1 + sum(found) / size if size else 1], [1]
+        found, size = value(point)
+        return [1 + found / size if size else 1], [1]
 
     return compare(claim, expression.free_symbols, sides).passed
+
+
+def _in_all(expression: sp.Expr) -> sp.Expr:
+    """What the terms of an expression add up to by magnitude, multiplied out, before any cancel."""
+    if expression.is_Add or expression.is_Mul:
+        return expression.func(*map(_in_all, expression.args))
+    if expression.is_Pow and expression.exp.is_Integer and expression.exp.is_positive:
+        return _in_all(expression.base) ** expression.exp
+    return sp.Abs(expression)
 
 
 def partial(function: Callable[[Mapping[sp.Symbol, Any]], list[Any]], point: Point, symbol: sp.Symbol) -> list[Any]:

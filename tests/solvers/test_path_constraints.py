@@ -150,6 +150,12 @@ def test_constraints_against_each_other_are_infeasible():
     assert "floor" in said["message"]
 
 
+def test_relaxed_path_and_arcs_have_one_time_together():
+    said = solved(SPEED, parameters={"l": 1.2}, solver={"max_seconds": 1e-9}, **ACROSS).to_dict()
+    assert said["status"] == "time limit"
+    assert said["message"].startswith("time was up before an extremal was found")
+
+
 def test_other_methods_refuse_path_constraints_and_this_one_what_has_none():
     with pytest.raises(BadInput, match='use "boundary-arcs"'):
         satsym.solve("bryson-denham", method="collocation")

@@ -8,15 +8,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from satsym.instance import Guess, Instance
-from satsym.solution import Competitors, Kind, Solution
+from satsym.solution import Kind, Solution
+from satsym.solvers.certificate.comparison import SAME, Compared, Comparison, Competitor, summed
 from satsym.solvers.certificate.directed import led
-from satsym.solvers.certificate.flow import products, unit_sizes
+from satsym.solvers.certificate.flow import unit_sizes
 from satsym.solvers.iteration import Limits
 from satsym.solvers.revolutions import shifted
 
@@ -47,65 +48,15 @@ EARLIER = (0.6, 0.8, 0.95)
 SHORTER_AND_LONGER = (0.4, 0.5, 0.6, 0.7, 0.8, 1.25, 1.5, 2.0)
 """Durations beside one that was chosen, as shares of it."""
 
-HIDDEN = 1e-14
-"""Share of their size by which states are rounded in the end: costs differ by what that is worth, whatever they are."""
-
-ROUGH, SAME = 1e-2, 1e-9
-"""Relative errors of costs, on the mesh of a cold start and refined; the latter makes no difference."""
+ROUGH = 1e-2
+"""Relative error of costs on the mesh of a cold start."""
 
 SAMPLES = 401
 """Values of a guess that leads to a cheaper competitor."""
 
 
-@dataclass(frozen=True, eq=False)
-class Competitor:
-    """A competitor that was found."""
-
-    problem: TwoPoint
-    """Of which it is an extremal."""
-    curve: Curve | None
-    """Its states and costates, scaled; ``None`` where it ends at once, and has none."""
-    cost: float
-    """The cost J."""
-
-
 Search = Callable[[Limits], Competitor | None]
 """Looks for a competitor that is cheaper than a cost, or says what it costs roughly."""
-
-
-@dataclass(frozen=True, eq=False)
-class Compared:
-    """What competitors of one kind came to."""
-
-    summary: Competitors
-    """As the certificate has it."""
-    margin: float
-    """How much dearer the cheapest is, relative to the cost; negative where it is cheaper, infinite without any."""
-    cheapest: Competitor | None
-    """That one."""
-    interrupted: bool
-    """Whether time was up before all were tried."""
-
-
-@dataclass(frozen=True, eq=False)
-class Comparison:
-    """All kinds that a problem allows."""
-
-    kinds: tuple[Compared, ...]
-    """Those that were compared."""
-    not_checked: tuple[Kind, ...]
-    """Those that nobody tried, of which nothing was solved, or for which time was up."""
-
-    @property
-    def interrupted(self) -> list[Kind]:
-        """Those for which time was up."""
-        return [c.summary.kind for c in self.kinds if c.interrupted]
-
-    @property
-    def better(self) -> Competitor | None:
-        """The cheapest of all that are cheaper than the solution, and have states and costates to start from."""
-        cheaper = [c for c in self.kinds if c.margin < -SAME and c.cheapest is not None and c.cheapest.curve]
-        return min(cheaper, key=lambda c: c.margin).cheapest if cheaper else None
 
 
 def compared(solution: Solution, deadline: float, seed: int = 0) -> Comparison:
@@ -167,9 +118,8 @@ def _tried(solution: Solution, kind: Kind, attempts: list[Search], deadline: flo
         if competitor is not None:
             found.append(competitor)
     cheapest = min(found, key=lambda one: one.cost, default=None)
-    cost = cheapest.cost if cheapest else float("nan")
-    dearer = margin(cost, solution.objective, coarse=SAME, hidden=hidden(solution))
-    return Compared(Competitors(kind, count, len(found), cost), dearer, cheapest, interrupted)
+    summary = summed(solution, kind, count, [one.cost for one in found], interrupted)
+    return replace(summary, cheapest=cheapest)
 
 
 def _attempts(solution: Solution, seed: int) -> Iterator[tuple[Kind, list[Search]]]:
@@ -361,11 +311,6 @@ def none_conceivable(solution: Solution) -> bool:
     return not np.any(slopes) and not np.any(ends) and bool(np.all(smallest))
 
 
-def hidden(solution: Solution) -> float:
-    """The difference of costs that rounding hides."""
-    return HIDDEN * products(solution)
-
-
 def _on_reference(solution: Solution) -> bool:
     """Whether the whole final state is the reference's, and coasting on it is admissible."""
     instance, spec = solution.instance, solution.instance.model.spec
@@ -375,14 +320,3 @@ def _on_reference(solution: Solution) -> bool:
     none = np.zeros((len(spec.controls), 1))
     there = np.allclose(solution.x[:, -1], curve, rtol=1e-9, atol=1e-12)
     return bool(there and (instance.control_set.project(none) == none).all())
-
-
-def margin(competitor: float, cost: float, coarse: float = 0.0, hidden: float = 0.0) -> float:
-    """How much dearer a competitor is, relative to the cost.
-
-    Differences below ``coarse``, or of costs below ``hidden``, are its own error.
-    """
-    if not np.isfinite(competitor):
-        return float("inf")
-    margin = (competitor - cost) / max(abs(cost), 1e-300)
-    return 0.0 if abs(margin) < coarse or abs(competitor - cost) < hidden else margin

@@ -13,7 +13,7 @@ from satsym.grid import Grid, interleave
 from satsym.instance import Instance
 from satsym.solution import Check, Competitors, Kind, Solution
 from satsym.solvers.certificate.accessory import Accessory, accessory
-from satsym.solvers.certificate.competitors import HIDDEN, hidden, margin
+from satsym.solvers.certificate.comparison import COST_MARGIN, HIDDEN, hidden, margin
 from satsym.solvers.certificate.end_form import fixed_states
 from satsym.solvers.certificate.flow import products, typical
 from satsym.solvers.collocation.problem import ended
@@ -29,9 +29,6 @@ AMPLITUDES = (0.05, 0.01)
 
 SADDLE = 1e-4
 """Curvature below zero by more than this is no error of the grid's."""
-
-COST_MARGIN = 1e-9
-"""Relative margin by which a neighbour may seem cheaper: its own error."""
 
 CORRECTIONS = 12
 MISSED = 1e-9

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 
 import numpy as np
@@ -11,7 +10,7 @@ from satsym.arrays import Array
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers import revolutions
 from satsym.solvers.certificate import competitors, conditions
-from satsym.solvers.certificate.competitors import Comparison, Competitor
+from satsym.solvers.certificate.comparison import Comparison, Competitor
 from satsym.solvers.certificate.conditions import correction, node_by_node
 from satsym.solvers.certificate.flow import TOLERANCE, Flow, flow
 from satsym.solvers.certificate.jacobi import Conjugate, conjugate
@@ -23,9 +22,6 @@ from satsym.status import Verdict
 
 RESIDUAL, DEFECT, STATIONARY, DRIFT, COST = 1e-9, 1e-7, 1e-8, 1e-9, 1e-8
 """Largest boundary residual, defect, violation of stationarity, change of H and error of the stated cost."""
-
-COST_MARGIN = 1e-9
-"""Relative margin by which a competitor may seem cheaper: its own error."""
 
 
 def certify(solution: Solution, compared: bool = True) -> Certificate | None:
@@ -85,7 +81,7 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
     if solution.method == "boundary-arcs":
         from satsym.solvers.certificate.constrained import conditions as constrained
 
-        return constrained.certify(solution, seed, compared), None
+        return constrained.certify(solution, deadline, seed, compared), None
     solution = revolutions.as_stated(solution)
     with np.errstate(all="ignore"):
         along = segments(solution)
@@ -99,7 +95,7 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
             first.append(Check("path constraint violated", max(0.0, violation(solution)), VIOLATED))
         field = conjugate(solution, along)
         second: list[Check] = []
-        close, others, kept = None, Comparison((), ()), None
+        close, others = None, Comparison((), ())
         if all(c.passed for c in first):
             close = neighbours(solution)
             second = _sufficient(solution, field, close)
@@ -107,17 +103,11 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
                 second.append(Check("no cheaper competitor", 0.0, 0.0))
             elif compared:
                 others = competitors.compared(solution, deadline, seed)
-                second += [
-                    Check(f"cheaper by: {kind.summary.kind.value}", max(0.0, -kind.margin), COST_MARGIN)
-                    for kind in others.kinds
-                    if math.isfinite(kind.margin)
-                ]
-                second += [Check(f"time was up before: {kind.value}", 1.0, 0.0) for kind in others.interrupted]
-            if compared and solution.instance.model.spec.path_constraints and all(c.passed for c in second):
-                from satsym.solvers.certificate.constrained import comparison
+                if solution.instance.model.spec.path_constraints:
+                    from satsym.solvers.certificate.constrained import comparison
 
-                kept = comparison.compared(solution, seed)
-                second += kept.checks
+                    others = others.joined(comparison.compared(solution, deadline, seed))
+                second += others.checks
     verdict = Verdict.of(all(c.passed for c in first), all(c.passed for c in second), compared)
     certificate = Certificate(
         verdict=verdict,
@@ -128,9 +118,8 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
         competitors=(
             *((close.competitors,) if close else ()),
             *(kind.summary for kind in others.kinds),
-            *(kept.competitors if kept else ()),
         ),
-        not_checked=(*others.not_checked, *(kept.not_checked if kept else ())),
+        not_checked=others.not_checked,
     )
     return certificate, others.better
 

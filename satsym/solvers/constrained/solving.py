@@ -26,7 +26,7 @@ from satsym.solvers.constrained.structure import Structure
 from satsym.solvers.constrained.transcription import Point, Program
 from satsym.solvers.constrained.violation import violation
 from satsym.solvers.failures import FAILURES, tried
-from satsym.solvers.iteration import Limits, watched
+from satsym.solvers.iteration import Limits, Meter, watched
 from satsym.status import Status
 
 METHOD = "boundary-arcs"
@@ -36,6 +36,9 @@ INTERVALS = (100, 250, 800)
 
 DRAWN, COMPARED = 4, 2
 """Pairs of paths that are drawn where the problem is not convex, by the solver and by the certificate."""
+
+WORK = 20_000
+"""Columns that may be linearised for one path of the certificate."""
 
 SAME = 1e-6
 """Relative difference of costs of regularised paths that are one."""
@@ -52,6 +55,7 @@ class Stopped:
     message: str
 
 
+LATE = Stopped(Status.TIME_LIMIT, "time was up before an extremal was found")
 NO_NUMBERS = Stopped(Status.NOT_CONVERGED, "no extremal found: arithmetic fails on the way")
 
 
@@ -81,16 +85,15 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
     relaxed = two_point.solve(instance, progress)
     if relaxed.status.answered and violation(relaxed) <= SLACK:
         return replace(relaxed, message=f"{relaxed.message}; no path constraint is ever active")
-    limits, _ = watched(instance, None)
+    limits = replace(watched(instance, None)[0], deadline=began + instance.solver.max_seconds)
     with np.errstate(all="ignore"):
         try:
             found = _best(instance, relaxed, limits)
         except FAILURES as error:
             found = Stopped(Status.NOT_CONVERGED, f"no extremal found: arithmetic fails on the way ({error})")
     if isinstance(found, Stopped):
-        status = Status.TIME_LIMIT if limits.expired else found.status
         nothing = iteration.unsolved(instance, METHOD, time.perf_counter() - began)
-        return replace(nothing, status=status, message=found.message, history=relaxed.history)
+        return replace(nothing, status=found.status, message=found.message, history=relaxed.history)
     return _answered(instance, found, relaxed, time.perf_counter() - began)
 
 
@@ -100,7 +103,8 @@ def cheaper(solution: Solution, deadline: float) -> Solution | None:
     if began >= deadline or convex(solution.instance):
         return None
     with np.errstate(all="ignore"):
-        found = tried(partial(_best, solution.instance, solution, watched(solution.instance, None)[0]))
+        limits = replace(watched(solution.instance, None)[0], deadline=deadline)
+        found = tried(partial(_best, solution.instance, solution, limits))
     if not isinstance(found, Arcs) or not found.cost() < solution.objective:
         return None
     return _answered(solution.instance, found, solution, time.perf_counter() - began)
@@ -117,8 +121,8 @@ def _best(instance: Instance, relaxed: Solution, limits: Limits) -> Arcs | Stopp
             program, [begun, *([] if convex(instance) else drawn(program, begun, DRAWN, 0))], worth, limits
         )
         exact = [one for one in found if isinstance(one, Arcs)]
-        if exact or limits.expired or _impossible(found[0]):
-            return min(exact, key=lambda one: one.cost(), default=found[0])
+        if exact or limits.late or _impossible(found[0]):
+            return min(exact, key=lambda one: one.cost(), default=LATE if LATE in found else found[0])
     return found[0]
 
 
@@ -127,27 +131,31 @@ def _impossible(one: Arcs | Stopped) -> bool:
 
 
 def _searched(program: Program, starts: list[Point], worth: float, limits: Limits) -> list[Arcs | Stopped]:
-    """To what each start leads; what leads to the same regularised path leads to the same extremal."""
+    """To what each start leads; what leads to the same regularised path leads to the same extremal.
+
+    Each may do the work that the limits allow. Where time is up that is the last of them.
+    """
     found: list[Arcs | Stopped] = []
     known: list[tuple[float, Arcs | Stopped]] = []
     for start in starts:
-        path = regularised(program, start, worth, limits)
+        own = replace(limits, meter=Meter())
+        path = regularised(program, start, worth, own)
         same = [one for cost, one in known if path.solved and abs(path.cost - cost) <= SAME * abs(cost)]
         if same:
             one = same[0]
         elif not path.solved:
             one = _unsolved(program, start, worth)
         else:
-            one = tried(partial(_exact, program, path, limits)) or NO_NUMBERS
+            one = tried(partial(_exact, program, path, own)) or NO_NUMBERS
             known.append((path.cost, one))
         found.append(one)
-        if limits.expired:
-            break
+        if limits.late:
+            return [*found, LATE]
     return found
 
 
-def others(instance: Instance, worth: float, seed: int) -> tuple[int, list[float]]:
-    """How many paths were drawn about the straight line, and the costs of the extremals to which they led.
+def others(instance: Instance, worth: float, seed: int, deadline: float) -> tuple[int, list[float], bool]:
+    """How many paths about the straight line led to what, costs of the extremals, and whether time was up before all.
 
     Parameters
     ----------
@@ -155,11 +163,14 @@ def others(instance: Instance, worth: float, seed: int) -> tuple[int, list[float
         The size of costs.
     seed
         Of the paths.
+    deadline
+        On the clock of ``time.perf_counter``.
     """
-    program = Program(instance, INTERVALS[0])
+    program, limits = Program(instance, INTERVALS[0]), replace(watched(instance, None)[0], deadline=deadline, work=WORK)
     with np.errstate(all="ignore"):
-        found = _searched(program, drawn(program, straight(program), COMPARED, seed), worth, watched(instance, None)[0])
-    return len(found), [one.cost() for one in found if isinstance(one, Arcs)]
+        found = _searched(program, drawn(program, straight(program), COMPARED, seed), worth, limits)
+    answered = [one for one in found if one is not LATE]
+    return len(answered), [one.cost() for one in answered if isinstance(one, Arcs)], limits.late
 
 
 def _unsolved(program: Program, start: Point, worth: float) -> Stopped:

@@ -7,7 +7,7 @@ from typing import Any
 import sympy as sp
 
 from satsym.symbolic.derivation import Derivation
-from satsym.symbolic.model import symbols_of
+from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.principle import mixed_constraints, path_constraints
 
 
@@ -31,7 +31,8 @@ def linear_quadratic(so_far: Derivation) -> bool:
         table = [sp.sympify(e) for e in expressions]
         for _ in range(order):
             table = [sp.diff(e, v) for e in table for v in moving]
-        return not any(sp.simplify(e).free_symbols & set(moving) for e in table)
+        varying = {*moving, t} if order > 1 else set(moving)  # weights are looked at once
+        return not any(sp.simplify(e).free_symbols & varying for e in table)
 
     return (
         settled(list(so_far.rhs("first_order")), 1)

@@ -2,35 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-import numpy as np
-
-from satsym.solution import Check, Competitors, Kind, Solution
+from satsym.solution import Kind, Solution
+from satsym.solvers.certificate.comparison import Comparison, summed
 from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.constrained.solving import others
 
-MARGIN = 1e-9
-"""By so much, relatively, a competitor may seem cheaper."""
 
+def compared(solution: Solution, deadline: float, seed: int) -> Comparison:
+    """Compare a solution with extremals to which paths lead that are drawn.
 
-@dataclass(frozen=True)
-class Comparison:
-    """What was compared, what came of it, and what was not."""
-
-    competitors: tuple[Competitors, ...]
-    checks: tuple[Check, ...]
-    not_checked: tuple[Kind, ...]
-
-
-def compared(solution: Solution, seed: int) -> Comparison:
-    """Hold a solution against extremals from paths that are drawn; a convex problem has no others."""
-    if convex(solution.instance):
-        return Comparison((), (), ())
-    tried, costs = others(solution.instance, solution.objective, seed + 1)
-    found = Competitors(Kind.ARCS, tried, len(costs), min(costs, default=float("nan")))
-    if not costs:
-        return Comparison((found,), (), (Kind.ARCS,))
-    size = max(abs(solution.objective), 1e-300)
-    cheaper = max(0.0, (solution.objective - float(np.min(costs))) / size)
-    return Comparison((found,), (Check(f"cheaper by: {Kind.ARCS.value}", cheaper, MARGIN),), ())
+    Parameters
+    ----------
+    deadline
+        On the clock of ``time.perf_counter``.
+    seed
+        Of the paths.
+    """
+    if convex(solution.instance):  # there are no others
+        return Comparison((), ())
+    tried, costs, interrupted = others(solution.instance, solution.objective, seed + 1, deadline)
+    found = summed(solution, Kind.ARCS, tried, costs, interrupted)
+    return Comparison((found,), () if costs and not interrupted else (Kind.ARCS,))

@@ -9,8 +9,8 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers.certificate import conditions
-from satsym.solvers.certificate.constrained.comparison import Comparison
-from satsym.solvers.certificate.constrained.comparison import compared as with_other_arcs
+from satsym.solvers.certificate.comparison import Comparison
+from satsym.solvers.certificate.constrained import comparison
 from satsym.solvers.certificate.constrained.replay import Piece, Replay, replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
 from satsym.solvers.certificate.flow import FAINT, typical
@@ -34,8 +34,8 @@ STRICT, BESIDE = 1e-6, 1e-6
 which nobody looks."""
 
 
-def certify(solution: Solution, seed: int = 0, compared: bool = True) -> Certificate:
-    """Certify arcs on boundaries of path constraints; see :func:`satsym.solvers.certificate.certify`."""
+def certify(solution: Solution, deadline: float, seed: int = 0, compared: bool = True) -> Certificate:
+    """Certify arcs on boundaries of path constraints; see :func:`satsym.solvers.certificate.verdict.examined`."""
     with np.errstate(all="ignore"):
         again = replay(solution)
         if again is None:
@@ -44,7 +44,7 @@ def certify(solution: Solution, seed: int = 0, compared: bool = True) -> Certifi
             return Certificate(Verdict.FAILED, missing, missing, missing, None, missing, None, (check,))
         first = _first_order(solution, again)
         second: list[Check] = []
-        comparison = Comparison((), (), ())
+        others = Comparison((), ())
         if all(c.passed for c in first):
             second = [Check("legendre-clebsch", float(not conditions.legendre_clebsch(solution) > 0.0), 0.0)]
             if convex(solution.instance):
@@ -52,16 +52,16 @@ def certify(solution: Solution, seed: int = 0, compared: bool = True) -> Certifi
             else:
                 second += _sufficient(solution, again)
                 if compared:
-                    comparison = with_other_arcs(solution, seed)
-                    second += comparison.checks
+                    others = comparison.compared(solution, deadline, seed)
+                    second += others.checks
     return Certificate(
         verdict=Verdict.of(all(c.passed for c in first), all(c.passed for c in second), compared),
         **conditions.headlines(first),
         legendre_clebsch=conditions.legendre_clebsch(solution),
         conjugate_time=None,
         checks=(*first, *second),
-        competitors=comparison.competitors,
-        not_checked=comparison.not_checked,
+        competitors=tuple(kind.summary for kind in others.kinds),
+        not_checked=others.not_checked,
     )
 
 
@@ -231,10 +231,10 @@ def _least_multiplier(solution: Solution, again: Replay) -> tuple[float, float]:
     lasting = float(solution.times[-1] - solution.times[0])
     jumping = [
         abs(jump) > 0.0 or solution.instance.model.spec.path_constraints[_number(solution, event.name)].order > 1
-        for event, jump in zip(within(solution), again.jumps, strict=False)
+        for event, jump in zip(within(solution), again.jumps, strict=True)
     ]
-    jumps = [jump / lasting for jump, counts in zip(again.jumps, jumping, strict=False) if counts]
-    jumps += [jump / lasting for jump in again.jumps[len(jumping) :]]
+    jumps = [jump / lasting for jump, counts in zip(again.jumps, jumping, strict=True) if counts]
+    jumps += [] if again.pressed is None else [again.pressed / lasting]
     along = [float(eta.min()) for eta in _multipliers(solution, again)]
     sizes = [float(np.abs(eta).max()) for eta in _multipliers(solution, again)]
     return float(min([*jumps, *along], default=np.inf)), float(max([*map(abs, jumps), *sizes], default=1.0)) or 1e-300

@@ -45,7 +45,9 @@ class Replay:
 
     pieces: list[Piece]
     jumps: Array
-    """Multipliers at the events, shape (E,); that at the end last, where a constraint pushes there."""
+    """Multipliers at the events before the end, shape (E,)."""
+    pressed: float | None
+    """The multiplier at the end, where a constraint may push there."""
     off_gradient: float
     """Largest part of a jump that no multiple of the constraint's gradient makes up, relative to the costates."""
     z: Array
@@ -86,13 +88,12 @@ def replay(solution: Solution) -> Replay | None:
                 value[n:] -= zeta * gradient(instance, which, t, value[:n, None])[:, 0]
     except FAILURES:
         return None
-    end = value
+    end, pressed = value, None
     if (last := pressing(solution)) != FREE:
-        zeta, end = _pressed(solution, last, value)
-        jumps.append(zeta)
+        pressed, end = _pressed(solution, last, value)
     final = float(solution.times[-1])
     total = cost + float(instance.model.terminal_cost(final, tuple(end[:n].tolist()), instance.parameters))
-    return Replay(pieces, np.array(jumps), off, np.concatenate([p.z for p in pieces], axis=1), total, end)
+    return Replay(pieces, np.array(jumps), pressed, off, np.concatenate([p.z for p in pieces], axis=1), total, end)
 
 
 def _of_event(solution: Solution, k: int) -> int:

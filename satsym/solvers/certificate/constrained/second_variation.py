@@ -4,8 +4,8 @@ Variations of the control are constant between nodes of a mesh, those of the sta
 keep to given ends, to g_x dx = 0 along boundary arcs and at touch points, to g_x dx + g_u du = 0 while a constraint is
 active that holds a control. To the form along the way a touch point of
 order two adds - zeta (d/dt g_x dx)^2 / g'' with g'' < 0 (Bonnans and Hermant, SIAM J. Control Optim. 46, 2007): where
-it moves with the variation, the constraint is harder to keep. Boundary arcs add the curvature of g times its
-multiplier.
+it moves with the variation, the constraint is harder to keep. Boundary arcs and junctions, the end among them where a
+constraint pushes there, add the curvature of g times its multiplier.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from satsym.solvers.certificate.constrained.replay import Replay
 from satsym.solvers.certificate.end_form import end_form
 from satsym.solvers.certificate.flow import unit_sizes
 from satsym.solvers.constrained.arcs import control, effects, gradient, holds_control, multipliers
-from satsym.solvers.constrained.structure import FREE, within
+from satsym.solvers.constrained.structure import FREE, pressing, within
 
 MESH = 160
 """Intervals."""
@@ -34,14 +34,14 @@ def curvature(solution: Solution, again: Replay) -> float:
     instance, n = solution.instance, len(solution.x)
     if instance.tf is None:
         return float("nan")
-    times, which = _mesh(solution, again)
+    times, which, ends = _mesh(solution, again)
     middles, h = (times[1:] + times[:-1]) / 2, np.diff(times)
     z = _values(again, middles)
     a, b, second, weight = _along(solution, middles, z, which)
     moves, inputs = _transitions(a, b, h)
     m, count = b.shape[2], len(h)
     size, form, pure = m * count, np.zeros((m * count, m * count)), np.zeros((m * count, m * count))
-    state, ties, events = np.zeros((n, size)), [], _events(solution, again)
+    state, ties, met = np.zeros((n, size)), [], dict(zip(ends, _met_at_ends(solution, again), strict=False))
     for k in range(count):
         moved = np.zeros((m, size))
         moved[:, m * k : m * (k + 1)] = np.eye(m)
@@ -55,9 +55,9 @@ def curvature(solution: Solution, again: Replay) -> float:
         at = times[k + 1]
         if which[k] != FREE and not holds_control(instance, which[k]):
             ties.append(gradient(instance, which[k], np.array([at]), _values(again, np.array([at]))[:n])[:, 0] @ state)
-        for met in [one for one in events if abs(one.time - at) < 1e-12 * max(1.0, abs(at))]:
-            ties.append(met.gradient @ state)
-            form += state.T @ (met.factor * np.outer(met.rate, met.rate) + met.curved) @ state
+        if (one := met.get(k + 1)) is not None:
+            ties.append(one.gradient @ state)
+            form += state.T @ (one.factor * np.outer(one.rate, one.rate) + one.curved) @ state
     unit = unit_sizes(solution)
     end = end_form(solution, unit)
     scaled = state / unit[:n, None]
@@ -85,16 +85,17 @@ def _held(solution: Solution, constraint: int, t: Array, z: Array) -> Array:
     return np.concatenate([gradient(instance, constraint, t, x, u), effects(instance, t, x)[constraint]])[:, 0]
 
 
-def _mesh(solution: Solution, again: Replay) -> tuple[Array, list[int]]:
-    """Times with all events among them, and the boundary on which each interval runs."""
+def _mesh(solution: Solution, again: Replay) -> tuple[Array, list[int], list[int]]:
+    """Times with all events among them, the boundary on which each interval runs, and after how many each arc ends."""
     whole = float(solution.times[-1] - solution.times[0])
-    times, which = [np.array([solution.times[0]])], list[int]()
+    times, which, ends = [np.array([solution.times[0]])], list[int](), list[int]()
     for piece in again.pieces:
         a, b = piece.times[0], piece.times[-1]
         count = max(4, int(np.ceil(MESH * (b - a) / whole)))
         times.append(np.linspace(a, b, count + 1)[1:])
         which += [piece.constraint] * count
-    return np.concatenate(times), which
+        ends.append(len(which))
+    return np.concatenate(times), which, ends
 
 
 def _values(again: Replay, times: Array) -> Array:
@@ -146,35 +147,31 @@ def _transitions(a: Array, b: Array, h: Array) -> tuple[list[Array], list[Array]
 
 @dataclass(frozen=True, eq=False)
 class Met:
-    """A junction: when, g_x, the derivative of the rate of g, what multiplies its square, and zeta times g_xx."""
+    """A junction: g_x, the derivative of the rate of g, what multiplies its square, and zeta times g_xx."""
 
-    time: float
     gradient: Array
     rate: Array
     factor: float
     curved: Array
 
 
-def _events(solution: Solution, again: Replay) -> list[Met]:
-    names = [one.name for one in solution.instance.model.spec.path_constraints]
-    return [
-        _met(
-            solution.instance,
-            names.index(event.name),
-            event.t,
-            piece.z[:, -1:],
-            float(zeta),
-            event.kind == "touch" and event.t < solution.times[-1],
-        )
-        for event, piece, zeta in zip(within(solution), again.pieces, again.jumps, strict=False)
-        if not holds_control(solution.instance, names.index(event.name))
-        # at the end a constraint is not moved along
-    ]
+def _met_at_ends(solution: Solution, again: Replay) -> list[Met | None]:
+    """What is met where each arc ends; at the end of the motion, which stays where it is, what pushes there."""
+    instance, names = solution.instance, [one.name for one in solution.instance.model.spec.path_constraints]
+    found: list[Met | None] = []
+    for event, piece, zeta in zip(within(solution), again.pieces, again.jumps, strict=False):
+        which, at = names.index(event.name), (piece.times[-1:], piece.z[:, -1:])
+        holding = holds_control(instance, which)  # which is kept by its control alone
+        found.append(None if holding else _met(instance, which, *at, float(zeta), event.kind == "touch"))
+    if again.pressed is not None:
+        end = again.pieces[-1].times[-1:], again.end[:, None]
+        found.append(_met(instance, pressing(solution), *end, again.pressed, touches=False))
+    return found
 
 
-def _met(instance: Instance, constraint: int, time: float, z: Array, zeta: float, touches: bool) -> Met:
+def _met(instance: Instance, constraint: int, t: Array, z: Array, zeta: float, touches: bool) -> Met:
     """The junction of a constraint at a time, with states and costates before it."""
-    model, p, n, t = instance.model, instance.parameters, len(instance.initial), np.array([time])
+    model, p, n = instance.model, instance.parameters, len(instance.initial)
     x, factor = z[:n], 0.0
     u = control(instance, FREE, t, z)
 
@@ -186,7 +183,7 @@ def _met(instance: Instance, constraint: int, time: float, z: Array, zeta: float
         factor = -zeta / second if second < 0.0 else -np.inf
     rate = _slopes(lambda y: rates(y)[:1], x)[0, :, 0]
     curved = _slopes(lambda y: gradient(instance, constraint, t, y), x)[..., 0]
-    return Met(time, gradient(instance, constraint, t, x)[:, 0], rate, factor, zeta * curved)
+    return Met(gradient(instance, constraint, t, x)[:, 0], rate, factor, zeta * curved)
 
 
 def _slopes(function: Callable[[Array], Array], at: Array) -> Array:

@@ -9,13 +9,10 @@ import numpy as np
 
 from satsym.instance import Instance
 from satsym.solution import Check, Competitors, Kind, Solution
-from satsym.solvers.certificate.competitors import margin
+from satsym.solvers.certificate.comparison import COST_MARGIN, margin
 from satsym.solvers.certificate.switching import competitors as switching_competitors
 from satsym.solvers.certificate.switching.needles import needles
 from satsym.solvers.iteration import Limits
-
-COST_MARGIN = 1e-9
-"""Relative margin by which a competitor may seem cheaper: its own error."""
 
 COARSE = {Kind.NEIGHBOURS: 1e-11, Kind.DURATIONS: 1e-6}
 """Relative difference of costs that is none: where it is not ``COST_MARGIN``."""

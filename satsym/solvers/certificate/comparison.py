@@ -1,0 +1,110 @@
+"""What competitors of each kind came to, and what certificates make of that."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from satsym.solution import Check, Competitors, Kind, Solution
+from satsym.solvers.certificate.flow import products
+
+if TYPE_CHECKING:
+    from satsym.solvers.collocation.curve import Curve
+    from satsym.solvers.collocation.problem import TwoPoint
+
+HIDDEN = 1e-14
+"""Share of their size by which states are rounded in the end: costs differ by what that is worth, whatever they are."""
+
+COST_MARGIN = 1e-9
+"""Relative margin by which a competitor may seem cheaper: its own error."""
+
+SAME = 1e-9
+"""Relative error of refined costs; it makes no difference."""
+
+
+@dataclass(frozen=True, eq=False)
+class Competitor:
+    """A competitor that was found."""
+
+    problem: TwoPoint
+    """Of which it is an extremal."""
+    curve: Curve | None
+    """Its states and costates, scaled; ``None`` where it ends at once, and has none."""
+    cost: float
+    """The cost J."""
+
+
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """What competitors of one kind came to."""
+
+    summary: Competitors
+    """As the certificate has it."""
+    margin: float
+    """How much dearer the cheapest is, relative to the cost; negative where it is cheaper, infinite without any."""
+    cheapest: Competitor | None
+    """That one."""
+    interrupted: bool
+    """Whether time was up before all were tried."""
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """All kinds that a problem allows."""
+
+    kinds: tuple[Compared, ...]
+    """Those that were compared."""
+    not_checked: tuple[Kind, ...]
+    """Those that nobody tried, of which nothing was solved, or for which time was up."""
+
+    def joined(self, other: Comparison) -> Comparison:
+        """With what another has compared."""
+        return Comparison(self.kinds + other.kinds, self.not_checked + other.not_checked)
+
+    @property
+    def interrupted(self) -> list[Kind]:
+        """Those for which time was up."""
+        return [c.summary.kind for c in self.kinds if c.interrupted]
+
+    @property
+    def checks(self) -> list[Check]:
+        """That none is cheaper of those which have a cost, and that there was time for all."""
+        cheaper = [
+            Check(f"cheaper by: {kind.summary.kind.value}", max(0.0, -kind.margin), COST_MARGIN)
+            for kind in self.kinds
+            if math.isfinite(kind.margin)
+        ]
+        return cheaper + [Check(f"time was up before: {kind.value}", 1.0, 0.0) for kind in self.interrupted]
+
+    @property
+    def better(self) -> Competitor | None:
+        """The cheapest of all that are cheaper than the solution, and have states and costates to start from."""
+        cheaper = [c for c in self.kinds if c.margin < -SAME and c.cheapest is not None and c.cheapest.curve]
+        return min(cheaper, key=lambda c: c.margin).cheapest if cheaper else None
+
+
+def summed(solution: Solution, kind: Kind, count: int, costs: Sequence[float], interrupted: bool) -> Compared:
+    """What so many attempts at a kind came to, of which some have costs."""
+    cheapest = min(costs, default=float("nan"))
+    dearer = margin(cheapest, solution.objective, coarse=SAME, hidden=hidden(solution))
+    return Compared(Competitors(kind, count, len(costs), cheapest), dearer, None, interrupted)
+
+
+def hidden(solution: Solution) -> float:
+    """The difference of costs that rounding hides."""
+    return HIDDEN * products(solution)
+
+
+def margin(competitor: float, cost: float, coarse: float = 0.0, hidden: float = 0.0) -> float:
+    """How much dearer a competitor is, relative to the cost.
+
+    Differences below ``coarse``, or of costs below ``hidden``, are its own error.
+    """
+    if not np.isfinite(competitor):
+        return float("inf")
+    margin = (competitor - cost) / max(abs(cost), 1e-300)
+    return 0.0 if abs(margin) < coarse or abs(competitor - cost) < hidden else margin

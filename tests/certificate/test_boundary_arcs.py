@@ -1,0 +1,145 @@
+"""What the certificate says of extremals with boundary arcs that are put together by hand, round a disc in a plane.
+
+With x' = a, y' = b and (a^2 + b^2) / 2 as cost the least effort goes straight and round the disc at one speed w: the
+costates are minus the velocity, and on the rim eta = w^2 / (2 R^2).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import msgspec
+import numpy as np
+import pytest
+
+import satsym
+from satsym.solution import Event, Solution
+from satsym.solvers.certificate import certify
+from satsym.solvers.certificate.constrained.replay import replay
+from satsym.solvers.certificate.constrained.second_variation import curvature
+from satsym.status import Status, Verdict
+from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
+
+STATES, CONTROLS = (Variable("x", "x"), Variable("y", "y")), (Variable("a", "a"), Variable("b", "b"))
+PARAMETERS = tuple(Variable(name, name, default=0.0) for name in ("c", "k"))
+(x, y), (a, b), (c, k) = symbols_of(STATES), symbols_of(CONTROLS), symbols_of(PARAMETERS)
+PLANE = FirstOrder(
+    name="plane", title="plane", states=STATES, controls=CONTROLS, parameters=PARAMETERS, rates={x: a, y: b}
+)
+DISC = Problem(
+    name="disc",
+    title="disc",
+    model=PLANE,
+    running_cost=(a**2 + b**2) / 2,
+    terminal_cost=c * x + k * (x**2 + y**2) / 2,
+    path_constraints={"disc": 1 - x**2 - y**2},
+)
+
+
+@cache
+def in_the_plane() -> satsym.Instance:
+    """One case, whose beginning and end the motions below replace."""
+    return satsym.Instance.of(DISC, initial={"x": -2.0, "y": 0.0}, tf=1.0)
+
+
+def at(angle: Any) -> np.ndarray:
+    """On the rim."""
+    return np.array([np.cos(angle), np.sin(angle)])
+
+
+def along(angle: Any) -> np.ndarray:
+    """Clockwise on the rim."""
+    return np.array([np.sin(angle), -np.cos(angle)])
+
+
+def motion(instance: satsym.Instance, *arcs: tuple[float, bool], first: float, speed: float) -> Solution:
+    """Arcs one after the other, clockwise, each so long and on the rim or straight; the rim is met at an angle."""
+    case = instance.case
+    begins, parts, events, angle = 0.0, list[Any](), list[Event](), first
+    for number, (lasting, on_rim) in enumerate(arcs):
+        times = np.linspace(begins, begins + lasting, 201)
+        since = times - begins
+        if on_rim:
+            turned = angle - speed * since
+            place, way = at(turned), along(turned)
+            angle = float(turned[-1])
+        else:
+            since = since - lasting if number == 0 else since
+            place = at(angle)[:, None] + speed * along(angle)[:, None] * since
+            way = np.repeat(along(angle)[:, None], len(times), axis=1)
+        parts.append((times, place, speed * way))
+        begins += lasting
+        if number < len(arcs) - 1:
+            events.append(Event("exit" if on_rim else "entry", "disc", begins))
+    times, places, ways = (np.concatenate(rows, axis=-1) for rows in zip(*parts, strict=True))
+    end = places[:, -1]
+    values = dict(zip(case.model.spec.parameter_names, case.parameters, strict=True))
+    cost = speed**2 * begins / 2 + values["c"] * end[0] + values["k"] * end @ end / 2
+    return Solution(
+        instance=replace(case, initial=tuple(places[:, 0].tolist())),
+        method="boundary-arcs",
+        status=Status.CONVERGED,
+        message="by hand",
+        objective=float(cost),
+        times=times,
+        x=places,
+        u=ways,
+        lam=-ways,
+        switching_times=((), ()),
+        iterations=0,
+        history=(),
+        wall_s=0.0,
+        events=tuple(events),
+    )
+
+
+LEADING, RIM, AWAY = (0.3, False), (0.4, True), (0.3, False)
+
+
+@pytest.fixture(scope="module")
+def round_the_disc() -> Solution:
+    """From one side to the other, both ends given."""
+    free = motion(in_the_plane(), LEADING, RIM, AWAY, first=2.0, speed=3.0)
+    end = dict(zip("xy", free.x[:, -1].tolist(), strict=True))
+    return replace(free, instance=replace(free.instance, final=end))
+
+
+def limited(solution: Solution, seconds: float) -> Solution:
+    options = msgspec.structs.replace(solution.instance.solver, max_seconds=seconds)
+    return replace(solution, instance=replace(solution.instance, solver=options))
+
+
+def judged(solution: Solution, **how: Any) -> tuple[Verdict, set[str]]:
+    """The verdict, and the names of checks that failed."""
+    found = certify(solution, **how)
+    assert found is not None
+    return found.verdict, {check.name for check in found.checks if not check.passed}
+
+
+def test_nothing_is_certified_that_nobody_had_the_time_to_compare(round_the_disc: Solution):
+    verdict, failed = judged(limited(round_the_disc, 1e-9))
+    assert verdict is Verdict.EXTREMAL_ONLY
+    assert failed == {"time was up before: structure of boundary arcs"}
+    assert judged(round_the_disc, compared=False) == (Verdict.LOCAL_MINIMUM, set())
+
+
+def to_the_rim(c: float) -> Solution:
+    """Straight, then on the rim until an angle of 0.2, where c x is stationary along it: w = c sin(0.2)."""
+    speed = c * np.sin(0.2)
+    given = in_the_plane().with_(parameters={"c": c, "k": 4.0})
+    return motion(given, (0.25, False), (0.75, True), first=0.2 - 0.75 * speed, speed=-speed)
+
+
+@pytest.mark.parametrize(("c", "minimum"), [(1.0, True), (1.05, False)])
+def test_a_boundary_on_which_the_motion_ends_curves_the_form_there(c: float, minimum: bool):
+    """J = w^2 / 2 + c cos(angle) along paths that end elsewhere on the rim, the second derivative 1 - c cos(0.2)."""
+    found = to_the_rim(c)
+    assert (1 - c * np.cos(0.2) > 0) == minimum
+    again = replay(found)
+    assert again is not None
+    assert (curvature(found, again) > 0.0) == minimum
+    verdict, failed = judged(limited(found, 1e-9))
+    assert verdict is Verdict.EXTREMAL_ONLY
+    assert ("second variation with the active arcs fixed" in failed) == (not minimum)
