@@ -140,7 +140,13 @@ def test_a_planted_error_is_caught(
     assert planted.hits
 
 
-@pytest.mark.parametrize("step", [name for name, f in STEPS.items() if hasattr(sys.modules[f.__module__], "tidy")])
+UNTIDIED = {"newton", "first_order", "reference", "second_derivative", "control_law"}
+"""Steps that tidy nothing, next to others that do in one module."""
+
+
+@pytest.mark.parametrize(
+    "step", [name for name, f in STEPS.items() if hasattr(sys.modules[f.__module__], "tidy") and name not in UNTIDIED]
+)
 def test_no_expression_of_a_step_can_be_falsified(
     polar: Derivation, walled: Derivation, held: Derivation, monkeypatch: pytest.MonkeyPatch, step: str
 ) -> None:
@@ -164,7 +170,8 @@ def test_no_expression_of_a_step_can_be_falsified(
             assert redo(derivation, step).equations == right
         except DerivationError:
             caught += 1
-    assert bool(caught) == bool(total)
+    assert total
+    assert caught
 
 
 @pytest.mark.parametrize(
