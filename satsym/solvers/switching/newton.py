@@ -275,7 +275,7 @@ def solve(equations: Equations, start: Unknowns, watch: Callable[[float, float],
 
 def _too_slow(seen: list[float]) -> bool:
     """Whether corrections shrink evenly, as where an arc vanishes, and cannot settle in those that are left."""
-    if not SETTLED <= seen[-1] < NEAR:
+    if len(seen) < STEADY + 2 or not SETTLED <= seen[-1] < NEAR:  # none came before the first
         return False
     factors = [after / before for before, after in pairwise(seen[-STEADY - 1 :])]
     even = all(after > EVEN * before for before, after in pairwise(factors))
