@@ -76,7 +76,7 @@ def from_cold_start(instance: Instance, limits: Limits, effort: bool, accurate: 
     Parameters
     ----------
     limits
-        When to stop, and who is told the cost of what was found.
+        When to stop, and the observer of the cost of what was found.
     effort
         Whether free durations are looked for with great effort.
     """

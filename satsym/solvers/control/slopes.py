@@ -83,7 +83,7 @@ def continued(instance: Instance, t: Array, x: Array, lam: Array, u: Array) -> A
 def full_length_smoothing(instance: Instance) -> float:
     """The smoothing at which full length costs about as much again as time and state do.
 
-    Where only the end costs, that is how fast it grows dearer, if not at rest then at full length.
+    Where only the end costs, that is how fast its cost grows, if not at rest then at full length.
     """
     idle = instance.control_set.project(np.zeros((len(instance.model.spec.controls), 1)))[:, 0]
     directed = [(places, part.radius) for places, part in instance.control_set.parts if part.directed]

@@ -77,7 +77,7 @@ def extremal(problem: TwoPoint, start: Path, limits: Limits) -> Extremal:
     Parameters
     ----------
     limits
-        When to stop, and who is told the cost of what was found.
+        When to stop, and the observer of the cost of what was found.
     """
     tolerance, accuracy = problem.instance.solver.tolerance, ACCURACY
     met, mesh, total = corners(problem, start), start.mesh, 0

@@ -1,4 +1,4 @@
-"""Controls that switch infinitely often in finite time: a motion that nobody can undercut by more than is told.
+"""Controls that switch infinitely often in finite time: a motion, and an interval that encloses the least cost.
 
 A singular arc of even order is joined by no finite number of switches, see
 :func:`satsym.symbolic.switching.singular.chattering`. What is left is the regularised problem, ever less smoothed. Its

@@ -31,7 +31,7 @@ MOST_SWITCHES = 200
 EVALUATIONS = 1_000_000
 """Of the rates that it may take."""
 
-UNTOLD = 1e-12
+ROUNDING = 1e-12
 """Share of its size up to which rounding makes a switching function what it is."""
 
 TOUCHING = 1e-4
@@ -212,7 +212,7 @@ class _Again:
         z = self.by.end(span.until(near)).tolist()
         off = abs(abs(span.field.sigma(near, z, control)) - span.field.weight(near, z, control))
         size = float(np.abs(span.field.gradient(near, z, control)) @ self.by.sizes)
-        return near if off <= UNTOLD * size else found
+        return near if off <= ROUNDING * size else found
 
     def _stations(self, piece: Piece, nodes: Array) -> tuple[tuple[Array, Array, Array], float]:
         """The arc at its ends and at the nodes between, as SciPy interpolates its steps; and its running cost."""
