@@ -43,7 +43,7 @@ _ADVICE = {
 
 
 class Verdict(str, Enum):
-    """What a certificate says: a strict local minimum that no competitor undercuts, an extremal, or not even that.
+    """What a certificate says: a strict local minimum without a cheaper competitor, an extremal, or not even that.
 
     Where no competitor was looked for, a strict local minimum is all that is said.
     """

@@ -561,7 +561,7 @@ HEAVY = {"scipy", "pint", "rich", "typer", "pydantic", "sympy", "matplotlib", "n
 @pytest.mark.parametrize(
     ("arguments", "needless"),
     [(["--help"], HEAVY | {"numpy"}), (["solve", "--help"], HEAVY | {"numpy"}), (["solve", "its-thesis"], HEAVY)],
-    ids=" ".join,
+    ids=["--help", "solve --help", "solve"],
 )
 def test_no_library_is_loaded_that_a_command_does_not_need(
     arguments: list[str], needless: set[str], tmp_path: Path
