@@ -151,14 +151,16 @@ def _with_costates(condition: sp.Expr, surface: Surface, lam: Sequence[sp.Symbol
 
 def _slope(condition: sp.Expr, unknown: sp.Symbol) -> sp.Expr | None:
     """What multiplies an unknown in a condition that is a product, as reduced ones are, and linear in it."""
-    having = [factor for factor in sp.Mul.make_args(condition) if factor.has(unknown)]
+    factors = sp.Mul.make_args(condition)
+    having = [factor for factor in factors if factor.has(unknown)]
     if len(having) != 1 or having[0].is_Pow:
         return None
+    others = sp.Mul(*(factor for factor in factors if factor != having[0]))
     if not having[0].is_polynomial(unknown):
         slope = _simplest(sp.diff(having[0], unknown))
-        return None if slope.has(unknown) else slope * condition / having[0]
+        return None if slope.has(unknown) else slope * others
     polynomial = sp.Poly(having[0], unknown)
-    return _simplest(polynomial.LC()) * condition / having[0] if polynomial.degree() == 1 else None
+    return _simplest(polynomial.LC() * others) if polynomial.degree() == 1 else None
 
 
 def _simplest(expression: sp.Expr) -> sp.Expr:
