@@ -10,12 +10,15 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import minimize_scalar, root
+from sympy import Rational, pi, sin
 
 import satsym
 from satsym.front.solution import Solution
 from satsym.solvers.certificate import certify
 from satsym.solvers.certificate.constrained.replay import replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
+from satsym.solvers.constrained.feasibility import impossible
+from satsym.solvers.constrained.transcription import Program
 from satsym.status import BadInput, Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 from satsym.symbolic.model import t
@@ -36,6 +39,7 @@ WALL = kept("wall", wall=x - wall_at)
 SPEED = kept("speed", limit=v - wall_at)
 MOVING = kept("moving", wall=x - wall_at - c * (t - 0.5))
 GATE = kept("gate", ceiling=x - wall_at, floor=wall_at + 0.1 - 4 * (t - 0.5) ** 2 - x)
+LANE = kept("lane", lane=v - sin(pi * t) - Rational(1, 10))
 THERE_AND_BACK = {"initial": {"x": 0.0, "v": 1.0}, "final": {"x": 0.0, "v": -1.0}, "tf": 1.0}
 ACROSS = {"initial": {"x": 0.0, "v": 0.0}, "final": {"x": 1.0, "v": 0.0}, "tf": 1.0}
 
@@ -148,6 +152,30 @@ def test_constraints_against_each_other_are_infeasible():
     assert said["status"] == "infeasible", said["message"]
     assert "ceiling" in said["message"]
     assert "floor" in said["message"]
+
+
+def test_a_motion_that_rests_on_its_boundary_is_admissible():
+    found = certified(
+        solved(SPEED, parameters={"l": 0.9}, initial={"x": 0, "v": 0.9}, final={"x": 0.9, "v": 0.9}, tf=1)
+    )
+    assert found.objective == pytest.approx(0.0, abs=1e-20)
+
+
+def test_what_only_a_coarse_mesh_cannot_reach_is_not_infeasible():
+    """v <= 0.1 + sin(pi t) reaches 0.1 + 2 / pi = 0.73662 and not more, 0.73657 on a hundred trapezoids."""
+    ends = {"initial": {"x": 0.0, "v": 0.1}, "tf": 1.0}
+    found = certified(solved(LANE, final={"x": 0.7366, "v": 0.1}, **ends))
+    assert {one.kind for one in found.events} == {"entry", "exit"}
+    beyond = solved(LANE, final={"x": 0.75, "v": 0.1}, **ends)
+    assert beyond.to_dict()["status"] == "infeasible"
+
+
+@pytest.mark.parametrize("speed", [1.2, 0.99])
+def test_weights_that_are_too_small_to_count_show_nothing(speed: float):
+    """Less than 1 cannot go so far; a violation that hardly costs anything says nothing either way."""
+    program = Program(satsym.Instance.of(SPEED, parameters={"l": speed}, **ACROSS).case, 50)
+    said = [bool(impossible(program, worth)) for worth in (1.0, 1e-6, 1e-9, 1e-12)]
+    assert said == [speed < 1.0, False, False, False]
 
 
 def test_relaxed_path_and_arcs_have_one_time_together():

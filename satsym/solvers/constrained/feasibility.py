@@ -21,9 +21,11 @@ ROUNDING = 1e-12
 WEIGHTS, NEWTON = (1e2, 1e4, 1e6, 1e8), 40
 """Of squared violations, relative to the cost, and steps for each."""
 
-REMAINING, VIOLATED = 0.5, 1e-7
-"""Share of a violation that a hundred times the weight leaves where it cannot be avoided, and steps of half the length;
-and the least that is one."""
+REMAINING = 0.5
+"""Share of a violation that a hundred times the weight, or steps of half the length, leave where it is unavoidable."""
+
+UNAVOIDABLE = 1e-7
+"""Least violation, relative to the constraint's size, and least share of the cost, that are told from rounding."""
 
 
 def refuse(instance: Instance) -> None:
@@ -80,32 +82,40 @@ def _refuse_values(
             )
 
 
-def impossible(program: Program, start: Point, worth: float) -> str:
+def impossible(program: Program, worth: float) -> str:
     """What stands against each other where no path of a convex problem is admissible; empty where that is not shown.
 
     Violations are penalised by their squares, more and more: where some path is admissible they vanish like one over
-    the weight, else they tend to the least that there are. What the discretisation alone violates is less on a finer
-    mesh.
+    the weight, else they tend to the least that there are, and the cost to that of such a path. What the discretisation
+    alone violates is less on a finer mesh.
     """
-    finer = Program(program.instance, 2 * program.intervals)
-    coarse, fine = _remaining(program, start, worth), _remaining(finer, straight(finer), worth)
-    if coarse is None or fine is None or not fine.max() > max(REMAINING * coarse.max(), VIOLATED):
+    coarse = _remaining(program, worth)
+    fine = None if coarse is None else _remaining(Program(program.instance, 2 * program.intervals), worth)
+    if coarse is None or fine is None or not fine.max() > REMAINING * coarse.max():
         return ""
     names = [one.name for one in program.instance.model.spec.path_constraints]
     violated = ", ".join(name for name, left in zip(names, fine, strict=True) if left > 0.01 * fine.max())
     return f"no motion to the given end keeps to the path constraints ({violated}): one of them is always violated"
 
 
-def _remaining(program: Program, start: Point, worth: float) -> Array | None:
-    """By how much each constraint stays violated, relative to its size; ``None`` where violations vanish."""
-    room, at, found = rooms(program, start), start, list[Array]()
+def _remaining(program: Program, worth: float) -> Array | None:
+    """By how much each constraint stays violated, relative to its size; ``None`` where nothing shows that it does."""
+    at, found, costs, penalty = straight(program), list[Array](), list[float](), 0.0
+    room = rooms(program, at)
     for weight in WEIGHTS:
-        at = _penalised(program, at, weight * max(abs(worth), 1e-12) / room**2 / program.intervals)
+        own = weight * max(abs(worth), 1e-12) / program.intervals
+        at = _penalised(program, at, own / room**2)
         if not np.isfinite(at.x).all():
             return None
-        found.append(np.maximum(program.constraints(at) * program.kept / room, 0.0).max(axis=1))
+        violated = np.maximum(program.constraints(at) * program.kept / room, 0.0)
+        found.append(violated.max(axis=1))
+        costs.append(program.cost(at))
+        penalty = own * float((violated**2).sum()) / 2
     before, last = found[-2:]
-    return last if last.max() > REMAINING * before.max() > 0.0 else None
+    avoided = not last.max() > max(REMAINING * before.max(), UNAVOIDABLE)
+    # where the weights are too small to count, the cost outweighs what is violated, or rises more at each step
+    paying = costs[-1] - costs[-2] > max(costs[-2] - costs[-3], UNAVOIDABLE * abs(costs[-1]))
+    return None if avoided or paying or not penalty > abs(costs[-1]) else last
 
 
 def _penalised(program: Program, start: Point, weight: Array) -> Point:

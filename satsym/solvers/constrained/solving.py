@@ -144,7 +144,7 @@ def _searched(program: Program, starts: list[Point], worth: float, limits: Limit
         if same:
             one = same[0]
         elif not path.solved:
-            one = _unsolved(program, start, worth)
+            one = _unsolved(program, worth)
         else:
             one = tried(partial(_exact, program, path, own)) or NO_NUMBERS
             known.append((path.cost, one))
@@ -173,9 +173,9 @@ def others(instance: Instance, worth: float, seed: int, deadline: float) -> tupl
     return len(answered), [one.cost() for one in answered if isinstance(one, Arcs)], limits.late
 
 
-def _unsolved(program: Program, start: Point, worth: float) -> Stopped:
+def _unsolved(program: Program, worth: float) -> Stopped:
     """Why the regularised problem has no answer."""
-    if convex(program.instance) and (reason := impossible(program, start, worth)):
+    if convex(program.instance) and (reason := impossible(program, worth)):
         return Stopped(Status.INFEASIBLE, reason)
     return Stopped(Status.NOT_CONVERGED, "no regularised path keeps to the path constraints")
 
