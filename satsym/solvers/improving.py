@@ -52,7 +52,7 @@ def improved(solver: Solver, instance: Instance, progress: Progress | None) -> S
         certificate, better = examined(again, deadline, seed)
         solution = again
     if certificate is not None and certificate.verdict is Verdict.EXTREMAL_ONLY and solution.method != CONSTRAINED:
-        endless = None if solution.instance.model.spec.path_constraints else bottomless(solution)
+        endless = bottomless(solution)
         if endless is not None:
             return endless
         lower = None if instance.guess else _departed(solver, solution, progress, deadline)
@@ -70,7 +70,8 @@ def goes_on(solution: Solution) -> bool:
 
 def bottomless(solution: Solution) -> Solution | None:
     """No answer, where what was found is stationary and other controls cost ever less; ``None`` where none shows."""
-    endless = None if solution.method == SWITCHED else fall(solution)
+    constrained = bool(solution.instance.model.spec.path_constraints)  # of which descents know nothing
+    endless = None if constrained or solution.method == SWITCHED else fall(solution)
     advice = "weigh the control or time more, shorten the time, or bound the control"
     return None if endless is None else without_minimiser(solution, f"{endless.message}; {advice}")
 

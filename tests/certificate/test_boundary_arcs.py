@@ -15,16 +15,21 @@ import numpy as np
 import pytest
 
 import satsym
-from satsym.solution import Event, Solution
-from satsym.solvers.certificate import certify
+from satsym.solution import Event, Kind, Solution
+from satsym.solvers import two_point
+from satsym.solvers.certificate import certify, competitors
+from satsym.solvers.certificate.comparison import Competitor
 from satsym.solvers.certificate.constrained.replay import replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
+from satsym.solvers.certificate.saddle import fall
+from satsym.solvers.constrained.structure import stated_arcs
+from satsym.solvers.improving import bottomless
 from satsym.status import Status, Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 
 STATES, CONTROLS = (Variable("x", "x"), Variable("y", "y")), (Variable("a", "a"), Variable("b", "b"))
-PARAMETERS = tuple(Variable(name, name, default=0.0) for name in ("c", "k"))
-(x, y), (a, b), (c, k) = symbols_of(STATES), symbols_of(CONTROLS), symbols_of(PARAMETERS)
+PARAMETERS = tuple(Variable(name, name, default=0.0) for name in ("c", "k", "q"))
+(x, y), (a, b), (c, k, q) = symbols_of(STATES), symbols_of(CONTROLS), symbols_of(PARAMETERS)
 PLANE = FirstOrder(
     name="plane", title="plane", states=STATES, controls=CONTROLS, parameters=PARAMETERS, rates={x: a, y: b}
 )
@@ -32,7 +37,7 @@ DISC = Problem(
     name="disc",
     title="disc",
     model=PLANE,
-    running_cost=(a**2 + b**2) / 2,
+    running_cost=(a**2 + b**2 - q * x**2) / 2,
     terminal_cost=c * x + k * (x**2 + y**2) / 2,
     path_constraints={"disc": 1 - x**2 - y**2},
 )
@@ -57,7 +62,8 @@ def along(angle: Any) -> np.ndarray:
 def motion(instance: satsym.Instance, *arcs: tuple[float, bool], first: float, speed: float) -> Solution:
     """Arcs one after the other, clockwise, each so long and on the rim or straight; the rim is met at an angle."""
     case = instance.case
-    begins, parts, events, angle = 0.0, list[Any](), list[Event](), first
+    begins, parts, angle = 0.0, list[Any](), first
+    events = [Event("entry", "disc", 0.0)] if arcs[0][1] else []
     for number, (lasting, on_rim) in enumerate(arcs):
         times = np.linspace(begins, begins + lasting, 201)
         since = times - begins
@@ -143,3 +149,40 @@ def test_a_boundary_on_which_the_motion_ends_curves_the_form_there(c: float, min
     verdict, failed = judged(limited(found, 1e-9))
     assert verdict is Verdict.EXTREMAL_ONLY
     assert ("second variation with the active arcs fixed" in failed) == (not minimum)
+
+
+def test_what_leaves_the_path_constraints_is_neither_a_competitor_nor_a_fall(
+    round_the_disc: Solution, monkeypatch: pytest.MonkeyPatch
+):
+    through = np.linspace(round_the_disc.x[:, 0], round_the_disc.x[:, -1], 401).T
+    way = np.repeat((through[:, -1] - through[:, 0])[:, None], 401, axis=1)
+    for leaves in (True, False):
+        place = through + np.array([[0.0], [0.0 if leaves else 3.0]])
+        moved = np.linspace(0.0, 1.0, 401), np.concatenate([place, -way]), 1.0
+        monkeypatch.setattr(competitors, "_motion", lambda *_, moved=moved: moved)
+        cheaper = Competitor(None, object(), round_the_disc.objective - 1.0)  # type: ignore[arg-type]
+        found = competitors._tried(round_the_disc, Kind.STARTS, [lambda _, one=cheaper: one], np.inf)
+        assert found is not None
+        assert (found.summary.tried, found.summary.solved) == (1, 0 if leaves else 1)
+        assert (found.margin < 0.0) != leaves
+
+
+def test_where_states_are_kept_within_bounds_no_cost_is_said_to_fall_without_end():
+    """x'' = -q x with three conjugate points: without the constraint the cost is unbounded below."""
+    given = in_the_plane().with_(parameters={"q": 100.0}, initial={"x": 0.3, "y": 5.0}, final={"x": 0.3, "y": 5.0})
+    stationary = two_point.solve(given.case)
+    assert stationary.status is Status.CONVERGED
+    assert fall(stationary) is not None
+    assert bottomless(stationary) is None
+
+
+def test_a_motion_on_the_rim_from_start_to_end_is_an_extremal():
+    """With w = c sin(angle) at the end, where the form is positive: 1 - c cos(angle) there."""
+    c, end = 1.5, 2.0
+    speed = c * np.sin(end)
+    given = in_the_plane().with_(parameters={"c": c, "k": 4.0})
+    found = motion(given, (1.0, True), first=end - speed, speed=-speed)
+    assert stated_arcs(found) == [0]
+    assert judged(limited(found, 1e-9)) == (Verdict.EXTREMAL_ONLY, {"time was up before: structure of boundary arcs"})
+    beside = replace(found, x=found.x * 0.999, instance=replace(found.instance, initial=tuple(found.x[:, 0] * 0.999)))
+    assert judged(beside)[0] is Verdict.FAILED

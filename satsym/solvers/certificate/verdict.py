@@ -89,8 +89,7 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
         if not first:
             return _without_flow(), None
         if solution.instance.model.spec.path_constraints:
-            from satsym.solvers.certificate.constrained.conditions import VIOLATED
-            from satsym.solvers.constrained.violation import violation
+            from satsym.solvers.constrained.violation import VIOLATED, violation
 
             first.append(Check("path constraint violated", max(0.0, violation(solution)), VIOLATED))
         field = conjugate(solution, along)
