@@ -17,7 +17,7 @@ from satsym.front.solution import Solution
 from satsym.solvers.certificate import certify
 from satsym.solvers.certificate.constrained.replay import replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
-from satsym.solvers.constrained.feasibility import impossible
+from satsym.solvers.constrained.feasibility import impossible, refuse
 from satsym.solvers.constrained.transcription import Program
 from satsym.status import BadInput, Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
@@ -144,6 +144,30 @@ def test_a_beam_under_a_ceiling_has_twice_the_effort():
 def test_what_cannot_be_kept_at_the_ends_is_refused(of: Problem, given: dict[str, Any], message: str):
     with pytest.raises(BadInput, match=message):
         solved(of, **{**THERE_AND_BACK, **given})
+
+
+def round_discs(**given: Any) -> satsym.Instance:
+    """Among two discs in a plane, the first of radius 0.2 about (0.3, -0.05)."""
+    at_rest = {"x": 0.0, "y": -0.05, "vx": 0.0, "vy": 0.0}
+    return satsym.Instance.of("obstacle", **{"initial": at_rest, "tf": 1.0, **given})
+
+
+def test_a_state_that_is_left_free_may_keep_a_constraint_whose_slope_by_it_vanishes_where_it_begins():
+    refuse(round_discs(final={"x": 0.3}).case)
+    with pytest.raises(BadInput, match="final: path constraint"):
+        refuse(round_discs(final={"x": 0.3, "y": -0.05, "vx": 0.0, "vy": 0.0}).case)
+
+
+@pytest.mark.parametrize("angle", [0.3, 1.1, 2.0, 2.5])
+def test_a_start_along_a_boundary_is_no_violation_by_rounding(angle: float):
+    def begun(outwards: float) -> satsym.Instance:
+        out, way = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+        start = (np.array([0.3, -0.05]) + 0.2 * out, way + outwards * out)
+        return round_discs(initial=dict(zip(("x", "y", "vx", "vy"), np.concatenate(start).tolist(), strict=True)))
+
+    refuse(begun(0.0).case)
+    with pytest.raises(BadInput, match="violated right after the start"):
+        refuse(begun(-1e-6).case)
 
 
 def test_constraints_against_each_other_are_infeasible():

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.instance import Instance
+from satsym.kernels.evaluation import COMPLEX_STEP
+from satsym.solvers.constrained.arcs import terms, values
 from satsym.solvers.constrained.slopes import Slopes, rooms
 from satsym.solvers.constrained.starts import straight
 from satsym.solvers.constrained.transcription import Point, Program
@@ -48,14 +51,20 @@ def refuse(instance: Instance) -> None:
 
 
 def _refuse_at(instance: Instance, time: float, state: tuple[float, ...], key: str, direction: float) -> None:
-    """At a state that is known as a whole."""
+    """At a state that is known as a whole; what is rounding of its terms is nothing."""
     model, p = instance.model, instance.parameters
     _refuse_values(instance, time, state, key, np.ones(len(model.spec.path_constraints), bool))
-    rest = (0.0,) * len(model.spec.controls)
-    g = np.array(model.path_constraints(time, state, rest, p, instance.control_set.arguments))
-    rates = np.array(model.path_rates(time, state, rest, p)).reshape(-1, 2)[:, 0]
-    for one, value, rate in zip(model.spec.path_constraints, g, rates, strict=True):
-        if one.order > 1 and abs(value) <= ROUNDING and direction * rate > 0.0:
+    t, x, rest = np.array([time]), np.array(state)[:, None], np.zeros((len(model.spec.controls), 1))
+    g, size = values(instance, t, x, rest)[:, 0], terms(instance, t, x, rest)[:, 0]
+
+    def rates_at(at: NDArray[Any]) -> NDArray[Any]:
+        return np.asarray(model.path_rates_batch(t, at, rest.astype(at.dtype), p)).reshape(len(g), 2, -1)[:, 0, 0]
+
+    moved = x + 1j * COMPLEX_STEP * np.eye(len(x))
+    slopes = np.column_stack([np.imag(rates_at(moved[:, [j]])) for j in range(len(x))]) / COMPLEX_STEP
+    faint = ROUNDING * np.abs(slopes) @ np.abs(x)[:, 0]
+    for one, value, scale, rate, nothing in zip(model.spec.path_constraints, g, size, rates_at(x), faint, strict=True):
+        if one.order > 1 and abs(value) <= ROUNDING * scale and direction * rate > nothing:
             when = "after the start" if direction > 0 else "before the end"
             raise BadInput(
                 f"{instance.name}: {key}: path constraint {one.name} is met with the rate {rate:.6g}, which no "
@@ -70,11 +79,10 @@ def _refuse_values(
     key: str,
     which: NDArray[np.bool_],
 ) -> None:
-    model, p = instance.model, instance.parameters
-    rest = (0.0,) * len(model.spec.controls)
-    g = np.array(model.path_constraints(time, state, rest, p, instance.control_set.arguments))
-    size = np.abs(np.array(model.path_gradient(time, state, rest, p)).reshape(len(g), -1)) @ np.abs(state)
-    for one, value, scale, counts in zip(model.spec.path_constraints, g, size, which, strict=True):
+    spec, place = instance.model.spec, (np.array([time]), np.array(state)[:, None])
+    rest = np.zeros((len(spec.controls), 1))
+    g, size = values(instance, *place, rest)[:, 0], terms(instance, *place, rest)[:, 0]
+    for one, value, scale, counts in zip(spec.path_constraints, g, size, which, strict=True):
         if counts and one.order and value > ROUNDING * max(float(scale), 1e-300):
             raise BadInput(
                 f"{instance.name}: {key}: path constraint {one.name} is {value:.6g} there and may not be positive; "
