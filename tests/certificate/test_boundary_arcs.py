@@ -13,6 +13,7 @@ from typing import Any
 import msgspec
 import numpy as np
 import pytest
+from sympy import sympify
 
 import satsym
 from satsym.solution import Event, Kind, Solution
@@ -174,6 +175,32 @@ def test_where_states_are_kept_within_bounds_no_cost_is_said_to_fall_without_end
     assert stationary.status is Status.CONVERGED
     assert fall(stationary) is not None
     assert bottomless(stationary) is None
+
+
+def test_what_pushes_at_the_end_is_told_from_multipliers_of_terminal_constraints(round_the_disc: Solution):
+    """Straight to (0.8, 0.6) on the rim, where y is asked for: zeta and nu together make up the costates' jump."""
+    tied = replace(DISC, name="tied", terminal_constraints=(y - sympify("3/5"),))
+    case = satsym.Instance.of(tied, initial={"x": 1.5, "y": 0.0}, parameters={"k": 4.0}, tf=1.0).case
+    start, way, times = np.array([[1.5], [0.0]]), np.array([[-0.7], [0.6]]), np.linspace(0.0, 1.0, 401)
+    along_it = np.repeat(way, 401, axis=1)
+    found = replace(
+        round_the_disc,
+        instance=case,
+        times=times,
+        x=start + way * times,
+        u=along_it,
+        lam=-along_it,
+        objective=0.85 / 2 + 2.0,
+        events=(Event("touch", "disc", 1.0),),
+    )
+    again = replay(found)
+    assert again is not None
+    assert again.pressed == pytest.approx((4 * 0.8 - 0.7) / 1.6)  # lambda_x - S_x = zeta g_x
+    assert judged(limited(found, 1e-9)) == (Verdict.EXTREMAL_ONLY, {"time was up before: structure of boundary arcs"})
+    given = replace(found, instance=replace(case, final={"x": 0.8}))
+    free = replay(given)
+    assert free is not None
+    assert free.pressed is None  # what is given pushes by itself
 
 
 def test_a_motion_on_the_rim_from_start_to_end_is_an_extremal():

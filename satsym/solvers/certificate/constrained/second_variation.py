@@ -11,7 +11,7 @@ constraint pushes there, add the curvature of g times its multiplier.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -59,7 +59,8 @@ def curvature(solution: Solution, again: Replay) -> float:
             ties.append(one.gradient @ state)
             form += state.T @ (one.factor * np.outer(one.rate, one.rate) + one.curved) @ state
     unit = unit_sizes(solution)
-    end = end_form(solution, unit)
+    after = np.column_stack([solution.lam[:, :-1], again.end[n:]])  # multipliers at the end are those after its jump
+    end = end_form(replace(solution, lam=after), unit)
     scaled = state / unit[:n, None]
     form += scaled.T @ end.form @ scaled * unit[0] * unit[n]
     ties += list(end.ties @ scaled)
