@@ -20,6 +20,7 @@ from satsym.solution import Event, Kind, Solution
 from satsym.solvers import two_point
 from satsym.solvers.certificate import certify, competitors
 from satsym.solvers.certificate.comparison import Competitor
+from satsym.solvers.certificate.constrained import second_variation
 from satsym.solvers.certificate.constrained.replay import replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
 from satsym.solvers.certificate.saddle import fall
@@ -213,3 +214,16 @@ def test_a_motion_on_the_rim_from_start_to_end_is_an_extremal():
     assert judged(limited(found, 1e-9)) == (Verdict.EXTREMAL_ONLY, {"time was up before: structure of boundary arcs"})
     beside = replace(found, x=found.x * 0.999, instance=replace(found.instance, initial=tuple(found.x[:, 0] * 0.999)))
     assert judged(beside)[0] is Verdict.FAILED
+
+
+@pytest.mark.parametrize(
+    ("form", "pure", "ties", "least"),
+    [
+        (np.eye(3), np.eye(3), np.zeros((0, 3)), 1.0),
+        (np.eye(3), np.eye(3), np.eye(3), np.inf),
+        (np.eye(3), -np.eye(3), np.zeros((0, 3)), np.nan),
+        (np.full((3, 3), -np.inf), np.eye(3), np.zeros((0, 3)), np.nan),
+    ],
+)
+def test_a_form_without_numbers_is_not_positive(form: np.ndarray, pure: np.ndarray, ties: np.ndarray, least: float):
+    assert second_variation._least(form, pure, ties) == pytest.approx(least, nan_ok=True)

@@ -50,7 +50,7 @@ def certify(solution: Solution, deadline: float, seed: int = 0, compared: bool =
             second = [Check("legendre-clebsch", float(not conditions.legendre_clebsch(solution) > 0.0), 0.0)]
             if convex(solution.instance):
                 second.append(Check("not convex", 0.0, 0.0))
-            else:
+            elif all(c.passed for c in second):
                 second += _sufficient(solution, again)
                 if compared:
                     others = comparison.compared(solution, deadline, seed)
