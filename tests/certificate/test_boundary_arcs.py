@@ -204,6 +204,40 @@ def test_what_pushes_at_the_end_is_told_from_multipliers_of_terminal_constraints
     assert free.pressed is None  # what is given pushes by itself
 
 
+def test_curved_terminal_constraints_count_by_their_multipliers_after_the_jump_at_the_end(round_the_disc: Solution):
+    """The motion above with room to a side, z, where y = 0.6 - q z^2 is asked for: 1 + k - 2 zeta + 2 q nu is left."""
+    side, push = Variable("z", "z"), Variable("d", "d")
+    (z,), (d,) = symbols_of((side,)), symbols_of((push,))
+    space = replace(PLANE, states=(*STATES, side), controls=(*CONTROLS, push), rates={x: a, y: b, z: d})
+    asked = Problem(
+        name="sphere",
+        title="sphere",
+        model=space,
+        running_cost=(a**2 + b**2 + d**2) / 2,
+        terminal_cost=k * (x**2 + y**2 + z**2) / 2,
+        terminal_constraints=(y - sympify("3/5") + q * z**2,),
+        path_constraints={"disc": 1 - x**2 - y**2 - z**2},
+    )
+    start = {"x": 1.5, "y": 0.0, "z": 0.0}
+    case = satsym.Instance.of(asked, initial=start, parameters={"k": 4.0, "q": 0.6}, tf=1.0).case
+    way, times = np.array([[-0.7], [0.6], [0.0]]), np.linspace(0.0, 1.0, 401)
+    found = replace(
+        round_the_disc,
+        instance=case,
+        times=times,
+        x=np.array([[1.5], [0.0], [0.0]]) + way * times,
+        u=np.repeat(way, 401, axis=1),
+        lam=-np.repeat(way, 401, axis=1),
+        objective=0.85 / 2 + 2.0,
+        events=(Event("touch", "disc", 1.0),),
+    )
+    again = replay(found)
+    assert again is not None
+    zeta = (4 * 0.8 - 0.7) / 1.6
+    nu = -0.6 - 4 * 0.6 + 1.2 * zeta  # lambda_y = k y + nu - 2 y zeta
+    assert curvature(found, again) == pytest.approx(1 + 4 - 2 * zeta + 2 * 0.6 * nu, abs=1e-9)
+
+
 def test_a_motion_on_the_rim_from_start_to_end_is_an_extremal():
     """With w = c sin(angle) at the end, where the form is positive: 1 - c cos(angle) there."""
     c, end = 1.5, 2.0
