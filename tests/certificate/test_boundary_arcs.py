@@ -178,7 +178,7 @@ def test_where_states_are_kept_within_bounds_no_cost_is_said_to_fall_without_end
     assert bottomless(stationary) is None
 
 
-def test_what_pushes_at_the_end_is_told_from_multipliers_of_terminal_constraints(round_the_disc: Solution):
+def test_what_pushes_at_the_end_is_kept_apart_from_multipliers_of_terminal_constraints(round_the_disc: Solution):
     """Straight to (0.8, 0.6) on the rim, where y is asked for: zeta and nu together make up the costates' jump."""
     tied = replace(DISC, name="tied", terminal_constraints=(y - sympify("3/5"),))
     case = satsym.Instance.of(tied, initial={"x": 1.5, "y": 0.0}, parameters={"k": 4.0}, tf=1.0).case

@@ -28,7 +28,7 @@ REMAINING = 0.5
 """Share of a violation that a hundred times the weight, or steps of half the length, leave where it is unavoidable."""
 
 UNAVOIDABLE = 1e-7
-"""Least violation, relative to the constraint's size, and least share of the cost, that are told from rounding."""
+"""Least violation, relative to the constraint's size, and least share of the cost, that exceed rounding."""
 
 
 def refuse(instance: Instance) -> None:
