@@ -11,6 +11,9 @@ from typing import Any, Protocol
 
 from satsym.spec import ProblemSpec
 
+BOUNDARY_ARCS = "boundary-arcs"
+"""The method for path constraints, whose answers have a certificate of their own."""
+
 AUTO = "auto"
 """Instead of a method's name: the one that fits."""
 
@@ -124,7 +127,7 @@ METHODS = {
             automatic=True,
         ),
         Method(
-            "boundary-arcs",
+            BOUNDARY_ARCS,
             "exact arcs and touch points, for path constraints",
             "satsym.solvers.constrained.solving:solve",
             constrained=True,

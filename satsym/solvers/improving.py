@@ -10,6 +10,7 @@ import msgspec
 import numpy as np
 
 from satsym.instance import Guess, Instance
+from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Progress, Solution
 from satsym.solvers.certificate.competitors import SAMPLES, guess
 from satsym.solvers.certificate.saddle import departures, fall
@@ -19,9 +20,9 @@ from satsym.status import Status, Verdict
 ROUNDS = 3
 """Cheaper competitors that are taken for the solution, one after the other."""
 
-CONSTRAINED, SWITCHED = "boundary-arcs", "bang-bang"
-"""Methods whose extremals are not departed from: descents of other problems keep neither to path constraints nor to
-controls that switch."""
+SWITCHED = "bang-bang"
+"""A method whose extremals are not departed from, nor those of boundary arcs: descents of other problems keep neither
+to controls that switch nor to path constraints."""
 
 Solver = Callable[[Instance, Progress | None], Solution]
 
@@ -51,8 +52,8 @@ def improved(solver: Solver, instance: Instance, progress: Progress | None) -> S
             break
         certificate, better = examined(again, deadline, seed)
         solution = again
-    if certificate is not None and certificate.verdict is Verdict.EXTREMAL_ONLY and solution.method != CONSTRAINED:
-        endless = None if solution.instance.model.spec.path_constraints else bottomless(solution)
+    if certificate is not None and certificate.verdict is Verdict.EXTREMAL_ONLY and solution.method != BOUNDARY_ARCS:
+        endless = bottomless(solution)
         if endless is not None:
             return endless
         lower = None if instance.guess else _departed(solver, solution, progress, deadline)
@@ -63,14 +64,15 @@ def improved(solver: Solver, instance: Instance, progress: Progress | None) -> S
 
 def goes_on(solution: Solution) -> bool:
     """Whether :func:`improved` looks for a lower cost than that of a solution whose certificate has no competitors."""
-    certificate, lasting = solution.certificate, (CONSTRAINED, SWITCHED)
+    certificate, lasting = solution.certificate, (BOUNDARY_ARCS, SWITCHED)
     extremal = certificate is not None and certificate.verdict is Verdict.EXTREMAL_ONLY
     return extremal and solution.method not in lasting
 
 
 def bottomless(solution: Solution) -> Solution | None:
     """No answer, where what was found is stationary and other controls cost ever less; ``None`` where none shows."""
-    endless = None if solution.method == SWITCHED else fall(solution)
+    constrained = bool(solution.instance.model.spec.path_constraints)  # of which descents know nothing
+    endless = None if constrained or solution.method == SWITCHED else fall(solution)
     advice = "weigh the control or time more, shorten the time, or bound the control"
     return None if endless is None else without_minimiser(solution, f"{endless.message}; {advice}")
 

@@ -13,18 +13,25 @@ from typing import Any
 import msgspec
 import numpy as np
 import pytest
+from sympy import sympify
 
 import satsym
-from satsym.solution import Event, Solution
-from satsym.solvers.certificate import certify
+from satsym.solution import Event, Kind, Solution
+from satsym.solvers import two_point
+from satsym.solvers.certificate import certify, competitors
+from satsym.solvers.certificate.comparison import Competitor
+from satsym.solvers.certificate.constrained import second_variation
 from satsym.solvers.certificate.constrained.replay import replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
+from satsym.solvers.certificate.saddle import fall
+from satsym.solvers.constrained.structure import stated_arcs
+from satsym.solvers.improving import bottomless
 from satsym.status import Status, Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 
 STATES, CONTROLS = (Variable("x", "x"), Variable("y", "y")), (Variable("a", "a"), Variable("b", "b"))
-PARAMETERS = tuple(Variable(name, name, default=0.0) for name in ("c", "k"))
-(x, y), (a, b), (c, k) = symbols_of(STATES), symbols_of(CONTROLS), symbols_of(PARAMETERS)
+PARAMETERS = tuple(Variable(name, name, default=0.0) for name in ("c", "k", "q"))
+(x, y), (a, b), (c, k, q) = symbols_of(STATES), symbols_of(CONTROLS), symbols_of(PARAMETERS)
 PLANE = FirstOrder(
     name="plane", title="plane", states=STATES, controls=CONTROLS, parameters=PARAMETERS, rates={x: a, y: b}
 )
@@ -32,7 +39,7 @@ DISC = Problem(
     name="disc",
     title="disc",
     model=PLANE,
-    running_cost=(a**2 + b**2) / 2,
+    running_cost=(a**2 + b**2 - q * x**2) / 2,
     terminal_cost=c * x + k * (x**2 + y**2) / 2,
     path_constraints={"disc": 1 - x**2 - y**2},
 )
@@ -57,7 +64,8 @@ def along(angle: Any) -> np.ndarray:
 def motion(instance: satsym.Instance, *arcs: tuple[float, bool], first: float, speed: float) -> Solution:
     """Arcs one after the other, clockwise, each so long and on the rim or straight; the rim is met at an angle."""
     case = instance.case
-    begins, parts, events, angle = 0.0, list[Any](), list[Event](), first
+    begins, parts, angle = 0.0, list[Any](), first
+    events = [Event("entry", "disc", 0.0)] if arcs[0][1] else []
     for number, (lasting, on_rim) in enumerate(arcs):
         times = np.linspace(begins, begins + lasting, 201)
         since = times - begins
@@ -143,3 +151,113 @@ def test_a_boundary_on_which_the_motion_ends_curves_the_form_there(c: float, min
     verdict, failed = judged(limited(found, 1e-9))
     assert verdict is Verdict.EXTREMAL_ONLY
     assert ("second variation with the active arcs fixed" in failed) == (not minimum)
+
+
+def test_what_leaves_the_path_constraints_is_neither_a_competitor_nor_a_fall(
+    round_the_disc: Solution, monkeypatch: pytest.MonkeyPatch
+):
+    through = np.linspace(round_the_disc.x[:, 0], round_the_disc.x[:, -1], 401).T
+    way = np.repeat((through[:, -1] - through[:, 0])[:, None], 401, axis=1)
+    for leaves in (True, False):
+        place = through + np.array([[0.0], [0.0 if leaves else 3.0]])
+        moved = np.linspace(0.0, 1.0, 401), np.concatenate([place, -way]), 1.0
+        monkeypatch.setattr(competitors, "_motion", lambda *_, moved=moved: moved)
+        cheaper = Competitor(None, object(), round_the_disc.objective - 1.0)  # type: ignore[arg-type]
+        found = competitors._tried(round_the_disc, Kind.STARTS, [lambda _, one=cheaper: one], np.inf)
+        assert found is not None
+        assert (found.summary.tried, found.summary.solved) == (1, 0 if leaves else 1)
+        assert (found.margin < 0.0) != leaves
+
+
+def test_where_states_are_kept_within_bounds_no_cost_is_said_to_fall_without_end():
+    """x'' = -q x with three conjugate points: without the constraint the cost is unbounded below."""
+    given = in_the_plane().with_(parameters={"q": 100.0}, initial={"x": 0.3, "y": 5.0}, final={"x": 0.3, "y": 5.0})
+    stationary = two_point.solve(given.case)
+    assert stationary.status is Status.CONVERGED
+    assert fall(stationary) is not None
+    assert bottomless(stationary) is None
+
+
+def test_what_pushes_at_the_end_is_kept_apart_from_multipliers_of_terminal_constraints(round_the_disc: Solution):
+    """Straight to (0.8, 0.6) on the rim, where y is asked for: zeta and nu together make up the costates' jump."""
+    tied = replace(DISC, name="tied", terminal_constraints=(y - sympify("3/5"),))
+    case = satsym.Instance.of(tied, initial={"x": 1.5, "y": 0.0}, parameters={"k": 4.0}, tf=1.0).case
+    start, way, times = np.array([[1.5], [0.0]]), np.array([[-0.7], [0.6]]), np.linspace(0.0, 1.0, 401)
+    along_it = np.repeat(way, 401, axis=1)
+    found = replace(
+        round_the_disc,
+        instance=case,
+        times=times,
+        x=start + way * times,
+        u=along_it,
+        lam=-along_it,
+        objective=0.85 / 2 + 2.0,
+        events=(Event("touch", "disc", 1.0),),
+    )
+    again = replay(found)
+    assert again is not None
+    assert again.pressed == pytest.approx((4 * 0.8 - 0.7) / 1.6)  # lambda_x - S_x = zeta g_x
+    assert judged(limited(found, 1e-9)) == (Verdict.EXTREMAL_ONLY, {"time was up before: structure of boundary arcs"})
+    given = replace(found, instance=replace(case, final={"x": 0.8}))
+    free = replay(given)
+    assert free is not None
+    assert free.pressed is None  # what is given pushes by itself
+
+
+def test_curved_terminal_constraints_count_by_their_multipliers_after_the_jump_at_the_end(round_the_disc: Solution):
+    """The motion above with room to a side, z, where y = 0.6 - q z^2 is asked for: 1 + k - 2 zeta + 2 q nu is left."""
+    side, push = Variable("z", "z"), Variable("d", "d")
+    (z,), (d,) = symbols_of((side,)), symbols_of((push,))
+    space = replace(PLANE, states=(*STATES, side), controls=(*CONTROLS, push), rates={x: a, y: b, z: d})
+    asked = Problem(
+        name="sphere",
+        title="sphere",
+        model=space,
+        running_cost=(a**2 + b**2 + d**2) / 2,
+        terminal_cost=k * (x**2 + y**2 + z**2) / 2,
+        terminal_constraints=(y - sympify("3/5") + q * z**2,),
+        path_constraints={"disc": 1 - x**2 - y**2 - z**2},
+    )
+    start = {"x": 1.5, "y": 0.0, "z": 0.0}
+    case = satsym.Instance.of(asked, initial=start, parameters={"k": 4.0, "q": 0.6}, tf=1.0).case
+    way, times = np.array([[-0.7], [0.6], [0.0]]), np.linspace(0.0, 1.0, 401)
+    found = replace(
+        round_the_disc,
+        instance=case,
+        times=times,
+        x=np.array([[1.5], [0.0], [0.0]]) + way * times,
+        u=np.repeat(way, 401, axis=1),
+        lam=-np.repeat(way, 401, axis=1),
+        objective=0.85 / 2 + 2.0,
+        events=(Event("touch", "disc", 1.0),),
+    )
+    again = replay(found)
+    assert again is not None
+    zeta = (4 * 0.8 - 0.7) / 1.6
+    nu = -0.6 - 4 * 0.6 + 1.2 * zeta  # lambda_y = k y + nu - 2 y zeta
+    assert curvature(found, again) == pytest.approx(1 + 4 - 2 * zeta + 2 * 0.6 * nu, abs=1e-9)
+
+
+def test_a_motion_on_the_rim_from_start_to_end_is_an_extremal():
+    """With w = c sin(angle) at the end, where the form is positive: 1 - c cos(angle) there."""
+    c, end = 1.5, 2.0
+    speed = c * np.sin(end)
+    given = in_the_plane().with_(parameters={"c": c, "k": 4.0})
+    found = motion(given, (1.0, True), first=end - speed, speed=-speed)
+    assert stated_arcs(found) == [0]
+    assert judged(limited(found, 1e-9)) == (Verdict.EXTREMAL_ONLY, {"time was up before: structure of boundary arcs"})
+    beside = replace(found, x=found.x * 0.999, instance=replace(found.instance, initial=tuple(found.x[:, 0] * 0.999)))
+    assert judged(beside)[0] is Verdict.FAILED
+
+
+@pytest.mark.parametrize(
+    ("form", "pure", "ties", "least"),
+    [
+        (np.eye(3), np.eye(3), np.zeros((0, 3)), 1.0),
+        (np.eye(3), np.eye(3), np.eye(3), np.inf),
+        (np.eye(3), -np.eye(3), np.zeros((0, 3)), np.nan),
+        (np.full((3, 3), -np.inf), np.eye(3), np.zeros((0, 3)), np.nan),
+    ],
+)
+def test_a_form_without_numbers_is_not_positive(form: np.ndarray, pure: np.ndarray, ties: np.ndarray, least: float):
+    assert second_variation._least(form, pure, ties) == pytest.approx(least, nan_ok=True)

@@ -10,12 +10,15 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import minimize_scalar, root
+from sympy import Rational, pi, sin
 
 import satsym
 from satsym.front.solution import Solution
 from satsym.solvers.certificate import certify
 from satsym.solvers.certificate.constrained.replay import replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
+from satsym.solvers.constrained.feasibility import impossible, refuse
+from satsym.solvers.constrained.transcription import Program
 from satsym.status import BadInput, Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 from satsym.symbolic.model import t
@@ -36,7 +39,10 @@ WALL = kept("wall", wall=x - wall_at)
 SPEED = kept("speed", limit=v - wall_at)
 MOVING = kept("moving", wall=x - wall_at - c * (t - 0.5))
 GATE = kept("gate", ceiling=x - wall_at, floor=wall_at + 0.1 - 4 * (t - 0.5) ** 2 - x)
+FLOOR = kept("floor", floor=wall_at + 0.1 - 4 * (t - 0.5) ** 2 - x)
+LANE = kept("lane", lane=v - sin(pi * t) - Rational(1, 10))
 THERE_AND_BACK = {"initial": {"x": 0.0, "v": 1.0}, "final": {"x": 0.0, "v": -1.0}, "tf": 1.0}
+AT_REST = {"initial": {"x": 0.0, "v": 0.0}, "final": {"x": 0.0, "v": 0.0}, "tf": 1.0}
 ACROSS = {"initial": {"x": 0.0, "v": 0.0}, "final": {"x": 1.0, "v": 0.0}, "tf": 1.0}
 
 
@@ -142,12 +148,67 @@ def test_what_cannot_be_kept_at_the_ends_is_refused(of: Problem, given: dict[str
         solved(of, **{**THERE_AND_BACK, **given})
 
 
+def round_discs(**given: Any) -> satsym.Instance:
+    """Among two discs in a plane, the first of radius 0.2 about (0.3, -0.05)."""
+    at_rest = {"x": 0.0, "y": -0.05, "vx": 0.0, "vy": 0.0}
+    return satsym.Instance.of("obstacle", **{"initial": at_rest, "tf": 1.0, **given})
+
+
+def test_a_state_that_is_left_free_may_keep_a_constraint_whose_slope_by_it_vanishes_where_it_begins():
+    refuse(round_discs(final={"x": 0.3}).case)
+    with pytest.raises(BadInput, match="final: path constraint"):
+        refuse(round_discs(final={"x": 0.3, "y": -0.05}).case)
+
+
+@pytest.mark.parametrize("angle", [0.3, 1.1, 2.0, 2.5])
+def test_a_start_along_a_boundary_is_no_violation_by_rounding(angle: float):
+    def begun(outwards: float) -> satsym.Instance:
+        out, way = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+        start = (np.array([0.3, -0.05]) + 0.2 * out, way + outwards * out)
+        return round_discs(initial=dict(zip(("x", "y", "vx", "vy"), np.concatenate(start).tolist(), strict=True)))
+
+    refuse(begun(0.0).case)
+    with pytest.raises(BadInput, match="violated right after the start"):
+        refuse(begun(-1e-6).case)
+
+
 def test_constraints_against_each_other_are_infeasible():
-    found = solved(GATE, **{**THERE_AND_BACK, "initial": {"x": 0.0, "v": 0.0}, "final": {"x": 0.0, "v": 0.0}})
+    found = solved(GATE, **AT_REST)
     said = found.to_dict()
     assert said["status"] == "infeasible", said["message"]
     assert "ceiling" in said["message"]
     assert "floor" in said["message"]
+
+
+def test_a_motion_that_rests_on_its_boundary_is_admissible():
+    found = certified(
+        solved(SPEED, parameters={"l": 0.9}, initial={"x": 0, "v": 0.9}, final={"x": 0.9, "v": 0.9}, tf=1)
+    )
+    assert found.objective == pytest.approx(0.0, abs=1e-20)
+
+
+def test_what_only_a_coarse_mesh_cannot_reach_is_not_infeasible():
+    """v <= 0.1 + sin(pi t) reaches 0.1 + 2 / pi = 0.73662 and not more, 0.73657 on a hundred trapezoids."""
+    ends = {"initial": {"x": 0.0, "v": 0.1}, "tf": 1.0}
+    found = certified(solved(LANE, final={"x": 0.7366, "v": 0.1}, **ends))
+    assert {one.kind for one in found.events} == {"entry", "exit"}
+    beyond = solved(LANE, final={"x": 0.75, "v": 0.1}, **ends)
+    assert beyond.to_dict()["status"] == "infeasible"
+
+
+@pytest.mark.parametrize(
+    ("of", "given", "impossible_at_one"),
+    [
+        (SPEED, {"parameters": {"l": 1.2}, **ACROSS}, False),
+        (SPEED, {"parameters": {"l": 0.99}, **ACROSS}, True),
+        (FLOOR, AT_REST, False),
+    ],
+)
+def test_weights_that_are_too_small_to_count_show_nothing(of: Problem, given: dict[str, Any], impossible_at_one: bool):
+    """A violation that hardly costs anything says nothing, also where without constraints nothing is spent at all."""
+    program = Program(satsym.Instance.of(of, **given).case, 50)
+    said = [bool(impossible(program, worth)) for worth in (1.0, 1e-6, 1e-9, 1e-12)]
+    assert said == [impossible_at_one, False, False, False]
 
 
 def test_relaxed_path_and_arcs_have_one_time_together():

@@ -11,7 +11,8 @@ import sympy as sp
 from satsym.report.latex.document import render
 from satsym.symbolic import FirstOrder, Problem, Variable, derive, symbols_of
 from satsym.symbolic.derivation import DerivationError, Step
-from satsym.symbolic.model import Convention
+from satsym.symbolic.model import Convention, t
+from satsym.symbolic.principle import inequalities
 from satsym.symbolic.principle import path_constraints as steps
 from tests.support.derived import derived, shipped, stated
 
@@ -73,6 +74,13 @@ def test_with_the_maximum_convention_costates_change_their_sign_and_multipliers_
     zeta = sp.Symbol("zeta_wall", real=True)
     assert values(found.step("junction_conditions"))["wall_lambda_x"] == -zeta
     assert values(found.step("constrained_costates"))["wall_lambda_x"] == sp.Symbol("eta_wall", real=True)
+
+
+@pytest.mark.parametrize(("weight", "alike"), [(1, True), (1 - t, False)])
+def test_weights_that_depend_on_time_are_not_said_to_be_convex(weight: sp.Expr, alike: bool):
+    """However often they are looked at, they may be negative in between."""
+    problem = kept(d - t, running_cost=(u**2 + weight * a**2) / 2)
+    assert inequalities.linear_quadratic(derived(problem)) == alike
 
 
 @pytest.mark.parametrize("direction", ["minimum", "maximum"])

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from satsym.arrays import Array
 from satsym.instance import Guess, Instance
 from satsym.solution import Kind, Solution
 from satsym.solvers.certificate.comparison import SAME, Compared, Comparison, Competitor, summed
@@ -83,12 +84,33 @@ def compared(solution: Solution, deadline: float, seed: int = 0) -> Comparison:
 
 def guess(competitor: Competitor, solution: Solution) -> Instance:
     """The instance of a solution that starts from a competitor."""
+    instance, names = solution.instance, solution.instance.model.spec.state_names
+    n, (_, z, end) = len(names), _motion(competitor, solution)
+    rows = [tuple(row) for row in z.tolist()]
+    start = Guess(dict(zip(names, rows[:n], strict=True)), dict(zip(names, rows[n:], strict=True)))
+    return replace(instance, guess=start, tf_guess=end if instance.tf is None else None)
+
+
+def _admissible(competitor: Competitor, solution: Solution) -> bool:
+    """Whether a competitor keeps to path constraints, of which it knows nothing; one that costs more need not."""
+    model, p = solution.instance.model, solution.instance.parameters
+    if not model.spec.path_constraints or competitor.curve is None or not competitor.cost < solution.objective:
+        return True
+    from satsym.solvers.constrained.violation import VIOLATED, violation
+
+    n, (times, z, _) = len(solution.x), _motion(competitor, solution)
+    u = model.control_law_batch(times, z[:n], z[n:], p, solution.instance.control_set.arguments)
+    controls = np.broadcast_to(u, (len(solution.u), len(times)))
+    return violation(replace(solution, times=times, x=z[:n], u=controls, lam=z[n:])) <= VIOLATED
+
+
+def _motion(competitor: Competitor, solution: Solution) -> tuple[Array, Array, float]:
+    """Times, states and costates of a competitor, and when it arrives."""
     problem, curve, instance = competitor.problem, competitor.curve, solution.instance
     assert curve is not None
-    names = instance.model.spec.state_names
     end = problem.instance.t0 + problem.elapsed(curve.theta)
     last = end if instance.tf is None else max(instance.tf, end)
-    n, times = len(names), np.linspace(instance.t0, last, SAMPLES)
+    n, times = len(instance.initial), np.linspace(instance.t0, last, SAMPLES)
     tau = np.minimum((times - instance.t0) / (end - instance.t0), 1.0)
     z = curve(tau) * problem.scale.both
     z[:n] += (np.array(instance.initial) - np.array(problem.instance.initial))[:, None]
@@ -96,9 +118,7 @@ def guess(competitor: Competitor, solution: Solution) -> Instance:
     if coasting.any():  # arrived on the reference before the end
         z[:n, coasting] = np.array([instance.model.reference(t, instance.parameters) for t in times[coasting]]).T
         z[n:, coasting] = 0.0
-    rows = [tuple(row) for row in z.tolist()]
-    start = Guess(dict(zip(names, rows[:n], strict=True)), dict(zip(names, rows[n:], strict=True)))
-    return replace(instance, guess=start, tf_guess=end if instance.tf is None else None)
+    return times, z, end
 
 
 def _tried(solution: Solution, kind: Kind, attempts: list[Search], deadline: float) -> Compared | None:
@@ -115,7 +135,7 @@ def _tried(solution: Solution, kind: Kind, attempts: list[Search], deadline: flo
         if interrupted:
             break
         count += 1
-        if competitor is not None:
+        if competitor is not None and _admissible(competitor, solution):
             found.append(competitor)
     cheapest = min(found, key=lambda one: one.cost, default=None)
     summary = summed(solution, kind, count, [one.cost for one in found], interrupted)

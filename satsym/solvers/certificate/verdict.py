@@ -7,6 +7,7 @@ import time
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers import revolutions
 from satsym.solvers.certificate import competitors, conditions
@@ -78,7 +79,7 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
 
         with np.errstate(all="ignore"):
             return switching.certify(solution, compared), None
-    if solution.method == "boundary-arcs":
+    if solution.method == BOUNDARY_ARCS:
         from satsym.solvers.certificate.constrained import conditions as constrained
 
         return constrained.certify(solution, deadline, seed, compared), None
@@ -89,8 +90,7 @@ def _judged(solution: Solution, deadline: float, seed: int, compared: bool) -> t
         if not first:
             return _without_flow(), None
         if solution.instance.model.spec.path_constraints:
-            from satsym.solvers.certificate.constrained.conditions import VIOLATED
-            from satsym.solvers.constrained.violation import violation
+            from satsym.solvers.constrained.violation import VIOLATED, violation
 
             first.append(Check("path constraint violated", max(0.0, violation(solution)), VIOLATED))
         field = conjugate(solution, along)

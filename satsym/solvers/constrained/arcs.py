@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.instance import Instance
@@ -15,6 +16,9 @@ from satsym.solvers.constrained.structure import FREE, Junction, Structure
 
 OF_TERMS = 1e-3
 """Share of its terms that a constraint is measured by where it is hardly ever off its boundary."""
+
+DRAWN = 20
+"""States at which it is looked at on which of them a constraint depends."""
 
 
 def holds_control(instance: Instance, constraint: int) -> bool:
@@ -86,10 +90,29 @@ def values(instance: Instance, t: Array, x: Array, u: Array) -> Array:
 
 def sizes(instance: Instance, t: Array, x: Array, u: Array) -> Array:
     """What each constraint is measured by, shape (h,): the largest it is, at least a share of its terms."""
-    push = (np.abs(gradients(instance, t, x, u)) * np.abs(x)).sum(axis=1)
-    terms = push + (np.abs(effects(instance, t, x)) * np.abs(u)).sum(axis=1)
-    found = np.maximum(np.abs(values(instance, t, x, u)), OF_TERMS * terms)
+    found = np.maximum(np.abs(values(instance, t, x, u)), OF_TERMS * terms(instance, t, x, u))
     return np.asarray(np.maximum(found.max(axis=1), 1e-300))
+
+
+def terms(instance: Instance, t: Array, x: Array, u: Array) -> Array:
+    """What constraints add up from by states and controls, shape (h, N): rounding of these is nothing."""
+    push = (np.abs(gradients(instance, t, x, u)) * np.abs(x)).sum(axis=1)
+    return np.asarray(push + (np.abs(effects(instance, t, x)) * np.abs(u)).sum(axis=1))
+
+
+def depends(instance: Instance) -> NDArray[np.bool_]:
+    """On which states each constraint depends anywhere, shape (h, n); where nothing is known it may.
+
+    Looked at where states are drawn: a derivative that vanishes at all of these vanishes everywhere.
+    """
+    rng, spec = np.random.default_rng(0), instance.model.spec
+    magnitudes = 10.0 ** rng.uniform(-2.0, 2.0, (len(spec.states), DRAWN))
+    signs = np.array([[1.0] if state.positive else [-1.0] for state in spec.states])
+    x = magnitudes * np.where(rng.random(magnitudes.shape) < 0.5, 1.0, signs)
+    t, u = rng.uniform(instance.t0, instance.t0 + 1.0, DRAWN), rng.normal(size=(len(spec.controls), DRAWN))
+    with np.errstate(all="ignore"):
+        found: NDArray[np.bool_] = (gradients(instance, t, x, u) != 0.0).any(axis=2)
+    return found
 
 
 def _row(found: Array, constraints: int, columns: int) -> Array:
@@ -147,10 +170,7 @@ class Arcs:
         if not self.structure.ends or holds_control(self.instance, self.structure.contacts[-1].constraint):
             return False
         given = np.array(final_argument(self.instance)).reshape(3, -1)[:2].sum(axis=0)
-        end = np.array([self.end]), self.node(len(self.intervals) - 1, -1)[: self.n, None]
-        return not (
-            np.abs(gradient(self.instance, self.structure.contacts[-1].constraint, *end)[:, 0]) * (given == 0.0)
-        ).any()
+        return not (depends(self.instance)[self.structure.contacts[-1].constraint] & (given == 0.0)).any()
 
     @property
     def pressed(self) -> bool:

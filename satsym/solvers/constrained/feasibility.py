@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.instance import Instance
+from satsym.kernels.evaluation import COMPLEX_STEP
+from satsym.solvers.constrained.arcs import terms, values
 from satsym.solvers.constrained.slopes import Slopes, rooms
 from satsym.solvers.constrained.starts import straight
 from satsym.solvers.constrained.transcription import Point, Program
@@ -21,9 +24,11 @@ ROUNDING = 1e-12
 WEIGHTS, NEWTON = (1e2, 1e4, 1e6, 1e8), 40
 """Of squared violations, relative to the cost, and steps for each."""
 
-REMAINING, VIOLATED = 0.5, 1e-7
-"""Share of a violation that a hundred times the weight leaves where it cannot be avoided, and steps of half the length;
-and the least that is one."""
+REMAINING = 0.5
+"""Share of a violation that a hundred times the weight, or steps of half the length, leave where it is unavoidable."""
+
+UNAVOIDABLE = 1e-7
+"""Least violation, relative to the constraint's size, and least share of the cost, that exceed rounding."""
 
 
 def refuse(instance: Instance) -> None:
@@ -46,14 +51,20 @@ def refuse(instance: Instance) -> None:
 
 
 def _refuse_at(instance: Instance, time: float, state: tuple[float, ...], key: str, direction: float) -> None:
-    """At a state that is known as a whole."""
+    """At a state that is known as a whole; what is rounding of its terms is nothing."""
     model, p = instance.model, instance.parameters
     _refuse_values(instance, time, state, key, np.ones(len(model.spec.path_constraints), bool))
-    rest = (0.0,) * len(model.spec.controls)
-    g = np.array(model.path_constraints(time, state, rest, p, instance.control_set.arguments))
-    rates = np.array(model.path_rates(time, state, rest, p)).reshape(-1, 2)[:, 0]
-    for one, value, rate in zip(model.spec.path_constraints, g, rates, strict=True):
-        if one.order > 1 and abs(value) <= ROUNDING and direction * rate > 0.0:
+    t, x, rest = np.array([time]), np.array(state)[:, None], np.zeros((len(model.spec.controls), 1))
+    g, size = values(instance, t, x, rest)[:, 0], terms(instance, t, x, rest)[:, 0]
+
+    def rates_at(at: NDArray[Any]) -> NDArray[Any]:
+        return np.asarray(model.path_rates_batch(t, at, rest.astype(at.dtype), p)).reshape(len(g), 2, -1)[:, 0, 0]
+
+    moved = x + 1j * COMPLEX_STEP * np.eye(len(x))
+    slopes = np.column_stack([np.imag(rates_at(moved[:, [j]])) for j in range(len(x))]) / COMPLEX_STEP
+    faint = ROUNDING * np.abs(slopes) @ np.abs(x)[:, 0]
+    for one, value, scale, rate, nothing in zip(model.spec.path_constraints, g, size, rates_at(x), faint, strict=True):
+        if one.order > 1 and abs(value) <= ROUNDING * scale and direction * rate > nothing:
             when = "after the start" if direction > 0 else "before the end"
             raise BadInput(
                 f"{instance.name}: {key}: path constraint {one.name} is met with the rate {rate:.6g}, which no "
@@ -68,11 +79,10 @@ def _refuse_values(
     key: str,
     which: NDArray[np.bool_],
 ) -> None:
-    model, p = instance.model, instance.parameters
-    rest = (0.0,) * len(model.spec.controls)
-    g = np.array(model.path_constraints(time, state, rest, p, instance.control_set.arguments))
-    size = np.abs(np.array(model.path_gradient(time, state, rest, p)).reshape(len(g), -1)) @ np.abs(state)
-    for one, value, scale, counts in zip(model.spec.path_constraints, g, size, which, strict=True):
+    spec, place = instance.model.spec, (np.array([time]), np.array(state)[:, None])
+    rest = np.zeros((len(spec.controls), 1))
+    g, size = values(instance, *place, rest)[:, 0], terms(instance, *place, rest)[:, 0]
+    for one, value, scale, counts in zip(spec.path_constraints, g, size, which, strict=True):
         if counts and one.order and value > ROUNDING * max(float(scale), 1e-300):
             raise BadInput(
                 f"{instance.name}: {key}: path constraint {one.name} is {value:.6g} there and may not be positive; "
@@ -80,32 +90,40 @@ def _refuse_values(
             )
 
 
-def impossible(program: Program, start: Point, worth: float) -> str:
+def impossible(program: Program, worth: float) -> str:
     """What stands against each other where no path of a convex problem is admissible; empty where that is not shown.
 
     Violations are penalised by their squares, more and more: where some path is admissible they vanish like one over
-    the weight, else they tend to the least that there are. What the discretisation alone violates is less on a finer
-    mesh.
+    the weight, else they tend to the least that there are, and the cost to that of such a path. What the discretisation
+    alone violates is less on a finer mesh.
     """
-    finer = Program(program.instance, 2 * program.intervals)
-    coarse, fine = _remaining(program, start, worth), _remaining(finer, straight(finer), worth)
-    if coarse is None or fine is None or not fine.max() > max(REMAINING * coarse.max(), VIOLATED):
+    coarse = _remaining(program, worth)
+    fine = None if coarse is None else _remaining(Program(program.instance, 2 * program.intervals), worth)
+    if coarse is None or fine is None or not fine.max() > REMAINING * coarse.max():
         return ""
     names = [one.name for one in program.instance.model.spec.path_constraints]
     violated = ", ".join(name for name, left in zip(names, fine, strict=True) if left > 0.01 * fine.max())
     return f"no motion to the given end keeps to the path constraints ({violated}): one of them is always violated"
 
 
-def _remaining(program: Program, start: Point, worth: float) -> Array | None:
-    """By how much each constraint stays violated, relative to its size; ``None`` where violations vanish."""
-    room, at, found = rooms(program, start), start, list[Array]()
+def _remaining(program: Program, worth: float) -> Array | None:
+    """By how much each constraint stays violated, relative to its size; ``None`` where nothing shows that it does."""
+    at, found, costs, penalty = straight(program), list[Array](), list[float](), 0.0
+    room = rooms(program, at)
     for weight in WEIGHTS:
-        at = _penalised(program, at, weight * max(abs(worth), 1e-12) / room**2 / program.intervals)
+        own = weight * max(abs(worth), 1e-12) / program.intervals
+        at = _penalised(program, at, own / room**2)
         if not np.isfinite(at.x).all():
             return None
-        found.append(np.maximum(program.constraints(at) * program.kept / room, 0.0).max(axis=1))
+        violated = np.maximum(program.constraints(at) * program.kept / room, 0.0)
+        found.append(violated.max(axis=1))
+        costs.append(program.cost(at))
+        penalty = own * float((violated**2).sum()) / 2
     before, last = found[-2:]
-    return last if last.max() > REMAINING * before.max() > 0.0 else None
+    avoided = not last.max() > max(REMAINING * before.max(), UNAVOIDABLE)
+    # where the weights are too small to count, the cost outweighs what is violated, or rises more at each step
+    paying = costs[-1] - costs[-2] > max(costs[-2] - costs[-3], UNAVOIDABLE * abs(costs[-1]))
+    return None if avoided or paying or not penalty > abs(costs[-1]) else last
 
 
 def _penalised(program: Program, start: Point, weight: Array) -> Point:

@@ -29,6 +29,9 @@ SMALL = 1e-4
 NOTHING = 1e-6
 """Share of the costates below which what a constraint adds to them is nothing."""
 
+ON_BOUNDARY = 1e-9
+"""Share of its size along the way by which a constraint may be off its boundary where a motion starts on it."""
+
 INSTANT = 2
 """Intervals within which multipliers of a touch point are spread."""
 
@@ -50,7 +53,7 @@ def recognised(program: Program, path: Path) -> Structure:
             if one.order == 0 or pushing[first : last + 1].sum() > NOTHING:
                 found.append(_contact(k, one.order, between if one.order == 0 else nodes, z, first, last))
     found.sort(key=lambda contact: contact.middle)
-    return _with_ends(program, tuple(found), nodes)
+    return _with_ends(program, tuple(found), nodes, terms[:, 0])
 
 
 def _bridged(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -74,14 +77,14 @@ def _contact(constraint: int, order: int, times: Array, z: Array, begins: int, e
     return Contact(constraint, start, end, jumps)
 
 
-def _with_ends(program: Program, contacts: tuple[Contact, ...], times: Array) -> Structure:
-    """Whether the first contact holds from the start on, and the last until the end."""
+def _with_ends(program: Program, contacts: tuple[Contact, ...], times: Array, sizes: Array) -> Structure:
+    """Whether the first contact holds from the start on, and the last until the end; constraints have sizes."""
     if not contacts:
         return Structure(())
     one, step = program.instance, 1.5 * float(times[1] - times[0])
     contacts = _meeting(program, contacts, times)
     first, last = contacts[0], contacts[-1]
-    starts = not first.touches and first.start - one.t0 < step and _on_boundary(program, first.constraint)
+    starts = not first.touches and first.start - one.t0 < step and _on_boundary(program, first.constraint, sizes)
     order, end = one.model.spec.path_constraints[last.constraint].order, float(times[-1])
     if end - last.end >= step or (order > 1 and not last.touches):
         return Structure(contacts, starts)
@@ -102,10 +105,11 @@ def _meeting(program: Program, contacts: tuple[Contact, ...], times: Array) -> t
     return tuple(found)
 
 
-def _on_boundary(program: Program, constraint: int) -> bool:
+def _on_boundary(program: Program, constraint: int, sizes: Array) -> bool:
     """Whether a constraint is on its boundary at the start, or may be because it holds a control."""
     if program.holding[constraint]:
         return True
     one, t = program.instance, np.array([program.instance.t0])
     u = np.zeros((len(one.model.spec.controls), 1))
-    return bool(abs(values(one, t, np.array(one.initial)[:, None], u)[constraint, 0]) < 1e-9)
+    begun = values(one, t, np.array(one.initial)[:, None], u)[constraint, 0]
+    return bool(abs(begun) <= ON_BOUNDARY * sizes[constraint])

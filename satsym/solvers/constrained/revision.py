@@ -133,10 +133,10 @@ def _pulling(arcs: Arcs) -> tuple[str, list[Structure]] | None:
     largest = max([abs(jump) for one in known for jump in one.jumps], default=0.0)
     costates = max(float(np.abs(arcs.nodes(k)[:, arcs.n :]).max()) for k in range(len(arcs.intervals)))
     for place, one in enumerate(known):
-        t, x = np.array([one.middle]), arcs.nodes(0)[:1, : arcs.n].T
-        push = float(np.abs(gradient(arcs.instance, one.constraint, t, x)).max())
+        t, arc = np.array([one.middle]), int(np.searchsorted(arcs.times[1:-1], one.middle))
+        push = float(np.abs(gradient(arcs.instance, one.constraint, t, arcs.at(arc, t)[: arcs.n])).max())
         if min(one.jumps) < -SLACK * max(largest, costates / max(push, 1e-300)):
-            tries = [] if one.touches else [_instead(arcs, place, _touch(one))]
+            tries = [] if one.touches or _order(arcs, one.constraint) < 2 else [_instead(arcs, place, _touch(one))]
             return "a multiplier at a junction is negative", [*tries, _instead(arcs, place)]
     return None
 
@@ -270,5 +270,6 @@ def multiplier(arcs: Arcs, arc: int) -> Array:
 def _pressure(arcs: Arcs) -> float:
     """What multipliers are measured by: the largest of them, or jumps over the duration."""
     along_arcs = [float(np.abs(multiplier(arcs, k)).max()) for k, b in enumerate(arcs.structure.arcs) if b >= 0]
-    jumps = [abs(arcs.jump(k)) for k, one in enumerate(arcs.junctions) if one.event in Event]
+    jumps = [abs(arcs.jump(k)) for k in range(len(arcs.junctions))]
+    jumps += [abs(float(arcs.unknown[-1]))] if arcs.pressed else []
     return max([*along_arcs, *(jump / (arcs.end - arcs.instance.t0) for jump in jumps), 1e-300])

@@ -134,12 +134,11 @@ class _Blocks:
     def dynamics(self, a: Array, b: Array) -> None:
         """Derivatives of the rates times the step, shapes (n, n, N) and (n, m, N)."""
         n, k = self.n, np.arange(self.count)
-        i, j, c = np.arange(n)[:, None, None], np.arange(n)[None, :, None], np.arange(self.m)[None, :, None]
+        j, c = np.arange(n)[None, :, None], np.arange(self.m)[None, :, None]
         unit, row = np.eye(n)[:, :, None], k * n + np.arange(n)[:, None, None]
         self.equalities.add(row, self.state(j, k + 1), a / 2 - unit)
         self.equalities.add(row[..., 1:], self.state(j, k[1:]), a[..., 1:] / 2 + unit)
         self.equalities.add(row, self.control(c, k), b)
-        del i
 
     def ends(self, given: NDArray[np.intp], psi_x: Array) -> None:
         first, j = self.n * self.count, np.arange(self.n)[None, :]

@@ -12,6 +12,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.control_set import bound_names
 from satsym.instance import Instance
+from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Event, Progress, Solution
 from satsym.solvers import iteration, two_point
 from satsym.solvers.constrained.arcs import Arcs, control
@@ -28,8 +29,6 @@ from satsym.solvers.constrained.violation import violation
 from satsym.solvers.failures import FAILURES, tried
 from satsym.solvers.iteration import Limits, Meter, watched
 from satsym.status import Status
-
-METHOD = "boundary-arcs"
 
 INTERVALS = (100, 250, 800)
 """Of the regularised path: of more where the structure is not seen."""
@@ -92,7 +91,7 @@ def solve(instance: Instance, progress: Progress | None = None) -> Solution:
         except FAILURES as error:
             found = Stopped(Status.NOT_CONVERGED, f"no extremal found: arithmetic fails on the way ({error})")
     if isinstance(found, Stopped):
-        nothing = iteration.unsolved(instance, METHOD, time.perf_counter() - began)
+        nothing = iteration.unsolved(instance, BOUNDARY_ARCS, time.perf_counter() - began)
         return replace(nothing, status=found.status, message=found.message, history=relaxed.history)
     return _answered(instance, found, relaxed, time.perf_counter() - began)
 
@@ -144,7 +143,7 @@ def _searched(program: Program, starts: list[Point], worth: float, limits: Limit
         if same:
             one = same[0]
         elif not path.solved:
-            one = _unsolved(program, start, worth)
+            one = _unsolved(program, worth)
         else:
             one = tried(partial(_exact, program, path, own)) or NO_NUMBERS
             known.append((path.cost, one))
@@ -173,9 +172,9 @@ def others(instance: Instance, worth: float, seed: int, deadline: float) -> tupl
     return len(answered), [one.cost() for one in answered if isinstance(one, Arcs)], limits.late
 
 
-def _unsolved(program: Program, start: Point, worth: float) -> Stopped:
+def _unsolved(program: Program, worth: float) -> Stopped:
     """Why the regularised problem has no answer."""
-    if convex(program.instance) and (reason := impossible(program, start, worth)):
+    if convex(program.instance) and (reason := impossible(program, worth)):
         return Stopped(Status.INFEASIBLE, reason)
     return Stopped(Status.NOT_CONVERGED, "no regularised path keeps to the path constraints")
 
@@ -246,7 +245,7 @@ def _answered(instance: Instance, arcs: Arcs, relaxed: Solution, wall_s: float) 
     message = f"structure {arcs.structure.name(instance)}" + (f" ({lasting})" if lasting else "")
     return Solution(
         instance=instance,
-        method=METHOD,
+        method=BOUNDARY_ARCS,
         status=status,
         message=f"{message}, from a regularised path",
         objective=arcs.cost(),

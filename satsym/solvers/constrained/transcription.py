@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.collocation.scaling import final_argument
-from satsym.solvers.constrained.arcs import gradient, values
+from satsym.solvers.constrained.arcs import depends, values
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,10 +60,7 @@ class Program:
         """
         (x, given), end = self._target(), np.array([self.final_time(self.guessed)])
         table = np.ones((len(self.holding), self.intervals))
-        for k, holds in enumerate(self.holding):
-            pushed = np.abs(gradient(self.instance, k, end, np.array(x)[:, None]))[:, 0]
-            if not (holds or (pushed * (given == 0.0)).any()):
-                table[k, -1] = 0.0
+        table[~(self.holding | (depends(self.instance) & (given == 0.0)).any(axis=1)), -1] = 0.0
         u = np.zeros((len(self.instance.model.spec.controls), 1))
         bounds = self.instance.control_set.arguments
         found = self.instance.model.path_constraints_batch(end, np.array(x)[:, None], u, self.p, bounds)

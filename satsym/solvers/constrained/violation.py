@@ -7,6 +7,9 @@ import numpy as np
 from satsym.solution import Solution
 from satsym.solvers.constrained.arcs import sizes, values
 
+VIOLATED = 1e-9
+"""Largest violation that is none, relative to the constraint's size along the way."""
+
 BETWEEN = 8
 """Places between two nodes."""
 

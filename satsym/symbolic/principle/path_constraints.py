@@ -25,9 +25,6 @@ from satsym.symbolic.model import Problem, symbols_of, t
 from satsym.symbolic.principle import path_notation as pn
 from satsym.symbolic.principle.pontryagin import costates
 
-HIGHEST = 2
-"""Order of a constraint that is solved; those of a higher one have endlessly many junctions as a rule."""
-
 COMPETITORS = 20
 """Controls on the boundary with which the boundary control is compared at each random point."""
 
@@ -178,7 +175,7 @@ def constraints(so_far: Derivation) -> list[Constraint]:
     stated = {e.name: e.rhs for e in so_far.step(STEP).equations}
     found = []
     for name in pn.of_states(problem_of(so_far)):
-        orders = [k for k in range(HIGHEST + 1) if pn.entry(name, k) in stated]
+        orders = [k for k in range(pn.HIGHEST + 1) if pn.entry(name, k) in stated]
         found.append(Constraint(name, tuple(stated[pn.entry(name, k)] for k in orders)))
     return found
 
@@ -188,14 +185,14 @@ def _differentiated(so_far: Derivation, name: str) -> Constraint:
     motion, controls = motion_of(so_far), set(symbols_of(so_far.model.controls))
     what = f"{so_far.name}: path_constraints {name}"
     rates = [sp.sympify(problem.path_constraints[name])]
-    for _ in range(HIGHEST):
+    for _ in range(pn.HIGHEST):
         rates.append(tidy(simplified(total_derivative(rates[-1], motion)), tuple(sorted(controls, key=str))))
         if rates[-1].free_symbols & controls:
             return Constraint(name, tuple(rates))
     if _uncontrolled(rates[-1], motion, controls):
         raise DerivationError(f"{what}: no control influences it, so nothing can keep it", ("path_constraints",))
     raise DerivationError(
-        f"{what}: its order is more than {HIGHEST}, for which no extremals are found", ("path_constraints",)
+        f"{what}: its order is more than {pn.HIGHEST}, for which no extremals are found", ("path_constraints",)
     )
 
 

@@ -39,8 +39,8 @@ def _bounds(problem: Problem) -> dict[sp.Symbol, sp.Expr]:
     return found | {b: u - b for b, u in zip(high, controls, strict=True)}
 
 
-RATES = 2
-"""Rates of a constraint that have symbols."""
+HIGHEST = 2
+"""Order of a constraint that is solved; those of a higher one have endlessly many junctions as a rule."""
 
 
 def entry(name: str, order: int) -> str:

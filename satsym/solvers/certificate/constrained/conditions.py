@@ -18,13 +18,14 @@ from satsym.solvers.constrained.arcs import control, holds_control, multipliers,
 from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.constrained.equations import changing
 from satsym.solvers.constrained.structure import FREE, within
+from satsym.solvers.constrained.violation import VIOLATED
 from satsym.status import Verdict
 
 RESIDUAL, DEFECT, STATIONARY, DRIFT, COST = 1e-9, 1e-7, 1e-8, 1e-9, 1e-8
 """Largest boundary residual, defect, violation of stationarity, change of H and error of the stated cost."""
 
-VIOLATED, SIGN = 1e-9, 1e-9
-"""Largest violation of a constraint, relative to its size along the way, and negative share of a multiplier."""
+SIGN = 1e-9
+"""Largest negative share of a multiplier."""
 
 CURVED = 1e-7
 """Least curvature with the active arcs held, relative to that without costs but of the control."""
@@ -49,7 +50,7 @@ def certify(solution: Solution, deadline: float, seed: int = 0, compared: bool =
             second = [Check("legendre-clebsch", float(not conditions.legendre_clebsch(solution) > 0.0), 0.0)]
             if convex(solution.instance):
                 second.append(Check("not convex", 0.0, 0.0))
-            else:
+            elif all(c.passed for c in second):
                 second += _sufficient(solution, again)
                 if compared:
                     others = comparison.compared(solution, deadline, seed)

@@ -15,10 +15,14 @@ from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solvers.certificate.end_form import fixed_states
 from satsym.solvers.certificate.flow import FAINT, TOLERANCE, Flow, typical
+from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.constrained.arcs import control, field, gradient, holds_control
 from satsym.solvers.constrained.structure import FREE, pressing, stated_arcs, within
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import integrate, leap
+
+INDEPENDENT = 1e-9
+"""Least share of a constraint's gradient that neither given states nor terminal constraints make up."""
 
 BETWEEN = 4
 """Places looked at between two nodes, the second of these included."""
@@ -88,9 +92,10 @@ def replay(solution: Solution) -> Replay | None:
                 value[n:] -= zeta * gradient(instance, which, t, value[:n, None])[:, 0]
     except FAILURES:
         return None
-    end, pressed = value, None
-    if (last := pressing(solution)) != FREE:
-        pressed, end = _pressed(solution, last, value)
+    last, end = pressing(solution), value.copy()
+    pressed = None if last == FREE else _pressed(solution, last, value)
+    if pressed is not None:
+        end[n:] -= pressed * gradient(instance, last, solution.times[-1:], end[:n, None])[:, 0]
     final = float(solution.times[-1])
     total = cost + float(instance.model.terminal_cost(final, tuple(end[:n].tolist()), instance.parameters))
     return Replay(pieces, np.array(jumps), pressed, off, np.concatenate([p.z for p in pieces], axis=1), total, end)
@@ -113,17 +118,28 @@ def _jump(solution: Solution, event: int, node: int, sizes: Array) -> tuple[floa
     return zeta, float((np.abs(change - zeta * g_x) / sizes[n:]).max())
 
 
-def _pressed(solution: Solution, constraint: int, value: Array) -> tuple[float, Array]:
-    """The multiplier with which a constraint pushes at the end, by what transversality lacks, and the values after."""
-    instance, n = solution.instance, len(solution.x)
-    t, free = float(solution.times[-1]), ~fixed_states(instance)
-    s_x = np.array(instance.model.terminal_gradient(t, tuple(value[:n].tolist()), instance.parameters))
-    g_x = gradient(instance, constraint, np.array([t]), value[:n, None])[:, 0]
-    pushed = g_x[free] @ g_x[free]
-    zeta = float((value[n:] - s_x)[free] @ g_x[free] / pushed) if pushed > 0.0 else 0.0
-    end = value.copy()
-    end[n:] -= zeta * g_x
-    return zeta, end
+def _pressed(solution: Solution, constraint: int, value: Array) -> float | None:
+    """The multiplier with which a constraint pushes at the end, by what transversality lacks.
+
+    Multipliers of terminal constraints make up what they can; where they, or given states, could make up all that the
+    constraint brings about, there is none.
+    """
+    instance, n, t = solution.instance, len(solution.x), float(solution.times[-1])
+    final, free, x = final_argument(instance), ~fixed_states(instance), tuple(value[:n].tolist())
+    count, bounds = len(instance.model.spec.multipliers), instance.control_set.arguments
+
+    def lacking(lam: Array, nu: Array) -> Array:
+        found = instance.model.boundary(t, x, tuple(lam), tuple(nu), instance.parameters, bounds, final)
+        return np.array(found)[:n][free]
+
+    none, g_x = np.zeros(count), gradient(instance, constraint, np.array([t]), value[:n, None])[:, 0]
+    begun = lacking(value[n:], none)
+    tied = np.reshape([lacking(value[n:], one) - begun for one in np.eye(count)], (count, len(begun))).T
+    pushed = lacking(value[n:] - g_x, none) - begun
+    own = pushed - tied @ np.linalg.lstsq(tied, pushed, rcond=None)[0] if count else pushed
+    if not np.linalg.norm(own) > INDEPENDENT * np.linalg.norm(g_x):
+        return None
+    return float(-(own @ begun) / (own @ own))
 
 
 def _piece(

@@ -11,7 +11,7 @@ constraint pushes there, add the curvature of g times its multiplier.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -59,7 +59,8 @@ def curvature(solution: Solution, again: Replay) -> float:
             ties.append(one.gradient @ state)
             form += state.T @ (one.factor * np.outer(one.rate, one.rate) + one.curved) @ state
     unit = unit_sizes(solution)
-    end = end_form(solution, unit)
+    after = np.column_stack([solution.lam[:, :-1], again.end[n:]])  # multipliers at the end are those after its jump
+    end = end_form(replace(solution, lam=after), unit)
     scaled = state / unit[:n, None]
     form += scaled.T @ end.form @ scaled * unit[0] * unit[n]
     ties += list(end.ties @ scaled)
@@ -67,15 +68,21 @@ def curvature(solution: Solution, again: Replay) -> float:
 
 
 def _least(form: Array, pure: Array, ties: Array) -> float:
-    """Least generalised eigenvalue on what keeps the ties."""
-    from scipy.linalg import eigh
+    """Least generalised eigenvalue on what keeps the ties: infinite where nothing does, NaN where numbers fail."""
+    from scipy.linalg import LinAlgError, eigh
 
+    if not np.isfinite(form).all():  # a constraint is crossed at its touch point
+        return float("nan")
     rows = ties / np.maximum(np.abs(ties).max(axis=1, keepdims=True), 1e-300)
     _, strengths, kept = np.linalg.svd(rows)
     basis = kept[int((strengths > 1e-9 * strengths.max(initial=0.0)).sum()) :].T
     if not basis.size:
         return float("inf")
-    return float(eigh(basis.T @ form @ basis, basis.T @ pure @ basis, eigvals_only=True, subset_by_index=[0, 0])[0])
+    kept_form, kept_pure = basis.T @ form @ basis, basis.T @ pure @ basis
+    try:
+        return float(eigh(kept_form, kept_pure, eigvals_only=True, subset_by_index=[0, 0])[0])
+    except LinAlgError:  # controls are not weighed by squares that are positive
+        return float("nan")
 
 
 def _held(solution: Solution, constraint: int, t: Array, z: Array) -> Array:
