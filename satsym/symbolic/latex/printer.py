@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from enum import IntEnum
+from functools import partial, reduce
 from typing import Any
 
 import sympy as sp
@@ -236,6 +237,13 @@ class Printer(LatexPrinter):
 
     def _print_log(self, expr: sp.Expr, exp: str | None = None) -> str:
         return self._print_Function(expr, exp)
+
+    def _print_Max(self, expr: sp.Expr, exp: str | None = None) -> str:
+        parts = map(self._print, sorted(expr.args, key=sp.default_sort_key))
+        tex = reduce(partial(extreme, rf"\{expr.func.__name__.lower()}"), parts)
+        return f"{self._enclosed(tex)}^{{{exp}}}" if exp else tex
+
+    _print_Min = _print_Max
 
     def _print_Clip(self, expr: sp.Expr, exp: str | None = None) -> str:
         value, lower, upper = map(self._print, expr.args)
