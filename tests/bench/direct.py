@@ -50,7 +50,9 @@ class Stated:
     norms: tuple[tuple[float, float], ...]
     """Their least and largest, squared."""
     path: Any
-    """(t, x, p) -> path constraints."""
+    """(t, x, p) -> path constraints on the states alone."""
+    mixed: Any
+    """(t, x, u, p) -> those that hold controls, which are to keep to them where controls are: at the stages."""
 
 
 def stated(problem: Problem, case: Instance) -> Stated:
@@ -77,6 +79,7 @@ def stated(problem: Problem, case: Instance) -> Stated:
         values = sp.lambdify(arguments, plain, modules=[names], cse=True)(*given)
         return ca.Function("f", own, [ca.vertcat(*values) if values else ca.SX(0, 1)])
 
+    kept = [sp.sympify(g) for g in problem.path_constraints.values()]
     balls = [(n, s) for n, s in problem.control_sets.items() if isinstance(s, Ball | Annulus)]
     if problem.control_set == "ball":
         within, norms = [sum(u**2 for u in controls)], ((0.0, case.max_norm**2),)
@@ -89,7 +92,8 @@ def stated(problem: Problem, case: Instance) -> Stated:
         function([t, states, parameters], [sense * problem.terminal_cost, *problem.terminal_constraints]),
         function([controls], within),
         norms,
-        function([t, states, parameters], list(problem.path_constraints.values())),
+        function([t, states, parameters], [g for g in kept if not g.free_symbols & set(controls)]),
+        function([t, states, controls, parameters], [g for g in kept if g.free_symbols & set(controls)]),
     )
 
 
@@ -124,7 +128,8 @@ def tried(problem: Problem, functions: Stated, case: Instance, intervals: int) -
     x, s, u = ca.MX.sym("x", n, intervals + 1), ca.MX.sym("s", n, stages), ca.MX.sym("u", m, stages)
     lasting = ca.MX.sym("T")
     tau = (np.arange(intervals)[:, None] + np.array(ca.collocation_points(DEGREE, "legendre"))).ravel() / intervals
-    f = functions.rates.map(stages)(case.t0 + lasting * ca.DM(tau).T, s, u, ca.repmat(p, 1, stages))
+    inside = (case.t0 + lasting * ca.DM(tau).T, s, u, ca.repmat(p, 1, stages))
+    f, mixed = functions.rates.map(stages)(*inside), functions.mixed.map(stages)(*inside)
     h = lasting / intervals
     known = ca.horzcat(*(ca.horzcat(x[:, k], s[:, DEGREE * k : DEGREE * (k + 1)]) for k in range(intervals)))
     slopes = known @ ca.kron(ca.DM.eye(intervals), c)
@@ -134,8 +139,8 @@ def tried(problem: Problem, functions: Stated, case: Instance, intervals: int) -
     norms = functions.within.map(stages)(u) if functions.norms else ca.MX(0, stages)
     inner = ca.DM(np.linspace(0.0, 1.0, intervals + 1)[1:-1]).T
     path = functions.path.map(intervals - 1)(case.t0 + lasting * inner, x[:, 1:-1], ca.repmat(p, 1, intervals - 1))
-    g = [ca.vec(slopes - h * f[:n, :]), ca.vec(ends - x[:, 1:]), ca.vec(end[1:]), ca.vec(norms), ca.vec(path)]
-    zeros, kept = np.zeros(sum(one.numel() for one in g[:3])), np.zeros(path.numel())
+    g = list(map(ca.vec, (slopes - h * f[:n, :], ends - x[:, 1:], end[1:], norms, path, mixed)))
+    zeros, kept = np.zeros(sum(one.numel() for one in g[:3])), np.zeros(path.numel() + mixed.numel())
     rows = [np.tile([row[k] for row in functions.norms], stages) for k in (0, 1)]
     low, high = np.concatenate([zeros, rows[0], kept - math.inf]), np.concatenate([zeros, rows[1], kept])
     lengths = ((case.tf_guess - case.t0) if case.tf_guess else FIRST) if free else case.tf - case.t0
