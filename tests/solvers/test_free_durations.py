@@ -130,7 +130,7 @@ def test_free_ends_have_a_short_best_time_where_moving_just_pays():
 
 
 @pytest.mark.parametrize("t0", [0.0, 3.0])
-def test_a_minimum_next_to_no_time_at_all_is_found_beyond_a_dearer_one(tmp_path: Path, t0: float) -> None:
+def test_a_minimum_next_to_no_time_at_all_is_found_beyond_a_costlier_one(tmp_path: Path, t0: float) -> None:
     """A body that drifts with speed one goes d for d at the best speed, 1.01; the end costs the rest of two valleys."""
     place, rate = Variable("q", "q"), Variable("u", "u")
     q, u = symbols_of((place, rate))

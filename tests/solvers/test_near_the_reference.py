@@ -168,6 +168,6 @@ def test_a_cost_off_by_more_than_rounding_fails(near: tuple[Solution, float], si
 def test_a_competitor_cheaper_by_more_than_rounding_is_noticed(near: tuple[Solution, float]) -> None:
     solution, size = near
     fraction = 1e-11 / size
-    dearer = replace(solution, objective=(1.0 + fraction) * solution.objective)
-    (starts,) = (kind for kind in compared(dearer, float("inf")).kinds if kind.summary.kind is Kind.STARTS)
+    costlier = replace(solution, objective=(1.0 + fraction) * solution.objective)
+    (starts,) = (kind for kind in compared(costlier, float("inf")).kinds if kind.summary.kind is Kind.STARTS)
     assert starts.margin == pytest.approx(-fraction / (1.0 + fraction), rel=0.1)

@@ -20,7 +20,7 @@ from satsym.instance import Instance
 from satsym.solution import Solution
 from satsym.solvers.switching import solving
 from satsym.solvers.switching.refusals import refuse
-from satsym.status import Status
+from satsym.status import BadInput, Status
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 from tests.support.models import build
 
@@ -66,6 +66,9 @@ def test_a_deviation_that_begins_at_zero_costs_something(tmp_path: Path):
     """Fuller's problem from (0, 1): no state along a multiple of this start costs anything."""
     fuller = problem("fuller", {x: y, y: v}, x**2 / 2, ("v",))
     refuse(case(tmp_path, fuller, (0.0, 1.0), (0.0, 0.0), "5.0"))
+    nothing = problem("nothing", {x: y, y: v}, Integer(1), ("v",))
+    with pytest.raises(BadInput, match="no control costs more than another"):
+        refuse(case(tmp_path, nothing, (0.0, 1.0), (0.0, 0.0), "5.0"))
 
 
 def backwards(rates: Callable[[np.ndarray, float], list[float]], arcs: Sequence[tuple[float, float]]) -> list[float]:

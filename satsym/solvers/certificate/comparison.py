@@ -45,7 +45,7 @@ class Compared:
     summary: Competitors
     """As the certificate has it."""
     margin: float
-    """How much dearer the cheapest is, relative to the cost; negative where it is cheaper, infinite without any."""
+    """Excess of the cheapest, relative to the cost; negative where it is cheaper, infinite without any."""
     cheapest: Competitor | None
     """That one."""
     interrupted: bool
@@ -90,8 +90,8 @@ class Comparison:
 def summed(solution: Solution, kind: Kind, count: int, costs: Sequence[float], interrupted: bool) -> Compared:
     """What so many attempts at a kind came to, of which some have costs."""
     cheapest = min(costs, default=float("nan"))
-    dearer = margin(cheapest, solution.objective, coarse=SAME, hidden=hidden(solution))
-    return Compared(Competitors(kind, count, len(costs), cheapest), dearer, None, interrupted)
+    excess = margin(cheapest, solution.objective, coarse=SAME, hidden=hidden(solution))
+    return Compared(Competitors(kind, count, len(costs), cheapest), excess, None, interrupted)
 
 
 def hidden(solution: Solution) -> float:
@@ -100,7 +100,7 @@ def hidden(solution: Solution) -> float:
 
 
 def margin(competitor: float, cost: float, coarse: float = 0.0, hidden: float = 0.0) -> float:
-    """How much dearer a competitor is, relative to the cost.
+    """Excess of a competitor, relative to the cost.
 
     Differences below ``coarse``, or of costs below ``hidden``, are its own error.
     """

@@ -272,14 +272,14 @@ def _bounded(problem: TwoPoint, found: Attempt, cost: float, limits: Limits) -> 
     if not found.minimum or not found.curve.in_domain(problem.positive):
         return None
     rough = Competitor(problem, found.curve, found.cost * problem.scale.cost)
-    if rough.cost > cost + ROUGH * abs(cost):  # what is dearer without the bounds is so within them
+    if rough.cost > cost + ROUGH * abs(cost):  # what costs more without the bounds does so within them
         return rough
     inside = within_found(problem, found, limits)
     return _accurate(problem, inside.curve, cost) if inside.solved else None
 
 
 def _accurate(problem: TwoPoint, curve: Curve, cost: float) -> Competitor | None:
-    """A minimum with its cost, as rough as its mesh where it is clearly dearer than another cost."""
+    """A minimum with its cost, as rough as its mesh where it clearly exceeds another cost."""
     from satsym.solvers.collocation.continuation import kept
     from satsym.solvers.collocation.refinement import refine
     from satsym.solvers.collocation.system import System

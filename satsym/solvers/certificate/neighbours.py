@@ -41,7 +41,7 @@ class Neighbours:
     """What neighbours came to."""
 
     margin: float
-    """How much dearer the cheapest pair of opposite ones is in the mean, relative to the cost; infinite where none
+    """Excess of the cheapest pair of opposite ones in the mean, relative to the cost; infinite where none
     could be simulated."""
     curvature: float
     """The least of the second variation on short pieces of the control, in units of what the change of the control

@@ -77,7 +77,7 @@ class Search:
 
     @property
     def ends_in_a_fall(self) -> bool:
-        """Whether long durations are the cheapest, and nothing ever makes longer ones dearer."""
+        """Whether long durations are the cheapest, and nothing ever makes longer ones cost more."""
         longest = self.tries[-1]
         far = longest.duration >= LONG * self.tries[0].duration * (1.0 - 1e-9)
         return self.falls_to_the_longest and longest.floor <= 0.0 and far
@@ -198,7 +198,7 @@ class Search:
     def _shorter_may_pay(self, edge: Try) -> bool:
         """Whether the cost would become the least so far, if it went on to fall as steeply, or is so at no time at all.
 
-        Next to the latter there may be a minimum: ending at once is dearer than that where the cost falls at first.
+        Next to the latter there may be a minimum: ending at once costs more than that where the cost falls at first.
         """
         least = edge.cost - edge.slope * edge.duration if edge.slope > 0.0 else self.trials.at_once
         return min(least, self.trials.at_once) < self.cheapest.cost and not self._least(edge)

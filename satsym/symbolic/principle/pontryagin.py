@@ -111,7 +111,7 @@ def control_law(so_far: Derivation) -> Step:
     value, chosen = numeric([h]), numeric(laws)
 
     def margins(point: Point, rng: random.Random) -> list[Any]:
-        """How far the law keeps within its bounds, and how much dearer random admissible controls are, in H."""
+        """How far the law keeps within its bounds, and by how much random admissible controls exceed it, in H."""
         point = control_sets.ordered(problem.control_set, point, limits)
         law = chosen(point)
         best = value({**point, **dict(zip(controls, law, strict=True))})[0]

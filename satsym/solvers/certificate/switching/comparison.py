@@ -68,8 +68,8 @@ def compared(solution: Solution, limits: Limits) -> Comparison:
 
 
 def _check(solution: Solution, one: Competitors) -> Check:
-    dearer = margin(one.cheapest, solution.objective, coarse=COARSE.get(one.kind, COST_MARGIN)) if one.solved else 0.0
-    return Check(f"cheaper by: {one.kind.value}", max(0.0, -dearer), COST_MARGIN)
+    excess = margin(one.cheapest, solution.objective, coarse=COARSE.get(one.kind, COST_MARGIN)) if one.solved else 0.0
+    return Check(f"cheaper by: {one.kind.value}", max(0.0, -excess), COST_MARGIN)
 
 
 def _both(one: Competitors, other: Competitors) -> Competitors:
