@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -28,12 +29,12 @@ if TYPE_CHECKING:
 Subject: TypeAlias = "Instance | symbolic.Problem | symbolic.Model | Derivation | str | Path"
 
 
-class _Said:
+class _Said(ABC):
     """What has an object for JSON and a text for people."""
 
-    @cached_property
-    def _object(self) -> dict[str, Any]:
-        raise NotImplementedError
+    @property
+    @abstractmethod
+    def _object(self) -> dict[str, Any]: ...
 
     def to_dict(self) -> dict[str, Any]:
         """What the command line prints with ``--json``."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -24,7 +25,7 @@ Found = TypeVar("Found", Solution, Simulation)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Result(Generic[Found]):
+class Result(ABC, Generic[Found]):
     """A trajectory, with the instance it is of.
 
     ``x`` and ``u`` are functions of time, ``x(t)``, and index like arrays of their values at the nodes, ``x[0, -1]``;
@@ -121,9 +122,9 @@ class Result(Generic[Found]):
             raise BadInput(f"{printable(str(folder))}: holds the result of {other}, not of {cls._command}")
         return cls(case, found)  # type: ignore[arg-type]
 
+    @abstractmethod
     def to_dict(self) -> dict[str, Any]:
         """What the command line prints with ``--json``."""
-        raise NotImplementedError
 
     def to_json(self) -> str:
         """The same as text."""
@@ -149,7 +150,7 @@ class Result(Generic[Found]):
         return np.where(t == self.times[node], self.found.u[:, node], now)
 
     def _law(self, t: Array, z: Array) -> Array:
-        raise NotImplementedError
+        raise NotImplementedError("asked only of what does not keep its controls as pieces")
 
     def _curve(self, what: str, values: Array, names: Sequence[str], at: Any) -> Curve:
         whole = len(self.times) > 1 and np.isfinite(self.found.x).all()
