@@ -57,9 +57,15 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 @pytest.fixture(scope="session")
-def sample(request: pytest.FixtureRequest) -> Callable[[Iterable[Any]], list[Any]]:
+def whole(request: pytest.FixtureRequest) -> bool:
+    """Whether every case of every test is asked for."""
+    return bool(request.config.getoption("--whole"))
+
+
+@pytest.fixture(scope="session")
+def sample(whole: bool) -> Callable[[Iterable[Any]], list[Any]]:
     """What is looked at of many cases in one test: every third, or all if all are asked for."""
-    step = 1 if request.config.getoption("--whole") else SHARE
+    step = 1 if whole else SHARE
     return lambda cases: list(cases)[::step]
 
 

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import hashlib
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -15,19 +13,8 @@ from tests.support import derived as shared
 
 STATED = {problem.name: (path, problem) for path in sources.shipped() for problem in loader.load(path)}
 
-WRITTEN_BY = sources.digest(["satsym.report.artefacts"])
 
-SHARE = 3
-"""Of the models every third is derived, another third after each change of what writes them; a whole run derives all."""
-
-
-def drawn(name: str) -> Any:
-    """One case, left to whole runs unless what writes it draws it: the same for all processes and machines."""
-    draw = hashlib.blake2b(f"{WRITTEN_BY} {name}".encode(), digest_size=2).digest()
-    return pytest.param(name, marks=() if int.from_bytes(draw) % SHARE == 0 else pytest.mark.study)
-
-
-@pytest.mark.parametrize("name", [drawn(name) for name in STATED])
+@pytest.mark.parametrize("name", shared.each())
 def test_the_generated_files_of_a_model_are_what_its_derivation_leads_to(name: str, repository: Path) -> None:
     path, _ = STATED[name]
     files = artefacts.files(shared.stated(name), shared.derived, path, repository / "generated")

@@ -8,7 +8,6 @@ import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -24,7 +23,7 @@ from satsym.report.latex.width import width
 from satsym.report.texts import MissingText, languages, load
 from satsym.spec import ControlSetKind
 from satsym.status import BadInput
-from satsym.symbolic import Derivation, FirstOrder, Newton, Problem, Variable, loader, symbols_of, t
+from satsym.symbolic import Derivation, FirstOrder, Newton, Problem, Variable, symbols_of, t
 from satsym.symbolic.latex.typeset import Typesetter
 from tests.support import derived as shared
 
@@ -100,14 +99,8 @@ def long_equations() -> Problem:
     return Problem(name="oblate", title="Long", model=model, running_cost=cost, control_set="box")
 
 
-def shipped() -> list[Problem]:
-    return [problem for path in loader.shipped() for problem in loader.load(path)]
-
-
 MADE = (double_integrator, cartesian, long_equations)
-NAMES = [*(f.__name__ for f in MADE), "cart", *(p.name for p in shipped())]
-SAMPLED = 3
-"""One in so many documents is compiled in other languages than English as well."""
+OWN = (*(f.__name__ for f in MADE), "cart")
 
 
 @cache
@@ -145,9 +138,9 @@ def assert_clean(log: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("language", languages())
 def test_what_is_typeset_compiles_within_its_margins_and_every_reference_leads_somewhere(
-    language: str, sample: Callable[[Iterable[str]], list[str]], tmp_path: Path
+    language: str, whole: bool, tmp_path: Path
 ) -> None:
-    names = sample(NAMES) if language == "en" else NAMES[::SAMPLED]
+    names = [*OWN, *(shared.names() if whole else shared.drawn())]
     preamble, _, _ = render(derived(names[0]), language).partition("\\begin{document}")
     bodies = [f"\\typeout{{{name}}}\n{render(derived(name), language, standalone=False)}" for name in names]
     text = f"{preamble}\\begin{{document}}\n" + "\n\\clearpage\n".join(bodies) + "\\end{document}\n"
@@ -157,7 +150,9 @@ def test_what_is_typeset_compiles_within_its_margins_and_every_reference_leads_s
 @needs_tex
 @pytest.mark.slow
 @pytest.mark.parametrize("language", languages())
-@pytest.mark.parametrize("name", [NAMES[0], *(pytest.param(name, marks=pytest.mark.study) for name in NAMES[1:])])
+@pytest.mark.parametrize(
+    "name", [OWN[0], *(pytest.param(name, marks=pytest.mark.study) for name in (*OWN[1:], *shared.names()))]
+)
 def test_document_compiles_by_itself(name: str, language: str, tmp_path: Path) -> None:
     assert_clean(compiled(render(derived(name), language), tmp_path))
 
@@ -190,9 +185,8 @@ def test_widths_are_estimated_as_tex_measures_them(tmp_path: Path) -> None:
     assert 0.97 < min(ratios) <= max(ratios) < 1.4
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("language", languages())
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", shared.each(*OWN))
 def test_every_equation_has_one_label_and_every_reference_a_label(name: str, language: str) -> None:
     derivation, text = derived(name), render(derived(name), language)
     labels = re.findall(r"\\label\{([^}]*)\}", text) + re.findall(r"\\satsymstep\{([^}]*)\}", text)

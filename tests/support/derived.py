@@ -5,19 +5,26 @@ What is kept comes back equal in every part, or is not kept. Tests of the act of
 
 from __future__ import annotations
 
+import hashlib
 import io
 import pickle
 import shutil
+from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 from typing import Any
 
+import pytest
 import sympy as sp
+from _pytest.mark import ParameterSet
 
-from satsym import kept
+from satsym import kept, sources
 from satsym.report import stamps
 from satsym.symbolic import Derivation, Model, Problem, derive, loader
 from satsym.symbolic.identity import identity
+
+SHARE = 3
+"""Every third shipped model is derived for tests of all of them, others after each change of the engine."""
 
 _HOME = Path(__file__).resolve().parents[2] / ".pytest_cache" / "derivations"
 
@@ -34,6 +41,27 @@ def derived(subject: Problem | Model) -> Derivation:
     if key and key not in _KNOWN:
         _KNOWN[key] = _kept(key) or _keep(key, derive(subject))
     return _KNOWN[key] if key else _itself(subject)
+
+
+@cache
+def names() -> tuple[str, ...]:
+    """Of all that shipped derivation files state."""
+    return tuple(one.name for path in loader.shipped() for one in loader.load(path))
+
+
+@cache
+def drawn() -> tuple[str, ...]:
+    """Those that runs of a sample derive: the same in all processes and on all machines, for this code."""
+    engine = sources.digest(["satsym.report.artefacts"])
+    draw = sorted(names(), key=lambda name: hashlib.blake2b(f"{engine} {name}".encode()).digest())
+    return tuple(name for name in names() if name in draw[: len(draw) // SHARE])
+
+
+def each(*others: str, left: Iterable[str] = ()) -> list[ParameterSet]:
+    """A case for each shipped model, and before them for others; those that were not drawn are studies, as some are."""
+    cases = [*others, *names()]
+    few = {*others, *drawn()} - set(left)
+    return [pytest.param(name, marks=() if name in few else pytest.mark.study) for name in cases]
 
 
 def shipped(name: str) -> Derivation:

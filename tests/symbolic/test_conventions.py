@@ -115,16 +115,12 @@ def test_every_step_has_its_texts(problem: Problem, language: str, convention: C
     assert ("- L$" in text) == (convention == "maximum")
 
 
-SHIPPED = [p for path in loader.shipped() for p in loader.load(path) if isinstance(p, Problem)]
+STATED = {p.name: p for path in loader.shipped() for p in loader.load(path) if isinstance(p, Problem)}
 LONG = {"shuttle", "reorientation"}
-"""Problems that take more than ten seconds to derive."""
+"""Problems that take more than ten seconds to derive: studies, drawn or not."""
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "problem",
-    [pytest.param(p, marks=[pytest.mark.study] if p.name in LONG else [], id=p.name) for p in SHIPPED],
-)
-def test_every_shipped_problem_can_be_told_in_the_other_convention(problem: Problem) -> None:
-    (other,) = set(get_args(Convention)) - {problem.convention}
-    assert latex.render(shared.derived(replace(problem, convention=other)))
+@pytest.mark.parametrize("name", [case for case in shared.each(left=LONG) if case.values[0] in STATED])
+def test_every_shipped_problem_can_be_told_in_the_other_convention(name: str) -> None:
+    (other,) = set(get_args(Convention)) - {STATED[name].convention}
+    assert latex.render(shared.derived(replace(STATED[name], convention=other)))
