@@ -6,6 +6,7 @@ import ast
 import json
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -55,3 +56,11 @@ def test_generated_modules_import_only_math_and_numpy(repository: Path) -> None:
         imported = {alias.name for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names}
         imported |= {str(node.module) for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
         assert imported <= {"__future__", "math", "numpy"}, module.name
+
+
+def test_rooms_and_files_can_be_taken_in_at_a_look(repository: Path) -> None:
+    files = sorted((repository / "satsym").rglob("*.py"))
+    assert len(files) > 200
+    assert {path.name: count for path in files if (count := len(path.read_text("utf-8").splitlines())) > 400} == {}
+    crowded = Counter(path.parent.relative_to(repository) for path in files if path.name != "__init__.py")
+    assert {str(room): count for room, count in crowded.items() if count > 20} == {}

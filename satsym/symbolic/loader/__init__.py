@@ -16,9 +16,9 @@ from satsym import sources
 from satsym.sources import digest_of, shipped
 from satsym.status import BadInput
 from satsym.symbolic.derivation import DerivationError
-from satsym.symbolic.mistakes import said
+from satsym.symbolic.loader.mistakes import said
+from satsym.symbolic.loader.places import line_of
 from satsym.symbolic.model import Model, Problem
-from satsym.symbolic.places import line_of
 from satsym.wording import printable, suggestion
 
 __all__ = ["explained", "find", "load", "problem", "reached", "shipped"]
@@ -32,7 +32,7 @@ _IMPORTED: dict[Path, str] = {}
 _EXECUTING: list[Path] = []
 """The files whose execution has begun and is not over, each asked for by the one before."""
 
-_LIBRARIES = tuple({sys.prefix, sys.base_prefix, sys.exec_prefix, str(Path(__file__).resolve().parent.parent)})
+_LIBRARIES = tuple({sys.prefix, sys.base_prefix, sys.exec_prefix, str(Path(__file__).resolve().parents[2])})
 
 
 def reached(path: Path) -> dict[Path, str]:
