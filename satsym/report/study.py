@@ -23,7 +23,7 @@ from satsym.status import BadInput
 from satsym.studies import parts
 from satsym.studies.asked import Study, differences
 from satsym.studies.parts import Parts
-from satsym.studies.rows import Failure
+from satsym.studies.rows import PASSING
 from satsym.studies.running import Watch, run
 from satsym.wording import printable
 
@@ -81,7 +81,7 @@ def carry_out(
             _refuse_other(study, folder, resume)  # again, for now no other process comes in between
             if (done := _done(folder)) is None:
                 done = _carried_out(study, kept, folder, executor, at_once, watch, more)
-        if Failure.WORKER_DIED.value not in done["statuses"]:  # else the others are wanted once more
+        if not _passing(done):  # else the others are wanted once more
             parts.remove(folder)
     except OSError as error:
         reason = error.strerror or "the path leads nowhere"
@@ -127,13 +127,18 @@ def _refuse_other(study: Study, folder: Path, resume: bool) -> None:
 
 
 def _done(folder: Path) -> dict[str, Any] | None:
-    """What result.json holds of a study that is done: whole, and without rows that lost their workers."""
+    """What result.json holds of a study that is done: whole, and without rows that may be answered yet."""
     try:
         found: dict[str, Any] = json.loads(sets.read(folder).result)
     except BadInput:
         return None
     found.pop("files")
-    return None if Failure.WORKER_DIED.value in found["statuses"] else found
+    return None if _passing(found) else found
+
+
+def _passing(done: Mapping[str, Any]) -> bool:
+    """Whether there are rows that another run may answer."""
+    return any(status in done["statuses"] for status in PASSING)
 
 
 def _refuse_too_large(study: Study, folder: Path) -> None:

@@ -21,7 +21,7 @@ import numpy as np
 
 from satsym.arrays import Array
 from satsym.status import BadInput, Status
-from satsym.studies.rows import Failure, Row
+from satsym.studies.rows import PASSING, Row
 from satsym.wording import printable
 
 LINES, ARRAYS = "parts.jsonl", "parts.npz"
@@ -77,7 +77,7 @@ class Parts:
     def recover(self) -> None:
         """Find what counts, and cut off what was not written whole.
 
-        Chunks with rows that lost their workers do not count, for those may have died of something else.
+        Chunks with rows that lost their workers or ran out of time do not count: another day they may be answered.
 
         Raises
         ------
@@ -94,7 +94,7 @@ class Parts:
                 raise BadInput(
                     f"{printable(self._lines.name)}: holds rows of another study; give another folder, or remove them"
                 )
-            if all(status != Failure.WORKER_DIED.value for _, status, *_ in found["rows"]):
+            if all(status not in PASSING for _, status, *_ in found["rows"]):
                 self.done[found["chunk"]] = Place(end, found["arrays"][1])
                 self._count(found["rows"])
             end += len(line)

@@ -50,6 +50,10 @@ class Failure(str, Enum):
     WORKER_DIED = "worker died"
 
 
+PASSING = (Failure.WORKER_DIED.value, Status.TIME_LIMIT.value)
+"""Statuses of rows that another run may answer: what they ended by is no matter of theirs, or of the clock."""
+
+
 @dataclass(frozen=True, eq=False)
 class Row:
     """A row of the table.

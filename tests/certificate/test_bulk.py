@@ -117,3 +117,21 @@ def test_solutions_of_another_kind_are_certified_one_by_one(population: list[Sol
     assert bulk.fits(population[0])
     found = bulk.certify_all([sparse, population[1]])
     assert [one.verdict.value for one in found if one] == ["local minimum"] * 2
+
+
+def test_a_single_node_that_is_off_is_seen_singly_and_in_bulk(population: list[Solution]) -> None:
+    """Whichever it is: one that no station of the flow coincides with, too."""
+    for k, (place, row, node) in enumerate((("x", 0, 503), ("x", 3, 977), ("lam", 1, 20), ("x", 1, -2))):
+        values = getattr(population[k], place).copy()
+        values[row, node] += 1e-5 * np.abs(values[row]).max()
+        spoilt = replace(population[k], **{place: values})
+        if place == "lam":  # the control as the law has it, so that stationarity does not tell
+            law = spoilt.instance.model.control_law_batch
+            case = spoilt.instance
+            u = law(spoilt.times, spoilt.x, spoilt.lam, case.parameters, case.control_set.arguments)
+            spoilt = replace(spoilt, u=np.asarray(u))
+        single, together = certify(spoilt, compared=False), bulk.certify_all([population[5], spoilt, population[6]])
+        assert single is not None
+        failed = [check.name for check in single.checks if not check.passed]
+        assert "node defect" in failed, (place, row, node)
+        assert [one.verdict.value for one in together if one] == ["local minimum", "failed", "local minimum"]

@@ -30,6 +30,7 @@ from satsym.studies import cluster, parts, running
 from satsym.studies.asked import Study
 from satsym.studies.asking import asked as asking
 from satsym.studies.parts import Parts
+from satsym.studies.rows import Row
 from satsym.studies.running import Advance
 from satsym.studies.workers import Workers
 from tests.support.chunks import Backwards, Deadly, Here, failing, made, raising
@@ -202,13 +203,17 @@ def test_processes_give_the_bytes_that_this_one_gives(tmp_path: Path) -> None:
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes(), name
 
 
-def test_rows_that_lost_their_workers_are_tried_again_though_the_study_was_done(tmp_path: Path) -> None:
-    study, lost = asked(), [running._lost()]
+@pytest.mark.parametrize("status", ["worker died", "time limit"])
+def test_rows_that_another_run_may_answer_are_tried_again_though_the_study_was_done(
+    tmp_path: Path, status: str
+) -> None:
+    study, lost = asked(), [Row("", status, "")]
     found = reports.carry_out(study, tmp_path, lambda: Here(lambda _, c: lost if c.number == 2 else made(_, c)), 1)
-    assert found["statuses"] == {"converged": 5, "worker died": 1}
+    assert found["statuses"] == {"converged": 5, status: 1}
     again = Here()
     assert reports.carry_out(study, tmp_path, lambda: again, 1, resume=True)["statuses"] == {"converged": 6}
     assert again.given == [2]
+    assert not (tmp_path / parts.LINES).exists()
 
 
 def test_a_mistake_of_ours_ends_the_study(tmp_path: Path) -> None:

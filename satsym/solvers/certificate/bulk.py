@@ -23,8 +23,9 @@ from satsym.solution import Certificate, Check, Solution
 from satsym.solvers.certificate import conditions
 from satsym.solvers.certificate.flow import FAINT, TOLERANCE, Flow, typical, unit_sizes
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
+from satsym.solvers.certificate.node_defect import Parameters, joined, missed, stretches
 from satsym.solvers.certificate.segments import balanced
-from satsym.solvers.certificate.verdict import certify, first_order
+from satsym.solvers.certificate.verdict import DEFECT, certify, first_order
 from satsym.solvers.simulation.extrapolation import leap_and_error
 from satsym.status import Verdict
 
@@ -48,6 +49,9 @@ VARIATIONS, ROUGH = 5, 0.01
 
 WHOLE = 0.9 * 2.0 * np.pi
 """Turn of a phase in a segment: below a full turn, so that it has no conjugate point of its own."""
+
+TOGETHER = 4
+"""Solutions from whose nodes it is integrated at once."""
 
 SAME = 1e-12
 """Share of the duration by which a node may miss an even one that it is."""
@@ -157,10 +161,10 @@ def _confirmed(solutions: Sequence[Solution]) -> list[Certificate | None]:
     """Certificates of those that are minima beyond doubt."""
     together = _Together.of(solutions)
     flows, without = _flows(together), _undriven(together)
-    clear = _without_conjugate_points(together)
+    clear, defects = _without_conjugate_points(together), _node_defects(together)
     found: list[Certificate | None] = []
     for k, (solution, flow) in enumerate(zip(solutions, flows, strict=True)):
-        found.append(_judged(solution, flow, without[:, k]) if flow is not None and clear[k] else None)
+        found.append(_judged(solution, flow, without[:, k], defects[k]) if flow is not None and clear[k] else None)
     first = next((k for k, certificate in enumerate(found) if certificate is not None), None)
     if first is not None:  # kernels that contradict each other do so everywhere
         certificate = found[first]
@@ -170,8 +174,11 @@ def _confirmed(solutions: Sequence[Solution]) -> list[Certificate | None]:
     return found
 
 
-def _judged(solution: Solution, flow: Flow, without: Array) -> Certificate | None:
-    first = first_order(solution, flow, conditions.OF_FLOW, without)
+def _judged(solution: Solution, flow: Flow, without: Array, defect: float) -> Certificate | None:
+    first = [
+        *first_order(solution, flow, conditions.OF_FLOW, without),
+        Check(conditions.OF_NODES, defect, DEFECT),
+    ]
     legendre = conditions.legendre_clebsch(solution)
     if not (all(check.passed for check in first) and legendre > 0.0):
         return None
@@ -250,6 +257,21 @@ def _integrated(
         if (k + 1) % finer == 0:
             values.append(now)
     return np.array(values), np.where(np.isfinite(worst), worst, np.inf)
+
+
+def _node_defects(together: _Together) -> list[float]:
+    """By how much each solution misses its next nodes at most, in blocks that stay in the processor's cache."""
+    model, n, bounds = together.instance.model, len(together.start) // 2, together.instance.control_set.arguments
+
+    def rates(t: Array, z: Array, p: Parameters) -> Array:
+        return np.asarray(model.canonical_batch(t, z[:n], z[n:], p, bounds))
+
+    found: list[float] = []
+    for at in range(0, len(together.solutions), TOGETHER):
+        parts = [stretches(one) for one in together.solutions[at : at + TOGETHER]]
+        every, ends = joined(parts), np.cumsum([len(one.begins) for one in parts])[:-1]
+        found += [float(own.max()) for own in np.split(missed(rates, every), ends)]
+    return found
 
 
 def _without_conjugate_points(together: _Together) -> NDArray[np.bool_]:

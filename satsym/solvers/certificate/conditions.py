@@ -23,9 +23,9 @@ CANCELLED = 1e-5
 
 
 BOUNDARY, STATIONARITY, HAMILTONIAN = "boundary residual", "stationarity", "hamiltonian drift"
-OF_FLOW, OF_SEGMENTS = "dynamics defect", "junction defect"
-"""What checks are called. The last two are distances of the solution from the flow from the initial costates, or of
-segments between nodes from the next node."""
+OF_FLOW, OF_SEGMENTS, OF_NODES = "dynamics defect", "junction defect", "node defect"
+"""What checks are called. The last three are distances of the solution from the flow from the initial costates, of
+segments between nodes from the next node, and of the motion from each node from the next one."""
 
 
 def headlines(checks: Iterable[Check]) -> dict[str, Any]:

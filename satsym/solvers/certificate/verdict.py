@@ -17,6 +17,7 @@ from satsym.solvers.certificate.flow import TOLERANCE, Flow, flow
 from satsym.solvers.certificate.jacobi import Conjugate, conjugate
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
 from satsym.solvers.certificate.neighbours import Neighbours, neighbours
+from satsym.solvers.certificate.node_defect import node_defect
 from satsym.solvers.certificate.segments import Segments, segments
 from satsym.solvers.certificate.start import UNRESOLVED, settled, with_start
 from satsym.status import Verdict
@@ -131,6 +132,8 @@ def _first_order(solution: Solution, along: Segments | None) -> list[Check]:
     """
     recomputed = flow(solution)
     checks = first_order(solution, recomputed, conditions.OF_FLOW) if recomputed else []
+    if checks:
+        checks.append(Check(conditions.OF_NODES, node_defect(solution), DEFECT))
     if (checks and all(c.passed for c in checks)) or along is None or not along.growth * TOLERANCE > RESIDUAL:
         return checks
     reached = node_by_node(solution, along)
