@@ -8,8 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from satsym.arrays import Array
 from satsym.solution import Solution
@@ -25,7 +27,8 @@ EASY = 3
 MOST_PARTS = 256
 """Into which what lies between two nodes is taken where that does not suffice."""
 
-Parameters = tuple[float, ...] | tuple[Array, ...]
+Parameters = tuple[Any, ...]
+"""Of a model, each a number, or an array with one for each column."""
 Rates = Callable[[Array, Array, Parameters], Array]
 
 
@@ -42,9 +45,9 @@ class Stretches:
     sizes: Array
     """To which errors of these are held, shape (2n, K)."""
     parameters: Parameters
-    """Of the model, each a number for all or of shape (K,)."""
+    """Of the model."""
 
-    def only(self, chosen: Array) -> Stretches:
+    def only(self, chosen: NDArray[np.intp]) -> Stretches:
         """Some of them."""
         p = tuple(one if np.ndim(one) == 0 else np.asarray(one)[chosen] for one in self.parameters)
         columns = (self.start[:, chosen], self.end[:, chosen], self.sizes[:, chosen])
@@ -107,5 +110,8 @@ def stretches(solution: Solution) -> Stretches:
 def joined(parts: Sequence[Stretches]) -> Stretches:
     """Those of several solutions, one after the other."""
     table = np.concatenate([np.repeat([one.parameters], len(one.begins), axis=0) for one in parts])
-    rows = ([getattr(one, name) for one in parts] for name in ("begins", "lasting", "start", "end", "sizes"))
-    return Stretches(*(np.concatenate(row, axis=-1) for row in rows), tuple(table.T.copy()))
+    begins, lasting, start, end, sizes = (
+        np.concatenate([getattr(one, name) for one in parts], axis=-1)
+        for name in ("begins", "lasting", "start", "end", "sizes")
+    )
+    return Stretches(begins, lasting, start, end, sizes, tuple(table.T.copy()))
