@@ -13,6 +13,7 @@ from satsym.instance import Instance
 from satsym.kernels.evaluation import COMPLEX_STEP
 from satsym.solvers.constrained.arcs import terms, values
 from satsym.solvers.constrained.slopes import Slopes, rooms
+from satsym.solvers.constrained.stagewise import Factors
 from satsym.solvers.constrained.starts import straight
 from satsym.solvers.constrained.transcription import Point, Program
 from satsym.status import BadInput
@@ -128,26 +129,17 @@ def _remaining(program: Program, worth: float) -> Array | None:
 
 def _penalised(program: Program, start: Point, weight: Array) -> Point:
     """The path of least cost with squared violations in it, by Newton's method on those that are violated."""
-    from scipy.sparse import bmat, diags
-    from scipy.sparse.linalg import splu
-
     at = start
     for _ in range(NEWTON):
         g = program.constraints(at) * program.kept
         pushed = replace(at, z=weight * np.maximum(g, 0.0))
         slopes = Slopes.of(program, pushed)
-        active = (np.broadcast_to(weight, g.shape) * (g > 0.0)).ravel()
-        jacobian, c = slopes.inequalities, slopes.equalities
-        curved = slopes.hessian + jacobian.T @ diags(active) @ jacobian
-        matrix = bmat([[curved, c.T], [c, None]], format="csc")
-        rows = np.concatenate([program.gaps(at).T.ravel(), program.ends(at)])
+        stiff, own = slopes.stiffened(np.broadcast_to(weight, g.shape) * (g > 0.0))
         try:
-            step = splu(matrix).solve(-np.concatenate([slopes.gradient + jacobian.T @ pushed.z.ravel(), rows]))
-        except RuntimeError:
+            step = Factors.of(stiff, own).step(stiff, slopes.pushed(pushed.z))
+        except np.linalg.LinAlgError:
             return replace(at, x=np.full_like(at.x, np.nan))
-        size, count = jacobian.shape[1], at.y.size
-        dy = step[size : size + count].reshape(-1, len(at.x)).T
-        moved = at.moved(step[:size], dy, step[size + count :], 1.0)
+        moved = at.moved(step, 1.0)
         settled = np.abs(moved.x - at.x).max() <= 1e-10 * np.abs(at.x).max()
         at = moved
         if settled:

@@ -6,26 +6,33 @@ curvature added where steps would not descend.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from satsym.arrays import Array
 from satsym.solvers.constrained.slopes import Slopes, rooms
-from satsym.solvers.constrained.transcription import Point, Program
+from satsym.solvers.constrained.stagewise import Factors
+from satsym.solvers.constrained.transcription import Point, Program, Step
 from satsym.solvers.iteration import Limits
 
 TO_BOUNDARY = 0.995
 """Share of the way to where a slack or a multiplier would vanish."""
 
-LAST = 1e-9
-"""The last weight of the barrier, relative to the first."""
+FIRST, LAST = 100.0, 1e-9
+"""The first and the last weight of the barrier, relative to the size of costs of an interval. What is weighed less at
+first comes too close to boundaries too early, and stays there."""
 
-STEPS = 60
+STEPS = 100
 """Linear systems at most."""
 
-CURVED = (0.0, 1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4)
-"""Curvature that is added where a step would not descend, relative to the sizes of what it is added to."""
+CURVED, MOST_CURVED = 1e-4, 1e8
+"""Curvature that is added first where the Lagrangian is not convex, and at most, relative to the sizes of what it is
+added to."""
+
+MORE, LESS = 8.0, 3.0
+"""Factor by which it grows until the Lagrangian is convex, and by which it may be less at the next step."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,34 +61,36 @@ def regularised(program: Program, start: Point, worth: float, limits: Limits) ->
     room = np.abs(g).max(axis=1, keepdims=True)
     room = np.where(room > 0.0, room, rooms(program, start))
     at = replace(start, s=np.maximum(-g, 0.1 * room))
-    first = max(abs(worth), 1e-12) / program.intervals
-    weight, at = first, replace(at, z=first / at.s)
-    filtered: list[tuple[float, float]] = []
+    unit = max(abs(worth), 1e-12) / program.intervals
+    weight, at = FIRST * unit, replace(at, z=FIRST * unit / at.s)
+    filtered, curved = list[tuple[float, float]](), 0.0
     for step in range(STEPS):
         slopes = Slopes.of(program, at)
-        error, violation = _error(program, at, slopes, weight, first)
-        while error < 10.0 * weight / first and weight > LAST * first:
-            weight, filtered = max(LAST * first, min(0.2 * weight, first * (weight / first) ** 1.5)), []
-            error, violation = _error(program, at, slopes, weight, first)
-        if error < 10.0 * LAST and weight <= LAST * first:
+        error, violation = _error(program, at, slopes, weight, unit)
+        while error < 10.0 * weight / unit and weight > LAST * unit:
+            weight, filtered = max(LAST * unit, min(0.2 * weight, unit * (weight / unit) ** 1.5)), []
+            error, violation = _error(program, at, slopes, weight, unit)
+        if error < 10.0 * LAST and weight <= LAST * unit:
             return Path(at, program.cost(at), True, violation, step)
         if limits.expired:
             break
-        moved = _stepped(program, at, slopes, weight, filtered)
+        moved = _stepped(program, at, slopes, weight, filtered, curved)
         limits.spend(program.intervals)
         if moved is None:
             break
-        at = moved
+        at, curved = moved
     return Path(at, program.cost(at), False, _violation(program, at), STEPS)
 
 
-def _error(program: Program, at: Point, slopes: Slopes, weight: float, first: float) -> tuple[float, float]:
+def _error(program: Program, at: Point, slopes: Slopes, weight: float, unit: float) -> tuple[float, float]:
     """How far the conditions of the barrier's problem are from holding, relative, and the violation of constraints."""
-    balance = slopes.gradient + slopes.inequalities.T @ (at.z * program.kept).ravel()
-    size = max(1.0, float(np.abs(slopes.gradient).max()), float(np.abs(at.y).max()))
+    balance, own = slopes.pushed(at.z * program.kept), slopes.gradient
+    balances, owns = (
+        max(np.abs(one.x).max(), np.abs(one.u).max(initial=0.0), abs(one.duration)) for one in (balance, own)
+    )
     violation = _violation(program, at)
-    complementary = float((np.abs(at.s * at.z - weight) * program.kept).max(initial=0.0)) / first
-    return max(float(np.abs(balance).max()) / size, violation, complementary), violation
+    complementary = float((np.abs(at.s * at.z - weight) * program.kept).max(initial=0.0)) / unit
+    return max(float(balances / max(1.0, owns, np.abs(at.y).max())), violation, complementary), violation
 
 
 def _violation(program: Program, at: Point) -> float:
@@ -94,27 +103,34 @@ def _violation(program: Program, at: Point) -> float:
 
 
 def _stepped(
-    program: Program, at: Point, slopes: Slopes, weight: float, filtered: list[tuple[float, float]]
-) -> Point | None:
-    """The next point; ``None`` where no step is accepted."""
-    for curved in CURVED:
+    program: Program, at: Point, slopes: Slopes, weight: float, filtered: list[tuple[float, float]], last: float
+) -> tuple[Point, float] | None:
+    """The next point with the curvature that was added, given the last that was; ``None`` where none is accepted."""
+    here, kept = _measures(program, at, weight), program.kept > 0.0
+    for curved in _curvatures(last):
         direction = _direction(program, at, slopes, weight, curved)
         if direction is None:
             continue
-        dw, dy, dv, ds, dz = direction
-        kept = program.kept > 0.0
-        primal, dual = _room(at.s[kept], ds[kept]), _room(at.z[kept], dz[kept])
-        here = _measures(program, at, weight)
-        length = primal
+        step, ds, dz = direction
+        length, dual = _room(at.s[kept], ds[kept]), _room(at.z[kept], dz[kept])
         for _ in range(25):
-            there = at.moved(dw, dy, dv, length)
+            there = at.moved(step, length)
             there = replace(there, s=at.s + length * ds, z=np.maximum(at.z + dual * dz, 1e-300))
             found = _measures(program, there, weight)
             if there.duration > 0.0 and _accepted(found, [*filtered, here]):
                 filtered.append((here[0] * (1.0 - 1e-5), here[1] - 1e-5 * here[0]))
-                return _safe(there, weight)
+                return _safe(there, weight), curved or last
             length /= 2.0
     return None
+
+
+def _curvatures(last: float) -> Iterator[float]:
+    """What is added to the curvature: nothing, then more and more (Waechter and Biegler, algorithm IC)."""
+    yield 0.0
+    curved = max(CURVED, last / LESS)
+    while curved < MOST_CURVED:
+        yield curved
+        curved *= MORE
 
 
 def _safe(at: Point, weight: float) -> Point:
@@ -149,32 +165,20 @@ def _room(values: Array, change: Array) -> float:
 
 def _direction(
     program: Program, at: Point, slopes: Slopes, weight: float, curved: float
-) -> tuple[Array, Array, Array, Array, Array] | None:
-    """Newton's step; ``None`` where it would not descend, or the equations are singular."""
-    from scipy.sparse import bmat, diags
-    from scipy.sparse.linalg import splu
-
-    kept, g_w = program.kept.ravel(), slopes.inequalities
-    s, z = at.s.ravel(), at.z.ravel()
-    off = (program.constraints(at).ravel() + s) * kept
-    pull = (weight / s + z / s * off) * kept
-    stiff = g_w.T @ diags(z / s * kept) @ g_w
-    own = slopes.hessian + stiff
-    size = np.maximum(np.abs(own.diagonal()), 1e-8 * np.abs(own.diagonal()).max())
-    own = own + diags(curved * size)
-    c = slopes.equalities
-    matrix = bmat([[own, c.T], [c, None]], format="csc")
-    rows = np.concatenate([program.gaps(at).T.ravel(), program.ends(at)])
+) -> tuple[Step, Array, Array] | None:
+    """Newton's step, of the slacks and their multipliers too; ``None`` where it need not descend."""
+    kept, s, z = program.kept, at.s, at.z
+    off = (program.constraints(at) + s) * kept
+    pushed = slopes.pushed((weight / s + z / s * off) * kept)
+    stiff, own = slopes.stiffened(z / s * kept)
     try:
-        found = splu(matrix).solve(-np.concatenate([slopes.gradient + g_w.T @ pull, rows]))
-    except RuntimeError:
+        factors = Factors.of(stiff, own, curved)
+        if not factors.convex:
+            return None
+        step = factors.step(stiff, pushed)
+    except np.linalg.LinAlgError:
         return None
-    dw, dl = found[: len(size)], found[len(size) :]
-    if not np.isfinite(found).all() or dw @ (own @ dw) < 1e-10 * (dw * size) @ dw:
-        return None
-    n, count = len(at.x), program.intervals
-    change = g_w @ dw
+    change = slopes.change(step)
     ds = np.where(kept > 0.0, -off - change, 0.0)
     dz = np.where(kept > 0.0, weight / s - z + z / s * (off + change), 0.0)
-    dy = dl[: n * count].reshape(count, n).T
-    return dw, dy, dl[n * count :], ds.reshape(at.s.shape), dz.reshape(at.z.shape)
+    return step, ds, dz

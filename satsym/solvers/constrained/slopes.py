@@ -1,9 +1,13 @@
-"""Derivatives of the program: first ones by generated functions, second ones by complex steps, as sparse matrices."""
+"""Derivatives of the program: first ones by generated functions, second ones by complex steps, stage by stage.
+
+A stage is an interval with the node at which it ends. What the motion, the cost and constraints that hold a control
+add depends on the state at the midpoint and on the control; the rest on the state at the node.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,20 +15,46 @@ from numpy.typing import NDArray
 from satsym.arrays import Array
 from satsym.kernels.evaluation import COMPLEX_STEP
 from satsym.solvers.constrained.arcs import effects, gradients
-from satsym.solvers.constrained.transcription import Point, Program, middles
+from satsym.solvers.constrained.transcription import Point, Program, Step, middles
 
-if TYPE_CHECKING:
-    from scipy.sparse import csc_matrix
+
+@dataclass(frozen=True, eq=False)
+class ByDuration:
+    """Derivatives by a duration that is to be found."""
+
+    state: Array
+    control: Array
+    nodes: Array
+    """Mixed second derivatives of the Lagrangian: by states at midpoints, controls, and states at nodes after the
+    first; shapes (n, N), (m, N), (n, N)."""
+    gaps: Array
+    ends: Array
+    constraints: Array
+    """Of the conditions, shapes (n, N), (conditions at the end,) and (h, N)."""
 
 
 @dataclass(frozen=True, eq=False)
 class Slopes:
-    """Gradient of the Lagrangian without the slacks' part, its second derivatives, Jacobians of all conditions."""
+    """Gradient and second derivatives of the Lagrangian without the slacks' part, Jacobians of all conditions."""
 
-    gradient: Array
-    hessian: csc_matrix
-    equalities: csc_matrix
-    inequalities: csc_matrix
+    gradient: Step
+    """Its ``y`` and ``v`` are the conditions themselves: gaps of the motion, and what is missed at the end."""
+    between: Array
+    """Second derivatives by state and control at midpoints, shape (N, n + m, n + m)."""
+    nodes: Array
+    """By states at the nodes after the first, shape (N, n, n)."""
+    a: Array
+    b: Array
+    """Derivatives of the rates times the length of an interval, shapes (N, n, n) and (N, n, m)."""
+    ends: Array
+    """Of the conditions at the end by the last state, shape (conditions, n)."""
+    g_x: Array
+    g_u: Array
+    """Of constraints, shapes (h, n, N) and (h, m, N)."""
+    holding: NDArray[np.bool_]
+    """Which constraints hold a control and depend on midpoints, shape (h,)."""
+    timed: ByDuration | None
+    """None where the duration is given."""
 
     @classmethod
     def of(cls, program: Program, at: Point) -> Slopes:
@@ -35,126 +65,64 @@ class Slopes:
         a, b = (np.asarray(f(t, x, at.u, p)) for f in (model.jacobian_x_batch, model.jacobian_u_batch))
         a, b = np.broadcast_to(a.reshape(n, n, -1), (n, n, count)), np.broadcast_to(b.reshape(n, m, -1), (n, m, count))
         h_x, h_u = _forces(program, t, x, at.u, at.y)
-        second = _second(program, t, x, at.u, at.y)
-        g_x, g_u = constraint_slopes(program, at)
         psi_x, s_x = program.end_rows(at, at.duration)[1:]
-        size = (n + m) * count + program.free_time
-        gradient = np.zeros(size)
-        by_x, by_u = (
-            gradient[: n * count].reshape(count, n).T,
-            gradient[n * count : (n + m) * count].reshape(count, m).T,
-        )
-        by_x += h / 2 * h_x - at.y
+        by_x = h / 2 * h_x - at.y
         by_x[:, :-1] += h / 2 * h_x[:, 1:] + at.y[:, 1:]
         by_x[:, -1] += s_x
         by_x[program.given, -1] += at.v[: len(program.given)]
-        by_u += h * h_u
-        blocks = _Blocks(n, m, count)
-        curved, held = _constraint_curvature(program, at)
-        blocks.lagrangian(h * second + held)
-        blocks.last(program.curvature_at_end(at))
-        blocks.constraint_curvature(curved)
-        blocks.dynamics(h * a, h * b)
-        blocks.ends(program.given, psi_x)
-        blocks.constraints(g_x, g_u, program.holding)
-        if program.free_time:
-            gradient[-1] = _by_duration(program, at, blocks)
-        rows = n * count + len(program.given) + len(psi_x)
+        at_nodes, held = _constraint_curvature(program, at)
+        at_nodes[..., -1] += program.curvature_at_end(at)
+        timed, by_duration = _by_duration(program, at) if program.free_time else (None, 0.0)
+        g_x, g_u = constraint_slopes(program, at)
         return cls(
-            gradient,
-            blocks.hessian.matrix((size, size)),
-            blocks.equalities.matrix((rows, size)),
-            blocks.inequalities.matrix((len(at.s) * count, size)),
+            Step(by_x, h * h_u, by_duration, program.gaps(at), program.ends(at)),
+            np.moveaxis(h * _second(program, t, x, at.u, at.y) + held, -1, 0),
+            np.moveaxis(at_nodes, -1, 0),
+            np.moveaxis(h * a, -1, 0),
+            np.moveaxis(h * b, -1, 0),
+            np.concatenate([np.eye(n)[program.given], psi_x]),
+            g_x,
+            g_u,
+            program.holding,
+            timed,
         )
 
+    def pushed(self, weights: Array) -> Step:
+        """The gradient with constraints in it, each with a weight, shape (h, N)."""
+        at_nodes, between = (
+            np.einsum("hnk,hk->nk", self.g_x[which], weights[which]) for which in (~self.holding, self.holding)
+        )
+        by_x = self.gradient.x + at_nodes + between / 2
+        by_x[:, :-1] += between[:, 1:] / 2
+        by_u = self.gradient.u + np.einsum("hmk,hk->mk", self.g_u, weights)
+        passing = 0.0 if self.timed is None else float((self.timed.constraints * weights).sum())
+        return replace(self.gradient, x=by_x, u=by_u, duration=self.gradient.duration + passing)
 
-class _Entries:
-    """Entries of a sparse matrix, gathered block by block."""
+    def change(self, step: Step) -> Array:
+        """Of all constraints by a step, shape (h, N)."""
+        at_nodes, between = (np.einsum("hnk,nk->hk", self.g_x, x) for x in (step.x, step.middles))
+        found = np.where(self.holding[:, None], between, at_nodes) + np.einsum("hmk,mk->hk", self.g_u, step.u)
+        return np.asarray(found if self.timed is None else found + self.timed.constraints * step.duration)
 
-    def __init__(self) -> None:
-        self.rows: list[Array] = []
-        self.columns: list[Array] = []
-        self.values: list[Array] = []
+    def stiffened(self, weights: Array) -> tuple[Slopes, float]:
+        """With squares of linearised constraints in the Lagrangian, each times a weight, shape (h, N).
 
-    def add(self, rows: Any, columns: Any, values: Any) -> None:
-        for kept, one in zip(
-            (self.rows, self.columns, self.values), np.broadcast_arrays(rows, columns, values), strict=True
-        ):
-            kept.append(one.ravel())
-
-    def matrix(self, shape: tuple[int, int]) -> csc_matrix:
-        from scipy.sparse import csc_matrix
-
-        if not self.rows:
-            return csc_matrix(shape)
-        places = np.concatenate(self.rows), np.concatenate(self.columns)
-        return csc_matrix((np.concatenate(self.values), places), shape=shape)
-
-
-class _Blocks:
-    """Where blocks of an interval or a node stand: states node by node after the first, then controls."""
-
-    def __init__(self, n: int, m: int, count: int) -> None:
-        self.n, self.m, self.count = n, m, count
-        self.hessian, self.equalities, self.inequalities = _Entries(), _Entries(), _Entries()
-
-    def state(self, i: Any, node: Any) -> Any:
-        """Place of a state at a node from 1 on."""
-        return (node - 1) * self.n + i
-
-    def control(self, i: Any, interval: Any) -> Any:
-        """Place of a control."""
-        return self.n * self.count + interval * self.m + i
-
-    def lagrangian(self, second: Array) -> None:
-        """Second derivatives by state and control at midpoints, shape (n + m, n + m, N)."""
-        n, m, k = self.n, self.m, np.arange(self.count)
-        i, j = np.arange(n)[:, None, None], np.arange(n)[None, :, None]
-        a, b = np.arange(m)[:, None, None], np.arange(m)[None, :, None]
-        self.hessian.add(self.control(a, k), self.control(b, k), second[n:, n:])
-        for left in (0, 1):
-            inside = k[k + left > 0]
-            mixed = second[:n, n:][..., inside] / 2
-            self.hessian.add(self.state(i, inside + left), self.control(b, inside), mixed)
-            self.hessian.add(self.control(b, inside), self.state(i, inside + left), mixed)
-            for right in (0, 1):
-                both = k[(k + left > 0) & (k + right > 0)]
-                self.hessian.add(self.state(i, both + left), self.state(j, both + right), second[:n, :n][..., both] / 4)
-
-    def last(self, curvature: Array) -> None:
-        i, j = np.arange(self.n)[:, None], np.arange(self.n)[None, :]
-        self.hessian.add(self.state(i, self.count), self.state(j, self.count), curvature)
-
-    def constraint_curvature(self, curvature: Array) -> None:
-        """Of all constraints with their multipliers at nodes from 1 on, shape (n, n, N)."""
-        i, j = np.arange(self.n)[:, None, None], np.arange(self.n)[None, :, None]
-        node = np.arange(1, self.count + 1)
-        self.hessian.add(self.state(i, node), self.state(j, node), curvature)
-
-    def dynamics(self, a: Array, b: Array) -> None:
-        """Derivatives of the rates times the step, shapes (n, n, N) and (n, m, N)."""
-        n, k = self.n, np.arange(self.count)
-        j, c = np.arange(n)[None, :, None], np.arange(self.m)[None, :, None]
-        unit, row = np.eye(n)[:, :, None], k * n + np.arange(n)[:, None, None]
-        self.equalities.add(row, self.state(j, k + 1), a / 2 - unit)
-        self.equalities.add(row[..., 1:], self.state(j, k[1:]), a[..., 1:] / 2 + unit)
-        self.equalities.add(row, self.control(c, k), b)
-
-    def ends(self, given: NDArray[np.intp], psi_x: Array) -> None:
-        first, j = self.n * self.count, np.arange(self.n)[None, :]
-        self.equalities.add(first + np.arange(len(given)), self.state(given, self.count), np.ones(len(given)))
-        row = first + len(given) + np.arange(len(psi_x))[:, None]
-        self.equalities.add(row, self.state(j, self.count), psi_x)
-
-    def constraints(self, g_x: Array, g_u: Array, holding: NDArray[np.bool_]) -> None:
-        """Gradients, shapes (h, n, N) and (h, m, N), at nodes from 1 on, or at midpoints where they hold a control."""
-        j, c, node = np.arange(self.n)[None, :, None], np.arange(self.m)[None, :, None], np.arange(1, self.count + 1)
-        row = np.arange(len(g_x))[:, None, None] * self.count + node - 1
-        at_nodes, between = np.flatnonzero(~holding), np.flatnonzero(holding)
-        self.inequalities.add(row[at_nodes], self.state(j, node), g_x[at_nodes])
-        self.inequalities.add(row[between], self.state(j, node), g_x[between] / 2)
-        self.inequalities.add(row[between][..., 1:], self.state(j, node[:-1]), g_x[between][..., 1:] / 2)
-        self.inequalities.add(row[between], self.control(c, node - 1), g_u[between])
+        Besides what they add to the second derivative by the duration.
+        """
+        both, held = np.concatenate([self.g_x, self.g_u], axis=1), self.holding[:, None]
+        between = self.between + np.einsum("hik,hjk,hk->kij", both, both, weights * held)
+        nodes = self.nodes + np.einsum("hik,hjk,hk->kij", self.g_x, self.g_x, weights * ~held)
+        if self.timed is None:
+            return replace(self, between=between, nodes=nodes), 0.0
+        passing, n = weights * self.timed.constraints, self.g_x.shape[1]
+        mixed = np.einsum("hik,hk->ik", both, passing * held)
+        timed = replace(
+            self.timed,
+            state=self.timed.state + mixed[:n],
+            control=self.timed.control + mixed[n:],
+            nodes=np.einsum("hik,hk->ik", self.g_x, passing * ~held),
+        )
+        return replace(self, between=between, nodes=nodes, timed=timed), float((passing * self.timed.constraints).sum())
 
 
 def constraint_slopes(program: Program, at: Point) -> tuple[Array, Array]:
@@ -220,28 +188,17 @@ def _moved(x: Array, component: int) -> NDArray[Any]:
     return moved
 
 
-def _by_duration(program: Program, at: Point, blocks: _Blocks) -> float:
-    """The Lagrangian by the duration; enters the derivatives of all conditions by it."""
-    n, m, count, model, p = blocks.n, blocks.m, blocks.count, program.instance.model, program.p
+def _by_duration(program: Program, at: Point) -> tuple[ByDuration, float]:
+    """Derivatives by the duration, and the Lagrangian's own."""
+    count, model, p = program.intervals, program.instance.model, program.p
     lasting = at.duration + 1j * COMPLEX_STEP
     t, x = program.times(lasting, middle=True), middles(at.x)
-    last = (n + m) * count
     whole = np.broadcast_to(model.hamiltonian_batch(t, x, at.u, at.y, p), t.shape) * lasting / count
     end = np.array([program.instance.t0 + lasting])
     terminal = np.asarray(model.terminal_cost_batch(end, at.x[:, -1:].astype(complex), p)).sum()
     h_x, h_u = (np.imag(f * lasting / count) / COMPLEX_STEP for f in _forces(program, t, x, at.u, at.y))
-    k, i, c = np.arange(count), np.arange(n)[:, None], np.arange(m)[:, None]
-    for rows, values in (
-        (blocks.state(i, k + 1), h_x / 2),
-        (blocks.state(i, k[1:]), h_x[:, 1:] / 2),
-        (blocks.control(c, k), h_u),
-    ):
-        blocks.hessian.add(rows, last, values)
-        blocks.hessian.add(last, rows, values)
-    gaps = np.imag(program.gaps(at, lasting)) / COMPLEX_STEP
-    blocks.equalities.add(k * n + i, last, gaps)
-    ends = np.imag(program.ends(at, lasting)) / COMPLEX_STEP
-    blocks.equalities.add(n * count + np.arange(len(ends)), last, ends)
-    passing = np.imag(program.constraints(at, lasting)) / COMPLEX_STEP
-    blocks.inequalities.add(np.arange(passing.size), last, passing.ravel())
-    return float(np.imag(whole.sum() + terminal) / COMPLEX_STEP + at.v @ ends)
+    gaps, ends, passing = (
+        np.imag(f(at, lasting)) / COMPLEX_STEP for f in (program.gaps, program.ends, program.constraints)
+    )
+    found = ByDuration(h_x, h_u, np.zeros_like(h_x), gaps, ends, passing)
+    return found, float(np.imag(whole.sum() + terminal) / COMPLEX_STEP + at.v @ ends)

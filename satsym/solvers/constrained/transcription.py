@@ -19,6 +19,24 @@ from satsym.solvers.constrained.arcs import depends, values
 
 
 @dataclass(frozen=True, eq=False)
+class Step:
+    """By how much all that is unknown changes, slacks and their multipliers apart; or what belongs to each of it."""
+
+    x: Array
+    """States at nodes after the first, shape (n, N)."""
+    u: Array
+    """Controls, shape (m, N)."""
+    duration: float
+    y: Array
+    v: Array
+
+    @property
+    def middles(self) -> Array:
+        """Change of states at midpoints, shape (n, N); the first node stays where it is."""
+        return middles(np.column_stack([np.zeros(len(self.x)), self.x]))
+
+
+@dataclass(frozen=True, eq=False)
 class Point:
     """Where the program stands, with its multipliers."""
 
@@ -36,13 +54,12 @@ class Point:
     """Slacks of the constraints, and their multipliers, shape (h, N): at the nodes after the first, of constraints that
     hold a control at midpoints."""
 
-    def moved(self, dw: Array, dy: Array, dv: Array, length: float) -> Point:
-        """After a step in states, controls and duration, shapes as those of the program's vector."""
-        n, m, count = len(self.x), len(self.u), self.u.shape[1]
-        x, u = self.x.copy(), self.u + length * dw[n * count : (n + m) * count].reshape(count, m).T
-        x[:, 1:] += length * dw[: n * count].reshape(count, n).T
-        duration = self.duration + length * float(dw[(n + m) * count]) if len(dw) > (n + m) * count else self.duration
-        return Point(x, u, duration, self.y + length * dy, self.v + length * dv, self.s, self.z)
+    def moved(self, step: Step, length: float) -> Point:
+        """After a step of this length in all but slacks and their multipliers."""
+        x = self.x.copy()
+        x[:, 1:] += length * step.x
+        u, y, v = self.u + length * step.u, self.y + length * step.y, self.v + length * step.v
+        return Point(x, u, self.duration + length * step.duration, y, v, self.s, self.z)
 
 
 @dataclass(frozen=True, eq=False)
