@@ -5,7 +5,7 @@ Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend tha
 Source: ../derivations/examples/kept_orbit.py e89be9172e891c8e79a7325f3458710f
 Source: ../derivations/clohessy_wiltshire.py 52520f4e0a2f16c4858ba5a6515ea5d0
 Source: ../derivations/polar_orbit.py eea94ffce26c74c68c16f37511ae1eb3
-Digest: bb8bffb3030590f1657f3f790c22e71ce64cd0b99e8d0fbc63f350f77c3d6dba
+Digest: e3ec1e518c79b82e5a22af5d73ee08b53558f52dca22e7689d248d861efbed90
 """
 
 import math
@@ -42,6 +42,7 @@ MODEL = {
     'invariants': (),
     'position': (),
     'multipliers': (),
+    'objective_unit': 'km**2/s**3',
     'path_constraints': (
         {'name': 'above', 'order': 2},
         {'name': 'below', 'order': 2},

@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/bryson_denham.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/bryson_denham.py
 Source: ../derivations/examples/bryson_denham.py 40d7dac073b1a99986530fae9830d7de
-Digest: 67aa078075f1cf4ac0c7ce5ec4327185f681f3a5e3cf7c6cbb52c967dd657dba
+Digest: c3650a0746fa03e3895faf9b175297a94a219b74de852e82341e7c9ac5f7ab6d
 """
 
 import math
@@ -34,6 +34,7 @@ MODEL = {
     'invariants': (),
     'position': (),
     'multipliers': (),
+    'objective_unit': '1',
     'path_constraints': (
         {'name': 'wall', 'order': 2},
     ),

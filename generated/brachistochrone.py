@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/brachistochrone.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/brachistochrone.py
 Source: ../derivations/examples/brachistochrone.py 7dd71e3f9e58e3d1fbb10a1622b14b39
-Digest: c825982ad109d115cc396026f062d289c007e86496f0386a6d62d279a198f35d
+Digest: 62f14d53c655c5469d1daf6be1759c72509f1d7b254f08c6c06575e911b5d848
 """
 
 import math
@@ -38,6 +38,7 @@ MODEL = {
     'control_parts': (
         {'name': 'slope', 'kind': 'angle', 'controls': ('theta',), 'branch': 'direction'},
     ),
+    'objective_unit': 's',
 }
 
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/bryson_denham.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/bryson_denham.py
 Source: ../derivations/examples/bryson_denham.py 40d7dac073b1a99986530fae9830d7de
-Digest: b559b4221fa82a49b4b61af32d5fcc6ad7c19affddefba989ba22c486b284b7f
+Digest: b432f2408b0e33dcb245e53b83e185b8cd73cf886e2c3e32f642748798a557d3
 """
 
 import math
@@ -34,6 +34,7 @@ MODEL = {
     'invariants': (),
     'position': (),
     'multipliers': (),
+    'objective_unit': '1',
     'path_constraints': (
         {'name': 'wall', 'order': 2},
     ),

@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/cart_pole.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/cart_pole.py
 Source: ../derivations/examples/cart_pole.py 33a94df2e697bb698067192969b8f71f
-Digest: 26e75d79dd6dadffd77e3f930960f48e4768bc41fa6bfe2d279f33e1e1769937
+Digest: 575b96bb5d94b1534f5ff5d0321e7f6212197ad0a37b8637a88277c91e2b973a
 """
 
 import math
@@ -39,6 +39,7 @@ MODEL = {
     'invariants': (),
     'position': (),
     'multipliers': (),
+    'objective_unit': 'N**2*s',
 }
 
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/catalyst.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/catalyst.py
 Source: ../derivations/examples/catalyst.py 0367c29be2f6aff768553de0947f23d7
-Digest: 0f61e28a318df63dbf3b7aa0e0d492ae0466cfc1c56d467cf259c45120678518
+Digest: 12723d43884b3c0f4ad8772c4b4eeed8463ae49b329d23c05cb449df48b6e44d
 """
 
 import math
@@ -34,6 +34,7 @@ MODEL = {
     'multipliers': (),
     'switching': True,
     'maximise': True,
+    'objective_unit': '1',
 }
 
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/chain.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/chain.py
 Source: ../derivations/examples/chain.py 4cea224eab31b2fcf2cd02907033705f
-Digest: 55b2c6340014011b5f45292652ec9d6374b4e442468b095987eb672b0b18ac7d
+Digest: 14fa192407d909b660481a7085dee3899d780e4b597f896209648c89b3b21445
 """
 
 import math
@@ -35,6 +35,7 @@ MODEL = {
     'control_parts': (
         {'name': 'control', 'kind': 'free', 'controls': ('slope',), 'branch': 'stationary'},
     ),
+    'objective_unit': '1',
 }
 
 

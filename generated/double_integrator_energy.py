@@ -3,7 +3,7 @@
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
 Source: ../derivations/double_integrator.py 7c9a8916264bd019727ab8ecd9867ba4
-Digest: 51c60b67f82798cf1358e788acd1bc5a7ab2591f203d2e698e25c07afcbf7d68
+Digest: c72f93cb2b0c424b2ca3a7c95ecf188b1215e4f82743d5da5bc789aa2b16c26d
 """
 
 import math
@@ -32,6 +32,7 @@ MODEL = {
     'invariants': (),
     'position': (),
     'multipliers': (),
+    'objective_unit': 'm**2/s**3',
 }
 
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
 Source: ../derivations/double_integrator.py 7c9a8916264bd019727ab8ecd9867ba4
-Digest: 4dd5a7ef1aaf04319957e1b4d16b7009e8549fce16d95aecca559c2d9256f918
+Digest: 168753bdeef64edeb424c1608ef9268e04fa07aa632bd75b0f4f8f553fa0ef7d
 """
 
 import math
@@ -35,6 +35,7 @@ MODEL = {
     'position': (),
     'multipliers': (),
     'switching': True,
+    'objective_unit': 'm/s',
 }
 
 

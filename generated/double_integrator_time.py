@@ -3,7 +3,7 @@
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
 Source: ../derivations/double_integrator.py 7c9a8916264bd019727ab8ecd9867ba4
-Digest: d7a41d0bb57c2a311fff210a7dfe0fe80d3b149ad753ace39708f25bb89c3c42
+Digest: 06fe7a2d87a1cd2a68d0f240c1c91c0e9c5646a412688af62514b39b30bf58c3
 """
 
 import math
@@ -37,6 +37,7 @@ MODEL = {
         'q',
         'q_dot',
     ),
+    'objective_unit': 's',
 }
 
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/fuller.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/fuller.py
 Source: ../derivations/examples/fuller.py 3f853fbdfebb569b9374e4a329c695b1
-Digest: cd4a379d60bee5de6da37d2619ae7db9c7b5e8624f1390a73bebf74bb3dd17fe
+Digest: ff8b45a035b747bc1dc887d7f2ccdf60f91d0452ddff8332fe1872751828b087
 """
 
 import math
@@ -33,6 +33,7 @@ MODEL = {
     'position': (),
     'multipliers': (),
     'switching': True,
+    'objective_unit': '1',
     'chattering': (
         'u',
     ),

@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/goddard.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/goddard.py
 Source: ../derivations/examples/goddard.py 58e1065548d776c5eef5c563937f9858
-Digest: 679dc233a4cd720d80fbc032880ec9d5f9c94b05e6c66d83ca97610bdd5a59ba
+Digest: c491c29bed4ef2572c74c64899bbadb6fe912c171da400269cb1eb33824e0d55
 """
 
 import math
@@ -40,6 +40,7 @@ MODEL = {
     'multipliers': (),
     'switching': True,
     'maximise': True,
+    'objective_unit': '1',
 }
 
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/hypersensitive.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/hypersensitive.py
 Source: ../derivations/examples/hypersensitive.py 3d9e7a9eec7b48cfaf8b5a8d54b45b74
-Digest: 33561b360f7cadcb84c8ffe7c57a66651ed50fd512b57ec6389fc3b1ac80689d
+Digest: d2eebb24a60de6441676e1be13ed9bc9f0415e64682a5d92423d31cd0c69d818
 """
 
 import math
@@ -31,6 +31,7 @@ MODEL = {
     'invariants': (),
     'position': (),
     'multipliers': (),
+    'objective_unit': '1',
 }
 
 

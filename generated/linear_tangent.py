@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/linear_tangent.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/linear_tangent.py
 Source: ../derivations/examples/linear_tangent.py 9a5990cd81ea2ea84a5e4f5a4d6a0b85
-Digest: c1602207aa6f298e6a7f44cfbbb763d1fa9bbfd9cd06c9d04b923e58dc68e634
+Digest: a462fbd741d53a92aa05c241a97c5558dfb709c15bc5f8516178cd84d2333acb
 """
 
 import math
@@ -39,6 +39,7 @@ MODEL = {
     'control_parts': (
         {'name': 'steering', 'kind': 'angle', 'controls': ('beta',), 'branch': 'direction'},
     ),
+    'objective_unit': '1',
 }
 
 

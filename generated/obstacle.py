@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/obstacle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/obstacle.py
 Source: ../derivations/examples/obstacle.py 935b9e8d2400951ac21806daa850147f
-Digest: dd39387e335f74c3416786291e15cc79d4fcb8aab06e48f4452897635a34e4ff
+Digest: 7596be71a4cd22954be9698a66e8ff5025e32eed9c92113685ce4bffeec1d835
 """
 
 import math
@@ -42,6 +42,7 @@ MODEL = {
     'invariants': (),
     'position': (),
     'multipliers': (),
+    'objective_unit': '1',
     'path_constraints': (
         {'name': 'first', 'order': 2},
         {'name': 'second', 'order': 2},

@@ -3,7 +3,7 @@
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
 Source: ../derivations/pitch_wheel.py d70f236478efb04d631a9d1e77eb3d4f
-Digest: 0950a17dec909e804c377bac48785e50beafa60572a2e2a7225f9761244999ab
+Digest: 89ccf7cb4d77767d0ae71ab592bac804578669dc4710dc0d6b6117dc7deba5f0
 """
 
 import math
@@ -46,6 +46,7 @@ MODEL = {
         {'symbol': 'voltage', 'latex': 'V', 'unit': 'V', 'meaning': 'voltage across the motor'},
         {'symbol': 'power', 'latex': 'P', 'unit': 'W', 'meaning': 'electrical power of the motor'},
     ),
+    'objective_unit': 'W*s',
 }
 
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
 Source: ../derivations/pitch_wheel.py d70f236478efb04d631a9d1e77eb3d4f
-Digest: 2cdeab5802bc248d6038ed8275cb49146f6bbf8b0f8c6dc192164ec6baf3a0bf
+Digest: 4def6e6aae20c58ec9efb372b68885415a3c99549c36f5b37b999e74c5e65dce
 """
 
 import math
@@ -51,6 +51,7 @@ MODEL = {
         'theta',
         'theta_dot',
     ),
+    'objective_unit': 's',
 }
 
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
 Source: ../derivations/pitch_wheel.py d70f236478efb04d631a9d1e77eb3d4f
-Digest: 85615390c44b213d5e92a9b530e283360ce139f933e4b667054d6c4027413fb9
+Digest: 827f447c37d9dfb9d257d6e8d98d8b882290ba9e3fa1f5539ed5736d46a395fa
 """
 
 import math
@@ -37,6 +37,7 @@ MODEL = {
     'quantities': (
         {'symbol': 'scaled_power', 'latex': 'p', 'meaning': 'power in units of what heats the motor at the maximum torque'},
     ),
+    'objective_unit': '1',
 }
 
 

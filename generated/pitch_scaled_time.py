@@ -3,7 +3,7 @@
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
 Source: ../derivations/pitch_wheel.py d70f236478efb04d631a9d1e77eb3d4f
-Digest: 38ba91a083d400e47b827cf7c9e1b8e7f12b7b96b3ddb220ef4db3c83b0c4743
+Digest: a637a2f7e9eb968d25e3b0e59c3490bd35bc0d03fad40708c966caea7b02b01b
 """
 
 import math
@@ -37,6 +37,7 @@ MODEL = {
         'X1',
         'X2',
     ),
+    'objective_unit': '1',
 }
 
 

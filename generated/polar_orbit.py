@@ -3,7 +3,7 @@
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
 Source: ../derivations/polar_orbit.py eea94ffce26c74c68c16f37511ae1eb3
-Digest: e9e85f8c940cb86a391d3f92c3e21e448202aff88bf72ecedd5f82609c297c5f
+Digest: fcec5f70a659d2d664564d0645215e3bfca4cb2d5fad3802c95267e1740b2e69
 """
 
 import math
@@ -42,8 +42,8 @@ MODEL = {
     'has_reference': True,
     'autonomous': True,
     'invariants': (
-        {'symbol': 'energy', 'latex': '\\mathcal{E}'},
-        {'symbol': 'angular_momentum', 'latex': '\\ell'},
+        {'symbol': 'energy', 'latex': '\\mathcal{E}', 'unit': 'km**2/s**2'},
+        {'symbol': 'angular_momentum', 'latex': '\\ell', 'unit': 'km**2/s'},
     ),
     'position': (
         {'symbol': 'x', 'latex': 'x'},
@@ -51,6 +51,7 @@ MODEL = {
     ),
     'multipliers': (),
     'keplerian': True,
+    'objective_unit': 'km**2/s**3',
 }
 
 

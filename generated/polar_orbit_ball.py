@@ -3,7 +3,7 @@
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
 Source: ../derivations/polar_orbit.py eea94ffce26c74c68c16f37511ae1eb3
-Digest: 0832581610a70e37e0806c1bdc6d96a4361aabca2368327fe9787779395e6709
+Digest: 41708e41018e153ec14418bac230b5f1f20f05801a87579e3e098e64506bf5c9
 """
 
 import math
@@ -41,8 +41,8 @@ MODEL = {
     'has_reference': True,
     'autonomous': True,
     'invariants': (
-        {'symbol': 'energy', 'latex': '\\mathcal{E}'},
-        {'symbol': 'angular_momentum', 'latex': '\\ell'},
+        {'symbol': 'energy', 'latex': '\\mathcal{E}', 'unit': 'km**2/s**2'},
+        {'symbol': 'angular_momentum', 'latex': '\\ell', 'unit': 'km**2/s'},
     ),
     'position': (
         {'symbol': 'x', 'latex': 'x'},
@@ -50,6 +50,7 @@ MODEL = {
     ),
     'multipliers': (),
     'keplerian': True,
+    'objective_unit': 'km**2/s**3',
 }
 
 

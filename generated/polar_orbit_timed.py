@@ -3,7 +3,7 @@
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
 Source: ../derivations/polar_orbit.py eea94ffce26c74c68c16f37511ae1eb3
-Digest: b0dc0264d7d4cc4ec70da6e36ac2836a2a8fda7828e2739cafd9b0e00c805caa
+Digest: 7ddd6744e2883828c19402186e847f40767eb92f2d14b9d8d65de422137c7cac
 """
 
 import math
@@ -43,8 +43,8 @@ MODEL = {
     'has_reference': True,
     'autonomous': True,
     'invariants': (
-        {'symbol': 'energy', 'latex': '\\mathcal{E}'},
-        {'symbol': 'angular_momentum', 'latex': '\\ell'},
+        {'symbol': 'energy', 'latex': '\\mathcal{E}', 'unit': 'km**2/s**2'},
+        {'symbol': 'angular_momentum', 'latex': '\\ell', 'unit': 'km**2/s'},
     ),
     'position': (
         {'symbol': 'x', 'latex': 'x'},
@@ -52,6 +52,7 @@ MODEL = {
     ),
     'multipliers': (),
     'keplerian': True,
+    'objective_unit': 'km**2/s**3',
 }
 
 

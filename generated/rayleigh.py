@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/oscillators.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/oscillators.py
 Source: ../derivations/examples/oscillators.py f7bd65b4a3ceeb7d53ceb7dea4512271
-Digest: 08063bf02551afc5d75ab5bbe70439dde763e6573358313bb4b8b6c4679b487f
+Digest: 3ae9bdc92a6f846fac661ee23c43157026e34c392371f9b19305d4fac79c44fd
 """
 
 import math
@@ -32,6 +32,7 @@ MODEL = {
     'invariants': (),
     'position': (),
     'multipliers': (),
+    'objective_unit': '1',
 }
 
 

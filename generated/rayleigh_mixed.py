@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/oscillators.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/oscillators.py
 Source: ../derivations/examples/oscillators.py f7bd65b4a3ceeb7d53ceb7dea4512271
-Digest: 70aa3c526337ed75e9e3b09e969d9411a5e101c45381f2904febd7b4d7542293
+Digest: 5fe782cf38eb737cb1034ef136332534ce8edacd9770ffb47da8fdf77bc8bdad
 """
 
 import math
@@ -32,6 +32,7 @@ MODEL = {
     'invariants': (),
     'position': (),
     'multipliers': (),
+    'objective_unit': '1',
     'path_constraints': (
         {'name': 'bound', 'order': 0},
     ),

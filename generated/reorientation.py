@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/reorientation.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/reorientation.py
 Source: ../derivations/examples/reorientation.py 187dd85ea745859e2c6cd67d76228408
-Digest: e5a0ecfb7cd7f469947a45de8b9f90c680190c09b17e35c8feb2b99404ff7d82
+Digest: 3966bf98e9b88d93e2d12ce44c90f3da5b98836f08020a91ec81e55d44088543
 """
 
 import math
@@ -44,6 +44,7 @@ MODEL = {
     'position': (),
     'multipliers': (),
     'switching': True,
+    'objective_unit': '1',
 }
 
 

@@ -5,7 +5,7 @@ Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend tha
 Source: ../derivations/examples/kept_orbit.py e89be9172e891c8e79a7325f3458710f
 Source: ../derivations/clohessy_wiltshire.py 52520f4e0a2f16c4858ba5a6515ea5d0
 Source: ../derivations/polar_orbit.py eea94ffce26c74c68c16f37511ae1eb3
-Digest: 49387dd96ad8cc5de2f4ba09df574f11f1dd462bd7ceb1d68582c29747169b8e
+Digest: 78d627bd8dfe8addd7231299bcdf2204149c11beaa0f8bc91ba21d74407cf1a4
 """
 
 import math
@@ -41,8 +41,8 @@ MODEL = {
     'has_reference': True,
     'autonomous': True,
     'invariants': (
-        {'symbol': 'energy', 'latex': '\\mathcal{E}'},
-        {'symbol': 'angular_momentum', 'latex': '\\ell'},
+        {'symbol': 'energy', 'latex': '\\mathcal{E}', 'unit': 'km**2/s**2'},
+        {'symbol': 'angular_momentum', 'latex': '\\ell', 'unit': 'km**2/s'},
     ),
     'position': (
         {'symbol': 'x', 'latex': 'x'},
@@ -50,6 +50,7 @@ MODEL = {
     ),
     'multipliers': (),
     'keplerian': True,
+    'objective_unit': 'km**2/s**3',
     'path_constraints': (
         {'name': 'floor', 'order': 2},
     ),

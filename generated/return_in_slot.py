@@ -5,7 +5,7 @@ Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend tha
 Source: ../derivations/examples/kept_orbit.py e89be9172e891c8e79a7325f3458710f
 Source: ../derivations/clohessy_wiltshire.py 52520f4e0a2f16c4858ba5a6515ea5d0
 Source: ../derivations/polar_orbit.py eea94ffce26c74c68c16f37511ae1eb3
-Digest: 6a91d9e182b07c8b713b288bac9bf2070d3bccc8d143e84860772988e4a491d2
+Digest: 89129cef668e1cc83c8b4f93433a0c8c8dc59a353ec87d487f2d837016789096
 """
 
 import math
@@ -41,8 +41,8 @@ MODEL = {
     'has_reference': True,
     'autonomous': True,
     'invariants': (
-        {'symbol': 'energy', 'latex': '\\mathcal{E}'},
-        {'symbol': 'angular_momentum', 'latex': '\\ell'},
+        {'symbol': 'energy', 'latex': '\\mathcal{E}', 'unit': 'km**2/s**2'},
+        {'symbol': 'angular_momentum', 'latex': '\\ell', 'unit': 'km**2/s'},
     ),
     'position': (
         {'symbol': 'x', 'latex': 'x'},
@@ -50,6 +50,7 @@ MODEL = {
     ),
     'multipliers': (),
     'keplerian': True,
+    'objective_unit': 'km**2/s**3',
     'path_constraints': (
         {'name': 'ahead', 'order': 2},
         {'name': 'behind', 'order': 2},

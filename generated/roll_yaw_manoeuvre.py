@@ -3,7 +3,7 @@
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
 Source: ../derivations/gimballed_wheel.py f592f2f81dafd584b30b3628a88ec24b
-Digest: e18caf1dbeb3c880b7ae956c66b2ea1efa6cf6a97593e381d3ae54e859e719ac
+Digest: eaa35701676a08b7ad5c1bef0ba7398155d63148c86cd39ded7673bf2df3b8e4
 """
 
 import math
@@ -49,6 +49,7 @@ MODEL = {
     'mode_groups': (
         {'name': 'nutation', 'states': ('phi', 'psi', 'phi_dot', 'psi_dot'), 'vanishing': 'w0', 'slow': 'orbit-rate mode'},
     ),
+    'objective_unit': 'N**2*m**2*s',
 }
 
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/shuttle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/shuttle.py
 Source: ../derivations/examples/shuttle.py 90ce04e0c14ffe867abe3453567e1ac2
-Digest: b5f9b41856582872aa9929ea9736e474b4263a913c59b9ff2ea1117ab29392f1
+Digest: c0564160c834e98fa5ee338f020b6e747148c87cffd3eb998a7fb71a388ca676
 """
 
 import math
@@ -54,6 +54,7 @@ MODEL = {
         {'name': 'bank', 'kind': 'box', 'controls': ('beta',), 'branch': 'stationary'},
     ),
     'maximise': True,
+    'objective_unit': '1',
 }
 
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
 Source: ../derivations/small_systems.py 64cc26ba670282a2a440511b061ad932
-Digest: 45232e6f9261439625fb0219b7d068b71f892c14daa70cb263945b7e85483fba
+Digest: eb2be6535916a5dc15216c3712ed04264b16fc9d1ff6335e9d9bde381375ceec
 """
 
 import math
@@ -32,6 +32,7 @@ MODEL = {
     'position': (),
     'multipliers': (),
     'switching': True,
+    'objective_unit': '1',
 }
 
 

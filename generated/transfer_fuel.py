@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/transfer_fuel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/transfer_fuel.py
 Source: ../derivations/examples/transfer_fuel.py c0f542e11e9e340509ed9a0606d3f35f
-Digest: 7e0bb176eba7088203d2e6a8a2c7dfd99b2111092603e5c26c014b6197dfd779
+Digest: ac61e74dc5f7a6022ec31e96610796402b914005176da9c3e1ab1254375ea2df
 """
 
 import math
@@ -42,6 +42,7 @@ MODEL = {
     'control_parts': (
         {'name': 'thrust', 'kind': 'ball', 'controls': ('T_r', 'T_t'), 'branch': 'throttled'},
     ),
+    'objective_unit': '1',
 }
 
 

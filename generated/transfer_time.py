@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/transfer_time.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/transfer_time.py
 Source: ../derivations/examples/transfer_time.py b6d01faf7286916d9f44995f810f7ba1
-Digest: 7d06248630e3980a2d903ed80afc85d67a9f9aa9641feca15eee2f5d0cbb97c3
+Digest: fb480be878d1a1e5e077ea6e819791cdd46f605ed294ca9110abfdbc0c3019d7
 """
 
 import math
@@ -40,6 +40,7 @@ MODEL = {
     'control_parts': (
         {'name': 'steering', 'kind': 'angle', 'controls': ('beta',), 'branch': 'direction'},
     ),
+    'objective_unit': '1',
 }
 
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/two_body.py. Do not edit: mend that file instead, then run
     satsym derive derivations/two_body.py
 Source: ../derivations/two_body.py 1e43053811502655dda447a261a022eb
-Digest: 7c3028c0161390485462a8866d3d427b2883911d57f04a91230bdc823c328648
+Digest: 7a65087287e60d599b12bb02c8b9d0f2323a003adc604ff39e54766b864e1f99
 """
 
 import math
@@ -38,10 +38,10 @@ MODEL = {
     'has_reference': False,
     'autonomous': True,
     'invariants': (
-        {'symbol': 'energy', 'latex': '\\mathcal{E}'},
-        {'symbol': 'angular_momentum_x', 'latex': '\\ell_x'},
-        {'symbol': 'angular_momentum_y', 'latex': '\\ell_y'},
-        {'symbol': 'angular_momentum_z', 'latex': '\\ell_z'},
+        {'symbol': 'energy', 'latex': '\\mathcal{E}', 'unit': 'km**2/s**2'},
+        {'symbol': 'angular_momentum_x', 'latex': '\\ell_x', 'unit': 'km**2/s'},
+        {'symbol': 'angular_momentum_y', 'latex': '\\ell_y', 'unit': 'km**2/s'},
+        {'symbol': 'angular_momentum_z', 'latex': '\\ell_z', 'unit': 'km**2/s'},
     ),
     'position': (
         {'symbol': 'x', 'latex': 'x'},

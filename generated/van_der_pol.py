@@ -3,7 +3,7 @@
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
 Source: ../derivations/small_systems.py 64cc26ba670282a2a440511b061ad932
-Digest: 2b6289f4d26e93cb6acafdc2574ec1e5ed9bf3a881dbab3caed5a076e1e7149d
+Digest: e20c55f11de958d94c38261ab173a6b0b64c2512e70a2f434d3988281b04171a
 """
 
 import math
@@ -33,6 +33,7 @@ MODEL = {
     'position': (),
     'multipliers': (),
     'switching': True,
+    'objective_unit': '1',
 }
 
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/oscillators.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/oscillators.py
 Source: ../derivations/examples/oscillators.py f7bd65b4a3ceeb7d53ceb7dea4512271
-Digest: 7f06169da2f4daaefeeb6aca98c27d0dad871385cfd0533d218f1f9c28bd0ed7
+Digest: 4b07d94d972208b3ecfdad974dd3ffc7198c9e4fff02b1dcf9a7c31d0402b0f8
 """
 
 import math
@@ -32,6 +32,7 @@ MODEL = {
     'invariants': (),
     'position': (),
     'multipliers': (),
+    'objective_unit': '1',
 }
 
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/zermelo.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/zermelo.py
 Source: ../derivations/examples/zermelo.py 25f09390ecc610dc9dbedfda09d624f5
-Digest: 695e642e65ad9edaee476e6e7456b0d6af7387a3b36355f10940b7d7ef8a93c1
+Digest: a28c2c71dc75dbb966ae4ba93af5cef7b483fdc042b87e2093710d0f19112c77
 """
 
 import math
@@ -38,6 +38,7 @@ MODEL = {
     'control_parts': (
         {'name': 'rudder', 'kind': 'angle', 'controls': ('heading',), 'branch': 'direction'},
     ),
+    'objective_unit': '1',
 }
 
 

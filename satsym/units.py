@@ -87,6 +87,37 @@ def dimension(unit: str) -> Mapping[str, int | Fraction]:
     return {name: _exact(exponents[name]) for name in sorted(exponents) if exponents[name] != 0}
 
 
+def factors(unit: str) -> dict[str, int]:
+    """Names in a unit expression, as in `parse_quantity`, with their exponents; empty for a plain number.
+
+    Raises
+    ------
+    BadInput
+        If it is not readable. That a name is known is not looked at, which would load pint.
+    """
+    return {name: exponent for name, exponent in _factors(unit).items() if exponent}
+
+
+def expression(factors: Mapping[str, int]) -> str:
+    """The unit expression of names with their exponents, such as ``km**2/kg/s**3``; ``"1"`` where there are none."""
+    above, below = (
+        [name if abs(n) == 1 else f"{name}**{abs(n)}" for name, n in factors.items() if n * sign > 0]
+        for sign in (1, -1)
+    )
+    return "/".join(["*".join(above) or "1", *below])
+
+
+def in_base_units(name: str) -> float:
+    """How many base units, such as metres, a unit of one name is.
+
+    Raises
+    ------
+    BadInput
+        If it is unknown.
+    """
+    return _convert(1.0, _named(name), _registry().get_base_units(_named(name))[1])
+
+
 def time_unit(units: Iterable[str]) -> str:
     """The unit in which a model counts time, told from the units of its variables.
 

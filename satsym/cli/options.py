@@ -11,7 +11,7 @@ import click
 
 from satsym.cli import names
 from satsym.report import texts
-from satsym.report.look import FORMATS, SCREEN, Look
+from satsym.report.look import FORMATS, SCREEN, SIZES, Look
 from satsym.status import BadInput
 
 
@@ -72,12 +72,12 @@ def plot_options(command: str) -> Callable[[Callable[..., Any]], Callable[..., A
 
     def decorated(function: Callable[..., Any]) -> Callable[..., Any]:
         @functools.wraps(function)
-        def called(*, plot: bool, formats: tuple[str, ...], untitled: bool, **arguments: Any) -> Any:
-            if (formats or untitled) and not plot:
-                raise click.UsageError("--format and --no-title say how pictures look; add --plot to have some.")
-            return function(look=_look(formats, untitled) if plot else None, **arguments)
+        def called(*, plot: bool, formats: tuple[str, ...], size: str | None, untitled: bool, **arguments: Any) -> Any:
+            if (formats or size or untitled) and not plot:
+                raise click.UsageError("--format, --size, --no-title say how pictures look; add --plot to have some.")
+            return function(look=_look(formats, untitled, size) if plot else None, **arguments)
 
-        return drawn(_format_option(_title_option(called)))
+        return drawn(_format_option(_size_option(_title_option(called))))
 
     return decorated
 
@@ -86,14 +86,14 @@ def look_options(function: Callable[..., Any]) -> Callable[..., Any]:
     """How pictures look, as ``look``, for a command that does nothing but draw."""
 
     @functools.wraps(function)
-    def called(*, formats: tuple[str, ...], untitled: bool, **arguments: Any) -> Any:
-        return function(look=_look(formats, untitled), **arguments)
+    def called(*, formats: tuple[str, ...], size: str | None, untitled: bool, **arguments: Any) -> Any:
+        return function(look=_look(formats, untitled, size), **arguments)
 
-    return _format_option(_title_option(called))
+    return _format_option(_size_option(_title_option(called)))
 
 
-def _look(formats: tuple[str, ...], untitled: bool) -> Look:
-    return Look(tuple(dict.fromkeys(formats)) or SCREEN.formats, not untitled)
+def _look(formats: tuple[str, ...], untitled: bool, size: str | None) -> Look:
+    return Look(tuple(dict.fromkeys(formats)) or SCREEN.formats, not untitled, size or SCREEN.size)
 
 
 _format_option = click.option(
@@ -103,5 +103,11 @@ _format_option = click.option(
     type=click.Choice(FORMATS),
     multiple=True,
     help=f"Kind of the pictures: {', '.join(FORMATS)}; may be given several times. By default png.",
+)
+_size_option = click.option(
+    "--size",
+    metavar="SIZE",
+    type=click.Choice(tuple(SIZES)),
+    help=f"What they are for: {'; '.join(f'{name}, {what}' for name, what in SIZES.items())}. By default screen.",
 )
 _title_option = click.option("--no-title", "untitled", is_flag=True, help="Pictures without titles, for captions.")

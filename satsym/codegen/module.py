@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import sympy as sp
 
-from satsym.codegen import rk4, roots, symplectic
+from satsym.codegen import derived_units, rk4, roots, symplectic
 from satsym.codegen.block import Assignment, build
 from satsym.codegen.emitter import Emitter
 from satsym.codegen.functions import Function, Symbols, symbols
@@ -71,14 +71,19 @@ def spec(derivation: Derivation, source: str) -> ProblemSpec:
         has_cost=problem is not None,
         has_terminal_cost=bool(problem and problem.terminal_cost != 0),
         maximise=bool(problem and problem.maximise),
-        objective_unit=problem.unit if problem else "",
+        objective_unit=derived_units.of_objective(derivation),
         has_reference=bool(model.reference),
         path_constraints=tuple(PathConstraint(one.name, one.order) for one in inequalities.every(derivation)),
         linear_quadratic=inequalities.linear_quadratic(derivation),
         autonomous=not any(
             e.has(t) for e in (*derivation.rhs("first_order"), sp.sympify(problem.running_cost if problem else 0))
         ),
-        invariants=tuple(Variable(e.name, derivation.notation[e.name]) for e in conserved),
+        invariants=tuple(
+            Variable(e.name, derivation.notation[e.name], unit)
+            for e, unit in zip(
+                conserved, derived_units.of_expressions(derivation, (e.rhs for e in conserved)), strict=True
+            )
+        ),
         multipliers=tuple(Variable(v.name, derivation.notation[v.name]) for v in symbols(derivation).nu),
         position=tuple(Variable(axis, axis) for axis in ("x", "y", "z")[: len(particle.position) if particle else 0]),
         outputs=tuple(o.variable for o in model.outputs) if (linear := linear_functions(derivation)) else (),

@@ -5,7 +5,11 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable
+from dataclasses import dataclass
 from functools import lru_cache
+
+from satsym import units
+from satsym.status import BadInput
 
 _SECONDS = {"ms": 1e-3, "s": 1.0, "sec": 1.0, "second": 1.0, "min": 60.0, "minute": 60.0, "h": 3600.0, "hour": 3600.0}
 _SECONDS |= {"d": 86400.0, "day": 86400.0, "year": 31557600.0, "yr": 31557600.0}
@@ -15,6 +19,11 @@ _LENGTHS = frozenset("m km cm mm au AU astronomical_unit ft mile nautical_mile".
 ASTRONOMICAL_UNIT = 149_597_870_700.0
 """In metres, by definition (IAU 2012, resolution B2)."""
 _RAISED = str.maketrans("+-0123456789", "⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_PREFIXES = {-12: "p", -9: "n", -6: "\N{MICRO SIGN}", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
+_PREFIXED = {"km": ("m", 3), "mm": ("m", -3), "kg": ("g", 3), "kN": ("N", 3), "ms": ("s", -3)}
+"""Units with a prefix: without it, and the power of ten that it stands for."""
+_LARGEST = {"m": 3, "g": 3, "s": 0, "rad": 0, "deg": 0} | dict.fromkeys(("N", "W", "J", "V", "A"), 9)
+"""Units that take prefixes, and up to which power of ten people use them."""
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _POWER = re.compile(r"(?:\*\*|\^)\s*([+-]?\d+)")
 
@@ -37,47 +46,64 @@ def plain(text: str) -> str:
     return text.replace("$", r"\$")
 
 
-def unit_text(unit: str, exponent: int = 0) -> str:
-    """A unit, such as ``km/s**2``, after a power of ten: 10⁻⁹ km/s². Empty for a plain number."""
-    factor = f"10{str(exponent).translate(_RAISED)}" if exponent else ""
-    raised = _POWER.sub(lambda power: power[1].translate(_RAISED), "" if unit == "1" else unit)
-    return f"{factor} {raised.replace('*', '·')}".strip()
+def unit_text(unit: str) -> str:
+    """A unit as people write it: ``km/s**2`` as km/s², ``km/s/rad`` as km/(s·rad). Empty for a plain number."""
+    raised = _POWER.sub(lambda power: power[1].translate(_RAISED), "" if unit == "1" else unit).replace("*", "·")
+    above, *below = raised.split("/")
+    return f"{above}/({'·'.join(below)})" if len(below) > 1 else raised
 
 
-def labelled(symbol: str, unit: str, exponent: int = 0) -> str:
+def labelled(symbol: str, unit: str) -> str:
     """A label of an axis: symbol, and the unit in brackets where there is one."""
-    bracket = unit_text(unit, exponent)
+    bracket = unit_text(unit)
     return f"{symbol} [{bracket}]" if bracket else symbol
 
 
-def exponent_for(size: float) -> int:
-    """The power of ten (a multiple of 3) to divide by so that numbers up to ``size`` are short; mostly 0."""
-    if not math.isfinite(size) or size == 0.0 or 1e-2 <= size < 1e4:
-        return 0
-    return 3 * math.floor(math.log10(size) / 3.0)
+@dataclass(frozen=True)
+class Scale:
+    """A unit that reads well, and the power of ten that it is of the one that was given."""
+
+    exponent: int
+    unit: str
+
+    @property
+    def divisor(self) -> float:
+        """What numbers are divided by."""
+        return float(f"1e{self.exponent}")
+
+
+@lru_cache(maxsize=512)
+def engineering(unit: str, size: float) -> Scale:
+    """The unit with the prefix that makes numbers up to ``size`` short: um/s**2 (with the micro sign) for 1e-8 km/s**2.
+
+    The first name above the line that takes prefixes has it. Where none does, the unit stays as it is.
+    """
+    stays = Scale(0, unit)
+    if not math.isfinite(size) or size == 0.0 or 1e-3 <= size < 1e4:
+        return stays
+    try:
+        factors = units.factors(unit)
+    except BadInput:
+        return stays
+    plain_names = {name: _PREFIXED.get(name, (name, 0)) for name in factors}
+    first = next((name for name, (base, _) in plain_names.items() if base in _LARGEST and factors[name] > 0), None)
+    if first is None:
+        return stays
+    base, power = plain_names[first]
+    allowed = {(p - power) * factors[first]: p for p in _PREFIXES if p <= max(_LARGEST[base], power)}
+    exponent = min(allowed, key=lambda e: abs(math.log10(size) - e - 1.0))
+    name = _PREFIXES[allowed[exponent]] + base
+    return Scale(exponent, units.expression({name if one == first else one: n for one, n in factors.items()}))
 
 
 def number(value: float, digits: int = 6) -> str:
     """A number in a sentence, such as 42164.2 or 1.6 × 10⁻⁸."""
     mantissa, e, exponent = f"{value:.{digits}g}".partition("e")
-    return mantissa.replace("-", "\N{MINUS SIGN}") + (_times_ten_to(int(exponent)) if e else "")
+    return mantissa.replace("-", "\N{MINUS SIGN}") + (times_ten_to(int(exponent)) if e else "")
 
 
-def on_axis(value: float, exponent: int, digits: int) -> str:
-    """A number as its axis shows it, with the power of ten that the axis is divided by: -770.67 × 10⁻¹⁵.
-
-    Parameters
-    ----------
-    value
-        Divided by that power.
-    """
-    text = number(value, digits)
-    if not exponent or value == 0.0:
-        return text
-    return number(value * 10.0**exponent, digits) if "×" in text else text + _times_ten_to(exponent)
-
-
-def _times_ten_to(exponent: int) -> str:
+def times_ten_to(exponent: int) -> str:
+    """What stands behind a number that is to be multiplied by a power of ten."""
     return f" × 10{str(exponent).translate(_RAISED)}"
 
 

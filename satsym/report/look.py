@@ -1,4 +1,4 @@
-"""How pictures are asked for: as which files, and with or without a title. Loads nothing, for ``--help`` asks it."""
+"""How pictures are asked for: as which files, how large, with or without titles. Loads nothing, for --help asks it."""
 
 from __future__ import annotations
 
@@ -9,6 +9,12 @@ from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
 FORMATS = ("png", "pdf", "svg")
+SIZES = {
+    "screen": "10 inches wide",
+    "page": "a page of a journal, 7 inches wide",
+    "column": "a column, 3.5 inches wide, panels below each other",
+    "slide": "a slide, 13.3 by at most 7.5 inches",
+}
 
 
 @dataclass(frozen=True)
@@ -21,18 +27,23 @@ class Look:
         Of :data:`FORMATS`; each picture is written as each of them.
     titled
         Whether a page carries its title; what is printed has a caption below instead.
+    size
+        Of :data:`SIZES`: how wide a page is, and how large its letters are.
     """
 
     formats: tuple[str, ...] = ("png",)
     titled: bool = True
+    size: str = "screen"
 
     def __post_init__(self) -> None:
+        if self.size not in SIZES:
+            raise BadInput(f"no pictures of the size {shown(self.size)}; {suggestion(str(self.size), SIZES)}")
         for each in self.formats:
             if each not in FORMATS:
                 raise BadInput(f"no pictures as {shown(each)}; {suggestion(str(each), FORMATS)}")
 
     @classmethod
-    def of(cls, formats: str | Sequence[str], titled: bool = True) -> Look:
+    def of(cls, formats: str | Sequence[str], titled: bool = True, size: str = "screen") -> Look:
         """For one kind of files, or several.
 
         Raises
@@ -40,7 +51,7 @@ class Look:
         BadInput
             For one that is not known here.
         """
-        return cls((formats,) if isinstance(formats, str) else tuple(formats), titled)
+        return cls((formats,) if isinstance(formats, str) else tuple(formats), titled, size)
 
 
 SCREEN = Look()

@@ -24,10 +24,10 @@ COMMANDS = [
     *("models", "instances", "new", "solve", "simulate", "study", "plot", "compare", "analyse", "lqr", "derive"),
     *("latex", "audit", "completion", "doctor"),
 ]
-HEAD = "satsym schema command model instance status units".split()
+HEAD = "satsym schema command model instance status units instance_file".split()
 SOLUTION_KEYS = (
-    "satsym schema command model instance status units method message boundary_type objective t_final x_final "
-    "costate_initial switching_times iterations wall_s certificate x_initial t_initial parameters_found events"
+    "satsym schema command model instance status units instance_file method message boundary_type objective t_final "
+    "x_final costate_initial switching_times iterations wall_s certificate x_initial t_initial parameters_found events"
 ).split()
 
 INSTANCE = """

@@ -25,7 +25,7 @@ from tests.house.test_floors import run_satsym
 
 Run = Callable[..., tuple[int, str, str]]
 
-HEAD = "satsym schema command model instance status units "
+HEAD = "satsym schema command model instance status units instance_file "
 ANALYSIS_KEYS = (
     HEAD
     + "equilibrium A B C eigenvalues modes jordan_blocks characteristic_polynomial routh stability controllability "

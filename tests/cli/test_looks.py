@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import io
+import json
 import re
 import zlib
 from pathlib import Path
 
 import pytest
 
+from satsym.instance.files import SHIPPED
 from satsym.report import plots
-from satsym.report.look import FORMATS, Look
+from satsym.report.look import FORMATS, SIZES, Look
 from satsym.report.plots import style
 from satsym.report.results.files import Content
+from satsym.status import BadInput
 from tests.cli.test_cli import Run, case, run
 
 __all__ = ["case", "run"]
@@ -50,6 +53,31 @@ def test_how_pictures_look_is_refused_where_none_are_drawn(run: Run, tmp_path: P
         assert "add --plot" in err
     assert run("solve", "soft-return", "--plot", "--format", "jpg")[0] == 2
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_page_is_as_wide_as_its_place_and_a_column_has_panels_below_each_other() -> None:
+    from satsym import instance
+    from satsym.solvers import simulate
+
+    found = simulate(instance.load("its-thesis"))
+    wide = {size: plots.figures(found, Look(size=size))["states"] for size in SIZES}
+    assert [round(page.get_figwidth(), 2) for page in wide.values()] == [10.0, 7.0, 3.5, 13.33]
+    assert wide["slide"].get_figheight() <= 7.5
+    lefts = {
+        size: {round(axes.get_subplotspec().colspan.start, 2) for axes in page.axes} for size, page in wide.items()
+    }
+    assert lefts == {"screen": {0, 1}, "page": {0, 1}, "column": {0}, "slide": {0, 1}}
+    with pytest.raises(BadInput, match='did you mean "column"'):
+        Look(size="columns")
+
+
+def test_a_result_names_the_file_of_its_instance_and_what_that_held(run: Run, tmp_path: Path) -> None:
+    text = (SHIPPED / "its-thesis.toml").read_bytes()
+    (tmp_path / "mine.toml").write_bytes(text)
+    (tmp_path / "other.toml").write_bytes(text + b"# a remark\n")
+    first, second = (json.loads(run("simulate", f"{n}.toml", "--json")[1])["instance_file"] for n in ("mine", "other"))
+    assert (first["name"], second["name"]) == ("mine.toml", "other.toml")
+    assert first["digest"] != second["digest"]
 
 
 def written(pictures: dict[str, Content]) -> dict[str, bytes]:

@@ -22,10 +22,12 @@ from satsym.solution import Invariant, Simulation, Solution
 from satsym.status import BadInput, Status
 
 SOLUTION_KEYS = (
-    "satsym schema command model instance status units method message boundary_type objective t_final x_final "
-    "costate_initial switching_times iterations wall_s certificate x_initial t_initial parameters_found events"
+    "satsym schema command model instance status units instance_file method message boundary_type objective t_final "
+    "x_final costate_initial switching_times iterations wall_s certificate x_initial t_initial parameters_found events"
 ).split()
-FLIGHT_KEYS = "satsym schema command model instance status units feedback t_final x_final invariants metrics".split()
+FLIGHT_KEYS = (
+    "satsym schema command model instance status units instance_file feedback t_final x_final invariants metrics"
+).split()
 STATES = ["r", "r_dot", "theta", "theta_dot"]
 
 

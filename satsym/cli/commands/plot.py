@@ -68,7 +68,7 @@ def plot(subject: str, source: Path | None, out: Path | None, look: Look, as_jso
     pictures = plots.pictures(result, look)
     saved = _save(out or source, found, result, pictures) if pictures else []
     if as_json:
-        begins = head("plot", case.model.spec, case.name, result.status)
+        begins = head("plot", case.model.spec, case, result.status)
         emit_json(begins | {"pictures": [str(path) for path in saved]})
     else:
         emit(with_files(case.title or case.name, saved) if saved else "there is no trajectory to draw")
@@ -84,4 +84,4 @@ def _save(folder: Path, found: Found, result: Solution | Simulation, pictures: M
         return sets.extend(found, pictures)
     sets.keep_apart(folder, "plot")
     case = result.instance
-    return sets.write(folder, head("plot", case.model.spec, case.name, result.status), pictures)[:-1]
+    return sets.write(folder, head("plot", case.model.spec, case, result.status), pictures)[:-1]

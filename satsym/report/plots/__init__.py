@@ -40,7 +40,7 @@ def pictures(result: Solution | Simulation, look: Look = SCREEN) -> dict[str, fi
     drawn: dict[str, files.Content] = {}
     with style.applied(look):
         for name, page in _pages(result):
-            drawn |= {f"{name}.{kind}": files.binary(style.rendered(page, kind)) for kind in look.formats}
+            drawn |= style.contents(name, page)
     return drawn
 
 
@@ -49,7 +49,7 @@ def figures(result: Solution | Simulation, look: Look = SCREEN) -> dict[str, Fig
     from satsym.report.plots import style
 
     with style.applied(look):
-        return dict(_pages(result))
+        return {name: style.finished(page) for name, page in _pages(result)}
 
 
 def _pages(result: Solution | Simulation) -> Iterator[tuple[str, Figure]]:

@@ -33,9 +33,7 @@ def pictures(cases: Sequence[Case], look: Look = SCREEN) -> dict[str, files.Cont
     """The page ``comparison``: name -> content of each file; none where there are no answers."""
     with style.applied(look):
         drawn = page(cases)
-        if drawn is None:
-            return {}
-        return {f"comparison.{kind}": files.binary(style.rendered(drawn, kind)) for kind in look.formats}
+        return {} if drawn is None else style.contents("comparison", drawn)
 
 
 def page(cases: Sequence[Case]) -> Figure | None:
@@ -45,19 +43,21 @@ def page(cases: Sequence[Case]) -> Figure | None:
         return None
     names = _shared(answered)
     law = next((case for case in answered if case.instance.classical and case.instance.classical.damping), None)
-    rows = -(-len(names) // 2) + 1 + (law is not None)
+    columns = style.across(2)
+    below = -(-len(names) // columns)
+    pairs = 2 // columns
+    rows = below + pairs * (1 + (law is not None))
     driven = all(case.instance.driven for case in cases)
     title = cases[0].instance.title if driven else ", ".join(case.instance.name for case in cases)
     figure = style.titled(title, style.WIDTH, 0.9 + 2.35 * rows)
-    grid = figure.add_gridspec(rows, 2)
+    grid = figure.add_gridspec(rows, columns)
     for k, variable in enumerate(names):
-        last = k == len(names) - 1 and k % 2 == 0
-        place = grid[k // 2, :] if last else grid[k // 2, k % 2]
+        last = k == len(names) - 1 and k % columns == 0
+        place = grid[k // columns, :] if last else grid[k // columns, k % columns]
         _over_time(figure.add_subplot(place), answered, variable)
-    below = -(-len(names) // 2)
-    _totals(figure, grid, below, answered)
+    _totals([figure.add_subplot(grid[below + k // columns, k % columns]) for k in range(2)], answered)
     if law is not None:
-        _range(figure, grid, below + 1, law)
+        _range([figure.add_subplot(grid[below + pairs + k // columns, k % columns]) for k in range(2)], law)
     entries = [
         (legend.line(color=COLOURS[k % 6], linestyle=DASHES[k % 6], linewidth=2.0), case.instance.name)
         for k, case in enumerate(answered)
@@ -87,13 +87,13 @@ def _over_time(axes: Axes, cases: Sequence[Case], variable: Variable) -> None:
     units = [v.unit for v in (*cases[0].instance.model.spec.states, *cases[0].instance.model.spec.controls)]
     factor, unit = display.time_scale(units, end)
     most = max(float(np.abs(case.signal(variable.symbol)).max()) for case in cases)
-    exponent = display.exponent_for(most)
+    told = display.engineering(variable.unit, most)
     for k, case in enumerate(cases):
         times = case.times - case.times[0]
         values = case.signal(variable.symbol)
         axes.plot(
             times / factor,
-            values / 10.0**exponent,
+            values / told.divisor,
             color=COLOURS[k % 6],
             linestyle=DASHES[k % 6],
             linewidth=1.8,
@@ -102,18 +102,28 @@ def _over_time(axes: Axes, cases: Sequence[Case], variable: Variable) -> None:
     limit = max((case.instance.limits.get(variable.symbol, 0.0) for case in cases), default=0.0)
     if 0.0 < limit < 2.0 * most:
         for edge in (-limit, limit):
-            axes.axhline(edge / 10.0**exponent, **style.BOUND)
+            axes.axhline(edge / told.divisor, **style.BOUND)
     axes.axhline(0.0, color=style.GREY, linewidth=0.8, zorder=1.9)
     axes.set_xlim(0.0, end / factor)
     axes.set_title(display.shortened(variable.meaning, 62))
     sudden = [(case.instance.name, case.metrics.get("impulse", 0.0)) for case in cases]
     if variable in cases[0].instance.model.spec.controls and any(impulse for _, impulse in sudden):
-        # an impulse has no height to be drawn
+        # an impulse has no height; an arrow stands for it, and its size is said
+        for k, (_, impulse) in enumerate(sudden):
+            if impulse:
+                look = {"color": COLOURS[k % 6], "arrowstyle": "-|>", "shrinkA": 0.0, "shrinkB": 0.0, "linewidth": 1.8}
+                ends: dict[str, Any] = {
+                    "xy": (0.0, float(np.sign(impulse)) * most / told.divisor),
+                    "xytext": (0.0, 0.0),
+                }
+                axes.annotate("", arrowprops=look, annotation_clip=False, zorder=4.0, **ends)
         of = display.unit_text(unit_of(cases, "impulse"))
         said = [f"{name} begins with an impulse of {impulse:.3g} {of}".rstrip() for name, impulse in sudden if impulse]
-        axes.text(0.98, 0.93, "\n".join(said), transform=axes.transAxes, ha="right", va="top", fontsize=8.5)
+        axes.text(
+            0.98, 0.93, "\n".join(said), transform=axes.transAxes, ha="right", va="top", fontsize=style.points(8.5)
+        )
     axes.set_xlabel(display.labelled("$t$", unit))
-    axes.set_ylabel(display.labelled(display.formula(variable.latex, variable.symbol), variable.unit, exponent))
+    axes.set_ylabel(display.labelled(display.formula(variable.latex, variable.symbol), told.unit))
 
 
 def _until(case: Case) -> float:
@@ -122,15 +132,15 @@ def _until(case: Case) -> float:
     return min(found, whole) if np.isfinite(found) else whole
 
 
-def _totals(figure: Figure, grid: Any, row: int, cases: Sequence[Case]) -> None:
+def _totals(panels: Sequence[Axes], cases: Sequence[Case]) -> None:
     from satsym.analysis.classical.performance import SETTLED
 
     controls = cases[0].instance.model.spec.controls
     used = (c for c in controls if any(case.metrics.get(f"{c.symbol}_total") for case in cases))
     control = next(used, controls[0])
     bars = (("transition_time", "transition time"), (f"{control.symbol}_total", "total impulse"))
-    for column, (key, title) in enumerate(bars):
-        axes, unit = figure.add_subplot(grid[row, column]), unit_of(cases, key)
+    for axes, (key, title) in zip(panels, bars, strict=True):
+        unit = unit_of(cases, key)
         values = [case.metrics[key] for case in cases]
         places = np.arange(len(cases))[::-1]
         axes.barh(
@@ -141,7 +151,9 @@ def _totals(figure: Figure, grid: Any, row: int, cases: Sequence[Case]) -> None:
             said = f" {value:.4g}" + (f", {sudden:.4g} as an impulse" if sudden else "")
             if key == "transition_time" and case.how == "classical":
                 said = f"{said}, until within {SETTLED:.0%}" if np.isfinite(value) else " not settled"
-            axes.text(np.nan_to_num(value), place, said, va="center", ha="left", fontsize=9.0, color=style.INK)
+            axes.text(
+                np.nan_to_num(value), place, said, va="center", ha="left", fontsize=style.points(9.0), color=style.INK
+            )
         axes.set_yticks([])
         axes.set_xlim(0.0, 1.6 * np.nanmax(values, initial=0.0) or 1.0)
         axes.grid(axis="y", visible=False)
@@ -149,7 +161,7 @@ def _totals(figure: Figure, grid: Any, row: int, cases: Sequence[Case]) -> None:
         axes.set_xlabel(display.labelled("", unit) if unit else "")
 
 
-def _range(figure: Figure, grid: Any, row: int, case: Case) -> None:
+def _range(panels: Sequence[Axes], case: Case) -> None:
     """Largest torque and largest limited signal over damping, a line for each command."""
     from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
 
@@ -165,18 +177,17 @@ def _range(figure: Figure, grid: Any, row: int, case: Case) -> None:
     name = next((n for n in case.instance.limits if n in over.peaks), spec.state_names[-1])
     watched = next(v for v in spec.states if v.symbol == name)
     shades = np.linspace(0.25, 1.0, len(commands))
-    panels = (
+    shown = (
         (over.control_peak, control, f"largest {display.formula(control.latex, control.symbol)} after the step"),
         (over.peaks[name], watched, f"largest {display.formula(watched.latex, name)}"),
     )
-    for column, (values, variable, title) in enumerate(panels):
-        axes = figure.add_subplot(grid[row, column])
+    for axes, (values, variable, title) in zip(panels, shown, strict=True):
         for j, (command, shade) in enumerate(zip(commands, shades, strict=True)):
             axes.loglog(over.dampings, values[:, j], color=style.BLUE, alpha=float(shade), linewidth=1.6)
             axes.annotate(
                 f"{command:.3g}",
                 (over.dampings[-1], values[-1, j]),
-                fontsize=8.0,
+                fontsize=style.points(8.0),
                 va="center",
                 xytext=(3, 0),
                 textcoords="offset points",
@@ -189,7 +200,7 @@ def _range(figure: Figure, grid: Any, row: int, case: Case) -> None:
             axes.annotate(
                 "limit",
                 (over.dampings[0], limit),
-                fontsize=8.0,
+                fontsize=style.points(8.0),
                 xytext=(2, 2),
                 textcoords="offset points",
                 color=style.ALARM,

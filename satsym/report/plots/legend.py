@@ -47,9 +47,10 @@ def on_axes(quantities: Iterable[Series], colour: str) -> list[Entry]:
 
 def below(page: Figure, entries: list[Entry]) -> None:
     """Put the legend below the axes; a single entry says nothing that the page does not."""
+    entries = list({label: (handle, label) for handle, label in entries}.values())
     if len(entries) > 1:
         handles, labels = zip(*entries, strict=True)
-        rows = math.ceil(len(entries) / (PER_INCH * page.get_figwidth()))
+        rows = math.ceil(len(entries) / (PER_INCH * page.get_figwidth() / style.sheet().letters))
         page.legend(handles, labels, loc="outside lower center", ncols=-(-len(entries) // rows))
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from satsym.report.display import number, shortened, unit_text
+from satsym.report.display import labelled, number, shortened, unit_text
 from satsym.report.plots import legend, series, style
 from satsym.report.plots.curves import clean
 from satsym.report.plots.orbits import scenes as space
@@ -30,7 +30,8 @@ def orbit(scene: Scene) -> Figure | None:
         return None
     views = shown.views
     panels = len(views) + (shown.relative is not None)
-    rows, columns = -(-panels // 2), min(panels, 2)
+    columns = style.across(min(panels, 2))
+    rows = -(-panels // columns)
     page = style.titled(
         scene.title, 0.72 * style.WIDTH if columns == 1 else style.WIDTH, 1.2 + (6.0 if columns == 1 else 4.6) * rows
     )
@@ -73,7 +74,7 @@ def invariants(scene: Scene) -> Figure | None:
 def _multiples(scene: Scene, quantities: Sequence[Series], colour: str, columns: int = 2) -> Figure | None:
     if not quantities or not scene.drawable:
         return None
-    columns = 1 if len(quantities) <= 2 else columns if len(quantities) <= 8 else 3
+    columns = style.across(1 if len(quantities) <= 2 else columns if len(quantities) <= 8 else 3)
     rows = -(-len(quantities) // columns)
     page = style.titled(scene.title, style.WIDTH if columns > 1 else 0.8 * style.WIDTH, 1.2 + 2.2 * rows)
     small_multiples(
@@ -95,16 +96,19 @@ def overview(scene: Scene) -> Figure | None:
         return None
     shown = space.Orbit.of(scene)
     states, controls = series.states(scene)[:MOST], series.controls(scene)[:MOST]
-    columns = 1 if len(states) == 1 else 2
+    columns = style.across(1 if len(states) == 1 else 2)
+    narrow = style.across(2) == 1
     rows = -(-len(states) // columns) + -(-len(controls) // columns)
-    height = max(1.0 + 1.55 * rows, 4.2 if shown is None else 6.2)
+    height = max(1.0 + 1.55 * rows, 4.2 if shown is None or narrow else 6.2)
+    height += 6.0 if narrow and shown is not None else 0.0
     page = style.figure(style.WIDTH, height)
     right: Figure | SubFigure = page
     if style.with_titles() or not scene.result.status.answered:
         head, right = _split(page, (2, 1), height_ratios=[0.75, height - 0.75])
         _heading(head, scene)
     if shown is not None:
-        left, right = _split(right, (1, 2), width_ratios=[1.0, 1.12])
+        apart: dict[str, Any] = {"height_ratios": [6.0, height - 6.75]} if narrow else {"width_ratios": [1.0, 1.12]}
+        left, right = _split(right, (2, 1) if narrow else (1, 2), **apart)
         _space(left, shown)
     small_multiples(right, scene, [(q, style.STATE) for q in states] + [(q, style.CONTROL) for q in controls], columns)
     entries = legend.motion(scene, style.STATE) + ([] if shown is None else space.entries(shown))
@@ -129,11 +133,20 @@ def _space(part: SubFigure, shown: space.Orbit) -> None:
 def _heading(part: SubFigure, scene: Scene) -> None:
     """Title of the instance, and the facts of the result below it."""
     result = scene.result
-    name = shortened(scene.title, 80)
+    page = part.get_figure(root=True)
+    assert page is not None
+    fit = page.get_figwidth() / style.sheet().letters / style.WIDTH
+    name = shortened(scene.title, int(80 * fit))
     look: dict[str, Any] = {"ha": "left", "va": "center", "x": 0.012}
     if style.with_titles():
-        part.text(y=0.7, s=name, fontsize=14.0, fontweight="bold", parse_math=False, **look)
-    part.text(y=0.24, s="     ".join(_facts(scene)), fontsize=10.5, color=style.SOFT, **look)
+        part.text(y=0.7, s=name, fontsize=style.points(14.0), fontweight="bold", parse_math=False, **look)
+    part.text(
+        y=0.24,
+        s=shortened("     ".join(_facts(scene)), int(130 * fit)),
+        fontsize=style.points(10.5),
+        color=style.SOFT,
+        **look,
+    )
     if not result.status.answered:
         part.text(x=0.988, y=0.7, s=result.status.value, ha="right", va="center", color=style.ALARM, fontweight="bold")
 
@@ -162,27 +175,33 @@ def convergence(scene: Scene) -> Figure | None:
     history = scene.history
     if len(history) < 3:
         return None
-    page = style.titled(scene.title, style.WIDTH, 4.1)
-    left, right = page.subplots(1, 2)
+    columns = style.across(2)
+    page = style.titled(scene.title, style.WIDTH, 4.1 if columns == 2 else 6.6)
+    left, right = page.subplots(2 // columns, columns)
     at = np.array([entry.number for entry in history], dtype=float)
     costs = clean(np.array([scene.spec.objective(entry.objective) for entry in history]))
     residuals = clean(np.array([entry.residual for entry in history]))
     known = costs[np.isfinite(costs)]
     last = float(known[-1]) if known.size else 0.0
-    _decades(left, at, np.abs(costs - last), style.PURPLE)
-    left.set_ylabel(r"$|J - J_{\mathrm{last}}|$")
-    word = "objective" if scene.spec.maximise else "cost"
-    left.set_title(f"final {word} {number(last, 10)}" if known.size else word)
-    _decades(right, at, np.abs(residuals), style.GREEN)
-    right.set_ylabel("residual")
     # Solved without bounds first, then within them, say: each phase begins with a residual of its own.
-    begun = (residuals[1:] > ANEW * residuals[:-1]).any()
-    right.set_title("residual of the optimality conditions" + (", phase by phase" if begun else ""))
+    begun = np.flatnonzero(residuals[1:] > ANEW * residuals[:-1]) + 1
+    unit = scene.spec.objective_unit or "1"
+    word = "objective" if scene.spec.maximise else "cost"
+    left.set_title(f"final {word} {number(last, 10)} {unit_text(unit)}".rstrip() if known.size else word)
+    if scene.result.status.answered:
+        _decades(left, at, np.abs(costs - last), begun, style.PURPLE)
+    else:
+        left.set_title(f"no {word}: {scene.result.status.value}")
+        left.set_axis_off()
+    left.set_ylabel(labelled(r"$|J - J_{\mathrm{last}}|$", unit))
+    _decades(right, at, np.abs(residuals), begun, style.GREEN)
+    right.set_ylabel("residual")
+    right.set_title("residual of the optimality conditions" + (", phase by phase" if begun.size else ""))
     return page
 
 
-def _decades(axes: Axes, at: np.ndarray, values: np.ndarray, colour: str) -> None:
-    """Positive values on a logarithmic axis; zeros and what is not finite are left out."""
+def _decades(axes: Axes, at: np.ndarray, values: np.ndarray, begun: np.ndarray, colour: str) -> None:
+    """Positive values on a logarithmic axis, joined within a phase; zeros and what is not finite are left out."""
     from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
     positive = np.where(values > 0.0, values, np.nan)
@@ -194,6 +213,7 @@ def _decades(axes: Axes, at: np.ndarray, values: np.ndarray, colour: str) -> Non
         axes.yaxis.set_minor_locator(NullLocator())
     axes.set_xlim(at[0] - 0.3, at[-1] + 0.3)
     axes.xaxis.set_major_locator(MaxNLocator(8, integer=True))
-    drawn = np.isfinite(positive)
-    axes.plot(at[drawn], positive[drawn], color=colour, marker="o", markersize=4.5, linewidth=1.4)
+    for steps, phase in zip(np.split(at, begun), np.split(positive, begun), strict=True):
+        drawn = np.isfinite(phase)
+        axes.plot(steps[drawn], phase[drawn], color=colour, marker="o", markersize=4.5, linewidth=1.4)
     axes.set_xlabel("iteration")

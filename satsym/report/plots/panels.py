@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from satsym.report.display import labelled, number, on_axis, shortened, unit_text
+from satsym.report.display import labelled, number, shortened, unit_text
 from satsym.report.plots import style
 from satsym.report.plots.reading import ROUNDING, Reading, read
 from satsym.report.plots.scene import Scene
@@ -98,7 +98,7 @@ def _remark(scene: Scene, series: Series, shown: Reading) -> str:
     if not known.size:
         return ""
     last = float(known[-1])
-    return f"end {on_axis(last if abs(last) > ROUNDING * (shown.high - shown.low) else 0.0, shown.exponent, 5)}"
+    return f"end {number(last if abs(last) > ROUNDING * (shown.high - shown.low) else 0.0, 5)}"
 
 
 def _of_pi(multiple: float) -> str:

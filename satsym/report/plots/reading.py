@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.report.display import exponent_for, labelled
+from satsym.report.display import Scale, engineering, labelled
 from satsym.report.plots.series import Series
 
 SMALL = 0.02
@@ -28,9 +28,7 @@ class Reading:
     """A quantity as it is shown."""
 
     label: str
-    """Symbol with unit and power of ten."""
-    exponent: int
-    """Of that power, by which all numbers are divided."""
+    """Symbol with the unit that all numbers are in."""
     values: Array
     reference: Array | None
     free: Array | None
@@ -48,7 +46,7 @@ class Reading:
 
 
 def read(series: Series) -> Reading:
-    """Choose what to show: the deviation where the value hides it, its unit, power of ten, and the ends of the axis."""
+    """Choose what to show: the deviation where the value hides it, its unit, and the ends of the axis."""
     size = max(_size(series.values), series.size)
     datum, deviation = _datum(series, size)
     symbol, unit, factor = series.symbol, series.unit, 1.0
@@ -62,16 +60,15 @@ def read(series: Series) -> Reading:
     turns = radians and not deviation and _width(series.values - datum) > 0.5 * math.pi
     shown = (series.values - datum) * factor
     low, high = _ends(series, shown, datum, factor, size * factor)
-    exponent = 0 if turns else exponent_for(max(abs(low), abs(high)))
-    scale = 10.0**-exponent
+    told = Scale(0, unit) if turns else engineering(unit, max(abs(low), abs(high)))
+    scale = 1.0 / told.divisor
 
     def placed(values: Array | None) -> Array | None:
         return None if values is None else (values - datum) * factor * scale
 
     last = datum if isinstance(datum, float) else float(datum[-1])
     return Reading(
-        label=labelled(symbol, unit, exponent),
-        exponent=exponent,
+        label=labelled(symbol, told.unit),
         values=shown * scale,
         reference=placed(series.reference),
         free=placed(series.free),
@@ -101,6 +98,8 @@ def within_reach(excess: float, width: float) -> float:
 def _datum(series: Series, size: float) -> tuple[Array | float, bool]:
     """What to count from: the reference, the first value, or zero."""
     reference, known = series.reference, _known(series.values)
+    if series.from_first:
+        return float(known[0]), False
     if reference is not None and np.isfinite(reference).all():
         hidden = ROUNDING * size < _size(series.values - reference) < SMALL * _size(known)
         return (reference, True) if hidden else (0.0, False)

@@ -35,8 +35,9 @@ def page(design: Design, case: Instance) -> Figure:
     times, inputs = found.times / factor, [v for v in spec.controls if v.symbol in design.regulator.system.inputs]
     inputs.sort(key=lambda v: design.regulator.system.inputs.index(v.symbol))
     n, m = len(spec.states), len(inputs)
-    figure = style.titled(design.title, style.WIDTH, 1.4 + 1.6 * (n + m))
-    grid = figure.add_gridspec(n + m, 2)
+    wide = style.across(2) == 2
+    figure = style.titled(design.title, style.WIDTH, 1.4 + 1.6 * (n + m) * (1 if wide else 2))
+    grid = figure.add_gridspec(n + m, 2) if wide else figure.add_gridspec(2 * (n + m), 1)
     delta = _delta(design)
     columns = [
         ("uncontrolled", style.BLUE, found.free.x, found.exact_free),
@@ -44,18 +45,18 @@ def page(design: Design, case: Instance) -> Figure:
     ]
     for j, (title, colour, linear, exact) in enumerate(columns):
         for i, state in enumerate(spec.states):
-            axes = figure.add_subplot(grid[i, j])
+            axes = figure.add_subplot(grid[i, j] if wide else grid[(n + m) * j + i, 0])
             _curve(axes, times, state, linear[i], None if exact is None else exact.x[i], colour, delta)
             axes.tick_params(labelbottom=False)
             if i == 0:
                 axes.set_title(title)
     for i, control in enumerate(inputs):
-        axes = figure.add_subplot(grid[n + i, 1])
+        axes = figure.add_subplot(grid[n + i, 1] if wide else grid[2 * n + m + i, 0])
         exact_u = None if found.exact_steered is None else found.exact_steered.u[i]
         _curve(axes, times, control, found.steered.u[i], exact_u, style.CONTROL)
         axes.tick_params(labelbottom=i == m - 1)
     axes.set_xlabel(display.labelled("$t$", unit))
-    axes = figure.add_subplot(grid[n:, 0])
+    axes = figure.add_subplot(grid[n:, 0] if wide else grid[n : n + m, 0])
     cost = Variable("J", "J", meaning="accumulated cost")
     exact_cost = None if found.exact_steered is None else found.exact_steered.cost(design.regulator, found.times)
     linear_cost = found.steered.cost(design.regulator, found.times)
@@ -80,8 +81,8 @@ def _curve(
         if np.isfinite(near).any():
             low = max(min(low, float(np.nanmin(near))), low - BEYOND * width)
             high = min(max(high, float(np.nanmax(near))), high + BEYOND * width)
-    exponent = display.exponent_for(max(abs(low), abs(high)))
-    scale = 10.0**exponent
+    told = display.engineering(what.unit, max(abs(low), abs(high)))
+    scale = told.divisor
     margin = 0.06 * (high - low or 1.0)
     axes.set_xlim(times[0], times[-1])
     axes.set_ylim((low - margin) / scale, (high + margin) / scale)
@@ -90,7 +91,7 @@ def _curve(
     if exact is not None:
         axes.plot(times, curves.clean(exact) / scale, **NONLINEAR)
     symbol = display.formula(prefix + what.latex, what.symbol)
-    axes.set_ylabel(display.labelled(symbol, what.unit, exponent))
+    axes.set_ylabel(display.labelled(symbol, told.unit))
     axes.locator_params(axis="y", nbins=4)
 
 
@@ -120,8 +121,8 @@ def _delta(design: Design) -> str:
 def _interval(axes: Axes, state: Variable, extent: tuple[float, float], start: float, prefix: str) -> None:
     finite = [abs(v) for v in (*extent, start) if math.isfinite(v) and v]
     largest = max(finite, default=1.0)
-    exponent = display.exponent_for(largest)
-    scale = 10.0**exponent
+    told = display.engineering(state.unit, largest)
+    scale = told.divisor
     edge = 1.25 * largest / scale
     low, high = (np.clip(value / scale, -edge, edge) for value in extent)
     axes.set_xlim(-edge, edge)
@@ -132,5 +133,5 @@ def _interval(axes: Axes, state: Variable, extent: tuple[float, float], start: f
     axes.set_yticks([])
     axes.spines["left"].set_visible(False)
     symbol = display.formula(prefix + state.latex, state.symbol)
-    axes.set_ylabel(display.labelled(symbol, state.unit, exponent), rotation=0, ha="right", va="center")
+    axes.set_ylabel(display.labelled(symbol, told.unit), rotation=0, ha="right", va="center")
     axes.grid(axis="y", visible=False)

@@ -51,6 +51,8 @@ class Series:
     """What these are called."""
     size: float = 0.0
     """What counts as large for it, where its values may be nothing but rounding errors."""
+    from_first: bool = False
+    """Whether to count from its first value."""
     from_zero: bool = False
     """Whether its axis must show zero."""
 
@@ -70,7 +72,7 @@ def states(scene: Scene) -> list[Series]:
             scene.x[i],
             reference=None if scene.reference is None else scene.reference[i],
             free=None if scene.free is None else scene.free[i],
-            target=_target(scene, i),
+            target=target(scene, i),
             angle=v.kind == "angle",
         )
         for i, v in enumerate(scene.spec.states)
@@ -158,7 +160,7 @@ def costates(scene: Scene) -> list[Series]:
         Series(
             rf"\lambda_{{{v.latex}}}",
             f"lambda_{v.symbol}",
-            "1" if v.unit == "1" else cost_per(v.unit, scene.spec),
+            cost_per(v.unit, scene.spec),
             f"costate of {formula(v.latex, v.symbol)}",
             values,
             size=worth / width,
@@ -195,12 +197,13 @@ def invariants(scene: Scene) -> list[Series]:
             reference=None if reference is None else reference[i],
             free=None if free is None else free[i],
             size=_largest(rows[i]),
+            from_first=scene.coasting,
         )
         for i, v in enumerate(scene.spec.invariants)
     ]
 
 
-def _target(scene: Scene, i: int) -> float | None:
+def target(scene: Scene, i: int) -> float | None:
     """The final value that the instance asks for; of an angle that counts modulo a turn, the nearest one."""
     state, last = scene.spec.states[i], scene.x[i, -1] if scene.x.shape[1] else math.nan
     given = scene.instance.final.get(state.symbol)

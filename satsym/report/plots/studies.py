@@ -33,8 +33,11 @@ def figures(numbers: Numbers) -> dict[str, Figure]:
 def pictures(numbers: Numbers, look: Look = SCREEN) -> dict[str, files.Content]:
     """File name -> content, each figure in each kind."""
     with style.applied(look):
-        drawn = [(f"{name}.{kind}", page, kind) for name, page in figures(numbers).items() for kind in look.formats]
-        return {name: files.binary(style.rendered(page, kind)) for name, page, kind in drawn}
+        return {
+            file: content
+            for name, page in figures(numbers).items()
+            for file, content in style.contents(name, page).items()
+        }
 
 
 def _overview(numbers: Numbers) -> Figure:

@@ -7,10 +7,12 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from satsym.report.display import shortened
 from satsym.report.look import SCREEN, Look
+from satsym.report.results import files
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -62,6 +64,10 @@ ARROW: dict[str, Any] = {
 WIDTH = 10.0
 """Of a page, in inches."""
 DPI = 160
+_SCALED = tuple(
+    "font.size axes.labelsize axes.titlesize axes.titlepad xtick.labelsize ytick.labelsize legend.fontsize".split()
+)
+"""Of what follows, what is in points."""
 _UNDATED: dict[str, dict[str, None]] = {"png": {"Software": None}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}
 _RC: dict[Any, Any] = {
     "font.size": 10.5,
@@ -105,8 +111,29 @@ _RC: dict[Any, Any] = {
     "svg.hashsalt": "satsym",
 }
 
-_TITLES: ContextVar[bool] = ContextVar("titles", default=True)
-"""Whether pages have titles, while a style is applied."""
+
+@dataclass(frozen=True)
+class Sheet:
+    """What a size of pages means."""
+
+    width: float
+    """Of the widest page, in inches."""
+    letters: float
+    """Letters and lines, and heights, relative to those on a screen."""
+    across: int = 3
+    """Panels side by side, at most."""
+    highest: float = 40.0
+    """In inches."""
+
+
+_SHEETS = {
+    "screen": Sheet(WIDTH, 1.0),
+    "page": Sheet(7.0, 0.74),
+    "column": Sheet(3.5, 0.68, across=1),
+    "slide": Sheet(13.33, 1.3, highest=7.5),
+}
+_LOOK: ContextVar[Look] = ContextVar("look", default=SCREEN)
+"""While a style is applied."""
 
 
 @contextmanager
@@ -120,26 +147,49 @@ def applied(look: Look = SCREEN) -> Iterator[None]:
 
     with matplotlib.rc_context(), warnings.catch_warnings():
         matplotlib.rcdefaults()
-        matplotlib.rcParams.update(_RC)
+        matplotlib.rcParams.update(_RC | {name: _RC[name] * _SHEETS[look.size].letters for name in _SCALED})
         # a title may be in any script; a box in its place is no news to whoever reads it
         warnings.filterwarnings("ignore", "Glyph .* missing from")
-        before = _TITLES.set(look.titled)
+        before = _LOOK.set(look)
         try:
             yield
         finally:
-            _TITLES.reset(before)
+            _LOOK.reset(before)
 
 
 def with_titles() -> bool:
     """Whether pages have titles."""
-    return _TITLES.get()
+    return _LOOK.get().titled
+
+
+def sheet() -> Sheet:
+    """What the size of pages means that is asked for."""
+    return _SHEETS[_LOOK.get().size]
+
+
+def across(panels: int) -> int:
+    """So many panels side by side, or as many as there is room for."""
+    return min(panels, sheet().across)
+
+
+def points(size: float) -> float:
+    """The size of letters that have so many points on a screen."""
+    return size * sheet().letters
 
 
 def figure(width: float, height: float) -> Figure:
-    """An empty figure, in inches, that lays itself out; no pyplot, hence no window and no global state."""
+    """An empty figure that lays itself out; no pyplot, hence no window and no global state.
+
+    Parameters
+    ----------
+    width, height
+        In inches on a screen.
+    """
     from matplotlib.figure import Figure
 
-    return Figure(figsize=(width, height), layout="constrained")
+    asked = sheet()
+    size = min(width / WIDTH, 1.0) * asked.width, min(height * asked.letters, asked.highest)
+    return Figure(figsize=(asked.width if asked.across == 1 else size[0], size[1]), layout="constrained")
 
 
 def titled(title: str, width: float, height: float) -> Figure:
@@ -147,9 +197,31 @@ def titled(title: str, width: float, height: float) -> Figure:
     page = figure(width, height)
     if not with_titles():
         return page
-    text = shortened(title, int(9.8 * width))
-    page.suptitle(text, x=0.012, ha="left", fontsize=11.5, fontweight="bold", parse_math=False)
+    text = shortened(title, int(9.8 * page.get_figwidth() / sheet().letters))
+    page.suptitle(text, x=0.012, ha="left", fontsize=points(11.5), fontweight="bold", parse_math=False)
     return page
+
+
+def finished(page: Figure) -> Figure:
+    """A figure whose ticks carry their power of ten themselves, and whose lines fit its size."""
+    from matplotlib.ticker import ScalarFormatter
+
+    from satsym.report.plots.powers import WithPowers
+
+    for axes in page.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            if type(axis.get_major_formatter()) is ScalarFormatter:
+                axis.set_major_formatter(WithPowers())
+        for line in axes.lines:
+            line.set_linewidth(points(line.get_linewidth()))
+            line.set_markersize(points(line.get_markersize()))
+    return page
+
+
+def contents(name: str, page: Figure) -> dict[str, files.Content]:
+    """A figure in each kind that is asked for: name -> content of the file."""
+    finished(page)
+    return {f"{name}.{kind}": files.binary(rendered(page, kind)) for kind in _LOOK.get().formats}
 
 
 def rendered(page: Figure, kind: str) -> bytes:

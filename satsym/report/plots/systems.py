@@ -80,7 +80,7 @@ def _drawn(pictures: Mapping[str, Callable[[], Figure | None]], look: Look) -> P
         for name, picture in pictures.items():
             page = picture()
             if page is not None:
-                drawn |= {f"{name}.{kind}": files.binary(style.rendered(page, kind)) for kind in look.formats}
+                drawn |= style.contents(name, page)
     return drawn
 
 

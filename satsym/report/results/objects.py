@@ -10,6 +10,7 @@ from satsym.control_set import stated_constraints
 from satsym.instance.unknowns import Place
 from satsym.report.results.certificate import certificate_object, plain
 from satsym.report.results.unit_names import units
+from satsym.sources import digest_of
 from satsym.spec import ControlPart, ProblemSpec, Variable
 from satsym.status import Status
 
@@ -24,31 +25,39 @@ SCHEMA = 1
 """Version of these objects: it grows where a key changes its meaning or goes."""
 
 
-def head(command: str, spec: ProblemSpec, instance: str | None, status: Status) -> dict[str, Any]:
+def head(command: str, spec: ProblemSpec, instance: Instance | None, status: Status) -> dict[str, Any]:
     """What the object of every command begins with.
 
     Parameters
     ----------
     instance
-        Its name; ``None`` where the command is about a model, or about several instances.
+        ``None`` where the command is about a model, or about several instances.
     """
     return {
         "satsym": __version__,
         "schema": SCHEMA,
         "command": command,
         "model": spec.name,
-        "instance": instance,
+        "instance": instance.name if instance else None,
         "status": status.value,
         "units": units(spec),
+        "instance_file": file_of(instance) if instance else None,
     }
+
+
+def file_of(instance: Instance) -> dict[str, str] | None:
+    """The name of an instance's file and the digest of what it holds; ``None`` for one that was made in Python."""
+    digest = digest_of(instance.path)
+    return {"name": instance.path.name, "digest": digest} if digest else None
 
 
 def head_about(command: str, given: Instance | Kernels, status: Status) -> dict[str, Any]:
     """The same for what is about an instance, or about a model as such."""
     from satsym.kernels import Kernels
 
-    name, model = (None, given) if isinstance(given, Kernels) else (given.name, given.model)
-    return head(command, model.spec, name, status)
+    if isinstance(given, Kernels):
+        return head(command, given.spec, None, status)
+    return head(command, given.model.spec, given, status)
 
 
 def with_settings(result: dict[str, Any], given: Mapping[str, float]) -> dict[str, Any]:
@@ -68,7 +77,7 @@ def solution_object(solution: Solution) -> dict[str, Any]:
     """
     spec, states = solution.instance.model.spec, solution.instance.model.spec.state_names
     switches = {float(t) for times in solution.switching_times for t in times}
-    return head("solve", spec, solution.instance.name, solution.status) | {
+    return head("solve", spec, solution.instance, solution.status) | {
         "method": solution.method,
         "message": solution.status.explain(solution.message),
         "boundary_type": solution.instance.boundary_type,
@@ -112,7 +121,7 @@ def _continuation(solution: Solution) -> dict[str, list[dict[str, Any]]]:
 
 def simulation_object(simulation: Simulation) -> dict[str, Any]:
     """What ``satsym simulate --json`` prints; see :func:`solution_object`."""
-    return head("simulate", simulation.instance.model.spec, simulation.instance.name, simulation.status) | {
+    return head("simulate", simulation.instance.model.spec, simulation.instance, simulation.status) | {
         "feedback": simulation.feedback,
         "t_final": _at(simulation.times, -1),
         "x_final": _each(simulation.instance.model.spec.state_names, simulation.x, -1),

@@ -119,7 +119,7 @@ def _trajectories(merged: Merged, group: Sequence[int]) -> Content:
 
 def asked_object(study: Study) -> dict[str, Any]:
     """What study.json holds."""
-    said = head("study", study.instance.model.spec, study.instance.name, Status.CONVERGED)
+    said = head("study", study.instance.model.spec, study.instance, Status.CONVERGED)
     del said["status"]
     varied = [key.text for key in study.design.keys]
     return said | {"rows": study.design.count, "varied": varied, "asked": study.identity}
@@ -145,7 +145,7 @@ def study_object(merged: Merged) -> dict[str, Any]:
         if isinstance(cost := row.numbers.get(Column.OBJECTIVE), float):
             worst = sorted([*worst, (sense * cost, number, values)], reverse=True, key=lambda one: one[0])[:SHOWN]
     status = Status.CONVERGED if statuses[Status.CONVERGED.value] else Status.NOT_CONVERGED
-    return head("study", spec, study.instance.name, status) | {
+    return head("study", spec, study.instance, status) | {
         "each": study.command.value,
         "rows": study.design.count,
         "varied": [key.text for key in study.design.keys],

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from typing import TYPE_CHECKING
+
+from satsym import units as expressions
 
 if TYPE_CHECKING:
     from satsym.spec import ProblemSpec
 
 COST = "cost"
-"""The unit of J where the model does not state it: weights decide what that is."""
+"""The unit of J where it does not follow from the units of the model."""
 
 _TIMES = frozenset({"s", "second", "min", "minute", "h", "hour", "day", "year"})
 
@@ -30,20 +33,22 @@ def cost_per(unit: str, spec: ProblemSpec) -> str:
 
 
 def per(unit: str, other: str | None) -> str | None:
-    """A unit by another one; ``None`` where that is not clear."""
-    if other is None or other == "1":
-        return None if other is None else unit
-    return f"{unit}/({other})" if re.search(r"[*/^]", other) else f"{unit}/{other}"
+    """A unit by another one, shortened; ``None`` where that is not clear."""
+    if other is None:
+        return None
+    total = Counter(expressions.factors(unit))
+    total.subtract(expressions.factors(other))
+    return expressions.expression(total)
 
 
 def units(spec: ProblemSpec) -> dict[str, str | None]:
-    """Unit of each state, control and costate by name, of the time ``t`` and of the ``objective``.
+    """Unit of each state, control, invariant and costate by name, of the time ``t`` and of the ``objective``.
 
     Names are those of trajectory.csv; ``"1"`` for a plain number, ``None`` where a unit is not clear.
     """
     plain = all(v.unit == "1" for v in (*spec.states, *spec.controls))
     found: dict[str, str | None] = {"t": time_unit(spec) or ("1" if plain else None)}
-    found |= {v.symbol: v.unit for v in (*spec.states, *spec.controls)}
+    found |= {v.symbol: v.unit for v in (*spec.states, *spec.controls, *spec.invariants)}
     if spec.has_cost:
         found |= {f"lambda_{v.symbol}": cost_per(v.unit, spec) for v in spec.states}
         found["objective"] = spec.objective_unit or COST

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from satsym.report.results.objects import head, plain
+from satsym.report.results.objects import file_of, head, plain
 from satsym.report.results.unit_names import units
 from satsym.report.terminal.solution import joined
 from satsym.report.terminal.table import figure, table
@@ -35,6 +35,7 @@ def comparison_object(cases: Sequence[Case], over: Range | None = None) -> dict[
         "instances": [
             {
                 "instance": case.instance.name,
+                "instance_file": file_of(case.instance),
                 "model": case.instance.model.spec.name,
                 "how": case.how,
                 "answered": case.answered,

@@ -92,7 +92,8 @@ def with_files(text: str, saved: Sequence[Path]) -> str:
 def _objective(instance: Instance, cost: float) -> tuple[str, str]:
     """The objective in its author's sense and unit; costates keep the sign of a cost, which is said."""
     spec = instance.model.spec
-    text = f"{figure(spec.objective(cost), 10)} {spec.objective_unit}".rstrip()
+    unit = "" if spec.objective_unit == "1" else spec.objective_unit
+    text = f"{figure(spec.objective(cost), 10)} {unit}".rstrip()
     return (
         ("objective J, maximised", f"{text} (costs and costates are those of -J)")
         if spec.maximise
@@ -200,7 +201,7 @@ def _states(instance: Instance, times: Array, x: Array, lam: Array | None) -> li
                 off,
                 "" if state.unit == "1" else state.unit,
                 "" if lam is None else figure(float(lam[i][0]) if len(lam[i]) else math.nan, 10),
-                "" if lam is None or state.unit == "1" else cost_per(state.unit, spec),
+                "" if lam is None or (by := cost_per(state.unit, spec)) == "1" else by,
             )
         )
     return table(rows, right=(*range(1, 6), 7))

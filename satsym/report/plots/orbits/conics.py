@@ -91,7 +91,7 @@ def page(found: Survey) -> Figure:
     """The orbit at equal scales: in its plane, and unless that is one of coordinates also from along the axes."""
     drawn, case = Drawn.of(found), found.case
     planes = views([drawn.curve], (r"$x$", r"$y$", r"$z$"))
-    columns = min(2, len(planes))
+    columns = style.across(min(2, len(planes)))
     rows = -(-len(planes) // columns)
     title = case.title or case.name
     sheet = style.titled(title, SIDE * columns + (1.6 if columns == 1 else 0.0), (SIDE - 0.2) * rows + 1.2)
@@ -114,8 +114,8 @@ def _panel(axes: Axes, drawn: Drawn, view: View, unit: str) -> tuple[float, str]
     centre, half = 0.5 * (low + high), 0.54 * float((high - low).max())
     furthest = float(np.abs(centre).max()) + half
     factor, readable = display.length_scale(unit, furthest)
-    exponent = display.exponent_for(furthest / factor)
-    scale = 10.0**-exponent / factor
+    told = display.engineering(readable, furthest / factor)
+    scale = 1.0 / (told.divisor * factor)
     axes.set_aspect("equal")
     axes.set_xlim((centre[0] - half) * scale, (centre[0] + half) * scale)
     axes.set_ylim((centre[1] - half) * scale, (centre[1] + half) * scale)
@@ -134,8 +134,8 @@ def _panel(axes: Axes, drawn: Drawn, view: View, unit: str) -> tuple[float, str]
     for point, look in marks:
         if point is not None:
             axes.plot(*(view.axes @ point[:, None] * scale), **look)
-    axes.set_xlabel(display.labelled(view.labels[0], readable, exponent))
-    axes.set_ylabel(display.labelled(view.labels[1], readable, exponent))
+    axes.set_xlabel(display.labelled(view.labels[0], told.unit))
+    axes.set_ylabel(display.labelled(view.labels[1], told.unit))
     return factor, readable
 
 

@@ -110,7 +110,7 @@ def _plane(axes: Axes, spec: ProblemSpec, values: list[complex], left: str = "st
     axes.axvspan(-reach, 0.0, color=style.GREEN, alpha=0.07, linewidth=0.0, zorder=1.0)
     axes.axvline(0.0, color=style.INK, linewidth=1.1, zorder=2.0)
     axes.axhline(0.0, color=style.GREY, linewidth=0.8, zorder=1.9)
-    axes.text(-0.97 * reach, -0.97 * reach, left, color=style.GREEN, fontsize=10.0)
+    axes.text(-0.97 * reach, -0.97 * reach, left, color=style.GREEN, fontsize=style.points(10.0))
     per_time = "" if unit == "1" else f"1/{unit}"
     axes.set_xlabel(display.labelled(r"$\mathrm{Re}\,s$", per_time or "1"))
     axes.set_ylabel(display.labelled(r"$\mathrm{Im}\,s$", per_time or "1"))
@@ -125,4 +125,6 @@ def _open_loop(axes: Axes, found: Iterable[Eigenvalue], factor: float) -> None:
         if each.algebraic > 1:
             blocks = "block" if each.geometric == 1 else "blocks"
             said = f"multiplicity {each.algebraic}, Jordan {blocks} {' + '.join(map(str, each.blocks))}"
-            axes.annotate(said, at, (9.0, 8.0), textcoords="offset points", fontsize=9.0, color=style.SOFT)
+            axes.annotate(
+                said, at, (9.0, 8.0), textcoords="offset points", fontsize=style.points(9.0), color=style.SOFT
+            )

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.report.display import exponent_for, formula, labelled, length_scale, length_unit
-from satsym.report.plots import curves, legend, style
-from satsym.report.plots.reading import BURIED, within_reach
+from satsym.report.display import engineering, formula, labelled, length_scale, length_unit
+from satsym.report.plots import curves, legend, series, style
+from satsym.report.plots.reading import BURIED, ROUNDING, within_reach
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.views import View, views
 
@@ -38,6 +38,8 @@ class Orbit:
     thrust: Array | None
     relative: curves.Relative | None
     free_relative: curves.Relative | None
+    ends_there: bool
+    """Whether the end is asked for, on the reference."""
 
     @classmethod
     def of(cls, scene: Scene) -> Orbit | None:
@@ -62,6 +64,7 @@ class Orbit:
             curves.thrust(model, scene.nodes, scene.x, scene.u, p) if scene.free is not None else None,
             seen if _near(seen, reference) else None,
             curves.relative(free, reference) if free is not None and reference is not None else None,
+            _on_reference(scene),
         )
 
     @property
@@ -78,6 +81,8 @@ def entries(orbit: Orbit) -> list[legend.Entry]:
     found = [(arrow, "thrust")] if orbit.thrust is not None else []
     found.append((legend.line(color=style.STATE, **style.START), "start"))
     found.append((legend.line(color=style.STATE, **style.END), "end"))
+    if orbit.ends_there and orbit.relative is not None:
+        found.append((legend.line(**style.TARGET), "final condition"))
     found.append((legend.line(**style.ORIGIN), "origin"))
     return found
 
@@ -97,8 +102,8 @@ def in_space(axes: Axes, orbit: Orbit, view: View) -> None:
     centre, curve = centre - datum[:, 0], curve - datum
     furthest = float(np.abs(centre).max()) + half
     factor, unit = length_scale(orbit.unit, furthest)
-    exponent = exponent_for(furthest / factor)
-    scale = 10.0**-exponent / factor
+    told = engineering(unit, furthest / factor)
+    scale = 1.0 / (told.divisor * factor)
     axes.set_aspect("equal")
     axes.set_title(view.title)
     axes.set_xlim((centre[0] - half) * scale, (centre[0] + half) * scale)
@@ -113,8 +118,8 @@ def in_space(axes: Axes, orbit: Orbit, view: View) -> None:
     if not datum.any():
         axes.plot([0.0], [0.0], **style.ORIGIN)
     _ends(axes, *(curve * scale))
-    axes.set_xlabel(labelled(names[0], unit, exponent))
-    axes.set_ylabel(labelled(names[1], unit, exponent))
+    axes.set_xlabel(labelled(names[0], told.unit))
+    axes.set_ylabel(labelled(names[1], told.unit))
     _few_ticks(axes)
 
 
@@ -126,8 +131,8 @@ def from_reference(axes: Axes, orbit: Orbit) -> None:
     if orbit.free_relative is not None:
         others.append(np.vstack([orbit.free_relative.along, orbit.free_relative.radial]))
     low, high = _box(curve, others)
-    exponent = exponent_for(float(np.abs([low, high]).max()))
-    scale = 10.0**-exponent
+    told = engineering(orbit.unit, float(np.abs([low, high]).max()))
+    scale = 1.0 / told.divisor
     axes.set_xlim(low[0] * scale, high[0] * scale)
     axes.set_ylim(low[1] * scale, high[1] * scale)
     axes.set_title("seen from the reference")
@@ -135,11 +140,20 @@ def from_reference(axes: Axes, orbit: Orbit) -> None:
     if orbit.free_relative is not None:
         axes.plot(*(others[1] * scale), **style.FREE)
     axes.plot(*(curve * scale), color=style.STATE, **style.MAIN)
-    axes.plot([0.0], [0.0], **style.TARGET)
+    if orbit.ends_there:
+        axes.plot([0.0], [0.0], **style.TARGET)
     _ends(axes, *(curve * scale))
-    axes.set_xlabel(labelled("along-track", orbit.unit, exponent))
-    axes.set_ylabel(labelled("radial", orbit.unit, exponent))
+    axes.set_xlabel(labelled("along-track", told.unit))
+    axes.set_ylabel(labelled("radial", told.unit))
     _few_ticks(axes)
+
+
+def _on_reference(scene: Scene) -> bool:
+    """Whether all given final states are those of the reference, and there are some."""
+    if scene.reference is None or not scene.instance.final:
+        return False
+    given = [(v, series.target(scene, i)) for i, v in enumerate(scene.reference[:, -1])]
+    return all(value is None or abs(value - v) <= ROUNDING * max(1.0, abs(v)) for v, value in given)
 
 
 def _near(seen: curves.Relative | None, reference: Array | None) -> bool:
@@ -198,5 +212,6 @@ def _ends(axes: Axes, across: Array, up: Array) -> None:
 def _few_ticks(axes: Axes) -> None:
     from matplotlib.ticker import MaxNLocator
 
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(MaxNLocator(5))
+    long = max(map(abs, axes.get_xlim())) >= 1e4
+    axes.xaxis.set_major_locator(MaxNLocator(3 if long else 5))
+    axes.yaxis.set_major_locator(MaxNLocator(5))

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from satsym.report import display
 from satsym.report.plots import legend, style
 from satsym.report.terminal.table import figure
 
@@ -44,8 +43,11 @@ def page(found: Survey) -> Figure | None:
     floquet = found.floquet
     if floquet.multipliers is None or floquet.scatter is None or floquet.expected_scatter is None:
         return None
-    sheet = style.titled(found.case.title or found.case.name, style.WIDTH, 0.5 * style.WIDTH + 0.6)
-    whole, near = sheet.subplots(1, 2)
+    across = style.across(2)
+    sheet = style.titled(
+        found.case.title or found.case.name, style.WIDTH, 0.5 * style.WIDTH * (2 if across == 1 else 1) + 0.6
+    )
+    whole, near = sheet.subplots(2 // across, across)
     _whole(whole, floquet.multipliers)
     _near(near, floquet.multipliers, floquet.expected_scatter, ROOM * max(floquet.scatter, floquet.expected_scatter))
     entries = [
@@ -70,20 +72,19 @@ def _whole(axes: Axes, multipliers: Any) -> None:
 
 
 def _near(axes: Axes, multipliers: Any, expected: float, reach: float) -> None:
-    """Distances from 1, in a power of ten; the unit circle is a straight line at this scale unless errors are large."""
-    exponent = int(np.floor(np.log10(reach)))
-    scale = 10.0**-exponent
-    _square(axes, reach * scale)
+    """Distances from 1; the unit circle is a straight line at this scale unless errors are large."""
+    _square(axes, reach)
     # 1 - cos without cancellation; the part of the circle within reach
     angle = np.linspace(-1.0, 1.0, 401) * min(np.pi, 2.0 * reach)
-    axes.plot(-2.0 * np.sin(0.5 * angle) ** 2 * scale, np.sin(angle) * scale, **CIRCLE)
-    axes.plot(expected * np.cos(TURN) * scale, expected * np.sin(TURN) * scale, **SCATTER)
+    axes.plot(-2.0 * np.sin(0.5 * angle) ** 2, np.sin(angle), **CIRCLE)
+    axes.plot(expected * np.cos(TURN), expected * np.sin(TURN), **SCATTER)
     away = multipliers - 1.0
-    axes.plot(away.real * scale, away.imag * scale, **COMPUTED)
+    axes.plot(away.real, away.imag, **COMPUTED)
     axes.plot([0.0], [0.0], **EXACT)
+    axes.locator_params(axis="x", nbins=2)  # each tick carries its power of ten
     axes.set_title(f"near 1: up to {figure(float(np.abs(away).max()), 2)} from it, {figure(expected, 2)} expected")
-    axes.set_xlabel(display.labelled(r"$\mathrm{Re}\,\mu - 1$", "1", exponent))
-    axes.set_ylabel(display.labelled(r"$\mathrm{Im}\,\mu$", "1", exponent))
+    axes.set_xlabel(r"$\mathrm{Re}\,\mu - 1$")
+    axes.set_ylabel(r"$\mathrm{Im}\,\mu$")
 
 
 def _square(axes: Axes, half: float) -> None:

@@ -1,0 +1,36 @@
+"""Ticks that carry their power of ten themselves, instead of one beyond the end of the axis. Loads matplotlib."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from matplotlib.ticker import ScalarFormatter
+
+from satsym.report.display import number, times_ten_to
+
+PLAIN = 1e-3, 1e6
+"""Between these the largest tick needs no power of ten."""
+
+
+class WithPowers(ScalarFormatter):
+    """Numbers such as 2 × 10⁻¹²; plain ones where these are short."""
+
+    def __init__(self) -> None:
+        super().__init__(useOffset=False)
+        self.set_scientific(False)
+        self._power = 0
+
+    def set_locs(self, locs: Iterable[float]) -> None:
+        """As of matplotlib, which tells it all ticks before it asks for the text of each."""
+        places = list(locs)
+        super().set_locs(places)
+        largest = max((abs(place) for place in places), default=0.0)
+        plain = largest == 0.0 or PLAIN[0] <= largest < PLAIN[1]
+        self._power = 0 if plain else math.floor(math.log10(largest))
+
+    def __call__(self, x: float, pos: int | None = None) -> str:
+        """The text of a tick."""
+        if not self._power:
+            return str(super().__call__(x, pos))
+        return number(x / 10.0**self._power, 4) + times_ten_to(self._power) if x else "0"
