@@ -1,58 +1,82 @@
 """Steps for many motions at once, compiled: ``advance(t, h, steps, y, u, p)`` moves every column of y, in place.
 
-A motion is a column of arrays, so that neighbours in memory are the same component of different motions. The inner loop
-goes over the columns, and in it every component is a variable of its own and the generated scalar form stands in line:
-that is what the compiler turns into vector instructions. The text of a loop depends on numbers of states, controls and
-parameters only, and on which states are which.
+A motion is a column of arrays, so that neighbours in memory are the same component of different motions. The generated
+scalar form stands in line, for blocks of columns that stay in the processor's registers and its cache for all steps.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable
+from functools import lru_cache
 from typing import Any
 
-import numpy as np
-
+from satsym.kernels.batch import compiling
+from satsym.kernels.batch.inlined import inlined
+from satsym.kernels.batch.workspace import (
+    Workspace,
+    element,
+    function,
+    indented,
+    loaded,
+    over_blocks,
+    over_lanes,
+    stored,
+)
 from satsym.kernels.composition import weights
+from satsym.kernels.core import Kernels
 from satsym.spec import ProblemSpec
+from satsym.status import BadInput
 
 
-def rk4(dynamics: Any, spec: ProblemSpec) -> Any:
-    """RK4 under constant controls; ``dynamics`` is the compiled scalar form."""
-    n = range(len(spec.states))
+@lru_cache(maxsize=32)
+def block_step(kernels: Kernels, symplectic: bool = False) -> Any:
+    """Steps for the columns of arrays, by RK4 or by kicks and drifts.
+
+    Raises
+    ------
+    BadInput
+        If the kernels were not compiled.
+    """
+    if kernels.backend != "numba":
+        raise BadInput(f"{kernels.spec.name}: no block step without compiling: take compiled() first")
+    return kicks_and_drifts(kernels) if symplectic else rk4(kernels)
+
+
+def rk4(kernels: Kernels) -> Any:
+    """RK4 under constant controls."""
+    writer = _Writer(kernels)
+    n = range(writer.n)
     body = [
-        "a = dynamics(now, ({y}), u_now, p_now)",
-        *(f"z{i} = y{i} + half * a{i}" for i in n),
-        "b = dynamics(middle, ({z}), u_now, p_now)",
-        *(f"z{i} = y{i} + half * b{i}" for i in n),
-        "c = dynamics(middle, ({z}), u_now, p_now)",
-        *(f"z{i} = y{i} + h * c{i}" for i in n),
-        "d = dynamics(end, ({z}), u_now, p_now)",
-        *(f"y[{i}, j] = y{i} + sixth * (a{i} + 2.0 * (b{i} + c{i}) + d{i})" for i in n),
+        *writer.rates("a", "now", [writer.at(i) for i in n]),
+        *(f"z{i} = {writer.at(i)} + half * a_{i}" for i in n),
+        *writer.rates("b", "middle", [f"z{i}" for i in n]),
+        *(f"y{i} = {writer.at(i)} + half * b_{i}" for i in n),
+        *writer.rates("c", "middle", [f"y{i}" for i in n]),
+        *(f"x{i} = {writer.at(i)} + h * c_{i}" for i in n),
+        *writer.rates("d", "end", [f"x{i}" for i in n]),
+        *(f"{writer.at(i)} += sixth * (a_{i} + 2.0 * (b_{i} + c_{i}) + d_{i})" for i in n),
     ]
-    lines = [
-        "half, sixth = 0.5 * h, h / 6.0",
-        "for i in range(steps):",
-        "    now = t + i * h",
-        "    middle, end = now + half, now + h",
-        *(f"    {line}" for line in _over_columns(spec, body)),
-    ]
-    return _compiled(lines, {"dynamics": dynamics})
+    return writer.compiled(
+        ["half, sixth = 0.5 * h, h / 6.0"],
+        ["now = t + i * h", "middle, end = now + half, now + h", *over_lanes(body)],
+    )
 
 
-def kicks_and_drifts(dynamics: Any, spec: ProblemSpec) -> Any:
+def kicks_and_drifts(kernels: Kernels) -> Any:
     """The symplectic composition of a separable motion, without control."""
-    body = ["a = dynamics(t, ({y}), u_now, p_now)"]
-    for q, v in pairs(spec):
-        body += [f"z{v} = y{v} + kick * a{v}", f"y[{v}, j] = z{v}", f"y[{q}, j] = y{q} + drift * z{v}"]
-    lines = [
-        "for i in range(steps):",
-        "    for k in range(len(kicks)):",
-        "        kick, drift = h * kicks[k], h * drifts[k]",
-        *(f"        {line}" for line in _over_columns(spec, body)),
-    ]
+    writer = _Writer(kernels)
+    body = writer.rates("a", "t", [writer.at(i) for i in range(writer.n)])
+    for q, v in pairs(kernels.spec):
+        body += [f"{writer.at(v)} += kick * a_{v}", f"{writer.at(q)} += drift * {writer.at(v)}"]
     kicks, drifts = weights()
-    return _compiled(lines, {"dynamics": dynamics, "kicks": np.array(kicks), "drifts": np.array([*drifts, 0.0])})
+    return writer.compiled(
+        [f"kicks, drifts = {tuple(kicks)!r}, {(*drifts, 0.0)!r}"],
+        [
+            f"for k in range({len(kicks)}):",
+            "    kick, drift = h * kicks[k], h * drifts[k]",
+            *indented(over_lanes(body)),
+        ],
+    )
 
 
 def pairs(spec: ProblemSpec) -> list[tuple[int, int]]:
@@ -61,27 +85,33 @@ def pairs(spec: ProblemSpec) -> list[tuple[int, int]]:
     return [(place[q], place[v]) for q, v in zip(spec.coordinates, spec.velocities, strict=True)]
 
 
-def _over_columns(spec: ProblemSpec, body: Sequence[str]) -> list[str]:
-    """A loop over the columns. In its body ``{y}`` lists all states, and ``a = ...`` assigns to as many names."""
-    n, m, k = (len(group) for group in (spec.states, spec.controls, spec.parameters))
+class _Writer:
+    """Writes a loop of a model."""
 
-    def listed(form: str, count: int) -> str:
-        return "".join(form.format(i) + ", " for i in range(count))
+    def __init__(self, kernels: Kernels) -> None:
+        spec = kernels.spec
+        self.name, self.text, self.own = spec.name, compiling.module_text(kernels), Workspace()
+        self.n, self.rows = len(spec.states), {"u": len(spec.controls), "p": len(spec.parameters)}
+        self.places = {name: self.own.place(name, rows) for name, rows in {"y": self.n, **self.rows}.items()}
 
-    lists = {name: listed(name + "{}", n) for name in "yz"}
-    opening = [
-        *(f"y{i} = y[{i}, j]" for i in range(n)),
-        f"u_now = ({listed('u[{}, j]', m)})",
-        f"p_now = ({listed('p[{}, j]', k)})",
-    ]
-    filled = [line.format(**lists) for line in body]
-    filled = [listed(line[0] + "{}", n) + line[1:] if line[1:4] == " = " else line for line in filled]
-    return ["for j in range(y.shape[1]):", *(f"    {line}" for line in (*opening, *filled))]
+    def at(self, state: int) -> str:
+        """A state."""
+        return element(self.places["y"], state)
 
+    def rates(self, prefix: str, time: str, states: list[str]) -> list[str]:
+        """Lines that give the rates there names: the prefix and a number each."""
 
-def _compiled(lines: Sequence[str], scope: dict[str, Any]) -> Any:
-    import numba
+        def row(name: str) -> Callable[[int], str]:
+            return lambda k: element(self.places[name], k)
 
-    text = "\n".join(["def advance(t, h, steps, y, u, p):", *(f"    {line}" for line in lines)])
-    exec(text, scope)  # noqa: S102 - the lines above, nothing of a file
-    return numba.njit(scope["advance"], error_model="numpy")
+        loads = {"t": lambda _: time, "x": lambda k: states[k], "u": row("u"), "p": row("p")}
+        found = inlined(self.text, "dynamics", loads, f"{prefix}{prefix}_")
+        return [*found.lines, *(f"{prefix}_{i} = {result}" for i, result in enumerate(found.results))]
+
+    def compiled(self, first: list[str], step: list[str]) -> Any:
+        """The loop over the steps, for each block of columns."""
+        loads = [line for name, at in self.places.items() for line in loaded(at, name, self.rows.get(name, self.n))]
+        block = [*loads, "for i in range(steps):", *indented(step), *stored(self.places["y"], "y", self.n)]
+        body = [f"w = np.zeros({self.own.size})", *first, *over_blocks("y.shape[1]", block)]
+        lines = [*compiling.HEAD, *function("many(t, h, steps, y, u, p)", body)]
+        return compiling.compiled(self.name, "\n".join(lines) + "\n")["many"]

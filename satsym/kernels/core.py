@@ -196,30 +196,6 @@ class Kernels(Functions):
         """
         return self if self.backend == "numba" else self._compiled
 
-    def block_step(self, symplectic: bool = False) -> Function:
-        """Steps for the columns of arrays, by RK4 or by kicks and drifts, see :mod:`satsym.kernels.blocks`.
-
-        Raises
-        ------
-        BadInput
-            If the kernels were not compiled.
-        """
-        if self.backend != "numba":
-            raise BadInput(f"{self.spec.name}: no block step without compiling: take compiled() first")
-        return self._block_kicks if symplectic else self._block_rk4
-
-    @cached_property
-    def _block_rk4(self) -> Function:
-        from satsym.kernels import blocks
-
-        return blocks.rk4(self.functions["dynamics"], self.spec)
-
-    @cached_property
-    def _block_kicks(self) -> Function:
-        from satsym.kernels import blocks
-
-        return blocks.kicks_and_drifts(self.functions["dynamics"], self.spec)
-
     @cached_property
     def _compiled(self) -> Kernels:
         from satsym.kernels.compiling import compile_functions

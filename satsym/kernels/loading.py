@@ -116,6 +116,11 @@ def _lying(name: str) -> tuple[str, Path]:
     return text or "", Path(module.__file__ or "").parent
 
 
+def shipped_text(name: str) -> str:
+    """The text of a shipped module; empty where nothing tells it."""
+    return _lying(name)[0]
+
+
 def _refuse_older(model: str, text: str, folder: Path) -> None:
     """Refuse a module that is older than its derivation file: what it solves is no longer what that file states."""
     if (found := changed(text, folder)) is None:

@@ -9,6 +9,7 @@ from sympy import sin
 from satsym.analysis.orbits import kepler
 from satsym.codegen import module
 from satsym.kernels import Kernels, from_text, load
+from satsym.kernels.blocks import block_step
 from satsym.solvers.simulation import batch
 from satsym.status import BadInput
 from satsym.symbolic import FirstOrder, Variable, symbols_of
@@ -161,4 +162,4 @@ def test_a_model_that_is_not_separable_has_no_symplectic_method():
 
 def test_one_not_compiled_has_no_compiled_step(orbit: Kernels):
     with pytest.raises(BadInput, match=r"^two_body: no block step without compiling: take compiled\(\)"):
-        orbit.block_step()
+        block_step(orbit)

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from satsym.arrays import Array
 from satsym.kernels import Kernels
-from satsym.kernels.blocks import pairs
+from satsym.kernels.blocks import block_step, pairs
 from satsym.kernels.composition import weights
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
@@ -75,7 +75,7 @@ def simulate(
         if controls.any():
             raise BadInput(f"u: the symplectic method is for uncontrolled motions; take RK4 for {kernels.spec.name}")
     arrays = _Kicks if symplectic else _RungeKutta
-    advance = kernels.block_step(symplectic) if compiled else arrays(kernels).advance
+    advance = block_step(kernels, symplectic) if compiled else arrays(kernels).advance
     x = np.empty((len(start), len(nodes), count))
     with np.errstate(all="ignore"):
         for begin in range(0, count, COMPILED_BLOCK if compiled else BLOCK):

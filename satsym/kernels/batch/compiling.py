@@ -1,0 +1,90 @@
+"""Text that was written for a model, compiled; machine code is kept in the user's folder for such things.
+
+Its place there is a digest of the text, which follows from the generated module: what is derived anew is compiled anew.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import sys
+from collections.abc import Mapping
+from functools import lru_cache
+from importlib.util import find_spec
+from pathlib import Path
+from types import FunctionType, ModuleType
+from typing import Any
+
+import numpy as np
+
+from satsym import kept
+from satsym.kernels.core import Kernels
+from satsym.status import BadInput
+
+HEAD = ('"""Written by satsym; it may be removed at any time."""', "", "import math", "", "inf = math.inf")
+"""With which such texts begin."""
+
+FAST = {"contract", "nsz", "arcp"}
+"""What compilers may do to sums and products; never assume that numbers are finite, for whether they are is asked."""
+
+
+def able() -> bool:
+    """Whether there is a compiler."""
+    return find_spec("numba") is not None
+
+
+def module_text(kernels: Kernels) -> str:
+    """The text of the generated module that kernels come from.
+
+    Raises
+    ------
+    BadInput
+        If there is none, for they were made by hand.
+    """
+    from satsym.kernels import loading
+
+    if kernels.text is not None:
+        return kernels.text
+    if kernels.origin is None:
+        raise BadInput(f"{kernels.spec.name}: made without a generated module, so there is nothing to compile")
+    return loading.shipped_text(kernels.origin[0])
+
+
+@lru_cache(maxsize=32)
+def compiled(name: str, text: str) -> Mapping[str, Any]:
+    """The functions of a text by name, each compiled when it is first called, or read from where it was kept.
+
+    Parameters
+    ----------
+    name
+        Of the model.
+    text
+        What was written for it; only we write such texts.
+    """
+    import numba
+
+    digest = hashlib.sha256(text.encode()).hexdigest()[:24]
+    path = kept.folder("kernels") / f"{name}-{digest}" / "columns.py"
+    if kept.read(path) != text.encode():
+        kept.write(path, text.encode())
+    keeps = kept.read(path) == text.encode() and _writable(path.parent)
+    module = ModuleType(f"satsym_kept_{name}_{digest}")
+    sys.modules[module.__name__] = module  # where machine code that was kept looks for it
+    vars(module).update(np=np, __file__=str(path))
+    exec(compile(text, str(path), "exec"), vars(module))  # noqa: S102 - written by us, from checked functions
+    names = [key for key, value in vars(module).items() if isinstance(value, FunctionType)]
+    for key in names:
+        function = numba.njit(
+            vars(module)[key], error_model="numpy", fastmath=FAST, nogil=True, cache=keeps and key in ENTRIES
+        )
+        setattr(module, key, function)
+    return {key: vars(module)[key] for key in names}
+
+
+ENTRIES = ("accurate", "rough", "leap_costing", "leap_varied", "many")
+"""Functions that are called from outside, of which machine code is kept with all that they call."""
+
+
+def _writable(folder: Path) -> bool:
+    import os
+
+    return os.access(folder, os.W_OK)

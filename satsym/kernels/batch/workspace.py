@@ -1,0 +1,77 @@
+"""One flat array that holds all numbers of a block of columns, at places that are known when code is written.
+
+With constant places nobody need ask whether two rows overlap, and a loop over the columns of a block becomes vector
+instructions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+LANES = 16
+"""Columns of a block: a few vectors, so that one is computed while another waits for its divisions."""
+
+
+@dataclass
+class Workspace:
+    """Where rows of a block lie."""
+
+    size: int = 0
+    """Numbers, so far."""
+    places: dict[str, int] = field(default_factory=dict)
+    """Where what has a name begins."""
+
+    def place(self, name: str, rows: int) -> int:
+        """Where so many rows lie, which are new."""
+        begin = self.places[name] = self.size
+        self.size += rows * LANES
+        return begin
+
+    def __getitem__(self, name: str) -> int:
+        return self.places[name]
+
+
+def element(begin: int | str, row: int) -> str:
+    """Of a row, the entry of the column at hand."""
+    return f"w[{begin} + {row * LANES} + j]"
+
+
+def over_lanes(lines: Sequence[str]) -> list[str]:
+    """For each column of a block."""
+    return [f"for j in range({LANES}):", *indented(lines)]
+
+
+def over_rows(rows: int, lines: Sequence[str]) -> list[str]:
+    """For each entry ``q`` of so many rows: of all columns, one after the other in memory."""
+    return [f"for q in range({rows * LANES}):", *indented(lines)]
+
+
+def indented(lines: Sequence[str]) -> list[str]:
+    """One level further in."""
+    return [f"    {line}" for line in lines]
+
+
+def function(head: str, lines: Sequence[str]) -> list[str]:
+    """A function."""
+    return ["", "", f"def {head}:", *indented(lines)]
+
+
+def over_blocks(columns: str, lines: Sequence[str]) -> list[str]:
+    """For each block of columns ``at``, ``at + 1``, ..., of which ``width`` are there."""
+    head = [f"for at in range(0, {columns}, {LANES}):", f"    width = min({LANES}, {columns} - at)"]
+    return [*head, *indented(lines)]
+
+
+def loaded(begin: int, source: str, rows: int) -> list[str]:
+    """Rows of an array into the workspace; where columns are missing the last one stands in."""
+    if not rows:
+        return []
+    take = f"w[{begin} + i * {LANES} + j] = {source}[i, at + min(j, width - 1)]"
+    return [f"for i in range({rows}):", *indented(over_lanes([take]))]
+
+
+def stored(begin: int, target: str, rows: int) -> list[str]:
+    """Rows of the workspace into an array."""
+    give = f"{target}[i, at + j] = w[{begin} + i * {LANES} + j]"
+    return [f"for i in range({rows}):", "    for j in range(width):", f"        {give}"]
