@@ -41,6 +41,10 @@ class Asked(Protocol):
     def final(self) -> Mapping[str, Any]:
         """Given final states by name."""
 
+    @property
+    def ranges(self) -> Mapping[str, Any]:
+        """Limits of final states by name."""
+
 
 @dataclass(frozen=True)
 class Method:
@@ -92,6 +96,8 @@ def _no_sweep(asked: Asked) -> str:
             f"a given final {', '.join(asked.final)} cannot be swept for; leave it free and weigh its error in the "
             'terminal cost, or use method "collocation"'
         )
+    if asked.ranges:
+        return f'a range of the final {", ".join(asked.ranges)} cannot be swept for; use method "collocation"'
     if spec.multipliers:
         return f'terminal constraints of {spec.name} cannot be swept for; use method "collocation"'
     return ""

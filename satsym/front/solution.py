@@ -143,4 +143,5 @@ def solve(instance: Instance | str | Path, progress: Progress | None = None, **o
         from satsym.analysis.comparison import limits_noted
 
         found = limits_noted(found)
-    return Solution(case, found if case.case.free else replace(found, instance=case.case))
+    found_there = case.case.free or case.case.ranges  # which the instance of what was found says
+    return Solution(case, found if found_there else replace(found, instance=case.case))

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from satsym.instance import continuation, control, files, numbers, resolve, unknowns
+from satsym.instance import continuation, control, ends, files, numbers, resolve, unknowns
 from satsym.instance.options import guess, lqr, solver
 from satsym.instance.pointing import classical, deadband, driven, limits
 from satsym.instance.schema import InstanceFile, check
@@ -124,7 +124,7 @@ def _resolve(written: Written, file: InstanceFile, model: Kernels) -> Instance:
         model=model,
         parameters=resolve.parameters(file.parameters, spec),
         initial=resolve.initial(file.initial, spec),
-        final=resolve.final(file.final, spec),
+        final=resolve.final(ends.without_ranges(file.final, spec), spec),
         t0=t0,
         tf=tf,
         tf_guess=tf_guess,
@@ -140,13 +140,27 @@ def _resolve(written: Written, file: InstanceFile, model: Kernels) -> Instance:
         deadband=deadband(file.switching, spec),
         driven=driven(file.driven, spec),
         free=free,
+        ranges=ends.ranges(file.final, spec),
     )
+    _refuse_beside_ranges(found)
     changing = continuation.varied(file.continuation, spec, found)
     for one in changing:
         found = one.at(found, 1.0)
     found = replace(found, continuation=changing)
+    if changing and found.ranges:
+        raise BadInput("[continuation]: is not done beside ranges of final states; write numbers in [final]")
     if file.study:
         for table in (file.study.vary, file.study.normal, file.study.uniform):
             for key, _ in numbers.texts(table):
                 numbers.find(key, found)
     return found
+
+
+def _refuse_beside_ranges(instance: Instance) -> None:
+    """Refuse what is not solved beside ranges of final states."""
+    for name in instance.ranges:
+        key = f"[final] {name}: a range"
+        if name in instance.solver.free_angles:
+            raise BadInput(f"{key} does not count modulo a turn; leave the state out of [solver] free_angles")
+        if instance.free:
+            raise BadInput(f'{key} is not solved beside {instance.free[0].key} = "{resolve.FREE}"; write a number')

@@ -23,7 +23,10 @@ Name = Annotated[str, Meta(description="a name in quotes")]
 Names = Annotated[tuple[str, ...], Meta(description='a list of names, such as ["u1"]')]
 Text = Annotated[str, Meta(description="text in quotes")]
 Quantity = Annotated[float | str, Meta(description='a number, or text with a unit such as "5 km"')]
-FinalValue = Annotated[float | str, Meta(description='a number, text with a unit such as "5 km", or "reference"')]
+FinalValue = Annotated[
+    float | str | tuple[float | str, float | str],
+    Meta(description='a number, text with a unit such as "5 km", "reference", or a range [lower, upper]'),
+]
 FinalTime = Annotated[float | str, Meta(description='a number, text with a unit such as "1 day", or "free"')]
 Bound = Annotated[
     float | str | tuple[float | str, float | str] | dict[str, float | str],
@@ -188,7 +191,12 @@ class InstanceFile(_Table, frozen=True):
     ] = {}
     final: Annotated[
         dict[str, FinalValue],
-        Key("given final values; a state left out is free", (*SOLVING, *RELAYS), "the model's", "STATE"),
+        Key(
+            'given final values; a state left out is free, as is an end of a range that is "free"',
+            (*SOLVING, *RELAYS),
+            "the model's",
+            "STATE",
+        ),
     ] = {}
     control: Annotated[
         dict[str, Bound],

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from satsym.instance.continuation import Varied
+from satsym.instance.ends import Side
 from satsym.instance.schema import SolverOptions
 from satsym.instance.unknowns import Unknown
 from satsym.status import BadInput
@@ -154,6 +155,10 @@ class Instance:
         Initial states, initial time and parameters that are to be found; their fields hold where to begin.
     continuation
         What changes on the way to this problem, where it is solved by continuation.
+    ranges
+        Lower and upper limits of final states by name, infinite where there is none.
+    met
+        At which end of its range a final state is, once that was found; `final` then holds its value.
     """
 
     name: str
@@ -179,6 +184,15 @@ class Instance:
     norms: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     free: tuple[Unknown, ...] = ()
     continuation: tuple[Varied, ...] = ()
+    ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    met: Mapping[str, Side] = field(default_factory=dict)
+
+    def meeting(self, met: Mapping[str, Side]) -> Instance:
+        """The instance whose final states are at these ends of their ranges, the others of them free."""
+        final = {name: value for name, value in self.final.items() if name not in self.met}
+        final |= {name: side.of(self.ranges[name]) for name, side in met.items()}
+        ordered = {name: final[name] for name in self.model.spec.state_names if name in final}
+        return replace(self, final=ordered, met=dict(met))
 
     def require_numbers(self) -> None:
         """Refuse, for what does not optimise, an instance that leaves something free.

@@ -46,7 +46,7 @@ def warm(task: Task) -> bool:
     fitting = instance.solver.method in (methods.AUTO, "collocation") and not (instance.free or instance.continuation)
     smooth = not (spec.switching or spec.throttled or spec.stationary or spec.directional or spec.path_constraints)
     stays = all(key.table in (Table.INITIAL, Table.PARAMETERS) for key in task.keys)
-    plain = not (instance.solver.free_angles or instance.guess)
+    plain = not (instance.solver.free_angles or instance.guess or instance.ranges)
     return fitting and smooth and stays and plain and redundant(instance) is None
 
 

@@ -94,6 +94,7 @@ def solution_object(solution: Solution) -> dict[str, Any]:
         "parameters_found": _found(solution),
         **(_interval(solution.interval, spec) if solution.interval else {}),
         "events": plain(solution.events),
+        **_ranges(solution.instance),
         **_continuation(solution),
     }
 
@@ -102,6 +103,12 @@ def _interval(interval: CostInterval, spec: ProblemSpec) -> dict[str, Any]:
     """What the best objective lies between, in the author's sense, the smaller first; and how much was smoothed."""
     ends = sorted(spec.objective(end) for end in (interval.lower, interval.upper))
     return {"cost_interval": plain(ends), "smoothing": plain(interval.smoothing)}
+
+
+def _ranges(instance: Instance) -> dict[str, dict[str, str | None]]:
+    """At which end of its range each final state is, ``None`` within it; no key where none has a range."""
+    met = {name: instance.met[name].value if name in instance.met else None for name in instance.ranges}
+    return {"ends_met": met} if met else {}
 
 
 def _continuation(solution: Solution) -> dict[str, list[dict[str, Any]]]:

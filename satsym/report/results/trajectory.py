@@ -12,6 +12,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.instance.ends import Side
 from satsym.instance.numbers import changed
 from satsym.instance.unknowns import Place
 from satsym.report.results import arrays, sets
@@ -72,6 +73,7 @@ class _Result(msgspec.Struct):
     cost_interval: tuple[float, float] | None = None
     smoothing: float = 0.0
     events: list[_Event] = []
+    ends_met: dict[str, Side | None] = {}
     feedback: str = ""
     invariants: dict[str, _Kept] = {}
     metrics: dict[str, float | None] = {}
@@ -160,6 +162,7 @@ def read(instance: Instance, folder: Path) -> tuple[Solution | Simulation, sets.
     except BadInput as error:
         raise again(listing, f"cannot be read ({printable(str(error), 200)})") from None
     instance = _with_found(instance, result.parameters_found, stored)
+    instance = instance.meeting({k: v for k, v in result.ends_met.items() if v is not None and k in instance.ranges})
     if not _starts_at(stored["x"], instance.initial):
         raise again(place, f"starts elsewhere than {instance.name}, which has changed since")
     make = _solution if result.command == "solve" else _flight

@@ -214,6 +214,9 @@ def _difference(instance: Instance, name: str, value: float, reference: float) -
 
 def _given(instance: Instance, name: str) -> str:
     value = instance.final.get(name)
+    if name in instance.ranges:
+        lower, upper = (figure(end) if math.isfinite(end) else "free" for end in instance.ranges[name])
+        return f"[{lower}, {upper}]"
     if value is None:
         return "free" if instance.final else ""
     return value if isinstance(value, str) else figure(value)

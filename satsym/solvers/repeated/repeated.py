@@ -65,8 +65,8 @@ class Repeated:
     Raises
     ------
     BadInput
-        If the model has no cost, its controls switch, angles are to count modulo a turn, or numba is asked for and
-        not installed.
+        If the model has no cost, its controls switch, angles are to count modulo a turn, final states have ranges, or
+        numba is asked for and not installed.
 
     Examples
     --------
@@ -89,6 +89,8 @@ class Repeated:
                 f"{instance.name}: the controls of {instance.model.spec.name} switch, which cannot be solved again "
                 "and again; solve each instance by itself"
             )
+        if instance.ranges:
+            raise BadInput(f"{instance.name}: [final]: ranges are not looked into again and again; write numbers")
         if instance.solver.free_angles:
             raise BadInput(
                 f"{instance.name}: [solver] free_angles: turns are not looked for again and again; remove it"

@@ -1,0 +1,72 @@
+"""Ranges in which final states must lie, and at which of their ends they do."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from enum import Enum
+
+from satsym.instance.resolve import FREE, REFERENCE, Row, known, value_of
+from satsym.spec import ProblemSpec
+from satsym.status import BadInput
+from satsym.wording import shown
+
+
+class Side(str, Enum):
+    """An end of a range."""
+
+    LOWER = "lower"
+    UPPER = "upper"
+
+    @property
+    def outward(self) -> float:
+        """The sign of a change that leaves the range there."""
+        return 1.0 if self is Side.UPPER else -1.0
+
+    def of(self, limits: Row) -> float:
+        """Where that end is."""
+        return limits[self is Side.UPPER]
+
+
+Final = Mapping[str, float | str | tuple[float | str, float | str]]
+"""The table [final]: of each state a value, or both ends of a range."""
+
+
+def ranges(table: Final, spec: ProblemSpec) -> dict[str, tuple[float, float]]:
+    """The ranges of final states in the model's order, infinite where an end is free; those of no width are left out.
+
+    Raises
+    ------
+    BadInput
+        If one is empty or everything, or an end of it is no value of the state.
+    """
+    known(table, spec.states, "state", "final")
+    found = {}
+    for variable in spec.states:
+        written = table.get(variable.symbol)
+        if not isinstance(written, tuple):
+            continue
+        key = f"[final] {variable.symbol}"
+        if REFERENCE in written:
+            raise BadInput(f'{key}: a range cannot end at "{REFERENCE}"; write two numbers')
+        if not spec.has_cost:
+            raise BadInput(f"{key}: the model {spec.name} has no cost, so nothing chooses in a range; write a number")
+        lower, upper = (
+            sign * math.inf if end == FREE else value_of(variable, end, key)
+            for end, sign in zip(written, (-1.0, 1.0), strict=True)
+        )
+        if math.isinf(lower) and math.isinf(upper):
+            raise BadInput(f"{key}: both ends are free; leave the state out of [final]")
+        if lower > upper:
+            raise BadInput(f"{key}: the range is empty, {shown(written[0])} is above {shown(written[1])}; swap them")
+        if lower < upper:
+            found[variable.symbol] = (lower, upper)
+    return found
+
+
+def without_ranges(table: Final, spec: ProblemSpec) -> dict[str, float | str]:
+    """What is given exactly, by a value or by a range of no width."""
+    inside = ranges(table, spec)
+    return {
+        name: value[0] if isinstance(value, tuple) else value for name, value in table.items() if name not in inside
+    }

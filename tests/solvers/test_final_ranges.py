@@ -1,0 +1,205 @@
+"""Final states in ranges: which ends are met is found by machine, and other ends are competitors."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import minimize
+
+import satsym
+from satsym.cli.saving import save, trajectory_files
+from satsym.front.solution import Solution
+from satsym.instance.ends import Side
+from satsym.report.results import trajectory
+from satsym.report.results.objects import solution_object
+from satsym.solvers.certificate import certify
+from satsym.solvers.certificate.end_ranges import pushes
+from satsym.status import BadInput, Verdict
+from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
+
+STATES, CONTROLS = (Variable("x", "x"), Variable("v", "v")), (Variable("u", "u"),)
+PARAMETERS = tuple(Variable(name, name, default=0.0) for name in ("c", "k", "l"))
+(x, v), (u,), (c, k, wall) = symbols_of(STATES), symbols_of(CONTROLS), symbols_of(PARAMETERS)
+LINE = FirstOrder(
+    name="line", title="x'' = u", states=STATES, controls=CONTROLS, parameters=PARAMETERS, rates={x: v, v: u}
+)
+PUSHED = Problem(name="pushed", title="pushed", model=LINE, running_cost=c + u**2 / 2)
+HILL = Problem(name="hill", title="hill", model=LINE, running_cost=u**2 / 2, terminal_cost=-k * (x - 0.1) ** 2 / 2)
+WALLED = Problem(name="walled", title="walled", model=LINE, running_cost=u**2 / 2, path_constraints={"wall": x - wall})
+AT_REST = {"initial": {"x": 0.0, "v": 0.0}, "tf": 1.0}
+
+
+def certified(of: Problem | str, **given: Any) -> Solution:
+    found = satsym.solve(satsym.Instance.of(of, **given))
+    said = found.to_dict()
+    assert said["status"] == "converged", said["message"]
+    assert said["certificate"]["verdict"] == "certified", said["certificate"]["checks"]
+    return found
+
+
+def ends(found: Solution) -> dict[str, str | None]:
+    said: dict[str, str | None] = found.to_dict()["ends_met"]
+    return said
+
+
+def effort(there: np.ndarray) -> float:
+    """Least 1/2 int u^2 of going from rest to a state in unit time."""
+    return float(6 * there[0] ** 2 - 6 * there[0] * there[1] + 2 * there[1] ** 2)
+
+
+@pytest.mark.parametrize(
+    ("begun", "limits", "end", "met"),
+    [
+        (0.0, [1.0, 2.0], 1.0, "lower"),
+        (3.0, [1.0, 2.0], 2.0, "upper"),
+        (1.5, [1.0, 2.0], 1.5, None),
+        (0.0, [1.0, "free"], 1.0, "lower"),
+        (0.0, ["free", -1.0], -1.0, "upper"),
+        (0.0, ["free", 1.0], 0.0, None),
+    ],
+)
+def test_the_end_that_is_nearest_without_control_is_met(begun: float, limits: list[Any], end: float, met: str | None):
+    """J = 3 (x - v0)^2 / 2 with a free final velocity."""
+    found = certified(PUSHED, initial={"x": 0.0, "v": begun}, final={"x": limits}, tf=1.0)
+    assert found.objective == pytest.approx(1.5 * (end - begun) ** 2, abs=1e-12)
+    assert ends(found) == {"x": met}
+    assert found.found.x[0, -1] == pytest.approx(end)
+
+
+@settings(max_examples=12, deadline=None)
+@given(st.lists(st.integers(-20, 20), min_size=4, max_size=4))
+def test_of_two_ranges_the_least_effort_of_all_ends_is_found(corners: list[int]):
+    box = [sorted((0.1 * a + 0.03, 0.1 * b)) for a, b in (corners[:2], corners[2:])]
+    wanted = minimize(effort, [np.mean(side) for side in box], bounds=box, tol=1e-14)
+    found = certified(PUSHED, final={"x": box[0], "v": box[1]}, **AT_REST)
+    assert found.objective == pytest.approx(wanted.fun, rel=1e-6, abs=1e-10)
+    assert found.found.x[:, -1] == pytest.approx(wanted.x, abs=1e-4)
+
+
+def test_the_multiplier_is_what_the_limit_costs():
+    found = certified(PUSHED, final={"x": [1.0, 2.0], "v": [-1.0, -0.5]}, **AT_REST).found
+    pressing, n = pushes(found), 2
+    sizes = np.abs(found.lam).max(axis=1)
+    for i, name in enumerate(("x", "v")):  # J = 6 x^2 - 6 x v + 2 v^2 at (1, -1/2)
+        slope = (15.0, -8.0)[i] * (1.0 if name == "x" else -1.0)
+        assert pressing[name] * max(sizes[i], 1e-300) == pytest.approx(slope, rel=1e-7)
+    assert n == len(pressing)
+
+
+def test_an_end_that_pulls_and_a_range_that_is_left_fail():
+    found = certified(PUSHED, final={"x": [1.0, 2.0]}, **AT_REST).found
+    turned = replace(found.instance, met={"x": Side.UPPER}, ranges={"x": (-5.0, 1.0)})
+    moved = replace(found.instance, ranges={"x": (1.0, 2.0), "v": (2.0, 3.0)})
+    for case, name in ((turned, "negative multiplier of a final range"), (moved, "final range violated")):
+        certificate = certify(replace(found, instance=case))
+        assert certificate is not None
+        assert certificate.verdict is Verdict.FAILED
+        assert [check.name for check in certificate.checks if not check.passed] == [name]
+
+
+def test_of_two_ends_that_are_local_optima_the_cheaper_is_found():
+    """J = 3 x^2 / 2 - k (x - 1/10)^2 / 2 falls to both sides, more to the negative one."""
+    found = certified(HILL, final={"x": [-1.0, 1.0]}, parameters={"k": 6.0}, **AT_REST)
+    assert ends(found) == {"x": "lower"}
+    assert found.objective == pytest.approx(1.5 - 3 * 1.1**2, rel=1e-10)
+    others = found.to_dict()["certificate"]["competitors"][-1]
+    assert (others["kind"], others["solved"]) == ("other ends of ranges", 2)
+    assert others["cheapest"] == pytest.approx(1.5 - 3 * 0.9**2, rel=1e-9)
+
+
+def test_with_a_free_final_time_a_range_is_reached_when_that_is_cheapest():
+    """c T + 6 x^2 / T^3 is least where T^4 = 18 x^2 / c."""
+    found = certified(
+        PUSHED,
+        final={"x": [1.0, 2.0], "v": 0.0},
+        parameters={"c": 2.0},
+        initial={"x": 0.0, "v": 0.0},
+        tf="free",
+        tf_guess=1.0,
+    )
+    lasting = 9.0**0.25
+    assert found.objective == pytest.approx(2.0 * lasting + 6.0 / lasting**3, rel=1e-9)
+    assert ends(found) == {"x": "lower"}
+
+
+def test_before_a_wall_too():
+    """From (0, 1) to v = -1 before a wall the end is as far back as the range allows (Bryson and Ho, 3.11)."""
+    given = {"initial": {"x": 0.0, "v": 1.0}, "tf": 1.0, "parameters": {"l": 0.1}}
+    exact = certified(WALLED, final={"x": 0.0, "v": -1.0}, **given)
+    found = certified(WALLED, final={"x": [0.0, 0.05], "v": -1.0}, **given)
+    assert ends(found) == {"x": "lower"}
+    assert found.objective == pytest.approx(exact.objective, rel=1e-9)
+    assert [one.kind for one in found.events] == ["entry", "exit"]
+
+
+def test_where_controls_switch_too():
+    bounded = {"control": {"u1": [-1.0, 1.0]}, "tf": "free"}
+    found = certified(
+        "double_integrator_time", initial={"q": 0.0, "q_dot": 0.0}, final={"q": [1.0, 2.0], "q_dot": 0.0}, **bounded
+    )
+    assert found.objective == pytest.approx(2.0, rel=1e-9)
+    assert ends(found) == {"q": "lower"}
+
+
+def test_an_orbit_within_limits_is_reached_with_less_effort():
+    exact = satsym.solve("return-to-orbit")
+    case = satsym.Instance.of(
+        "polar_orbit",
+        initial={"r": 1.1, "r_dot": 0.0, "theta": 0.0, "theta_dot": 0.9},
+        final={"r": [0.99, 1.01], "r_dot": 0.0, "theta": "reference", "theta_dot": 1.0},
+        tf=2 * np.pi,
+    )
+    found = satsym.solve(case)
+    assert found.certificate is not None
+    assert found.certificate.verdict is Verdict.CERTIFIED
+    assert found.objective < exact.objective
+    assert 0.99 - 1e-9 <= found.found.x[0, -1] <= 1.01 + 1e-9
+
+
+def test_what_is_saved_comes_back_with_its_ends(tmp_path: Path):
+    found = certified(PUSHED, final={"x": [1.0, 2.0]}, **AT_REST)
+    save(tmp_path, solution_object(found.found), trajectory_files(tmp_path, found.found, look=None))
+    again, _ = trajectory.read(found.found.instance.meeting({}), tmp_path)
+    assert again.instance.met == {"x": Side.LOWER}
+    assert again.instance.final == found.found.instance.final
+
+
+@pytest.mark.parametrize(
+    ("final", "more", "message"),
+    [
+        ({"x": [2.0, 1.0]}, {}, r"\[final\] x: the range is empty, 2 is above 1; swap them"),
+        ({"x": ["free", "free"]}, {}, r"\[final\] x: both ends are free; leave the state out"),
+        ({"x": ["reference", 1.0]}, {}, r'\[final\] x: a range cannot end at "reference"'),
+        ({"x": [0.0, 1.0, 2.0]}, {}, r"\[final\] x: got"),
+        ({"x": [0.0, 1.0]}, {"initial": {"x": "free", "v": 0.0}}, "is not solved beside"),
+        ({"x": [0.0, 1.0]}, {"solver": {"free_angles": ["x"]}}, "angle|turn"),
+        ({"x": [0.0, 1.0]}, {"solver": {"method": "sweep"}}, "cannot be swept for"),
+    ],
+)
+def test_what_is_no_range_is_refused(final: dict[str, Any], more: dict[str, Any], message: str):
+    with pytest.raises(BadInput, match=message):
+        satsym.solve(satsym.Instance.of(PUSHED, **{**AT_REST, "final": final, **more}))
+
+
+def test_a_start_behind_a_wall_is_refused_whatever_the_end():
+    with pytest.raises(BadInput, match="initial: path constraint wall"):
+        satsym.solve(satsym.Instance.of(WALLED, initial={"x": 1.0, "v": 0.0}, final={"x": [0.0, 0.1]}, tf=1.0))
+
+
+def test_a_range_behind_a_wall_has_no_answer():
+    given = {"parameters": {"l": 0.1}, "final": {"x": [0.2, 0.3], "v": 0.0}}
+    found = satsym.solve(satsym.Instance.of(WALLED, **AT_REST, **given))
+    assert not found.status.answered
+    assert "ends of the final ranges" in found.message
+
+
+def test_a_range_of_no_width_is_a_given_end():
+    found = certified(PUSHED, final={"x": [1.0, 1.0]}, **AT_REST)
+    assert "ends_met" not in found.to_dict()
+    assert found.objective == pytest.approx(1.5, rel=1e-12)
