@@ -25,6 +25,7 @@ from satsym.cli.commands.lqr import lqr
 from satsym.cli.commands.models import models
 from satsym.cli.commands.new import new
 from satsym.cli.commands.plot import plot
+from satsym.cli.commands.report import report
 from satsym.cli.commands.simulate import simulate
 from satsym.cli.commands.solve import solve
 from satsym.cli.commands.study import study
@@ -81,6 +82,7 @@ class Program(click.Group):
         lqr,
         derive,
         latex,
+        report,
         audit,
         completion,
         doctor,

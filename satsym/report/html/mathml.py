@@ -13,6 +13,7 @@ from satsym.report.html.markup import Markup
 _UPRIGHT = re.compile(r"\\mathrm\{([^{}\\]*)\}")
 _BRACKET = re.compile(r"\\[bB]igg?([lr])(?![A-Za-z])")
 _BEFORE_A_SIGN = frozenset("=,([{<>≤≥|")
+_FUNCTIONS = frozenset("sin cos tan arcsin arccos arctan sinh cosh tanh exp log ln sgn det rank".split())
 _OPERATOR = re.compile(r"\\operatorname\{([^{}\\]*)\}")
 
 
@@ -28,6 +29,9 @@ def math(tex: str, *, block: bool = False) -> Markup:
     for part in element.iter():
         # characters come as references; serialising escapes whatever they stand for
         part.text, part.tail = (unescape(text) if text else text for text in (part.text, part.tail))
+    for word in element.iter("mi"):
+        if word.text in _FUNCTIONS:  # as an identifier it would touch what stands beside it
+            word.tag, word.attrib = "mo", {"form": "prefix", "lspace": "0.17em", "rspace": "0.17em"}
     for parent in element.iter():
         for before, sign in pairwise(parent):
             if (

@@ -152,11 +152,12 @@ class _Composer:
         return self._texts.get("declared", name) + (f"~{numbers_of(*ends)}" if ends else "")
 
     def _checks(self, step: Step) -> str:
-        checks = "\n".join(rf"  $\checkmark$~{self._check(check)}" for check in step.checks)
+        checks = "\n".join(rf"  $\checkmark$~{checked(self._texts, check)}" for check in step.checks)
         return f"\\satsymchecks{{%\n{checks}}}"
 
-    def _check(self, check: Check) -> str:
-        """What was found true, and how; not the measured deviation, which is noise, but its limit."""
-        method = "inspection" if check.claim in BY_INSPECTION else "numeric" if check.limit else "exact"
-        how = self._texts.get("methods", method, points=str(POINTS), digits=str(DIGITS), limit=tex.number(check.limit))
-        return f"{self._texts.get('claims', check.claim)} ({how})."
+
+def checked(texts: Texts, check: Check) -> str:
+    """What was found true, and how; not the measured deviation, which is noise, but its limit."""
+    method = "inspection" if check.claim in BY_INSPECTION else "numeric" if check.limit else "exact"
+    how = texts.get("methods", method, points=str(POINTS), digits=str(DIGITS), limit=tex.number(check.limit))
+    return f"{texts.get('claims', check.claim)} ({how})."

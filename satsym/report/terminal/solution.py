@@ -52,7 +52,7 @@ def solution_text(solution: Solution, colour: bool = False) -> str:
     blocks += [
         table([("", ""), *facts])[1:],
         _states(solution.instance, solution.times, solution.x, solution.lam),
-        _controls(instance, solution.times, solution.u),
+        table(control_rows(instance, solution.times, solution.u), right=(1, 2, 4)),
         _switching(solution, unit),
         _events(solution, unit),
         _certificate(solution.certificate, instance) if solution.certificate else [],
@@ -184,10 +184,16 @@ def _wrapped(text: str) -> list[str]:
 
 
 def _states(instance: Instance, times: Array, x: Array, lam: Array | None) -> list[str]:
-    """A line for each state: where it starts and ends, where it was to end, and its costate."""
+    return table(state_rows(instance, times, x, lam), right=(*range(1, 6), 7))
+
+
+def state_rows(instance: Instance, times: Array, x: Array, lam: Array | None) -> list[tuple[str, ...]]:
+    """Below a header, a row for each state: where it starts and ends, where it was to end, and its costate."""
     spec = instance.model.spec
     reference = _reference(instance, times)
-    rows = [("state", "initial", "final", "given", "reference", "difference", "unit", "costate at t0", "unit")]
+    rows: list[tuple[str, ...]] = [
+        ("state", "initial", "final", "given", "reference", "difference", "unit", "costate at t0", "unit")
+    ]
     for i, state in enumerate(spec.states):
         final = _last(x[i])
         off = "" if reference is None else figure(_difference(instance, state.symbol, final, reference[i]), 3)
@@ -204,7 +210,7 @@ def _states(instance: Instance, times: Array, x: Array, lam: Array | None) -> li
                 "" if lam is None or (by := cost_per(state.unit, spec)) == "1" else by,
             )
         )
-    return table(rows, right=(*range(1, 6), 7))
+    return rows
 
 
 def _difference(instance: Instance, name: str, value: float, reference: float) -> float:
@@ -230,10 +236,10 @@ def _reference(instance: Instance, times: Array) -> Sequence[float] | None:
     return values
 
 
-def _controls(instance: Instance, times: Array, u: Array) -> list[str]:
-    """A line for each control, and one for their norm where it is bounded."""
+def control_rows(instance: Instance, times: Array, u: Array) -> list[tuple[str, ...]]:
+    """Below a header, a row for each control, and one for their norm where it is bounded."""
     spec = instance.model.spec
-    rows = [("control", "minimum", "maximum", "bounds", "saturated", "unit")]
+    rows: list[tuple[str, ...]] = [("control", "minimum", "maximum", "bounds", "saturated", "unit")]
     for i, control in enumerate(spec.controls):
         limits = (instance.lower[i], instance.upper[i])
         unit = "" if control.unit == "1" else control.unit
@@ -243,7 +249,7 @@ def _controls(instance: Instance, times: Array, u: Array) -> list[str]:
         named = f"norm of {bound.name}" if bound.name else "norm"
         unit = "" if bound.unit == "1" else bound.unit
         rows.append((named, *_range(times, norm, (bound.lower or -math.inf, bound.upper)), unit))
-    return table(rows, right=(1, 2, 4))
+    return rows
 
 
 def _range(times: Array, row: Array, limits: tuple[float, float]) -> tuple[str, str, str, str]:

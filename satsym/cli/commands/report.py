@@ -1,0 +1,76 @@
+"""``satsym report``: one run as one page."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from satsym.cli.options import language_option, place_option, subject_argument
+from satsym.cli.output import emit, live
+from satsym.status import BadInput, ExitCode, Verdict
+
+if TYPE_CHECKING:
+    from satsym.instance import Instance
+    from satsym.symbolic import Derivation
+
+EXAMPLES = """\b
+Examples:
+  satsym report soft-return --html soft-return.html
+  satsym report my_case.toml --html my_case.html --derivation my_model.py"""
+
+
+@click.command(epilog=EXAMPLES)
+@subject_argument
+@place_option("--html", "page", metavar="FILE", help="The page; a file of this name is replaced.")
+@place_option("--derivation", "stated", metavar="FILE.py", help="Where the model of X is stated, if it is your own.")
+@language_option
+def report(subject: str, page: Path | None, stated: Path | None, language: str) -> ExitCode:
+    """Solve an instance, and show all of it on one page.
+
+    X is an instance as for `satsym solve`. The page holds the answer, its certificate, the motion, pictures, the
+    instance and the derivation, and needs nothing but itself. FILE.py is Python and is executed.
+    """
+    from satsym import instance, solvers
+    from satsym.report.page.run import render
+    from satsym.report.results.files import write_text
+    from satsym.report.terminal.solution import progress_line, with_files
+
+    if page is None:
+        raise click.UsageError("--html FILE says where the page goes.")
+    case = instance.load(subject)
+    with live() as line:
+        derivation = _derivation(case, stated, line.show)
+        solution = solvers.solve(case, progress=lambda iteration: line.show(progress_line(iteration, case)))
+        line.show("drawing ...")
+        text = render(solution, derivation, subject, language)
+    write_text(page, text)
+    emit(with_files(f"{case.name}: {solution.status.value}", [page]))
+    if not solution.status.answered:
+        return ExitCode.NO_ANSWER
+    failed = solution.certificate is not None and solution.certificate.verdict is Verdict.FAILED
+    return ExitCode.CERTIFICATE_FAILED if failed else ExitCode.DONE
+
+
+def _derivation(case: Instance, stated: Path | None, show: Callable[[str], None]) -> Derivation | None:
+    """The derivation of an instance's model: the shipped one of that model, or the one of a file that is named.
+
+    No other file is looked for: an instance is data, and derivation files are executed.
+    """
+    from satsym import kernels
+    from satsym.symbolic import derive, loader
+    from satsym.symbolic.convention import in_convention
+
+    name = case.model.spec.name
+    if stated is None:
+        try:
+            if kernels.load(name).spec != case.model.spec:
+                return None
+        except BadInput:
+            return None
+    subject, path = loader.problem(f"{stated}:{name}" if stated else name)
+    with loader.explained(path, subject):
+        show(f"deriving {name} ...")
+        return derive(in_convention(subject, None))

@@ -1,0 +1,89 @@
+"""The answer and its certificate: facts, tables, and what the verdict claims and does not."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from satsym.report.display import number, unit_text
+from satsym.report.html.markup import Markup, joined, tag
+from satsym.report.page.prose import scrolled
+from satsym.report.results.unit_names import time_unit
+from satsym.report.terminal.solution import control_rows, state_rows
+from satsym.report.terminal.table import figure
+from satsym.report.texts import Texts
+from satsym.solution import Certificate, Solution
+from satsym.spec import ProblemSpec
+
+
+def facts(solution: Solution, texts: Texts) -> Markup:
+    """The cost, the final time, and how they were found."""
+    instance, spec = solution.instance, solution.instance.model.spec
+    cost = f"{number(spec.objective(solution.objective), 10)} {unit_text(spec.objective_unit)}"
+    span = f"{number(float(solution.times[-1]), 10)} {unit_text(time_unit(spec) or '1')}" if len(solution.times) else ""
+    switches = ", ".join(
+        f"{name} {', '.join(figure(t) for t in times)}"
+        for name, times in zip(spec.control_names, solution.switching_times, strict=True)
+        if times
+    )
+    known = {
+        "status": solution.status.value,
+        "message": solution.message,
+        "maximum" if spec.maximise else "cost": cost if solution.status.answered else "",
+        "final_time": span,
+        "boundary": str(instance.boundary_type),
+        "method": f"{solution.method} ({solution.iterations})",
+        "switching_times": f"{switches} {unit_text(time_unit(spec) or '1')}" if switches else "",
+    }
+    pairs = [tag("dt", texts.get("page", key)) + tag("dd", value.strip()) for key, value in known.items() if value]
+    return tag("dl", *map(Markup, pairs))
+
+
+def states(solution: Solution, texts: Texts) -> Markup:
+    """Where each state starts and ends, and its costate."""
+    return table(
+        texts, texts.get("page", "states"), state_rows(solution.instance, solution.times, solution.x, solution.lam)
+    )
+
+
+def controls(solution: Solution, texts: Texts) -> Markup:
+    """How far each control goes, and its bounds."""
+    return table(texts, texts.get("page", "controls"), control_rows(solution.instance, solution.times, solution.u))
+
+
+def certificate(found: Certificate, spec: ProblemSpec, texts: Texts) -> Markup:
+    """The verdict, what was measured, and what was compared."""
+
+    def said(*keys: str) -> tuple[str, ...]:
+        return tuple(texts.get("page", key) for key in keys)
+
+    checks: list[tuple[str, ...]] = [said("check", "found", "limit", "result")] + [
+        (c.name, figure(abs(c.value), 2), figure(c.limit, 2), *said("ok" if c.passed else "failed"))
+        for c in found.checks
+    ]
+    compared: list[tuple[str, ...]] = [said("competitors", "tried", "solved", "best")] + [
+        (c.kind.value, str(c.tried), str(c.solved), figure(spec.objective(c.cheapest), 10))
+        for c in found.competitors
+        if c.tried
+    ]
+    missing = ", ".join(kind.value for kind in found.not_checked)
+    return joined(
+        tag("p", texts.get("page", found.verdict.value)),
+        tag("p", texts.get("page", "not_checked", kinds=missing)) if missing else "",
+        table(texts, texts.get("page", "checks"), checks),
+        table(texts, texts.get("page", "compared"), compared) if len(compared) > 1 else "",
+    )
+
+
+def table(texts: Texts, caption: str, rows: Sequence[Sequence[str]]) -> Markup:
+    """Rows below their header, without columns that hold nothing; a first cell names its row."""
+    header, *body = rows
+    body = [
+        [unit_text(cell) if name == "unit" else cell for name, cell in zip(header, row, strict=True)] for row in body
+    ]
+    kept = [k for k, column in enumerate(zip(*body, strict=True)) if any(column)] if body else []
+    head = tag("tr", *(tag("th", texts.find("columns", header[k]) or header[k], scope="col") for k in kept))
+    lines = [
+        tag("tr", *(tag("td", row[k]) if k else tag("th", row[k], scope="row", lang="en") for k in kept))
+        for row in body
+    ]
+    return scrolled(tag("table", tag("caption", caption), tag("thead", head), tag("tbody", *lines), class_="facts"))

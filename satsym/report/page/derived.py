@@ -1,0 +1,160 @@
+"""A derivation as a section: what it starts from, then each step with its rule, its equations and its checks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from satsym.report.display import unit_text
+from satsym.report.html.markup import Markup, joined, tag
+from satsym.report.html.mathml import math
+from satsym.report.latex import tex
+from satsym.report.latex.document import SECTION_FROM, checked
+from satsym.report.latex.steps import Context, conclusion, quantities
+from satsym.report.page.prose import prose, scrolled
+from satsym.report.terminal.table import figure
+from satsym.report.texts import Texts
+from satsym.spec import Variable
+from satsym.symbolic.latex.typeset import Typesetter, matrices
+
+if TYPE_CHECKING:
+    from satsym.symbolic import Derivation, Step
+
+OPEN = ("first_order", "hamiltonian", "control_law", "costate_equations")
+"""Steps that are shown from the start."""
+
+
+class Derived:
+    """The section of one derivation.
+
+    Parameters
+    ----------
+    values
+        Name of a parameter -> its value in the instance.
+    """
+
+    def __init__(self, derivation: Derivation, texts: Texts, values: Mapping[str, float]) -> None:
+        own = texts.with_own(derivation.model.sentences().get(texts.language, {}))
+        self._derivation, self._texts, self._values = derivation, own, values
+        self._context = Context(derivation, own, Typesetter(derivation))
+        self._numbers: dict[str, str] = {}
+        self._ends: dict[str, tuple[str, str]] = {}
+
+    def render(self) -> Markup:
+        """All of it."""
+        kind = "problem" if self._derivation.problem else "model"
+        parts = [tag("h3", self._texts.get("sections", kind)), *self._statement()]
+        parts += [tag("h3", self._texts.get("sections", "motion"))]
+        for number, step in enumerate(self._derivation.steps, 1):
+            if step.name in SECTION_FROM:
+                parts.append(tag("h3", self._texts.get("sections", SECTION_FROM[step.name])))
+            parts.append(self._step(number, step))
+        return joined(*parts)
+
+    def _statement(self) -> Iterator[Markup]:
+        """What is to be minimised, what the model states, and its quantities."""
+        problem, typeset, texts = self._derivation.problem, self._context.typeset, self._texts
+        if problem is not None:
+            terminal = not typeset.is_zero(problem.terminal_cost)
+            task = ("maximise" if problem.maximise else "minimise") + (
+                "" if len(problem.model.controls) > 1 else "_one"
+            )
+            controls = r",\, ".join(v.latex for v in problem.model.controls)
+            yield tag("p", prose(texts.get("statement", task, controls=controls), {}))
+            lead = "-" if problem.maximise else ""
+            final = rf"{lead}S(\mathbf{{x}}(t_f), t_f) {lead or '+'} " if terminal else lead
+            yield scrolled(math(rf"J = {final}\int_{{t_0}}^{{t_f}} L \, dt", block=True))
+            yield tag("p", prose(texts.get("statement", "where_terminal" if terminal else "where"), {}))
+            yield scrolled(math(f"L = {typeset.tex(problem.running_cost)}", block=True))
+            if terminal:
+                yield scrolled(math(f"S = {typeset.tex(problem.terminal_cost)}", block=True))
+        for said in self._derivation.model.statement():
+            fill = {"name": said.of.name, "title": said.of.title} if said.of else {}
+            yield tag("p", prose(texts.get("statement", said.sentence, **fill), {}))
+            for line in said.lines:
+                left = line.left if isinstance(line.left, str) else typeset.symbol(line.left.name)
+                left += rf"_{{\text{{{line.index}}}}}" if line.index else ""
+                parts = r",\; ".join(typeset.tex(part) for part in line.components)
+                right = rf"({parts})^{{\mathsf{{T}}}}" if line.components else typeset.tex(line.right)
+                yield scrolled(math(f"{left} = {right}", block=True))
+        yield self._quantities()
+
+    def _quantities(self) -> Markup:
+        model, texts = self._derivation.model, self._texts
+        heads = [texts.get("words", key) for key in ("symbol", "name", "unit")]
+        heads += [texts.get("page", "value"), texts.get("words", "meaning")]
+        rows = [tag("tr", *(tag("th", name, scope="col") for name in heads))]
+        for variables in (model.states, model.controls, model.parameters):
+            rows += [self._quantity(v) for v in variables]
+        return scrolled(tag("table", *rows, class_="facts"))
+
+    def _quantity(self, v: Variable) -> Markup:
+        value = self._values.get(v.symbol)
+        return tag(
+            "tr",
+            tag("td", math(v.latex)),
+            tag("th", tag("code", v.symbol), scope="row"),
+            tag("td", unit_text(v.unit)),
+            tag("td", "" if value is None else figure(value, 10), class_="number"),
+            tag("td", v.meaning, lang="en"),
+        )
+
+    def _step(self, number: int, step: Step) -> Markup:
+        """Heading, rule, equations, what it comes to, checks."""
+        texts, label = self._texts, tex.label(self._context.address(step))
+        title = texts.get("titles", step.name)
+        fill = {"sources": self._sources(step), "quantities": quantities(self._context, step)}
+        rule = prose(texts.get("rules", step.rule, **fill), self._numbers)
+        self._numbers[label] = str(number)
+        equations = [self._equation(address, line) for address, line in self._lines(step)]
+        said = [tag("p", prose(conclusion(self._context, one), self._numbers)) for one in step.conclusions]
+        checks = [tag("li", prose(checked(texts, check), {})) for check in step.checks]
+        return tag(
+            "details",
+            tag("summary", tag("h4", f"{texts.get('words', 'step')} {number}. {title}")),
+            tag("div", rule, class_="rule"),
+            *equations,
+            *said,
+            tag("ul", *checks, class_="checks", aria_label=texts.get("page", "checked")),
+            class_="step",
+            id=label,
+            open=step.name in OPEN,
+        )
+
+    def _equation(self, address: str, line: str) -> Markup:
+        label = tex.label(address)
+        self._numbers[label] = f"({sum(name.startswith('(') for name in self._numbers.values()) + 1})"
+        name = address.partition(":")[0]
+        step = tex.label(f"{name}:{address.partition(':')[2].partition('.')[0]}")
+        first, _ = self._ends.get(step, (label, label))
+        self._ends[step] = (first, label)
+        number = tag("a", self._numbers[label], href=f"#{label}", title=address)
+        return tag("div", scrolled(math(line, block=True)), number, class_="equation", id=label)
+
+    def _lines(self, step: Step) -> Iterator[tuple[str, str]]:
+        """Address and LaTeX of each equation; a matrix comes in place of the equations that are its entries."""
+        named = matrices(self._derivation, step)
+        entries = [e for one in named for e in one.equations]
+        address, plain = self._context.address(step), self._context.typeset
+        start, end = plain.at("t_0"), plain.at("t_f")
+        states = {v.symbol for v in self._derivation.model.states}
+        for one in named:
+            yield f"{address}.{one.prefix}", f"{one.prefix} = {plain.tex(one.matrix)}"
+        for e in step.equations:
+            if e not in entries:
+                given = step.name == "boundary_conditions" and e.name in states
+                typeset = start if given else end if step.name.startswith("boundary") else plain
+                left = typeset.tex(e.lhs)
+                if typeset.is_zero(e.lhs) and step.name.endswith("stationarity"):
+                    left = rf"0 = \frac{{\partial H}}{{\partial {typeset.symbol(e.name)}}}"
+                yield f"{address}.{e.name}", f"{left} = {typeset.tex(e.rhs)}"
+
+    def _sources(self, step: Step) -> str:
+        return self._texts.listed([text for text in map(self._source, step.follows_from) if text])
+
+    def _source(self, name: str) -> str:
+        label = tex.label(f"{self._derivation.name}:{name}")
+        if label in self._ends:
+            first, last = self._ends[label]
+            return self._texts.get("references", "one" if first == last else "many", first=first, last=last, step=label)
+        return self._texts.find("declared", name) or ""

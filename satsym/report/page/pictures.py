@@ -1,0 +1,40 @@
+"""Pictures of a result inside a page: SVG whose names do not meet those of another picture."""
+
+from __future__ import annotations
+
+import io
+import re
+
+from satsym.report import plots
+from satsym.report.html.markup import Markup, tag
+from satsym.report.look import Look
+from satsym.report.texts import Texts
+from satsym.solution import Solution
+
+_NAMED = re.compile(r'(\bid="|href="#|url\(#)')
+_BEFORE = re.compile(r"^.*?(?=<svg)", re.DOTALL)
+_ABOUT = re.compile(r"<metadata>.*?</metadata>", re.DOTALL)
+OVERVIEW = "overview"
+"""Shows what the others show, too."""
+
+
+def pictures(solution: Solution, texts: Texts) -> list[Markup]:
+    """A figure for each picture but the overview."""
+    found = []
+    for file, content in plots.pictures(solution, Look(("svg",), titled=False)).items():
+        name = file.removesuffix(".svg")
+        if name == OVERVIEW:
+            continue
+        stream = io.BytesIO()
+        content(stream)
+        said = texts.get("pictures", name)
+        drawing = _inline(stream.getvalue().decode("utf-8"), name, said)
+        found.append(tag("figure", drawing, tag("figcaption", said), class_="picture"))
+    return found
+
+
+def _inline(svg: str, name: str, said: str) -> Markup:
+    """The element alone, with names of its own, and with words for those who do not see it."""
+    body = _ABOUT.sub("", _BEFORE.sub("", svg)).strip()
+    body = _NAMED.sub(rf"\g<1>{name}-", body)
+    return Markup(body.replace("<svg ", str(tag("svg", role="img", aria_label=said))[: -len("></svg>")] + " ", 1))

@@ -1,0 +1,115 @@
+"""The page of one run."""
+
+from __future__ import annotations
+
+import shlex
+from importlib.resources import files
+from typing import TYPE_CHECKING
+
+from satsym import __version__
+from satsym.instance.files import text as text_of
+from satsym.report.html.markup import Markup, joined, tag
+from satsym.report.page import answer
+from satsym.report.page.motion import motion
+from satsym.report.page.pictures import pictures
+from satsym.report.plots.scene import Scene
+from satsym.report.results.objects import file_of
+from satsym.report.texts import Texts, load
+from satsym.solution import Solution
+
+if TYPE_CHECKING:
+    from satsym.symbolic import Derivation
+
+SECTIONS = ("answer", "certificate", "motion", "pictures", "instance", "derivation", "reproduce")
+
+
+def render(solution: Solution, derivation: Derivation | None, given: str, language: str = "en") -> str:
+    """A page that needs nothing but itself.
+
+    Parameters
+    ----------
+    derivation
+        Of the instance's model; ``None`` where it is not at hand.
+    given
+        What the instance was called on the command line.
+    language
+        Of the page; what the model's author wrote, and names of checks, stay as they are.
+
+    Returns
+    -------
+    str
+        HTML that depends on nothing but the arguments.
+    """
+    texts, instance = load(language), solution.instance
+    title = instance.title or instance.model.spec.title or instance.name
+    shown = {name: part for name, part in _sections(solution, derivation, given, texts).items() if part}
+    links = [tag("li", tag("a", texts.get("page", name), href=f"#{name}")) for name in shown]
+    sections = [tag("section", tag("h2", texts.get("page", name)), part, id=name) for name, part in shown.items()]
+    found = solution.certificate
+    verdict = tag("b", found.verdict.value, class_=f"verdict {found.verdict.value.split()[0]}") if found else Markup()
+    body = [
+        tag("a", texts.get("page", "skip"), class_="skip", href="#answer"),
+        tag(
+            "header",
+            tag("h1", title, lang="en"),
+            tag("p", texts.get("page", "about", name=instance.name, model=instance.model.spec.name), " ", verdict),
+            tag("nav", tag("ul", *links), aria_label=texts.get("page", "contents")),
+        ),
+        tag("main", *sections),
+    ]
+    head = [
+        tag("meta", charset="utf-8"),
+        tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
+        tag("meta", name="color-scheme", content="light dark"),
+        tag("title", title),
+        tag("style", _file("html", "page.css"), _file("page", "report.css")),
+    ]
+    return f"<!doctype html>\n{tag('html', tag('head', *head), tag('body', *body), lang=language)}\n"
+
+
+def _sections(solution: Solution, derivation: Derivation | None, given: str, texts: Texts) -> dict[str, Markup]:
+    spec, scene = solution.instance.model.spec, Scene.of(solution)
+    told = [answer.facts(solution, texts)]
+    if scene.drawable:
+        told += [answer.states(solution, texts), answer.controls(solution, texts)]
+    certificate = solution.certificate
+    return {
+        "answer": joined(*told),
+        "certificate": answer.certificate(certificate, spec, texts) if certificate else Markup(),
+        "motion": motion(scene, texts) if scene.drawable else Markup(),
+        "pictures": joined(*pictures(solution, texts)),
+        "instance": _instance(solution, texts),
+        "derivation": _derivation(solution, derivation, texts),
+        "reproduce": _commands(solution, given, texts),
+    }
+
+
+def _instance(solution: Solution, texts: Texts) -> Markup:
+    """The file as it was read."""
+    file = file_of(solution.instance)
+    if file is None:
+        return Markup()
+    about = texts.get("page", "file", name=file["name"], digest=file["digest"])
+    text = tag("pre", tag("code", text_of(solution.instance.path)), tabindex="0")
+    return joined(tag("p", about), text)
+
+
+def _derivation(solution: Solution, derivation: Derivation | None, texts: Texts) -> Markup:
+    if derivation is None:
+        return tag("p", texts.get("page", "no_derivation"))
+    from satsym.report.page.derived import Derived
+
+    spec, values = solution.instance.model.spec, solution.instance.parameters
+    known = dict(zip((v.symbol for v in spec.parameters), values, strict=True))
+    return joined(tag("p", texts.get("page", "derivation_about")), Derived(derivation, texts, known).render())
+
+
+def _commands(solution: Solution, given: str, texts: Texts) -> Markup:
+    name, model = shlex.quote(given), solution.instance.model.spec.name
+    lines = [f"satsym solve {name} --plot", f"satsym report {name} --html report.html", f"satsym latex {model}"]
+    about = texts.get("page", "reproduce_about", version=__version__)
+    return joined(tag("p", about), tag("pre", tag("code", "\n".join(lines)), tabindex="0"))
+
+
+def _file(room: str, name: str) -> Markup:
+    return Markup(files("satsym.report").joinpath(room, name).read_text(encoding="utf-8"))

@@ -1,0 +1,130 @@
+"""The page of a run: it needs nothing but itself, says what the result says, and moves as the solution does."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from satsym import instance
+from satsym.report.html.markup import Markup
+from satsym.report.page.prose import prose
+from satsym.report.page.run import render
+from satsym.solution import Solution
+from satsym.solvers import solve
+from satsym.symbolic import loader
+from tests.cli.test_cli import Run, case, run
+from tests.support.derived import derived
+
+__all__ = ["case", "run"]
+
+
+class Page(HTMLParser):
+    """What is looked for in a page."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.ids: list[str] = []
+        self.links: list[str] = []
+        self.loaded: list[str] = []
+        self.headings: list[int] = []
+        self.tags: set[str] = set()
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        given = dict(attrs)
+        self.tags.add(tag)
+        self.ids += [given["id"] or ""] if "id" in given else []
+        target = given.get("href") or given.get("xlink:href") or ""
+        self.links += [target] if target else []
+        self.loaded += [given["src"] or ""] if "src" in given else []
+        self.headings += [int(tag[1])] if re.fullmatch("h[1-6]", tag) else []
+
+
+@pytest.fixture(scope="module")
+def solution() -> Solution:
+    return solve(instance.load("soft-return"))
+
+
+@pytest.fixture(scope="module")
+def text(solution: Solution) -> str:
+    return render(solution, derived(loader.problem("polar_orbit")[0]), "soft-return")
+
+
+def test_it_loads_nothing_and_all_its_links_lead_somewhere_in_it(text: str) -> None:
+    page = Page(text)
+    assert not page.tags & {"script", "link", "img", "iframe"}
+    assert not page.loaded
+    assert not re.search(r"@import|url\((?!#)", text)
+    assert len(page.ids) == len(set(page.ids))
+    assert {link[1:] for link in page.links} <= set(page.ids)
+    assert all(link.startswith("#") for link in page.links)
+    assert all(after - before <= 1 for before, after in zip(page.headings, page.headings[1:], strict=False))
+
+
+def test_it_says_what_the_result_says(text: str, solution: Solution) -> None:
+    assert f"{solution.objective:.10g} km²/s³" in text
+    assert solution.certificate is not None
+    for check in solution.certificate.checks:
+        assert f'lang="en">{check.name}</th>' in text
+    given = solution.instance.path.read_text(encoding="utf-8").splitlines()[0]
+    assert given.replace('"', "&quot;").replace("'", "&#x27;") in text
+
+
+def test_every_step_of_the_derivation_is_there_with_its_equations_and_checks(text: str) -> None:
+    steps = derived(loader.problem("polar_orbit")[0]).steps
+    text = text.partition('<section id="derivation">')[2]
+    assert text.count('class="step"') == len(steps)
+    assert text.count('<ul class="checks"') == len(steps)
+    assert text.count("<li>") == sum(len(step.checks) for step in steps)
+    for name in ("hamiltonian.H", "control_law.u1"):
+        assert f'id="polar_orbit:{name}"' in text
+    assert not re.search(r"\\[a-z]+|\$[^<]*\$", text)
+
+
+def test_the_disc_ends_where_the_path_ends_and_stands_there_without_motion(text: str) -> None:
+    path = re.search(r'<path d="M([^"]*)" class="path">', text)
+    frames = re.search(r"@keyframes path\{.*?100%\{transform:translate\((.*?)px,(.*?)px\)\}\}", text)
+    still = re.search(r'class="body of-path" style="animation-name:path;transform:translate\((.*?)px,(.*?)px\)"', text)
+    assert path is not None
+    assert frames is not None
+    assert still is not None
+    last = tuple(map(float, path[1].split("L")[-1].split()))
+    assert tuple(map(float, frames.groups())) == tuple(map(float, still.groups())) == last
+    assert re.search(r"prefers-reduced-motion: reduce\) \{\s*\.body \{ animation: none", text)
+    assert "#pause:checked ~ svg .body { animation-play-state: paused; }" in text
+
+
+def test_the_same_run_gives_the_same_page_and_a_failed_one_says_so(solution: Solution) -> None:
+    short = replace(solution, certificate=None)
+    assert render(short, None, "soft-return", "id") == render(short, None, "soft-return", "id")
+    failed = render(replace(solution, certificate=None, message="<b>no & way"), None, "x", "en")
+    assert "&lt;b&gt;no &amp; way" in failed
+
+
+def test_sentences_become_html_with_their_formulas_and_numbers() -> None:
+    made = prose(r"From~\eqref{a:b} of step~\ref{c}, with $x < 1$, a & b -- both", {"a:b": "(3)"})
+    assert isinstance(made, Markup)
+    assert made.startswith('From\N{NO-BREAK SPACE}<a href="#a:b">(3)</a> of step\N{NO-BREAK SPACE}, with <math')
+    assert made.endswith("a &amp; b \N{EN DASH} both")
+
+
+def test_derivation_files_are_executed_only_where_they_are_named(run: Run, tmp_path: Path) -> None:
+    (tmp_path / "sled.py").write_text(SLED, encoding="utf-8")
+    assert run("report", "soft-return")[0] == 2
+    code, _, err = run("report", "soft-return", "--html", "page.html", "--derivation", "sled.py")
+    assert code == 3
+    assert "polar_orbit" in err
+    assert not (tmp_path / "page.html").exists()
+
+
+SLED = """
+import sympy
+from satsym.symbolic import FirstOrder, Variable
+q = sympy.Symbol("q", real=True)
+S = Variable("q", "q", "m")
+PROBLEMS = (FirstOrder(name="sled", title="sled", rates={q: -q}, states=(S,), controls=(), parameters=()),)
+"""
