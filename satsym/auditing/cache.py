@@ -33,6 +33,8 @@ _JUDGING = ("satsym.auditing.run", "satsym.auditing.judged")
 _READ = (("satsym.derivations", "*.py"), ("satsym.generated", "*.py"), ("satsym", "instances/*.toml"))
 """What judging takes from beside the modules it imports, by package and pattern."""
 
+_DERIVING = 30
+"""How many rows are judged, about, while a derivation is derived."""
 _LOOK = 0.1
 """Seconds after which it is looked whether a process has ended."""
 _LIBRARIES = ("sympy", "numpy", "scipy", "pint", "mpmath")
@@ -61,7 +63,7 @@ def audit_all(
 ) -> dict[str, list[Judged]]:
     """As :func:`audit`, of several documents by key; those that are not kept in a process for each processor."""
     found = {} if fresh or items else {x.document.key: rows for x in ledgers if (rows := _read(_place(x))) is not None}
-    left = sorted((x for x in ledgers if x.document.key not in found), key=lambda ledger: -len(ledger.rows))
+    left = sorted((x for x in ledgers if x.document.key not in found), key=_work, reverse=True)
     processes = min(os.cpu_count() or 1, len(left))
     if items or processes < 2:
         found |= {ledger.document.key: audit(ledger, items, announce, fresh=fresh) for ledger in left}
@@ -73,6 +75,11 @@ def audit_all(
             _follow(list(running.values()), queue, announce)
             found |= {key: future.result() for key, future in running.items()}
     return {ledger.document.key: found[ledger.document.key] for ledger in ledgers}
+
+
+def _work(ledger: Ledger) -> int:
+    """About how much there is to do, in rows: what takes longest is begun first."""
+    return len(ledger.rows) + _DERIVING * len(ledger.models)
 
 
 def _follow(running: Sequence[Future[list[Judged]]], queue: Any, announce: Callable[[str], None]) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from satsym.auditing.comparison.plan import Plan
 from satsym.auditing.diagnosis.smallest_edit import Remedy
-from satsym.auditing.judge.plan import Plan
 from satsym.auditing.ledger.contents import Row
 
 

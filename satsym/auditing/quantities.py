@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 import operator
 import re
@@ -10,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
+from typing import Any
 
 from satsym import units
 from satsym.auditing.constants import PUBLISHED
@@ -20,7 +20,8 @@ from satsym.wording import shown, suggestion
 
 ROUNDED = "~"
 """Before an input that is measured, or was rounded; an input without it is chosen, and exact."""
-_CORNERS = 8
+_POINTS, _STARTS, _HOW = 64, 4, {"eps": 1e-4}
+"""Of the search for extremes: points that are looked at, how many it begins at, and the step of slopes."""
 _PRINTED = re.compile(
     r" *(?P<sign>[-+]?) *(?P<whole>[0-9]*)(?:\.(?P<part>[0-9]*))?(?:[eE](?P<power>[-+]?[0-9]{1,3}))? *"
 )
@@ -159,8 +160,17 @@ def is_numeric(tree: Node | Equality) -> bool:
 
 def evaluated(tree: Node, inputs: Mapping[str, str]) -> Quantity:
     """The value of a formula over stated and published quantities; different dimensions put together are refused."""
+    return _finite(tree, _known(tree, inputs))
+
+
+def _known(tree: Node, inputs: Mapping[str, str]) -> dict[str, Quantity]:
+    texts = {**{name: constant.quantity for name, constant in PUBLISHED.items()}, **inputs}
+    return {name: in_base_units(texts[name]) for name in symbols(tree) if name != "pi" or "pi" in inputs}
+
+
+def _finite(tree: Node, known: Mapping[str, Quantity]) -> Quantity:
     try:
-        found = _evaluated(tree, inputs)
+        found = _evaluated(tree, known)
     except (ArithmeticError, ValueError) as error:
         raise BadInput(f"the formula has no value ({error})") from None
     if not math.isfinite(found.value):
@@ -171,40 +181,55 @@ def evaluated(tree: Node, inputs: Mapping[str, str]) -> Quantity:
 def bounds(tree: Node, inputs: Mapping[str, str]) -> tuple[float, float]:
     """The smallest and the largest value of a formula whose rounded inputs may be anywhere in what their digits claim.
 
-    An input is marked as rounded by a tilde (``"~ 6378 km"``). The corners of the box are taken, which is enough for
-    what rises or falls with each input.
+    An input is marked as rounded by a tilde (``"~ 6378 km"``). Where the value rises or falls with each of them it is
+    that of a corner; others are found by descending from the best of evenly spread points.
     """
-    rounded = [name for name in sorted(symbols(tree)) if inputs.get(name, "").startswith(ROUNDED)][:_CORNERS]
-    found = []
-    for signs in itertools.product((-1, 1), repeat=len(rounded)):
-        shifted = dict(inputs)
-        for name, sign in zip(rounded, signs, strict=True):
-            number = printed_number(inputs[name])
-            value = number.value + sign * number.half_unit
-            shifted[name] = f"{float(value)!r} {number.unit}" if number.unit != "1" else f"{float(value)!r}"
-        found.append(evaluated(tree, shifted).value)
-    return min(found), max(found)
+    import numpy as np
+    from scipy.optimize import minimize
+    from scipy.stats import qmc
+
+    known = {name: Quantity(found.value, {}) for name, found in _known(tree, inputs).items()}
+    rounded = {name: text for name in sorted(known) if (text := inputs.get(name, "")).startswith(ROUNDED)}
+    widths = np.array([float(n.half_unit) * one(n.unit).value for n in map(printed_number, rounded.values())])
+
+    def at(shares: Any) -> float:
+        moved = zip(rounded, (shares * widths).tolist(), strict=True)
+        return _finite(tree, known | {name: Quantity(known[name].value + by, {}) for name, by in moved}).value
+
+    middle, axes = at(np.zeros(len(widths))), np.eye(len(widths))
+    if not rounded:
+        return middle, middle
+    corner = np.sign([at(axis) - at(-axis) for axis in axes])
+    inside = 2.0 * qmc.Sobol(len(widths), scramble=False).random(_POINTS) - 1.0
+    tried = np.vstack([corner, -corner, axes, -axes, inside])
+    gaps = np.array([at(shares) - middle for shares in tried])
+    size, box = np.abs(gaps).max() or 1.0, [(-1.0, 1.0)] * len(widths)
+
+    def least(sign: float) -> float:
+        starts = tried[np.argsort(sign * gaps, kind="stable")[:_STARTS]]
+        ends = [minimize(lambda at_: sign * (at(at_) - middle) / size, x, bounds=box, options=_HOW).x for x in starts]
+        return min((at(shares) for shares in (*starts, *ends)), key=lambda value: sign * value)
+
+    return least(1.0), least(-1.0)
 
 
-def _evaluated(tree: Node, inputs: Mapping[str, str]) -> Quantity:
+def _evaluated(tree: Node, known: Mapping[str, Quantity]) -> Quantity:
     if isinstance(tree, Num):
         return Quantity(float(tree.value), {})
     if isinstance(tree, Sym):
-        if tree.name == "pi" and "pi" not in inputs:
-            return Quantity(math.pi, {})
-        return in_base_units(inputs.get(tree.name) or PUBLISHED[tree.name].quantity)
+        return known[tree.name] if tree.name in known else Quantity(math.pi, {})
     if isinstance(tree, Neg):
-        return -_evaluated(tree.operand, inputs)
+        return -_evaluated(tree.operand, known)
     if isinstance(tree, Add):
-        return reduce(operator.add, (_evaluated(term, inputs) for term in tree.terms))
+        return reduce(operator.add, (_evaluated(term, known) for term in tree.terms))
     if isinstance(tree, Mul):
-        return reduce(operator.mul, (_evaluated(factor, inputs) for factor in tree.factors))
+        return reduce(operator.mul, (_evaluated(factor, known) for factor in tree.factors))
     if isinstance(tree, Div):
-        return _evaluated(tree.numerator, inputs) / _evaluated(tree.denominator, inputs)
+        return _evaluated(tree.numerator, known) / _evaluated(tree.denominator, known)
     if isinstance(tree, Pow):
-        return _evaluated(tree.base, inputs) ** (constant(tree.exponent) or Fraction(0))
+        return _evaluated(tree.base, known) ** (constant(tree.exponent) or Fraction(0))
     if isinstance(tree, Call) and tree.function in _FLOATS:
-        arguments = [_evaluated(argument, inputs) for argument in tree.arguments]
+        arguments = [_evaluated(argument, known) for argument in tree.arguments]
         if tree.function in ("abs", "min", "max"):
             return Quantity(_FLOATS[tree.function](*(a.value for a in arguments)), _same(arguments))
         if tree.function == "sqrt":

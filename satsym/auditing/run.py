@@ -11,7 +11,7 @@ from satsym.formula import budget
 from satsym.wording import printable
 
 if TYPE_CHECKING:
-    from satsym.auditing.judge.bench import Bench
+    from satsym.auditing.comparison.bench import Bench
     from satsym.auditing.judged import Judged
     from satsym.auditing.outcome import Outcome
 
@@ -33,7 +33,7 @@ def audit(ledger: Ledger, items: Sequence[str] = (), announce: Callable[[str], N
     BadInput
         If a row names what no derivation has, or is held against what it cannot be compared with.
     """
-    from satsym.auditing.judge.bench import Bench
+    from satsym.auditing.comparison.bench import Bench
     from satsym.auditing.verdict import verdicts
 
     bench = Bench(ledger)

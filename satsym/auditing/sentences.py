@@ -4,17 +4,11 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cache
 from importlib.resources import files
-from typing import TYPE_CHECKING
 
-from satsym.auditing.diagnosis.edits import Change, Edit
-from satsym.formula.tree import Add, Neg, Node
-from satsym.formula.writing import GREEK, written
-
-if TYPE_CHECKING:
-    from satsym.auditing.diagnosis.smallest_edit import Remedy
+from satsym.formula.writing import GREEK
 
 
 class Said(str):
@@ -32,17 +26,18 @@ class Said(str):
 
 def say(key: str, *fill: str | Sequence[str], table: str = "rows") -> Said:
     """A sentence of ``sentences.toml`` in both languages, its places filled in with texts, or lists of them."""
-    texts = _tables()[table][key]
+    texts = tables()[table][key]
     return Said(
         *(
-            texts[lang].format(*(_listed(part, last) for part in fill))
-            for lang, last in (("en", " and "), ("id", " dan "))
+            texts[lang].format(*(_listed(part, last, told) for part in fill))
+            for lang, last, told in (("en", " and ", str), ("id", " dan ", in_indonesian))
         )
     )
 
 
 @cache
-def _tables() -> dict[str, dict[str, dict[str, str]]]:
+def tables() -> dict[str, dict[str, dict[str, str]]]:
+    """All of them: table, key, language."""
     return tomllib.loads(files("satsym.auditing").joinpath("sentences.toml").read_text(encoding="utf-8"))
 
 
@@ -61,30 +56,6 @@ def in_indonesian(text: str) -> str:
     return text.indonesian if isinstance(text, Said) else text
 
 
-def wrong_formula(labels: Sequence[str], remedy: Remedy | None, difference: str, why: str, derived: str) -> Said:
-    """What is wrong with a formula; where no edit tells, what it lacks, or what it should be."""
-    if why:
-        return say("wrong_size", why)
-    if remedy is None:
-        return (
-            say("lacking", difference) if difference else say("no_edit", derived) if derived else say("no_small_edit")
-        )
-    if remedy.exchange:
-        return sentence(remedy.exchange)
-    return sentence(joined((joined([_place(labels[i]), in_words(edit)], "") for i, edit in remedy.edits), "; "))
-
-
-def in_words(edit: Edit) -> Said:
-    """One edit, as a clause."""
-    old, new = edit.old, edit.new
-    if edit.change is Change.SIGN:
-        old = old.operand if isinstance(old, Neg) else old
-    term = new.terms[-1] if edit.change is Change.MISSING_TERM and isinstance(new, Add) else new
-    table, kind = "repeated_edits" if edit.times > 1 else "edits", edit.change.name.lower()
-    known = kind if kind in _tables()[table] else "other"
-    return say(known, written(old), written(new), _signed(term), str(edit.times), table=table)
-
-
 def stated(said: Said, what: str = "") -> Said:
     """A sentence without its full stop, and after a colon what there is to it."""
     return joined([said, f": {what}." if what else "."], "")
@@ -95,19 +66,6 @@ def sentence(clause: str) -> Said:
     return Said(*map(_with_capital, (clause, in_indonesian(clause))))
 
 
-def _place(label: str) -> Said:
-    if not label:
-        return Said("")
-    if label.endswith("side"):
-        side = "kiri" if label.startswith("left") else "kanan"
-        return Said(f"in the {label} ", f"di ruas {side} ")
-    return Said(f"entry ({label}): ", f"entri ({label}): ") if label[0].isdigit() else Said(f"{label}: ")
-
-
-def _signed(term: Node) -> str:
-    return written(term) if isinstance(term, Neg) else f"+{written(term)}"
-
-
 def _with_capital(clause: str) -> str:
     clause = clause.strip().rstrip(".")
     first = _WORD.match(clause)
@@ -116,7 +74,6 @@ def _with_capital(clause: str) -> str:
     return f"{clause}." if clause else ""
 
 
-def _listed(items: str | Sequence[str], last: str) -> str:
-    if isinstance(items, str) or len(items) < 2:
-        return "".join(items)
-    return f"{', '.join(items[:-1])}{last}{items[-1]}"
+def _listed(items: str | Sequence[str], last: str, told: Callable[[str], str]) -> str:
+    parts = [told(item) for item in ([items] if isinstance(items, str) else items)]
+    return f"{', '.join(parts[:-1])}{last}{parts[-1]}" if len(parts) > 1 else "".join(parts)

@@ -8,10 +8,10 @@ from functools import partial
 from typing import Any
 
 from satsym.auditing.causes import SILENT, with_causes
+from satsym.auditing.comparison.bench import Bench, Both
+from satsym.auditing.comparison.compare import plans
 from satsym.auditing.diagnosis.edits import Change, Edit
-from satsym.auditing.judge.bench import Bench, Both
 from satsym.auditing.judge.claim import Pages
-from satsym.auditing.judge.compare import plans
 from satsym.auditing.judge.formula import corrected, in_rows, shown
 from satsym.auditing.judged import AS_STATED, Judged, Verdict
 from satsym.auditing.ledger.contents import Row
@@ -186,7 +186,6 @@ class _Context:
         found = found.rhs if isinstance(found, Relation) else found
         if isinstance(found, Roots | Kernel):
             return ""
-
         lines = found.rows if isinstance(found, Matrix) else ((found,),)
         trees = tuple(tuple(self._bench.theirs(row, formulas.to_tree(entry)) for entry in line) for line in lines)
         return in_rows(trees) if isinstance(found, Matrix) else written(trees[0][0])

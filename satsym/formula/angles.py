@@ -32,6 +32,13 @@ class Terms:
 
     coefficients: Mapping[Monomial, Complex]
 
+    def plus(self, other: Terms) -> Terms:
+        """The sum of two sums."""
+        total = dict(self.coefficients)
+        for key, coefficient in other.coefficients.items():
+            _enter(total, key, coefficient)
+        return Terms(total)
+
     def times_i(self) -> Terms:
         """The sum times the imaginary unit."""
         return Terms({key: (-imaginary, real) for key, (real, imaginary) in self.coefficients.items()})

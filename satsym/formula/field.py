@@ -16,6 +16,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Collection, Iterable
 from fractions import Fraction
+from functools import lru_cache
 from typing import TypeAlias
 
 from satsym.formula.angles import HALF_TURNS, PARTS, Terms, TooManyTerms, terms_of
@@ -104,14 +105,7 @@ class Point:
         """The value of a symbol."""
         if name == "I":
             return IMAGINARY
-        size = pow(self._random(name), _TO_POSITIVE, PRIME)
-        if name in self._positive or name == "pi" or self._random(f"{name} sign") % 2:
-            return size
-        return PRIME - size
-
-    def _random(self, what: str) -> int:
-        digest = hashlib.blake2b(f"{self._seed} {what}".encode(), digest_size=16).digest()
-        return int.from_bytes(digest) % (PRIME - 1) + 1
+        return _symbol(self._seed, name, name in self._positive or name == "pi")
 
     def _power(self, base: int, exponent: Fraction | None) -> int:
         if exponent is None:
@@ -167,7 +161,7 @@ class Point:
             gap = self._size(one - other) * (1 if name == "max" else -1)
             return (one + other + gap) * _HALF % PRIME
         # any other function is known by its arguments alone
-        return self._random(f"{name}({','.join(map(str, arguments))})")
+        return _random(self._seed, f"{name}({','.join(map(str, arguments))})")
 
     def _size(self, value: int) -> int:
         return self._power(value * value % PRIME, Fraction(1, 2)) if value % PRIME else 0
@@ -186,7 +180,7 @@ class Point:
                     raise NoValue("an odd part of an angle")
                 if fraction:
                     # what grows is positive, as the exponential of a real number is
-                    base = pow(self._random(f"{kind} {key}"), _TO_POSITIVE if kind == "grows" else 1, PRIME)
+                    base = pow(_random(self._seed, f"{kind} {key}"), _TO_POSITIVE if kind == "grows" else 1, PRIME)
                     product = product * pow(base, int(fraction), PRIME) % PRIME
         return product
 
@@ -249,6 +243,18 @@ def points_for(trees: Iterable[Node], seed: str, positive: Collection[str] = (),
             if len(found) == count:
                 return found
     raise Undecided(f"no point at which {written(wanted[0])[:60]} has a value")
+
+
+@lru_cache(maxsize=65536)
+def _symbol(seed: str, name: str, positive: bool) -> int:
+    """The value of a symbol at the point of a seed: a fourth power, or minus one, if it has a sign."""
+    size = pow(_random(seed, name), _TO_POSITIVE, PRIME)
+    return size if positive or _random(seed, f"{name} sign") % 2 else PRIME - size
+
+
+def _random(seed: str, what: str) -> int:
+    digest = hashlib.blake2b(f"{seed} {what}".encode(), digest_size=16).digest()
+    return int.from_bytes(digest) % (PRIME - 1) + 1
 
 
 _HALF = (PRIME + 1) // 2

@@ -20,8 +20,20 @@ _SAME = (sp.Add, sp.Max, sp.Min, minimisers.Clip, minimisers.Shrink)
 """What needs arguments of one dimension and returns it."""
 
 
+_TOLD = {
+    "unknown": "uses {0}, whose dimension is not known",
+    "unequal": "puts {0} of dimension {1} beside {2} of dimension {3}",
+    "plain": "has {0} of dimension {1}, but {2} of it needs a plain number",
+    "exponent": "has {0} of dimension {1}, but an exponent needs a plain number",
+}
+
+
 class Disagreement(Exception):
     """An expression puts together what has different dimensions; the message goes on from "the expression ..."."""
+
+    def __init__(self, kind: str, *parts: str) -> None:
+        super().__init__(_TOLD[kind].format(*parts))
+        self.kind, self.parts = kind, parts
 
 
 def dimension_of(expression: Any, known: Known) -> Dimension | None:
@@ -47,7 +59,7 @@ def dimension_of(expression: Any, known: Known) -> Dimension | None:
     e = sp.sympify(expression)
     if e.is_Symbol:
         if e.name not in known:
-            raise Disagreement(f"uses {e.name}, whose dimension is not known")
+            raise Disagreement("unknown", e.name)
         return known[e.name]
     if e.is_number:
         return None if e == 0 else PLAIN
@@ -56,7 +68,7 @@ def dimension_of(expression: Any, known: Known) -> Dimension | None:
     if e.is_Mul:
         return product(dimension_of(a, known) for a in e.args)
     if e.is_Pow:
-        _plain(e.exp, known, "an exponent")
+        _plain(e.exp, known)
         return power_of(dimension_of(e.base, known), e.exp)
     if isinstance(e, sp.Abs):
         return dimension_of(e.args[0], known)
@@ -86,7 +98,7 @@ def dimension_of(expression: Any, known: Known) -> Dimension | None:
         _common(e.args, known)
     elif not isinstance(e, sp.sign):
         for argument in e.args:
-            _plain(argument, known, f"{e.func.__name__} of it")
+            _plain(argument, known, e.func.__name__)
     return PLAIN
 
 
@@ -100,10 +112,10 @@ def written(dimension: Dimension | None) -> str:
     return "/".join(["*".join(above) or "1", *below])
 
 
-def _plain(expression: sp.Expr, known: Known, role: str) -> None:
+def _plain(expression: sp.Expr, known: Known, function: str = "") -> None:
     found = dimension_of(expression, known)
     if found:
-        raise Disagreement(f"has {expression} of dimension {written(found)}, but {role} needs a plain number")
+        raise Disagreement("plain" if function else "exponent", str(expression), written(found), function)
 
 
 def _common(expressions: Iterable[sp.Expr], known: Known) -> Dimension | None:
@@ -116,8 +128,7 @@ def _common(expressions: Iterable[sp.Expr], known: Known) -> Dimension | None:
         if found is None:
             first, found = expression, dimension
         elif dimension != found:
-            one, other = (f"{e} of dimension {written(d)}" for e, d in ((first, found), (expression, dimension)))
-            raise Disagreement(f"puts {one} beside {other}")
+            raise Disagreement("unequal", str(first), written(found), str(expression), written(dimension))
     return found
 
 

@@ -11,12 +11,12 @@ from fractions import Fraction
 import pytest
 
 from satsym import auditing
+from satsym.auditing.comparison.bench import Bench, Both, Formula
+from satsym.auditing.comparison.compare import plans
+from satsym.auditing.comparison.plan import Plan
 from satsym.auditing.diagnosis.edits import Change, in_exponent, mean_edits
 from satsym.auditing.diagnosis.rewriting import times
 from satsym.auditing.diagnosis.smallest_edit import Remedy, remedy
-from satsym.auditing.judge.bench import Bench, Both, Formula
-from satsym.auditing.judge.compare import plans
-from satsym.auditing.judge.plan import Plan
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.ledger.scopes import Scope
 from satsym.formula import reading
@@ -81,6 +81,7 @@ MATRICES = {
     "rows": ([["1", "0"], ["0", "0"], ["0", "0"], ["0", "1/x1"]], "Rows 1 and 2 are exchanged."),
     "columns": ([["0", "0"], ["0", "1"], ["0", "0"], ["1/x1", "0"]], "Columns 1 and 2 are exchanged."),
     "entries": ([["0", "0"], ["1/x1", "0"], ["0", "0"], ["0", "1"]], "The entries (2, 1) and (4, 2) are exchanged."),
+    "size": ([["0", "0"]], "The size does not fit: 1 by 2 is printed, it is 4 by 2."),
     "entry": ([["0", "0"], ["1", "0"], ["0", "0"], ["0", "-1/x1"]], "Entry (4, 2): the sign of `1/x1` is reversed."),
     "two entries": (
         [["0", "0"], ["-1", "0"], ["0", "0"], ["0", "1/x1**2"]],
@@ -101,6 +102,20 @@ def test_known_slips_are_named(slips: dict[str, auditing.Judged], key: str) -> N
     said = SLIPS[key][2] if key in SLIPS else MATRICES[key][1]
     assert slips[key].verdict == "misprint"
     assert said in slips[key].diagnosis
+
+
+@pytest.mark.parametrize(
+    ("key", "said"),
+    [
+        ("rows", "Baris 1 dan 2 tertukar."),
+        ("columns", "Kolom 1 dan 2 tertukar."),
+        ("entries", "Entri (2, 1) dan (4, 2) tertukar."),
+        ("no exponent", "rumus ini menggabungkan "),
+        ("size", "Ukurannya tidak cocok: yang tercetak 1 kali 2, seharusnya 4 kali 2."),
+    ],
+)
+def test_an_indonesian_report_is_indonesian_throughout(slips: dict[str, auditing.Judged], key: str, said: str) -> None:
+    assert said in slips[key].diagnosis_id
 
 
 def test_what_is_put_right_is_shown_as_the_document_writes(slips: dict[str, auditing.Judged]) -> None:

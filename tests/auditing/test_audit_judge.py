@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
@@ -292,6 +293,23 @@ def test_numbers_are_held_to_what_their_digits_claim(tmp_path: Path, key: str) -
 def test_what_printed_digits_claim(text: str, value: float, half: float) -> None:
     found = quantities.printed_number(text)
     assert (float(found.value), float(found.half_unit)) == (value, half)
+
+
+@pytest.mark.parametrize(
+    ("text", "inputs", "expected"),
+    [
+        ("x*(1 - x)", {"x": "~ 0.5"}, (0.45 * 0.55, 0.25)),
+        ("(x - 3)**2 + (y - 3)**2", {"x": "~ 3", "y": "~ 3"}, (0.0, 0.5)),
+        ("sin(40*x) + y", {"x": "~ 0.3", "y": "~ 1.0"}, (0.95 - 1.0, 1.05 + math.sin(14.0))),
+        ("+".join(f"x{k}" for k in range(12)), {f"x{k}": "~ 1" for k in range(12)}, (6.0, 18.0)),
+        ("a*b/c", {"a": "~ 2 km", "b": "3", "c": "~ 4 s"}, (1500 * 3 / 4.5, 2500 * 3 / 3.5)),
+        ("a + b", {"a": "2", "b": "3"}, (5.0, 5.0)),
+    ],
+)
+def test_rounded_inputs_may_be_anywhere_in_their_intervals(
+    text: str, inputs: dict[str, str], expected: tuple[float, float]
+) -> None:
+    assert quantities.bounds(expression(text), inputs) == pytest.approx(expected, rel=1e-6, abs=1e-6)
 
 
 def test_quantities_of_different_dimensions_are_not_added() -> None:

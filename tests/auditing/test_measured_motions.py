@@ -127,7 +127,7 @@ def test_switching_and_the_gentle_law_end_at_rest_at_the_command():
 def test_what_is_left_swinging_is_the_transform_of_the_torque():
     """Of a square wave it is torque/w times |1 - 2 e^(-iwT/2) + e^(-iwT)| = 4 sin^2(wT/4), times w."""
     found = wheel.switched(SATELLITE, duration=100.0)
-    assert wheel.swinging(found) == pytest.approx(4.0 * 4.0 * P_C / 100.0**2, rel=1e-3)
+    assert wheel.swinging(found) == pytest.approx(4.0 * 4.0 * P_C / 100.0**2, rel=1e-7)
 
 
 def test_forces_that_jump_are_quickest():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,10 +13,14 @@ import sympy as sp
 from satsym.auditing.measurements import earth, formulas, linear, linear_motions, listings, matrices, regulators
 from satsym.auditing.measurements import words as all_words
 from satsym.auditing.propositions.values import Record, Undecided, numbers
+from satsym.status import BadInput
 
 M = sp.ImmutableMatrix
 INTEGRATOR = Record("integrator", {"A": M([[0]]), "B": M([[1]])})
 DOUBLE = Record("double integrator", {"A": M([[0, 1], [0, 0]]), "B": M([[0], [1]])})
+WEIGHED, WEIGHED_DOUBLE = (
+    Record(of.name, {**of.parts, "Q": np.eye(of.part("A").rows), "R": np.eye(1)}) for of in (INTEGRATOR, DOUBLE)
+)
 OSCILLATOR = M([[0, 1], [-1, 0]])
 HALF = Record("half reached", {"A": M([[1, 0], [0, 2]]), "B": M([[1], [0]])})
 DECAY = M([[-1]])
@@ -90,28 +95,36 @@ def test_chains_make_the_jordan_form() -> None:
 
 @pytest.mark.parametrize("t", [0.3, 1.0])
 def test_the_regulator_of_an_integrator_is_known(t: float) -> None:
-    found = regulators.regulator(INTEGRATOR)
+    found = regulators.regulator(WEIGHED)
     assert (found.part("K")[0, 0], found.part("P")[0, 0]) == pytest.approx((1, 1))
     for k in (0.5, 1.0, 2.0):
-        assert regulators.cost(INTEGRATOR, [[k]], [3]) == pytest.approx(9 * (1 + k * k) / (2 * k))
-    assert regulators.riccati(INTEGRATOR, t)[0, 0] == pytest.approx(math.tanh(t))
-    assert regulators.costate(INTEGRATOR, [2], t) == pytest.approx([2 * math.tanh(t)])
+        assert regulators.cost(WEIGHED, [[k]], [3]) == pytest.approx(9 * (1 + k * k) / (2 * k))
+    assert regulators.riccati(WEIGHED, t)[0, 0] == pytest.approx(math.tanh(t))
+    assert regulators.costate(WEIGHED, [2], t) == pytest.approx([2 * math.tanh(t)])
     with pytest.raises(Undecided, match="not stable"):
-        regulators.cost(INTEGRATOR, [[-1]], [1])
+        regulators.cost(WEIGHED, [[-1]], [1])
 
 
 def test_the_regulator_of_a_double_integrator_is_known() -> None:
-    assert regulators.regulator(DOUBLE).part("K") == pytest.approx(np.array([[1, math.sqrt(3)]]))
-    assert regulators.regulator(DOUBLE, Q=np.diag([16, 0])).part("K") == pytest.approx(np.array([[4, math.sqrt(8)]]))
-    assert np.linalg.eigvals(regulators.hamiltonian(INTEGRATOR, [[-1]])) == pytest.approx([1j, -1j])
-    for gain in regulators.other_gains(DOUBLE):
+    assert regulators.regulator(WEIGHED_DOUBLE).part("K") == pytest.approx(np.array([[1, math.sqrt(3)]]))
+    assert regulators.regulator(WEIGHED_DOUBLE, Q=np.diag([16, 0])).part("K") == pytest.approx(
+        np.array([[4, math.sqrt(8)]])
+    )
+    assert np.linalg.eigvals(regulators.hamiltonian(WEIGHED, [[-1]])) == pytest.approx([1j, -1j])
+    for gain in regulators.other_gains(WEIGHED_DOUBLE):
         assert np.linalg.eigvals(linear.closed_loop(DOUBLE, gain).part("A")).real.max() < 0
     with pytest.raises(Undecided):
-        regulators.regulator(HALF)
+        regulators.regulator(HALF, Q=np.eye(2), R=[[1]])
     back, solution, poles = regulators.matlab_lqr(DOUBLE.part("A"), DOUBLE.part("B"), np.eye(2), [[1]])
     assert back == pytest.approx(np.array([[1, math.sqrt(3)]]))
     assert solution[0] == pytest.approx([math.sqrt(3), 1])
     assert sum(poles) == pytest.approx(-math.sqrt(3))
+
+
+@pytest.mark.parametrize("given", [{}, {"Q": np.eye(2)}, {"R": [[1]]}])
+def test_weights_that_nobody_states_are_not_made_up(given: dict[str, Any]) -> None:
+    with pytest.raises(BadInput, match="double integrator has no weights of its own; give both Q and R"):
+        regulators.regulator(DOUBLE, **given)
 
 
 def test_matrices() -> None:

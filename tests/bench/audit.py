@@ -23,9 +23,9 @@ from pathlib import Path
 from typing import Any
 
 from satsym.auditing import quantities
+from satsym.auditing.comparison.bench import Bench
 from satsym.auditing.judge import formula as formulas
 from satsym.auditing.judge import value
-from satsym.auditing.judge.bench import Bench
 from satsym.auditing.judged import Judged
 from satsym.auditing.ledger.contents import Ledger, Row, row_key
 from satsym.auditing.outcome import Outcome

@@ -319,7 +319,7 @@ def test_each_sentence_is_said_somewhere_and_has_the_same_places_in_both_languag
     folder = Path(sentences.__file__).parent
     tables = tomllib.loads((folder / "sentences.toml").read_text(encoding="utf-8"))
     said = {key for path in folder.rglob("*.py") for key in re.findall(r'say\("(\w+)"', path.read_text("utf-8"))}
-    assert said == set(tables["rows"])
+    assert said | {"rows", "columns"} == {*tables["rows"], *tables["sizes"], *tables["exchanges"]}
     for text in (text for table in tables.values() for text in table.values()):
         assert text.keys() == {"en", "id"}
         assert set(re.findall(r"{\d}", text["en"])) == set(re.findall(r"{\d}", text["id"])), text

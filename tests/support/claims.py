@@ -12,7 +12,7 @@ from typing import Any
 
 from satsym import auditing
 from satsym.auditing import Ledger, measurements
-from satsym.auditing.judge.bench import Bench
+from satsym.auditing.comparison.bench import Bench
 from satsym.auditing.judge.claim import Pages
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.propositions.evaluation import Answer

@@ -4,30 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from satsym.auditing.comparison.plan import Plan
 from satsym.auditing.diagnosis.edits import Change, Edit
-from satsym.auditing.judge.plan import Plan
 from satsym.auditing.ledger.scopes import CONSTANTS
-from satsym.formula.angles import TooManyTerms, terms_of
-from satsym.formula.calculus import product, raised, total
+from satsym.formula.angles import Terms, TooManyTerms, terms_of
+from satsym.formula.calculus import product, raised
 from satsym.formula.reading import NAME
-from satsym.formula.tree import (
-    ONE,
-    ZERO,
-    Add,
-    Div,
-    Mul,
-    Neg,
-    Node,
-    Num,
-    Path,
-    Sym,
-    children,
-    number,
-    replaced,
-    size,
-    symbols,
-)
+from satsym.formula.tree import ONE, Add, Div, Mul, Neg, Node, Num, Path, Sym, children, number, replaced, size, symbols
 
+_NOTHING = number(0)
 _LARGEST_TERM = 14
 """Nodes of a term that is worth naming."""
 
@@ -57,12 +42,16 @@ def _mended(
     plan: Plan, gap: Node, path: Path, node: Node, slope: Node
 ) -> Iterator[tuple[Change, Path, Node, Node, Node]]:
     """A sum with one more term, or with another one in the place of one of its terms; and that term."""
-    terms = node.terms if isinstance(node, Add) else () if node == ZERO else (node,)
-    term = _single_term(plan, gap, slope, ZERO)
+    terms = node.terms if isinstance(node, Add) else () if node == _NOTHING else (node,)
+    try:
+        lacking = terms_of(Div(gap, plan.normal(slope)))
+    except TooManyTerms:
+        return
+    term = _single_term(plan, lacking)
     if term is not None:
         yield Change.MISSING_TERM, path, node, Add((*terms, term)) if terms else term, term
     for k, other in enumerate(node.terms if isinstance(node, Add) else ()):
-        term = _single_term(plan, gap, slope, other)
+        term = _single_term(plan, lacking, other)
         if term is not None:
             change = Change.FACTOR if _is_multiple(term, other) else Change.TERM
             yield change, (*path, k), other, term, term
@@ -96,10 +85,10 @@ def _linear_places(formula: Node) -> Iterator[tuple[Path, Node, Node]]:
     yield from places(formula, (), ONE)
 
 
-def _single_term(plan: Plan, gap: Node, slope: Node, beside: Node) -> Node | None:
-    """The gap over the slope, and a term that is there, if they make one short term in the document's symbols."""
+def _single_term(plan: Plan, lacking: Terms, beside: Node = _NOTHING) -> Node | None:
+    """What is lacking, and a term that is there, if they make one short term in the document's symbols."""
     try:
-        terms = terms_of(total([Div(gap, plan.normal(slope)), plan.normal(beside)])).coefficients
+        terms = lacking.plus(terms_of(plan.normal(beside))).coefficients
     except TooManyTerms:
         return None
     if len(terms) != 1:

@@ -13,14 +13,16 @@ from itertools import combinations
 
 import numpy as np
 
+from satsym.auditing.comparison.equations import Equal
+from satsym.auditing.comparison.plan import Never, Plan
 from satsym.auditing.diagnosis.edits import Change, Edit, mean_edits, repeated_edits, single_edits
 from satsym.auditing.diagnosis.lacking import mended_terms
 from satsym.auditing.diagnosis.rewriting import over_symbol, times_symbol
-from satsym.auditing.judge.equations import Equal
-from satsym.auditing.judge.plan import Never, Plan
+from satsym.auditing.sentences import Said, joined, say, sentence, tables
 from satsym.formula import field
 from satsym.formula.bound import BoundPoint
-from satsym.formula.tree import Node, Sym, replaced
+from satsym.formula.tree import Add, Neg, Node, Sym, replaced
+from satsym.formula.writing import written
 from satsym.symbolic.lookup.formulas import NotAFormula
 
 PAIRS = 50
@@ -36,7 +38,7 @@ class Remedy:
     """Each with the number of its cell."""
     cells: tuple[Node, ...]
     """All cells after the edits."""
-    exchange: str = ""
+    exchange: Said | None = None
     """Said instead of edits: which rows, columns or entries are exchanged."""
 
 
@@ -249,18 +251,55 @@ def _exchanged(plan: Plan) -> Remedy | None:
     return None
 
 
-def _exchanges(m: int, n: int) -> Iterator[tuple[str, list[int]]]:
+def _exchanges(m: int, n: int) -> Iterator[tuple[Said, list[int]]]:
     """What may be exchanged in a matrix, in words, with the places of its entries then."""
     place = np.arange(m * n).reshape(m, n)
     for axis, lines in enumerate(("rows", "columns")):
         for i, k in combinations(range(place.shape[axis]), 2):
             order = np.arange(place.shape[axis])
             order[[i, k]] = k, i
-            yield f"{lines} {i + 1} and {k + 1} are exchanged", place.take(order, axis).ravel().tolist()
+            yield say(lines, str(i + 1), str(k + 1), table="exchanges"), place.take(order, axis).ravel().tolist()
     if m == n:
-        yield "rows stand for columns", place.T.ravel().tolist()
+        yield say("transposed", table="exchanges"), place.T.ravel().tolist()
     for a, b in combinations(range(m * n), 2):
         order = np.arange(m * n)
         order[[a, b]] = b, a
         one, other = (f"({k // n + 1}, {k % n + 1})" for k in (a, b))
-        yield f"the entries {one} and {other} are exchanged", order.tolist()
+        yield say("entries", one, other, table="exchanges"), order.tolist()
+
+
+def wrong_formula(labels: Sequence[str], remedy: Remedy | None, difference: str, why: str, derived: str) -> Said:
+    """What is wrong with a formula; where no edit tells, what it lacks, or what it should be."""
+    if why:
+        return say("wrong_size", why)
+    if remedy is None:
+        return (
+            say("lacking", difference) if difference else say("no_edit", derived) if derived else say("no_small_edit")
+        )
+    if remedy.exchange:
+        return sentence(remedy.exchange)
+    return sentence(joined((joined([_place(labels[i]), in_words(edit)], "") for i, edit in remedy.edits), "; "))
+
+
+def in_words(edit: Edit) -> Said:
+    """One edit, as a clause."""
+    old, new = edit.old, edit.new
+    if edit.change is Change.SIGN:
+        old = old.operand if isinstance(old, Neg) else old
+    term = new.terms[-1] if edit.change is Change.MISSING_TERM and isinstance(new, Add) else new
+    table, kind = "repeated_edits" if edit.times > 1 else "edits", edit.change.name.lower()
+    known = kind if kind in tables()[table] else "other"
+    return say(known, written(old), written(new), _signed(term), str(edit.times), table=table)
+
+
+def _place(label: str) -> Said:
+    if not label:
+        return Said("")
+    if label.endswith("side"):
+        side = "kiri" if label.startswith("left") else "kanan"
+        return Said(f"in the {label} ", f"di ruas {side} ")
+    return Said(f"entry ({label}): ", f"entri ({label}): ") if label[0].isdigit() else Said(f"{label}: ")
+
+
+def _signed(term: Node) -> str:
+    return written(term) if isinstance(term, Neg) else f"+{written(term)}"

@@ -6,7 +6,7 @@ from functools import cached_property, lru_cache
 from typing import Any
 
 from satsym.auditing import measurements
-from satsym.auditing.judge.bench import Bench
+from satsym.auditing.comparison.bench import Bench
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
 from satsym.auditing.propositions.evaluation import Answer, Evaluation

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from satsym.auditing.diagnosis.smallest_edit import remedy
-from satsym.auditing.judge.bench import Bench
-from satsym.auditing.judge.compare import plans
-from satsym.auditing.judge.equations import Equal, Multiple
-from satsym.auditing.judge.plan import Never, Plan
+from satsym.auditing.comparison.bench import Bench
+from satsym.auditing.comparison.compare import plans
+from satsym.auditing.comparison.equations import Equal, Multiple
+from satsym.auditing.comparison.plan import Never, Plan
+from satsym.auditing.diagnosis.smallest_edit import remedy, wrong_formula
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
-from satsym.auditing.sentences import joined, say, wrong_formula
+from satsym.auditing.sentences import Said, joined, say
 from satsym.formula.cells import Formula, cells, shaped
 from satsym.formula.tree import Equality, Grid, Node
 from satsym.formula.writing import written
@@ -31,7 +31,7 @@ def judge(bench: Bench, row: Row) -> Outcome:
             return Outcome(row, True, derived, compared)
     compared, found = next(((way, fix) for way in ways if (fix := remedy(way)) is not None), (ways[0], None))
     derived = shown(compared, found.cells if found else None)
-    why = compared.why if isinstance(compared, Never) else ""
+    why = compared.why if isinstance(compared, Never) else Said("")
     remark = wrong_formula(compared.labels, found, "" if found else compared.difference(), why, derived)
     if fault:
         remark = joined([remark, say("also_inhomogeneous", fault)])
@@ -75,15 +75,16 @@ def corrected(outcome: Outcome) -> Formula:
     return cells[0]
 
 
-def dimension_fault(bench: Bench, row: Row) -> str:
+def dimension_fault(bench: Bench, row: Row) -> Said:
     """Why a printed formula is not homogeneous; empty where it is, or where that is not known."""
     if isinstance(row.printed, tuple):
-        return ""  # the entries of a matrix have dimensions of their own
+        return Said("")  # the entries of a matrix have dimensions of their own
     try:
         exact = [bench.plain_expression(side) for side in cells(bench.in_ours(row))]
     except library.NotAFormula:
-        return ""
-    return library.inhomogeneity(exact, bench.dimensions)
+        return Said("")
+    fault = library.inhomogeneity(exact, bench.dimensions)
+    return say(*fault, table="dimensions") if fault else Said("")
 
 
 def _target_fault(bench: Bench, compared: Plan) -> bool:

@@ -8,8 +8,8 @@ from fractions import Fraction
 
 from satsym import units
 from satsym.auditing import quantities
+from satsym.auditing.comparison.bench import Bench
 from satsym.auditing.constants import CUSTOMARY
-from satsym.auditing.judge.bench import Bench
 from satsym.auditing.ledger.contents import Row
 from satsym.auditing.outcome import Outcome
 from satsym.auditing.propositions.relations import Fit, fit_of_range

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 from satsym.auditing.ledger.schema import DocumentTable, RowTable, SymbolTable
 from satsym.auditing.ledger.scopes import Scope
+from satsym.auditing.ledger.vocabulary import is_address
 from satsym.auditing.propositions.reading import Proposition
-from satsym.formula.cells import Formula, calls_in
-from satsym.formula.tree import Call, Equality, Node, Text
+from satsym.formula.cells import Formula, calls_in, cells
+from satsym.formula.tree import Call, Equality, Node, Text, walk
 
 
 @dataclass(frozen=True)
@@ -57,6 +59,15 @@ class Ledger:
     symbols: Mapping[str, SymbolTable]
     inputs: Mapping[str, str]
     rows: tuple[Row, ...]
+
+    @cached_property
+    def models(self) -> tuple[str, ...]:
+        """Derivations that it names, that of the document first."""
+        trees = [side for row in self.rows for formula in (row.holds, row.follows) for side in cells(formula)]
+        trees += [meaning for scope in self.scopes.values() for meaning in scope.meanings.values()]
+        texts = [part.value for tree in trees for _, part in walk(tree) if isinstance(part, Text)]
+        named = (text.partition(":")[0] for text in texts if is_address(text))
+        return tuple(dict.fromkeys(filter(None, (self.document.model, *named))))
 
     def uncovered(self) -> list[str]:
         """Numbers of the document that have no row."""

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from satsym.analysis.orbits.kepler import propagate
-from satsym.arrays import Array
+from satsym.arrays import Array, kept
 from satsym.auditing import quantities
 from satsym.auditing.constants import PUBLISHED
 from satsym.auditing.propositions.values import Family, Record
@@ -79,6 +79,7 @@ def signal_time(orbit: Record, legs: int, elevation: float) -> Quantity:
     )
 
 
+@kept
 def distance_after(orbit: Record, share: float) -> Quantity:
     """The distance from the Earth's centre after a share of a revolution from the perigee on."""
     place = _places(orbit, np.array([share * orbit.part("period").value]))

@@ -1,6 +1,6 @@
 """Linear-quadratic regulators: gains by Riccati's equation, costs by Liapunov's equation, costates by e^(Ht).
 
-A system may bring its weights Q and R; where it does not, and none are given, both are the identity.
+A system may bring its weights Q and R; where it does not, they are given.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from satsym.arrays import Array, kept
 from satsym.auditing.measurements import linear
 from satsym.auditing.measurements.matrices import numeric
 from satsym.auditing.propositions.values import Family, Record, Undecided, numbers, undecided_if_refused
+from satsym.status import BadInput
 
 _SEED = 19
 
@@ -107,9 +108,11 @@ def _parts(of: Any, inputs: Sequence[str] = (), Q: Any = None, R: Any = None) ->
     """A, B, Q and R with numbers."""
     whole = linear.inputs_of(of, inputs)
     a, b = numbers(whole.part("A")), numbers(whole.part("B"))
-    q = whole.parts.get("Q", np.eye(len(a))) if Q is None else numeric(Q)
-    r = whole.parts.get("R", np.eye(b.shape[1])) if R is None else numeric(R)
-    return a, b, np.asarray(q, dtype=float), np.asarray(r, dtype=float)
+    weights = [whole.parts.get(name) if stated is None else numeric(stated) for name, stated in (("Q", Q), ("R", R))]
+    if any(weight is None for weight in weights):
+        raise BadInput(f"{whole.name} has no weights of its own; give both Q and R, as the document states them")
+    q, r = (np.asarray(weight, dtype=float) for weight in weights)
+    return a, b, q, r
 
 
 @kept

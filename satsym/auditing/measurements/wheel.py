@@ -87,15 +87,23 @@ def settled(motion: Record, aim: float, band: float) -> float:
 
 def swinging(motion: Record) -> float:
     """How far panels swing after a motion, at most over their frequencies, as an acceleration of the body."""
+    from scipy.optimize import minimize_scalar
+
     t, pushes = motion.part("t"), np.diff(motion.part("rate"))
     lengths = np.diff(t)
     kept = lengths > 0.0
     push, begin, end = pushes[kept] / lengths[kept], t[:-1][kept], t[1:][kept]
-    largest = 0.0
-    for w in _PHASES / motion.part("duration"):
+
+    def swing(w: float) -> float:
         wave = (np.exp(-1j * w * end) - np.exp(-1j * w * begin)) / (-1j * w)
-        largest = max(largest, abs(complex((push * wave).sum())) * w)
-    return float(largest)
+        return abs(complex((push * wave).sum())) * w
+
+    frequencies = _PHASES / motion.part("duration")
+    found = [swing(w) for w in frequencies]
+    peak = int(np.argmax(found))
+    around = frequencies[max(peak - 1, 0) : peak + 2][[0, -1]]
+    refined = minimize_scalar(lambda w: -swing(w), bounds=around, options={"xatol": 1e-9 * around[1]})
+    return max(found[peak], -float(refined.fun))
 
 
 def crossing_time(shares: list[float], controls: list[float]) -> float:

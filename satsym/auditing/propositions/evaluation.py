@@ -11,6 +11,7 @@ import operator
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Any, TypeAlias
 
@@ -36,7 +37,8 @@ Truth: TypeAlias = bool | None
 """True, false, or ``None`` where it is undecided."""
 _OPERATORS = {**BINARY, ast.MatMult: operator.matmul}
 _MAX_POWER = 64
-_text = ast.unparse
+_JUDGED = (*QUANTIFIERS, *CONNECTIVES)
+_text = lru_cache(maxsize=4096)(ast.unparse)
 _TOLD = 4
 """Members of a list for each of which what is measured is told."""
 Lookups: TypeAlias = Mapping[str, Callable[[str], Any]]
@@ -201,7 +203,7 @@ class Evaluation:
             return self._part(node, bound)
         if isinstance(node, ast.Subscript):
             return self._entry(node, bound)
-        if isinstance(node, ast.Call) and _text(node.func) not in (*QUANTIFIERS, *CONNECTIVES):
+        if isinstance(node, ast.Call) and _text(node.func) not in _JUDGED:
             return self._called(node, bound)
         if isinstance(node, ast.BinOp):
             return self._worked_out(node, bound)

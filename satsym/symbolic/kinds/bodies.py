@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import sympy as sp
@@ -77,10 +78,15 @@ class Bodies(Model):
 
     def static(self, expression: sp.Expr) -> sp.Expr:
         """An expression with functions of time as the model's symbols."""
+        known, rates = self._static
+        return sp.sympify(expression).xreplace(rates).xreplace(known)
+
+    @cached_property
+    def _static(self) -> tuple[dict[sp.Basic, sp.Basic], dict[sp.Basic, sp.Basic]]:
+        """Functions of time, and their rates, as the model's symbols."""
         symbols = (*symbols_of(self.states), *self.named)
         known = {dynamicsymbols(s.name): s for s in symbols} | {CLOCK: n.TIME}
-        rates = {dynamicsymbols(s.name).diff(CLOCK): n.rate_of(s) for s in self.speeds}
-        return sp.sympify(expression).xreplace(rates).xreplace(known)
+        return known, {dynamicsymbols(s.name).diff(CLOCK): n.rate_of(s) for s in self.speeds}
 
     def spin(self, body: RigidBody) -> list[sp.Expr]:
         """Components of a body's angular velocity along the axes of its inertia."""

@@ -179,21 +179,24 @@ def dimensions_of(models: Iterable[str], own: Mapping[str, str]) -> Known:
     return known
 
 
-def inhomogeneity(sides: Iterable[sp.Expr], known: Known) -> str:
-    """Why expressions that ought to be equal cannot be, by their dimensions; empty where they can, or nobody knows."""
+def inhomogeneity(sides: Iterable[sp.Expr], known: Known) -> tuple[str, ...]:
+    """Why expressions that ought to be equal cannot be, by their dimensions; empty where they can, or nobody knows.
+
+    Otherwise it is the kind of fault, and what it puts together.
+    """
     found: list[dimensions.Dimension] = []
     for side in sides:
         if any(symbol.name not in known for symbol in side.free_symbols):
-            return ""
+            return ()
         try:
             dimension = dimensions.dimension_of(side, known)
         except dimensions.Disagreement as error:
-            return str(error)
+            return error.kind, *error.parts
         if dimension is not None:
             found.append(dimension)
     if len(found) == 2 and found[0] != found[1]:
-        return f"equates {dimensions.written(found[0])} and {dimensions.written(found[1])}"
-    return ""
+        return "equates", *map(dimensions.written, found)
+    return ()
 
 
 def dimension(expression: sp.Expr, known: Known) -> dict[str, Fraction] | None:

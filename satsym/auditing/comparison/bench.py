@@ -10,10 +10,9 @@ from typing import Any, TypeAlias, TypeVar
 from satsym.auditing.ledger import documents
 from satsym.auditing.ledger.contents import Ledger, Row
 from satsym.auditing.ledger.scopes import Scope, self_named
-from satsym.auditing.ledger.vocabulary import is_address
 from satsym.formula.budget import Allowance, Limit, OverBudget
 from satsym.formula.calculus import Calculus
-from satsym.formula.cells import Formula, cells, each, names_in
+from satsym.formula.cells import Formula, each, names_in
 from satsym.formula.field import Undecided
 from satsym.formula.tree import Equality, Node, Sym, Text, substituted, symbols, walk
 from satsym.formula.values import Matrix, Relation, Sources, Value
@@ -53,6 +52,7 @@ class Bench:
         self._meanings: dict[str, Mapping[str, Node]] = {}
         self._derived: dict[tuple[str, str], Both] = {}
         self._targets: dict[str, Both] = {}
+        self._tellings: dict[str, str] = {}
 
     def within(self, limit: Limit, row: Row, work: Callable[[], T], where: str = "") -> T:
         """Do some work for a row, within a limit; refused with its line and name, and the key that is to blame.
@@ -74,27 +74,17 @@ class Bench:
         return self.ledger.scopes[row.table.scope]
 
     @cached_property
-    def models(self) -> tuple[str, ...]:
-        """Derivations that the ledger names, that of the document first."""
-        found = dict.fromkeys([self.ledger.document.model] if self.ledger.document.model else [])
-        trees = [side for row in self.ledger.rows for f in (row.holds, row.follows) for side in cells(f)]
-        trees += [meaning for scope in self.ledger.scopes.values() for meaning in scope.meanings.values()]
-        for tree in trees:
-            for _, part in walk(tree):
-                if isinstance(part, Text) and is_address(part.value):
-                    found[part.value.partition(":")[0]] = None
-        return tuple(found)
-
-    @cached_property
     def names(self) -> Names:
         """The names that rows may use: one symbol for each, in all rows."""
         own = dict.fromkeys(self_named(self.ledger.scopes), False)
-        return library.names(self.models, own | {n: table.positive for n, table in self.ledger.symbols.items()})
+        return library.names(self.ledger.models, own | {n: table.positive for n, table in self.ledger.symbols.items()})
 
     @cached_property
     def dimensions(self) -> Any:
         """Dimensions of all names that have one."""
-        return library.dimensions_of(self.models, {name: table.unit for name, table in self.ledger.symbols.items()})
+        return library.dimensions_of(
+            self.ledger.models, {name: table.unit for name, table in self.ledger.symbols.items()}
+        )
 
     def plain_expression(self, formula: Node) -> Any:
         """A formula in our names as an expression of sympy's, in which definitions keep their names.
@@ -123,6 +113,11 @@ class Bench:
         )
 
     def _telling(self, row: Row) -> str:
+        if row.key not in self._tellings:
+            self._tellings[row.key] = self._told(row)
+        return self._tellings[row.key]
+
+    def _told(self, row: Row) -> str:
         """The target as text, if it is particular enough that no other thing is likely to be the same.
 
         A general statement, whose symbols stand for whole derived things, prints none of them.
@@ -239,7 +234,7 @@ class Bench:
         shared = self.names
         if name not in shared.symbols and name not in shared.definitions and name not in ("I", "pi"):
             raise BadInput(
-                f"{shown(name)} is no name of {' or '.join(self.models) or 'a derivation'}; "
+                f"{shown(name)} is no name of {' or '.join(self.ledger.models) or 'a derivation'}; "
                 f"{suggestion(name, sorted(shared.symbols))} (a symbol of your own: [symbols])"
             )
         return shared.tree(name) if kind is Calculus else shared.expression(name)

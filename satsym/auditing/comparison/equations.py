@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from fractions import Fraction
 from functools import cached_property
 
-from satsym.auditing.judge.bench import Bench, Both
-from satsym.auditing.judge.plan import Cells, Plan
+from satsym.auditing.comparison.bench import Bench, Both
+from satsym.auditing.comparison.plan import Cells, Plan
 from satsym.auditing.ledger.contents import Row
 from satsym.formula import field
 from satsym.formula.angles import Complex, Monomial, TooManyTerms, terms_of

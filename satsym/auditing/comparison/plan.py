@@ -12,8 +12,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Any, TypeAlias
 
-from satsym.auditing.judge.bench import Bench, Both
+from satsym.auditing.comparison.bench import Bench, Both
 from satsym.auditing.ledger.contents import Row
+from satsym.auditing.sentences import Said
 from satsym.formula import field
 from satsym.formula.bound import BoundPoint
 from satsym.formula.tree import Node, symbols
@@ -148,7 +149,7 @@ class Plan(ABC):
 class Never(Plan):
     """In the place of a plan where sizes differ, so that no edit of a cell helps."""
 
-    def __init__(self, plan: Plan, why: str) -> None:
+    def __init__(self, plan: Plan, why: Said) -> None:
         super().__init__(plan.bench, plan.row, plan.printed, plan.labels, plan.targets)
         self.why = why
 

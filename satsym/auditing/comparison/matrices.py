@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
-from satsym.auditing.judge.bench import Bench, Both
-from satsym.auditing.judge.plan import Cells, Plan
+from satsym.auditing.comparison.bench import Bench, Both
+from satsym.auditing.comparison.plan import Cells, Plan
 from satsym.auditing.ledger.contents import Row
 from satsym.formula import field
 from satsym.formula.bound import BoundPoint

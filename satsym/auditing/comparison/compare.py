@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from satsym.auditing.judge.bench import Bench, Both
-from satsym.auditing.judge.equations import Equal, Multiple
-from satsym.auditing.judge.matrices import EqualMatrix, SameRoots, Spans
-from satsym.auditing.judge.plan import Never, Plan
+from satsym.auditing.comparison.bench import Bench, Both
+from satsym.auditing.comparison.equations import Equal, Multiple
+from satsym.auditing.comparison.matrices import EqualMatrix, SameRoots, Spans
+from satsym.auditing.comparison.plan import Never, Plan
 from satsym.auditing.ledger.contents import Row
+from satsym.auditing.sentences import say
 from satsym.formula.bound import unbound
 from satsym.formula.cells import Formula
 from satsym.formula.tree import ZERO, Equality, Node, Sym, symbols
@@ -75,16 +76,16 @@ def _of_matrix(bench: Bench, row: Row, printed: tuple[tuple[Node, ...], ...], ta
     if isinstance(trees, Roots):
         roots = SameRoots(bench, row, cells, target)
         if len(cells) != trees.of.shape[0]:
-            return Never(roots, f"{len(cells)} are printed, there are {len(roots.targets)}")
+            return Never(roots, say("too_many", str(len(cells)), str(len(roots.targets)), table="sizes"))
         return roots
     if isinstance(trees, Kernel):
         columns = Spans(bench, row, cells, labels, target)
         long = trees.of.shape[1]
-        return columns if m == long else Never(columns, f"columns of {m} are printed, they are of {long}")
+        return columns if m == long else Never(columns, say("columns", str(m), str(long), table="sizes"))
     if not isinstance(trees, Matrix):
         raise BadInput("a matrix is held against an expression; hold it against a matrix")
     targets = list(map(Both, trees.entries, target.exact.entries))
     entries = Equal(bench, row, cells, labels, targets)
     if trees.shape != (m, n):
-        return Never(entries, f"{m} by {n} is printed, it is {trees.shape[0]} by {trees.shape[1]}")
+        return Never(entries, say("matrix", *map(str, (m, n, *trees.shape)), table="sizes"))
     return entries
