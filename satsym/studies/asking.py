@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import msgspec
@@ -53,7 +54,7 @@ def asked(written: Written, case: Instance, said: Mapping[str, Any], subject: st
     command = Command(given.command or stated.command or Command.SOLVE)
     options = {name: _option(name, command, given, stated) for name in OF_COMMANDS}
     _refuse(case, command, options["feedback"])
-    return Study(
+    study = Study(
         case,
         reading.design(design, case),
         command,
@@ -63,6 +64,22 @@ def asked(written: Written, case: Instance, said: Mapping[str, Any], subject: st
         trajectories=bool(options["trajectories"]),
         subject=subject,
     )
+    return replace(study, compiled=True) if case.solver.backend == "auto" and _worth_compiling(study) else study
+
+
+MANY = 1000
+"""Rows from which on machine code is made, or read, without anybody asking for it."""
+
+
+def _worth_compiling(study: Study) -> bool:
+    """Whether so many rows are solved together that compiling pays, where there is a compiler."""
+    from satsym.kernels.batch.compiling import able
+
+    if study.design.count < MANY or study.command is not Command.SOLVE or not able():
+        return False
+    from satsym.studies.solving import together
+
+    return together(study.task)
 
 
 def named(written: Written) -> str | None:

@@ -16,6 +16,7 @@ from satsym.status import BadInput, Status
 if TYPE_CHECKING:
     from satsym.analysis.regulator.feedback import Design
     from satsym.instance import Instance
+    from satsym.spec import ProblemSpec
 
 Scalar = float | str | None
 
@@ -131,6 +132,37 @@ def of_solution(key: str, solution: Solution, origin: str, kept: bool) -> Row:
     message = "" if solution.status.answered else solution.status.explain(solution.message)
     trajectory = _kept(solution, solution.lam) if kept and solution.status.answered else {}
     return Row(key, solution.status.value, message, numbers, trajectory)
+
+
+def of_extremal(
+    key: str, spec: ProblemSpec, cost: float, t_final: float, z: tuple[Array, Array], verdict: str | None, origin: str
+) -> Row:
+    """Of one of many optima that were solved together.
+
+    Parameters
+    ----------
+    cost
+        As it is minimised.
+    z
+        States and costates at the start and at the end, shape (2n,).
+    """
+    n, names = len(spec.states), spec.state_names
+    numbers: dict[str, Scalar] = {
+        Column.OBJECTIVE: _plain(spec.objective(cost)),
+        Column.T_FINAL: _plain(t_final),
+        Column.VERDICT: verdict,
+        **_each("x_final", names, z[1][:n, None], -1),
+        **_each("costate_initial", names, z[0][n:, None], 0),
+        "switching_times": 0.0,
+        "events": 0.0,
+        Column.METHOD: TOGETHER,
+        Column.ORIGIN: origin,
+    }
+    return Row(key, Status.CONVERGED.value, "", numbers)
+
+
+TOGETHER = "shooting"
+"""The method by which many optima are solved together."""
 
 
 def of_simulation(key: str, simulation: Simulation, kept: bool) -> Row:

@@ -1,0 +1,252 @@
+"""The certificate of many extremals with given ends, but for competitors: those that are minima beyond doubt.
+
+The same conditions as of one solution, measured along flows from the initial costates and from every node to the next;
+what is not clear here is left to the certificate of one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.arrays import Array
+from satsym.solution import Certificate, Solution
+from satsym.solvers.batch.many import Many
+from satsym.solvers.batch.matching import positive
+from satsym.solvers.batch.newton import Nodes
+from satsym.solvers.certificate.conditions import CANCELLED
+from satsym.solvers.certificate.flow import FAINT, NEGLIGIBLE, ROUNDED, TOLERANCE
+from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
+from satsym.solvers.certificate.node_defect import FINE
+from satsym.solvers.certificate.segments import balanced
+from satsym.solvers.certificate.verdict import COST, DEFECT, DRIFT, RESIDUAL, STATIONARY
+from satsym.solvers.simulation.extrapolation import SUBSTEPS, leap
+from satsym.status import Status, Verdict
+
+PARTS = (2, 4, 8)
+"""Into which segments are taken until errors of the flow are small enough."""
+
+UNDRIVEN, VARIATIONS = 4, 5
+"""Columns of the extrapolation table, for the motion without control and for derivatives."""
+
+ROUGH = 0.01
+"""Relative error of derivatives that is small enough."""
+
+HALVINGS = 4
+"""Of segments at most."""
+
+WHOLE = 0.9 * 2.0 * np.pi
+"""Turn of a phase in a segment: below a full turn, so that it has no conjugate point of its own."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sizes:
+    """Of states and costates, to which errors are held, see :func:`satsym.solvers.certificate.flow.typical`."""
+
+    state: Array
+    largest: Array
+    """The largest magnitudes of states and of costates on the way, shapes (n, M)."""
+    unit: Array
+    """Units of the scaled problem, shape (2n, 1)."""
+
+    @classmethod
+    def of(cls, many: Many, z: Array) -> Sizes:
+        """Those of solutions."""
+        n, unit, largest = many.states, many.units[:, None], np.abs(z).max(axis=1)
+        return cls(np.maximum(largest[:n], NEGLIGIBLE * unit[:n]), largest[n:], unit)
+
+    def costate(self, faint: float) -> Array:
+        """Of costates, smaller ones counting at a share of their unit."""
+        product = (self.state * self.largest).max(axis=0)
+        found = np.maximum(self.largest, faint * self.unit[len(self.state) :])
+        return np.asarray(np.maximum(found, NEGLIGIBLE * product / self.state))
+
+    def both(self, faint: float) -> Array:
+        """Of states and costates, shape (2n, M)."""
+        return np.concatenate([self.state, self.costate(faint)])
+
+
+def minima(many: Many, nodes: Nodes) -> NDArray[np.bool_]:
+    """Which are strict local minima beyond doubt, shape (M,): the verdict ``local minimum``."""
+    found = np.zeros(many.count, dtype=bool)
+    chosen = np.flatnonzero(nodes.solved)
+    if not len(chosen):
+        return found
+    with np.errstate(all="ignore"):
+        some, z = many.only(chosen), np.ascontiguousarray(nodes.z[:, :, chosen])
+        sizes = Sizes.of(some, z)
+        clear = _along_flow(some, z, nodes.cost[chosen], sizes)
+        clear &= _from_nodes(some, z, sizes)
+        clear &= _stationary(some, z)
+        clear &= _without_conjugate_points(some, z)
+        first = np.flatnonzero(clear)[:1]
+        if len(first) and not _kernels_agree(some, z, int(first[0])):
+            clear[:] = False
+    found[chosen] = clear
+    return found
+
+
+def _along_flow(many: Many, z: Array, cost: Array, sizes: Sizes) -> NDArray[np.bool_]:
+    """Whether the flow from the initial costates leads through the nodes to the end, at the cost stated, H constant."""
+    n, faint = many.states, sizes.both(FAINT)
+    scale = np.concatenate([faint, (faint[:n] * faint[n:]).sum(axis=0)[None]])
+    start = np.concatenate([many.initial, z[n:, 0], np.zeros((1, many.count))])
+    for parts in PARTS:
+        values, error = _flow(many, start, scale, parts)
+        if (error <= TOLERANCE).all():
+            break
+    stations = values[::parts]
+    defect = (np.abs(stations[:, :-1].swapaxes(0, 1) - z) / faint[:, None]).max(axis=(0, 1))
+    end, flow_cost = stations[-1, :n], stations[-1, -1]
+    state, without = sizes.state, _undriven(many, sizes)
+    moved = np.minimum((np.abs(end - without) / state).max(axis=0), 1.0)
+    rows = np.maximum(state * moved, np.minimum(state, NEGLIGIBLE * sizes.unit[:n]))
+    residual = (np.abs(end - many.end) / rows).max(axis=0)
+    products = (state * sizes.costate(ROUNDED)).sum(axis=0)
+    off_cost = np.abs(flow_cost - cost) / np.maximum(np.maximum(np.abs(flow_cost), CANCELLED * products), 1e-300)
+    clear = (error <= TOLERANCE) & (residual <= RESIDUAL) & (defect <= DEFECT) & (off_cost <= COST)
+    positive_states = list(many.problem.positive)
+    clear &= (values[:, positive_states] > 0.0).all(axis=(0, 1))
+    return np.asarray(clear & (_drift(many, stations[:, :-1]) <= DRIFT))
+
+
+def _flow(many: Many, start: Array, scale: Array, parts: int) -> tuple[Array, Array]:
+    """Values at the ends of parts of segments, shape (K, 2n + 1, M), and the largest relative error, shape (M,)."""
+    values, now, worst = [start], start, np.zeros(many.count)
+    for begin, width in zip(many.times[:-1], np.diff(many.times), strict=True):
+        h = np.full(many.count, width / parts)
+        for part in range(parts):
+            t = np.full(many.count, begin + part * width / parts)
+            now, error = many.motion.leap(t, now, h, many.parameters, len(SUBSTEPS))
+            worst = np.maximum(worst, (error / np.maximum(scale, np.abs(now))).max(axis=0))
+            values.append(now)
+    return np.array(values), np.where(np.isfinite(worst), worst, np.inf)
+
+
+def _undriven(many: Many, sizes: Sizes) -> Array:
+    """Where each motion would end without control, roughly, shape (n, M)."""
+    model, p = many.instance.model, tuple(many.parameters)
+    none, now = np.zeros((len(model.spec.controls), many.count)), many.initial
+    for begin, width in zip(many.times[:-1], np.diff(many.times), strict=True):
+        t, h = np.full(many.count, begin), np.full(many.count, width)
+        now = leap(lambda t, x: np.asarray(model.dynamics_batch(t, x, none, p)), t, now, h, UNDRIVEN)
+    # what is not finite is far away
+    return np.where(np.isfinite(now), now, many.end + sizes.state)
+
+
+def _drift(many: Many, stations: Array) -> Array:
+    """Largest change of H at stations, shape (K, 2n, M), relative to its terms; zero with explicit time."""
+    if not many.instance.model.spec.autonomous:
+        return np.zeros(many.count)
+    n, model = many.states, many.instance.model
+    t, x, lam, u, p = _flat(many, stations.swapaxes(0, 1))
+    h = np.broadcast_to(model.hamiltonian_batch(t, x, u, lam, p), t.shape).reshape(-1, many.count)
+    rates = np.abs(lam * np.asarray(model.dynamics_batch(t, x, u, p))).reshape(n, -1, many.count)
+    terms = np.maximum(rates.sum(axis=0).max(axis=0), np.abs(h).max(axis=0))
+    return np.asarray(np.abs(h - h[0]).max(axis=0) / np.maximum(terms, 1e-300))
+
+
+def _flat(many: Many, z: Array) -> tuple[Array, Array, Array, Array, tuple[Array, ...]]:
+    """Times, states, costates, controls by the law and parameters at all nodes, a column for each."""
+    n, count = many.states, z.shape[1]
+    flat, t = z.reshape(len(z), -1), np.repeat(many.times, many.count)
+    p = tuple(np.tile(many.parameters, count))
+    bounds = many.problem.control_set.arguments
+    u = np.asarray(many.instance.model.control_law_batch(t, flat[:n], flat[n:], p, bounds))
+    return t, flat[:n], flat[n:], u, p
+
+
+def _from_nodes(many: Many, z: Array, sizes: Sizes) -> NDArray[np.bool_]:
+    """Whether the canonical equations, begun at each node, lead to the next one."""
+    t, start, h, p = many.segments(z)
+    ends, scale = np.ascontiguousarray(z[:, 1:]).reshape(len(z), -1), np.tile(sizes.both(FAINT), len(many.mesh) - 1)
+    for parts in PARTS:
+        now, error = np.concatenate([start, np.zeros((1, len(t)))]), np.zeros(len(t))
+        for part in range(parts):
+            now, off = many.motion.leap(t + part * h / parts, now, h / parts, p, len(SUBSTEPS) - 2)
+            error = np.maximum(error, (off[:-1] / scale).max(axis=0))
+        if (error <= FINE).all():
+            break
+    missed = (np.abs(now[:-1] - ends) / scale).max(axis=0)
+    return np.asarray(((missed <= DEFECT) & (error <= FINE)).reshape(-1, many.count).all(axis=0))
+
+
+def _stationary(many: Many, z: Array) -> NDArray[np.bool_]:
+    """Whether H is stationary in the controls of the law at all nodes, and has its strict minimum there."""
+    t, x, lam, u, p = _flat(many, z)
+    model, m = many.instance.model, len(u)
+    slope = np.asarray(model.stationarity_batch(t, x, u, lam, p)).reshape(m, -1, many.count)
+    hessian = np.asarray(model.control_hessian_batch(t, x, u, lam, p)).reshape(m, m, -1, many.count)
+    large = (np.abs(hessian) * np.abs(u).reshape(1, m, -1, many.count)).sum(axis=1).max(axis=(0, 1))
+    off = np.abs(slope).max(axis=(0, 1)) / np.maximum(large, 1e-300)
+    least = np.linalg.eigvalsh(hessian.transpose(2, 3, 0, 1))[..., 0].min(axis=0)
+    return np.asarray(((off <= STATIONARY) | (large == 0.0)) & (least > 0.0))
+
+
+def _without_conjugate_points(many: Many, z: Array, halvings: int = HALVINGS) -> NDArray[np.bool_]:
+    """Which have none beyond doubt; segments in which a phase may turn by too much are halved."""
+    scale = _balanced(many, z)
+    short = _turning(many, z, scale) < WHOLE
+    found, near, far = np.zeros(many.count, dtype=bool), np.flatnonzero(short), np.flatnonzero(~short)
+    if len(near):
+        found[near] = _corners_positive(many.only(near), z[:, :, near], scale)
+    if len(far) and halvings:
+        found[far] = _without_conjugate_points(*_halved(many.only(far), z[:, :, far]), halvings - 1)
+    return found
+
+
+def _halved(many: Many, z: Array) -> tuple[Many, Array]:
+    """On a mesh with twice as many segments, and the nodes there."""
+    t, start, h, p = many.segments(z)
+    costing = np.concatenate([start, np.zeros((1, len(t)))])
+    middles = many.motion.leap(t, costing, h / 2.0, p, len(SUBSTEPS))[0][:-1]
+    found = np.empty((len(z), 2 * len(many.mesh) - 1, many.count))
+    found[:, ::2], found[:, 1::2] = z, middles.reshape(len(z), -1, many.count)
+    mesh = np.empty(found.shape[1])
+    mesh[::2], mesh[1::2] = many.mesh, (many.mesh[1:] + many.mesh[:-1]) / 2.0
+    return replace(many, mesh=mesh), found
+
+
+def _corners_positive(many: Many, z: Array, scale: Array) -> NDArray[np.bool_]:
+    """Whether broken extremals with corners at the nodes cost more, beyond doubt."""
+    t, start, h, p = many.segments(z)
+    rows, n = len(z), many.states
+    _, transition, off = many.motion.leap_varied(t, start, h, p, VARIATIONS)
+    ratio = (scale / scale[:, None])[:, :, None, None]
+    whole, wrong = (one.reshape(rows, rows, -1, many.count) * ratio for one in (transition, off))
+    across, doubt = (one[:n, n:].transpose(3, 2, 0, 1) for one in (whole, wrong))
+    sound = np.isfinite(whole).all(axis=(0, 1, 2)) & (np.abs(np.linalg.det(across)) > 0.0).all(axis=1)
+    across = np.where(sound[:, None, None, None], across, np.eye(n))
+    error = (np.abs(np.linalg.inv(across)) @ doubt).max(axis=(1, 2, 3))
+    return np.asarray(sound & (error < ROUGH) & positive(whole))
+
+
+def _balanced(many: Many, z: Array) -> Array:
+    """Units in which transitions are symplectic and extremals turn slowly; those of the first solution do for all."""
+    first = many.only(np.arange(1))
+    return balanced(many.units, np.abs(_slopes(first, z[:, :, :1])).max(axis=(2, 3)), many.problem.duration)
+
+
+def _slopes(many: Many, z: Array) -> Array:
+    """The canonical rates by states and costates at nodes, shape (2n, 2n, N+1, M)."""
+    t, x, lam, _, p = _flat(many, z)
+    table = many.instance.model.canonical_jacobian_batch(t, x, lam, p, many.problem.control_set.arguments)
+    return np.asarray(table).reshape(len(z), len(z), -1, many.count)
+
+
+def _turning(many: Many, z: Array, scale: Array) -> Array:
+    """The most that a phase may turn in a segment, shape (M,)."""
+    slopes = _slopes(many, z) * (scale / scale[:, None])[:, :, None, None]
+    rates = 2.0 * np.sqrt(np.einsum("ijkm,ijkm->km", slopes, slopes))
+    return np.asarray((np.maximum(rates[1:], rates[:-1]) * np.diff(many.times)[:, None]).max(axis=0))
+
+
+def _kernels_agree(many: Many, z: Array, chosen: int) -> bool:
+    """Whether the kernels contradict each other, which they do everywhere."""
+    one = many.only(np.array([chosen]))
+    t, x, lam, u, _ = _flat(one, z[:, :, [chosen]])
+    answer = Solution(one.instance, "shooting", Status.CONVERGED, "", 0.0, t, x, u, lam, (), 0, (), 0.0)
+    blank = Certificate(Verdict.LOCAL_MINIMUM, 0.0, 0.0, 0.0, None, 0.0, None, ())
+    return with_kernels_examined(blank, answer).verdict is Verdict.LOCAL_MINIMUM

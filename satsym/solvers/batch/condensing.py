@@ -1,0 +1,105 @@
+"""How nodes follow from the first one, segment by segment, for many problems: compiled, or on arrays."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.kernels.batch import compiling
+from satsym.kernels.batch.workspace import LANES, Workspace, element, function, indented, over_blocks, over_lanes
+
+
+class Condensing(Protocol):
+    """Takes transitions of shape (2n, 2n, N, M)."""
+
+    def __call__(self, transition: Array, start: Array, gaps: Array | None) -> Array:
+        """Columns at all nodes, shape (2n, c, N+1, M), from those at the first, (2n, c, M).
+
+        Gaps of shape (2n, N, M) are added to each column at the end of each segment.
+        """
+
+
+def condensing(states: int, compiled: bool) -> Condensing:
+    """For so many states."""
+    return _Compiled(2 * states) if compiled else _on_arrays
+
+
+def _on_arrays(transition: Array, start: Array, gaps: Array | None) -> Array:
+    found = np.empty((*start.shape[:2], transition.shape[2] + 1, start.shape[2]))
+    found[:, :, 0] = start
+    for s in range(transition.shape[2]):
+        before, after = found[:, :, s], found[:, :, s + 1]
+        np.multiply(transition[:, 0, None, s], before[0], out=after)
+        for k in range(1, len(before)):
+            after += transition[:, k, None, s] * before[k]
+        if gaps is not None:
+            after += gaps[:, None, s]
+    return found
+
+
+class _Compiled:
+    """By machine code."""
+
+    def __init__(self, rows: int) -> None:
+        self._function = compiling.compiled(f"condensing_{rows}", text(rows))["many"]
+
+    def __call__(self, transition: Array, start: Array, gaps: Array | None) -> Array:
+        rows, columns = start.shape[:2]
+        segments, count = transition.shape[2:]
+        found = np.empty((rows * columns, segments + 1, count))
+        given = np.zeros((rows, segments, 0)) if gaps is None else np.ascontiguousarray(gaps)
+        self._function(
+            np.ascontiguousarray(transition).reshape(rows * rows, segments, count),
+            np.ascontiguousarray(start).reshape(rows * columns, count),
+            given,
+            columns,
+            found,
+        )
+        return found.reshape(rows, columns, segments + 1, count)
+
+
+def text(rows: int) -> str:
+    """The module that is compiled for so many rows; columns come one after the other."""
+    own = Workspace()
+    slopes, now, after, added = (
+        own.place(name, size)
+        for name, size in (("slopes", rows * rows), ("now", rows), ("after", rows), ("gaps", rows))
+    )
+
+    def rowwise(count: int, into: int, source: str) -> list[str]:
+        line = f"w[{into} + i * {LANES} + j] = {source}"
+        return [f"for i in range({count}):", *indented(over_lanes([line]))]
+
+    product: list[str] = [f"v{k} = {element(now, k)}" for k in range(rows)]
+    for i in range(rows):
+        terms = " + ".join(f"{element(slopes, i * rows + k)} * v{k}" for k in range(rows))
+        product.append(f"{element(after, i)} = {terms} + {element(added, i)}")
+    lane = "at + min(j, width - 1)"
+    stored = ["for i in range({rows}):", "    for j in range(width):"]
+    step = [
+        *rowwise(rows * rows, slopes, f"transition[i, s, {lane}]"),
+        "if gaps.shape[2]:",
+        *indented(rowwise(rows, added, f"gaps[i, s, {lane}]")),
+        "for c in range(columns):",
+        *indented(
+            [
+                *rowwise(rows, now, f"found[i * columns + c, s, {lane}]"),
+                *over_lanes(product),
+                stored[0].format(rows=rows),
+                stored[1],
+                f"        found[i * columns + c, s + 1, at + j] = w[{after} + i * {LANES} + j]",
+            ]
+        ),
+    ]
+    block = [
+        "for i in range(len(start)):",
+        "    for j in range(width):",
+        "        found[i, 0, at + j] = start[i, at + j]",
+        "for s in range(transition.shape[1]):",
+        *indented(step),
+    ]
+    body = [f"w = np.zeros({own.size})", *over_blocks("start.shape[1]", block)]
+    lines = [*compiling.HEAD, *function("many(transition, start, gaps, columns, found)", body)]
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,123 @@
+"""Instances of one problem that differ in initial states, ends and parameters, as columns."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.arrays import Array
+from satsym.instance import Instance
+from satsym.solvers.batch.condensing import Condensing, condensing
+from satsym.solvers.batch.motion import Motion, motion
+from satsym.solvers.cold_start import paths
+from satsym.solvers.collocation import mesh as meshes
+from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.collocation.scaling import final_argument, two_point
+
+FINER = 2
+"""Segments for each interval that the motion's fastest mode asks for, while steps are of low order."""
+
+
+@dataclass(frozen=True, eq=False)
+class Many:
+    """M instances whose ends and times are given, without bounds."""
+
+    problem: TwoPoint
+    """Of the instance that they vary: scales, times and what else all share."""
+    motion: Motion
+    """Steps of the canonical equations."""
+    initial: Array
+    end: Array
+    """States where the motions begin and end, shape (n, M)."""
+    parameters: Array
+    """Shape (k, M)."""
+    mesh: Array
+    """Nodes in [0, 1], shape (N+1,), the same for all."""
+    condense: Condensing
+    """How nodes follow from the first one."""
+
+    @classmethod
+    def of(cls, instance: Instance, instances: Sequence[Instance], compiled: bool) -> Many:
+        """Variations of an instance."""
+        assert instance.tf is not None
+        problem = two_point(instance, instance.tf - instance.t0).relaxed(float("inf"))
+        bounds = problem.control_set.arguments
+        path = paths.first(problem)
+        laid = meshes.along(problem, (tau := np.linspace(0.0, 1.0, paths.POINTS)), path(tau), problem.theta)
+        mesh = np.interp(np.linspace(0.0, len(laid) - 1.0, FINER * (len(laid) - 1) + 1), np.arange(len(laid)), laid)
+        return cls(
+            problem,
+            motion(instance.model, bounds, compiled),
+            np.array([one.initial for one in instances]).T.copy(),
+            np.array([_end(one) for one in instances]).T.copy(),
+            np.array([one.parameters for one in instances]).reshape(len(instances), -1).T.copy(),
+            mesh,
+            condensing(problem.states, compiled),
+        )
+
+    @property
+    def instance(self) -> Instance:
+        """The one that is varied."""
+        return self.problem.instance
+
+    @property
+    def states(self) -> int:
+        """Number n of states."""
+        return len(self.initial)
+
+    @property
+    def count(self) -> int:
+        """Number M of instances."""
+        return self.initial.shape[1]
+
+    @cached_property
+    def units(self) -> Array:
+        """Of states and costates, shape (2n,)."""
+        return np.asarray(self.problem.scale.both[:, 0])
+
+    @property
+    def times(self) -> Array:
+        """Of the nodes, shape (N+1,)."""
+        return self.instance.t0 + self.problem.duration * self.mesh
+
+    @property
+    def line(self) -> Array:
+        """The straight line between the ends without costates, at the nodes, shape (2n, N+1, M)."""
+        found = np.zeros((2 * self.states, len(self.mesh), self.count))
+        found[: self.states] = self.initial[:, None] + (self.end - self.initial)[:, None] * self.mesh[:, None]
+        return found
+
+    def only(self, chosen: NDArray[np.intp]) -> Many:
+        """Some of them."""
+        if len(chosen) == self.count:
+            return self
+        own = (np.ascontiguousarray(rows[:, chosen]) for rows in (self.initial, self.end, self.parameters))
+        initial, end, parameters = own
+        return replace(self, initial=initial, end=end, parameters=parameters)
+
+    def segments(self, z: Array) -> tuple[Array, Array, Array, Array]:
+        """Arguments of steps over all segments, a column for each of each instance.
+
+        Parameters
+        ----------
+        z
+            Nodes, shape (2n, N+1, M).
+        """
+        times, count = self.times, self.count
+        columns = np.ascontiguousarray(z[:, :-1]).reshape(len(z), -1)
+        parameters = np.ascontiguousarray(np.tile(self.parameters, len(times) - 1))
+        return np.repeat(times[:-1], count), columns, np.repeat(np.diff(times), count), parameters
+
+
+def _end(instance: Instance) -> Array:
+    """Where a motion should end."""
+    given = np.array(final_argument(instance)).reshape(3, -1)
+    if not given[1].any():
+        return given[2]
+    assert instance.tf is not None
+    curve = np.array(instance.model.reference(instance.tf, instance.parameters))
+    return np.where(given[1] > 0.0, curve, given[2])

@@ -1,0 +1,168 @@
+"""Newton's method on the nodes of many shooting problems; each problem leaves when it is done, or led nowhere.
+
+First with steps of low order and their exact derivatives; then, with these derivatives as they were last, on steps of
+high order, whose error Richardson's rule estimates from twice as many.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.arrays import Array
+from satsym.solvers.batch.many import Many
+from satsym.solvers.batch.matching import Matching
+from satsym.solvers.collocation.curve import SMALL
+from satsym.solvers.shooting.runge_kutta import ORDER
+
+NEAR = 1e-2
+"""Last correction of steps of low order from which those of high order are corrected quickly."""
+
+MOST, MOST_ACCURATE = 8, 12
+"""Corrections of each kind."""
+
+SHRINK = 0.5
+"""Corrections that shrink less, from one to the next, lead nowhere."""
+
+COARSE = 1e-6
+"""Correction after which twice as many steps show the error."""
+
+FEWEST_PARTS, MOST_PARTS = 2, 32
+"""Steps of high order in a segment."""
+
+ROUNDING = 1e-11
+"""Corrections below this that no longer shrink are rounding."""
+
+
+class Outcome(Enum):
+    """How a problem ended."""
+
+    SOLVED = "solved"
+    NO_CONVERGENCE = "corrections do not shrink"
+    LEFT_DOMAIN = "left the domain"
+    INACCURATE = "steps too long"
+    BOUNDS = "bounds are met"
+
+
+@dataclass(frozen=True, eq=False)
+class Nodes:
+    """What Newton's method came to."""
+
+    z: Array
+    """Nodes, shape (2n, N+1, M)."""
+    cost: Array
+    """Integral of the running cost, shape (M,)."""
+    error: Array
+    """Estimate of the largest error, relative to the sizes of states and costates, shape (M,)."""
+    outcome: NDArray[np.object_]
+    """Of :class:`Outcome`, shape (M,)."""
+    transition: Array
+    """Ends of segments by their beginnings, by steps of low order, shape (2n, 2n, N, M)."""
+
+    @property
+    def solved(self) -> NDArray[np.bool_]:
+        """Which are solved, shape (M,)."""
+        return np.asarray(self.outcome == Outcome.SOLVED)
+
+
+def rough(many: Many, start: Array) -> tuple[Array, NDArray[np.object_]]:
+    """From a start to near an extremal: nodes, and how each problem ended, shape (M,).
+
+    Parameters
+    ----------
+    many
+        The problems.
+    start
+        Nodes, shape (2n, N+1, M).
+    """
+    z, outcome = start.copy(), np.full(many.count, Outcome.SOLVED, dtype=object)
+    on, before = np.arange(many.count), np.full(many.count, np.inf)
+    for _ in range(MOST):
+        own = many.only(on)
+        reached, transition = _rough(own, z[:, :, on], 1)
+        step = _step(own, z[:, :, on], reached, Matching.of(transition, many.units, many.condense))
+        z[:, :, on] += step
+        size = _size(many, step, z[:, :, on])
+        positive = _positive(many, z[:, :, on])
+        outcome[on[~positive]] = Outcome.LEFT_DOMAIN
+        outcome[on[positive & ~(size < before[on])]] = Outcome.NO_CONVERGENCE
+        before[on] = SHRINK * size
+        on = on[positive & (size >= NEAR) & (outcome[on] == Outcome.SOLVED)]
+        if not len(on):
+            break
+    outcome[on] = Outcome.NO_CONVERGENCE
+    return z, outcome
+
+
+def accurate(many: Many, z: Array, outcome: NDArray[np.object_], aim: float) -> Nodes:
+    """From nodes that are near to the extremal, with what is known of those that are not.
+
+    Parameters
+    ----------
+    many
+        The problems.
+    z, outcome
+        Nodes, shape (2n, N+1, M), and which are near, ``SOLVED``, shape (M,).
+    aim
+        Largest error.
+    """
+    z, outcome = z.copy(), outcome.copy()
+    cost, error = np.full(many.count, np.nan), np.full(many.count, np.inf)
+    before, shown = np.full(many.count, np.inf), np.full(many.count, np.inf)
+    parts, on = np.full(many.count, FEWEST_PARTS), np.flatnonzero(outcome == Outcome.SOLVED)
+    transition = _rough(many, z, 2)[1]
+    matching = Matching.of(transition, many.units, many.condense)
+    for _ in range(MOST_ACCURATE):
+        for count in np.unique(parts[on]).tolist():
+            own = on[parts[on] == count]
+            some = many.only(own)
+            reached = some.motion.accurate(*some.segments(z[:, :, own]), count).reshape(len(z) + 1, -1, len(own))
+            step = _step(some, z[:, :, own], reached[:-1], matching.only(own))
+            z[:, :, own] += step
+            cost[own] = reached[-1].sum(axis=0)
+            size, fresh = _size(many, step, z[:, :, own]), np.isinf(shown[own]) & (count > FEWEST_PARTS)
+            shown[own] = np.where(fresh, size / (2**ORDER - 1), shown[own])
+            going_on = (size < SHRINK * before[own]) | fresh | (size < ROUNDING)
+            outcome[own[~(going_on & _positive(many, z[:, :, own]))]] = Outcome.NO_CONVERGENCE
+            ahead = size * np.where(np.isfinite(before[own]), np.minimum(size / before[own], 1.0), 1.0)
+            error[own] = np.where(fresh, np.inf, np.maximum(shown[own], np.where(size < ROUNDING, 0.0, ahead)))
+            error[own] = np.where(fresh & (size < COARSE), np.maximum(shown[own], size * before[own]), error[own])
+            before[own] = size
+            finer = (size < COARSE) & (np.isinf(shown[own]) | (shown[own] > aim))
+            parts[own[finer]] *= 2
+            shown[own[finer]] = np.inf
+        outcome[on[parts[on] > MOST_PARTS]] = Outcome.INACCURATE
+        on = on[(outcome[on] == Outcome.SOLVED) & ~(error[on] <= aim)]
+        if not len(on):
+            break
+    outcome[on] = Outcome.NO_CONVERGENCE
+    return Nodes(z, cost, error, outcome, transition)
+
+
+def _rough(many: Many, z: Array, parts: int) -> tuple[Array, Array]:
+    ends, transition = many.motion.rough(*many.segments(z), parts)
+    shape = (len(many.mesh) - 1, many.count)
+    return ends.reshape(len(z), *shape), transition.reshape(len(z), len(z), *shape)
+
+
+def _step(many: Many, z: Array, reached: Array, matching: Matching) -> Array:
+    """The correction of nodes, given where segments end."""
+    return matching.correction(many.initial - z[: many.states, 0], reached - z[:, 1:], many.end - z[: many.states, -1])
+
+
+def _size(many: Many, step: Array, z: Array) -> Array:
+    """The largest change, states relative to their size (at least one), costates to theirs, shape (M,)."""
+    n, units = many.states, many.units[:, None, None]
+    moved, there = (np.abs(rows / units).max(axis=1) for rows in (step, z))
+    states = moved[:n].max(axis=0) / np.maximum(there[:n].max(axis=0), 1.0)
+    costates = moved[n:].max(axis=0) / np.maximum(there[n:].max(axis=0), SMALL)
+    found = np.maximum(states, costates)
+    return np.where(np.isfinite(found), found, np.inf)
+
+
+def _positive(many: Many, z: Array) -> NDArray[np.bool_]:
+    """Whether states that must be positive are so, shape (M,)."""
+    return np.asarray((z[list(many.problem.positive)] > 0.0).all(axis=(0, 1)))

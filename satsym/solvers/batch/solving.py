@@ -1,0 +1,121 @@
+"""Many problems from cold starts or from nodes that are guessed, to the error that is aimed at, within bounds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.arrays import Array
+from satsym.solvers.batch.many import Many
+from satsym.solvers.batch.newton import Nodes, Outcome, accurate, rough
+from satsym.solvers.collocation.refinement import AIM, FINEST
+
+APART = 8
+"""Every so many problems one starts from the straight line, the others from the nearest that is solved."""
+
+ROUNDS = 2
+"""Times that what led nowhere starts from another solved neighbour."""
+
+
+@dataclass(frozen=True, eq=False)
+class Answers:
+    """What came of many problems."""
+
+    nodes: Nodes
+    neighbour: NDArray[np.bool_]
+    """Which started from a neighbour, shape (M,)."""
+
+
+def solved_together(many: Many) -> Answers:
+    """Solve problems that come in an order in which neighbours follow each other.
+
+    What is solved, and from where, depends on the problems and on their order alone.
+    """
+    line, every = many.line, np.arange(many.count)
+    seeds = every % APART == 0
+    found = _blank(many)
+    _put(found, every[seeds], solved(many.only(every[seeds]), line[:, :, seeds]))
+    neighbour, tried = np.zeros(many.count, dtype=bool), seeds.copy()
+    for _ in range(ROUNDS):
+        left, known = every[_open(found)], every[found.solved]
+        if not len(left) or not len(known):
+            break
+        _put(found, left, solved(many.only(left), found.z[:, :, _nearest(many, left, known)]))
+        neighbour[left] = True
+    left = every[_open(found) & ~tried]
+    if len(left):
+        _put(found, left, solved(many.only(left), line[:, :, left]))
+        neighbour[left] = False
+    return Answers(found, neighbour)
+
+
+def _open(nodes: Nodes) -> NDArray[np.bool_]:
+    """Which may still be solved from elsewhere."""
+    return np.asarray(~nodes.solved & (nodes.outcome != Outcome.BOUNDS))
+
+
+def _blank(many: Many) -> Nodes:
+    """Nothing solved yet."""
+    rows, segments, count = 2 * many.states, len(many.mesh) - 1, many.count
+    return Nodes(
+        np.full((rows, segments + 1, count), np.nan),
+        np.full(count, np.nan),
+        np.full(count, np.inf),
+        np.full(count, Outcome.NO_CONVERGENCE, dtype=object),
+        np.full((rows, rows, segments, count), np.nan),
+    )
+
+
+def _put(found: Nodes, chosen: NDArray[np.intp], some: Nodes) -> None:
+    """Into what was found, in place."""
+    found.z[:, :, chosen], found.transition[..., chosen] = some.z, some.transition
+    found.cost[chosen], found.error[chosen], found.outcome[chosen] = some.cost, some.error, some.outcome
+
+
+def _nearest(many: Many, left: NDArray[np.intp], known: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Of those that are known, the one most like each that is left."""
+    places = np.concatenate([many.initial, many.end, many.parameters])
+    spread = np.ptp(places, axis=1)
+    varied = spread > 0.0
+    scaled = places[varied] / spread[varied, None]
+    apart = ((scaled[:, left, None] - scaled[:, None, known]) ** 2).sum(axis=0)
+    return np.asarray(known[apart.argmin(axis=1)])
+
+
+def solved(many: Many, start: Array) -> Nodes:
+    """Solve from a start.
+
+    Parameters
+    ----------
+    many
+        The problems.
+    start
+        Nodes, shape (2n, N+1, M).
+    """
+    aim = max(AIM * many.instance.solver.tolerance, FINEST)
+    with np.errstate(all="ignore"):
+        nodes = accurate(many, *rough(many, start), aim)
+        met = np.flatnonzero(nodes.solved)
+        nodes.outcome[met[_bounds_met(many.only(met), nodes.z[:, :, met])]] = Outcome.BOUNDS
+    return nodes
+
+
+def _bounds_met(many: Many, z: Array) -> NDArray[np.bool_]:
+    """Whose controls may leave the bounds, judged by nodes and what they change by between these, shape (M,)."""
+    within = many.instance.control_set
+    if not within.bounded:
+        return np.zeros(many.count, dtype=bool)
+    n, segments = many.states, len(many.mesh)
+    flat, p = z.reshape(len(z), -1), tuple(np.tile(many.parameters, segments))
+    times = np.repeat(many.times, many.count)
+    law = many.instance.model.control_law_batch(times, flat[:n], flat[n:], p, within.without_bounds.arguments)
+    u = np.asarray(law).reshape(-1, segments, many.count)
+    moved = np.zeros_like(u)
+    moved[:, 1:] = np.abs(np.diff(u, axis=1))
+    moved[:, :-1] = np.maximum(moved[:, :-1], moved[:, 1:])
+    if within.kind == "ball":
+        return np.asarray((np.linalg.norm(np.abs(u) + moved, axis=0) >= within.radius).any(axis=0))
+    low, high = (np.array(side).reshape(-1, 1, 1) for side in within.box)
+    return np.asarray(((u - moved <= low) | (u + moved >= high)).any(axis=(0, 1)))

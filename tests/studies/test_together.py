@@ -1,0 +1,86 @@
+"""Rows that are solved together are those that are solved one by one, and no number of workers changes a byte."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from satsym import instance, solvers
+from satsym.report import study as reports
+from satsym.studies import chunks
+from satsym.studies.asked import Study
+from satsym.studies.asking import MANY
+from satsym.studies.asking import asked as asking
+from satsym.studies.rows import Row
+from satsym.studies.solving import together
+from satsym.studies.workers import Workers
+
+NAME = "return-to-orbit"
+SAMPLE = {"sample": 24, "uniform": {"initial.r": "0.9,1.1", "initial.theta_dot": "0.9,1.1"}, "seed": 1}
+
+
+def asked(**said: Any) -> Study:
+    written = instance.read(NAME)
+    return asking(written, written.instance(), said, NAME)
+
+
+def computed(study: Study) -> list[Row]:
+    packed = chunks.pack(study)
+    return [row for number in range(study.chunks) for row in chunks.computed(packed, study.chunk(number))]
+
+
+def test_rows_together_are_those_of_the_single_solver() -> None:
+    study = asked(**SAMPLE)
+    found = computed(study)
+    assert {row.status for row in found} == {"converged"}
+    assert {row.numbers["verdict"] for row in found} == {"local minimum"}
+    assert sum(row.numbers["origin"] != "single solver" for row in found) >= 0.9 * len(found)
+    case, values = instance.load(NAME), study.design.rows(0, 24)
+    for k in range(0, 24, 8):
+        r, theta_dot = values[k]
+        single = solvers.solve(replace(case, initial=(r, 0.0, 0.0, theta_dot)), examined=False)
+        assert found[k].numbers["objective"] == pytest.approx(single.objective, rel=1e-9)
+        size = np.abs(single.lam[:, 0]).max()
+        for i, state in enumerate(case.model.spec.state_names):
+            assert abs(float(found[k].numbers[f"costate_initial.{state}"] or 0.0) - single.lam[i, 0]) <= 1e-9 * size
+
+
+def test_what_is_not_solved_together_is_solved_alone() -> None:
+    """Bounds that some rows meet, and a start that is far away."""
+    tight = asked(vary={"initial.r": "1.0:1.4:8"}, certificate="local")
+    task = tight.task
+    assert together(task)
+    found = computed(tight)
+    assert {row.status for row in found} == {"converged"}
+    kept = asked(vary={"initial.r": "1.0:1.1:2"}, trajectories=True)
+    full = asked(vary={"initial.r": "1.0:1.1:2"}, certificate="full")
+    timed = asked(vary={"time.tf": "6.0:6.3:2"})
+    assert not any(together(one.task) for one in (kept, full, timed))
+
+
+def test_without_certificates_rows_are_minima_all_the_same() -> None:
+    found = computed(asked(**SAMPLE | {"certificate": "none"}))
+    assert {row.numbers["verdict"] for row in found} == {None}
+    local = computed(asked(**SAMPLE))
+    same = [a.numbers["objective"] == b.numbers["objective"] for a, b in zip(found, local, strict=True)]
+    assert all(same)
+
+
+def test_many_rows_are_compiled_where_that_is_possible() -> None:
+    pytest.importorskip("numba")
+    few, many = (asked(sample=count, uniform={"initial.r": "0.9,1.1"}) for count in (MANY - 1, MANY))
+    assert not few.compiled
+    assert many.compiled
+    assert many.identity["backend"] == "numba"
+
+
+def test_workers_change_no_byte(tmp_path: Path) -> None:
+    study = asked(**SAMPLE | {"certificate": "local"})
+    for name, count in (("one", 1), ("two", 2)):
+        reports.carry_out(study, tmp_path / name, lambda count=count: Workers(count), count)
+    for name in ("table.csv", "result.json", "study.json"):
+        assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes(), name
