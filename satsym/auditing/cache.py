@@ -26,7 +26,6 @@ from satsym import kept, sources
 from satsym.auditing.judged import Judged
 from satsym.auditing.ledger import documents
 from satsym.auditing.ledger.contents import Ledger
-from satsym.auditing.ledger.load import read
 from satsym.auditing.run import audit as judge
 
 _JUDGING = ("satsym.auditing.run", "satsym.auditing.judged")
@@ -71,7 +70,7 @@ def audit_all(
         context = get_context("spawn")
         queue = context.Queue()
         with ProcessPoolExecutor(processes, context, _telling, (queue,)) as pool:
-            running = {ledger.document.key: pool.submit(_judged, ledger.path) for ledger in left}
+            running = {ledger.document.key: pool.submit(_judged, ledger) for ledger in left}
             _follow(list(running.values()), queue, announce)
             found |= {key: future.result() for key, future in running.items()}
     return {ledger.document.key: found[ledger.document.key] for ledger in ledgers}
@@ -105,9 +104,9 @@ def _telling(queue: Any) -> None:
     _tell.append(queue)
 
 
-def _judged(path: Path) -> list[Judged]:
+def _judged(ledger: Ledger) -> list[Judged]:
     """All rows of a ledger, in a process of its own."""
-    return audit(read(path), (), _tell[0].put, fresh=True)
+    return audit(ledger, (), _tell[0].put, fresh=True)
 
 
 def _place(ledger: Ledger) -> Path:
