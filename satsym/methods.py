@@ -42,8 +42,8 @@ class Asked(Protocol):
         """Given final states by name."""
 
     @property
-    def ranges(self) -> Mapping[str, Any]:
-        """Limits of final states by name."""
+    def end_limits(self) -> Mapping[str, Any]:
+        """What limits the end, by name."""
 
 
 @dataclass(frozen=True)
@@ -96,8 +96,8 @@ def _no_sweep(asked: Asked) -> str:
             f"a given final {', '.join(asked.final)} cannot be swept for; leave it free and weigh its error in the "
             'terminal cost, or use method "collocation"'
         )
-    if asked.ranges:
-        return f'a range of the final {", ".join(asked.ranges)} cannot be swept for; use method "collocation"'
+    if asked.end_limits:
+        return f'a limit of the final {", ".join(asked.end_limits)} cannot be swept for; use method "collocation"'
     if spec.multipliers:
         return f'terminal constraints of {spec.name} cannot be swept for; use method "collocation"'
     return ""

@@ -79,7 +79,7 @@ class Kind(str, Enum):
     EARLIER = "earlier arrival"
     STARTS = "seeded starts"
     ARCS = "structure of boundary arcs"
-    ENDS = "other ends of ranges"
+    ENDS = "other limits of the end"
     UNKNOWNS = "other values of what is free"
 
 

@@ -40,8 +40,7 @@ _OF_VARIABLES = (
 _UNLESS_DEFAULT = (
     *(*_OF_LINEAR_MODELS, "keplerian", "switching", "coordinates", "velocities", "quantities", "balances"),
     *("switching_curve", "conditions", "equilibria", "mode_groups", "control_parts", "maximise", "objective_unit"),
-    "chattering",
-    *("path_constraints", "linear_quadratic"),
+    *("chattering", "path_constraints", "linear_quadratic", "terminal_inequalities"),
 )
 
 
@@ -241,12 +240,13 @@ class ProblemSpec:
     objective_unit
         Of the objective, where it is stated; else empty.
     chattering
-        Names of the controls whose singular arcs, within their bounds, are reached and left by infinitely many switches
-        only.
+        Names of controls whose singular arcs, within their bounds, are met and left by infinitely many switches only.
     path_constraints
         Inequalities on the state along the way. May be empty.
     linear_quadratic
         Whether, with such constraints, all is linear or quadratic so that signs of matrices tell whether it is convex.
+    terminal_inequalities
+        Names of the last of `multipliers`, which belong to inequalities at the end.
     """
 
     name: str
@@ -281,6 +281,7 @@ class ProblemSpec:
     chattering: tuple[str, ...] = ()
     path_constraints: tuple[PathConstraint, ...] = ()
     linear_quadratic: bool = False
+    terminal_inequalities: tuple[str, ...] = ()
 
     def objective(self, cost: float) -> float:
         """What the author calls the objective, where the cost is this; and the other way round."""
@@ -312,8 +313,7 @@ class ProblemSpec:
         """Places in the argument ``bounds`` of numbers that are lower bounds of controls, which may be negative."""
         if self.control_set == "box":
             return frozenset(range(len(self.controls)))
-        found: set[int] = set()
-        at = 0
+        found, at = set[int](), 0
         for part in self.control_parts:
             if part.kind == "box":
                 found |= set(range(at, at + len(part.controls)))

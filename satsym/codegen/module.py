@@ -73,6 +73,7 @@ def spec(derivation: Derivation, source: str) -> ProblemSpec:
         maximise=bool(problem and problem.maximise),
         objective_unit=derived_units.of_objective(derivation),
         has_reference=bool(model.reference),
+        terminal_inequalities=tuple(problem.terminal_inequalities) if problem else (),
         path_constraints=tuple(PathConstraint(one.name, one.order) for one in inequalities.every(derivation)),
         linear_quadratic=inequalities.linear_quadratic(derivation),
         autonomous=not any(

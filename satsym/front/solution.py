@@ -143,5 +143,5 @@ def solve(instance: Instance | str | Path, progress: Progress | None = None, **o
         from satsym.analysis.comparison import limits_noted
 
         found = limits_noted(found)
-    found_there = case.case.free or case.case.ranges  # which the instance of what was found says
+    found_there = case.case.free or case.case.end_limits  # which the instance of what was found says
     return Solution(case, found if found_there else replace(found, instance=case.case))

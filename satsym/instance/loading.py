@@ -142,13 +142,11 @@ def _resolve(written: Written, file: InstanceFile, model: Kernels) -> Instance:
         free=free,
         ranges=ends.ranges(file.final, spec),
     )
-    _refuse_beside_ranges(found)
     changing = continuation.varied(file.continuation, spec, found)
     for one in changing:
         found = one.at(found, 1.0)
     found = replace(found, continuation=changing)
-    if changing and found.ranges:
-        raise BadInput("[continuation]: is not done beside ranges of final states; write numbers in [final]")
+    _refuse_beside_limits(found)
     if file.study:
         for table in (file.study.vary, file.study.normal, file.study.uniform):
             for key, _ in numbers.texts(table):
@@ -156,11 +154,15 @@ def _resolve(written: Written, file: InstanceFile, model: Kernels) -> Instance:
     return found
 
 
-def _refuse_beside_ranges(instance: Instance) -> None:
-    """Refuse what is not solved beside ranges of final states."""
+def _refuse_beside_limits(instance: Instance) -> None:
+    """Refuse what is not solved beside ranges of final states, and inequalities at the end."""
     for name in instance.ranges:
-        key = f"[final] {name}: a range"
         if name in instance.solver.free_angles:
+            key = f"[final] {name}: a range"
             raise BadInput(f"{key} does not count modulo a turn; leave the state out of [solver] free_angles")
+    for name in instance.end_limits:
         if instance.free:
-            raise BadInput(f'{key} is not solved beside {instance.free[0].key} = "{resolve.FREE}"; write a number')
+            key = instance.free[0].key
+            raise BadInput(f'{key}: "{resolve.FREE}" is not solved beside limits of the end ({name}); write a number')
+        if instance.continuation:
+            raise BadInput(f"[continuation]: is not done beside limits of the end ({name}); leave it out")

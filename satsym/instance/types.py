@@ -158,7 +158,8 @@ class Instance:
     ranges
         Lower and upper limits of final states by name, infinite where there is none.
     met
-        At which end of its range a final state is, once that was found; `final` then holds its value.
+        At which end of its range a final state is, once that was found; `final` then holds its value. With these are
+        the inequalities at the end that are active, all at their upper end, which are constraints of `model` then.
     """
 
     name: str
@@ -188,11 +189,21 @@ class Instance:
     met: Mapping[str, Side] = field(default_factory=dict)
 
     def meeting(self, met: Mapping[str, Side]) -> Instance:
-        """The instance whose final states are at these ends of their ranges, the others of them free."""
+        """The instance whose end is at these limits, and at no other one."""
+        from satsym.kernels.active import with_active  # here, for it loads numpy, as below
+
         final = {name: value for name, value in self.final.items() if name not in self.met}
-        final |= {name: side.of(self.ranges[name]) for name, side in met.items()}
+        final |= {name: side.of(self.ranges[name]) for name, side in met.items() if name in self.ranges}
         ordered = {name: final[name] for name in self.model.spec.state_names if name in final}
-        return replace(self, final=ordered, met=dict(met))
+        return replace(self, final=ordered, met=dict(met), model=with_active(self.model, met))
+
+    @cached_property
+    def end_limits(self) -> Mapping[str, tuple[Side, ...]]:
+        """What limits the end, by name: at which ends each range has a limit, and each inequality, whose upper is 0."""
+        from satsym.kernels.active import stated
+
+        found = {name: tuple(s for s in Side if math.isfinite(s.of(ends))) for name, ends in self.ranges.items()}
+        return found | dict.fromkeys(stated(self.model).spec.terminal_inequalities, (Side.UPPER,))
 
     def require_numbers(self) -> None:
         """Refuse, for what does not optimise, an instance that leaves something free.

@@ -131,6 +131,8 @@ def _fault(spec: ProblemSpec) -> str:
         return "coordinates and velocities that are not its states"
     if set(spec.linear) - set(LINEAR):
         return "functions of linear models that none has"
+    if len(spec.terminal_inequalities) > len(spec.multipliers):
+        return "inequalities at the end without multipliers"
     groups = (
         spec.states,
         spec.controls,

@@ -69,10 +69,10 @@ def _solved_in_steps(instance: Instance, progress: Progress | None, last: Solver
 def _with_free(instance: Instance, progress: Progress | None, examined: bool = True) -> Solution:
     """With what the instance leaves free besides its end, if it does."""
     found = partial(_found, examined=examined)
-    if instance.ranges:
-        from satsym.solvers import ranges
+    if instance.end_limits:
+        from satsym.solvers import end_limits
 
-        return ranges.solve(instance, progress, partial(_found, examined=False), found)
+        return end_limits.solve(instance, progress, partial(_found, examined=False), found)
     if not instance.free:
         return found(instance, progress)
     from satsym.solvers.unknowns import solving

@@ -63,7 +63,7 @@ def _plain(task: Task) -> bool:
     """Whether the problem is smooth, and nothing is asked of solvers besides."""
     instance, spec = task.instance, task.instance.model.spec
     smooth = not (spec.switching or spec.throttled or spec.stationary or spec.directional or spec.path_constraints)
-    said = (instance.free, instance.continuation, instance.solver.free_angles, instance.guess, instance.ranges)
+    said = (instance.free, instance.continuation, instance.solver.free_angles, instance.guess, instance.end_limits)
     return smooth and not any(said) and redundant(instance) is None
 
 

@@ -55,19 +55,31 @@ def refuse_misfits(model: Model, problem: Problem | None) -> None:
     if problem and problem.running_cost == 0 and problem.terminal_cost == 0:
         raise DerivationError(f"{problem.name}: no objective; state a running_cost or a terminal_cost")
     if problem:
+        _refuse_inequalities(problem)
         _refuse_constraints(problem)
     if problem and not model.controls:
         raise DerivationError(f"{problem.name}: the model has no controls, so there is nothing to optimise")
 
 
+def _refuse_inequalities(problem: Problem) -> None:
+    """Refuse inequalities that are stated otherwise than by name, and those at the end that are called like a state."""
+    for field in ("path_constraints", "terminal_inequalities"):
+        stated, what = getattr(problem, field), f"{problem.name}: {field}"
+        if not isinstance(stated, Mapping):
+            raise DerivationError(f'{what}: write a name for each, {{"ceiling": h - h_max}}', (field,))
+        for name in stated:
+            if not is_name(name) or "__" in name:
+                raise DerivationError(f"{what}: got {shown(name)}; a constraint's name is {NAMES}", (field,))
+    states = {v.symbol for v in problem.model.states}
+    for name in problem.terminal_inequalities:
+        if name in states:
+            message = f"{problem.name}: terminal_inequalities: {name} is the name of a state; take another"
+            raise DerivationError(message, ("terminal_inequalities",))
+
+
 def _refuse_constraints(problem: Problem) -> None:
-    """Refuse constraints along the way that are stated otherwise than by name, or beside what excludes them."""
+    """Refuse constraints along the way beside what excludes them."""
     constraints, what = problem.path_constraints, f"{problem.name}: path_constraints"
-    if not isinstance(constraints, Mapping):
-        raise DerivationError(f'{what}: write a name for each, {{"ceiling": h - h_max}}', ("path_constraints",))
-    for name in constraints:
-        if not is_name(name) or "__" in name:
-            raise DerivationError(f"{what}: got {shown(name)}; a constraint's name is {NAMES}", ("path_constraints",))
     controls = problem.model.controls if problem.control_set == "box" else ()
     if taken := [b.symbol for b in control_sets.bounds("box", controls) if b.symbol in constraints]:
         message = f"{taken[0]} is the name of a bound of the controls; take another"
@@ -114,6 +126,8 @@ def refuse_foreign_symbols(derivation: Derivation) -> None:
         refuse("the running cost", [problem.running_cost], everything | derived, "running_cost")
         refuse("the terminal cost", [problem.terminal_cost], motion, "terminal_cost")
         refuse("a terminal constraint", problem.terminal_constraints, motion, "terminal_constraints")
+        for name, stated in problem.terminal_inequalities.items():
+            refuse(f"the terminal inequality {name}", [stated], motion, "terminal_inequalities")
         for name, stated in problem.path_constraints.items():
             refuse(f"the path constraint {name}", [stated], everything, "path_constraints")
 

@@ -131,7 +131,7 @@ def _enter_cost(known: dict[str, Dimension | None], problem: Problem, require: R
         known[n.rate_of(n.costate_of(state)).name] = over(running, known[state.name])
         known[n.target(state).name] = known[state.name]
         known[n.given(state).name] = known[n.on_reference(state).name] = PLAIN
-    for multiplier, constraint in zip(n.multipliers(problem), problem.terminal_constraints, strict=True):
+    for multiplier, constraint in zip(n.multipliers(problem), problem.end_conditions, strict=True):
         known[multiplier.name] = over(total, require("a terminal constraint", constraint))
     known[pn.REDUCED_COST.name] = running
     known.update({s.name: total for s in (pn.POTENTIAL, pn.MINIMUM_COST, pn.COST_FROM_REST)})

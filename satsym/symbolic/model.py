@@ -267,6 +267,8 @@ class Problem:
         S(x, t, p), taken at the final time (Mayer term).
     terminal_constraints
         Expressions psi(x, t, p) that vanish at the final time.
+    terminal_inequalities
+        Expressions psi(x, t, p) by name, none of which may be positive at the final time: ``{"above": r_min - r}``.
     path_constraints
         Expressions g(x, u, t, p) by name, none of which may ever be positive: ``{"ceiling": h - h_max}``.
     control_set
@@ -292,12 +294,18 @@ class Problem:
     running_cost: sp.Expr
     terminal_cost: sp.Expr = sp.Integer(0)
     terminal_constraints: tuple[sp.Expr, ...] = ()
+    terminal_inequalities: Mapping[str, sp.Expr] = field(default_factory=dict)
     path_constraints: Mapping[str, sp.Expr] = field(default_factory=dict)
     control_set: ControlSetKind = "free"
     control_sets: Mapping[str, AdmissibleSet] = field(default_factory=dict)
     convention: Convention = "minimum"
     maximise: bool = False
     unit: str = ""
+
+    @property
+    def end_conditions(self) -> tuple[sp.Expr, ...]:
+        """All psi that may vanish at the final time, each with a multiplier: constraints, then inequalities."""
+        return (*self.terminal_constraints, *self.terminal_inequalities.values())
 
 
 def variables_of(model: Model) -> tuple[Variable, ...]:

@@ -99,8 +99,8 @@ def is_solved(expression: sp.Expr) -> bool:
 
 
 def multipliers(problem: Problem) -> tuple[sp.Symbol, ...]:
-    """The multipliers of the terminal constraints."""
-    return tuple(sp.Symbol(f"nu_{k}", real=True) for k in range(1, len(problem.terminal_constraints) + 1))
+    """The multipliers of terminal constraints and inequalities."""
+    return tuple(sp.Symbol(f"nu_{k}", real=True) for k in range(1, len(problem.end_conditions) + 1))
 
 
 residual_of = named("residual_{}")

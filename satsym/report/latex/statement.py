@@ -106,14 +106,21 @@ def _limited(part: ControlPart) -> list[str]:
 
 
 def _constraints(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
-    if derivation.problem is None or not derivation.problem.terminal_constraints:
+    problem = derivation.problem
+    if problem is None or not problem.end_conditions:
         return Part()
-    end = typeset.at("t_f")
+    end, equalities = typeset.at("t_f"), len(problem.terminal_constraints)
     rows = [
-        Row(_address(derivation, f"psi_{k}"), plain(rf"\psi_{{{k}}}"), end.terms(constraint), end="= 0")
-        for k, constraint in enumerate(derivation.problem.terminal_constraints, 1)
+        Row(
+            _address(derivation, f"psi_{k}"),
+            plain(rf"\psi_{{{k}}}"),
+            end.terms(condition),
+            end="= 0" if k <= equalities else r"\le 0",
+        )
+        for k, condition in enumerate(problem.end_conditions, 1)
     ]
-    return Part((f"{texts.get('statement', 'constraints')}\n{display(rows)}",))
+    parts = {"constraints": rows[:equalities], "terminal_inequalities": rows[equalities:]}
+    return Part(tuple(f"{texts.get('statement', key)}\n{display(some)}" for key, some in parts.items() if some))
 
 
 def _path_constraints(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:

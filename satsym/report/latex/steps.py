@@ -159,8 +159,10 @@ def _boundary_conditions(context: Context, step: Step) -> Shown:
     types = [texts.get("boundary", key, **numbers) for key in ("none", "time", "state", curve, "both")]
     items = "\n".join(rf"  \item {text}" for text in types)
     parts.append(f"{texts.get('boundary', 'intro')}\n\\begin{{enumerate}}\\satsymtogether\n{items}\n\\end{{enumerate}}")
-    if problem.terminal_constraints:
+    if problem.end_conditions:
         parts.append(texts.get("boundary", "constraints"))
+    if problem.terminal_inequalities:
+        parts.append(texts.get("boundary", "inequalities"))
     rows = [row for group in groups.values() for row in group]
     return Shown("\n".join(parts), rows[0].address, rows[-1].address)
 

@@ -106,8 +106,8 @@ def _interval(interval: CostInterval, spec: ProblemSpec) -> dict[str, Any]:
 
 
 def _ranges(instance: Instance) -> dict[str, dict[str, str | None]]:
-    """At which end of its range each final state is, ``None`` within it; no key where none has a range."""
-    met = {name: instance.met[name].value if name in instance.met else None for name in instance.ranges}
+    """Which limits of the end are met, ``None`` within them; no key where there are none."""
+    met = {name: instance.met[name].value if name in instance.met else None for name in instance.end_limits}
     return {"ends_met": met} if met else {}
 
 

@@ -162,7 +162,9 @@ def read(instance: Instance, folder: Path) -> tuple[Solution | Simulation, sets.
     except BadInput as error:
         raise again(listing, f"cannot be read ({printable(str(error), 200)})") from None
     instance = _with_found(instance, result.parameters_found, stored)
-    instance = instance.meeting({k: v for k, v in result.ends_met.items() if v is not None and k in instance.ranges})
+    instance = instance.meeting(
+        {k: v for k, v in result.ends_met.items() if v is not None and k in instance.end_limits}
+    )
     if not _starts_at(stored["x"], instance.initial):
         raise again(place, f"starts elsewhere than {instance.name}, which has changed since")
     make = _solution if result.command == "solve" else _flight

@@ -13,7 +13,7 @@ from satsym.solvers import revolutions
 from satsym.solvers.certificate import competitors, conditions
 from satsym.solvers.certificate.comparison import Comparison, Competitor
 from satsym.solvers.certificate.conditions import correction, node_by_node
-from satsym.solvers.certificate.end_ranges import with_ranges
+from satsym.solvers.certificate.end_limits import with_limits
 from satsym.solvers.certificate.flow import TOLERANCE, Flow, flow
 from satsym.solvers.certificate.jacobi import Conjugate, conjugate
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
@@ -64,7 +64,7 @@ def examined(
         return None, None
     given = settled(solution)
     certificate, competitor = _judged(given, deadline, seed, compared)
-    certificate = with_ranges(with_kernels_examined(certificate, given), given)
+    certificate = with_limits(with_kernels_examined(certificate, given), given)
     # how the least cost is curved in what is free tells only who solves beside it
     return with_start(certificate, solution, UNRESOLVED.checks) if solution.instance.free else certificate, competitor
 

@@ -89,8 +89,9 @@ class Repeated:
                 f"{instance.name}: the controls of {instance.model.spec.name} switch, which cannot be solved again "
                 "and again; solve each instance by itself"
             )
-        if instance.ranges:
-            raise BadInput(f"{instance.name}: [final]: ranges are not looked into again and again; write numbers")
+        if instance.end_limits:
+            name = next(iter(instance.end_limits))
+            raise BadInput(f"{instance.name}: whether {name} is active at the end is not looked for again and again")
         if instance.solver.free_angles:
             raise BadInput(
                 f"{instance.name}: [solver] free_angles: turns are not looked for again and again; remove it"

@@ -108,7 +108,7 @@ def _declared(derivation: Derivation, name: str, address: str) -> Found:
     found: dict[str, Found] = {symbol.name: value for symbol, value in definitions_of(model).items()}
     if problem:
         found |= {"L": problem.running_cost, "S": sp.sympify(problem.terminal_cost)}
-        found |= {f"psi_{k}": value for k, value in enumerate(problem.terminal_constraints, start=1)}
+        found |= {f"psi_{k}": value for k, value in enumerate(problem.end_conditions, start=1)}
         found |= {name: sp.sympify(value) for name, value in problem.path_constraints.items()}
     found |= {key: _column(value) if value.is_Matrix else value for key, value in model.declared().items()}
     if name not in found:

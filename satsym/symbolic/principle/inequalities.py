@@ -36,7 +36,7 @@ def linear_quadratic(so_far: Derivation) -> bool:
 
     return (
         settled(list(so_far.rhs("first_order")), 1)
-        and settled(list(problem.terminal_constraints), 1)
+        and settled(list(problem.end_conditions), 1)
         and settled([problem.running_cost, problem.terminal_cost], 2)
         and settled([one.rates[0] for one in found], 2)
     )

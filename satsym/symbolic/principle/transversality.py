@@ -42,7 +42,7 @@ def boundary_residual(so_far: Derivation) -> Step:
     given, on_reference = [n.given(x) for x in states], [n.on_reference(x) for x in states]
     target, nu = [n.target(x) for x in states], n.multipliers(problem)
     curve = [so_far.model.reference.get(x, sp.Integer(0)) for x in states]
-    constraints = [sp.sympify(c) for c in problem.terminal_constraints]
+    constraints = [sp.sympify(c) for c in problem.end_conditions]
     weighted = problem.terminal_cost + sum((v * c for v, c in zip(nu, constraints, strict=True)), sp.Integer(0))
 
     slopes, slope_t = [tidy(g) for g in gradient(weighted, states)], tidy(sp.diff(weighted, t))

@@ -73,7 +73,7 @@ def _chain(so_far: Derivation) -> Chain | None:
         return None
     constants = definitions_of(model)
     cost = sp.sympify(problem.running_cost).xreplace(constants)
-    if problem.terminal_cost != 0 or problem.terminal_constraints or not cost.is_positive:
+    if problem.terminal_cost != 0 or problem.end_conditions or not cost.is_positive:
         return None
     states, (control,) = symbols_of(model.states), symbols_of(model.controls)
     if problem.control_set != "box" or cost.free_symbols & {*states, control, n.TIME}:

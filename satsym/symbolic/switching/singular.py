@@ -215,4 +215,4 @@ def _by_h(so_far: Derivation, search: Search) -> list[Conclusion]:
 def _terminal(so_far: Derivation) -> list[sp.Expr]:
     problem = so_far.problem
     assert problem is not None
-    return [problem.terminal_cost, *problem.terminal_constraints]
+    return [problem.terminal_cost, *problem.end_conditions]

@@ -1,4 +1,4 @@
-"""Final states in ranges: which ends are met is found by machine, and other ends are competitors."""
+"""Limits of the end: which of them are met is found by machine, and other choices are competitors."""
 
 from __future__ import annotations
 
@@ -19,9 +19,10 @@ from satsym.instance.ends import Side
 from satsym.report.results import trajectory
 from satsym.report.results.objects import solution_object
 from satsym.solvers.certificate import certify
-from satsym.solvers.certificate.end_ranges import pushes
+from satsym.solvers.certificate.end_limits import pushes
 from satsym.status import BadInput, Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
+from satsym.symbolic.model import t
 
 STATES, CONTROLS = (Variable("x", "x"), Variable("v", "v")), (Variable("u", "u"),)
 PARAMETERS = tuple(Variable(name, name, default=0.0) for name in ("c", "k", "l"))
@@ -32,6 +33,30 @@ LINE = FirstOrder(
 PUSHED = Problem(name="pushed", title="pushed", model=LINE, running_cost=c + u**2 / 2)
 HILL = Problem(name="hill", title="hill", model=LINE, running_cost=u**2 / 2, terminal_cost=-k * (x - 0.1) ** 2 / 2)
 WALLED = Problem(name="walled", title="walled", model=LINE, running_cost=u**2 / 2, path_constraints={"wall": x - wall})
+PARABOLA = Problem(
+    name="parabola",
+    title="beyond a parabola",
+    model=LINE,
+    running_cost=u**2 / 2,
+    terminal_inequalities={"beyond": 1 - x - v**2 / 4, "slow": v - 2 - k},
+)
+BACK_BY = Problem(
+    name="back_by",
+    title="in time",
+    model=LINE,
+    running_cost=c + u**2 / 2,
+    terminal_inequalities={"late": t - k},
+    terminal_constraints=(x - 1,),
+)
+HIGH = Problem(
+    name="high",
+    title="as high as it goes",
+    model=LINE,
+    running_cost=-(u**2) / 2,
+    terminal_cost=x,
+    maximise=True,
+    terminal_inequalities={"speed": v - k},
+)
 AT_REST = {"initial": {"x": 0.0, "v": 0.0}, "tf": 1.0}
 
 
@@ -92,11 +117,51 @@ def test_the_multiplier_is_what_the_limit_costs():
     assert n == len(pressing)
 
 
+@pytest.mark.parametrize("slow", [0.0, -1.5])
+def test_of_inequalities_at_the_end_the_active_ones_are_found(slow: float):
+    """Beyond 1 - v^2 / 4, a curve along which the effort is least, unless the velocity is bounded further."""
+    limits = [
+        {"type": "ineq", "fun": lambda z: z[0] + z[1] ** 2 / 4 - 1},
+        {"type": "ineq", "fun": lambda z: 2 + slow - z[1]},
+    ]
+    wanted = minimize(effort, [1.0, 0.4], constraints=limits, tol=1e-14, method="SLSQP")
+    found = certified(PARABOLA, parameters={"k": slow}, **AT_REST)
+    assert found.objective == pytest.approx(wanted.fun, rel=1e-9)
+    assert ends(found) == {"beyond": "upper", "slow": "upper" if slow else None}
+    assert found.found.x[:, -1] == pytest.approx(wanted.x, abs=1e-6)
+
+
+def test_an_end_that_comes_early_enough_by_itself_is_not_held_back():
+    """c T + 3 / (2 T^3) with a free final velocity is least where T^4 = 9 / (2 c)."""
+    lasting = (4.5 / 0.5) ** 0.25
+    given = {"parameters": {"c": 0.5, "k": 3.0}, "initial": {"x": 0.0, "v": 0.0}, "tf": "free", "tf_guess": 1.0}
+    found = certified(BACK_BY, **given)
+    assert found.objective == pytest.approx(0.5 * lasting + 1.5 / lasting**3, rel=1e-9)
+    assert ends(found) == {"late": None}
+
+
+@pytest.mark.parametrize("speed", [0.1, 1.0])
+def test_of_an_objective_to_maximise_limits_have_the_same_signs(speed: float):
+    """x - 1/2 int u^2 is greatest with u = 1 - t, unless that ends too fast: v = 1/2 then."""
+    found = certified(HIGH, parameters={"k": speed}, **AT_REST)
+    wanted = minimize(lambda z: effort(z) - z[0], [0.1, 0.0], bounds=[(None, None), (None, speed)], tol=1e-14)
+    assert found.objective == pytest.approx(-wanted.fun, rel=1e-7)
+    assert ends(found) == {"speed": "upper" if speed < 0.5 else None}
+
+
+def test_inequalities_at_the_end_are_typeset_in_both_languages():
+    for lang, words in (("en", "terminal inequalities"), ("id", "pertidaksamaan akhir")):
+        text = satsym.derive(PARABOLA).latex(lang=lang)
+        assert words in text
+        assert r"\le 0" in text
+        assert r"\nu_k \ge 0" in text
+
+
 def test_an_end_that_pulls_and_a_range_that_is_left_fail():
     found = certified(PUSHED, final={"x": [1.0, 2.0]}, **AT_REST).found
     turned = replace(found.instance, met={"x": Side.UPPER}, ranges={"x": (-5.0, 1.0)})
     moved = replace(found.instance, ranges={"x": (1.0, 2.0), "v": (2.0, 3.0)})
-    for case, name in ((turned, "negative multiplier of a final range"), (moved, "final range violated")):
+    for case, name in ((turned, "negative multiplier of a limit of the end"), (moved, "limit of the end violated")):
         certificate = certify(replace(found, instance=case))
         assert certificate is not None
         assert certificate.verdict is Verdict.FAILED
@@ -109,7 +174,7 @@ def test_of_two_ends_that_are_local_optima_the_cheaper_is_found():
     assert ends(found) == {"x": "lower"}
     assert found.objective == pytest.approx(1.5 - 3 * 1.1**2, rel=1e-10)
     others = found.to_dict()["certificate"]["competitors"][-1]
-    assert (others["kind"], others["solved"]) == ("other ends of ranges", 2)
+    assert (others["kind"], others["solved"]) == ("other limits of the end", 2)
     assert others["cheapest"] == pytest.approx(1.5 - 3 * 0.9**2, rel=1e-9)
 
 
@@ -136,6 +201,13 @@ def test_before_a_wall_too():
     assert ends(found) == {"x": "lower"}
     assert found.objective == pytest.approx(exact.objective, rel=1e-9)
     assert [one.kind for one in found.events] == ["entry", "exit"]
+
+
+def test_before_a_wall_inequalities_at_the_end_are_found_too():
+    problem = replace(WALLED, name="walled_back", terminal_inequalities={"back": v + 1})
+    found = certified(problem, initial={"x": 0.0, "v": 1.0}, final={"x": 0.0}, tf=1.0, parameters={"l": 0.1})
+    assert found.objective == pytest.approx(40 / 9, rel=1e-10)
+    assert ends(found) == {"back": "upper"}
 
 
 def test_where_controls_switch_too():
@@ -196,7 +268,7 @@ def test_a_range_behind_a_wall_has_no_answer():
     given = {"parameters": {"l": 0.1}, "final": {"x": [0.2, 0.3], "v": 0.0}}
     found = satsym.solve(satsym.Instance.of(WALLED, **AT_REST, **given))
     assert not found.status.answered
-    assert "ends of the final ranges" in found.message
+    assert "limits that the end meets" in found.message
 
 
 def test_a_range_of_no_width_is_a_given_end():

@@ -1,8 +1,8 @@
-"""Final states in ranges: which of them end at which end of theirs is found, and other ends are competitors.
+"""Limits of the end: which of them are met is found, and other choices of them are competitors.
 
-The problem with some ends given and the other states free is one like any other. From that with none given, ends are
-taken where the answer is beyond them, and left where their multipliers pull. Where that leads nowhere, all choices are
-tried.
+Final states may lie in ranges, and inequalities hold at the end. The problem with some of these limits met and no other
+one stated is one like any other. From that with none met, limits are taken where the answer is beyond them, and left
+where their multipliers pull. Where that leads nowhere, all choices are tried.
 """
 
 from __future__ import annotations
@@ -13,14 +13,13 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 import msgspec
-import numpy as np
 
 from satsym.instance import Instance
 from satsym.instance.ends import Side
 from satsym.solution import Kind, Progress, Solution
 from satsym.solvers import iteration
 from satsym.solvers.certificate.comparison import Comparison, summed
-from satsym.solvers.certificate.end_ranges import OUTSIDE, SIGN, outside, pushes
+from satsym.solvers.certificate.end_limits import BEYOND, SIGN, beyond, pushes
 from satsym.status import BadInput, Status, Verdict
 from satsym.wording import counted
 
@@ -38,7 +37,7 @@ Solver = Callable[[Instance, Progress | None], Solution]
 
 
 def solve(instance: Instance, progress: Progress | None, quick: Solver, last: Solver) -> Solution:
-    """Solve an instance some of whose final states must lie in ranges.
+    """Solve an instance whose end has limits.
 
     Parameters
     ----------
@@ -119,11 +118,11 @@ class Trials:
 
 
 def changed(solution: Solution) -> dict[str, Side] | None:
-    """Other ends that a solution asks for: one that it is beyond, or none that pulls; ``None`` where these will do."""
+    """Other limits that a solution asks for: one that it is beyond, or none that pulls; ``None`` where these do."""
     met = dict(solution.instance.met)
-    beyond = {place: by for place, by in outside(solution).items() if by > OUTSIDE}
-    if beyond:
-        name, side = max(beyond, key=lambda place: beyond[place])
+    violated = {place: by for place, by in beyond(solution).items() if by > BEYOND}
+    if violated:
+        name, side = max(violated, key=lambda place: violated[place])
         return {**met, name: side}
     pulling = {name: push for name, push in pushes(solution).items() if push < -SIGN}
     if not pulling:
@@ -133,7 +132,7 @@ def changed(solution: Solution) -> dict[str, Side] | None:
 
 def _inside(solution: Solution) -> bool:
     """Whether it is an answer, all of whose final states are in their ranges."""
-    return solution.status.answered and max(outside(solution).values(), default=0.0) <= OUTSIDE
+    return solution.status.answered and max(beyond(solution).values(), default=0.0) <= BEYOND
 
 
 def _found(trials: Trials, met: Met) -> Solution:
@@ -165,13 +164,13 @@ def _unanswered(trials: Trials, first: Solution) -> Solution:
     if first.status is Status.INFEASIBLE:  # with fewer conditions, so that more of them have no answer either
         return replace(nothing, status=first.status, message=first.message)
     reasons = [one.message for one in trials.known.values() if not one.status.answered]
-    message = f"none of {count} of ends of the final ranges has an answer that keeps to them"
+    message = f"none of {count} of limits that the end meets has an answer that keeps to the others"
     return replace(nothing, status=Status.NOT_CONVERGED, message=f"{message}: {reasons[-1]}" if reasons else message)
 
 
 def choices(instance: Instance) -> Iterator[dict[str, Side]]:
     """All choices of ends, those with few of them first."""
-    sides = {name: [side for side in Side if np.isfinite(side.of(limits))] for name, limits in instance.ranges.items()}
+    sides = instance.end_limits
     for count in range(len(sides) + 1):
         for names in itertools.combinations(sides, count):
             for chosen in itertools.product(*(sides[name] for name in names)):
@@ -183,18 +182,18 @@ def _others(instance: Instance, met: Met) -> list[dict[str, Side]]:
     found = [one for one in itertools.islice(choices(instance), CHOICES + 1) if one != met]
     if len(found) <= CHOICES:
         return found
-    names = instance.ranges.keys()
+    names = instance.end_limits
     return [one for one in choices(instance) if sum(one.get(name) != met.get(name) for name in names) == 1]
 
 
 def _message(solution: Solution) -> str:
-    """The solver's, and where final states are in their ranges."""
+    """The solver's, and which limits of the end are met."""
     if not solution.status.answered:
         return solution.message
     met = solution.instance.met
     where = ", ".join(
-        f"{name} ends at its {met[name].value} limit" if name in met else f"{name} ends within its range"
-        for name in solution.instance.ranges
+        f"{name} ends at its {met[name].value} limit" if name in met else f"{name} ends within its limits"
+        for name in solution.instance.end_limits
     )
     return f"{solution.message}; {where}"
 
