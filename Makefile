@@ -11,7 +11,7 @@ PYTEST := env -u PYTHONDONTWRITEBYTECODE $(BIN)/python -m pytest -n 2 --dist wor
 # Each recipe says itself what the user needs to know; errors of the tools come through (pip -qq: errors only).
 .SILENT:
 .NOTPARALLEL:
-.PHONY: help demo test test-whole test-versions lint format derive check-derive bench bench-returns bench-drift bench-audit bench-truth bench-optima clean
+.PHONY: help demo test test-whole test-versions lint format derive check-derive bench bench-returns bench-drift bench-audit bench-truth bench-optima bench-batch clean
 
 help:  ## list the targets
 	grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /|/' | awk -F'|' '{printf "  make %-14s %s\n", $$1, $$2}'
@@ -68,6 +68,9 @@ bench-truth: $(VENV)/installed-bench  ## random instances of all classes beside 
 
 bench-optima: $(VENV)/installed-bench  ## problems whose optima are known, beside a direct method (takes minutes)
 	$(BIN)/python tests/bench/optima.py
+
+bench-batch: $(VENV)/installed-bench  ## many instances at once beside C, NumPy and CasADi in a loop (takes minutes)
+	$(BIN)/python tests/bench/batch.py
 
 clean:  ## remove the environment, results and caches
 	rm -rf $(VENV) results build *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis

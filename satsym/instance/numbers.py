@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from satsym.instance.resolve import parameters, quantity, time, value_of
 from satsym.spec import ProblemSpec, Variable
@@ -98,16 +98,7 @@ class Key:
 
     def placed(self, instance: Instance, value: float) -> Instance:
         """An instance with another value, which nothing checks."""
-        spec = instance.model.spec
-        if self.table is Table.TIME:
-            return replace(instance, t0=value) if self.name == "t0" else replace(instance, tf=value)
-        if self.table is Table.CONTROL:
-            return replace(instance, max_norm=value)
-        if self.table is Table.FINAL:
-            return replace(instance, final={**instance.final, self.name: value})
-        if self.table is Table.INITIAL:
-            return replace(instance, initial=_with(instance.initial, spec.state_names.index(self.name), value))
-        return replace(instance, parameters=_with(instance.parameters, spec.parameter_names.index(self.name), value))
+        return placed(instance, {self: value})
 
     def unit(self, spec: ProblemSpec) -> str:
         """Its unit; of times nothing, for the model says what it counts them in."""
@@ -118,6 +109,26 @@ class Key:
     def _variable(self, spec: ProblemSpec) -> Variable:
         variables = spec.parameters if self.table is Table.PARAMETERS else spec.states
         return next(v for v in variables if v.symbol == self.name)
+
+
+def placed(instance: Instance, values: Mapping[Key, float]) -> Instance:
+    """An instance with other values, which nothing checks; made once, for that takes time."""
+    spec, fields = instance.model.spec, dict[str, Any]()
+    for key, value in values.items():
+        match key.table:
+            case Table.TIME:
+                fields[key.name] = value
+            case Table.CONTROL:
+                fields["max_norm"] = value
+            case Table.FINAL:
+                fields["final"] = {**fields.get("final", instance.final), key.name: value}
+            case Table.INITIAL:
+                row = fields.get("initial", instance.initial)
+                fields["initial"] = _with(row, spec.state_names.index(key.name), value)
+            case Table.PARAMETERS:
+                row = fields.get("parameters", instance.parameters)
+                fields["parameters"] = _with(row, spec.parameter_names.index(key.name), value)
+    return replace(instance, **fields)
 
 
 def _with(row: tuple[float, ...], place: int, value: float) -> tuple[float, ...]:
@@ -190,11 +201,12 @@ def at(instance: Instance, keys: tuple[Key, ...], values: tuple[float, ...]) -> 
     for key, value in ends.items():
         if not math.isfinite(value):
             raise BadInput(f"{key.text}: {value} is not finite; give a number")
-        found = key.placed(found, key.value(value, spec))
+    found = placed(found, {key: key.value(value, spec) for key, value in ends.items()})
     if any(key.table is Table.PARAMETERS for key in keys):
         parameters(dict(zip(spec.parameter_names, found.parameters, strict=True)), spec)
-    ways = [replace(one, end=ends.get(one.key, one.end)) for one in instance.continuation]
-    found = replace(found, continuation=tuple(one for one in ways if one.begin != one.end))
+    if instance.continuation:
+        ways = [replace(one, end=ends.get(one.key, one.end)) for one in instance.continuation]
+        found = replace(found, continuation=tuple(one for one in ways if one.begin != one.end))
     begun = found
     for one in found.continuation:
         begun = one.key.placed(begun, one.begin)

@@ -6,7 +6,7 @@ import hashlib
 import json
 import math
 import platform
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property
 from importlib.metadata import PackageNotFoundError, version
@@ -171,9 +171,17 @@ class Chunk:
             yield Chunk(self.number, self.start + k, self.values[k : k + 1])
 
 
-def key_of(row_digest: str, instance: Instance) -> str:
-    """What a row's result depends on, as a short text."""
-    return _digest({**_parts(instance), "": row_digest})[:16]
+def keys_of(task: Task, instances: Iterable[Instance]) -> list[str]:
+    """What the results of rows depend on, as a short text each."""
+    base, known = task.instance, _parts(task.instance)
+    found = []
+    for one in instances:
+        own = {
+            name: text if (value := getattr(one, name)) is getattr(base, name) else repr(_plain(value))
+            for name, text in known.items()
+        }
+        found.append(_digest({**own, "": task.row_digest})[:16])
+    return found
 
 
 def differences(before: Mapping[str, str], now: Mapping[str, str]) -> list[str]:

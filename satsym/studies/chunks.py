@@ -12,7 +12,7 @@ from satsym.instance import Instance
 from satsym.instance import numbers as keys
 from satsym.status import BadInput
 from satsym.studies import rows
-from satsym.studies.asked import Chunk, Command, Study, Task, key_of
+from satsym.studies.asked import Chunk, Command, Study, Task, keys_of
 from satsym.studies.rows import Failure, Row, Work
 
 
@@ -27,7 +27,7 @@ def computed(packed: bytes, chunk: Chunk) -> list[Row]:
     task = _unpacked(packed)
     given = [_instance(task, values) for values in chunk.values.tolist()]
     cases = {k: one for k in chunk.order if isinstance(one := given[k], Instance)}
-    found = begun(task)([(key_of(task.row_digest, one), one) for one in cases.values()])
+    found = begun(task)(list(zip(keys_of(task, cases.values()), cases.values(), strict=True)))
     done = dict(zip(cases, found, strict=True))
     return [done.get(k) or rows.failed("", Failure.BAD_INPUT, str(one)) for k, one in enumerate(given)]
 

@@ -62,7 +62,7 @@ class Row:
     Attributes
     ----------
     key
-        What its result depends on, see :func:`satsym.studies.asked.key_of`.
+        What its result depends on, see :func:`satsym.studies.asked.keys_of`.
     status, message
         How it ended: of a solver, or of :class:`Failure`.
     numbers

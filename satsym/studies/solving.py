@@ -6,6 +6,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
 
+import numpy as np
+
 from satsym import methods, solvers
 from satsym.instance import Instance
 from satsym.instance.numbers import Table
@@ -72,7 +74,7 @@ def _together(task: Task, single: Callable[[str, Instance], Row], cases: Cases) 
     from satsym.solvers.batch.certificate import minima
     from satsym.solvers.batch.many import Many
     from satsym.solvers.batch.matching import positive
-    from satsym.solvers.batch.solving import solved_together
+    from satsym.solvers.batch.solving import solved_together, to_rounding
 
     if not cases:
         return []
@@ -81,6 +83,9 @@ def _together(task: Task, single: Callable[[str, Instance], Row], cases: Cases) 
     nodes, verdict = answers.nodes, None
     if task.checked is Checked.LOCAL:
         fine, verdict = minima(many, nodes), Verdict.LOCAL_MINIMUM.value
+        unclear = np.flatnonzero(nodes.solved & ~fine)
+        nodes = to_rounding(many, nodes, unclear)
+        fine[unclear] = minima(many.only(unclear), nodes.only(unclear))
     else:
         fine = nodes.solved & positive(nodes.transition * (many.units / many.units[:, None])[:, :, None, None])
     done: list[Row] = []

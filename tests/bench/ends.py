@@ -95,12 +95,18 @@ def solve_bvp() -> Solver:
 
 
 def casadi() -> Solver:
-    """CasADi: Legendre collocation of degree 5 on 10 intervals, Ipopt; built beforehand, solved warm each time."""
+    """CasADi, built beforehand, solved warm each time."""
+    solve = program()
+    return lambda: solve(START)
+
+
+def program(intervals: int = INTERVALS) -> Callable[[np.ndarray], np.ndarray]:
+    """From initial states to costates: Legendre collocation of degree 5, Ipopt."""
     try:
         import casadi as ca
     except ImportError:
         raise Missing("casadi is not installed (the bench extra has it)") from None
-    degree, intervals = DEGREE, INTERVALS
+    degree = DEGREE
     h = T_FINAL / intervals
     x, u = ca.SX.sym("x", 4), ca.SX.sym("u", 2)
     rhs = ca.vertcat(x[1], x[0] * x[3] ** 2 - 1 / x[0] ** 2 + u[0], x[3], (u[1] - 2 * x[1] * x[3]) / x[0])
@@ -109,27 +115,24 @@ def casadi() -> Solver:
     nodes = [ca.SX.sym(f"x{k}", 4) for k in range(intervals + 1)]
     stages = [ca.SX.sym(f"s{k}", 4, degree) for k in range(intervals)]
     controls = [ca.SX.sym(f"u{k}", 2, degree) for k in range(intervals)]
-    equations, cost = [nodes[0] - START, nodes[-1] - END], 0
+    begin, equations, cost = ca.SX.sym("begin", 4), [], 0
     for k in range(intervals):
         rates, running = f.map(degree)(stages[k], controls[k])
         known = ca.horzcat(nodes[k], stages[k])
         equations += [ca.vec(known @ c - h * rates), known @ d - nodes[k + 1]]
         cost += h * ca.mtimes(running, b)
     w = ca.vertcat(*nodes, *(ca.vec(s) for s in stages), *(ca.vec(v) for v in controls))
-    nlp = {"x": w, "f": cost, "g": ca.vertcat(*equations)}
+    met = ca.vertcat(nodes[0] - begin, nodes[-1] - END, *equations)
+    nlp = {"x": w, "f": cost, "g": met, "p": begin}
     quiet = {"ipopt.print_level": 0, "print_time": 0, "ipopt.sb": "yes", "ipopt.tol": 1e-10}
     solver = ca.nlpsol("solver", "ipopt", nlp, quiet)
     fraction = np.linspace(0, 1, intervals + 1)
-    line = START + (END - START) * fraction[:, None]
-    inner = [
-        START + (END - START) * ((k + t) / intervals)
-        for k in range(intervals)
-        for t in ca.collocation_points(degree, "legendre")
-    ]
-    guess = np.concatenate([line.ravel(), np.concatenate(inner), np.zeros(2 * degree * intervals)])
+    inner = np.array([(k + t) / intervals for k in range(intervals) for t in ca.collocation_points(degree, "legendre")])
 
-    def run() -> np.ndarray:
-        return -np.array(solver(x0=guess, lbg=0, ubg=0)["lam_g"]).ravel()[:4]
+    def run(start: np.ndarray) -> np.ndarray:
+        line = [start + (END - start) * at[:, None] for at in (fraction, inner)]
+        guess = np.concatenate([line[0].ravel(), line[1].ravel(), np.zeros(2 * degree * intervals)])
+        return -np.array(solver(x0=guess, lbg=0, ubg=0, p=start)["lam_g"]).ravel()[:4]
 
     return run
 

@@ -7,14 +7,16 @@ what is not clear here is left to the certificate of one.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
 from satsym.arrays import Array
+from satsym.kernels import Kernels
 from satsym.solution import Certificate, Solution
 from satsym.solvers.batch.many import Many
-from satsym.solvers.batch.matching import positive
+from satsym.solvers.batch.matching import inverses, positive
 from satsym.solvers.batch.newton import Nodes
 from satsym.solvers.certificate.conditions import CANCELLED
 from satsym.solvers.certificate.flow import FAINT, NEGLIGIBLE, ROUNDED, TOLERANCE
@@ -22,6 +24,8 @@ from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
 from satsym.solvers.certificate.node_defect import FINE
 from satsym.solvers.certificate.segments import balanced
 from satsym.solvers.certificate.verdict import COST, DEFECT, DRIFT, RESIDUAL, STATIONARY
+from satsym.solvers.collocation.problem import TwoPoint
+from satsym.solvers.collocation.scaling import straight
 from satsym.solvers.simulation.extrapolation import SUBSTEPS, leap
 from satsym.status import Status, Verdict
 
@@ -30,6 +34,9 @@ PARTS = (2, 4, 8)
 
 UNDRIVEN, VARIATIONS = 4, 5
 """Columns of the extrapolation table, for the motion without control and for derivatives."""
+
+PLACES = 9
+"""At which it is looked whether kernels contradict each other."""
 
 ROUGH = 0.01
 """Relative error of derivatives that is small enough."""
@@ -81,9 +88,7 @@ def minima(many: Many, nodes: Nodes) -> NDArray[np.bool_]:
         clear &= _from_nodes(some, z, sizes)
         clear &= _stationary(some, z)
         clear &= _without_conjugate_points(some, z)
-        first = np.flatnonzero(clear)[:1]
-        if len(first) and not _kernels_agree(some, z, int(first[0])):
-            clear[:] = False
+        clear &= _kernels_agree(some.problem)
     found[chosen] = clear
     return found
 
@@ -217,10 +222,9 @@ def _corners_positive(many: Many, z: Array, scale: Array) -> NDArray[np.bool_]:
     ratio = (scale / scale[:, None])[:, :, None, None]
     whole, wrong = (one.reshape(rows, rows, -1, many.count) * ratio for one in (transition, off))
     across, doubt = (one[:n, n:].transpose(3, 2, 0, 1) for one in (whole, wrong))
-    sound = np.isfinite(whole).all(axis=(0, 1, 2)) & (np.abs(np.linalg.det(across)) > 0.0).all(axis=1)
-    across = np.where(sound[:, None, None, None], across, np.eye(n))
-    error = (np.abs(np.linalg.inv(across)) @ doubt).max(axis=(1, 2, 3))
-    return np.asarray(sound & (error < ROUGH) & positive(whole))
+    inverse = inverses(across)
+    error = (np.abs(inverse) @ doubt).max(axis=(1, 2, 3))
+    return np.asarray((error < ROUGH) & positive(whole, inverse))
 
 
 def _balanced(many: Many, z: Array) -> Array:
@@ -243,10 +247,24 @@ def _turning(many: Many, z: Array, scale: Array) -> Array:
     return np.asarray((np.maximum(rates[1:], rates[:-1]) * np.diff(many.times)[:, None]).max(axis=0))
 
 
-def _kernels_agree(many: Many, z: Array, chosen: int) -> bool:
-    """Whether the kernels contradict each other, which they do everywhere."""
-    one = many.only(np.array([chosen]))
-    t, x, lam, u, _ = _flat(one, z[:, :, [chosen]])
-    answer = Solution(one.instance, "shooting", Status.CONVERGED, "", 0.0, t, x, u, lam, (), 0, (), 0.0)
-    blank = Certificate(Verdict.LOCAL_MINIMUM, 0.0, 0.0, 0.0, None, 0.0, None, ())
-    return with_kernels_examined(blank, answer).verdict is Verdict.LOCAL_MINIMUM
+def _kernels_agree(problem: TwoPoint) -> bool:
+    """Whether the kernels do not contradict each other, near the line from start to end.
+
+    Found out once, for kernels that do so do it everywhere.
+    """
+    model = problem.instance.model
+    if model not in _AGREE:
+        states, unit = straight(problem), problem.scale.both
+        tau = np.linspace(0.0, 1.0, PLACES)
+        x = (states[:, :1] + (states[:, 1:] - states[:, :1]) * tau) * unit[: len(states)]
+        lam = unit[len(states) :] * np.cos(np.arange(len(states))[:, None] + tau)
+        t, p = problem.instance.t0 + problem.duration * tau, problem.instance.parameters
+        u = np.asarray(model.control_law_batch(t, x, lam, p, problem.control_set.arguments))
+        answer = Solution(problem.instance, "shooting", Status.CONVERGED, "", 0.0, t, x, u, lam, (), 0, (), 0.0)
+        blank = Certificate(Verdict.LOCAL_MINIMUM, 0.0, 0.0, 0.0, None, 0.0, None, ())
+        _AGREE[model] = with_kernels_examined(blank, answer).verdict is Verdict.LOCAL_MINIMUM
+    return _AGREE[model]
+
+
+_AGREE: WeakKeyDictionary[Kernels, bool] = WeakKeyDictionary()
+"""What was found out."""

@@ -67,6 +67,11 @@ class Nodes:
         """Which are solved, shape (M,)."""
         return np.asarray(self.outcome == Outcome.SOLVED)
 
+    def only(self, chosen: NDArray[np.intp]) -> Nodes:
+        """Some of them."""
+        z, cost, error, transition = (rows[..., chosen] for rows in (self.z, self.cost, self.error, self.transition))
+        return Nodes(z, cost, error, self.outcome[chosen], transition)
+
 
 def rough(many: Many, start: Array) -> tuple[Array, NDArray[np.object_]]:
     """From a start to near an extremal: nodes, and how each problem ended, shape (M,).

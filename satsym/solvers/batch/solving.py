@@ -19,6 +19,10 @@ ROUNDS = 2
 """Times that what led nowhere starts from another solved neighbour."""
 
 
+ROUNDED = 1e-14
+"""Error that is aimed at where every digit counts."""
+
+
 @dataclass(frozen=True, eq=False)
 class Answers:
     """What came of many problems."""
@@ -49,6 +53,17 @@ def solved_together(many: Many) -> Answers:
         _put(found, left, solved(many.only(left), line[:, :, left]))
         neighbour[left] = False
     return Answers(found, neighbour)
+
+
+def to_rounding(many: Many, nodes: Nodes, chosen: NDArray[np.intp]) -> Nodes:
+    """With some made as accurate as rounding allows: where controls hardly move the end, it takes more digits."""
+    if not len(chosen):
+        return nodes
+    near = np.full(len(chosen), Outcome.SOLVED, dtype=object)
+    with np.errstate(all="ignore"):
+        again = accurate(many.only(chosen), nodes.z[:, :, chosen], near, ROUNDED)
+    _put(nodes, chosen[again.solved], again.only(np.flatnonzero(again.solved)))
+    return nodes
 
 
 def _open(nodes: Nodes) -> NDArray[np.bool_]:

@@ -1,0 +1,212 @@
+"""Many instances at once, beside C, plain NumPy and CasADi in a loop: `make bench-batch`.
+
+Ratios are formed pair by pair within one run, of processor time but for the study, which has two processes.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+import rows
+from compiled_c import compiler
+from ends import program
+from machine import described
+from peers import Missing
+from rows import Goal, Row, Table
+from timing import Samples, interleaved
+
+MOTIONS, STEPS = 4096, 50
+OPTIMA, LOOPED, CHUNK = 1000, 40, 250
+"""Optima, those of them that a loop is given, and those that are columns of the same arrays."""
+RETURNS = 10_000
+FINE = 60
+"""Intervals of CasADi's collocation that tell costates to more digits than are compared."""
+
+SAME = 1e-9
+"""Difference of initial costates, relative to their size, that is none."""
+
+Advance = Callable[[np.ndarray, np.ndarray, np.ndarray], None]
+
+
+def by_c() -> Advance:
+    """By gcc with all that this machine has."""
+    source = Path(__file__).with_name("batch.c")
+    with tempfile.TemporaryDirectory() as folder:
+        library = Path(folder) / "batch.so"
+        flags = ["-O3", "-march=native", "-ffast-math", "-shared", "-fPIC"]
+        subprocess.run([compiler(), *flags, "-o", str(library), str(source)], check=True)
+        function = ctypes.CDLL(str(library)).advance
+
+    def run(y: np.ndarray, u: np.ndarray, p: np.ndarray) -> None:
+        given = (ctypes.c_void_p(rows.ctypes.data) for rows in (y, u, p))
+        function(ctypes.c_double(0.01), ctypes.c_long(STEPS), ctypes.c_long(y.shape[1]), *given)
+
+    return run
+
+
+def plain(y: np.ndarray, u: np.ndarray, p: np.ndarray) -> None:
+    """As one writes it in NumPy."""
+    mu, h = p[0] ** 3 * p[1] ** 2, 0.01
+
+    def f(y: np.ndarray) -> np.ndarray:
+        return np.array([y[1], y[0] * y[3] ** 2 - mu / y[0] ** 2 + u[0], y[3], (u[1] - 2 * y[1] * y[3]) / y[0]])
+
+    for _ in range(STEPS):
+        k1 = f(y)
+        k2 = f(y + h / 2 * k1)
+        k3 = f(y + h / 2 * k2)
+        k4 = f(y + h * k3)
+        y += h / 6 * (k1 + 2 * (k2 + k3) + k4)
+
+
+def motions(rounds: int = 7) -> Table:
+    """RK4 steps of many motions."""
+    from satsym.kernels import load
+    from satsym.kernels.blocks import block_step
+    from satsym.solvers.simulation import batch
+
+    kernels, rng = load("polar_orbit"), np.random.default_rng(0)
+    step = block_step(kernels.compiled())
+    y = np.array([1.0, 0.0, 0.0, 1.0])[:, None] + 0.05 * rng.uniform(-1.0, 1.0, (4, MOTIONS))
+    u, p = 0.01 * rng.uniform(-1.0, 1.0, (2, MOTIONS)), np.ones((8, MOTIONS))
+
+    def on_arrays(y: np.ndarray, u: np.ndarray, p: np.ndarray) -> None:
+        y[:] = batch.simulate(kernels, [0.0, 0.01 * STEPS], y, p, STEPS, u=u)[:, -1]
+
+    advances: dict[str, Advance] = {
+        "C, gcc -O3 -march=native -ffast-math": by_c(),
+        "satsym, numba": lambda y, u, p: step(0.0, 0.01, STEPS, y, u, p),
+        "satsym, NumPy": on_arrays,
+        "NumPy as one writes it": plain,
+    }
+    ends: dict[str, np.ndarray] = {}
+    for name, advance in advances.items():
+        ends[name] = y.copy()
+        advance(ends[name], u, p)
+    by = dict(zip(("C", "numba", "numpy", "plain"), advances, strict=True))
+    found = interleaved({name: lambda a=a: a(y.copy(), u, p) for name, a in advances.items()}, rounds, least=0.05)
+    shares = {
+        by["numba"]: [Goal("of C", found[by["C"]].times(found[by["numba"]]), 0.9, True)],
+        by["numpy"]: [
+            Goal("of C", found[by["C"]].times(found[by["numpy"]]), 0.12, True),
+            Goal("of what one writes", found[by["plain"]].times(found[by["numpy"]]), 2.0, True),
+        ],
+    }
+    made, unit = [], 1e9 / (MOTIONS * STEPS)
+    for name, one in found.items():
+        off = float(np.abs(ends[name] - ends[by["C"]]).max())
+        goals = (*shares.get(name, ()), Goal("off by", off, 1e-12))
+        made.append(Row(name, one.least * unit, one.middle * unit, one.times(found[by["C"]]), goals))
+    return Table(f"1. RK4 for {MOTIONS} motions of the polar orbit", "nanoseconds a step of one", tuple(made))
+
+
+def population(count: int) -> list[Any]:
+    """Rendezvous after a revolution, from all around."""
+    from satsym import instance
+
+    case, rng = instance.load("return-to-orbit"), np.random.default_rng(1)
+    low, high = np.array([0.9, -0.1, -0.1, 0.9]), np.array([1.1, 0.1, 0.1, 1.1])
+    return [replace(case, initial=tuple(rng.uniform(low, high).tolist())) for _ in range(count)]
+
+
+def optima(rounds: int = 5) -> list[Table]:
+    """Optima from cold starts, and their certificates."""
+    from satsym.solvers.batch.certificate import minima
+    from satsym.solvers.batch.many import Many
+    from satsym.solvers.batch.solving import solved_together
+
+    cases, loop = population(OPTIMA), program()
+    parts = [cases[at : at + CHUNK] for at in range(0, OPTIMA, CHUNK)]
+
+    def together(compiled: bool) -> list[tuple[Any, Any]]:
+        found = []
+        for part in parts:
+            many = Many.of(part[0], part, compiled)
+            found.append((many, solved_together(many).nodes))
+        return found
+
+    numba, numpy, ipopt = "satsym, numba", "satsym, NumPy", f"CasADi, Ipopt in a loop ({LOOPED} of them)"
+    answers = {numba: together(True), numpy: together(False)}
+    fine = program(FINE)
+    truth = np.array([fine(np.array(one.initial)) for one in cases[:LOOPED]])
+    calls: dict[str, Callable[[], object]] = {
+        numba: lambda: together(True),
+        numpy: lambda: together(False),
+        ipopt: lambda: [loop(np.array(one.initial)) for one in cases[:LOOPED]],
+    }
+    found = interleaved(calls, rounds, least=0.0)
+    each = {
+        name: Samples(tuple(s / (LOOPED if name == ipopt else OPTIMA) for s in one.seconds))
+        for name, one in found.items()
+    }
+    made = []
+    for name, one in each.items():
+        goals: list[Goal] = []
+        if name in answers:
+            wanted = 30.0 if name == numba else 5.0
+            goals.append(Goal("times faster than Ipopt", each[ipopt].times(one), wanted, True))
+            z = np.concatenate([nodes.z[4:, 0] for _, nodes in answers[name]], axis=1)[:, :LOOPED].T
+            solved = np.concatenate([nodes.solved for _, nodes in answers[name]])
+            off = np.abs(z - truth).max(axis=1)[solved[:LOOPED]] / np.abs(truth).max(axis=1)[solved[:LOOPED]]
+            goals += [Goal("costates off", float(off.max()), SAME), Goal("solved", float(solved.mean()), 0.99, True)]
+        if name == numba:
+            goals.append(Goal("microseconds", one.middle * 1e6, 100.0))
+        made.append(Row(name, one.least * 1e6, one.middle * 1e6, one.times(each[numba]), tuple(goals)))
+    first = Table(f"2. {OPTIMA} rendezvous optima from cold starts, one core", "microseconds each", tuple(made))
+    checks = {name: lambda pairs=pairs: [minima(*pair) for pair in pairs] for name, pairs in answers.items()}
+    for check in checks.values():
+        check()
+    took = interleaved(checks, rounds, least=0.0)
+    made = []
+    for name, one in took.items():
+        confirmed = np.concatenate([minima(*pair) for pair in answers[name]]).mean()
+        goals = [
+            Goal("of solving", one.times(found[name]), 2.0),
+            Goal("confirmed", float(confirmed), 0.99, True),
+        ]
+        own = Samples(tuple(seconds / OPTIMA for seconds in one.seconds))
+        made.append(Row(name, own.least * 1e6, own.middle * 1e6, one.times(took[numba]), tuple(goals)))
+    second = Table("3. Their certificates without competitors", "microseconds each", tuple(made))
+    return [first, second]
+
+
+def study() -> Table:
+    """A whole study by its command, machine code being there."""
+    command = [str(Path(sys.executable).parent / "satsym"), "study", "return-to-orbit", "--sample", str(RETURNS)]
+    command += ["--uniform", "initial.r=0.9,1.1", "--uniform", "initial.theta_dot=0.9,1.1", "--seed", "1"]
+    with tempfile.TemporaryDirectory() as folder:
+        began = perf_counter()
+        subprocess.run([*command, "--out", folder, "--workers", "2"], check=True, capture_output=True)
+        took = perf_counter() - began
+    goals = (Goal("seconds on the wall", took, 10.0),)
+    title = f"4. satsym study: {RETURNS} returns to the orbit with their certificates, two processes"
+    return Table(title, "seconds", (Row("satsym study", took, took, None, goals),))
+
+
+def main() -> None:
+    """Run all; exit code 0 whatever was reached."""
+    print(described(), flush=True)
+    tables: list[Table] = []
+    for subject in (lambda: [motions()], optima, lambda: [study()]):
+        try:
+            made = subject()
+        except Missing as error:
+            print(f"\nleft out: {error}")
+            continue
+        for table in made:
+            print(rows.text(table), flush=True)
+        tables += made
+    print(f"\n{rows.summary(tables)}")
+
+
+if __name__ == "__main__":
+    main()
