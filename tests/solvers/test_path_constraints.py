@@ -125,8 +125,63 @@ def test_a_free_duration_ends_where_the_wall_is_touched():
     assert found.objective == pytest.approx(best.fun, rel=1e-10)
     assert found.to_dict()["t_final"] == pytest.approx(best.x, rel=1e-6)
     assert [one.kind for one in found.events] == ["touch"]
-    assert found.certificate is not None
-    assert found.certificate.verdict is Verdict.EXTREMAL_ONLY  # the second variation with a free time is not seen to
+    certified(found)
+
+
+def of_touching(wall: float) -> tuple[Any, Any, Any]:
+    """T -> effort, and its derivatives, of going from (0, 1) to (0, -1) in so long before a wall that is touched."""
+
+    def effort(lasting: float) -> float:
+        return 2 / lasting + 6 * (1 - 4 * wall / lasting) ** 2 / lasting
+
+    return (
+        effort,
+        lambda s: -8 / s**2 + 96 * wall / s**3 - 288 * wall**2 / s**4,
+        lambda s: 16 / s**3 - 288 * wall / s**4 + 1152 * wall**2 / s**5,
+    )
+
+
+def of_speed(limit: float) -> tuple[Any, Any, Any]:
+    """The same of going from rest to rest one further at a bounded speed."""
+    return (
+        lambda s: 8 * limit**3 / (9 * (limit * s - 1)),
+        lambda s: -8 * limit**4 / (9 * (limit * s - 1) ** 2),
+        lambda s: 16 * limit**5 / (9 * (limit * s - 1) ** 3),
+    )
+
+
+@pytest.mark.parametrize("name", ["wall", "limit"])
+@pytest.mark.parametrize(("share", "least"), [(0.0, True), (0.98, True), (1.02, False), (1.5, False)])
+def test_a_free_duration_is_a_minimum_where_the_cost_is_convex_in_it(name: str, share: float, least: bool):
+    """With c T - k T^2 / 2 besides, c such that a duration is stationary; it is a minimum where k is less than J''."""
+    limit, lasting = (0.1, 0.5) if name == "wall" else (1.2, 1.0)
+    effort, slope, curve = (of_touching if name == "wall" else of_speed)(limit)
+    k = share * curve(lasting)
+    weight = k * lasting - slope(lasting)
+    stated = {"wall": x - wall_at} if name == "wall" else {"limit": v - wall_at}
+    problem = replace(kept(f"timed_{name}", **stated), terminal_cost=-Rational(k) * t**2 / 2)
+    there = THERE_AND_BACK if name == "wall" else ACROSS
+    fixed = solved(problem, **{**there, "tf": lasting, "parameters": {"l": limit, "c": weight}})
+    case = replace(fixed.found.instance, tf=None, tf_guess=lasting)
+    at = replace(fixed.found, instance=case)
+    again = replay(at)
+    assert again is not None
+    assert fixed.objective == pytest.approx(effort(lasting) + weight * lasting - k * lasting**2 / 2, rel=1e-9)
+    assert (curvature(at, again) > 0.0) == least
+    certificate = certify(at, compared=False)
+    assert certificate is not None
+    assert certificate.verdict is (Verdict.LOCAL_MINIMUM if least else Verdict.EXTREMAL_ONLY)
+
+
+def test_a_motion_that_ends_on_a_boundary_at_a_free_time_is_extremal_only():
+    found = solved(
+        SPEED, initial={"x": 0.0, "v": 0.0}, final={"x": 1.0}, tf="free", tf_guess=1.5, parameters={"l": 1.0, "c": 1.0}
+    )
+    assert [one.kind for one in found.events] == ["entry"]
+    said = found.to_dict()["certificate"]
+    assert said["verdict"] == "extremal only"
+    failed = {c["name"] for c in said["checks"] if not c["passed"]}
+    assert "second variation not resolved: ends on a boundary at a free time" in failed
 
 
 def test_a_beam_under_a_ceiling_has_twice_the_effort():

@@ -92,8 +92,11 @@ def _sufficient(solution: Solution, again: Replay) -> list[Check]:
     """Each is a deficit that must not be positive."""
     least, most = _least_multiplier(solution, again)
     strict = least > STRICT * most and min(_pushed(solution, again, tent=True), default=np.inf) > STRICT
+    vanishing = Check("multiplier vanishes on a boundary", float(not strict), 0.0)
+    if solution.instance.tf is None and (again.pressed is not None or again.pieces[-1].constraint != FREE):
+        return [vanishing, Check("second variation not resolved: ends on a boundary at a free time", 1.0, 0.0)]
     return [
-        Check("multiplier vanishes on a boundary", float(not strict), 0.0),
+        vanishing,
         Check("second variation with the active arcs fixed", float(not curvature(solution, again) > CURVED), 0.0),
     ]
 

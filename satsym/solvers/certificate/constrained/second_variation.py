@@ -5,7 +5,9 @@ keep to given ends, to g_x dx = 0 along boundary arcs and at touch points, to g_
 active that holds a control. To the form along the way a touch point of
 order two adds - zeta (d/dt g_x dx)^2 / g'' with g'' < 0 (Bonnans and Hermant, SIAM J. Control Optim. 46, 2007): where
 it moves with the variation, the constraint is harder to keep. Boundary arcs and junctions, the end among them where a
-constraint pushes there, add the curvature of g times its multiplier.
+constraint pushes there, add the curvature of g times its multiplier. A final time that is free varies by itself, with
+the states on beyond the end as they would move: that is in the form of the end, and holds where the motion ends on no
+boundary.
 """
 
 from __future__ import annotations
@@ -30,17 +32,16 @@ MESH = 160
 
 
 def curvature(solution: Solution, again: Replay) -> float:
-    """Least eigenvalue of the form over that of H_uu alone; NaN where the final time is free, which is not seen to."""
-    instance, n = solution.instance, len(solution.x)
-    if instance.tf is None:
-        return float("nan")
+    """Least eigenvalue of the form over that of H_uu alone, and of a final time that varies by its unit."""
+    instance, n, free_time = solution.instance, len(solution.x), solution.instance.tf is None
     times, which, ends = _mesh(solution, again)
     middles, h = (times[1:] + times[:-1]) / 2, np.diff(times)
     z = _values(again, middles)
     a, b, second, weight = _along(solution, middles, z, which)
     moves, inputs = _transitions(a, b, h)
     m, count = b.shape[2], len(h)
-    size, form, pure = m * count, np.zeros((m * count, m * count)), np.zeros((m * count, m * count))
+    size = m * count + free_time
+    form, pure = np.zeros((size, size)), np.zeros((size, size))
     state, ties, met = np.zeros((n, size)), [], dict(zip(ends, _met_at_ends(solution, again), strict=False))
     for k in range(count):
         moved = np.zeros((m, size))
@@ -62,6 +63,9 @@ def curvature(solution: Solution, again: Replay) -> float:
     after = np.column_stack([solution.lam[:, :-1], again.end[n:]])  # multipliers at the end are those after its jump
     end = end_form(replace(solution, lam=after), unit)
     scaled = state / unit[:n, None]
+    if free_time:
+        scaled = np.vstack([scaled, np.eye(size)[-1]])
+        pure[-1, -1] = unit[0] * unit[n]
     form += scaled.T @ end.form @ scaled * unit[0] * unit[n]
     ties += list(end.ties @ scaled)
     return _least(form, pure, np.array(ties).reshape(-1, size))
