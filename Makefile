@@ -11,7 +11,7 @@ PYTEST := env -u PYTHONDONTWRITEBYTECODE $(BIN)/python -m pytest -n 2 --dist wor
 # Each recipe says itself what the user needs to know; errors of the tools come through (pip -qq: errors only).
 .SILENT:
 .NOTPARALLEL:
-.PHONY: help demo test test-whole test-versions lint format derive check-derive bench bench-returns bench-drift bench-audit bench-truth bench-optima bench-batch clean
+.PHONY: help demo test test-whole test-versions lint format derive check-derive bench bench-returns bench-drift bench-audit bench-truth bench-optima bench-batch docs check-pages clean
 
 help:  ## list the targets
 	grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /|/' | awk -F'|' '{printf "  make %-14s %s\n", $$1, $$2}'
@@ -72,8 +72,15 @@ bench-optima: $(VENV)/installed-bench  ## problems whose optima are known, besid
 bench-batch: $(VENV)/installed-bench  ## many instances at once beside C, NumPy and CasADi in a loop (takes minutes)
 	$(BIN)/python tests/bench/batch.py
 
+docs: $(VENV)/installed-docs  ## build the documentation into docs/_build, warnings being errors
+	$(BIN)/python -m sphinx -q -W --keep-going docs docs/_build/html
+	echo "docs/_build/html/index.html"
+
+check-pages: $(VENV)/installed-pages docs  ## look for what keeps people from using the pages (axe, with the system's Chromium)
+	$(BIN)/python .ci/pages.py
+
 clean:  ## remove the environment, results and caches
-	rm -rf $(VENV) results build *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis
+	rm -rf $(VENV) results build docs/_build docs/_static/gallery docs/reference docs/gallery.md *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # One environment for everything, made again only when pyproject.toml changes.

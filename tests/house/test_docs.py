@@ -1,0 +1,54 @@
+"""What the documentation shows runs, and prints what it says."""
+
+from __future__ import annotations
+
+import doctest
+import re
+import shlex
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from satsym import cli
+
+DOCS = Path(__file__).parents[2] / "docs"
+PAGES = [DOCS / "start.md", *sorted((DOCS / "tutorials").glob("*.md"))]
+ELLIPSIS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
+
+
+def sessions(text: str) -> Iterator[tuple[str, str]]:
+    """Each command of the shell, with what it is said to print."""
+    for block in re.findall(r"```console\n(.*?)```", text, re.DOTALL):
+        yield from re.findall(r"^\$ (.*)\n((?:(?!\$ ).*\n)*)", block, re.MULTILINE)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_commands_print_what_the_page_says(
+    page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for command, printed in sessions(page.read_text(encoding="utf-8")):
+        program, *arguments = shlex.split(command)
+        assert program == "satsym"
+        assert cli.main(arguments) == 0, command
+        told = capsys.readouterr().out
+        assert doctest.OutputChecker().check_output(printed, told, ELLIPSIS), f"{command}\n{told}"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", [p for p in PAGES if ">>>" in p.read_text(encoding="utf-8")], ids=lambda p: p.stem)
+def test_python_answers_what_the_page_says(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = page.read_text(encoding="utf-8")
+    failed, tried = doctest.testfile(str(page), module_relative=False, optionflags=ELLIPSIS, encoding="utf-8")
+    assert tried == text.count(">>> ")
+    assert failed == 0
+
+
+def test_every_page_is_in_the_table_of_contents() -> None:
+    listed = re.findall(r"^(?!:)([\w./]+)$", (DOCS / "index.md").read_text(encoding="utf-8"), re.MULTILINE)
+    there = [path.relative_to(DOCS).with_suffix("").as_posix() for path in DOCS.rglob("*.md")]
+    written = {"gallery", "reference/commands", "reference/python"}
+    assert set(listed) == {name for name in there if not name.startswith("_")} - {"index"} | written
