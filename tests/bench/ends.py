@@ -100,13 +100,13 @@ def casadi() -> Solver:
     return lambda: solve(START)
 
 
-def program(intervals: int = INTERVALS) -> Callable[[np.ndarray], np.ndarray]:
-    """From initial states to costates: Legendre collocation of degree 5, Ipopt."""
+def program() -> Callable[[np.ndarray], np.ndarray]:
+    """From initial states to costates: Legendre collocation of degree 5 on 10 intervals, Ipopt."""
     try:
         import casadi as ca
     except ImportError:
         raise Missing("casadi is not installed (the bench extra has it)") from None
-    degree = DEGREE
+    degree, intervals = DEGREE, INTERVALS
     h = T_FINAL / intervals
     x, u = ca.SX.sym("x", 4), ca.SX.sym("u", 2)
     rhs = ca.vertcat(x[1], x[0] * x[3] ** 2 - 1 / x[0] ** 2 + u[0], x[3], (u[1] - 2 * x[1] * x[3]) / x[0])

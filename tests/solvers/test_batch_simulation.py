@@ -9,7 +9,8 @@ from sympy import sin
 from satsym.analysis.orbits import kepler
 from satsym.codegen import module
 from satsym.kernels import Kernels, from_text, load
-from satsym.kernels.blocks import block_step
+from satsym.kernels.batch.tape import Tape, Unsuited, bound
+from satsym.kernels.blocks import OnTape, block_step
 from satsym.solvers.simulation import batch
 from satsym.status import BadInput
 from satsym.symbolic import FirstOrder, Variable, symbols_of
@@ -163,3 +164,33 @@ def test_a_model_that_is_not_separable_has_no_symplectic_method():
 def test_one_not_compiled_has_no_compiled_step(orbit: Kernels):
     with pytest.raises(BadInput, match=r"^two_body: no block step without compiling: take compiled\(\)"):
         block_step(orbit)
+
+
+def test_operations_on_a_tape_are_the_steps_of_the_batch_form():
+    """Also where time is explicit, and for columns that are not finite."""
+    for name in ("polar_orbit", "explicit_time", "beam"):
+        kernels, rng = load(name), np.random.default_rng(3)
+        n, m, k = (len(rows) for rows in (kernels.spec.states, kernels.spec.controls, kernels.spec.parameters))
+        start, u, p = (rng.uniform(0.5, 1.5, (rows, 7)) for rows in (n, m, k))
+        start[0, 3] = np.nan
+        found, expected = start.copy(), start.copy()
+        with np.errstate(all="ignore"):
+            OnTape(kernels).advance(0.3, 0.02, 5, found, u, p)
+            batch._RungeKutta(kernels).advance(0.3, 0.02, 5, expected, u, p)
+        np.testing.assert_allclose(found, expected, rtol=1e-13, atol=1e-14)
+
+
+def test_a_tape_makes_equal_operations_once_and_refuses_what_is_no_line_of_them():
+    tape = Tape()
+    names = {"a": tape.given("a", True), "b": tape.given("b", False)}
+    known = tape.lines(["c = a*b + 2.0*b", "d = b*a + b*2.0", "e = b*b"], names)
+    assert known["c"] == known["d"]
+    assert known["e"] not in tape.changing
+    a, out = np.arange(3.0), np.zeros(3)
+    made = bound(tape, {"a": a, "b": np.full(3, 2.0), "out": out}, [(known["c"], "out")], 3)
+    made.begin()
+    made.run()
+    assert out.tolist() == [4.0, 6.0, 8.0]
+    assert len(made.first) == 1
+    with pytest.raises(Unsuited):
+        tape.lines(["for i in range(3):", "    a = b"], names)

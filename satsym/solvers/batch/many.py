@@ -49,12 +49,13 @@ class Many:
         path = paths.first(problem)
         laid = meshes.along(problem, (tau := np.linspace(0.0, 1.0, paths.POINTS)), path(tau), problem.theta)
         mesh = np.interp(np.linspace(0.0, len(laid) - 1.0, FINER * (len(laid) - 1) + 1), np.arange(len(laid)), laid)
+        parameters = np.array([one.parameters for one in instances]).reshape(len(instances), -1).T.copy()
         return cls(
             problem,
             motion(instance.model, bounds, compiled),
             np.array([one.initial for one in instances]).T.copy(),
-            np.array([_end(one) for one in instances]).T.copy(),
-            np.array([one.parameters for one in instances]).reshape(len(instances), -1).T.copy(),
+            _ends(instances, parameters),
+            parameters,
             mesh,
             condensing(problem.states, compiled),
         )
@@ -113,11 +114,15 @@ class Many:
         return np.repeat(times[:-1], count), columns, np.repeat(np.diff(times), count), parameters
 
 
-def _end(instance: Instance) -> Array:
-    """Where a motion should end."""
-    given = np.array(final_argument(instance)).reshape(3, -1)
-    if not given[1].any():
-        return given[2]
-    assert instance.tf is not None
-    curve = np.array(instance.model.reference(instance.tf, instance.parameters))
-    return np.where(given[1] > 0.0, curve, given[2])
+def _ends(instances: Sequence[Instance], parameters: Array) -> Array:
+    """Where motions should end, shape (n, M)."""
+    first, tf = instances[0], instances[0].tf
+    assert tf is not None
+    same = all(one.final is first.final for one in instances)
+    stated = np.array([final_argument(one) for one in (instances[:1] if same else instances)])
+    given = np.repeat(stated, len(instances), axis=0) if same else stated
+    _, on_reference, target = given.reshape(len(instances), 3, -1).transpose(1, 2, 0)
+    if not on_reference.any():
+        return np.ascontiguousarray(target)
+    curve = first.model.reference_batch(np.full(len(instances), tf), tuple(parameters))
+    return np.where(on_reference > 0.0, curve, target)

@@ -8,20 +8,22 @@ vector instructions.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from satsym.arrays import Array
 from satsym.kernels import Kernels
-from satsym.kernels.blocks import block_step, pairs
+from satsym.kernels.batch.tape import Unsuited
+from satsym.kernels.blocks import OnTape, block_step, pairs
 from satsym.kernels.composition import weights
 from satsym.status import BadInput
 from satsym.wording import shown, suggestion
 
 METHODS = ("RK4", "symplectic")
 
-BLOCK = 8192
+BLOCK = 4096
 """Columns at a time: few enough that their buffers stay in the cache, many enough that calls do not count."""
 COMPILED_BLOCK = 512
 """The same for compiled code, to which calls cost nothing."""
@@ -74,8 +76,10 @@ def simulate(
         kernels.require_separable()
         if controls.any():
             raise BadInput(f"u: the symplectic method is for uncontrolled motions; take RK4 for {kernels.spec.name}")
-    arrays = _Kicks if symplectic else _RungeKutta
-    advance = block_step(kernels, symplectic) if compiled else arrays(kernels).advance
+    if compiled:
+        advance = block_step(kernels, symplectic)
+    else:
+        advance = _Kicks(kernels).advance if symplectic else _runge_kutta(kernels)
     x = np.empty((len(start), len(nodes), count))
     with np.errstate(all="ignore"):
         for begin in range(0, count, COMPILED_BLOCK if compiled else BLOCK):
@@ -106,6 +110,14 @@ def _checked(
         if not np.isfinite(rows).all():
             raise BadInput(f"{name}: not finite; give numbers")
     return nodes, start, parameters, controls
+
+
+def _runge_kutta(kernels: Kernels) -> Any:
+    """Steps by RK4: on a tape where that is possible."""
+    try:
+        return OnTape(kernels).advance
+    except (Unsuited, BadInput):
+        return _RungeKutta(kernels).advance
 
 
 class _RungeKutta:
