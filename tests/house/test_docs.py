@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import ast
 import doctest
+import json
 import re
 import shlex
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -45,6 +48,32 @@ def test_python_answers_what_the_page_says(page: Path, tmp_path: Path, monkeypat
     failed, tried = doctest.testfile(str(page), module_relative=False, optionflags=ELLIPSIS, encoding="utf-8")
     assert tried == text.count(">>> ")
     assert failed == 0
+
+
+@pytest.mark.slow
+def test_the_notebook_runs_from_top_to_bottom_and_shows_what_each_cell_ends_with() -> None:
+    cells = json.loads((DOCS / "notebook.ipynb").read_text(encoding="utf-8"))["cells"]
+    known: dict[str, Any] = {}
+    shown = []
+    for source in ("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"):
+        *before, last = ast.parse(source).body
+        assert isinstance(last, ast.Expr)
+        exec(compile(ast.Module(before, []), "notebook", "exec"), known)  # noqa: S102
+        shown.append(eval(compile(ast.Expression(last.value), "notebook", "eval"), known))  # noqa: S307
+    solution, verdict, _, equation, dearer = shown
+    assert "<table>" in solution._repr_html_()
+    assert verdict == ("certified", pytest.approx(0.0031946551089, rel=1e-10))  # of CasADi with Ipopt
+    assert equation._repr_latex_().startswith("$")
+    assert dearer
+
+
+def test_the_readmes_show_the_same_commands() -> None:
+    english, indonesian = ((DOCS.parent / name).read_text(encoding="utf-8") for name in ("README.md", "README.id.md"))
+    blocks = ("".join(re.findall(r"```sh\n(.*?)```", text, re.DOTALL)) for text in (indonesian, english))
+    fewer, all_of_them = (set(re.findall(r"^(?:make|satsym) [\w-]+", block, re.MULTILINE)) for block in blocks)
+    assert "satsym report" in fewer
+    assert fewer <= all_of_them | {"make docs"}
+    assert all((DOCS.parent / link).exists() for link in re.findall(r"\]\(([^)#:]+)\)", indonesian))
 
 
 def test_every_page_is_in_the_table_of_contents() -> None:
