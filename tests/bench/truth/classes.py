@@ -42,6 +42,7 @@ CLASSES: dict[str, Class] = {
     "orbit, any angle": Class(orbits.any_angle, multistart.best, 20),
     "orbit, box": Class(orbits.boxed, multistart.best, 30),
     "orbit, lopsided": Class(orbits.lopsided, multistart.best, 30),
+    "orbit, floor": Class(orbits.above_floor, multistart.settled, 40),
     "orbit, one-sided": Class(orbits.one_sided, multistart.best, 30),
     "orbit, tight": Class(orbits.tight, multistart.best, 30),
     "orbit, ball": Class(orbits.ball, multistart.best, 30),
@@ -50,6 +51,7 @@ CLASSES: dict[str, Class] = {
     "orbit, rewarded": Class(orbits.rewarded, multistart.best, 20),
     "line, time": Class(lines.line_time, closed.line_time, 50),
     "line, time, one-sided": Class(lines.line_time_one_sided, closed.line_time, 30),
+    "line, kept": Class(lines.line_kept, multistart.settled, 60),
     "line, energy": Class(lines.line_energy, duality.least_energy, 30),
     "line, fuel": Class(lines.line_fuel, programs.least_fuel, 40),
     "line, fuel, free time": Class(lines.line_fuel_free, closed.line_fuel_free, 40),
@@ -76,7 +78,7 @@ CLASSES: dict[str, Class] = {
     "end weighed, 1 state": Class(lines.one_within, closed.one_within_bounds, 25),
 }
 
-OWN = ("chain", "oscillator", "rendezvous", "transfer", "bump", "conjugate", "end")
+OWN = ("chain", "oscillator", "rendezvous", "transfer", "bump", "conjugate", "end", "kept")
 """How the names of models begin that are derived from ``models/``."""
 
 

@@ -18,6 +18,9 @@ from tests.bench.truth.physics import MODELS
 POINTS = 4
 NODES = (leggauss(POINTS)[0] + 1.0) / 2.0
 WEIGHTS = leggauss(POINTS)[1] / 2.0
+KEPT = (1, 2)
+"""Of the points, those at which constraints along the way are kept, besides the ends of intervals: at all of them there
+would be as many on a boundary as there are controls, and one more."""
 OPTIONS = {
     "print_time": False,
     "expand": False,
@@ -116,6 +119,7 @@ class _Program:
     ends: int
     matches: int
     balls: int
+    kept: int
 
     def bounds(self, case: Case, start: Start) -> dict[str, np.ndarray]:
         """Of variables and constraints."""
@@ -139,8 +143,8 @@ class _Program:
                 low[i - n] = high[i - n] = value + (start.shift if name in case.free_angles else 0.0)
         exact = np.zeros(self.ends + self.matches)
         radius = inf if case.max_norm is None else case.max_norm**2
-        constraints_low = np.concatenate([-free, exact, np.full(self.balls, -inf)])
-        constraints_high = np.concatenate([free, exact, np.full(self.balls, radius)])
+        constraints_low = np.concatenate([-free, exact, np.full(self.balls + self.kept, -inf)])
+        constraints_high = np.concatenate([free, exact, np.full(self.balls, radius), np.zeros(self.kept)])
         return {"lbx": low, "ubx": high, "lbg": constraints_low, "ubg": constraints_high}
 
     def guess(self, case: Case, start: Start) -> np.ndarray:
@@ -163,7 +167,7 @@ def _program(model: str, intervals: int) -> _Program:
     p, t0, T = ca.SX.sym("p", len(physics.parameters)), ca.SX.sym("t0"), ca.SX.sym("T")
     h = T / intervals
     x = ca.SX.sym("x", n)
-    variables, matches, balls, cost = [T, x], [], [], 0.0
+    variables, matches, balls, kept, cost = [T, x], [], [], [], 0.0
     for k in range(intervals):
         xs = [ca.SX.sym(f"x_{k}_{j}", n) for j in range(POINTS)]
         us = [ca.SX.sym(f"u_{k}_{j}", m) for j in range(POINTS)]
@@ -175,18 +179,21 @@ def _program(model: str, intervals: int) -> _Program:
             matches.append(sum(slopes[i, j] * points[i] for i in range(POINTS + 1)) - h * rate)
             cost += h * WEIGHTS[j] * physics.running(ca, t, xs[j], us[j], p)
             balls.append(ca.dot(us[j], us[j]))
+            kept += physics.kept(ca, t, xs[j], p) if j in KEPT else ()
         matches.append(sum(ends[i] * points[i] for i in range(POINTS + 1)) - after)
         variables += [*xs, *us, after]
         x = after
+        if k < intervals - 1:
+            kept += physics.kept(ca, t0 + h * (k + 1), x, p)
     curve = physics.reference(ca, t0 + T, p)
     curves = [x - ca.vertcat(*curve)] if len(curve) else [x]
     psi = list(physics.ends(ca, t0 + T, x, p))
     cost += physics.terminal(ca, t0 + T, x, p)
     ball = balls if model.endswith("_ball") else []
-    constraints = ca.vertcat(*curves, *psi, *matches, *ball)
+    constraints = ca.vertcat(*curves, *psi, *matches, *ball, *kept)
     program = {"x": ca.vertcat(*variables), "p": ca.vertcat(p, t0), "f": cost, "g": constraints}
     solver = ca.nlpsol("program", "ipopt", program, OPTIONS)
-    return _Program(model, intervals, solver, n, len(psi), ca.vertcat(*matches).shape[0], len(ball))
+    return _Program(model, intervals, solver, n, len(psi), ca.vertcat(*matches).shape[0], len(ball), len(kept))
 
 
 def _polynomials() -> tuple[np.ndarray, np.ndarray]:

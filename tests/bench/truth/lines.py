@@ -31,6 +31,27 @@ def _bodies(rng: Rng, sides: str = "uneven") -> tuple[dict[str, float], dict[str
     return initial, final, _bounds(rng, sides)
 
 
+def line_kept(rng: Rng, family: str, number: int) -> Case:
+    """Least energy of a body on a line within one to three limits of place and velocity that it would exceed."""
+    tf = float(rng.uniform(1.0, 3.0))
+    initial, final = _numbers(rng, LINE, 1.5), _numbers(rng, LINE, 1.5)
+    ends = np.array([list(initial.values()), list(final.values())])
+    share, gap = np.linspace(0.0, 1.0, 401), ends[1] - ends[0] - tf * np.array([ends[0, 1], 0.0])
+    begin, slope = np.linalg.solve([[tf**2 / 2.0, tf**3 / 6.0], [tf, tf**2 / 2.0]], gap)
+    times = share * tf
+    place = ends[0, 0] + ends[0, 1] * times + begin * times**2 / 2.0 + slope * times**3 / 6.0
+    speed = ends[0, 1] + begin * times + slope * times**2 / 2.0
+    limits = {}
+    for name, row, column in (("ceiling", place, 0), ("floor", -place, 0), ("fastest", speed, 1)):
+        least = float((ends[:, column] * (-1.0 if name == "floor" else 1.0)).max())
+        if name == "fastest":
+            least = max(least, 1.05 * (ends[1, 0] - ends[0, 0]) / tf)
+        room = float(row.max()) - least
+        within = least + room * float(rng.uniform(0.1, 0.9)) if room > 0.0 and rng.random() < 0.7 else row.max() + 9.0
+        limits[name] = float(-within if name == "floor" else within)
+    return Case(family, number, "kept_line", initial, final, tf, parameters=limits)
+
+
 def line_time(rng: Rng, family: str, number: int) -> Case:
     """Least time of a body on a line to a state that is mostly no rest, by bounds that are mostly not symmetric."""
     initial, final, bounds = _bodies(rng, "even" if rng.random() < 0.3 else "uneven")

@@ -15,6 +15,9 @@ FINE = 80
 SAME = 1e-2
 HOPELESS = 4
 """How many starts fail until bounds are taken to forbid to arrive; then nothing is said."""
+MESHES, SETTLED = (20, 67, 211, 631, 1279), 5e-6
+"""Intervals of problems with constraints along the way, and change of the cost from one to the next that is none. No
+mesh has the nodes of another, between which a touch point may lie in both."""
 TRIES = 6
 """How many of the best are simulated until one costs what it seemed to."""
 
@@ -46,6 +49,30 @@ def best(case: Case) -> Answer:
     if least is None:
         return Answer(Truth.UNKNOWN, None, how)
     return Answer(Truth.REACHED, least[0], f"{how}; simulated: {least[2]}", least[1])
+
+
+def settled(case: Case) -> Answer:
+    """Solve from every start, the cheapest on ever finer meshes until its cost settles.
+
+    Constraints along the way are kept at some points of each interval: what is gained between these vanishes with them.
+    """
+    tried = starts(case)
+    found = [pair for start in tried if (pair := (solved(case, start, MESHES[0]), start))[0] is not None]
+    if not found:
+        return Answer(Truth.UNKNOWN, None, "no start solved")
+    least, start = min(found, key=lambda pair: pair[0].cost)
+    how = f"{len(found)} of {len(tried)} starts solved"
+    for intervals in MESHES[1:]:
+        finer = solved(case, Start(least.duration, least.path, start.shift), intervals)
+        if finer is None:
+            return Answer(Truth.UNKNOWN, None, f"{how}, not on {intervals} intervals")
+        change = abs(finer.cost - least.cost) / max(abs(finer.cost), 1e-12)
+        least = finer
+        if change < SETTLED:
+            return Answer(
+                Truth.REACHED, least.cost, f"{how}; {intervals} intervals changed {change:.0e}", least.duration
+            )
+    return Answer(Truth.UNKNOWN, None, f"{how}; {intervals} intervals still changed {change:.0e}")
 
 
 def _finer(case: Case, rough: Found, start: Start) -> Found:

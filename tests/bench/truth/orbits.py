@@ -114,6 +114,13 @@ def boxed(rng: Rng, family: str, number: int) -> Case:
     return _with(case, bounds={f"u{k}": (-float(b), float(b)) for k, b in enumerate(limits, 1)})
 
 
+def above_floor(rng: Rng, family: str, number: int) -> Case:
+    """Return that would go lower than it may, by the linear motion that a return takes."""
+    case, _ = _return(rng, family, number, "return_above")
+    lowest = min(case.initial["r"], 1.0)
+    return _with(case, parameters={"r_min": float(lowest - 10 ** rng.uniform(-2.5, -1.2))})
+
+
 def lopsided(rng: Rng, family: str, number: int) -> Case:
     """Bounds that are not symmetric; some leave out zero by a little, some bind one control only."""
     case, peak = _return(rng, family, number)

@@ -127,8 +127,16 @@ def violations(case: Case, solution: Any) -> dict[str, float]:
     return {
         "missed": missed,
         "off cost": abs(cost - stated) / max(abs(stated), 1e-6) if math.isfinite(cost) else math.inf,
-        "out": _outside(case, u),
+        "out": max(_outside(case, u), _beyond(case, solution)),
     }
+
+
+def _beyond(case: Case, solution: Any) -> float:
+    """By how much its states leave what they must keep to, relative to their size."""
+    physics = MODELS[case.model]
+    p = physics.given(case.parameters)
+    kept = [physics.kept(math, t, x, p) for t, x in zip(solution.times.tolist(), solution.x.T.tolist(), strict=True)]
+    return max([g for row in kept for g in row], default=0.0) / max(1.0, float(np.abs(solution.x).max()))
 
 
 def _step(physics: Any, p: Any, t: float, h: float, y: list[float], before: Any, after: Any) -> list[float]:

@@ -36,6 +36,8 @@ class Physics:
         f(m, t, x, u, p) and L(m, t, x, u, p).
     terminal, ends, reference
         S(m, t, x, p); psi(m, t, x, p), which vanishes; and c(m, t, p).
+    kept
+        g(m, t, x, p), none of which may be positive along the way.
     """
 
     states: tuple[str, ...]
@@ -46,6 +48,7 @@ class Physics:
     terminal: Callable[..., Any] = _zero
     ends: Callable[..., Vector] = _nothing
     reference: Callable[..., Vector] = _nothing
+    kept: Callable[..., Vector] = _nothing
 
     def given(self, parameters: Mapping[str, float]) -> tuple[float, ...]:
         """All parameters in order."""
@@ -150,6 +153,23 @@ MODELS: dict[str, Physics] = {
     "polar_orbit": Physics(_ORBIT, _TWO, _polar, _polar_effort, POLAR, _polar_miss, reference=_circle),
     "polar_orbit_timed": Physics(_ORBIT, _TWO, _polar, _polar_effort, POLAR, _polar_miss, reference=_circle),
     "polar_orbit_ball": Physics(_ORBIT, _TWO, _polar, _polar_ball_effort, POLAR, _polar_miss, reference=_circle),
+    "return_above": Physics(
+        _ORBIT,
+        _TWO,
+        _polar,
+        lambda m, t, x, u, p: (p[2] * u[0] * u[0] + p[3] * u[1] * u[1]) / 2.0,
+        dict.fromkeys(("sigma", "omega", "c1", "c2"), 1.0) | {"r_min": 0.0},
+        reference=_circle,
+        kept=lambda m, t, x, p: (p[4] - x[0],),
+    ),
+    "kept_line": Physics(
+        ("q", "q_dot"),
+        _TWO[:1],
+        _line,
+        _square,
+        {"ceiling": 0.0, "floor": 0.0, "fastest": 0.0},
+        kept=lambda m, t, x, p: (x[0] - p[0], p[1] - x[0], x[1] - p[2]),
+    ),
     "transfer_plane": Physics((*_XY, "v_x", "v_y"), ("a_x", "a_y"), _kepler, _square, {"mu": 1.0}),
     "transfer_space": Physics((*_SPACE, "v_x", "v_y", "v_z"), ("a_x", "a_y", "a_z"), _kepler, _square, {"mu": 1.0}),
     "bump_steered": Physics(_XY, _TWO, _chosen, _hill, _BUMP),

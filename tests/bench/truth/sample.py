@@ -18,7 +18,7 @@ from tests.bench.truth.judge import Outcome
 from tests.bench.truth.table import Entry
 
 PATH = record.HERE / "sample.json"
-SIZE, QUICK = 40, 0.8
+SIZE, QUICK = 45, 0.8
 NOTE = (
     "Independent answers as tests/bench/truth/ stored them, with the means by which each was obtained under how: "
     "closed forms, dual problems, linear programs, or CasADi and Ipopt from many starts, simulated again to 1e-12. "

@@ -21,7 +21,7 @@ TURN = 2.0 * math.pi
 
 def starts(case: Case) -> list[Start]:
     """All of them, for the model of the case."""
-    if case.model.startswith("polar"):
+    if case.model.startswith(("polar", "return")):
         return _polar(case)
     if case.model.startswith("transfer"):
         return _spirals(case)
