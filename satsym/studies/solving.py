@@ -55,7 +55,7 @@ def together(task: Task) -> bool:
     """Whether rows are solved as columns of arrays: both ends and times are given, and trajectories are not kept."""
     instance = task.instance
     given = instance.tf is not None and len(instance.final) == len(instance.initial)
-    fitting = instance.solver.method in (methods.AUTO, rows.TOGETHER)
+    fitting = instance.solver.method in (methods.AUTO, rows.TOGETHER) and instance.control_set.kind in ("box", "ball")
     stays = all(key.table in (Table.INITIAL, Table.FINAL, Table.PARAMETERS) for key in task.keys)
     wanted = task.command is Command.SOLVE and task.checked is not Checked.FULL and not task.trajectories
     return wanted and given and fitting and stays and not instance.model.spec.multipliers and _plain(task)

@@ -155,3 +155,10 @@ def test_steps_have_their_order(method: str, order: int, parts: int) -> None:
         return float(np.abs(found - exact).max())
 
     assert np.log2(error(parts) / error(2 * parts)) == pytest.approx(order, abs=0.7)
+
+
+def test_where_nothing_is_solved_nobody_stumbles() -> None:
+    case = replace(instance.load("return-to-orbit"), lower=(-0.1,) * 2, upper=(0.1,) * 2)
+    many, nodes = together([replace(case, initial=(1e-6, 40.0 + k, 900.0, -70.0)) for k in range(3)])
+    assert not nodes.solved.any()
+    assert not minima(many, nodes).any()

@@ -120,7 +120,7 @@ def solved(many: Many, start: Array) -> Nodes:
 def _bounds_met(many: Many, z: Array) -> NDArray[np.bool_]:
     """Whose controls may leave the bounds, judged by nodes and what they change by between these, shape (M,)."""
     within = many.instance.control_set
-    if not within.bounded:
+    if not within.bounded or not many.count:
         return np.zeros(many.count, dtype=bool)
     n, segments = many.states, len(many.mesh)
     flat, p = z.reshape(len(z), -1), tuple(np.tile(many.parameters, segments))
