@@ -11,6 +11,7 @@ import numpy as np
 from satsym import methods, solvers
 from satsym.instance import Instance
 from satsym.instance.numbers import Table
+from satsym.kernels.batch.compiling import able
 from satsym.solution import Certificate, Solution
 from satsym.solvers.certificate.bulk import certify_all
 from satsym.solvers.cold_start.origin import Origin
@@ -29,7 +30,7 @@ ALONE, NEIGHBOUR = "single solver", "nearest answer"
 def solving(task: Task) -> Work:
     """The work of a chunk of optima."""
     single = _single(task)
-    if together(task):
+    if together(task) and (able() or not task.compiled):
         return lambda cases: _together(task, single, cases)
     if task.checked is Checked.FULL or not warm(task):
         return rows.one_by_one(single)

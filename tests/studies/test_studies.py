@@ -120,7 +120,7 @@ def test_every_column_that_has_a_unit_says_it() -> None:
     ]
     assert header(spec, names) == [
         "cost_from_initial [cost]",
-        f"K.u1.r [{spec.controls[0].unit}/km]",
+        "K.u1.r [1/s**2]",
         f"K.u1.theta [{spec.controls[0].unit}/rad]",
         "eigenvalue_1.re [1/s]",
         "metrics.r_min [km]",

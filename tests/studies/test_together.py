@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,8 @@ import pytest
 
 from satsym import instance, solvers
 from satsym.report import study as reports
-from satsym.studies import chunks
+from satsym.solvers.repeated import repeated
+from satsym.studies import chunks, solving
 from satsym.studies.asked import Study
 from satsym.studies.asking import MANY
 from satsym.studies.asking import asked as asking
@@ -76,6 +78,17 @@ def test_many_rows_are_compiled_where_that_is_possible() -> None:
     assert not few.compiled
     assert many.compiled
     assert many.identity["backend"] == "numba"
+
+
+def test_a_worker_without_a_compiler_answers_all_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As one of a cluster may be, though who asks has one."""
+    study = replace(asked(sample=2, uniform={"initial.r": "0.9,1.1"}), compiled=True)
+    monkeypatch.setattr(solving, "able", lambda: False)
+    monkeypatch.setattr(repeated, "find_spec", lambda name: None)
+    monkeypatch.setitem(sys.modules, "numba", None)
+    found = computed(study)
+    assert {row.status for row in found} == {"converged"}
+    assert {row.numbers["origin"] for row in found} == {"single solver"}
 
 
 def test_workers_change_no_byte(tmp_path: Path) -> None:
