@@ -7,6 +7,7 @@ columns with the straight-line body in it does.
 from __future__ import annotations
 
 import ast
+import copy
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -45,7 +46,7 @@ def inlined(text: str, function: str, loads: Loads, prefix: str) -> Inlined:
     prefix
         Of all names in the lines.
     """
-    definition = _definitions(text)[function]
+    definition = _definition(text, function)
     arguments = {argument.arg for argument in definition.args.args}
     renamed = _Renamed({name: loads[name](0) for name in arguments if name == "t"}, prefix)
     lines: list[str] = []
@@ -75,12 +76,10 @@ class _Renamed(ast.NodeTransformer):
 
 
 @lru_cache(maxsize=8)
-def _parsed(text: str) -> ast.Module:
-    return ast.parse(text)
+def _parsed(text: str) -> dict[str, ast.FunctionDef]:
+    return {each.name: each for each in ast.parse(text).body if isinstance(each, ast.FunctionDef)}
 
 
-def _definitions(text: str) -> dict[str, ast.FunctionDef]:
-    """Fresh ones each time: renaming changes them."""
-    import copy
-
-    return {each.name: copy.deepcopy(each) for each in _parsed(text).body if isinstance(each, ast.FunctionDef)}
+def _definition(text: str, name: str) -> ast.FunctionDef:
+    """A fresh one each time: renaming changes it."""
+    return copy.deepcopy(_parsed(text)[name])

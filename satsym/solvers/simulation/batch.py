@@ -8,6 +8,7 @@ vector instructions.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -112,8 +113,9 @@ def _checked(
     return nodes, start, parameters, controls
 
 
+@lru_cache(maxsize=32)
 def _runge_kutta(kernels: Kernels) -> Any:
-    """Steps by RK4: on a tape where that is possible."""
+    """Steps by RK4: on a tape where that is possible, which is written once."""
     try:
         return OnTape(kernels).advance
     except (Unsuited, BadInput):
