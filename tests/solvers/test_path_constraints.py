@@ -377,3 +377,22 @@ def test_along_a_continuation_the_structure_changes():
     assert found.objective == pytest.approx(80 / 9, rel=1e-9)
     kinds = {tuple(event.kind for event in one.events) for one in found.found.intermediate}
     assert {(), ("entry", "exit")} <= kinds
+
+
+def test_an_arc_from_which_the_multiplier_lifts_begins_later_after_a_touch_point():
+    """Pinned: 0.011195977 by Ipopt on 640 intervals, whose last doubling changed it by a millionth."""
+    case = satsym.Instance.of(
+        "return_above",
+        parameters={"r_min": 0.9946662309934723},
+        initial={
+            "r": 1.1060166201578943,
+            "r_dot": 0.000516680782543,
+            "theta": -0.04454054504182,
+            "theta_dot": 0.82659681729,
+        },
+        final=dict.fromkeys(("r", "r_dot", "theta", "theta_dot"), "reference"),
+        tf=5.703254505575884,
+    )
+    found = certified(satsym.solve(case))
+    assert found.objective == pytest.approx(0.011195977, rel=5e-6)
+    assert [one.kind for one in found.events] == ["touch", "entry", "exit"]

@@ -237,7 +237,7 @@ def _merged(arcs: Arcs, constraint: int, start: float, end: float) -> list[Struc
 
 
 def _pulling_along(arcs: Arcs) -> tuple[str, list[Structure]] | None:
-    """Boundary arcs with a negative multiplier somewhere: touch points at both ends, or one."""
+    """Boundary arcs with a negative multiplier somewhere: shorter ones, touch points at both ends, or one."""
     known, place = contacts(arcs), -1
     for arc, boundary in enumerate(arcs.structure.arcs):
         if boundary < 0:
@@ -249,7 +249,8 @@ def _pulling_along(arcs: Arcs) -> tuple[str, list[Structure]] | None:
         if _order(arcs, boundary) < 2:
             return reason, [_instead(arcs, place, *_pushing(arcs, arc, one))]
         ends = [Contact(boundary, t, t, (jump, 0.0)) for t, jump in zip((one.start, one.end), one.jumps, strict=True)]
-        return reason, [_instead(arcs, place, *ends), _instead(arcs, place, _touch(one))]
+        shorter = [_instead(arcs, place, *parts)] if (parts := _released(arcs, arc, one)) else []
+        return reason, [*shorter, _instead(arcs, place, *ends), _instead(arcs, place, _touch(one))]
     return None
 
 
@@ -259,6 +260,25 @@ def _pushing(arcs: Arcs, arc: int, one: Contact) -> list[Contact]:
         return []
     times = along(arcs, arc)[0]
     return [Contact(one.constraint, float(times[a]), float(times[b])) for a, b in runs(multiplier(arcs, arc) > 0.0)]
+
+
+def _released(arcs: Arcs, arc: int, one: Contact) -> list[Contact]:
+    """Where the multiplier along an arc is positive longest, with touch points in place of the ends that are left.
+
+    The arc begins and ends within, as a free arc beside a touch point makes it shorter still.
+    """
+    times, margin = along(arcs, arc)[0], BESIDE * (one.end - one.start)
+    first, last = max(runs(multiplier(arcs, arc) > 0.0), key=lambda run: run[1] - run[0], default=(0, 0))
+    start, end = float(times[first]) + margin, float(times[last]) - margin
+    if not start < end:
+        return []
+    begins, ends = first == 0, last == len(times) - 1
+    jumps = one.jumps[0] if begins else 0.0, one.jumps[1] if ends else 0.0
+    return [
+        *([] if begins else [Contact(one.constraint, one.start, one.start, (one.jumps[0], 0.0))]),
+        Contact(one.constraint, one.start if begins else start, one.end if ends else end, jumps),
+        *([] if ends else [Contact(one.constraint, one.end, one.end, (one.jumps[1], 0.0))]),
+    ]
 
 
 def multiplier(arcs: Arcs, arc: int) -> Array:
