@@ -50,10 +50,13 @@ def trajectory_files(folder: Path | None, found: Solution | Simulation, look: Lo
     """Trajectory and, where asked for, pictures: name -> content; none where nothing is to be written."""
     if folder is None:
         return {}
+    from satsym.cli.output import live
     from satsym.report import plots
     from satsym.report.results import trajectory
 
-    return trajectory.contents(found) | (plots.pictures(found, look) if look else {})
+    with live() as line:
+        line.show("drawing ..." if look else "writing ...")
+        return trajectory.contents(found) | (plots.pictures(found, look) if look else {})
 
 
 def split(subject: str) -> tuple[str, str | None]:

@@ -22,7 +22,7 @@ from satsym.report.results.files import to_json
 Run = Callable[..., tuple[int, str, str]]
 COMMANDS = [
     *("models", "instances", "new", "solve", "simulate", "study", "plot", "compare", "analyse", "lqr", "derive"),
-    *("latex", "audit", "completion", "doctor"),
+    *("latex", "report", "audit", "completion", "doctor"),
 ]
 HEAD = "satsym schema command model instance status units instance_file".split()
 SOLUTION_KEYS = (
@@ -241,7 +241,9 @@ def test_pictures_go_to_results_by_default(
     monkeypatch.setattr("satsym.report.plots.pictures", lambda _result, _look: {"picture.png": lambda stream: None})
     code, out, _ = run(command, case, "--plot")
     assert code == 0
-    assert f"{Path('results', 'case', command)}: trajectory.npz, trajectory.csv, picture.png, result.json" in out
+    assert f"{Path('results', 'case', command)}: trajectory.npz, trajectory.csv, picture.png, result.json" in " ".join(
+        out.split()
+    )
     assert (tmp_path / "results" / "case" / command / "picture.png").is_file()
 
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from satsym.analysis.linear.stability import UNSTABLE, shown
 from satsym.report.results.exact import omitted_because
 from satsym.report.results.unit_names import time_unit
-from satsym.report.terminal.solution import WIDTH, joined
-from satsym.report.terminal.table import figure, table
+from satsym.report.terminal.solution import joined
+from satsym.report.terminal.table import figure, table, wrapped
 
 if TYPE_CHECKING:
     from satsym.analysis.linear.equilibrium import Linearisation
@@ -155,8 +154,3 @@ def complex_number(value: complex) -> str:
         return f"{figure(value.imag, 10)}i"
     sign = "-" if value.imag < 0.0 else "+"
     return f"{figure(value.real, 10)} {sign} {figure(abs(value.imag), 10)}i"
-
-
-def wrapped(text: str) -> list[str]:
-    """A paragraph, its first line less indented than the others."""
-    return textwrap.wrap(text, WIDTH, initial_indent="  ", subsequent_indent="    ", break_on_hyphens=False)

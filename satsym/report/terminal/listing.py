@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from satsym.report.results.objects import bounded
-from satsym.report.terminal.table import figure, table
+from satsym.report.terminal.table import figure, fitting, table, wrapped
 from satsym.spec import ProblemSpec, Variable
 
 if TYPE_CHECKING:
@@ -54,8 +54,8 @@ def model_text(spec: ProblemSpec) -> str:
         _variables("parameter", spec.parameters),
     ]
     if spec.has_reference:
-        blocks.append(['  It has a reference: [final] may say "reference" for any state.'])
-    return "\n\n".join("\n".join(block) for block in blocks if block)
+        blocks.append(wrapped('It has a reference: [final] may say "reference" for any state.'))
+    return "\n\n".join("\n".join(part for line in block for part in fitting(line)) for block in blocks if block)
 
 
 def _control_set(spec: ProblemSpec) -> str:

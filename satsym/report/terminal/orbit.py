@@ -9,9 +9,9 @@ from satsym.analysis.orbits.conic import TOLERANCE, Conic
 from satsym.analysis.orbits.floquet import FASTER
 from satsym.report.display import time_scale
 from satsym.report.results.orbit import units
-from satsym.report.terminal.linear import complex_number, wrapped
+from satsym.report.terminal.linear import complex_number
 from satsym.report.terminal.solution import joined
-from satsym.report.terminal.table import figure, table
+from satsym.report.terminal.table import figure, table, wrapped
 
 if TYPE_CHECKING:
     from satsym.analysis.orbits.floquet import Floquet

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -13,12 +12,11 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.instance.unknowns import Place
 from satsym.report.results.unit_names import cost_per, time_unit
-from satsym.report.terminal.table import figure, table
+from satsym.report.terminal.table import WIDEST, figure, fitting, room, table, wrapped
 from satsym.solution import Certificate, Iteration, Simulation, Solution
 from satsym.status import Status, Verdict
 from satsym.wording import counted
 
-WIDTH = 100
 SHOWN_TIMES = 6
 """Switching times of one control that are listed."""
 
@@ -85,7 +83,12 @@ def with_files(text: str, saved: Sequence[Path]) -> str:
     places: dict[Path, list[str]] = {}
     for path in saved:
         places.setdefault(path.parent, []).append(path.name)
-    lines = [_wrapped(f"written to {folder}: {', '.join(names)}") for folder, names in places.items()]
+    lines = []
+    for folder, names in places.items():
+        told = wrapped(f"written to {folder}: {', '.join(names)}")
+        # a folder that leaves no room for a name stands alone
+        alone = len(f"  written to {folder}: {names[0]},") > (room() or WIDEST)
+        lines.append([f"  written to {folder}:", *wrapped(", ".join(names))] if alone else told)
     return joined([text.splitlines(), *lines])
 
 
@@ -145,7 +148,7 @@ def _certificate(certificate: Certificate, instance: Instance) -> list[str]:
     best = "highest objective" if spec.maximise else "cheapest costs"
     header = ("competitors", "tried", "unanswered", best)
     return [
-        *_wrapped(f"certificate: {_verdict(certificate)}"),
+        *wrapped(f"certificate: {_verdict(certificate)}"),
         *table([("", "", ""), *rows], right=(1,))[1:],
         *(["", *table([header, *compared], right=(1, 2, 3))] if compared else []),
     ]
@@ -162,8 +165,8 @@ def _verdict(certificate: Certificate) -> str:
 
 
 def joined(blocks: Sequence[Sequence[str]]) -> str:
-    """Blocks of lines, an empty line between those that have any."""
-    return "\n\n".join("\n".join(block) for block in blocks if block)
+    """Blocks of lines, an empty line between those that have any; headings, which are not moved in, fit."""
+    return "\n\n".join("\n".join(part for line in block for part in fitting(line)) for block in blocks if block)
 
 
 def _heading(instance: Instance, status: Status, how: str, colour: bool) -> list[str]:
@@ -176,11 +179,7 @@ def _effort(solution: Solution) -> str:
 
 
 def _message(status: Status, message: str) -> list[str]:
-    return _wrapped(status.explain(message))
-
-
-def _wrapped(text: str) -> list[str]:
-    return textwrap.wrap(text, WIDTH, initial_indent="  ", subsequent_indent="  ", break_on_hyphens=False)
+    return wrapped(status.explain(message))
 
 
 def _states(instance: Instance, times: Array, x: Array, lam: Array | None) -> list[str]:

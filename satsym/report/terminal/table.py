@@ -1,14 +1,49 @@
-"""Plain-text tables for people."""
+"""Plain-text tables and paragraphs for people, as wide as there is room for."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import shutil
+import textwrap
+from collections.abc import Iterator, Sequence
 
 GAP = "  "
+WIDEST, NARROWEST = 100, 40
+"""Of paragraphs, in characters."""
+SENTENCE = 16
+"""Characters that a column of sentences needs, at least."""
+
+
+def room() -> int | None:
+    """Characters of a line, of COLUMNS where that is set, else of the terminal; ``None`` where there is neither."""
+    return shutil.get_terminal_size((0, 0)).columns or None
+
+
+def wrapped(text: str, hanging: str = GAP) -> list[str]:
+    """A paragraph, moved in; paths and other long words are never broken.
+
+    Parameters
+    ----------
+    hanging
+        Begins all lines but the first.
+    """
+    width = max(NARROWEST, min(WIDEST, room() or WIDEST))
+    return textwrap.wrap(
+        text, width, initial_indent=GAP, subsequent_indent=hanging, break_on_hyphens=False, break_long_words=False
+    )
+
+
+def fitting(line: str) -> list[str]:
+    """A heading over several lines where there is no room for it; what is moved in stays, for it is laid out."""
+    limit = room()
+    if limit is None or len(line) <= limit or line.startswith(" "):
+        return [line]
+    return textwrap.wrap(line, limit, subsequent_indent=GAP, break_on_hyphens=False, break_long_words=False)
 
 
 def table(rows: Sequence[Sequence[str]], right: Sequence[int] = (), indent: str = GAP) -> list[str]:
     """Lines of a table whose columns are aligned; columns without any text below the header are left out.
+
+    Where there is no room for all columns, those that are left follow below, beside the first one again.
 
     Parameters
     ----------
@@ -20,11 +55,52 @@ def table(rows: Sequence[Sequence[str]], right: Sequence[int] = (), indent: str 
         Begins every line.
     """
     kept = [i for i, column in enumerate(zip(*rows[1:], strict=True)) if any(column)]
-    width = {i: max(len(row[i]) for row in rows) for i in kept}
-    return [
-        (indent + GAP.join(row[i].rjust(width[i]) if i in right else row[i].ljust(width[i]) for i in kept)).rstrip()
-        for row in rows
-    ]
+    rows = _narrowed(rows, kept, len(indent))
+    lines: list[str] = []
+    for group in _groups(kept, {i: _width(rows, i) for i in kept}, len(indent)):
+        shown = _narrowed(rows, group, len(indent))
+        lines += [""] if lines and any(rows[0]) else []
+        lines += _aligned(shown, group, right, indent)
+    return lines
+
+
+def _aligned(rows: Sequence[Sequence[str]], group: Sequence[int], right: Sequence[int], indent: str) -> list[str]:
+    width = {i: _width(rows, i) for i in group}
+    cells = [[row[i].rjust(width[i]) if i in right else row[i].ljust(width[i]) for i in group] for row in rows]
+    return [(indent + GAP.join(row)).rstrip() for row in cells]
+
+
+def _width(rows: Sequence[Sequence[str]], column: int) -> int:
+    return max(len(row[column]) for row in rows)
+
+
+def _narrowed(rows: Sequence[Sequence[str]], kept: Sequence[int], indent: int) -> Sequence[Sequence[str]]:
+    """The rows with sentences of the last column over several lines, where that leaves room for all columns."""
+    limit = room()
+    if limit is None or not kept:
+        return rows
+    last = kept[-1]
+    left = limit - indent - sum(_width(rows, i) + len(GAP) for i in kept[:-1])
+    if left < SENTENCE or _width(rows, last) <= left:
+        return rows
+    found: list[Sequence[str]] = []
+    for row in rows:
+        for k, part in enumerate(textwrap.wrap(row[last], left) or [""]):
+            found.append([part if i == last else cell if k == 0 else "" for i, cell in enumerate(row)])
+    return found
+
+
+def _groups(kept: Sequence[int], width: dict[int, int], indent: int) -> Iterator[list[int]]:
+    """Columns that fit beside each other, each time with the first one."""
+    limit = room()
+    group = list(kept[:1])
+    for column in kept[1:]:
+        taken = indent + sum(width[i] + len(GAP) for i in group) + width[column]
+        if limit is not None and taken > limit and len(group) > 1:
+            yield group
+            group = list(kept[:1])
+        group.append(column)
+    yield group
 
 
 def figure(value: float, digits: int = 6) -> str:

@@ -1,0 +1,67 @@
+"""What terminals show fits them, loses nothing on the way, and never breaks a path."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from satsym import instance, kernels
+from satsym.report.terminal import listing
+from satsym.report.terminal.solution import simulation_text, solution_text, with_files
+from satsym.report.terminal.table import table, wrapped
+from satsym.solvers import simulate, solve
+
+WORDS = st.text("abcdefghij", min_size=1, max_size=7)
+
+
+@pytest.fixture(scope="module")
+def texts() -> dict[str, object]:
+    models = [kernels.load(name).spec for name in ("polar_orbit", "clohessy_wiltshire", "pitch_wheel")]
+    cases = [instance.load(name) for name in ("soft-return", "lapan-minimum-time", "its-thesis")]
+    return {
+        "solution": solve(instance.load("soft-return-geo")),
+        "flight": simulate(instance.load("its-thesis")),
+        "models": models,
+        "cases": cases,
+    }
+
+
+@pytest.mark.parametrize("columns", [60, 80])
+def test_summaries_and_lists_fit(texts: dict, columns: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    def shown() -> list[str]:
+        return [
+            solution_text(texts["solution"]),
+            simulation_text(texts["flight"]),
+            listing.models_text(texts["models"]),
+            listing.instances_text(texts["cases"]),
+            listing.model_text(texts["models"][0]),
+        ]
+
+    monkeypatch.delenv("COLUMNS", raising=False)
+    whole = shown()
+    monkeypatch.setenv("COLUMNS", str(columns))
+    for text, narrow in zip(whole, shown(), strict=True):
+        assert max(map(len, narrow.splitlines())) <= columns
+        assert set(text.split()) == set(narrow.split())
+
+
+@given(st.lists(st.tuples(WORDS, WORDS, WORDS, WORDS), min_size=1, max_size=4), st.integers(20, 60))
+def test_a_table_of_any_width_has_all_its_cells_in_the_rows_of_their_names(rows: list, columns: int) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("COLUMNS", str(columns))
+        lines = table([("name", "one", "two", "three"), *rows])
+    assert max(map(len, lines)) <= columns
+    below = [line.split() for line in lines]
+    for name, *cells in rows:
+        assert all(any(row[:1] == [name] and cell in row[1:] for row in below) for cell in cells)
+
+
+def test_paths_and_long_words_are_never_broken(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "60")
+    folder = Path("/a-rather-long/path-with-hyphens/" + "x" * 50)
+    told = with_files("summary", [folder / "a.png", folder / "b.png"])
+    assert f"  written to {folder}:\n  a.png, b.png" in told
+    assert wrapped("y" * 90)[-1].strip() == "y" * 90
