@@ -14,6 +14,7 @@ from satsym.instance.numbers import Table
 from satsym.kernels.batch.compiling import able
 from satsym.solution import Certificate, Solution
 from satsym.solvers.certificate.bulk import certify_all
+from satsym.solvers.certificate.corners import positive
 from satsym.solvers.cold_start.origin import Origin
 from satsym.solvers.improving import goes_on
 from satsym.solvers.redundant_ends import redundant
@@ -74,7 +75,6 @@ def _together(task: Task, single: Callable[[str, Instance], Row], cases: Cases) 
     """All at once; what does not end in a minimum beyond doubt is left to the single solver."""
     from satsym.solvers.batch.certificate import minima
     from satsym.solvers.batch.many import Many
-    from satsym.solvers.batch.matching import positive
     from satsym.solvers.batch.solving import solved_together, to_rounding
 
     if not cases:

@@ -13,10 +13,10 @@ from satsym.instance import Instance
 from satsym.kernels import load
 from satsym.solvers.batch.certificate import minima
 from satsym.solvers.batch.many import Many
-from satsym.solvers.batch.matching import positive
 from satsym.solvers.batch.motion import motion
 from satsym.solvers.batch.newton import Nodes, Outcome
 from satsym.solvers.batch.solving import solved, solved_together
+from satsym.solvers.certificate.corners import positive
 from satsym.solvers.two_point import solve
 from tests.certificate.test_certificate import oscillator
 

@@ -16,9 +16,9 @@ from satsym.arrays import Array
 from satsym.kernels import Kernels
 from satsym.solution import Certificate, Solution
 from satsym.solvers.batch.many import Many
-from satsym.solvers.batch.matching import inverses, positive
 from satsym.solvers.batch.newton import Nodes
 from satsym.solvers.certificate.conditions import CANCELLED
+from satsym.solvers.certificate.corners import inverses, positive
 from satsym.solvers.certificate.flow import FAINT, NEGLIGIBLE, ROUNDED, TOLERANCE
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
 from satsym.solvers.certificate.node_defect import FINE

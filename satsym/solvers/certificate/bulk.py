@@ -2,10 +2,6 @@
 
 For problems that are smooth and have both ends given, so that first-order conditions, Legendre's and Jacobi's make a
 strict local minimum. Here that is only ever confirmed: whatever is not clear beyond doubt is left to :func:`certify`.
-
-Jacobi's condition is seen in the cost of broken extremals, whose corners lie at the ends of segments so short that none
-has a conjugate point of its own: its second derivatives by the corners, a matrix with three block diagonals, are
-positive definite if and only if the whole has none (Morse, The calculus of variations in the large, 1934, III).
 """
 
 from __future__ import annotations
@@ -21,6 +17,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers.certificate import conditions
+from satsym.solvers.certificate.corners import positive
 from satsym.solvers.certificate.flow import FAINT, TOLERANCE, Flow, typical, unit_sizes
 from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
 from satsym.solvers.certificate.node_defect import Parameters, joined, missed, stretches
@@ -55,10 +52,6 @@ TOGETHER = 4
 
 SAME = 1e-12
 """Share of the duration by which a node may miss an even one that it is."""
-
-CLEAR = 1e-3
-"""Least eigenvalue of what the corners before one leave of the second derivatives there, in units of the square roots
-of these, that is positive beyond doubt."""
 
 
 def certify_all(solutions: Sequence[Solution]) -> list[Certificate | None]:
@@ -286,7 +279,7 @@ def _without_conjugate_points(together: _Together) -> NDArray[np.bool_]:
             places = np.flatnonzero(left)
             transition, rough = _transitions(together, places, segments, scale)
             sound = places[rough < ROUGH]
-            found[sound] = _positive(transition[rough < ROUGH])
+            found[sound] = positive(transition[rough < ROUGH].transpose(2, 3, 1, 0))
         if found.all():
             break
     return found
@@ -342,34 +335,3 @@ def _transitions(together: _Together, places: NDArray[np.intp], segments: int, s
     except np.linalg.LinAlgError:
         rough = np.full(len(places), np.inf)
     return whole, np.where(np.isfinite(rough), rough, np.inf)
-
-
-def _positive(transition: Array) -> NDArray[np.bool_]:
-    """Whether the second derivatives of the cost by the corners are positive definite, shape (M,).
-
-    With (x, lambda) -> (A x + B lambda, C x + D lambda) over a segment, its cost has the derivatives lambda by where it
-    begins, and -lambda by where it ends: by both ends -B^-1 A, -D B^-1, and B^-1 across.
-    """
-    n = transition.shape[-1] // 2
-    A, B = transition[..., :n, :n], transition[..., :n, n:]
-    D = transition[..., n:, n:]
-    try:
-        inverse = np.linalg.inv(B)
-    except np.linalg.LinAlgError:
-        return np.zeros(len(transition), bool)
-    own = -(D[:, :-1] @ inverse[:, :-1] + inverse[:, 1:] @ A[:, 1:])
-    own = (own + own.swapaxes(-1, -2)) / 2.0
-    left, clear = own[:, 0], np.ones(len(transition), bool)
-    for k in range(own.shape[1]):
-        if k:
-            across = inverse[:, k]
-            left = own[:, k] - across.swapaxes(-1, -2) @ np.linalg.solve(left, across)
-            left = (left + left.swapaxes(-1, -2)) / 2.0
-        diagonal = np.einsum("mii->mi", own[:, k])
-        clear &= (diagonal > 0.0).all(axis=1) & np.isfinite(left).all(axis=(1, 2))
-        left[~clear] = np.eye(n)
-        unit = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
-        unit[~clear] = 1.0
-        clear &= np.linalg.eigvalsh(left * unit[:, :, None] * unit[:, None, :])[:, 0] > CLEAR
-        left[~clear] = np.eye(n)
-    return clear
