@@ -98,7 +98,10 @@ def test_the_disc_ends_where_the_path_ends_and_stands_there_without_motion(text:
     assert "#pause:checked ~ svg .body { animation-play-state: paused; }" in text
 
 
-def test_the_same_run_gives_the_same_page_and_a_failed_one_says_so(solution: Solution) -> None:
+def test_the_same_run_gives_the_same_page_and_a_failed_one_says_so(
+    solution: Solution, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("satsym.report.page.run.pictures", lambda _solution, _texts: [])  # have a test of their own
     short = replace(solution, certificate=None)
     assert render(short, None, "soft-return", "id") == render(short, None, "soft-return", "id")
     failed = render(replace(solution, certificate=None, message="<b>no & way"), None, "x", "en")
