@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import hashlib
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from functools import lru_cache
 from importlib.util import find_spec
 from pathlib import Path
@@ -82,6 +83,26 @@ def compiled(name: str, text: str) -> Mapping[str, Any]:
 
 ENTRIES = ("accurate", "rough", "leap_costing", "leap_varied", "many")
 """Functions that are called from outside, of which machine code is kept with all that they call."""
+
+
+@contextmanager
+def alone(name: str) -> Iterator[None]:
+    """While no other process makes machine code for a model: who had to wait finds it made."""
+    path = kept.folder("kernels") / f"{name}.lock"
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        stream = path.open("a")
+    except OSError:
+        yield
+        return
+    with stream:
+        try:
+            import fcntl
+
+            fcntl.flock(stream, fcntl.LOCK_EX)
+        except (ImportError, OSError):
+            pass  # a system or a folder without locks: it is made twice
+        yield
 
 
 def _writable(folder: Path) -> bool:

@@ -63,6 +63,16 @@ class _Compiled:
         text = canonical.text(kernels.spec, compiling.module_text(kernels), bounds, method)
         self._functions = compiling.compiled(kernels.spec.name, text)
         self._rows = 2 * len(kernels.spec.states)
+        with compiling.alone(kernels.spec.name):
+            self._call_each(len(kernels.spec.parameters))
+
+    def _call_each(self, parameters: int) -> None:
+        """So that all is compiled, or read."""
+        one, z, p = np.ones(1), np.ones((self._rows, 1)), np.ones((parameters, 1))
+        self.rough(one, z, one, p, 1)
+        self.accurate(one, z, one, p, 1)
+        self.leap(one, _costing(z), one, p, 2)
+        self.leap_varied(one, z, one, p, 2)
 
     def rough(self, t: Array, z: Array, h: Array, p: Array, parts: int) -> tuple[Array, Array]:
         rows = self._rows
