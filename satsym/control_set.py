@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.arrays import Array
-from satsym.spec import ControlPart, PartKind, ProblemSpec
+from satsym.spec import SWITCHED, ControlPart, PartKind, ProblemSpec
 
 Row = tuple[float, ...]
 
@@ -55,9 +55,11 @@ class ControlSet:
     inner: float = 0.0
     """The least norm of an annulus, or of a vector in a ball that is kept at it."""
     directed: bool = False
-    """Whether the control is a direction: it has full length always, but for that of a regularised problem."""
+    """Whether H is linear in it: it has full length always, but for that of a regularised problem."""
     throttled: bool = False
-    """Whether it may also be none at all, because its norm counts as well."""
+    """Whether something of it switches between two levels: its norm, which counts as well, or a single control."""
+    turned_by: int | None = None
+    """Of a magnitude: the place of the angle that turns what it multiplies."""
     parts: tuple[tuple[tuple[int, ...], ControlSet], ...] = ()
     """Of a product: the sets, each with the places of its controls in the model's order."""
 
@@ -73,8 +75,8 @@ class ControlSet:
         def one(part: ControlPart, places: tuple[int, ...]) -> ControlSet:
             inner, outer = (norms or {}).get(part.name, (0.0, 1.0 if part.kind == "angle" else math.inf))
             low, high = (tuple(row[i] for i in places) for row in (lower, upper))
-            directed, throttled = part.directed, part.branch == "throttled"
-            return cls(part.kind, low, high, outer, 0.0, 1.0, inner, directed, throttled)
+            angle = spec.control_names.index(part.turned_by) if part.turned_by else None
+            return cls(part.kind, low, high, outer, 0.0, 1.0, inner, part.directed, part.branch in SWITCHED, angle)
 
         return cls("product", smoothing=smoothing, parts=_placed(spec, one))
 
@@ -87,9 +89,11 @@ class ControlSet:
 
             def one(part: ControlPart, places: tuple[int, ...]) -> ControlSet:
                 own = [left.pop(0) for _ in range(part.bounds)]
-                directed, throttled = part.directed, part.branch == "throttled"
+                directed, throttled = part.directed, part.branch in SWITCHED
                 if part.kind == "box":
-                    return cls("box", tuple(own[: len(places)]), tuple(own[len(places) :]))
+                    ends = tuple(own[: len(places)]), tuple(own[len(places) :])
+                    angle = spec.control_names.index(part.turned_by) if part.turned_by else None
+                    return cls("box", *ends, directed=directed, throttled=throttled, turned_by=angle)
                 inner = own[0] if part.kind == "annulus" else 0.0
                 radius = own[-1] if own else math.inf
                 return cls(part.kind, radius=radius, inner=inner, directed=directed, throttled=throttled)
@@ -151,24 +155,36 @@ class ControlSet:
         return replace(self, smoothing=smoothing, fraction=fraction)
 
     def saturated(self, u: Row) -> ControlSet:
-        """That in which only this control is admissible; or these norms, of vectors that may be none."""
+        """That in which only this control is admissible; of a product, in which what switches has these levels."""
         if self.kind == "product":
-            norms = iter(u)
+            levels = iter(u)
 
             def kept(part: ControlSet) -> ControlSet:
-                norm = next(norms)
-                return replace(part, inner=norm, radius=norm)
+                level = next(levels)
+                if part.kind == "box":
+                    return part.saturated((level,))
+                return replace(part, inner=level, radius=level)
 
             return replace(self, parts=tuple((at, kept(one) if one.throttled else one) for at, one in self.parts))
         return replace(self, lower=u, upper=u)
 
+    @property
+    def levels(self) -> tuple[float, float]:
+        """Between which a single control in a box switches, or the norm of a vector."""
+        return (self.lower[0], self.upper[0]) if self.kind == "box" else (self.inner, self.radius)
+
+    @property
+    def reach(self) -> float:
+        """The largest magnitude of a single control in a box, or norm of a vector."""
+        return max(map(abs, self.levels)) if self.kind == "box" else self.radius
+
     @cached_property
     def switching(self) -> tuple[Row, Row]:
-        """Bounds of what switches: of the controls in a box, or of the norms of vectors that may be none."""
+        """Bounds of what switches: of the controls in a box; of a product, of norms and of single controls."""
         if self.kind != "product":
             return self.lower, self.upper
-        switched = [part for _, part in self.parts if part.throttled]
-        return tuple(part.inner for part in switched), tuple(part.radius for part in switched)
+        levels = [part.levels for _, part in self.parts if part.throttled]
+        return tuple(low for low, _ in levels), tuple(high for _, high in levels)
 
     @cached_property
     def box(self) -> tuple[Array, Array]:
@@ -226,7 +242,7 @@ class ControlSet:
             for at, part in self.parts:
                 found[list(at)] = part.active(unbounded[list(at)])
             return found
-        if self.kind == "box":
+        if self.kind == "box" and not self.directed:
             low, high = self.box
             return (unbounded > high).astype(np.int8) - (unbounded < low).astype(np.int8)
         if self.kind in ("ball", "annulus") and not self.directed:
@@ -260,7 +276,7 @@ class ControlSet:
         """For each row of :meth:`excess`, the places of the controls whose bound it is; of a product."""
         rows: list[tuple[int, ...]] = []
         for at, part in self.parts:
-            if part.kind == "box":
+            if part.kind == "box" and not part.directed:
                 rows += [(i,) for i in at] * 2
             elif part.kind in ("ball", "annulus") and not part.directed:
                 rows += [at] * len(part.arguments)

@@ -24,11 +24,13 @@ NAMES = "a small letter, then small letters, digits and underscores"
 """What names of models and problems are."""
 _MODEL = re.compile(r"[a-z][a-z0-9_]{0,99}\Z")
 PartKind = Literal["free", "box", "ball", "annulus", "angle"]
-Branch = Literal["quadratic", "stationary", "direction", "throttled"]
+Branch = Literal["quadratic", "stationary", "direction", "throttled", "switched"]
 """How H is minimised over one set of controls: where H_u vanishes, on which it depends linearly or not; along a
-direction, whatever it is; or along one if that is worth more than the norm of the controls costs, and not at all
-elsewhere."""
-DIRECTED = ("direction", "throttled")
+direction, whatever it is; along one if that is worth more than the norm of the controls costs, and not at all
+elsewhere; or, of a single control on which H depends linearly, at the bound to which it falls."""
+DIRECTED = ("direction", "throttled", "switched")
+SWITCHED = ("throttled", "switched")
+"""Those in which something switches between two levels: a norm, or the control itself."""
 PRODUCT: Literal["product"] = "product"
 """The kind of a control set that is stated set by set."""
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
@@ -153,6 +155,8 @@ class ControlPart:
         How H is minimised over it.
     ends
         Whether H may be least at an end without falling to it, so that there must be ends.
+    turned_by
+        Of a magnitude, which is never negative: the angle that turns what it multiplies.
     """
 
     name: str
@@ -160,6 +164,7 @@ class ControlPart:
     controls: tuple[str, ...]
     branch: Branch
     ends: bool = False
+    turned_by: str = ""
 
     @property
     def bounds(self) -> int:
@@ -299,8 +304,8 @@ class ProblemSpec:
 
     @cached_property
     def throttled(self) -> bool:
-        """Whether H depends on the norm of such controls as well, so that they may be none at all."""
-        return any(part.branch == "throttled" for part in self.control_parts)
+        """Whether norms of such controls, or single controls in a product of sets, switch between two levels."""
+        return any(part.branch in SWITCHED for part in self.control_parts)
 
     @cached_property
     def regularising(self) -> int:
@@ -315,19 +320,19 @@ class ProblemSpec:
             return frozenset(range(len(self.controls)))
         found, at = set[int](), 0
         for part in self.control_parts:
-            if part.kind == "box":
+            if part.kind == "box" and not part.turned_by:
                 found |= set(range(at, at + len(part.controls)))
             at += part.bounds
         return frozenset(found)
 
     @property
     def rings(self) -> tuple[tuple[int, int], ...]:
-        """Places in the argument ``bounds`` of least norms, each with that of the largest."""
+        """Places in the argument ``bounds`` of least norms and magnitudes, each with that of the largest."""
         at = [sum(part.bounds for part in self.control_parts[:k]) for k in range(len(self.control_parts) + 1)]
         each = list(zip(at, self.control_parts, strict=False))
         balls = [i for i, part in each if part.kind == "ball" and part.branch == "throttled"]
         after = at[-1] + self.regularising - len(balls)
-        found = [(i, i + 1) for i, part in each if part.kind == "annulus"]
+        found = [(i, i + 1) for i, part in each if part.kind == "annulus" or part.turned_by]
         return (*found, *((after + k, i) for k, i in enumerate(balls)))
 
     @property

@@ -112,7 +112,12 @@ def _parts(derivation: Derivation) -> tuple[ControlPart, ...]:
         return ()
     return tuple(
         ControlPart(
-            one.part.name, one.part.kind, names(one.part.controls), one.branch, any(e.has(Vertex) for e in one.laws)
+            one.part.name,
+            one.part.kind,
+            names(one.part.controls),
+            one.branch,
+            any(e.has(Vertex) for e in one.laws),
+            one.turned_by.name if one.turned_by else "",
         )
         for one in set_laws.found(derivation)
     )

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from satsym.instance.resolve import Row, quantity
-from satsym.spec import ControlPart, ProblemSpec
+from satsym.spec import SWITCHED, ControlPart, ProblemSpec
 from satsym.status import BadInput
 from satsym.wording import printable, shown, suggestion
 
@@ -46,11 +46,22 @@ def bounds(table: Mapping[str, Any], spec: ProblemSpec) -> tuple[Row, Row, Norms
             unit = spec.controls[spec.control_names.index(name)].unit
             lower[name], upper[name] = _interval(value, unit, key)
     _refuse_endless(spec, norms)
-    for name in (c for part in spec.control_parts if part.ends for c in part.controls):
+    needed = {
+        c: "H need not be convex in this control" for part in spec.control_parts if part.ends for c in part.controls
+    }
+    switched = (
+        c for part in spec.control_parts if part.branch in SWITCHED and part.kind == "box" for c in part.controls
+    )
+    needed |= dict.fromkeys(switched, "this control enters without a square")
+    for name, reason in needed.items():
         if not math.isfinite(lower[name]) or not math.isfinite(upper[name]):
+            raise BadInput(f"[control] {name}: {reason}, so it needs both bounds; write {name} = [lower, upper]")
+    for part in spec.control_parts:
+        if part.turned_by and lower[part.controls[0]] < 0.0:
+            (name,) = part.controls
             raise BadInput(
-                f"[control] {name}: H need not be convex in this control, so it needs both bounds; "
-                f"write {name} = [lower, upper]"
+                f"[control] {name}: {part.turned_by} turns what it multiplies, so it is not negative; "
+                f"write {name} = [0, upper]"
             )
     return tuple(lower.values()), tuple(upper.values()), norms
 

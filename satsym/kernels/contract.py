@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass
 
-from satsym.spec import ProblemSpec
+from satsym.spec import SWITCHED, ProblemSpec
 
 BATCH = "_batch"
 """Suffix of the batch form of a pointwise function; it takes ``out=None`` as well."""
@@ -179,7 +179,7 @@ def sizes(spec: ProblemSpec) -> dict[str, int]:
     counts = {"n": n, "m": m, "k": len(spec.parameters), "i": len(spec.invariants), "q": len(spec.position), "c": c}
     counts["b"] = {"box": 2 * m, "ball": 1}.get(spec.control_set or "free", 0) + spec.regularising
     counts["b"] += sum(part.bounds for part in spec.control_parts)
-    counts["r"] = sum(part.branch == "throttled" for part in spec.control_parts)
+    counts["r"] = sum(part.branch in SWITCHED for part in spec.control_parts)
     counts["h"] = len(spec.path_constraints)
     counts |= {"o": len(spec.outputs), "g": n + 1, "w": 2, "s": 7}
     counts |= {"a": len(spec.quantities), "y": 2 * len(spec.balances)}

@@ -22,13 +22,17 @@ def of_sets(of: Evaluation) -> Iterator[Relation]:
     law, within = of("control_law"), _within(of)
     slope, straight = of.slope("hamiltonian", "u", u=law), np.zeros_like(law)
     terms = np.abs(of.slope("hamiltonian", "u", u=straight)) + np.abs(slope)
+    for places, part in within.parts:
+        if part.kind == "angle" and not part.directed:  # which may turn what is none at the zero of all controls
+            across = _turned(law, places[0], law[places[0]] + np.pi / 2.0)
+            terms += np.abs(of.slope("hamiltonian", "u", u=across))
     left = np.array(slope)
     curved = np.asarray(np.einsum("iik->ik", of("control_hessian", u=law)) >= 0.0)
     for places, part in within.parts:
         rows = list(places)
         if part.directed and part.kind != "angle":
             left[rows] = 0.0
-            best = _longest(of, rows, part, within)
+            best = _at_levels(of, rows, part, within) if part.kind == "box" else _longest(of, rows, part, within)
             yield Relation("control_law", "against the slope of H, as long as pays", law[rows], best)
         elif part.kind == "box":
             low, high = (np.array(np.broadcast_arrays(*half, law[0])[:-1]) for half in (part.lower, part.upper))
@@ -60,6 +64,16 @@ def _longest(of: Evaluation, rows: list[int], part: ControlSet, within: ControlS
     return np.asarray(-slope / size * np.clip((size - weight) / np.asarray(within.smoothing), shortest, part.radius))
 
 
+def _at_levels(of: Evaluation, rows: list[int], part: ControlSet, within: ControlSet) -> Array:
+    """Against the slope of H by a single control in a box, as far as the smoothing and its bounds let it."""
+    law = of("control_law")
+    slope = of("stationarity", u=law)[rows]
+    if part.turned_by is not None:  # of what does not turn only a share counts
+        against = of("stationarity", u=_turned(law, part.turned_by, law[part.turned_by] + np.pi))[rows]
+        slope = (slope - against) / 2.0 + np.asarray(within.fraction) * (slope + against) / 2.0
+    return np.asarray(np.clip(-slope / np.asarray(within.smoothing), *part.levels))
+
+
 def outside_box(slope: Array, law: Array, low: Array, high: Array, curved: Array) -> Array:
     """H_u but for what a bound that is met may hold; which sign that has where H_uu says which way is down."""
     held = np.where(law <= low, np.minimum(slope, 0.0), np.where(law >= high, np.maximum(slope, 0.0), slope))
@@ -80,7 +94,7 @@ def outside_ball(slope: Array, law: Array, norm: Array, limit: Array, inner: Arr
 def relaxed(of: Evaluation, name: str) -> Array:
     """A function of the controls under the law of the regularised problem."""
     law, within = of("control_law"), _within(of)
-    angles = [(places[0], part) for places, part in within.parts if part.kind == "angle"]
+    angles = [(places[0], part) for places, part in within.parts if part.kind == "angle" and part.directed]
     flat = np.array(law)
     for row, _ in angles:
         flat[row] = 0.0
@@ -90,9 +104,12 @@ def relaxed(of: Evaluation, name: str) -> Array:
         middle = (whole + back) / 2.0
         total = total + (whole - middle) * along + (side - middle) * across + middle - whole
     for places, part in within.parts:
-        if part.throttled:  # a share only of what depends on the norm
+        if part.throttled and (part.kind != "box" or part.turned_by is not None):  # a share only of what the norm adds
             back, none = np.array(flat), np.array(flat)
-            back[list(places)] *= -1.0
+            if part.turned_by is None:
+                back[list(places)] *= -1.0
+            else:
+                back[part.turned_by] += np.pi
             none[list(places)] = 0.0
             by_norm = (whole + of(name, u=back)) / 2.0 - of(name, u=none)
             total = total - (1.0 - np.asarray(within.fraction)) * by_norm
@@ -103,7 +120,7 @@ def effort(of: Evaluation) -> Array:
     """Half the squares of directions in the regularised problem, times the smoothing."""
     law, within = of("control_law"), _within(of)
     flat = np.array(law)
-    angles = [(places[0], part) for places, part in within.parts if part.kind == "angle"]
+    angles = [(places[0], part) for places, part in within.parts if part.kind == "angle" and part.directed]
     for row, _ in angles:
         flat[row] = 0.0
     squares = sum((along**2 + across**2 for along, across in _short(of, flat, angles)), np.zeros(law.shape[-1]))
@@ -125,7 +142,7 @@ def _short(of: Evaluation, flat: Array, angles: list[tuple[int, ControlSet]]) ->
     return found
 
 
-def _turned(u: Array, row: int, angle: float) -> Array:
+def _turned(u: Array, row: int, angle: float | Array) -> Array:
     found = np.array(u)
     found[row] = angle
     return found

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,13 +16,13 @@ from satsym import instance
 from satsym.instance import Instance
 from satsym.solvers import solve
 from satsym.status import BadInput, Status, Verdict
-from satsym.symbolic import Angle, Box, DerivationError, FirstOrder, Problem, Variable, derive, symbols_of
+from satsym.symbolic import Angle, Box, DerivationError, FirstOrder, Free, Problem, Variable, derive, symbols_of
 from satsym.symbolic.roots import root_of
 from tests.support.models import build, k, q, scalar, w
 
 PLACE = tuple(Variable(name, name) for name in ("x", "y"))
 x, y = symbols_of(PLACE)
-(b,) = symbols_of((Variable("b", "b"),))
+b, size = symbols_of((Variable("b", "b"), Variable("size", "s")))
 BOAT = Problem(
     name="boat_in_sector",
     title="A boat in a current that may not head anywhere",
@@ -310,14 +311,19 @@ def made(name: str, states: tuple[Variable, ...], controls: tuple[str, ...], rat
     return FirstOrder(name=name, title=name.title(), states=states, controls=own, parameters=(), rates=rates)
 
 
-def test_a_magnitude_that_multiplies_a_direction_is_a_vector():
-    (size,) = symbols_of((Variable("size", "s"),))
-    motion = made("push", PLACE, ("size", "b"), {x: size * cos(b), y: size * sin(b)})
-    sets = {"size": Box("size"), "heading": Angle("b")}
+@pytest.mark.parametrize(
+    ("sets", "moved"),
+    [
+        ({"size": Free("size"), "heading": Angle("b")}, size * sin(b)),
+        ({"size": Box("size"), "heading": Box("b")}, size * sin(b)),
+        ({"size": Box("size"), "heading": Angle("b")}, (1 + size) * sin(b)),
+    ],
+    ids=["no bounds", "angle between bounds", "turns something else"],
+)
+def test_a_magnitude_that_multiplies_a_direction_has_bounds_and_any_direction(sets: dict[str, Any], moved: Expr):
+    motion = made("push", PLACE, ("size", "b"), {x: size * cos(b), y: moved})
     stated = Problem(name="pushed", title="A push that is turned", model=motion, running_cost=1, control_sets=sets)
-    with pytest.raises(
-        DerivationError, match=r"linear in size, which multiplies what b turns; state the comp.* a Ball"
-    ):
+    with pytest.raises(DerivationError, match=r'linear in size, which multiplies what b turns; .* "b": Angle\("b"\)'):
         derive(stated)
 
 

@@ -142,7 +142,7 @@ def legendre_clebsch(solution: Solution) -> float:
     along = solution.times, solution.x, solution.u, solution.lam, instance.parameters
     hessian = np.array(model.control_hessian_batch(*along))
     for places, part in instance.control_set.parts:
-        if part.directed and part.kind != "angle":
+        if part.directed and part.kind not in ("angle", "box"):
             rows = list(places)
             slope, u = np.asarray(model.stationarity_batch(*along))[rows], solution.u[rows]
             hessian[rows, rows] -= (slope * u).sum(axis=0) / np.maximum((u * u).sum(axis=0), 1e-300)

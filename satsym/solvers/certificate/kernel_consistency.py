@@ -96,7 +96,8 @@ def _bounds_of_sets(instance: Instance, at: dict[str, Any]) -> tuple[Array, ...]
         radius = float(np.linalg.norm(size))
         if part.kind == "box":
             low, high = part.box
-            found += [*np.where(owned, np.maximum(low, -WIDE * size), -NARROW * size)]
+            least = -NARROW if part.turned_by is None else 0.0
+            found += [*np.where(owned, np.maximum(low, -WIDE * size), least * size)]
             found += [*np.where(owned, np.minimum(high, WIDE * size), NARROW * size)]
         elif part.kind == "annulus":
             found.append(np.where(owned, part.inner, NARROW**2 * radius))
@@ -106,7 +107,7 @@ def _bounds_of_sets(instance: Instance, at: dict[str, Any]) -> tuple[Array, ...]
             found.append(np.where(owned, min(part.radius, WIDE * radius), NARROW * radius))
     if spec.directional:
         met = [
-            np.median(np.linalg.norm(slope(instance, places, at["t"], at["x"], at["lam"]), axis=0)) / part.radius
+            np.median(np.linalg.norm(slope(instance, places, at["t"], at["x"], at["lam"]), axis=0)) / part.reach
             for places, part in instance.control_set.parts
             if part.directed
         ]

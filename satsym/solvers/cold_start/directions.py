@@ -9,7 +9,7 @@ solution, until every direction has its full length: that is an extremal of the 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache, partial
 from typing import TypeVar
 
@@ -32,7 +32,7 @@ from satsym.solvers.collocation.problem import TwoPoint
 from satsym.solvers.collocation.scaling import two_point
 from satsym.solvers.collocation.system import System
 from satsym.solvers.control.regularised import regularised
-from satsym.solvers.control.slopes import full_length_smoothing, gain
+from satsym.solvers.control.slopes import full_length_smoothing, gain, slope
 from satsym.solvers.failures import tried
 from satsym.solvers.iteration import Limits
 from satsym.status import Status
@@ -183,6 +183,8 @@ def _in_direction(instance: Instance, direction: float) -> Array:
     for places, part in instance.control_set.parts:
         if part.kind == "angle":
             u[places[0]] = direction
+        elif part.directed and part.kind == "box":
+            u[places[0]] = part.levels[int(np.cos(direction) > 0.0)]
         elif part.directed:
             both = part.radius * np.array([np.cos(direction), np.sin(direction)])
             u[list(places[:2])] = both[: len(places)]
@@ -285,8 +287,17 @@ def _exact(problem: TwoPoint, instance: Instance) -> TwoPoint:
     return replace(problem, instance=replace(instance, tf=tf, tf_guess=tf_guess), relaxation=0.0)
 
 
-def _lengths(problem: TwoPoint, curve: Curve) -> list[tuple[float, Array]]:
-    """For each direction its limit, and its length along a curve."""
+@dataclass(frozen=True, eq=False)
+class _Length:
+    """The length of a direction along a curve, or a single control that switches, and the bounds of it."""
+
+    low: float
+    high: float
+    values: Array
+
+
+def _lengths(problem: TwoPoint, curve: Curve) -> list[_Length]:
+    """Those of all directions."""
     tau = np.linspace(0.0, 1.0, SAMPLES)
     within = problem.control_set
     z, t = curve(tau) * problem.scale.both, problem.instance.t0 + problem.elapsed(curve.theta) * tau
@@ -296,30 +307,32 @@ def _lengths(problem: TwoPoint, curve: Curve) -> list[tuple[float, Array]]:
     for k, (places, part) in enumerate(within.parts):
         if not part.directed:
             continue
-        longer = gain(problem.instance, places, t, z[:n], z[n:])
-        length = np.clip(longer / stated.smoothing, part.inner if part.throttled else 0.0, part.radius)
-        found.append((stated.parts[k][1].radius, length))
+        by = slope(problem.instance, places, t, z[:n], z[n:])[0] if part.kind == "box" else None
+        longer = gain(problem.instance, places, t, z[:n], z[n:]) if by is None else -by
+        (low, high), whole = (one.levels if one.throttled else (0.0, one.radius) for one in (part, stated.parts[k][1]))
+        found.append(_Length(*whole, np.clip(longer / stated.smoothing, low, high)))
     return found
 
 
 def _longest(problem: TwoPoint, curve: Curve) -> float:
-    """By how much directions without bounds exceed their length at most."""
-    return max(float(length.max()) - limit for limit, length in _lengths(problem.relaxed(float("inf")), curve))
+    """By how much directions without bounds exceed their length at most, or single controls their bounds."""
+    found = _lengths(problem.relaxed(float("inf")), curve)
+    return max(max(float(one.values.max()) - one.high, one.low - float(one.values.min())) for one in found)
 
 
 def fraction_between(problem: TwoPoint, curve: Curve) -> float:
-    """The largest share of the time for which the norm of a direction is far from both of its bounds."""
-    least = (part.inner for _, part in problem.control_set.parts if part.directed)
-    shares = []
-    for low, (limit, length) in zip(least, _lengths(problem, curve), strict=True):
-        off = FAR * (limit - low)
-        shares.append(float(((length > low + off) & (length < limit - off)).mean()))
-    return max(shares, default=0.0)
+    """The largest share of the time for which what switches, such as a norm, is far from both of its bounds."""
+
+    def share(one: _Length) -> float:
+        off = FAR * (one.high - one.low)
+        return float(((one.values > one.low + off) & (one.values < one.high - off)).mean())
+
+    return max(map(share, _lengths(problem, curve)), default=0.0)
 
 
 def _share_short(problem: TwoPoint, curve: Curve) -> float:
     """The largest share of the time for which a direction has not its full length."""
-    found = (float((length < (1.0 - FULL) * limit).mean()) for limit, length in _lengths(problem, curve))
+    found = (float((one.values < (1.0 - FULL) * one.high).mean()) for one in _lengths(problem, curve))
     return max(found, default=0.0)
 
 

@@ -21,6 +21,8 @@ INSTANT = 1e-6
 def slope(instance: Instance, places: Sequence[int], t: Array, x: Array, lam: Array) -> Array:
     """The slope of H by a direction, shape (components, N): by the controls, or by cosine and sine of an angle.
 
+    Of a single control in a box it is the slope with the best of what turns what it multiplies.
+
     Parameters
     ----------
     places
@@ -29,6 +31,9 @@ def slope(instance: Instance, places: Sequence[int], t: Array, x: Array, lam: Ar
         Times (N,), states and costates, (n, N).
     """
     model, p = instance.model, instance.parameters
+    switched = [at for at, part in instance.control_set.parts if part.throttled]
+    if any(at == tuple(places) and part.kind == "box" for at, part in instance.control_set.parts):
+        return np.asarray(model.throttle_slope_batch(t, x, lam, p))[[switched.index(tuple(places))]]
     u = np.zeros((len(model.spec.controls), len(t)))
 
     def slopes() -> Array:
@@ -63,7 +68,7 @@ def undecided(instance: Instance, t: Array, x: Array, lam: Array) -> NDArray[np.
     """Which controls are directions that nothing decides at an instant, shape (m, N)."""
     found = np.zeros((len(instance.model.spec.controls), len(t)), dtype=bool)
     for places, part in instance.control_set.parts:
-        if part.directed:
+        if part.directed and part.kind != "box":
             size = np.linalg.norm(slope(instance, places, t, x, lam), axis=0)
             found[list(places)] = ~(size > VANISHING * size.max(initial=0.0))
     return found
@@ -86,14 +91,14 @@ def full_length_smoothing(instance: Instance) -> float:
     Where only the end costs, that is how fast its cost grows, if not at rest then at full length.
     """
     idle = instance.control_set.project(np.zeros((len(instance.model.spec.controls), 1)))[:, 0]
-    directed = [(places, part.radius) for places, part in instance.control_set.parts if part.directed]
+    directed = [(places, part.reach) for places, part in instance.control_set.parts if part.directed]
     cost = abs(cost_rate(instance, idle))
     if not cost:
         full = np.array(idle)
-        for places, radius in directed:
-            full[places[0]] = radius
+        for places, reach in directed:
+            full[places[0]] = reach
         cost = abs(cost_rate(instance, full))
-    effort = sum(radius**2 for _, radius in directed)
+    effort = sum(reach**2 for _, reach in directed)
     return 2.0 * (cost if 0.0 < cost < float("inf") else 1.0) / effort
 
 
@@ -117,7 +122,7 @@ def without_poles(instance: Instance, t: Array, x: Array, lam: Array) -> Control
     """
     smallest, usual = float("inf"), 0.0
     for places, part in instance.control_set.parts:
-        if part.directed:
+        if part.directed and part.kind != "box":  # on an arc a single control keeps its level, whatever the slope
             size = np.linalg.norm(slope(instance, places, t, x, lam), axis=0) / part.radius
             smallest, usual = min(smallest, float(size.min())), max(usual, float(np.median(size)))
     if not smallest < MOMENT * usual:

@@ -1,7 +1,8 @@
-"""Extremal equations where vectors are throttled: each keeps its norm, and its direction follows the costates.
+"""Extremal equations where vectors are throttled, or controls in a product of sets switch one by one.
 
 H falls along the best direction of such a vector by what a generated function says; where that changes its sign the
-norm switches between its bounds. The equations of an arc are the canonical ones with the norm kept.
+norm switches between its bounds, and so does a single control where the slope of H by it does. On an arc each of them
+keeps its level, and what is left follows the costates: the canonical equations with these levels.
 """
 
 from __future__ import annotations
@@ -9,25 +10,24 @@ from __future__ import annotations
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.control_set import Row
+from satsym.control_set import ControlSet, Row
 from satsym.instance import Instance
 from satsym.solvers.switching.field import NUDGE, Field
 
 NOTHING = 1e-300
-"""A norm that is none: right at a switch the margin that decides it is zero as well, and must not be equal to it."""
+"""A level that is none: right at a switch the margin that decides it is zero as well, and must not be equal to it."""
 
 
 class ThrottledField(Field):
-    """Rates of states and costates while every vector that is throttled keeps its norm; see :class:`Field`."""
+    """Rates of states and costates while every norm and control that switches keeps its level; see :class:`Field`."""
 
     def __init__(self, instance: Instance, levels: tuple[int, ...]) -> None:
         super().__init__(instance, levels)
         if self.singular is not None:
-            raise ArithmeticError("no law is known for a vector whose norm nothing decides")
+            raise ArithmeticError("no law is known for a level that nothing decides")
         throttled = [places for places, part in instance.control_set.parts if part.throttled]
-        self.none = [i for places, norm in zip(throttled, self.saturated, strict=True) for i in places if not norm]
-        norms = tuple(max(norm, NOTHING) for norm in self.saturated)
-        self.arguments = instance.control_set.saturated(norms).arguments
+        self.none = [i for places, level in zip(throttled, self.saturated, strict=True) for i in places if not level]
+        self.arguments = instance.control_set.saturated(tuple(level or NOTHING for level in self.saturated)).arguments
 
     def kept_at(self, t: float, z: list[float]) -> Row:
         return self.arguments
@@ -96,11 +96,14 @@ def signs(instance: Instance, t: Array, x: Array, lam: Array) -> tuple[Array, Ar
 
 
 def switched(instance: Instance, u: Array) -> Array:
-    """What switches: the controls, or the norms of vectors that are throttled; shape (r, N)."""
+    """What switches: the controls, or of a product of sets single controls and norms of vectors; shape (r, N)."""
     if not instance.model.spec.throttled:
         return u
-    parts = instance.control_set.parts
-    return np.array([np.linalg.norm(u[list(places)], axis=0) for places, part in parts if part.throttled])
+
+    def level(places: tuple[int, ...], part: ControlSet) -> Array:
+        return u[places[0]] if part.kind == "box" else np.asarray(np.linalg.norm(u[list(places)], axis=0))
+
+    return np.array([level(*one) for one in instance.control_set.parts if one[1].throttled])
 
 
 def by_control(instance: Instance, times: list[tuple[float, ...]]) -> tuple[tuple[float, ...], ...]:

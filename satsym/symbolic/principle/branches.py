@@ -22,7 +22,7 @@ from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.principle.circle import by_circle
 from satsym.symbolic.principle.parts import Part
 from satsym.symbolic.principle.stationary import indefinite, minimiser, with_angle
-from satsym.symbolic.roots import Choice, Convex, Middle, Vertex
+from satsym.symbolic.roots import Bearing, Choice, Convex, Middle, Vertex
 
 
 @dataclass(frozen=True)
@@ -52,6 +52,8 @@ class Minimum:
     weight: sp.Expr = sp.Integer(0)
     laws: tuple[sp.Expr, ...] = ()
     """Of what is neither linear nor quadratic: the minimisers, within the bounds."""
+    turned_by: sp.Symbol | None = None
+    """Of a magnitude, such as a thrust: the angle that turns what it multiplies."""
 
     @property
     def directed(self) -> bool:
@@ -119,10 +121,8 @@ def _coupled(name: str, h: sp.Expr, parts: Sequence[Part], side: int) -> dict[st
         if circle is None or not any(e.has(u) for e in circle[1:]) or by_circle(h, u):
             continue
         if sp.simplify(sp.diff(h, u, 2)) == 0:
-            raise DerivationError(
-                f"{name}: H is linear in {u.name}, which multiplies what {angle.name} turns; state the components of "
-                f"this vector as controls in a Ball, and their norm for {u.name}"
-            )
+            found |= _turned(name, circle, turned, beside, side)
+            continue
         arc = ends_of(turned, angle) if turned.kind == "box" else None
         others = {v for part in parts if part not in (turned, beside) for v in part.symbols}
         slopes = gradient(h, (u, angle))
@@ -135,6 +135,29 @@ def _coupled(name: str, h: sp.Expr, parts: Sequence[Part], side: int) -> dict[st
             found[beside.name] = Minimum(beside, "stationary", gradient=tuple(slopes[:1]), laws=laws[:1])
             found[turned.name] = Minimum(turned, "stationary", gradient=tuple(slopes[1:]), laws=laws[1:])
     return found
+
+
+def _turned(
+    name: str, circle: tuple[sp.Expr, sp.Expr, sp.Expr], turned: Part, beside: Part, side: int
+) -> dict[str, Minimum]:
+    """A magnitude and the angle of what it multiplies: the best direction, and a norm that switches."""
+    (angle,), (u,) = turned.symbols, beside.symbols
+    rest, *pair = circle
+    alone = any(sp.simplify(e.xreplace({u: sp.Integer(0)})) != 0 for e in pair)
+    if alone or turned.kind != "angle" or beside.kind != "box":
+        raise DerivationError(
+            f"{name}: H is linear in {u.name}, which multiplies what {angle.name} turns; this needs "
+            f'"{u.name}": Box("{u.name}"), "{angle.name}": Angle("{angle.name}"), and nothing else that it turns; or '
+            "state the components of this vector as controls in a Ball"
+        )
+    cosine, sine = (tidy(sp.diff(e, u)) for e in pair)
+    law = Bearing(-side * sine, -side * cosine)
+    slope = tidy(u * (cosine * -sp.sin(angle) + sine * sp.cos(angle)))
+    weight = tidy(sp.diff(rest, u))
+    return {
+        beside.name: Minimum(beside, "throttled", (cosine, sine), weight=weight, turned_by=angle),
+        turned.name: Minimum(turned, "stationary", gradient=(slope,), laws=(law,)),
+    }
 
 
 def ends_of(part: Part, u: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
@@ -192,18 +215,17 @@ def _of_vector(name: str, h: sp.Expr, part: Part, slopes: list[sp.Expr], side: i
     except NonlinearError:
         return _of_each(name, side * h, part, slopes)
     if all(entry == 0 for entry in rows):
-        if part.kind not in ("ball", "annulus"):
+        if part.kind == "free":
+            raise DerivationError(f"{name}: H is linear in {controls}, which nothing limits; state a Box or a Ball")
+        if part.kind == "box" and len(slopes) > 1:
+            boxes = ", ".join(f'"{u.name}": Box("{u.name}")' for u in part.symbols)
             raise DerivationError(
-                f"{name}: H is linear in {controls}, so that its minimum is where they end, which is solved only "
-                f"where all controls are in one box; beside others add a small c0*{part.symbols[0].name}**2 to the "
-                "cost and lower c0 by [continuation], or state a Ball"
+                f"{name}: H is linear in each of {controls}, which switch one by one; state them so: "
+                f"control_sets={{{boxes}, ...}}"
             )
-        if len(slopes) == 1:
-            raise DerivationError(
-                f"{name}: H is linear in {controls} alone, which switches and does not turn; state a Box, and all "
-                f"other controls in it, or a small c0*{controls}**2 in the cost, lowered by [continuation]"
-            )
-        return Minimum(part, "direction", tuple(slopes))
+        if part.kind != "box" and len(slopes) == 1:
+            raise DerivationError(f"{name}: H is linear in {controls} alone, which does not turn; state a Box")
+        return Minimum(part, "switched" if part.kind == "box" else "direction", tuple(slopes))
     if sp.simplify(rows.det()) == 0:
         raise DerivationError(f"{name}: H_uu of {controls} is singular, so H_u = 0 does not determine them")
     if part.kind == "box" and rows.is_diagonal() and any(indefinite(name, row) for row in rows.diagonal()):

@@ -8,6 +8,7 @@ from typing import Any
 import mpmath as mp
 import sympy as sp
 
+from satsym.spec import SWITCHED
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import tidy
 from satsym.symbolic.checks import Point, compare, numeric
@@ -35,6 +36,10 @@ def minimised_hamiltonian(so_far: Derivation) -> Step | None:
             least |= dict(zip(one.part.symbols, one.hats, strict=True))
             continue
         least |= dict.fromkeys(pn.components_of(one.part), sp.Integer(0))
+        if one.branch == "switched":
+            (s,), ends = one.vector, one.part.bounds
+            gained += sign(problem) * sp.Max(*(-sign(problem) * end * s for end in ends))
+            continue
         length = sp.Integer(1) if one.part.kind == "angle" else one.part.bounds[-1]
         shortest = one.part.bounds[0] if one.part.kind == "annulus" else 0
         slope = sp.sqrt(sp.factor(sum((s**2 for s in one.vector), sp.Integer(0))))
@@ -54,7 +59,7 @@ def minimised_hamiltonian(so_far: Derivation) -> Step | None:
     def sides(point: Point) -> tuple[list[Any], list[Any]]:
         here = {**point, **wide}
         for one in every:
-            here = ordered(one, here) if one.branch == "throttled" else here
+            here = ordered(one, here) if one.branch in SWITCHED else here
         law = dict(zip(symbols_of(problem.model.controls), chosen(here), strict=True))
         return at_minimum(here), value({**here, **law})
 

@@ -60,7 +60,7 @@ along_of, across_of = named("along_{}"), named("across_{}")
 
 def slopes_of(one: Minimum) -> tuple[sp.Symbol, ...]:
     """Symbols for the slope of H where it is linear in a vector."""
-    if one.part.kind == "angle":
+    if one.part.kind == "angle" or one.turned_by:
         return cosine_of(one.part.symbols[0]), sine_of(one.part.symbols[0])
     return tuple(map(primer_of, one.part.symbols))
 
@@ -99,9 +99,11 @@ def declare_product(known: dict[str, Dimension | None], problem: Problem, runnin
                 running, known[v.symbol]
             )
             known[f"norm_of_{part.name}"] = known[v.symbol]
-            known[f"cosine_of_{v.symbol}"] = known[f"sine_of_{v.symbol}"] = running
+            turned = running if part.kind == "angle" else over(running, known[v.symbol])
+            known[f"cosine_of_{v.symbol}"] = known[f"sine_of_{v.symbol}"] = turned
             known[f"along_{v.symbol}"] = known[f"across_{v.symbol}"] = PLAIN
-        if part.kind in ("ball", "annulus", "angle"):
+        switched = part.kind == "box" and sp.diff(problem.running_cost, part.symbols[0], 2) == 0
+        if switched or part.kind in ("ball", "annulus", "angle"):
             unit = PLAIN if part.kind == "angle" else known[part.controls[0].symbol]
             efforts.append(over(over(running, unit), unit))
     # one number smooths all directions: where their units differ it has none that would suit them all

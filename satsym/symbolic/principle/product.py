@@ -14,6 +14,7 @@ from typing import Any
 
 import sympy as sp
 
+from satsym.spec import SWITCHED
 from satsym.symbolic import notation as n
 from satsym.symbolic.checks import Point, never_below, numeric
 from satsym.symbolic.convention import sign, worded
@@ -21,7 +22,7 @@ from satsym.symbolic.derivation import Conclusion, Derivation, Equation, Step
 from satsym.symbolic.model import symbols_of
 from satsym.symbolic.principle import control_sets
 from satsym.symbolic.principle import notation as pn
-from satsym.symbolic.principle.branches import norm_of, with_norms
+from satsym.symbolic.principle.branches import Minimum, norm_of, with_norms
 from satsym.symbolic.principle.parts import limits_of, parts_of
 from satsym.symbolic.principle.pontryagin import COMPETITORS, costates
 from satsym.symbolic.principle.set_checks import SCALES, adds_up, cheapest, convex, drawn, ordered
@@ -101,9 +102,17 @@ def control_law(so_far: Derivation) -> Step:
     said = tuple(
         Conclusion("no direction where it vanishes", {"slope": sp.Tuple(*pn.slopes_of(one))})
         for one in every
-        if one.directed
+        if one.directed and one.branch != "switched"
     )
-    if any(not law.has(Vertex) for one in every for law in one.laws):
+    said += tuple(
+        Conclusion("no level where it vanishes", {"slope": pn.slopes_of(one)[0]})
+        for one in every
+        if one.branch == "switched"
+    )
+    turned = {one.part.symbols[0]: one.turned_by for one in every if one.turned_by}
+    said += tuple(Conclusion("magnitude that is turned", {"size": u, "angle": angle}) for u, angle in turned.items())
+    others = (one for one in every if not {*one.part.symbols} & {*turned.values()})
+    if any(not law.has(Vertex) for one in others for law in one.laws):
         said += (Conclusion("neither linear nor quadratic", {}),)
     said += tuple(Conclusion(key, {}) for key in sorted({key for one in every for key in one.remarks}))
     return Step("control_law", worded("minimum set by set", problem), equations, (STEP,), (check,), said)
@@ -117,6 +126,11 @@ def _in_parts(laws: Sequence[sp.Expr]) -> tuple[list[tuple[sp.Symbol, sp.Expr]],
     compared = [e for law in laws if isinstance(law, Vertex) for e in law.args[:2]]
     parts, reduced = sp.cse([*compared, *laws], symbols=named, order="canonical")
     return list(parts), list(reduced[len(compared) :])
+
+
+def _norm(one: Minimum) -> sp.Expr:
+    """The norm of a vector, or the magnitude that is its norm."""
+    return one.part.symbols[0] if one.turned_by else sp.sqrt(sum(u**2 for u in one.part.symbols))
 
 
 def smoothed_law(so_far: Derivation) -> Step | None:
@@ -134,8 +148,11 @@ def smoothed_law(so_far: Derivation) -> Step | None:
         equations += [Equation(c.name, c, law) for c, law in zip(pn.components_of(one.part), laws, strict=True)]
     h = relaxed(so_far, [so_far.equation("hamiltonian.H").rhs])[0]
     h += sign(problem) * EPSILON / 2 * sum(c**2 for c in short)
-    norms = {norm_of(one.part): FACTOR * sp.sqrt(sum(u**2 for u in one.part.symbols)) for one in directions}
+    norms = {norm_of(one.part): FACTOR * _norm(one) for one in directions}
     h = h.xreplace(norms)
+    stationary = [one for one in found(so_far) if one.branch == "stationary"]
+    beside = {u: law for one in stationary for u, law in zip(one.part.symbols, one.laws, strict=True)}
+    turned = numeric(list(beside.values()))
     value, chosen = numeric([h]), numeric(written_out(so_far, [e.rhs for e in equations[1:]]))
 
     def margins(point: Point, rng: random.Random) -> list[Any]:
@@ -144,6 +161,7 @@ def smoothed_law(so_far: Derivation) -> Step | None:
             here = {**point, **{c: scale * point[c] for c in costates(so_far)}}
             for one in directions:
                 here = ordered(one, here)
+            here |= dict(zip(beside, turned(here), strict=True))
             law = chosen(here)
             best = value({**here, **dict(zip(short, law, strict=True))})[0]
             for _ in range(COMPETITORS):
@@ -152,7 +170,7 @@ def smoothed_law(so_far: Derivation) -> Step | None:
                     limit = here[one.part.bounds[-1]]
                     bounds = {sp.Symbol("radius"): limit}
                     size = len(pn.components_of(one.part))
-                    if one.branch == "throttled":
+                    if one.branch in SWITCHED:
                         other += drawn(one, here, rng).values()
                     else:
                         other += control_sets.admissible("ball", bounds, list(bounds), size, rng, 1)[0]

@@ -30,10 +30,11 @@ def adds_up(so_far: Derivation, h: sp.Expr, every: Sequence[Minimum]) -> Any:
     """Check that the change of H from some controls to others is the sum of the changes in each set."""
     value = numeric([h])
     other = {u: sp.Dummy(f"other_{u.name}", real=True) for one in every for u in one.part.symbols}
-    changes = [_change(h, {u: other[u] for one in every if one.branch == "stationary" for u in one.part.symbols})]
+    joint = [one for one in every if one.branch == "stationary" or one.turned_by]
+    changes = [_change(h, {u: other[u] for one in joint for u in one.part.symbols})]
     for one in every:
         symbols = one.part.symbols
-        if one.branch == "stationary":
+        if one in joint:
             continue
         if one.part.kind == "angle":
             (angle,) = symbols
@@ -123,6 +124,8 @@ def ordered(one: Minimum, point: Point) -> Point:
     if one.part.kind == "annulus":
         low, high = sorted(point[b] for b in one.part.bounds)
         return {**point, one.part.bounds[0]: low, one.part.bounds[1]: high}
+    if one.turned_by:  # which turns it round as well
+        point = {**point, **{b: abs(point[b]) for b in one.part.bounds}}
     return control_sets.ordered(bare(one.part.kind), point, one.part.bounds)
 
 

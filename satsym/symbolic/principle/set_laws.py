@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import sympy as sp
 
-from satsym.spec import ControlSetKind, PartKind
+from satsym.spec import SWITCHED, ControlSetKind, PartKind
 from satsym.symbolic.convention import sign
 from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.minimisers import Clip, Stretch, Within
@@ -53,7 +53,19 @@ def relaxed(so_far: Derivation, expressions: Iterable[sp.Expr]) -> list[sp.Expr]
             message = f"the motion or the cost is not linear in cos({angle.name}) and sin({angle.name})"
             raise DerivationError(f"{so_far.name}: {message}")
         values = [c + a * along + b * across for one in taken if one is not None for c, a, b in (one,)]
+    for one in (one for one in found(so_far) if one.turned_by):
+        (size,) = one.part.symbols
+        values = [_with_norm(value, size, one.turned_by, norm_of(one.part)) for value in values]
     return values
+
+
+def _with_norm(value: sp.Expr, size: sp.Symbol, angle: sp.Symbol, norm: sp.Symbol) -> sp.Expr:
+    """With a symbol for a magnitude where it stands apart from the angle that turns what it multiplies."""
+    circle = by_circle(value, angle)
+    if circle is None:
+        return value
+    rest, cosine, sine = circle
+    return rest.xreplace({size: norm}) + cosine * sp.cos(angle) + sine * sp.sin(angle)
 
 
 def regularised_law(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
@@ -71,13 +83,14 @@ def regularised_law(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
 
 
 def throttled(so_far: Derivation) -> tuple[Minimum, ...]:
-    """The sets of vectors that may be none, or as short as they may be."""
-    return tuple(one for one in found(so_far) if one.branch == "throttled")
+    """The sets in which something switches: norms of vectors, or single controls."""
+    return tuple(one for one in found(so_far) if one.branch in SWITCHED)
 
 
 def with_minimum_norms(so_far: Derivation, expressions: Iterable[sp.Expr]) -> list[sp.Expr]:
     """Laws in which vectors in balls have a least norm, by which they can be kept at any."""
-    least = {one.part.bounds[-1]: symbols_of((minimum_norm_of(one.part),))[0] for one in throttled(so_far)}
+    balls = [one.part for one in throttled(so_far) if one.part.kind == "ball"]
+    least = {part.bounds[-1]: symbols_of((minimum_norm_of(part),))[0] for part in balls}
 
     def raised(value: sp.Expr, lower: sp.Expr, upper: sp.Expr) -> sp.Expr:
         return Clip(value, least[upper] if lower == 0 and upper in least else lower, upper)
@@ -86,9 +99,12 @@ def with_minimum_norms(so_far: Derivation, expressions: Iterable[sp.Expr]) -> li
 
 
 def throttle_slopes(so_far: Derivation) -> list[sp.Expr]:
-    """How H changes with the norm of each of these vectors, in the direction in which it changes least."""
-    slopes = []
+    """How H changes with what switches: with the norm of a vector, in the direction in which it changes least."""
+    slopes: list[sp.Expr] = []
     for one in throttled(so_far):
+        if one.branch == "switched":
+            slopes += pn.slopes_of(one)
+            continue
         length = sp.sqrt(sum((s**2 for s in pn.slopes_of(one)), sp.Integer(0)))
         slopes.append(pn.weight_of(one.part.symbols[0]) - sign(problem_of(so_far)) * length)
     return written_out(so_far, slopes)
@@ -108,7 +124,7 @@ def written_out(so_far: Derivation, expressions: Iterable[sp.Expr]) -> list[sp.E
         if one.directed
         for s, value in zip(pn.slopes_of(one), one.vector, strict=True)
     }
-    values |= {pn.weight_of(one.part.symbols[0]): one.weight for one in found(so_far) if one.weight != 0}
+    values |= {pn.weight_of(one.part.symbols[0]): one.weight for one in found(so_far) if one.branch == "throttled"}
     return [e.xreplace(values) for e in expressions]
 
 
@@ -131,9 +147,13 @@ def law_of(problem: Problem, one: Minimum) -> list[sp.Expr]:
 
 
 def shortened(problem: Problem, one: Minimum) -> list[sp.Expr]:
-    """The minimiser over a ball where half the square costs the smoothing, by the components of the slope."""
+    """The minimiser where half the square costs the smoothing, by the components of the slope."""
     slopes = pn.slopes_of(one)
+    if one.branch == "switched":
+        return [Clip(-sign(problem) * slopes[0] / EPSILON, *one.part.bounds)]
     square = sum((s**2 for s in slopes), sp.Integer(0))
+    if one.turned_by:
+        return [_size(problem, one)]
     if one.weight != 0:
         return [-sign(problem) * s / sp.sqrt(square) * _size(problem, one) for s in slopes]
     factor = Stretch(square, EPSILON, one.part.bounds[-1])
@@ -144,4 +164,4 @@ def _size(problem: Problem, one: Minimum) -> sp.Expr:
     """The norm of that minimiser, where H depends on the norm."""
     length = sp.sqrt(sum((s**2 for s in pn.slopes_of(one)), sp.Integer(0)))
     margin = length - sign(problem) * FACTOR * pn.weight_of(one.part.symbols[0])
-    return Clip(margin / EPSILON, one.part.bounds[0] if one.part.kind == "annulus" else 0, one.part.bounds[-1])
+    return Clip(margin / EPSILON, 0 if one.part.kind == "ball" else one.part.bounds[0], one.part.bounds[-1])

@@ -17,6 +17,7 @@ from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
 from satsym.solvers.switching.cold_start.arcs_of_norms import arcs
 from satsym.solvers.switching.structure import UPPER, Guess
+from satsym.spec import SWITCHED
 
 STEP, SMALLEST = 0.35, 1e-3
 """Share of the way that is taken at first, and the least at which following ends."""
@@ -30,7 +31,7 @@ BRIEF = 0.03
 
 @dataclass(frozen=True)
 class Easier:
-    """How a problem is made easier: by which factors the largest norms and the time differ."""
+    """How a problem is made easier: by which factors the largest norms, or single controls, and the time differ."""
 
     norms: float = 1.0
     duration: float = 1.0
@@ -38,13 +39,19 @@ class Easier:
     def of(self, instance: Instance, fraction: float) -> Instance:
         """The problem that is easier by a fraction of these, from none to one, of their logarithms."""
         assert instance.tf is not None
-        throttled = {part.name for part in instance.model.spec.control_parts if part.branch == "throttled"}
-        norms = {
-            name: (low, high * self.norms**fraction if name in throttled else high)
-            for name, (low, high) in instance.norms.items()
-        }
+        spec, larger = instance.model.spec, self.norms**fraction
+        switched = [part for part in spec.control_parts if part.branch in SWITCHED]
+        sets, single = {part.name for part in switched}, {c for part in switched for c in part.controls}
+        norms = {name: (low, high * larger if name in sets else high) for name, (low, high) in instance.norms.items()}
+        each = list(zip(spec.control_names, instance.lower, instance.upper, strict=True))
         end = instance.t0 + (instance.tf - instance.t0) * self.duration**fraction
-        return replace(instance, norms=norms, tf=end if fraction else instance.tf)
+        return replace(
+            instance,
+            norms=norms,
+            lower=tuple(low * larger if name in single and low < 0.0 else low for name, low, _ in each),
+            upper=tuple(high * larger if name in single and high > 0.0 else high for name, _, high in each),
+            tf=end if fraction else instance.tf,
+        )
 
 
 EASIER = (*(Easier(norms=by) for by in (1.3, 1.7, 2.5, 4.0)), *(Easier(duration=by) for by in (0.6, 0.3)))
