@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from satsym.arrays import Array
-from satsym.spec import SWITCHED, ControlPart, PartKind, ProblemSpec
+from satsym.control_part import SWITCHED, ControlPart, PartKind
+from satsym.spec import ProblemSpec
 
 Row = tuple[float, ...]
 

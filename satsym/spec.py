@@ -10,8 +10,11 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property
+from itertools import accumulate
 from math import isfinite
 from typing import Any, Literal
+
+from satsym.control_part import SWITCHED, ControlPart
 
 FORMAT = 1
 """Version of the literal that generated modules carry as ``MODEL``."""
@@ -23,14 +26,6 @@ ControlSetKind = Literal["free", "box", "ball"]
 NAMES = "a small letter, then small letters, digits and underscores"
 """What names of models and problems are."""
 _MODEL = re.compile(r"[a-z][a-z0-9_]{0,99}\Z")
-PartKind = Literal["free", "box", "ball", "annulus", "angle"]
-Branch = Literal["quadratic", "stationary", "direction", "throttled", "switched"]
-"""How H is minimised over one set of controls: where H_u vanishes, on which it depends linearly or not; along a
-direction, whatever it is; along one if that is worth more than the norm of the controls costs, and not at all
-elsewhere; or, of a single control on which H depends linearly, at the bound to which it falls."""
-DIRECTED = ("direction", "throttled", "switched")
-SWITCHED = ("throttled", "switched")
-"""Those in which something switches between two levels: a norm, or the control itself."""
 PRODUCT: Literal["product"] = "product"
 """The kind of a control set that is stated set by set."""
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
@@ -137,49 +132,6 @@ class ModeGroup:
     vanishing: str = ""
     slow: str = ""
     neutral: str = ""
-
-
-@dataclass(frozen=True)
-class ControlPart:
-    """One of the sets whose product is the control set.
-
-    Attributes
-    ----------
-    name
-        As instances name it.
-    kind
-        What the controls of it obey.
-    controls
-        Their names, in order.
-    branch
-        How H is minimised over it.
-    ends
-        Whether H may be least at an end without falling to it, so that there must be ends.
-    turned_by
-        Of a magnitude, which is never negative: the angle that turns what it multiplies.
-    """
-
-    name: str
-    kind: PartKind
-    controls: tuple[str, ...]
-    branch: Branch
-    ends: bool = False
-    turned_by: str = ""
-
-    @property
-    def bounds(self) -> int:
-        """How many numbers of the argument ``bounds`` belong to it."""
-        return {"free": 0, "box": 2 * len(self.controls), "ball": 1, "annulus": 2, "angle": 1}[self.kind]
-
-    @property
-    def directed(self) -> bool:
-        """Whether its controls are a direction."""
-        return self.branch in DIRECTED
-
-    @property
-    def normed(self) -> bool:
-        """Whether it limits a norm."""
-        return self.kind in ("ball", "annulus")
 
 
 @dataclass(frozen=True)
@@ -318,22 +270,22 @@ class ProblemSpec:
         """Places in the argument ``bounds`` of numbers that are lower bounds of controls, which may be negative."""
         if self.control_set == "box":
             return frozenset(range(len(self.controls)))
-        found, at = set[int](), 0
-        for part in self.control_parts:
-            if part.kind == "box" and not part.turned_by:
-                found |= set(range(at, at + len(part.controls)))
-            at += part.bounds
-        return frozenset(found)
+        boxes = [(at, part) for at, part in self._placed if part.kind == "box" and not part.turned_by]
+        return frozenset(at + i for at, part in boxes for i in range(len(part.controls)))
 
     @property
     def rings(self) -> tuple[tuple[int, int], ...]:
         """Places in the argument ``bounds`` of least norms and magnitudes, each with that of the largest."""
-        at = [sum(part.bounds for part in self.control_parts[:k]) for k in range(len(self.control_parts) + 1)]
-        each = list(zip(at, self.control_parts, strict=False))
-        balls = [i for i, part in each if part.kind == "ball" and part.branch == "throttled"]
-        after = at[-1] + self.regularising - len(balls)
-        found = [(i, i + 1) for i, part in each if part.kind == "annulus" or part.turned_by]
-        return (*found, *((after + k, i) for k, i in enumerate(balls)))
+        balls = [at for at, part in self._placed if part.kind == "ball" and part.branch == "throttled"]
+        after = sum(part.bounds for part in self.control_parts) + self.regularising - len(balls)
+        found = [(at, at + 1) for at, part in self._placed if part.kind == "annulus" or part.turned_by]
+        return (*found, *((after + k, at) for k, at in enumerate(balls)))
+
+    @property
+    def _placed(self) -> list[tuple[int, ControlPart]]:
+        """The sets of a product, each with the place of its first number in the argument ``bounds``."""
+        places = accumulate((part.bounds for part in self.control_parts), initial=0)
+        return list(zip(places, self.control_parts, strict=False))
 
     @property
     def separable(self) -> bool:

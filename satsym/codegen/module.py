@@ -14,9 +14,10 @@ from satsym.codegen.linear import linear_functions
 from satsym.codegen.naming import NEEDED, Code, code_of
 from satsym.codegen.printers import BatchPrinter, ScalarPrinter
 from satsym.codegen.switching import switches
+from satsym.control_part import ControlPart
 from satsym.kernels.contract import TUPLES
 from satsym.kernels.digest import sealed
-from satsym.spec import PRODUCT, Condition, ControlPart, PathConstraint, ProblemSpec, Variable, names
+from satsym.spec import PRODUCT, Condition, PathConstraint, ProblemSpec, Variable, names
 from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.kepler.central_force import strength_of
 from satsym.symbolic.model import Demand, t, variables_of

@@ -6,8 +6,9 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from satsym.control_part import SWITCHED, ControlPart
 from satsym.instance.resolve import Row, quantity
-from satsym.spec import SWITCHED, ControlPart, ProblemSpec
+from satsym.spec import ProblemSpec
 from satsym.status import BadInput
 from satsym.wording import printable, shown, suggestion
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass
 
-from satsym.spec import SWITCHED, ProblemSpec
+from satsym.control_part import SWITCHED
+from satsym.spec import ProblemSpec
 
 BATCH = "_batch"
 """Suffix of the batch form of a pointwise function; it takes ``out=None`` as well."""

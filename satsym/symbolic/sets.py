@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from satsym.spec import PartKind
+from satsym.control_part import PartKind
 
 
 @dataclass(frozen=True, init=False)

@@ -6,12 +6,13 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from satsym import __version__
+from satsym.control_part import ControlPart
 from satsym.control_set import stated_constraints
 from satsym.instance.unknowns import Place
 from satsym.report.results.certificate import certificate_object, plain
 from satsym.report.results.unit_names import units
 from satsym.sources import digest_of
-from satsym.spec import ControlPart, ProblemSpec, Variable
+from satsym.spec import ProblemSpec, Variable
 from satsym.status import Status
 
 if TYPE_CHECKING:

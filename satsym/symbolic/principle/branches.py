@@ -16,7 +16,7 @@ from itertools import product
 import sympy as sp
 from sympy.solvers.solveset import NonlinearError
 
-from satsym.spec import DIRECTED, Branch
+from satsym.control_part import DIRECTED, Branch
 from satsym.symbolic.algebra import gradient, simplified, tidy
 from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.principle.circle import by_circle

@@ -8,7 +8,7 @@ from typing import Any
 import mpmath as mp
 import sympy as sp
 
-from satsym.spec import SWITCHED
+from satsym.control_part import SWITCHED
 from satsym.symbolic import notation as n
 from satsym.symbolic.algebra import tidy
 from satsym.symbolic.checks import Point, compare, numeric

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from satsym.spec import PartKind, Variable
+from satsym.control_part import PartKind
+from satsym.spec import Variable
 from satsym.symbolic.derivation import DerivationError
 from satsym.symbolic.model import Problem, symbols_of
 from satsym.symbolic.principle import control_sets

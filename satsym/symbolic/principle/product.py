@@ -14,7 +14,7 @@ from typing import Any
 
 import sympy as sp
 
-from satsym.spec import SWITCHED
+from satsym.control_part import SWITCHED
 from satsym.symbolic import notation as n
 from satsym.symbolic.checks import Point, never_below, numeric
 from satsym.symbolic.convention import sign, worded

@@ -6,7 +6,8 @@ from collections.abc import Iterable
 
 import sympy as sp
 
-from satsym.spec import SWITCHED, ControlSetKind, PartKind
+from satsym.control_part import SWITCHED, PartKind
+from satsym.spec import ControlSetKind
 from satsym.symbolic.convention import sign
 from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.minimisers import Clip, Stretch, Within

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import partial
 
+from satsym.control_part import SWITCHED
 from satsym.instance import Instance
 from satsym.solvers.cold_start.directions import directed
 from satsym.solvers.failures import tried
@@ -17,7 +18,6 @@ from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
 from satsym.solvers.switching.cold_start.arcs_of_norms import arcs
 from satsym.solvers.switching.structure import UPPER, Guess
-from satsym.spec import SWITCHED
 
 STEP, SMALLEST = 0.35, 1e-3
 """Share of the way that is taken at first, and the least at which following ends."""
