@@ -20,9 +20,9 @@ verdict of its certificate.
 OTHERS = frozenset(
     "lapan-coupling lapan-classical gyrostat-equilibria "
     "its-thesis-10-50 its-thesis-50-10 its-thesis-50-50 its-thesis-return-two-sided lapan-minimum-time-100s "
-    "return-to-orbit-005 return-to-geo-wide hypersensitive-10000 itb-earth-kicked".split()
+    "return-to-orbit-005 return-to-geo-wide hypersensitive-10000 itb-earth-kicked reorientation shuttle".split()
 )
-"""Asked about by other commands than these, or much like their neighbours."""
+"""Asked about by other commands than these, much like their neighbours, or longer to certify than all the others take."""
 
 
 def shown(name: str, folder: Path) -> dict[str, str]:
