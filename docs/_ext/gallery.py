@@ -22,7 +22,7 @@ OTHERS = frozenset(
     "its-thesis-10-50 its-thesis-50-10 its-thesis-50-50 its-thesis-return-two-sided lapan-minimum-time-100s "
     "return-to-orbit-005 return-to-geo-wide hypersensitive-10000 itb-earth-kicked reorientation shuttle".split()
 )
-"""Asked about by other commands than these, much like their neighbours, or longer to certify than all the others take."""
+"""Asked about by other commands than these, much like their neighbours, or by far the longest to certify."""
 
 
 def shown(name: str, folder: Path) -> dict[str, str]:
