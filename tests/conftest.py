@@ -12,6 +12,8 @@ import pytest
 
 # Before NumPy is loaded: on small matrices threads gain nothing, and those of two workers take each other's time.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# Workers of pytest-xdist have the one that readline sets in the process that starts them; others have none.
+os.environ.pop("COLUMNS", None)
 
 from satsym.report.plots import style
 from satsym.symbolic.lookup import library

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 import pytest
 
 from satsym import instance, solvers
 from satsym.report import study as reports
-from satsym.solvers.repeated import repeated
+from satsym.status import BadInput
 from satsym.studies import chunks, solving
-from satsym.studies.asked import Study
+from satsym.studies.asked import Study, Task
 from satsym.studies.asking import MANY
 from satsym.studies.asking import asked as asking
 from satsym.studies.rows import Row
@@ -83,9 +82,12 @@ def test_many_rows_are_compiled_where_that_is_possible() -> None:
 def test_a_worker_without_a_compiler_answers_all_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     """As one of a cluster may be, though who asks has one."""
     study = replace(asked(sample=2, uniform={"initial.r": "0.9,1.1"}), compiled=True)
+
+    def refused(task: Task) -> NoReturn:
+        raise BadInput("compiled kernels need numba")
+
     monkeypatch.setattr(solving, "able", lambda: False)
-    monkeypatch.setattr(repeated, "find_spec", lambda name: None)
-    monkeypatch.setitem(sys.modules, "numba", None)
+    monkeypatch.setattr(solving, "_repeated", refused)  # kernels that were compiled before this test are kept
     found = computed(study)
     assert {row.status for row in found} == {"converged"}
     assert {row.numbers["origin"] for row in found} == {"single solver"}
