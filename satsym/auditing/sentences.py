@@ -29,8 +29,8 @@ def say(key: str, *fill: str | Sequence[str], table: str = "rows") -> Said:
     texts = tables()[table][key]
     return Said(
         *(
-            texts[lang].format(*(_listed(part, last, told) for part in fill))
-            for lang, last, told in (("en", " and ", str), ("id", " dan ", in_indonesian))
+            texts[lang].format(*(_listed(part, last, written) for part in fill))
+            for lang, last, written in (("en", " and ", str), ("id", " dan ", in_indonesian))
         )
     )
 
@@ -74,6 +74,6 @@ def _with_capital(clause: str) -> str:
     return f"{clause}." if clause else ""
 
 
-def _listed(items: str | Sequence[str], last: str, told: Callable[[str], str]) -> str:
-    parts = [told(item) for item in ([items] if isinstance(items, str) else items)]
+def _listed(items: str | Sequence[str], last: str, written: Callable[[str], str]) -> str:
+    parts = [written(item) for item in ([items] if isinstance(items, str) else items)]
     return f"{', '.join(parts[:-1])}{last}{parts[-1]}" if len(parts) > 1 else "".join(parts)

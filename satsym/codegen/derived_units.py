@@ -1,4 +1,4 @@
-"""Units of what follows from a model: of its cost and of what it conserves, told from their dimensions.
+"""Units of what follows from a model: of its cost and of what it conserves, derived from their dimensions.
 
 Numbers are what the author's units make of them, so that a unit is composed of these names alone: a model in km and s
 has a cost in km**2/s**3. Where its names could be put together to units of several sizes, as of m and km, or count

@@ -69,12 +69,12 @@ def render(solution: Solution, derivation: Derivation | None, given: str, langua
 
 def _sections(solution: Solution, derivation: Derivation | None, given: str, texts: Texts) -> dict[str, Markup]:
     spec, scene = solution.instance.model.spec, Scene.of(solution)
-    told = [answer.facts(solution, texts)]
+    parts = [answer.facts(solution, texts)]
     if scene.drawable:
-        told += [answer.states(solution, texts), answer.controls(solution, texts)]
+        parts += [answer.states(solution, texts), answer.controls(solution, texts)]
     certificate = solution.certificate
     return {
-        "answer": joined(*told),
+        "answer": joined(*parts),
         "certificate": answer.certificate(certificate, spec, texts) if certificate else Markup(),
         "motion": motion(scene, texts) if scene.drawable else Markup(),
         "pictures": joined(*pictures(solution, texts)),

@@ -87,13 +87,13 @@ def _over_time(axes: Axes, cases: Sequence[Case], variable: Variable) -> None:
     units = [v.unit for v in (*cases[0].instance.model.spec.states, *cases[0].instance.model.spec.controls)]
     factor, unit = display.time_scale(units, end)
     most = max(float(np.abs(case.signal(variable.symbol)).max()) for case in cases)
-    told = display.engineering(variable.unit, most)
+    measure = display.engineering(variable.unit, most)
     for k, case in enumerate(cases):
         times = case.times - case.times[0]
         values = case.signal(variable.symbol)
         axes.plot(
             times / factor,
-            values / told.divisor,
+            values / measure.divisor,
             color=COLOURS[k % 6],
             linestyle=DASHES[k % 6],
             linewidth=1.8,
@@ -102,7 +102,7 @@ def _over_time(axes: Axes, cases: Sequence[Case], variable: Variable) -> None:
     limit = max((case.instance.limits.get(variable.symbol, 0.0) for case in cases), default=0.0)
     if 0.0 < limit < 2.0 * most:
         for edge in (-limit, limit):
-            axes.axhline(edge / told.divisor, **style.BOUND)
+            axes.axhline(edge / measure.divisor, **style.BOUND)
     axes.axhline(0.0, color=style.GREY, linewidth=0.8, zorder=1.9)
     axes.set_xlim(0.0, end / factor)
     axes.set_title(display.shortened(variable.meaning, 62))
@@ -113,7 +113,7 @@ def _over_time(axes: Axes, cases: Sequence[Case], variable: Variable) -> None:
             if impulse:
                 look = {"color": COLOURS[k % 6], "arrowstyle": "-|>", "shrinkA": 0.0, "shrinkB": 0.0, "linewidth": 1.8}
                 ends: dict[str, Any] = {
-                    "xy": (0.0, float(np.sign(impulse)) * most / told.divisor),
+                    "xy": (0.0, float(np.sign(impulse)) * most / measure.divisor),
                     "xytext": (0.0, 0.0),
                 }
                 axes.annotate("", arrowprops=look, annotation_clip=False, zorder=4.0, **ends)
@@ -123,7 +123,7 @@ def _over_time(axes: Axes, cases: Sequence[Case], variable: Variable) -> None:
             0.98, 0.93, "\n".join(said), transform=axes.transAxes, ha="right", va="top", fontsize=style.points(8.5)
         )
     axes.set_xlabel(display.labelled("$t$", unit))
-    axes.set_ylabel(display.labelled(display.formula(variable.latex, variable.symbol), told.unit))
+    axes.set_ylabel(display.labelled(display.formula(variable.latex, variable.symbol), measure.unit))
 
 
 def _until(case: Case) -> float:

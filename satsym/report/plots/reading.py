@@ -60,15 +60,15 @@ def read(series: Series) -> Reading:
     turns = radians and not deviation and _width(series.values - datum) > 0.5 * math.pi
     shown = (series.values - datum) * factor
     low, high = _ends(series, shown, datum, factor, size * factor)
-    told = Scale(0, unit) if turns else engineering(unit, max(abs(low), abs(high)))
-    scale = 1.0 / told.divisor
+    measure = Scale(0, unit) if turns else engineering(unit, max(abs(low), abs(high)))
+    scale = 1.0 / measure.divisor
 
     def placed(values: Array | None) -> Array | None:
         return None if values is None else (values - datum) * factor * scale
 
     last = datum if isinstance(datum, float) else float(datum[-1])
     return Reading(
-        label=labelled(symbol, told.unit),
+        label=labelled(symbol, measure.unit),
         values=shown * scale,
         reference=placed(series.reference),
         free=placed(series.free),

@@ -81,8 +81,8 @@ def _curve(
         if np.isfinite(near).any():
             low = max(min(low, float(np.nanmin(near))), low - BEYOND * width)
             high = min(max(high, float(np.nanmax(near))), high + BEYOND * width)
-    told = display.engineering(what.unit, max(abs(low), abs(high)))
-    scale = told.divisor
+    measure = display.engineering(what.unit, max(abs(low), abs(high)))
+    scale = measure.divisor
     margin = 0.06 * (high - low or 1.0)
     axes.set_xlim(times[0], times[-1])
     axes.set_ylim((low - margin) / scale, (high + margin) / scale)
@@ -91,7 +91,7 @@ def _curve(
     if exact is not None:
         axes.plot(times, curves.clean(exact) / scale, **NONLINEAR)
     symbol = display.formula(prefix + what.latex, what.symbol)
-    axes.set_ylabel(display.labelled(symbol, told.unit))
+    axes.set_ylabel(display.labelled(symbol, measure.unit))
     axes.locator_params(axis="y", nbins=4)
 
 
@@ -121,8 +121,8 @@ def _delta(design: Design) -> str:
 def _interval(axes: Axes, state: Variable, extent: tuple[float, float], start: float, prefix: str) -> None:
     finite = [abs(v) for v in (*extent, start) if math.isfinite(v) and v]
     largest = max(finite, default=1.0)
-    told = display.engineering(state.unit, largest)
-    scale = told.divisor
+    measure = display.engineering(state.unit, largest)
+    scale = measure.divisor
     edge = 1.25 * largest / scale
     low, high = (np.clip(value / scale, -edge, edge) for value in extent)
     axes.set_xlim(-edge, edge)
@@ -133,5 +133,5 @@ def _interval(axes: Axes, state: Variable, extent: tuple[float, float], start: f
     axes.set_yticks([])
     axes.spines["left"].set_visible(False)
     symbol = display.formula(prefix + state.latex, state.symbol)
-    axes.set_ylabel(display.labelled(symbol, told.unit), rotation=0, ha="right", va="center")
+    axes.set_ylabel(display.labelled(symbol, measure.unit), rotation=0, ha="right", va="center")
     axes.grid(axis="y", visible=False)

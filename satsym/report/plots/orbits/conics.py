@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 POINTS = 2000
 APART = 0.02
-"""Eccentricity from which the foci can be told apart in the picture."""
+"""Eccentricity from which the foci can be seen apart in the picture."""
 SMALLEST_REACH, MOST_REACH = 5.0, 40.0
 """How far from the centre an open orbit is drawn, in units of the nearest distance or that of the start."""
 CENTRE: dict[str, Any] = {"marker": "o", "markersize": 9.0, "color": "#E0A800", "linestyle": "none", "zorder": 3.9}
@@ -114,8 +114,8 @@ def _panel(axes: Axes, drawn: Drawn, view: View, unit: str) -> tuple[float, str]
     centre, half = 0.5 * (low + high), 0.54 * float((high - low).max())
     furthest = float(np.abs(centre).max()) + half
     factor, readable = display.length_scale(unit, furthest)
-    told = display.engineering(readable, furthest / factor)
-    scale = 1.0 / (told.divisor * factor)
+    measure = display.engineering(readable, furthest / factor)
+    scale = 1.0 / (measure.divisor * factor)
     axes.set_aspect("equal")
     axes.set_xlim((centre[0] - half) * scale, (centre[0] + half) * scale)
     axes.set_ylim((centre[1] - half) * scale, (centre[1] + half) * scale)
@@ -134,8 +134,8 @@ def _panel(axes: Axes, drawn: Drawn, view: View, unit: str) -> tuple[float, str]
     for point, look in marks:
         if point is not None:
             axes.plot(*(view.axes @ point[:, None] * scale), **look)
-    axes.set_xlabel(display.labelled(view.labels[0], told.unit))
-    axes.set_ylabel(display.labelled(view.labels[1], told.unit))
+    axes.set_xlabel(display.labelled(view.labels[0], measure.unit))
+    axes.set_ylabel(display.labelled(view.labels[1], measure.unit))
     return factor, readable
 
 

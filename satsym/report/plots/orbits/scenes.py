@@ -102,8 +102,8 @@ def in_space(axes: Axes, orbit: Orbit, view: View) -> None:
     centre, curve = centre - datum[:, 0], curve - datum
     furthest = float(np.abs(centre).max()) + half
     factor, unit = length_scale(orbit.unit, furthest)
-    told = engineering(unit, furthest / factor)
-    scale = 1.0 / (told.divisor * factor)
+    measure = engineering(unit, furthest / factor)
+    scale = 1.0 / (measure.divisor * factor)
     axes.set_aspect("equal")
     axes.set_title(view.title)
     axes.set_xlim((centre[0] - half) * scale, (centre[0] + half) * scale)
@@ -118,8 +118,8 @@ def in_space(axes: Axes, orbit: Orbit, view: View) -> None:
     if not datum.any():
         axes.plot([0.0], [0.0], **style.ORIGIN)
     _ends(axes, *(curve * scale))
-    axes.set_xlabel(labelled(names[0], told.unit))
-    axes.set_ylabel(labelled(names[1], told.unit))
+    axes.set_xlabel(labelled(names[0], measure.unit))
+    axes.set_ylabel(labelled(names[1], measure.unit))
     _few_ticks(axes)
 
 
@@ -131,8 +131,8 @@ def from_reference(axes: Axes, orbit: Orbit) -> None:
     if orbit.free_relative is not None:
         others.append(np.vstack([orbit.free_relative.along, orbit.free_relative.radial]))
     low, high = _box(curve, others)
-    told = engineering(orbit.unit, float(np.abs([low, high]).max()))
-    scale = 1.0 / told.divisor
+    measure = engineering(orbit.unit, float(np.abs([low, high]).max()))
+    scale = 1.0 / measure.divisor
     axes.set_xlim(low[0] * scale, high[0] * scale)
     axes.set_ylim(low[1] * scale, high[1] * scale)
     axes.set_title("seen from the reference")
@@ -143,8 +143,8 @@ def from_reference(axes: Axes, orbit: Orbit) -> None:
     if orbit.ends_there:
         axes.plot([0.0], [0.0], **style.TARGET)
     _ends(axes, *(curve * scale))
-    axes.set_xlabel(labelled("along-track", told.unit))
-    axes.set_ylabel(labelled("radial", told.unit))
+    axes.set_xlabel(labelled("along-track", measure.unit))
+    axes.set_ylabel(labelled("radial", measure.unit))
     _few_ticks(axes)
 
 
