@@ -183,6 +183,7 @@ def value(expression: sp.Expr, point: Mapping[sp.Symbol, float]) -> float:
         lambda e: e.func.__name__ == "Choice", lambda e: sp.Piecewise((e.args[1], e.args[0] <= 0), (e.args[2], True))
     )
     plain = plain.replace(lambda e: e.func.__name__ == "Middle", lambda e: (e.args[0] + e.args[1]) / 2)
+    plain = plain.replace(lambda e: e.func.__name__ == "Convex", lambda e: e.args[0])  # only where it is convex
     return float(plain.subs(point))
 
 
