@@ -45,7 +45,7 @@ def report(subject: str, page: Path | None, stated: Path | None, language: str) 
         derivation = _derivation(case, stated, line.show)
         solution = solvers.solve(case, progress=lambda iteration: line.show(progress_line(iteration, case)))
         line.show("drawing ...")
-        text = render(solution, derivation, subject, language)
+        text = render(solution, derivation, subject, language, str(stated or ""))
     write_text(page, text)
     emit(with_files(f"{case.name}: {solution.status.value}", [page]))
     if not solution.status.answered:

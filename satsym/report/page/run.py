@@ -23,7 +23,9 @@ if TYPE_CHECKING:
 SECTIONS = ("answer", "certificate", "motion", "pictures", "instance", "derivation", "reproduce")
 
 
-def render(solution: Solution, derivation: Derivation | None, given: str, language: str = "en") -> str:
+def render(
+    solution: Solution, derivation: Derivation | None, given: str, language: str = "en", stated: str = ""
+) -> str:
     """A page that needs nothing but itself.
 
     Parameters
@@ -34,6 +36,8 @@ def render(solution: Solution, derivation: Derivation | None, given: str, langua
         What the instance was called on the command line.
     language
         Of the page; what the model's author wrote, and names of checks, stay as they are.
+    stated
+        The file that states the model, where it is none that is shipped.
 
     Returns
     -------
@@ -42,7 +46,7 @@ def render(solution: Solution, derivation: Derivation | None, given: str, langua
     """
     texts, instance = load(language), solution.instance
     title = instance.title or instance.model.spec.title or instance.name
-    shown = {name: part for name, part in _sections(solution, derivation, given, texts).items() if part}
+    shown = {name: part for name, part in _sections(solution, derivation, (given, stated), texts).items() if part}
     links = [tag("li", tag("a", texts.get("page", name), href=f"#{name}")) for name in shown]
     sections = [tag("section", tag("h2", texts.get("page", name)), part, id=name) for name, part in shown.items()]
     found = solution.certificate
@@ -67,7 +71,9 @@ def render(solution: Solution, derivation: Derivation | None, given: str, langua
     return f"<!doctype html>\n{tag('html', tag('head', *head), tag('body', *body), lang=language)}\n"
 
 
-def _sections(solution: Solution, derivation: Derivation | None, given: str, texts: Texts) -> dict[str, Markup]:
+def _sections(
+    solution: Solution, derivation: Derivation | None, given: tuple[str, str], texts: Texts
+) -> dict[str, Markup]:
     spec, scene = solution.instance.model.spec, Scene.of(solution)
     parts = [answer.facts(solution, texts)]
     if scene.drawable:
@@ -80,7 +86,7 @@ def _sections(solution: Solution, derivation: Derivation | None, given: str, tex
         "pictures": joined(*pictures(solution, texts)),
         "instance": _instance(solution, texts),
         "derivation": _derivation(solution, derivation, texts),
-        "reproduce": _commands(solution, given, texts),
+        "reproduce": _commands(solution, derivation, *given, texts),
     }
 
 
@@ -104,9 +110,12 @@ def _derivation(solution: Solution, derivation: Derivation | None, texts: Texts)
     return joined(tag("p", texts.get("page", "derivation_about")), Derived(derivation, texts, known).render())
 
 
-def _commands(solution: Solution, given: str, texts: Texts) -> Markup:
+def _commands(solution: Solution, derivation: Derivation | None, given: str, stated: str, texts: Texts) -> Markup:
     name, model = shlex.quote(given), solution.instance.model.spec.name
-    lines = [f"satsym solve {name} --plot", f"satsym report {name} --html report.html", f"satsym latex {model}"]
+    again = f" --derivation {shlex.quote(stated)}" if stated else ""
+    lines = [f"satsym solve {name} --plot", f"satsym report {name} --html report.html{again}"]
+    if derivation is not None:
+        lines.append(f"satsym latex {shlex.quote(f'{stated}:{model}') if stated else model}")
     about = texts.get("page", "reproduce_about", version=__version__)
     return joined(tag("p", about), tag("pre", tag("code", "\n".join(lines)), tabindex="0"))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -172,8 +173,10 @@ def instance_object(instance: Instance) -> dict[str, Any]:
 
 
 def bounded(instance: Instance) -> bool:
-    """Whether anything limits the control."""
-    return instance.control_set.bounded
+    """Whether anything limits the controls; an angle is not limited."""
+    whole = instance.control_set
+    limited = [part for _, part in whole.parts if part.kind != "angle"] or [whole]
+    return any(math.isfinite(v) for part in limited for v in (*part.lower, *part.upper, part.radius))
 
 
 def _set(part: ControlPart) -> dict[str, Any]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from satsym.instance import Guess, Instance
 from satsym.solvers.cold_start.directions import bent, directed
-from satsym.solvers.failures import tried
+from satsym.solvers.failures import FAILURES, tried
 from satsym.solvers.iteration import Limits
 from satsym.solvers.switching.attempt import Exact, Origin, attempt
 from satsym.solvers.switching.cold_start.arcs_of_norms import arcs
@@ -19,6 +19,7 @@ from satsym.solvers.switching.cold_start.by_easier import followed
 from satsym.solvers.switching.cold_start.homotopy import Stopped
 from satsym.solvers.switching.structure import LOWER, Structure
 from satsym.solvers.switching.structure import Guess as Arcs
+from satsym.status import Status
 
 SEED, AMPLITUDES = 5, (0.2, 0.5)
 """Of paths that are drawn, and how far they leave the straight line; certificates draw others."""
@@ -51,7 +52,7 @@ def _first(instance: Instance, limits: Limits) -> Exact | Stopped:
     idle = coasting(instance, limits)
     if idle is not None:
         return idle
-    found = directed(instance, limits, False, arcs)
+    found = _led(instance, limits, False)
     if isinstance(found, Exact):
         return found
     timed = by_duration(instance, limits) if instance.tf is None and not instance.guess else None
@@ -64,10 +65,22 @@ def _first(instance: Instance, limits: Limits) -> Exact | Stopped:
     if near is not None and near.saturated:
         message = f"; norms {near.norms:.6g} times as large are the minimum with which an extremal arrives in time"
     else:
-        thorough = directed(instance, limits, True, arcs)
+        thorough = _led(instance, limits, True)
         if isinstance(thorough, Exact):
             return thorough
-    return Stopped(found.status, found.message + message, found.problem, found.path)
+    return replace(found, message=found.message + message)
+
+
+def _led(instance: Instance, limits: Limits, effort: bool) -> Exact | Stopped:
+    """Where the regularised problem leads, or why nowhere; its numbers fail where no slope decides a direction."""
+    try:
+        found = directed(instance, limits, effort, arcs)
+    except FAILURES as error:
+        message = f"no regularised solution was found: {error}"
+        if limits.expired:
+            return Stopped(Status.TIME_LIMIT, f"time was up: {message}")
+        return Stopped(Status.NOT_CONVERGED, message)
+    return found if isinstance(found, Exact) else Stopped(found.status, found.message, found.problem, found.path)
 
 
 def coasting(instance: Instance, limits: Limits) -> Exact | None:
