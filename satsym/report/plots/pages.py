@@ -105,7 +105,7 @@ def overview(scene: Scene) -> Figure | None:
     right: Figure | SubFigure = page
     if style.with_titles() or not scene.result.status.answered:
         head, right = _split(page, (2, 1), height_ratios=[0.75, height - 0.75])
-        _heading(head, scene)
+        _heading(page, head, scene)
     if shown is not None:
         apart: dict[str, Any] = {"height_ratios": [6.0, height - 6.75]} if narrow else {"width_ratios": [1.0, 1.12]}
         left, right = _split(right, (2, 1) if narrow else (1, 2), **apart)
@@ -130,11 +130,9 @@ def _space(part: SubFigure, shown: space.Orbit) -> None:
     space.from_reference(below, shown)
 
 
-def _heading(part: SubFigure, scene: Scene) -> None:
+def _heading(page: Figure, part: SubFigure, scene: Scene) -> None:
     """Title of the instance, and the facts of the result below it."""
     result = scene.result
-    page = part.get_figure(root=True)
-    assert page is not None
     fit = page.get_figwidth() / style.sheet().letters / style.WIDTH
     name = shortened(scene.title, int(80 * fit))
     look: dict[str, Any] = {"ha": "left", "va": "center", "x": 0.012}
