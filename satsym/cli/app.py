@@ -7,28 +7,13 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
+from importlib import import_module
+from typing import Any, cast
 
 import click
 
 from satsym import __version__
-from satsym.cli.commands.analyse import analyse
-from satsym.cli.commands.audit import audit
-from satsym.cli.commands.compare import compare
-from satsym.cli.commands.completion import completion
-from satsym.cli.commands.derive import derive
-from satsym.cli.commands.doctor import doctor
-from satsym.cli.commands.instances import instances
-from satsym.cli.commands.latex import latex
-from satsym.cli.commands.lqr import lqr
-from satsym.cli.commands.models import models
-from satsym.cli.commands.new import new
-from satsym.cli.commands.plot import plot
-from satsym.cli.commands.report import report
-from satsym.cli.commands.simulate import simulate
-from satsym.cli.commands.solve import solve
-from satsym.cli.commands.study import study
 from satsym.cli.output import Unheard, complain, hearable, silence, unless_unwritable
 from satsym.cli.stopping import comes_of_a_stop, stopped
 from satsym.status import BadInput, ExitCode
@@ -52,6 +37,46 @@ Exit codes: 0 done, 2 wrong usage, 3 bad input file, 4 no answer,
 `satsym COMMAND --help` has examples."""
 
 
+COMMANDS = (
+    "models",
+    "instances",
+    "new",
+    "solve",
+    "simulate",
+    "study",
+    "plot",
+    "compare",
+    "analyse",
+    "lqr",
+    "derive",
+    "latex",
+    "report",
+    "audit",
+    "completion",
+    "doctor",
+)
+"""In the order of the help."""
+
+
+class Commands(Mapping[str, click.Command]):
+    """A command is the function of its name in the module of its name, loaded when the command is looked up.
+
+    What starts one command need not wait for all of them.
+    """
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(COMMANDS)
+
+    def __len__(self) -> int:
+        return len(COMMANDS)
+
+    def __getitem__(self, name: str) -> click.Command:
+        if name not in COMMANDS:
+            raise KeyError(name)
+        command: click.Command = getattr(import_module(f"satsym.cli.commands.{name}"), name)
+        return command
+
+
 class Program(click.Group):
     """Commands that end with an exit code or with one line on stderr, never with a bare traceback."""
 
@@ -69,24 +94,7 @@ class Program(click.Group):
 
 @click.group(
     cls=Program,
-    commands=[
-        models,
-        instances,
-        new,
-        solve,
-        simulate,
-        study,
-        plot,
-        compare,
-        analyse,
-        lqr,
-        derive,
-        latex,
-        report,
-        audit,
-        completion,
-        doctor,
-    ],
+    commands=cast(Any, Commands()),  # click asks for a mapping that can be written, and only reads it
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog=OVERVIEW,
 )

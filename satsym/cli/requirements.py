@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from importlib import metadata
 
 from satsym.cli.derivations import checkout
 from satsym.status import BadInput
@@ -24,6 +23,8 @@ class Requirement:
     @property
     def installed(self) -> str | None:
         """The version that is here, if any."""
+        from importlib import metadata
+
         try:
             return metadata.version(self.name)
         except metadata.PackageNotFoundError:
@@ -59,6 +60,8 @@ def refuse_other_versions() -> None:
 
 
 def _stated() -> list[str]:
+    from importlib import metadata
+
     try:
         return metadata.requires("satsym") or []
     except metadata.PackageNotFoundError:

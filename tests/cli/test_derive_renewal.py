@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from importlib import metadata
 from pathlib import Path
 
 import pytest
@@ -151,8 +152,8 @@ def test_what_is_checked_in_is_written_with_one_version_of_sympy_and_own_models_
     derived: Callable[..., list[str]], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (pinned,) = [one for one in requirements.requirements() if one.extra == "derive"]
-    real = requirements.metadata.version
-    monkeypatch.setattr(requirements.metadata, "version", lambda name: "1.13.3" if name == "sympy" else real(name))
+    real = metadata.version
+    monkeypatch.setattr(metadata, "version", lambda name: "1.13.3" if name == "sympy" else real(name))
     capsys.readouterr()
     for options in ([], ["--check"], ["--fresh"]):
         assert main(["derive", *options]) == 3

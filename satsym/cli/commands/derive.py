@@ -8,7 +8,6 @@ from pathlib import Path
 
 import click
 
-from satsym import sources
 from satsym.cli.derivations import checkout
 from satsym.cli.options import place_option
 from satsym.cli.output import Live, complain, emit, live
@@ -51,6 +50,7 @@ def derive(files: tuple[str, ...], out: Path | None, check: bool, fresh: bool, m
     problem. Every step is checked by machine, and so is every generated function, before anything is written. What
     neither changed itself nor was derived by code that changed is left alone; --check derives all of it.
     """
+    from satsym import sources
     from satsym.report import artefacts
     from satsym.report.results.files import check_writable
 

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 from satsym.status import BadInput
 from satsym.wording import shown
 
+_FOLDER = Path(__file__).parent
 _HOLE = re.compile(r"<([a-z_]+)>")
 
 
@@ -68,7 +68,7 @@ class Texts:
 
 def languages() -> list[str]:
     """Languages there are texts in."""
-    return sorted(f.name.removesuffix(".toml") for f in files(__name__).iterdir() if f.name.endswith(".toml"))
+    return sorted(file.stem for file in _FOLDER.glob("*.toml"))
 
 
 @cache
@@ -80,7 +80,9 @@ def load(language: str) -> Texts:
     BadInput
         If there are none.
     """
+    import tomllib
+
     if language not in languages():
         raise BadInput(f"no texts in the language {shown(language)}; there are {', '.join(languages())}")
-    tables: dict[str, Any] = tomllib.loads(files(__name__).joinpath(f"{language}.toml").read_text(encoding="utf-8"))
+    tables: dict[str, Any] = tomllib.loads((_FOLDER / f"{language}.toml").read_text(encoding="utf-8"))
     return Texts(language, tables)
