@@ -10,6 +10,8 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from typing import Any, TextIO, cast
 
+from satsym import activity
+
 INTERVAL = 0.1
 """Seconds between two states of the live line."""
 
@@ -117,9 +119,13 @@ class Live:
 
     def show(self, text: str) -> None:
         """Replace the line, unless it was replaced a moment ago."""
-        now = time.monotonic()
-        if self._shown and now >= self._due:
-            self._due = now + INTERVAL
+        if time.monotonic() >= self._due:
+            self.replace(text)
+
+    def replace(self, text: str) -> None:
+        """Replace the line at once, for what is said now may stand for long."""
+        if self._shown:
+            self._due = time.monotonic() + INTERVAL
             width = shutil.get_terminal_size().columns - 1
             with unless_unwritable():
                 _write(sys.stderr, f"\r\x1b[K{text[:width]}")
@@ -132,10 +138,11 @@ class Live:
 
 @contextmanager
 def live() -> Iterator[Live]:
-    """A live line that is gone at the end, whatever the end is."""
+    """A live line, which also says what takes long, and is gone at the end, whatever the end is."""
     line = Live()
     try:
-        yield line
+        with activity.heard(line.replace):
+            yield line
     finally:
         line.erase()
 

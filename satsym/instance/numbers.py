@@ -58,6 +58,10 @@ class Key:
             If it is no such number.
         """
         place = place or self.text
+        if isinstance(given, str) and given.lstrip().startswith("["):
+            raise BadInput(
+                f"{place}: {shown(given)} is no number; ranges and bounds are set in the instance file alone"
+            )
         if self.table is Table.TIME:
             return time(given, place, spec)
         if self.table is Table.CONTROL:
@@ -160,6 +164,8 @@ def find(text: str, instance: Instance) -> Key:
     key = names.get(text)
     if key is None:
         raise BadInput(f"{printable(text)}: {printable(instance.name)} has no such number; {_instead(text, names)}")
+    if key.table is Table.FINAL and key.name in instance.ranges:
+        raise BadInput(f"{key.text}: {printable(instance.name)} has a range for it, which is set in its file alone")
     if not key.given(instance):
         raise BadInput(f"{key.text}: {printable(instance.name)} gives no number for it; give it one there")
     return key

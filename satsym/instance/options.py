@@ -48,7 +48,7 @@ def lqr(table: LqrTable | None, spec: ProblemSpec) -> LqrOptions | None:
         raise BadInput(f"[lqr] horizon: {shown(table.horizon)} is not positive; write a length of time, or remove it")
     Q, R = _weights(table, spec, [spec.controls[spec.control_names.index(name)] for name in inputs])
     q, r = weights.checked(Q, R, len(spec.states), len(inputs))
-    return LqrOptions(Q=q, R=r, inputs=tuple(inputs), horizon=horizon)
+    return LqrOptions(Q=q, R=r, inputs=tuple(inputs), horizon=horizon, relative=bool(table.allowed))
 
 
 def _weights(table: LqrTable, spec: ProblemSpec, inputs: Sequence[Variable]) -> tuple[Weights, Weights]:

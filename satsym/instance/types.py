@@ -50,12 +50,15 @@ class LqrOptions:
         Names of the active inputs, in the order of `R`.
     horizon
         Length of time, ``None`` for an infinite one.
+    relative
+        Whether what is weighed counts relative to allowed deviations, as a plain number.
     """
 
     Q: tuple[Row, ...]
     R: tuple[Row, ...]
     inputs: tuple[str, ...]
     horizon: float | None = None
+    relative: bool = False
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from types import FunctionType
 from typing import Any
 
+from satsym import activity
 from satsym.kernels.contract import BATCH
 from satsym.status import BadInput
 
@@ -35,6 +36,7 @@ def compile_functions(functions: Mapping[str, Any], *, cache: bool) -> dict[str,
     result = dict(functions)
     if not functions:
         return result
+    activity.tell("compiling, for the first time perhaps half a minute ...")
     # The copies share fresh globals, in which a function finds the compiled form of another.
     scope = dict(next(iter(functions.values())).__globals__)
     for name, function in functions.items():

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from satsym import activity
 from satsym.arrays import Array
 from satsym.control_set import ControlSet
 from satsym.grid import Grid
@@ -92,9 +93,10 @@ def nearest(problem: TwoPoint, path: Path, limits: Limits) -> Nearest | None:
     law = problem.control(reach.tau, path(reach.tau), path.theta, bounded=False)
     starts = [np.zeros_like(law), law, law / 2.0, *_drawn(problem, reach)]
     best, tried = None, 0
-    for start in starts:
+    for k, start in enumerate(starts):
         if limits.expired:
             return None
+        activity.tell(f"looking whether the end can be reached at all: search {k + 1} of {len(starts)} ...")
         with np.errstate(all="ignore"):
             found = minimize(
                 reach.miss,

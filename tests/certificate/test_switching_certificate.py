@@ -12,7 +12,7 @@ from satsym.report.results.objects import solution_object
 from satsym.solution import Solution
 from satsym.solvers import certificate
 from satsym.solvers.certificate.switching.replay import replay
-from satsym.solvers.certificate.switching.variation import variation
+from satsym.solvers.certificate.switching.variation import Variation, variation
 from satsym.solvers.switching import solving
 from tests.support.switching_closed_forms import FUEL, TIME, Known, case, least_fuel, minimum_time, starts
 
@@ -116,3 +116,14 @@ def test_the_second_variation_is_that_of_the_closed_form() -> None:
     slopes = [(b - a) / (2.0 * step) for a, b in zip(before.switches, after.switches, strict=True)]
     assert direction[:2] == pytest.approx(slopes, rel=1e-5)
     assert direction @ second.hessian @ direction == pytest.approx(curvature, rel=1e-5)
+
+
+def test_a_shift_in_time_is_the_reason_where_the_form_vanishes_along_it_alone() -> None:
+    later, rest = np.ones(3) / np.sqrt(3.0), np.array([1.0, -1.0, 0.0]) / np.sqrt(2.0)
+    across = np.eye(3) - np.outer(later, later)
+    kept, tied = np.zeros((0, 3)), later[None]
+    assert Variation(across, kept, 0.0).flat_by_shift(1e-7)
+    assert not Variation(np.eye(3), kept, 0.0).flat_by_shift(1e-7)
+    assert not Variation(np.eye(3) - np.outer(rest, rest), kept, 0.0).flat_by_shift(1e-7)
+    assert not Variation(across - np.outer(rest, rest), kept, 0.0).flat_by_shift(1e-7)  # flat across it as well
+    assert not Variation(across, tied, 0.0).flat_by_shift(1e-7)  # the end does not allow it

@@ -14,8 +14,9 @@ from typing import Any
 import pytest
 
 import satsym
-from satsym import kernels
+from satsym import activity, kernels
 from satsym.cli import main, output
+from satsym.cli.output import live
 from satsym.instance import SolverOptions
 from satsym.report.results.files import to_json
 
@@ -585,3 +586,24 @@ sys.exit(main({arguments}))
     loaded = set(done.stderr.split())
     assert "satsym.cli" in loaded
     assert not loaded & needless
+
+
+def test_what_takes_long_is_said_at_once_and_to_nobody_else(monkeypatch: pytest.MonkeyPatch) -> None:
+    written: list[str] = []
+    monkeypatch.setattr("satsym.cli.output._is_terminal", lambda _stream: True)
+    monkeypatch.setattr("satsym.cli.output._write", lambda _stream, text: written.append(text))
+    activity.tell("nobody hears this")
+    with live() as line:
+        line.show("iteration 1")
+        line.show("iteration 2, a moment later")
+        activity.tell("compiling ...")
+    activity.tell("nobody hears this either")
+    assert [text.removeprefix("\r\x1b[K") for text in written] == ["iteration 1", "compiling ...", ""]
+
+
+def test_ranges_are_refused_on_the_command_line_with_the_place_where_they_stand(run: Run) -> None:
+    for given in ("[1,2]", " [0.9, 1.1]"):
+        code, _, err = run("solve", "soft-return", "--set", f"initial.r={given}")
+        assert code == 3
+        assert err.count("\n") == 1
+        assert "ranges and bounds are set in the instance file alone" in err

@@ -20,6 +20,7 @@ from satsym.report.plots import responses, style, systems
 from satsym.report.plots.orbits import plane
 from satsym.report.results.exact import exact
 from satsym.report.results.linear import analysis_object, regulator_object
+from satsym.report.results.unit_names import of_regulator
 from satsym.report.terminal.linear import analysis_text, regulator_text
 from tests.house.test_floors import run_satsym
 
@@ -236,7 +237,7 @@ def test_the_nine_figures_of_the_thesis_are_on_the_page() -> None:
         labels = [axes.get_ylabel() for axes in page.axes]
         assert labels == [*(f"$x_{i}$ [{u}]" for i, u in enumerate(["km", "km/s"] * 2, start=1))] * 2 + [
             "$u_2$ [km/s²]",
-            "$J$",
+            "$J$ [km²/s³]",
         ]
         assert [len(axes.get_lines()) for axes in page.axes] == [3] * 10  # zero, linear, nonlinear
         left, right = page.axes[2].get_lines()[1].get_ydata(), page.axes[6].get_lines()[1].get_ydata()
@@ -259,3 +260,11 @@ def test_a_regulator_needs_neither_sympy_nor_matplotlib(tmp_path: Path) -> None:
     loaded = run_satsym(["lqr", "uny-lqr", "--json"], tmp_path)
     assert "numpy" in loaded
     assert not loaded & {"sympy", "matplotlib", "numba", "control"}
+
+
+@pytest.mark.parametrize(("name", "unit"), [("geo-lqr", "s"), ("uny-lqr", "km**2/s**3"), ("lapan-roll-yaw-lqr", "s")])
+def test_what_a_regulator_minimises_has_a_unit(name: str, unit: str) -> None:
+    """R is for plain numbers, or what is allowed makes them plain."""
+    design = designed(instance.load(name))
+    assert of_regulator(design.about.model.spec, design.regulator.system.inputs, design.relative) == unit
+    assert regulator_text(design).rstrip().endswith(f" {unit}")

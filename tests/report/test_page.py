@@ -9,10 +9,15 @@ from pathlib import Path
 
 import pytest
 
+import satsym
 from satsym import instance
 from satsym.report.html.markup import Markup
+from satsym.report.page.motion import SIDE, motion
+from satsym.report.page.pictures import pictures
 from satsym.report.page.prose import prose
 from satsym.report.page.run import render
+from satsym.report.plots.scene import Scene
+from satsym.report.texts import load
 from satsym.solution import Solution
 from satsym.solvers import solve
 from satsym.symbolic import loader
@@ -20,6 +25,8 @@ from tests.cli.test_cli import Run, case, run
 from tests.support.derived import derived
 
 __all__ = ["case", "run"]
+
+PAGES = Path(satsym.__file__).parent / "report"
 
 
 class Page(HTMLParser):
@@ -139,3 +146,20 @@ q = sympy.Symbol("q", real=True)
 S = Variable("q", "q", "m")
 PROBLEMS = (FirstOrder(name="sled", title="sled", rates={q: -q}, states=(S,), controls=(), parameters=()),)
 """
+
+
+def test_pictures_take_their_colours_from_the_page_and_know_no_others(solution: Solution) -> None:
+    drawn = "".join(pictures(solution, load("en")))
+    named = set(re.findall(r"var\(--([a-z]+)\)", drawn))
+    assert {"ink", "line", "card", "blue", "vermilion"} <= named
+    assert not re.findall(r"#[0-9a-fA-F]{6}\b", drawn)
+    style = (PAGES / "page" / "report.css").read_text("utf-8") + (PAGES / "html" / "page.css").read_text("utf-8")
+    assert named <= set(re.findall(r"--([a-z]+):", style))
+
+
+def test_nothing_of_an_uncontrolled_motion_that_stays_near_is_cut(solution: Solution) -> None:
+    drawn = str(motion(Scene.of(solution), load("en")))
+    path = re.search(r'<path d="M([^"]*)" class="free">', drawn)
+    assert path is not None
+    places = [float(value) for value in re.findall(r"-?\d+\.\d", path[1])]
+    assert 0.0 < min(places) < max(places) < SIDE

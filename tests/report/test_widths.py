@@ -9,7 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from satsym import instance, kernels
+from satsym.analysis.orbits.survey import survey
 from satsym.report.terminal import listing
+from satsym.report.terminal.orbit import orbit_text
 from satsym.report.terminal.solution import simulation_text, solution_text, with_files
 from satsym.report.terminal.table import table, wrapped
 from satsym.solvers import simulate, solve
@@ -24,6 +26,7 @@ def texts() -> dict[str, object]:
     return {
         "solution": solve(instance.load("soft-return-geo")),
         "flight": simulate(instance.load("its-thesis")),
+        "orbit": survey(instance.load("itb-earth")),
         "models": models,
         "cases": cases,
     }
@@ -35,6 +38,7 @@ def test_summaries_and_lists_fit(texts: dict, columns: int, monkeypatch: pytest.
         return [
             solution_text(texts["solution"]),
             simulation_text(texts["flight"]),
+            orbit_text(texts["orbit"]),
             listing.models_text(texts["models"]),
             listing.instances_text(texts["cases"]),
             listing.model_text(texts["models"][0]),

@@ -43,6 +43,11 @@ class Design:
         return spec.title if self.instance is None else self.instance.title or spec.title
 
     @property
+    def relative(self) -> bool:
+        """Whether its weights come from allowed deviations."""
+        return self.instance is not None and self.instance.lqr is not None and self.instance.lqr.relative
+
+    @property
     def deviation(self) -> Array | None:
         """Where the instance starts, as seen from its reference or equilibrium; shape (n,)."""
         return None if self.instance is None else np.array(self.instance.initial) - self.about.point

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from satsym import kept
+from satsym import activity, kept
 from satsym.kernels.core import Kernels
 from satsym.status import BadInput
 
@@ -68,6 +68,8 @@ def compiled(name: str, text: str) -> Mapping[str, Any]:
     if kept.read(path) != text.encode():
         kept.write(path, text.encode())
     keeps = kept.read(path) == text.encode() and _writable(path.parent)
+    if not any(path.parent.glob("__pycache__/*.nbi")):  # numba keeps machine code there
+        activity.tell(f"compiling {name}, which happens once ...")
     module = ModuleType(f"satsym_kept_{name}_{digest}")
     sys.modules[module.__name__] = module  # where machine code that was kept looks for it
     vars(module).update(np=np, __file__=str(path))

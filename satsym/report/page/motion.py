@@ -10,12 +10,12 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.report.display import number, unit_text
 from satsym.report.html.markup import Markup, joined, tag
-from satsym.report.plots.orbits.scenes import Orbit
+from satsym.report.plots.orbits.scenes import Orbit, box
 from satsym.report.plots.scene import Scene
 from satsym.report.texts import Texts
 
-SIDE, ROOM = 400.0, 24.0
-"""Of the picture and its margin, in its own units."""
+SIDE = 400.0
+"""Of the picture, in its own units."""
 FRAMES = 120
 
 Placing: TypeAlias = Callable[[Array], Array]
@@ -30,7 +30,9 @@ def motion(scene: Scene, texts: Texts) -> Markup:
     view, known = orbit.views[0].axes, np.isfinite(orbit.path).all(axis=0)
     curves = {"reference": orbit.reference, "free": orbit.free, "path": orbit.path}
     seen = {name: view @ curve[:, known] for name, curve in curves.items() if curve is not None}
-    to = _placing(np.hstack([np.zeros((2, 1)), *(seen[name] for name in ("reference", "path") if name in seen)]))
+    to = _placing(
+        *box(seen["path"], [np.zeros((2, 1)), *(seen[name] for name in ("reference", "free") if name in seen)])
+    )
     drawn = {name: to(curve) for name, curve in seen.items()}
     evenly = {name: _evenly(scene.nodes[known], drawn[name]) for name in ("reference", "path") if name in drawn}
     x, y = to(np.zeros((2, 1)))[:, 0]
@@ -57,11 +59,10 @@ def motion(scene: Scene, texts: Texts) -> Markup:
     )
 
 
-def _placing(points: Array) -> Placing:
-    """What puts these points into the picture, at equal scales, upwards up."""
-    low, high = points.min(axis=1), points.max(axis=1)
+def _placing(low: Array, high: Array) -> Placing:
+    """What puts a plane into the picture as far as these corners, at equal scales, upwards up."""
     half = 0.5 * float((high - low).max()) or 1.0
-    scale = (0.5 * SIDE - ROOM) / half
+    scale = 0.5 * SIDE / half
     centre = 0.5 * (low + high)[:, None]
     return lambda curve: 0.5 * SIDE + np.array([[scale], [-scale]]) * (curve - centre)
 

@@ -8,12 +8,22 @@ import re
 from satsym.report import plots
 from satsym.report.html.markup import Markup, tag
 from satsym.report.look import Look
+from satsym.report.plots import style
 from satsym.report.texts import Texts
 from satsym.solution import Solution
 
 _NAMED = re.compile(r'(\bid="|href="#|url\(#)')
 _BEFORE = re.compile(r"^.*?(?=<svg)", re.DOTALL)
 _ABOUT = re.compile(r"<metadata>.*?</metadata>", re.DOTALL)
+_COLOURS = {
+    **dict.fromkeys((style.INK.lower(), "#000000"), "ink"),
+    **dict.fromkeys((style.SOFT.lower(), style.GREY.lower(), "#777777", "#9a9a9a"), "faint"),
+    **dict.fromkeys((style.FAINT.lower(), "#c4c4c4", "#c8c8c8"), "line"),
+    "#ffffff": "card",
+    **{getattr(style, name).lower(): name.lower() for name in ("BLUE", "VERMILION", "GREEN", "PURPLE", "ALARM")},
+}
+"""What each colour of a picture is on a page, where it depends on whether that is light or dark."""
+_COLOUR = re.compile("|".join(_COLOURS))
 OVERVIEW = "overview"
 """Shows what the others show, too."""
 
@@ -36,5 +46,5 @@ def pictures(solution: Solution, texts: Texts) -> list[Markup]:
 def _inline(svg: str, name: str, said: str) -> Markup:
     """The element alone, with names of its own, and with words for those who do not see it."""
     body = _ABOUT.sub("", _BEFORE.sub("", svg)).strip()
-    body = _NAMED.sub(rf"\g<1>{name}-", body)
+    body = _COLOUR.sub(lambda found: f"var(--{_COLOURS[found[0]]})", _NAMED.sub(rf"\g<1>{name}-", body))
     return Markup(body.replace("<svg ", str(tag("svg", role="img", aria_label=said))[: -len("></svg>")] + " ", 1))

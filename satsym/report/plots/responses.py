@@ -11,6 +11,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.report import display
 from satsym.report.plots import curves, legend, style
+from satsym.report.results.unit_names import COST, of_regulator
 from satsym.spec import Variable
 
 if TYPE_CHECKING:
@@ -57,7 +58,8 @@ def page(design: Design, case: Instance) -> Figure:
         axes.tick_params(labelbottom=i == m - 1)
     axes.set_xlabel(display.labelled("$t$", unit))
     axes = figure.add_subplot(grid[n:, 0] if wide else grid[n : n + m, 0])
-    cost = Variable("J", "J", meaning="accumulated cost")
+    measure = of_regulator(spec, design.regulator.system.inputs, design.relative)
+    cost = Variable("J", "J", "1" if measure == COST else measure, "accumulated cost")
     exact_cost = None if found.exact_steered is None else found.exact_steered.cost(design.regulator, found.times)
     linear_cost = found.steered.cost(design.regulator, found.times)
     _curve(axes, times, cost, linear_cost, exact_cost, style.PURPLE)

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 from satsym import units as expressions
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from satsym.spec import ProblemSpec
 
 COST = "cost"
@@ -30,6 +32,29 @@ def time_unit(spec: ProblemSpec) -> str:
 def cost_per(unit: str, spec: ProblemSpec) -> str:
     """The unit of a costate: of the cost, per unit of the state."""
     return per(spec.objective_unit or COST, unit) or COST
+
+
+def of_regulator(spec: ProblemSpec, inputs: Collection[str], relative: bool) -> str:
+    """The unit of what a regulator minimises; :data:`COST` where inputs of different units share a plain weight.
+
+    Parameters
+    ----------
+    inputs
+        Names of the active controls.
+    relative
+        Whether states and inputs count relative to allowed deviations. Else R is taken for plain numbers, which
+        leaves the unit of the inputs squared by time, and what Q has of units makes its terms the same.
+    """
+    time = time_unit(spec) or "1"
+    shared = {v.unit for v in spec.controls if v.symbol in inputs}
+    if relative:
+        return time
+    if len(shared) > 1:
+        return COST
+    total = Counter(expressions.factors(time))
+    for _ in range(2):
+        total.update(expressions.factors(*shared))
+    return expressions.expression(total)
 
 
 def per(unit: str, other: str | None) -> str | None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from satsym.analysis.linear.stability import UNSTABLE, shown
 from satsym.report.results.exact import omitted_because
-from satsym.report.results.unit_names import time_unit
+from satsym.report.results.unit_names import COST, of_regulator, time_unit
 from satsym.report.terminal.solution import joined
 from satsym.report.terminal.table import figure, table, wrapped
 
@@ -58,7 +58,9 @@ def regulator_text(design: Design) -> str:
     if found.error is not None:
         facts.append(("estimated error of P", figure(found.error, 2)))
     if design.deviation is not None:
-        facts.append(("cost from the initial state", figure(found.cost(design.deviation), 10)))
+        unit = of_regulator(about.model.spec, system.inputs, design.relative)
+        cost = figure(found.cost(design.deviation), 10)
+        facts.append(("cost from the initial state", cost if unit in ("1", COST) else f"{cost} {unit}"))
     eigenvalues = [(complex_number(value),) for value in found.eigenvalues]
     return joined(
         [

@@ -95,18 +95,19 @@ def _tolerances(conic: Conic) -> str:
 
 def _point(found: Point, length: str, time: str) -> list[str]:
     at = f"{figure(found.distance, DIGITS)} {length}".removesuffix(" 1")
-    header = (f"eigenvalues of the Jacobian at the start, {at} from the centre", "closed form", "unit")
+    header = ("eigenvalue", "closed form", "unit")
     pairs = zip(found.eigenvalues.tolist(), found.closed_form.tolist(), strict=True)
     unit = _per("1", time)
     rows = [(_rounded(value, found.deviation), complex_number(exact), unit) for value, exact in pairs]
-    conclusion = found.conclusion_verdict or "undecided"
+    negative = f'"if all are negative": {found.conclusion_verdict or "undecided"}'
     own = []
     if found.own is not None:
         listed = ", ".join(_rounded(value, 1e-16) for value in found.own.tolist())
         own = wrapped(f"the same rule in the model's own coordinates: {found.own_verdict}, from {listed}")
     return [
+        *wrapped(f"the Jacobian at the start, {at} from the centre:"),
         *table([header, *rows], right=(0, 1)),
-        f'  rule of the signs, "stable if all(e.real <= 0)": {found.rule_verdict}; "if all are negative": {conclusion}',
+        *wrapped(f'rule of the signs, "stable if all(e.real <= 0)": {found.rule_verdict}; {negative}'),
         *own,
     ]
 
@@ -124,7 +125,7 @@ def _checks(found: Floquet, matrix: Monodromy, length: str) -> list[str]:
     unit = "" if length == "1" else f" {length}"
     at = "the start" if found.orbit.conic is Conic.CIRCLE else "apoapsis"
     rows = [
-        ("exact multipliers", "1, 1, 1, 1, 1, 1", "Jordan blocks 2, 1, 1, 1, 1"),
+        ("exact multipliers", "6 times 1", "Jordan blocks 2, 1, 1, 1, 1"),
         (
             "scatter of the computed ones",
             figure(found.scatter or 0.0, 2),
@@ -135,9 +136,9 @@ def _checks(found: Floquet, matrix: Monodromy, length: str) -> list[str]:
         ("second singular value of M - I", figure(matrix.second_singular, 2), "relative: its rank is one"),
         ("(M - I)^2", figure(matrix.square, 2), "relative: it is nilpotent"),
         (
-            f"behind after a revolution, if faster by {FASTER:g}",
+            "lag after a revolution",
             figure(found.lag or 0.0) + unit,
-            "in each revolution as much again",
+            f"if faster by {FASTER:g}; as much in each more",
         ),
     ]
     return table([("", "", ""), *rows], right=(1,))[1:]
@@ -147,7 +148,7 @@ def _turning(found: Floquet, time: str) -> list[str]:
     if found.turning is None:
         return []
     unit = _per("1", time)
-    header = ("in axes that rotate with the orbit: eigenvalue", "algebraic", "Jordan blocks", "unit")
+    header = ("eigenvalue", "algebraic", "Jordan blocks", "unit")
     rows = [
         (complex_number(each.value), str(each.algebraic), ", ".join(map(str, each.blocks)), unit if each.value else "")
         for each in found.turning.eigenvalues
@@ -158,7 +159,7 @@ def _turning(found: Floquet, time: str) -> list[str]:
         "a drift along the track from the block of size 2. Over a revolution each of them becomes exp(s T) = 1: the "
         "multipliers above. What they leave out is of the order of the eccentricity."
     )
-    return [*table([header, *rows], right=(0, 1)), "", *wrapped(says)]
+    return [*wrapped("in axes that rotate with the orbit:"), *table([header, *rows], right=(0, 1)), "", *wrapped(says)]
 
 
 def _rounded(value: complex, error: float) -> str:

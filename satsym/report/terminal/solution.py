@@ -21,13 +21,8 @@ SHOWN_TIMES = 6
 """Switching times of one control that are listed."""
 
 _AT_BOUND = 1e-9
-_BOUNDARY = {
-    1: "final time and final state given",
-    2: "final time free, final state given",
-    3: "final time given, final state free or partly so",
-    4: "final time free, final state on the reference",
-    5: "final time free, final state free or partly so",
-}
+_END = {1: "given", 2: "given", 3: "free or partly so", 4: "on the reference", 5: "free or partly so"}
+"""The final state, by boundary type."""
 
 
 def solution_text(solution: Solution, colour: bool = False) -> str:
@@ -39,7 +34,7 @@ def solution_text(solution: Solution, colour: bool = False) -> str:
         *_interval(solution),
         *_found(instance, unit),
         ("final time", f"{figure(_last(solution.times), 10)} {unit}".rstrip()),
-        ("boundary type", f"{instance.boundary_type}, {_BOUNDARY[instance.boundary_type]}"),
+        ("boundary type", _boundary(instance)),
     ]
     blocks = [
         _heading(instance, solution.status, f"{solution.method}, {_effort(solution)}", colour),
@@ -90,6 +85,15 @@ def with_files(text: str, saved: Sequence[Path]) -> str:
         alone = len(f"  written to {folder}: {names[0]},") > (room() or WIDEST)
         lines.append([f"  written to {folder}:", *wrapped(", ".join(names))] if alone else told)
     return joined([text.splitlines(), *lines])
+
+
+def _boundary(instance: Instance) -> str:
+    """What the ends are, in words; ranges are no given states, though the answer may lie on their ends."""
+    kind = instance.boundary_type
+    end = _END[kind]
+    if instance.ranges:
+        end = "within ranges" if len(instance.ranges) == len(instance.initial) else "partly within ranges"
+    return f"{kind}, final time {'free' if instance.tf is None else 'given'}, final state {end}"
 
 
 def _objective(instance: Instance, cost: float) -> tuple[str, str]:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from satsym import activity
 from satsym.arrays import Array
 from satsym.instance import Guess, Instance
 from satsym.solution import Kind, Solution
@@ -72,6 +73,7 @@ def compared(solution: Solution, deadline: float, seed: int = 0) -> Comparison:
     """
     kinds, missing = [], []
     for kind, attempts in _attempts(solution, seed):
+        activity.tell(f"certificate: comparing with {kind.value} ...")
         found = _tried(solution, kind, attempts, deadline)
         if found is None:
             missing.append(kind)

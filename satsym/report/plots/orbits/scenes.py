@@ -91,7 +91,7 @@ def in_space(axes: Axes, orbit: Orbit, view: View) -> None:
     """Draw the path in a plane, at equal scales."""
     seen, drawn = view.axes, [c for c in (orbit.reference, orbit.free) if c is not None]
     curve, others = seen @ orbit.path, [seen @ c for c in drawn]
-    low, high = _box(curve, [*others, np.zeros((2, 1))])
+    low, high = box(curve, [*others, np.zeros((2, 1))])
     centre, half = 0.5 * (low + high), 0.5 * float((high - low).max())
     names = list(view.labels)
     datum: Array = np.zeros((2, 1))
@@ -130,7 +130,7 @@ def from_reference(axes: Axes, orbit: Orbit) -> None:
     others: list[Array] = [np.zeros((2, 1))]
     if orbit.free_relative is not None:
         others.append(np.vstack([orbit.free_relative.along, orbit.free_relative.radial]))
-    low, high = _box(curve, others)
+    low, high = box(curve, others)
     measure = engineering(orbit.unit, float(np.abs([low, high]).max()))
     scale = 1.0 / measure.divisor
     axes.set_xlim(low[0] * scale, high[0] * scale)
@@ -163,7 +163,7 @@ def _near(seen: curves.Relative | None, reference: Array | None) -> bool:
     return bool(0.0 < furthest < NEAR * np.linalg.norm(reference, axis=0).max())
 
 
-def _box(curve: Array, others: list[Array]) -> tuple[Array, Array]:
+def box(curve: Array, others: list[Array]) -> tuple[Array, Array]:
     """Corners around a curve; what is drawn beside it widens them as far as the curve stays readable."""
     low, high = np.nanmin(curve, axis=1), np.nanmax(curve, axis=1)
     width = float((high - low).max()) or np.inf

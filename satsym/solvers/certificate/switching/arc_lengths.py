@@ -20,6 +20,7 @@ from satsym.solvers.certificate.flow import typical
 from satsym.solvers.certificate.jacobi import kernel
 from satsym.solvers.certificate.switching.integration import Integration, Span
 from satsym.solvers.certificate.switching.replay import Piece, Replay
+from satsym.solvers.certificate.switching.variation import flat_along
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.switching.field import NUDGE
 from satsym.solvers.switching.throttled import ThrottledField
@@ -215,10 +216,26 @@ def _ended(solution: Solution, form: Array, x: Array, duration: Array, state: Ar
     return ties if instance.tf is None else np.concatenate([ties, duration[None]])
 
 
+def flat_by_shift(solution: Solution, again: Replay, by: Integration, flat: float) -> bool:
+    """Whether the form vanishes where all happens later, in that direction and no other."""
+    form, ties, _ = quadratic(solution, again, by, 2 * PIECES)
+    size, free = _kept(form, ties, len(again.pieces))
+    later = np.zeros(len(form))
+    later[0] = 1.0
+    if solution.instance.tf is not None:  # what begins with a longer arc ends with a shorter one
+        later[len(again.pieces) - 1] -= 1.0
+    return flat_along(free.T @ (form / size / size[:, None]) @ free, free.T @ (later * size), flat)
+
+
 def _smallest(form: Array, ties: Array, lengths: int) -> float:
     """The least eigenvalue where the ties vanish, relative to the diagonal of changes on arcs, and of all lengths."""
+    size, free = _kept(form, ties, lengths)
+    return float(np.linalg.eigvalsh(free.T @ (form / size / size[:, None]) @ free).min()) if free.shape[1] else np.inf
+
+
+def _kept(form: Array, ties: Array, lengths: int) -> tuple[Array, Array]:
+    """Units of the changes, and directions in these in which the ties vanish, as columns."""
     size = np.sqrt(np.abs(np.diag(form)))
     size[:lengths] = max(size[:lengths].max(), 1e-300)
     size[lengths:] = np.maximum(size[lengths:], 1e-6 * size[lengths:].max(initial=0.0) + 1e-300)
-    free = kernel(ties / size / np.maximum(np.abs(ties / size).max(axis=1, keepdims=True), 1e-300))
-    return float(np.linalg.eigvalsh(free.T @ (form / size / size[:, None]) @ free).min()) if free.shape[1] else np.inf
+    return size, kernel(ties / size / np.maximum(np.abs(ties / size).max(axis=1, keepdims=True), 1e-300))

@@ -11,7 +11,7 @@ from satsym.instance import Instance
 from satsym.solution import Certificate, Check, Kind, Solution
 from satsym.solvers.certificate import conditions
 from satsym.solvers.certificate.flow import Flow, typical
-from satsym.solvers.certificate.switching.arc_lengths import curvature
+from satsym.solvers.certificate.switching.arc_lengths import curvature, flat_by_shift
 from satsym.solvers.certificate.switching.comparison import Comparison, allowed, compared
 from satsym.solvers.certificate.switching.end_switches import with_end_switches
 from satsym.solvers.certificate.switching.integration import Integration, OutOfTime, TooMuchWork
@@ -37,6 +37,9 @@ CLOSE = 0.01
 
 CURVED = 1e-7
 """Least relative curvature in the switching times."""
+
+LATER = Check("not strict: the same switches later cost the same", 1.0, 0.0)
+"""Why a second variation is not positive, where a shift in time is the whole reason."""
 
 
 def certify(solution: Solution, compare: bool = True) -> Certificate:
@@ -125,10 +128,12 @@ def _sufficient(solution: Solution, again: Replay, limits: Limits) -> list[Check
         by = Integration(np.concatenate(typical(solution)), limits)
         flat = not curvature(solution, extended, by) > CURVED
         checks.append(Check("second variation in lengths of arcs and directions", float(flat), 0.0))
+        checks += [LATER] if flat and flat_by_shift(solution, extended, by, CURVED) else []
     elif not any(free):
         second = variation(solution.instance, extended)
         flat = second is None or not second.curvature > CURVED
         checks.append(Check("second variation in the switching times", float(flat), 0.0))
+        checks += [LATER] if second is not None and flat and second.flat_by_shift(CURVED) else []
     return checks
 
 

@@ -21,6 +21,9 @@ from satsym.solvers.collocation.scaling import final_argument
 RANK = 1e-9
 """Smallest singular value, relative to the largest, of a derivative that counts."""
 
+ALONG = 1.0 - 1e-6
+"""Least cosine between directions that are the same."""
+
 
 @dataclass(frozen=True, eq=False)
 class Variation:
@@ -46,12 +49,33 @@ class Variation:
     @property
     def curvature(self) -> float:
         """Smallest eigenvalue on that kernel, relative; infinite where the end fixes all times."""
-        directions = self.kernel
-        if not directions.shape[1]:
-            return float("inf")
-        reduced = directions.T @ (self.hessian + self.hessian.T) @ directions / 2.0
-        size = max(float(np.abs(self.hessian).max(initial=0.0)), 1e-300)
-        return float(np.linalg.eigvalsh(reduced).min() / size)
+        reduced = self._reduced
+        return float(np.linalg.eigvalsh(reduced).min()) if reduced.size else float("inf")
+
+    @property
+    def _reduced(self) -> Array:
+        """The Hessian on that kernel, relative to its largest entry."""
+        size = 2.0 * max(float(np.abs(self.hessian).max(initial=0.0)), 1e-300)
+        return np.asarray(self.kernel.T @ (self.hessian + self.hessian.T) @ self.kernel / size)
+
+    def flat_by_shift(self, flat: float) -> bool:
+        """Whether it vanishes where all times are later by as much, in that direction and no other."""
+        return flat_along(self._reduced, self.kernel.T @ np.ones(len(self.hessian)), flat)
+
+
+def flat_along(form: Array, direction: Array, flat: float) -> bool:
+    """Whether a form, shape (k, k), vanishes along a direction, shape (k,), and is positive across it.
+
+    Parameters
+    ----------
+    flat
+        Up to which an eigenvalue counts as zero.
+    """
+    if not form.size:
+        return False
+    values, axes = np.linalg.eigh(form)
+    along = abs(float(axes[:, 0] @ direction)) / max(float(np.linalg.norm(direction)), 1e-300)
+    return bool(abs(values[0]) <= flat and (values[1:] > flat).all() and along > ALONG)
 
 
 def variation(instance: Instance, again: Replay) -> Variation | None:
