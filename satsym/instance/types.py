@@ -162,7 +162,10 @@ class Instance:
         Lower and upper limits of final states by name, infinite where there is none.
     met
         At which end of its range a final state is, once that was found; `final` then holds its value. With these are
-        the inequalities at the end that are active, all at their upper end, which are constraints of `model` then.
+        the inequalities at the end that are active, all at their upper end, which are constraints of `model` then; of
+        those in time alone the final time follows, and is given then.
+    work
+        Columns at which the motion may be linearised by each search, of trial problems only.
     """
 
     name: str
@@ -190,15 +193,26 @@ class Instance:
     continuation: tuple[Varied, ...] = ()
     ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     met: Mapping[str, Side] = field(default_factory=dict)
+    work: float = math.inf
 
     def meeting(self, met: Mapping[str, Side]) -> Instance:
-        """The instance whose end is at these limits, and at no other one."""
-        from satsym.kernels.active import with_active  # here, for it loads numpy, as below
+        """The instance whose end is at these limits, and at no other one.
+
+        Raises
+        ------
+        BadInput
+            If a limit in time alone is met at no final time that is left.
+        """
+        from satsym.instance.end_time import end_time, in_time_alone  # here, for these load numpy, as below
+        from satsym.kernels.active import with_active
 
         final = {name: value for name, value in self.final.items() if name not in self.met}
         final |= {name: side.of(self.ranges[name]) for name, side in met.items() if name in self.ranges}
         ordered = {name: final[name] for name in self.model.spec.state_names if name in final}
-        return replace(self, final=ordered, met=dict(met), model=with_active(self.model, met))
+        timed = in_time_alone(self)
+        free = replace(self, tf=None) if timed & self.met.keys() else self
+        tf = end_time(free, sorted(timed & met.keys()))
+        return replace(self, final=ordered, met=dict(met), model=with_active(self.model, met.keys() - timed), tf=tf)
 
     @cached_property
     def end_limits(self) -> Mapping[str, tuple[Side, ...]]:

@@ -2,7 +2,9 @@
 
 Final states may lie in ranges, and inequalities hold at the end. The problem with some of these limits met and no other
 one stated is one like any other. From that with none met, limits are taken where the answer is beyond them, and left
-where their multipliers pull. Where that leads nowhere, all choices are tried.
+where their multipliers pull. Where that leads nowhere, all choices are tried. Each of these problems may do so much
+work, whatever the clock says: that with none met may be singular, or have no answer at all. Where no choice has one
+they may do more.
 """
 
 from __future__ import annotations
@@ -28,6 +30,9 @@ CHOICES = 27
 
 CHANGES, ROUNDS = 20, 3
 """Changes of ends from one start, and competitors that are taken for the solution, at most."""
+
+BUDGETS = (250_000, 2_500_000)
+"""Columns that each search of a trial problem may linearise, and again where no choice of ends has an answer."""
 
 CHEAPER = 1e-9
 """Share of the cost by which a competitor is cheaper, at least."""
@@ -57,12 +62,15 @@ def solve(instance: Instance, progress: Progress | None, quick: Solver, last: So
     """
     began = time.perf_counter()
     trials = Trials(instance, progress, quick, began + instance.solver.max_seconds)
-    found = _found(trials, {})
+    for trials.work in BUDGETS:
+        found = _found(trials, {})
+        if found.status.answered or trials.late or not trials.cut_short:
+            break
     compared: list[Solution] | None = None
     for _ in range(ROUNDS):
         if not found.status.answered:
             break
-        solution = trials.by(last, found.instance.met)
+        solution = trials.by(last, found.instance.met, instance.work)
         if solution.status.answered and (instead := changed(solution)) is not None:
             found = _found(trials, instead)  # what the certificate prefers leaves its ranges, or is held by none
             continue
@@ -75,7 +83,8 @@ def solve(instance: Instance, progress: Progress | None, quick: Solver, last: So
         if cheapest is found or (found.status.answered and not cheapest.objective < found.objective - margin):
             break
         found = _found(trials, cheapest.instance.met)
-    solved = replace(found, instance=replace(found.instance, solver=instance.solver), message=_message(found))
+    own = replace(found.instance, solver=instance.solver, work=instance.work)
+    solved = replace(found, instance=own, message=_message(found))
     solved = replace(solved, wall_s=time.perf_counter() - began)
     return solved if compared is None or solved.certificate is None else _with_others(solved, compared, trials.late)
 
@@ -90,30 +99,37 @@ class Trials:
     deadline: float
     known: dict[frozenset[tuple[str, Side]], Solution] = field(default_factory=dict)
     refused: dict[frozenset[tuple[str, Side]], BadInput] = field(default_factory=dict)
+    work: float = float("inf")
+    """Columns that each of their searches may linearise."""
+    cut_short: dict[frozenset[tuple[str, Side]], float] = field(default_factory=dict)
+    """Those without an answer for want of work, and how much they could do."""
     late: bool = False
     """Whether time was up before all that was wanted was solved."""
 
     def __call__(self, met: Met) -> Solution:
         """The solution with these ends, without a certificate."""
         key = frozenset(met.items())
-        if key not in self.known:
-            self.known[key] = self.by(self.quick, met)
+        if key not in self.known or self.cut_short.get(key, self.work) < self.work:
+            self.known[key] = self.by(self.quick, met, self.work)
+            self.cut_short.pop(key, None)
+            if self.known[key].status is Status.TIME_LIMIT:
+                self.cut_short[key] = self.work
         return self.known[key]
 
-    def by(self, solver: Solver, met: Met) -> Solution:
+    def by(self, solver: Solver, met: Met, work: float) -> Solution:
         """The solution with these ends by a solver; no answer where time is up, or such an end is refused."""
-        chosen, left = self.instance.meeting(met), self.deadline - time.perf_counter()
-        nothing = iteration.unsolved(chosen, chosen.solver.method, 0.0)
+        left = self.deadline - time.perf_counter()
+        nothing = iteration.unsolved(self.instance, self.instance.solver.method, 0.0)
         if left <= 0.0:
             self.late = True
             return replace(nothing, status=Status.TIME_LIMIT, message="time was up before all ends were tried")
-        chosen = replace(chosen, solver=msgspec.structs.replace(chosen.solver, max_seconds=left))
+        options = msgspec.structs.replace(self.instance.solver, max_seconds=left)
         try:
-            found = solver(chosen, self.progress)
+            found = solver(replace(self.instance.meeting(met), solver=options, work=work), self.progress)
         except BadInput as error:  # of this choice, which may be none where the start is an end with others free
             self.refused[frozenset(met.items())] = error
             return replace(nothing, status=Status.NOT_CONVERGED, message=str(error))
-        self.late = self.late or found.status is Status.TIME_LIMIT
+        self.late = self.late or time.perf_counter() > self.deadline
         return found
 
 

@@ -121,7 +121,7 @@ def watched(instance: Instance, progress: Progress | None) -> tuple[Limits, list
             progress(history[-1])
 
     deadline = time.perf_counter() + instance.solver.max_seconds
-    return Limits(instance.solver.max_iterations or MOST, deadline, watch), history
+    return Limits(instance.solver.max_iterations or MOST, deadline, watch, instance.work), history
 
 
 @dataclass(frozen=True)

@@ -15,12 +15,17 @@ from scipy.optimize import minimize
 import satsym
 from satsym.cli.saving import save, trajectory_files
 from satsym.front.solution import Solution
+from satsym.instance import Instance
 from satsym.instance.ends import Side
 from satsym.report.results import trajectory
 from satsym.report.results.objects import solution_object
+from satsym.solvers import end_limits
 from satsym.solvers.certificate import certify
 from satsym.solvers.certificate.end_limits import pushes
-from satsym.status import BadInput, Verdict
+from satsym.solvers.end_limits import BUDGETS
+from satsym.solvers.iteration import unsolved
+from satsym.solvers.two_point import solve as collocation
+from satsym.status import BadInput, Status, Verdict
 from satsym.symbolic import FirstOrder, Problem, Variable, symbols_of
 from satsym.symbolic.model import t
 
@@ -48,6 +53,8 @@ BACK_BY = Problem(
     terminal_inequalities={"late": t - k},
     terminal_constraints=(x - 1,),
 )
+SQUARED = replace(BACK_BY, name="squared", terminal_inequalities={"late": t**2 - k**2})
+BRAKED = replace(BACK_BY, name="braked", path_constraints={"brake": -u - 1.2})
 HIGH = Problem(
     name="high",
     title="as high as it goes",
@@ -138,6 +145,67 @@ def test_an_end_that_comes_early_enough_by_itself_is_not_held_back():
     found = certified(BACK_BY, **given)
     assert found.objective == pytest.approx(0.5 * lasting + 1.5 / lasting**3, rel=1e-9)
     assert ends(found) == {"late": None}
+
+
+@pytest.mark.parametrize("of", [BACK_BY, SQUARED], ids=lambda of: of.name)
+@pytest.mark.parametrize(("k", "c"), [(1.7, 0.5), (0.1, 0.5), (2.0, 0.0), (1.5, -1.0)])
+def test_an_end_that_would_come_too_late_comes_at_the_latest_time(of: Problem, k: float, c: float):
+    """c T + 6 / T^3 from rest to rest falls until T^4 = 18 / c, or for ever."""
+    given = {"initial": {"x": 0.0, "v": 0.0}, "final": {"v": 0.0}, "tf": "free"}
+    found = certified(of, parameters={"k": k, "c": c}, **given)
+    assert found.objective == pytest.approx(c * k + 6.0 / k**3, rel=1e-10)
+    assert found.found.times[-1] == pytest.approx(k, rel=1e-13)
+    assert ends(found) == {"late": "upper"}
+    # nu is by how much more the cost falls with the time, here relative to what the time has its unit from
+    solution = found.found
+    pace = np.abs(np.array([solution.x[1, -1], solution.u[0, -1]])) @ np.abs(solution.lam).max(axis=1)
+    assert pushes(solution)["late"] * pace == pytest.approx(18.0 / k**4 - c, rel=1e-8)
+
+
+def test_a_latest_time_presses_by_the_cost_it_causes_where_a_constraint_holds_the_control_too():
+    """Braking is bounded until the end, where H under its law is not H; the multiplier is the slope of the cost."""
+
+    def within(latest: float) -> Solution:
+        given = {"initial": {"x": 0.0, "v": 0.0}, "final": {"v": 0.0}, "tf": "free", "tf_guess": latest}
+        return certified(BRAKED, parameters={"c": 0.5, "k": latest}, **given)
+
+    found, step = within(2.1), 1e-4
+    assert ends(found) == {"late": "upper"}
+    assert [(one.kind, one.name) for one in found.events] == [("entry", "brake")]
+    slope = (within(2.1 + step).objective - within(2.1 - step).objective) / (2 * step)
+    solution = found.found
+    pace = np.abs(np.array([solution.x[1, -1], solution.lam[1, -1]])) @ np.abs(solution.lam).max(axis=1)
+    assert pushes(solution)["late"] * pace == pytest.approx(-slope, rel=1e-6)
+
+
+def test_a_latest_time_that_is_none_is_said():
+    given = {"initial": {"x": 0.0, "v": 0.0}, "final": {"v": 0.0}}
+    before = satsym.solve(satsym.Instance.of(BACK_BY, parameters={"k": -1.0, "c": 0.5}, tf="free", **given))
+    assert "late: it is met at no final time after the start" in before.to_dict()["message"]
+    past = satsym.solve(satsym.Instance.of(BACK_BY, parameters={"k": 1.0}, tf=2.0, **given))
+    assert "late: it is met at no final time 2 that is given" in past.to_dict()["message"]
+    in_time = certified(BACK_BY, parameters={"k": 3.0}, tf=2.0, **given)
+    assert ends(in_time) == {"late": None}
+
+
+def test_a_problem_with_no_limit_met_that_takes_too_much_work_leaves_the_others():
+    """What each choice may do is counted in work: a singular problem neither ends the search nor takes all the time."""
+    instance, asked = satsym.Instance.of(PUSHED, final={"x": [1.0, 2.0]}, **AT_REST).case, []
+
+    def hard(one: Instance, progress: Any) -> Any:
+        asked.append((dict(one.met), one.work))
+        if not one.met or one.work <= least:
+            return unsolved(one, "collocation", 0.0)
+        return collocation(one)
+
+    for least, rounds in ((0.0, 1), (BUDGETS[0], 2), (BUDGETS[1], 2)):
+        asked.clear()
+        found = end_limits.solve(instance, None, hard, lambda one, _: collocation(one))
+        assert found.status is (Status.CONVERGED if least < BUDGETS[1] else Status.NOT_CONVERGED)
+        assert [work for met, work in asked if not met] == list(BUDGETS[:rounds])
+        if found.status.answered:
+            assert found.objective == pytest.approx(1.5, rel=1e-12)
+            assert found.instance.work == np.inf
 
 
 @pytest.mark.parametrize("speed", [0.1, 1.0])

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.instance.end_time import in_time_alone
 from satsym.instance.ends import Side
 from satsym.kernels.active import stated
 from satsym.methods import BOUNDARY_ARCS
@@ -54,6 +55,8 @@ class _Inequality:
     by_time: float
     size: float
     """Of its terms."""
+    on_time: float
+    """What its multiplier adds to the transversality of the final time."""
 
 
 def _inequalities(solution: Solution) -> dict[str, _Inequality]:
@@ -66,11 +69,13 @@ def _inequalities(solution: Solution) -> dict[str, _Inequality]:
     arguments = tf, x, lam, (0.0,) * c, instance.parameters, instance.control_set.arguments, (0.0,) * 3 * n
     place, lasting = slice(n + c - count, n + c), tf - float(solution.times[0])
     values = np.array(model.boundary(*arguments))[place]
-    slopes = np.array(model.boundary_jacobian(*arguments)).reshape(n + c + 1, -1)[place]
+    table = np.array(model.boundary_jacobian(*arguments)).reshape(n + c + 1, -1)
+    slopes, on_time = table[place], table[-1, 2 * n + c - count : 2 * n + c]
     sizes = np.abs(slopes[:, :n]) @ typical(solution)[0] + np.abs(slopes[:, -1]) * lasting
+    rows = zip(model.spec.terminal_inequalities, values, slopes, sizes, on_time, strict=True)
     return {
-        name: _Inequality(float(value), slope[:n], float(slope[-1]), max(float(size), 1e-300))
-        for name, value, slope, size in zip(model.spec.terminal_inequalities, values, slopes, sizes, strict=True)
+        name: _Inequality(float(value), slope[:n], float(slope[-1]), max(float(size), 1e-300), float(by_multiplier))
+        for name, value, slope, size, by_multiplier in rows
     }
 
 
@@ -80,7 +85,7 @@ def pushes(solution: Solution) -> dict[str, float]:
     if not instance.met:
         return {}
     tf, x, lam = final_values(_after_jump(solution))
-    nu, _ = multipliers(instance, tf, x, lam)
+    nu, residual = multipliers(instance, tf, x, lam)
     n, arguments = len(x), (instance.parameters, instance.control_set.arguments)
     # what the residual of a free state is
     lacking = np.array(instance.model.boundary(tf, x, lam, nu, *arguments, (0.0,) * 3 * n))[:n]
@@ -89,10 +94,14 @@ def pushes(solution: Solution) -> dict[str, float]:
         if name in instance.ranges:
             i = spec.state_names.index(name)
             found[name] = side.outward * float(lacking[i]) / max(float(sizes[i]), abs(float(lacking[i] - lam[i])))
-    of = _inequalities(solution)
-    active = [name for name in instance.end_limits if name in instance.met and name not in instance.ranges]
+    of, timed = _inequalities(solution), in_time_alone(instance)
+    inside = [name for name in instance.end_limits if name in instance.met and name not in instance.ranges]
+    active = [name for name in inside if name not in timed]
+    held = dict(zip(active, nu[len(nu) - len(active) :], strict=True))
+    # the final time is given by one in time alone, which makes up what transversality lacks: H + S_t + nu' psi_t
+    held |= {name: -float(residual[-1] + _held_back(solution)) / of[name].on_time for name in inside if name in timed}
     pace = float(np.abs(np.array(instance.model.canonical(tf, x, lam, *arguments))[:n]) @ sizes)  # the size of H
-    for name, multiplier in zip(active, nu[len(nu) - len(active) :], strict=True):
+    for name, multiplier in held.items():
         strengths = [*(np.abs(of[name].by_state) / sizes), abs(of[name].by_time) / max(pace, 1e-300)]
         found[name] = float(multiplier) * max(strengths)
     return found
@@ -108,6 +117,17 @@ def _after_jump(solution: Solution) -> Solution:
     if again is None:
         return solution
     return replace(solution, lam=np.column_stack([solution.lam[:, :-1], again.end[len(solution.x) :]]))
+
+
+def _held_back(solution: Solution) -> float:
+    """H at the end less that under the law, which boundary residuals have: where a constraint holds a control."""
+    if solution.method != BOUNDARY_ARCS:
+        return 0.0
+    from satsym.solvers.certificate.constrained.conditions import more_at_end
+    from satsym.solvers.certificate.constrained.replay import replay
+
+    again = replay(solution)
+    return 0.0 if again is None else more_at_end(solution, again)
 
 
 def with_limits(certificate: Certificate, solution: Solution) -> Certificate:

@@ -71,7 +71,7 @@ def _first_order(solution: Solution, again: Replay) -> list[Check]:
     checks = [
         Check(
             conditions.BOUNDARY,
-            conditions.boundary_residual(solution, flow, more=_more_at_end(solution, again)),
+            conditions.boundary_residual(solution, flow, more=more_at_end(solution, again)),
             RESIDUAL,
         ),
         Check(conditions.OF_FLOW, _defect(solution, again), DEFECT),
@@ -116,7 +116,7 @@ def _stationarity(solution: Solution, again: Replay) -> float:
     return float(np.abs(law - solution.u).max() / size) if size > 0.0 else 0.0
 
 
-def _more_at_end(solution: Solution, again: Replay) -> float:
+def more_at_end(solution: Solution, again: Replay) -> float:
     """H at the end under the control of the last arc less that under the law, which boundary residuals have in them."""
     instance, model, n = solution.instance, solution.instance.model, len(solution.x)
     t, z, p = solution.times[-1:], again.end[:, None], instance.parameters
