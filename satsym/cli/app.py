@@ -8,14 +8,18 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterator, Mapping, Sequence
+from contextvars import copy_context
+from functools import cache
 from importlib import import_module
 from typing import Any, cast
 
 import click
 
 from satsym import __version__
+from satsym.cli.options import language_option
 from satsym.cli.output import Unheard, complain, hearable, silence, unless_unwritable
 from satsym.cli.stopping import comes_of_a_stop, stopped
+from satsym.report import said
 from satsym.status import BadInput, ExitCode
 from satsym.wording import printable
 
@@ -73,8 +77,13 @@ class Commands(Mapping[str, click.Command]):
     def __getitem__(self, name: str) -> click.Command:
         if name not in COMMANDS:
             raise KeyError(name)
-        command: click.Command = getattr(import_module(f"satsym.cli.commands.{name}"), name)
-        return command
+        return _loaded(name)
+
+
+@cache
+def _loaded(name: str) -> click.Command:
+    command: click.Command = getattr(import_module(f"satsym.cli.commands.{name}"), name)
+    return language_option(command)
 
 
 class Program(click.Group):
@@ -105,7 +114,12 @@ def program() -> None:
 
 def run(argv: Sequence[str] | None = None) -> int:
     """Run the program on these arguments and give its exit code."""
+    return copy_context().run(_run, argv)  # the language that one run asks for is none of the next one's
+
+
+def _run(argv: Sequence[str] | None) -> int:
     try:
+        said.ask(said.language())
         with hearable():  # help and usage are written by click itself
             outcome = program.main(None if argv is None else list(argv), prog_name="satsym", standalone_mode=False)
     except click.ClickException as error:
@@ -116,6 +130,10 @@ def run(argv: Sequence[str] | None = None) -> int:
         return stopped(error.__cause__ or error)
     except Unheard as error:
         return _unheard(error)
+    except BadInput as error:  # before any command: no such language
+        said.ask("en")
+        complain(str(error))
+        return ExitCode.BAD_INPUT
     return int(outcome or 0)
 
 
@@ -135,7 +153,8 @@ def _unheard(error: Unheard) -> int:
     silence(sys.stdout)
     if isinstance(error.cause, BrokenPipeError):
         return CLOSED_PIPE
-    complain(f"stdout cannot be written ({error.cause.strerror or 'not open'}); send it elsewhere")
+    reason = error.cause.strerror or "not open"
+    complain(said.say("stdout cannot be written (<reason>); send it elsewhere", reason=reason))
     return ExitCode.BAD_INPUT
 
 
@@ -146,4 +165,5 @@ def _unforeseen(error: BaseException) -> None:
         complain("\n" + "".join(traceback.format_exception(error)))
         return
     what = printable(" ".join(str(error).split()), 300)
-    complain(f"unforeseen {type(error).__name__}{what and ': '}{what} (SATSYM_DEBUG=1 shows where)")
+    about = f"{type(error).__name__}{what and ': '}{what}"
+    complain(said.say("unforeseen <error> (SATSYM_DEBUG=1 shows where)", error=about))

@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from satsym.cli import names
-from satsym.report import texts
+from satsym.report import said, texts
 from satsym.report.look import FORMATS, SCREEN, SIZES, Look
 from satsym.status import BadInput
 
@@ -40,13 +40,35 @@ def place_option(*names: str, metavar: str, help: str) -> Callable[[Callable[...
     return click.option(*names, metavar=metavar, type=Place(), help=help)
 
 
+class Language(click.ParamType):
+    """A language that there are texts in."""
+
+    name = "language"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        """The value itself.
+
+        Raises
+        ------
+        BadInput
+            If it is none.
+        """
+        return said.known(value, "--lang")
+
+
+def _spoken(_context: click.Context, _option: click.Parameter, value: str | None) -> None:
+    if value is not None:
+        said.ask(value)
+
+
 language_option = click.option(
     "--lang",
-    "language",
-    type=click.Choice(texts.languages()),
-    default="en",
-    help="Language of the text.",
-    show_default=True,
+    type=Language(),
+    metavar=f"[{'|'.join(texts.languages())}]",
+    expose_value=False,
+    is_eager=True,
+    callback=_spoken,
+    help=f"Language of what people read; by default that of {said.VARIABLE}, or English.",
 )
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 subject_argument = click.argument("subject", metavar="X", shell_complete=names.completed(names.instances))

@@ -11,6 +11,7 @@ from contextlib import contextmanager, suppress
 from typing import Any, TextIO, cast
 
 from satsym import activity
+from satsym.report import said
 
 INTERVAL = 0.1
 """Seconds between two states of the live line."""
@@ -45,7 +46,7 @@ def answer(as_json: bool, value: Mapping[str, Any], text: Callable[[], str]) -> 
 def complain(message: str) -> None:
     """One line on stderr, as far as it can be written to."""
     with unless_unwritable():
-        _write(sys.stderr, f"satsym: {message.rstrip()}\n")
+        _write(sys.stderr, f"satsym: {said.message(message.rstrip())}\n")
 
 
 class Unheard(Exception):
@@ -141,7 +142,7 @@ def live() -> Iterator[Live]:
     """A live line, which also says what takes long, and is gone at the end, whatever the end is."""
     line = Live()
     try:
-        with activity.heard(line.replace):
+        with activity.heard(lambda what: line.replace(said.message(what))):
             yield line
     finally:
         line.erase()

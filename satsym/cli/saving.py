@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from satsym.report.said import say
 from satsym.status import BadInput
 from satsym.wording import printable
 
@@ -55,7 +56,7 @@ def trajectory_files(folder: Path | None, found: Solution | Simulation, look: Lo
     from satsym.report.results import trajectory
 
     with live() as line:
-        line.show("drawing ..." if look else "writing ...")
+        line.show(say("drawing ..." if look else "writing ..."))
         return trajectory.contents(found) | (plots.pictures(found, look) if look else {})
 
 

@@ -42,7 +42,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     for path in SHIPPED.glob("*.toml"):
         (tmp_path / path.name).write_text(path.read_text("utf-8"), "utf-8")
     (tmp_path / "nl.toml").write_text(example("A language", "toml"), "utf-8")
-    monkeypatch.setattr(texts, "files", lambda _: tmp_path)
+    monkeypatch.setattr(texts, "_FOLDER", tmp_path)
     load.cache_clear()
     yield tmp_path
     load.cache_clear()
@@ -78,7 +78,7 @@ def test_the_command_line_lists_and_takes_it(folder: Path) -> None:
 
     def run(*arguments: str) -> str:
         code = f"import sys, pathlib\nfrom satsym.report import texts\nplace = pathlib.Path({str(folder)!r})\n"
-        code += f"texts.files = lambda _: place\nfrom satsym.cli import main\nsys.exit(main({list(arguments)!r}))"
+        code += f"texts._FOLDER = place\nfrom satsym.cli import main\nsys.exit(main({list(arguments)!r}))"
         done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr
         return done.stdout

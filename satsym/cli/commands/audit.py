@@ -7,8 +7,9 @@ from pathlib import Path
 import click
 
 from satsym.cli import names
-from satsym.cli.options import json_option, language_option, place_option
+from satsym.cli.options import json_option, place_option
 from satsym.cli.output import answer, live
+from satsym.report.said import language
 from satsym.status import BadInput, ExitCode
 
 EXAMPLES = """\b
@@ -31,7 +32,6 @@ Examples:
 @place_option("--text", metavar="FILE", help="With --coverage: measure against this text of the document.")
 @place_option("--keep", metavar="FILE", help="With --text: write what was found there, to be kept with the ledger.")
 @click.option("--rows", is_flag=True, help="Give every row that is not confirmed in full, after the findings.")
-@language_option
 @click.option("--fresh", is_flag=True, help="Compute anew, whatever is in the cache.")
 def audit(
     ledgers: tuple[str, ...],
@@ -43,7 +43,6 @@ def audit(
     text: Path | None,
     keep: Path | None,
     rows: bool,
-    language: str,
     fresh: bool,
 ) -> ExitCode:
     """Judge what documents print.
@@ -78,15 +77,15 @@ def audit(
             from satsym.report.html.audit import render as page
             from satsym.report.results.files import write_text
 
-            write_text(html, page(read, judged, language, line.show))
+            write_text(html, page(read, judged, language(), line.show))
     if latex is not None:
         from satsym.report.latex.audit import render
         from satsym.report.results.files import write_text
 
-        write_text(latex, render(read, judged, language))
+        write_text(latex, render(read, judged, language()))
     answer(
         as_json,
         objects.audit_object([row for found in judged.values() for row in found]),
-        lambda: reporting.audit_text(read, judged, rows=rows or bool(items), language=language),
+        lambda: reporting.audit_text(read, judged, rows=rows or bool(items), language=language()),
     )
     return ExitCode.DONE

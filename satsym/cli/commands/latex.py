@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import click
 
 from satsym.cli import names
-from satsym.cli.options import language_option, place_option
+from satsym.cli.options import place_option
 from satsym.cli.output import emit, live
+from satsym.report.said import language
 from satsym.status import ExitCode
 
 if TYPE_CHECKING:
@@ -25,14 +26,13 @@ Examples:
 @click.command(epilog=f"\b{EXAMPLES}")
 @click.argument("name", shell_complete=names.completed(names.models, names.derivations))
 @place_option("-o", "--output", metavar="FILE", help="Write there instead of to stdout.")
-@language_option
 @click.option("--fragment", is_flag=True, help="Without a preamble, to be included.")
 @click.option(
     "--convention",
     type=click.Choice(("minimum", "maximum")),
     help="Whether H is to be minimised or maximised; as the derivation file says unless given.",
 )
-def latex(name: str, output: Path | None, language: str, fragment: bool, convention: Convention | None) -> ExitCode:
+def latex(name: str, output: Path | None, fragment: bool, convention: Convention | None) -> ExitCode:
     """Typeset a derivation.
 
     NAME is a shipped model (`satsym models` lists them) or a derivation file. It is derived anew, and each step is
@@ -47,7 +47,7 @@ def latex(name: str, output: Path | None, language: str, fragment: bool, convent
     with live() as line, loader.explained(path, subject):
         line.show(f"deriving {name} ...")
         derivation = derive(in_convention(subject, convention))
-    text = typesetting.render(derivation, language=language, standalone=not fragment)
+    text = typesetting.render(derivation, language=language(), standalone=not fragment)
     if output is None:
         emit(text)
     else:

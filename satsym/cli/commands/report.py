@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from satsym.cli.options import language_option, place_option, subject_argument
+from satsym.cli.options import place_option, subject_argument
 from satsym.cli.output import emit, live
+from satsym.report.said import language, message, say
 from satsym.status import BadInput, ExitCode, Verdict
 
 if TYPE_CHECKING:
@@ -26,8 +27,7 @@ Examples:
 @subject_argument
 @place_option("--html", "page", metavar="FILE", help="The page; a file of this name is replaced.")
 @place_option("--derivation", "stated", metavar="FILE.py", help="Where the model of X is stated, if it is your own.")
-@language_option
-def report(subject: str, page: Path | None, stated: Path | None, language: str) -> ExitCode:
+def report(subject: str, page: Path | None, stated: Path | None) -> ExitCode:
     """Solve an instance, and show all of it on one page.
 
     X is an instance as for `satsym solve`. The page holds the answer, its certificate, the motion, pictures, the
@@ -44,10 +44,10 @@ def report(subject: str, page: Path | None, stated: Path | None, language: str) 
     with live() as line:
         derivation = _derivation(case, stated, line.show)
         solution = solvers.solve(case, progress=lambda iteration: line.show(progress_line(iteration, case)))
-        line.show("drawing ...")
-        text = render(solution, derivation, subject, language, str(stated or ""))
+        line.show(say("drawing ..."))
+        text = render(solution, derivation, subject, language(), str(stated or ""))
     write_text(page, text)
-    emit(with_files(f"{case.name}: {solution.status.value}", [page]))
+    emit(with_files(f"{case.name}: {message(solution.status.value)}", [page]))
     if not solution.status.answered:
         return ExitCode.NO_ANSWER
     failed = solution.certificate is not None and solution.certificate.verdict is Verdict.FAILED
@@ -72,5 +72,5 @@ def _derivation(case: Instance, stated: Path | None, show: Callable[[str], None]
             return None
     subject, path = loader.problem(f"{stated}:{name}" if stated else name)
     with loader.explained(path, subject):
-        show(f"deriving {name} ...")
+        show(say("deriving <name> ...", name=name))
         return derive(in_convention(subject, None))

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from satsym.instance import Instance
     from satsym.report.look import Look
 
-METHODS = "\n".join(f"  {method.name:<13}{method.title}" for method in methods.METHODS.values())
+METHODS = "\n".join(f"  {method.name:<14}{method.title}" for method in methods.METHODS.values())
 
 EXAMPLES = f"""\b
 Methods, instead of the instance's (auto is the one that fits):

@@ -11,6 +11,7 @@ from satsym.report import display
 from satsym.report.look import SCREEN, Look
 from satsym.report.plots import legend, style
 from satsym.report.results import files
+from satsym.report.said import decimal, message, say
 from satsym.report.terminal.comparison import unit_of
 
 if TYPE_CHECKING:
@@ -105,7 +106,7 @@ def _over_time(axes: Axes, cases: Sequence[Case], variable: Variable) -> None:
             axes.axhline(edge / measure.divisor, **style.BOUND)
     axes.axhline(0.0, color=style.GREY, linewidth=0.8, zorder=1.9)
     axes.set_xlim(0.0, end / factor)
-    axes.set_title(display.shortened(variable.meaning, 62))
+    axes.set_title(display.shortened(message(variable.meaning), 62))
     sudden = [(case.instance.name, case.metrics.get("impulse", 0.0)) for case in cases]
     if variable in cases[0].instance.model.spec.controls and any(impulse for _, impulse in sudden):
         # an impulse has no height; an arrow stands for it, and its size is said
@@ -118,7 +119,11 @@ def _over_time(axes: Axes, cases: Sequence[Case], variable: Variable) -> None:
                 }
                 axes.annotate("", arrowprops=look, annotation_clip=False, zorder=4.0, **ends)
         of = display.unit_text(unit_of(cases, "impulse"))
-        said = [f"{name} begins with an impulse of {impulse:.3g} {of}".rstrip() for name, impulse in sudden if impulse]
+        said = [
+            say("<name> begins with an impulse of <size>", name=name, size=f"{decimal(f'{impulse:.3g}')} {of}".rstrip())
+            for name, impulse in sudden
+            if impulse
+        ]
         axes.text(
             0.98, 0.93, "\n".join(said), transform=axes.transAxes, ha="right", va="top", fontsize=style.points(8.5)
         )
@@ -138,7 +143,7 @@ def _totals(panels: Sequence[Axes], cases: Sequence[Case]) -> None:
     controls = cases[0].instance.model.spec.controls
     used = (c for c in controls if any(case.metrics.get(f"{c.symbol}_total") for case in cases))
     control = next(used, controls[0])
-    bars = (("transition_time", "transition time"), (f"{control.symbol}_total", "total impulse"))
+    bars = (("transition_time", say("transition time")), (f"{control.symbol}_total", say("total impulse")))
     for axes, (key, title) in zip(panels, bars, strict=True):
         unit = unit_of(cases, key)
         values = [case.metrics[key] for case in cases]
@@ -148,11 +153,20 @@ def _totals(panels: Sequence[Axes], cases: Sequence[Case]) -> None:
         )
         for place, value, case in zip(places, values, cases, strict=True):
             sudden = abs(case.metrics.get("impulse", 0.0)) if key != "transition_time" else 0.0
-            said = f" {value:.4g}" + (f", {sudden:.4g} as an impulse" if sudden else "")
+            said = decimal(f"{value:.4g}")
+            if sudden:
+                said = say("<total>, <sudden> as an impulse", total=said, sudden=decimal(f"{sudden:.4g}"))
             if key == "transition_time" and case.how == "classical":
-                said = f"{said}, until within {SETTLED:.0%}" if np.isfinite(value) else " not settled"
+                settled = say("<time>, until within <share>", time=said, share=f"{SETTLED:.0%}")
+                said = settled if np.isfinite(value) else say("not settled")
             axes.text(
-                np.nan_to_num(value), place, said, va="center", ha="left", fontsize=style.points(9.0), color=style.INK
+                np.nan_to_num(value),
+                place,
+                f" {said}",
+                va="center",
+                ha="left",
+                fontsize=style.points(9.0),
+                color=style.INK,
             )
         axes.set_yticks([])
         axes.set_xlim(0.0, 1.6 * np.nanmax(values, initial=0.0) or 1.0)
@@ -178,14 +192,14 @@ def _range(panels: Sequence[Axes], case: Case) -> None:
     watched = next(v for v in spec.states if v.symbol == name)
     shades = np.linspace(0.25, 1.0, len(commands))
     shown = (
-        (over.control_peak, control, f"largest {display.formula(control.latex, control.symbol)} after the step"),
-        (over.peaks[name], watched, f"largest {display.formula(watched.latex, name)}"),
+        (over.control_peak, control, "largest <name> after the step, by damping and command"),
+        (over.peaks[name], watched, "largest <name>, by damping and command"),
     )
     for axes, (values, variable, title) in zip(panels, shown, strict=True):
         for j, (command, shade) in enumerate(zip(commands, shades, strict=True)):
             axes.loglog(over.dampings, values[:, j], color=style.BLUE, alpha=float(shade), linewidth=1.6)
             axes.annotate(
-                f"{command:.3g}",
+                decimal(f"{command:.3g}"),
                 (over.dampings[-1], values[-1, j]),
                 fontsize=style.points(8.0),
                 va="center",
@@ -198,7 +212,7 @@ def _range(panels: Sequence[Axes], case: Case) -> None:
         if limit:
             axes.axhline(limit, color=style.ALARM, linewidth=1.2, linestyle=(0, (4, 2)))
             axes.annotate(
-                "limit",
+                say("limit"),
                 (over.dampings[0], limit),
                 fontsize=style.points(8.0),
                 xytext=(2, 2),
@@ -208,9 +222,9 @@ def _range(panels: Sequence[Axes], case: Case) -> None:
         here = list(COMMANDS).index(1.0)
         value = float(np.interp(options.damping, over.dampings, values[:, here]))
         axes.plot([options.damping], [value], color=style.INK, **style.START)
-        axes.set_title(f"{title}, by damping and command")
+        axes.set_title(say(title, name=display.formula(variable.latex, variable.symbol)))
         axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axes.xaxis.set_major_formatter(FormatStrFormatter("%g"))
         axes.xaxis.set_minor_formatter(NullFormatter())
-        axes.set_xlabel(display.labelled("damping", "1/s"))
+        axes.set_xlabel(display.labelled(say("damping"), "1/s"))
         axes.set_ylabel(display.labelled(display.formula(variable.latex, variable.symbol), variable.unit))

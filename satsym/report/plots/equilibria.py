@@ -8,6 +8,7 @@ import numpy as np
 
 from satsym.report import display
 from satsym.report.plots import legend, style
+from satsym.report.said import message, say
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -38,7 +39,7 @@ def page(found: Attitudes, title: str, unit: str = "") -> Figure | None:
     edges = [float(values[0]), *((c.below + c.above) / 2 for c in found.followed.changes), float(values[-1])]
     counts = [len(sets[0]), *(c.counts[1] for c in found.followed.changes)]
     above.stairs(counts, edges, baseline=None, color=style.INK, linewidth=1.4)
-    above.set_ylabel("number of equilibria")
+    above.set_ylabel(say("number of equilibria"))
     above.set_ylim(0, 1.08 * max(counts))
     above.set_yticks(sorted({0, *counts}))
     seen = []
@@ -51,14 +52,14 @@ def page(found: Attitudes, title: str, unit: str = "") -> Figure | None:
         ]
         if points:
             below.plot(*np.array(points).T, linestyle="none", **look)
-            seen.append((legend.line(linestyle="none", **look), kind))
+            seen.append((legend.line(linestyle="none", **look), message(kind)))
     dotted: dict[str, Any] = {"color": style.INK, "linewidth": 0.6, "linestyle": (0, (2, 3))}
     for axes in (above, below):
         for change in found.followed.changes:
             axes.axvline((change.below + change.above) / 2, **dotted)
     if found.followed.changes:
-        seen.append((legend.line(**dotted), "number or kinds change"))
-    below.set_ylabel("from the orbit's y to the body's [deg]")
+        seen.append((legend.line(**dotted), say("number or kinds change")))
+    below.set_ylabel(say("from the orbit's y to the body's [deg]"))
     below.set_xlabel(display.labelled(found.parameter, unit))
     below.set_yticks(range(0, 181, 30))
     legend.below(sheet, seen)

@@ -10,6 +10,7 @@ from satsym.report.plots import style
 from satsym.report.plots.reading import read
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.series import Series
+from satsym.report.said import say
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -23,9 +24,9 @@ def motion(scene: Scene, colour: str) -> list[Entry]:
     """The path itself, the reference and the motion without control."""
     found = [(line(color=colour, **style.MAIN), scene.name)]
     if scene.reference is not None:
-        found.append((line(**style.REFERENCE), "reference"))
+        found.append((line(**style.REFERENCE), say("reference")))
     if scene.free is not None:
-        found.append((line(**style.FREE), "uncontrolled"))
+        found.append((line(**style.FREE), say("uncontrolled")))
     return found
 
 
@@ -35,13 +36,13 @@ def on_axes(quantities: Iterable[Series], colour: str) -> list[Entry]:
 
     quantities, found = list(quantities), []
     if any(read(q).deviation for q in quantities):
-        found.append((line(linestyle="none"), r"$\Delta$: minus reference"))
+        found.append((line(linestyle="none"), say(r"$\Delta$: minus reference")))
     if any(q.target is not None for q in quantities):
-        found.append((line(**style.TARGET), "final condition"))
+        found.append((line(**style.TARGET), say("final condition")))
     if any(q.active is not None for q in quantities):
-        found.append((Patch(**style.FORBIDDEN), "inadmissible"))
+        found.append((Patch(**style.FORBIDDEN), say("inadmissible")))
     if any(q.active is not None and q.active.any() for q in quantities):
-        found.append((Patch(color=colour, alpha=style.SHADE, linewidth=0.0), "saturated"))
+        found.append((Patch(color=colour, alpha=style.SHADE, linewidth=0.0), say("saturated")))
     return found
 
 

@@ -15,8 +15,8 @@ from satsym.report.plots.orbits import scenes as space
 from satsym.report.plots.panels import small_multiples
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.series import Series
+from satsym.report.said import counted, decimal, message, say
 from satsym.solution import Solution
-from satsym.wording import counted
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -146,21 +146,29 @@ def _heading(page: Figure, part: SubFigure, scene: Scene) -> None:
         **look,
     )
     if not result.status.answered:
-        part.text(x=0.988, y=0.7, s=result.status.value, ha="right", va="center", color=style.ALARM, fontweight="bold")
+        part.text(
+            x=0.988,
+            y=0.7,
+            s=message(result.status.value),
+            ha="right",
+            va="center",
+            color=style.ALARM,
+            fontweight="bold",
+        )
 
 
 def _facts(scene: Scene) -> list[str]:
     result = scene.result
-    found = [f"model {scene.spec.name}"]
+    found = [say("model <name>", name=scene.spec.name)]
     if isinstance(result, Solution):
-        found.append(f"by {result.method}, {counted(result.iterations, 'iteration')}")
+        found.append(say("by <method>, <effort>", method=result.method, effort=counted(result.iterations, "iteration")))
         if math.isfinite(result.objective):
-            value = number(scene.spec.objective(result.objective), 7)
+            value = decimal(number(scene.spec.objective(result.objective), 7))
             found.append(f"$J$ = {value} {unit_text(scene.spec.objective_unit)}".rstrip())
     elif scene.spec.controls:
         found.append(scene.name)
     if np.isfinite(scene.times[-1]):
-        found.append(f"$t_f$ = {number(float(scene.times[-1]))} {unit_text(scene.time_unit)}".rstrip())
+        found.append(f"$t_f$ = {decimal(number(float(scene.times[-1])))} {unit_text(scene.time_unit)}".rstrip())
     return found
 
 
@@ -183,18 +191,23 @@ def convergence(scene: Scene) -> Figure | None:
     last = float(known[-1]) if known.size else 0.0
     # Solved without bounds first, then within them, say: each phase begins with a residual of its own.
     begun = np.flatnonzero(residuals[1:] > ANEW * residuals[:-1]) + 1
-    unit = scene.spec.objective_unit or "1"
-    word = "objective" if scene.spec.maximise else "cost"
-    left.set_title(f"final {word} {number(last, 10)} {unit_text(unit)}".rstrip() if known.size else word)
+    unit, status = scene.spec.objective_unit or "1", message(scene.result.status.value)
+    final = f"{decimal(number(last, 10))} {unit_text(unit)}".rstrip()
+    if scene.spec.maximise:
+        title, nothing = say("final objective <value>", value=final), say("no objective: <status>", status=status)
+    else:
+        title, nothing = say("final cost <value>", value=final), say("no cost: <status>", status=status)
     if scene.result.status.answered:
+        left.set_title(title)
         _decades(left, at, np.abs(costs - last), begun, style.PURPLE)
     else:
-        left.set_title(f"no {word}: {scene.result.status.value}")
+        left.set_title(nothing)
         left.set_axis_off()
-    left.set_ylabel(labelled(r"$|J - J_{\mathrm{last}}|$", unit))
+    left.set_ylabel(labelled(say(r"$|J - J_{\mathrm{last}}|$"), unit))
     _decades(right, at, np.abs(residuals), begun, style.GREEN)
-    right.set_ylabel("residual")
-    right.set_title("residual of the optimality conditions" + (", phase by phase" if begun.size else ""))
+    right.set_ylabel(say("residual"))
+    whole, parts = "residual of the optimality conditions", "residual of the optimality conditions, phase by phase"
+    right.set_title(say(parts if begun.size else whole))
     return page
 
 
@@ -214,4 +227,4 @@ def _decades(axes: Axes, at: np.ndarray, values: np.ndarray, begun: np.ndarray, 
     for steps, phase in zip(np.split(at, begun), np.split(positive, begun), strict=True):
         drawn = np.isfinite(phase)
         axes.plot(steps[drawn], phase[drawn], color=colour, marker="o", markersize=4.5, linewidth=1.4)
-    axes.set_xlabel("iteration")
+    axes.set_xlabel(say("iteration"))

@@ -14,6 +14,7 @@ from satsym.report.plots import style
 from satsym.report.plots.reading import ROUNDING, Reading, read
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.series import Series
+from satsym.report.said import decimal, numbers, say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -93,12 +94,13 @@ def _remark(scene: Scene, series: Series, shown: Reading) -> str:
     if series.switching:
         times = [number(time, 4) for time in series.switching[:MOST_TIMES]]
         more = ", \N{HORIZONTAL ELLIPSIS}" if len(series.switching) > MOST_TIMES else ""
-        return f"{series.said} at {', '.join(times)}{more} {unit_text(scene.time_unit)}".rstrip()
+        return say(series.said, times=f"{numbers(times)}{more} {unit_text(scene.time_unit)}".rstrip())
     known = shown.values[np.isfinite(shown.values)]
     if not known.size:
         return ""
     last = float(known[-1])
-    return f"end {number(last if abs(last) > ROUNDING * (shown.high - shown.low) else 0.0, 5)}"
+    last = last if abs(last) > ROUNDING * (shown.high - shown.low) else 0.0
+    return say("end <value>", value=decimal(number(last, 5)))
 
 
 def _of_pi(multiple: float) -> str:

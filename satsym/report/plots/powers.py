@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from matplotlib.ticker import ScalarFormatter
 
 from satsym.report.display import number, times_ten_to
+from satsym.report.said import decimal
 
 PLAIN = 1e-3, 1e6
 """Between these the largest tick needs no power of ten."""
@@ -32,5 +33,5 @@ class WithPowers(ScalarFormatter):
     def __call__(self, x: float, pos: int | None = None) -> str:
         """The text of a tick."""
         if not self._power:
-            return str(super().__call__(x, pos))
-        return number(x / 10.0**self._power, 4) + times_ten_to(self._power) if x else "0"
+            return decimal(str(super().__call__(x, pos)))
+        return decimal(number(x / 10.0**self._power, 4)) + times_ten_to(self._power) if x else "0"

@@ -12,6 +12,7 @@ from satsym.instance import Instance
 from satsym.report import display
 from satsym.report.plots import curves, legend, style
 from satsym.report.results.unit_names import COST, of_regulator
+from satsym.report.said import say
 from satsym.spec import Variable
 
 if TYPE_CHECKING:
@@ -41,8 +42,8 @@ def page(design: Design, case: Instance) -> Figure:
     grid = figure.add_gridspec(n + m, 2) if wide else figure.add_gridspec(2 * (n + m), 1)
     delta = _delta(design)
     columns = [
-        ("uncontrolled", style.BLUE, found.free.x, found.exact_free),
-        ("with $u = -K\\,x$", style.GREEN, found.steered.x, found.exact_steered),
+        (say("uncontrolled"), style.BLUE, found.free.x, found.exact_free),
+        (say("with <law>", law="$u = -K\\,x$"), style.GREEN, found.steered.x, found.exact_steered),
     ]
     for j, (title, colour, linear, exact) in enumerate(columns):
         for i, state in enumerate(spec.states):
@@ -63,11 +64,14 @@ def page(design: Design, case: Instance) -> Figure:
     exact_cost = None if found.exact_steered is None else found.exact_steered.cost(design.regulator, found.times)
     linear_cost = found.steered.cost(design.regulator, found.times)
     _curve(axes, times, cost, linear_cost, exact_cost, style.PURPLE)
-    axes.set_title("accumulated cost, with $u = -K\\,x$")
+    axes.set_title(say("accumulated cost, with <law>", law="$u = -K\\,x$"))
     axes.set_xlabel(display.labelled("$t$", unit))
     figure.align_ylabels()
     if found.exact_free is not None:
-        entries = [(legend.line(color=style.SOFT, **LINEAR), "linear"), (legend.line(**NONLINEAR), "nonlinear")]
+        entries = [
+            (legend.line(color=style.SOFT, **LINEAR), say("linear")),
+            (legend.line(**NONLINEAR), say("nonlinear")),
+        ]
         legend.below(figure, entries)
     return figure
 
@@ -110,7 +114,9 @@ def reach(design: Design, case: Instance) -> Figure | None:
     for axes, state, initial in zip(np.atleast_1d(figure.subplots(len(states), 1)), states, start, strict=True):
         _interval(axes, state, found.extents[state.symbol], float(initial), _delta(design))
     axes.set_xlabel(
-        "region of attraction, for a deviation of one state alone\nthe dot is the initial state of the instance"
+        say("region of attraction, for a deviation of one state alone")
+        + "\n"
+        + say("the dot is the initial state of the instance")
     )
     return figure
 

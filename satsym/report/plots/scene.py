@@ -10,6 +10,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.report import display
 from satsym.report.plots import curves
+from satsym.report.said import message, say
 from satsym.solution import Iteration, Simulation, Solution
 from satsym.spec import ProblemSpec
 
@@ -67,7 +68,7 @@ class Scene:
     @property
     def title(self) -> str:
         """What the instance is about, in a line."""
-        return self.instance.title or self.spec.title or self.instance.name
+        return message(self.instance.title or self.spec.title) or self.instance.name
 
     @property
     def nodes(self) -> Array:
@@ -91,10 +92,10 @@ class Scene:
 
 def _name(result: Solution | Simulation) -> str:
     if isinstance(result, Solution):
-        return "solution" if result.status.answered else "last iterate"
+        return say("solution" if result.status.answered else "last iterate")
     if result.feedback != "none":
-        return f"with {result.feedback}"
-    return "uncontrolled" if _coasts(result) else "trajectory"
+        return say("with <law>", law=message(result.feedback))
+    return say("uncontrolled" if _coasts(result) else "trajectory")
 
 
 def _coasts(result: Solution | Simulation) -> bool:

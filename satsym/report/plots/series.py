@@ -14,6 +14,7 @@ from satsym.report.display import formula, plain
 from satsym.report.plots import curves
 from satsym.report.plots.scene import Scene
 from satsym.report.results.unit_names import cost_per, time_unit
+from satsym.report.said import message, say
 from satsym.solution import Simulation
 from satsym.spec import PRODUCT
 
@@ -47,8 +48,8 @@ class Series:
     """Nodes at which it is on a bound."""
     switching: tuple[float, ...] = ()
     """Times at which it meets or leaves a bound, as in the scene."""
-    said: str = "switching"
-    """What these are called."""
+    said: str = "switching at <times>"
+    """What is said of these, in English."""
     size: float = 0.0
     """What counts as large for it, where its values may be nothing but rounding errors."""
     from_first: bool = False
@@ -68,7 +69,7 @@ def states(scene: Scene) -> list[Series]:
             v.latex,
             v.symbol,
             v.unit,
-            plain(v.meaning),
+            plain(message(v.meaning)),
             scene.x[i],
             reference=None if scene.reference is None else scene.reference[i],
             free=None if scene.free is None else scene.free[i],
@@ -91,7 +92,7 @@ def controls(scene: Scene) -> list[Series]:
             v.latex,
             v.symbol,
             v.unit,
-            plain(v.meaning),
+            plain(message(v.meaning)),
             scene.u[i],
             lower=instance.lower[i] if box else -math.inf,
             upper=instance.upper[i] if box else math.inf,
@@ -110,7 +111,7 @@ def controls(scene: Scene) -> list[Series]:
                 r"\Vert " + (rf"\mathrm{{{bound.name}}}" if bound.name else "u") + r" \Vert",
                 f"|{bound.name or 'u'}|",
                 bound.unit,
-                f"norm of {bound.name or 'the control'}",
+                say("norm of <name>", name=bound.name) if bound.name else say("norm of the control"),
                 norm,
                 lower=lower,
                 upper=bound.upper,
@@ -136,12 +137,12 @@ def constraints(scene: Scene) -> list[Series]:
             rf"\mathrm{{{name.replace('_', ' ')}}}",
             name,
             "1",
-            f"path constraint {name.replace('_', ' ')}, never positive",
+            say("path constraint <name>, never positive", name=name.replace("_", " ")),
             rows[k],
             upper=0.0,
             active=rows[k] >= -ON_BOUND * _largest(rows[k]),
             switching=tuple(event.t / scene.time_factor for event in met if event.name == name),
-            said="met",
+            said="met at <times>",
             from_zero=True,
         )
         for name, k in stated.items()
@@ -161,7 +162,7 @@ def costates(scene: Scene) -> list[Series]:
             rf"\lambda_{{{v.latex}}}",
             f"lambda_{v.symbol}",
             cost_per(v.unit, scene.spec),
-            f"costate of {formula(v.latex, v.symbol)}",
+            say("costate of <name>", name=formula(v.latex, v.symbol)),
             values,
             size=worth / width,
         )
@@ -170,7 +171,7 @@ def costates(scene: Scene) -> list[Series]:
     with np.errstate(all="ignore"):
         along = curves.clean(model.hamiltonian_batch(scene.nodes, scene.x, scene.u, scene.lam, p))
         terms = np.abs(scene.lam * model.dynamics_batch(scene.nodes, scene.x, scene.u, p))
-    meaning = "Hamiltonian" + (", constant on an extremal" if scene.spec.autonomous else "")
+    meaning = say("Hamiltonian, constant on an extremal" if scene.spec.autonomous else "Hamiltonian")
     time = time_unit(scene.spec)
     rate = cost_per(time, scene.spec) if time else "1"
     return [*found, Series("H", "H", rate, meaning, along, size=_largest(curves.clean(terms)))]
@@ -192,7 +193,7 @@ def invariants(scene: Scene) -> list[Series]:
             v.latex,
             v.symbol,
             v.unit,
-            plain(v.meaning) or v.symbol.replace("_", " "),
+            plain(message(v.meaning)) or v.symbol.replace("_", " "),
             rows[i],
             reference=None if reference is None else reference[i],
             free=None if free is None else free[i],

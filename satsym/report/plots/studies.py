@@ -12,6 +12,8 @@ from satsym.report.look import SCREEN, Look
 from satsym.report.plots import legend, style
 from satsym.report.results import files
 from satsym.report.results.studies import Numbers
+from satsym.report.said import message, say
+from satsym.report.said import numbers as numbers_said
 from satsym.status import Status
 
 if TYPE_CHECKING:
@@ -92,11 +94,11 @@ def _histogram(place: Axes, name: str, values: Array) -> None:
     finite = values[np.isfinite(values)]
     place.hist(finite, bins=min(60, max(5, int(np.sqrt(len(finite))))), color=style.BLUE)
     place.set_xlabel(display.plain(name))
-    place.set_ylabel("rows")
+    place.set_ylabel(say("rows"))
     if len(finite):
         low, middle, high = np.quantile(finite, [0.05, 0.5, 0.95])
-        said = ", ".join(display.number(float(one), 4) for one in (low, middle, high))
-        place.set_title(f"quantiles 5, 50 and 95 %: {said}")
+        said = numbers_said(display.number(float(one), 4) for one in (low, middle, high))
+        place.set_title(say("quantiles 5, 50 and 95 %: <values>", values=said))
 
 
 def _failures(numbers: Numbers) -> Figure:
@@ -115,7 +117,7 @@ def _failures(numbers: Numbers) -> Figure:
         own = status == kind
         if own.any():
             place.plot(x[own], y[own], linestyle="none", **look)
-            seen.append((legend.line(linestyle="none", **look), f"{kind}: {int(own.sum())}"))
+            seen.append((legend.line(linestyle="none", **look), f"{message(kind)}: {int(own.sum())}"))
     place.set_xlabel(display.plain(labels[0]))
     if len(labels) > 1:
         place.set_ylabel(display.plain(labels[1]))

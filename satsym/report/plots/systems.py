@@ -11,6 +11,7 @@ from satsym.report import display
 from satsym.report.look import SCREEN, Look
 from satsym.report.plots import style
 from satsym.report.results import files
+from satsym.report.said import message, say
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -95,7 +96,7 @@ def portrait(found: Analysis) -> Figure | None:
         return None
     page = style.titled(found.about.model.spec.title, 5.6, 5.6)
     axes = page.subplots()
-    axes.set_title(f"phase portrait: {found.stability.verdict}")
+    axes.set_title(say("phase portrait: <verdict>", verdict=message(found.stability.verdict or "undecided")))
     x, y = np.meshgrid(np.linspace(-1.0, 1.0, POINTS), np.linspace(-1.0, 1.0, POINTS))
     u, v = (row[0] * x + row[1] * y for row in A)
     if np.hypot(u, v).any():

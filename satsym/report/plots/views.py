@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from satsym.arrays import Array
+from satsym.report.said import say
 
 FLAT = 1e-6
 """How far from a plane through the origin, relative to its size, a path is taken to lie in it."""
@@ -71,6 +72,8 @@ def _along_normal(path: Array, normal: Array) -> View:
     first = first - (first @ normal) * normal
     first = first / np.linalg.norm(first)
     towards, name = (
-        ("towards periapsis", "perifocal axes") if near else ("towards the start", "in the plane of the motion")
+        (say("towards periapsis"), say("perifocal axes"))
+        if near
+        else (say("towards the start"), say("in the plane of the motion"))
     )
-    return View(np.vstack([first, np.cross(normal, first)]), (towards, "at right angles"), name)
+    return View(np.vstack([first, np.cross(normal, first)]), (towards, say("at right angles")), name)

@@ -12,6 +12,7 @@ from satsym.arrays import Array
 from satsym.report import display
 from satsym.report.plots import legend, style
 from satsym.report.plots.views import View, views
+from satsym.report.said import decimal, message, say
 from satsym.report.terminal.table import figure
 from satsym.status import BadInput
 
@@ -142,27 +143,27 @@ def _panel(axes: Axes, drawn: Drawn, view: View, unit: str) -> tuple[float, str]
 def _caption(orbit: Elements, factor: float, unit: str) -> str:
     """The kind of orbit, and the numbers that its shape shows."""
     called = "" if unit == "1" else f" {unit}"
-    apses = [(orbit.periapsis, "periapsis"), (orbit.apoapsis, "apoapsis")]
-    shown = [f"{what} {figure(value / factor)}{called}" for value, what in apses if value]
-    return ", ".join([f"{orbit.conic.value}: e = {figure(orbit.eccentricity)}", *shown])
+    apses = [(orbit.periapsis, say("periapsis")), (orbit.apoapsis, say("apoapsis"))]
+    shown = [f"{what} {decimal(figure(value / factor))}{called}" for value, what in apses if value]
+    return ", ".join([f"{message(orbit.conic.value)}: e = {decimal(figure(orbit.eccentricity))}", *shown])
 
 
 def _entries(found: Survey, drawn: Drawn) -> list[legend.Entry]:
     orbit = found.elements
     once_round = found.case.tf is not None and found.case.tf - found.case.t0 >= (orbit.period or np.inf)
-    entries: list[legend.Entry] = [] if once_round else [(legend.line(**CONIC), orbit.conic.value)]
+    entries: list[legend.Entry] = [] if once_round else [(legend.line(**CONIC), message(orbit.conic.value))]
     if drawn.travelled is not None:
         entries.append((legend.line(color=style.STATE, **style.MAIN), _flight(found)))
     start = {"color": style.STATE, "markerfacecolor": "none", **style.START, "markersize": 11.0}
-    entries += [(legend.line(**start), "start"), (legend.line(**CENTRE), "centre, a focus")]
+    entries += [(legend.line(**start), say("start")), (legend.line(**CENTRE), say("centre, a focus"))]
     if drawn.empty is not None:
-        entries.append((legend.line(**EMPTY), "empty focus"))
+        entries.append((legend.line(**EMPTY), say("empty focus")))
     if drawn.nearest is not None:
-        entries.append((legend.line(**NEAREST), "periapsis"))
+        entries.append((legend.line(**NEAREST), say("periapsis")))
     if drawn.farthest is not None:
-        entries.append((legend.line(**FARTHEST), "apoapsis"))
+        entries.append((legend.line(**FARTHEST), say("apoapsis")))
     if drawn.asymptotes:
-        entries.append((legend.line(**ASYMPTOTE), "asymptotes"))
+        entries.append((legend.line(**ASYMPTOTE), say("asymptotes")))
     return entries
 
 
@@ -171,7 +172,7 @@ def _flight(found: Survey) -> str:
     assert case.tf is not None
     span = case.tf - case.t0
     factor, unit = display.time_scale((v.unit for v in case.model.spec.states), span)
-    return f"trajectory, {figure(span / factor, 4)} {unit}".removesuffix(" 1")
+    return say("trajectory, <span>", span=f"{decimal(figure(span / factor, 4))} {unit}".removesuffix(" 1"))
 
 
 def _travelled(found: Survey) -> Array | None:

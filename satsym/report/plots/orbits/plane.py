@@ -9,6 +9,7 @@ import numpy as np
 
 from satsym.report import display
 from satsym.report.plots import legend, style
+from satsym.report.said import message, say
 from satsym.spec import ProblemSpec
 
 if TYPE_CHECKING:
@@ -58,7 +59,7 @@ def of_analysis(found: Analysis) -> Figure:
     spec = found.about.model.spec
     page = style.titled(spec.title, SIDE, SIDE)
     axes = page.subplots()
-    axes.set_title(f"eigenvalues: {found.stability.verdict or 'undecided'}")
+    axes.set_title(say("eigenvalues: <verdict>", verdict=message(found.stability.verdict or "undecided")))
     factor = _plane(axes, spec, [each.value for each in found.eigenvalues])
     _open_loop(axes, found.eigenvalues, factor)
     return page
@@ -71,11 +72,14 @@ def of_design(design: Design) -> Figure:
     spec, before, after = design.about.model.spec, spectrum(design.about.system.A), design.regulator.eigenvalues
     page = style.titled(design.title, SIDE, SIDE + 0.3)
     axes = page.subplots()
-    axes.set_title("eigenvalues")
+    axes.set_title(say("eigenvalues"))
     factor = _plane(axes, spec, [*(each.value for each in before), *after.tolist()])
     _open_loop(axes, before, factor)
     axes.plot(after.real * factor, after.imag * factor, **CLOSED)
-    entries = [(legend.line(**OPEN), "uncontrolled"), (legend.line(**CLOSED), "with $u = -K\\,x$")]
+    entries = [
+        (legend.line(**OPEN), say("uncontrolled")),
+        (legend.line(**CLOSED), say("with <law>", law="$u = -K\\,x$")),
+    ]
     legend.below(page, entries)
     return page
 
@@ -85,20 +89,25 @@ def of_point(found: Survey) -> Figure:
     case, point = found.case, found.point
     page = style.titled(case.title or case.name, SIDE, SIDE + 0.5)
     axes = page.subplots()
-    axes.set_title(f'the rule says "{point.rule_verdict}" of every orbit: no point of one is an equilibrium')
-    factor = _plane(axes, case.model.spec, point.closed_form.tolist(), 'the rule: "stable"')
+    says = 'the rule says "<verdict>" of every orbit: no point of one is an equilibrium'
+    axes.set_title(say(says, verdict=message(point.rule_verdict)))
+    factor = _plane(axes, case.model.spec, point.closed_form.tolist(), say('the rule: "stable"'))
     axes.plot(point.eigenvalues.real * factor, point.eigenvalues.imag * factor, **OPEN)
     axes.plot(point.closed_form.real * factor, point.closed_form.imag * factor, **EXACT)
     for value in (point.closed_form[1], point.closed_form[3]):
         axes.annotate(
-            "multiplicity 2", (0.0, value.imag * factor), (12.0, -3.0), textcoords="offset points", color=style.SOFT
+            say("multiplicity <n>", n=2),
+            (0.0, value.imag * factor),
+            (12.0, -3.0),
+            textcoords="offset points",
+            color=style.SOFT,
         )
-    closed_form = r"$\pm\sqrt{2\mu/r^3}$ and twice $\pm i\sqrt{\mu/r^3}$"
-    legend.below(page, [(legend.line(**OPEN), "computed"), (legend.line(**EXACT), closed_form)])
+    closed_form = say(r"$\pm\sqrt{2\mu/r^3}$ and twice $\pm i\sqrt{\mu/r^3}$")
+    legend.below(page, [(legend.line(**OPEN), say("computed")), (legend.line(**EXACT), closed_form)])
     return page
 
 
-def _plane(axes: Axes, spec: ProblemSpec, values: list[complex], left: str = "stable") -> float:
+def _plane(axes: Axes, spec: ProblemSpec, values: list[complex], left: str = "") -> float:
     """Draw the plane with its left half named, and give the model's units of time in that of the axes."""
     furthest = float(np.abs(values).max()) or 1.0
     units = (v.unit for v in (*spec.states, *spec.controls, *spec.parameters))
@@ -110,7 +119,7 @@ def _plane(axes: Axes, spec: ProblemSpec, values: list[complex], left: str = "st
     axes.axvspan(-reach, 0.0, color=style.GREEN, alpha=0.07, linewidth=0.0, zorder=1.0)
     axes.axvline(0.0, color=style.INK, linewidth=1.1, zorder=2.0)
     axes.axhline(0.0, color=style.GREY, linewidth=0.8, zorder=1.9)
-    axes.text(-0.97 * reach, -0.97 * reach, left, color=style.GREEN, fontsize=style.points(10.0))
+    axes.text(-0.97 * reach, -0.97 * reach, left or say("stable"), color=style.GREEN, fontsize=style.points(10.0))
     per_time = "" if unit == "1" else f"1/{unit}"
     axes.set_xlabel(display.labelled(r"$\mathrm{Re}\,s$", per_time or "1"))
     axes.set_ylabel(display.labelled(r"$\mathrm{Im}\,s$", per_time or "1"))
@@ -123,8 +132,9 @@ def _open_loop(axes: Axes, found: Iterable[Eigenvalue], factor: float) -> None:
         at = (each.value.real * factor, each.value.imag * factor)
         axes.plot([at[0]], [at[1]], **OPEN)
         if each.algebraic > 1:
-            blocks = "block" if each.geometric == 1 else "blocks"
-            said = f"multiplicity {each.algebraic}, Jordan {blocks} {' + '.join(map(str, each.blocks))}"
+            blocks = "Jordan block <sizes>" if each.geometric == 1 else "Jordan blocks <sizes>"
+            sizes = say(blocks, sizes=" + ".join(map(str, each.blocks)))
+            said = f"{say('multiplicity <n>', n=each.algebraic)}, {sizes}"
             axes.annotate(
                 said, at, (9.0, 8.0), textcoords="offset points", fontsize=style.points(9.0), color=style.SOFT
             )

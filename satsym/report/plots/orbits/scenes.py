@@ -13,6 +13,7 @@ from satsym.report.plots import curves, legend, series, style
 from satsym.report.plots.reading import BURIED, ROUNDING, within_reach
 from satsym.report.plots.scene import Scene
 from satsym.report.plots.views import View, views
+from satsym.report.said import say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -78,12 +79,12 @@ def entries(orbit: Orbit) -> list[legend.Entry]:
     arrow = legend.line(
         color=style.VERMILION, marker=r"$\rightarrow$", markersize=15.0, markeredgewidth=0.2, linestyle="none"
     )
-    found = [(arrow, "thrust")] if orbit.thrust is not None else []
-    found.append((legend.line(color=style.STATE, **style.START), "start"))
-    found.append((legend.line(color=style.STATE, **style.END), "end"))
+    found = [(arrow, say("thrust"))] if orbit.thrust is not None else []
+    found.append((legend.line(color=style.STATE, **style.START), say("start")))
+    found.append((legend.line(color=style.STATE, **style.END), say("end")))
     if orbit.ends_there and orbit.relative is not None:
-        found.append((legend.line(**style.TARGET), "final condition"))
-    found.append((legend.line(**style.ORIGIN), "origin"))
+        found.append((legend.line(**style.TARGET), say("final condition")))
+    found.append((legend.line(**style.ORIGIN), say("origin")))
     return found
 
 
@@ -135,7 +136,7 @@ def from_reference(axes: Axes, orbit: Orbit) -> None:
     scale = 1.0 / measure.divisor
     axes.set_xlim(low[0] * scale, high[0] * scale)
     axes.set_ylim(low[1] * scale, high[1] * scale)
-    axes.set_title("seen from the reference")
+    axes.set_title(say("seen from the reference"))
     axes.axhline(0.0, **style.REFERENCE)
     if orbit.free_relative is not None:
         axes.plot(*(others[1] * scale), **style.FREE)
@@ -143,8 +144,8 @@ def from_reference(axes: Axes, orbit: Orbit) -> None:
     if orbit.ends_there:
         axes.plot([0.0], [0.0], **style.TARGET)
     _ends(axes, *(curve * scale))
-    axes.set_xlabel(labelled("along-track", measure.unit))
-    axes.set_ylabel(labelled("radial", measure.unit))
+    axes.set_xlabel(labelled(say("along-track"), measure.unit))
+    axes.set_ylabel(labelled(say("radial"), measure.unit))
     _few_ticks(axes)
 
 

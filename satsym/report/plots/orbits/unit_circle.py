@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from satsym.report.plots import legend, style
+from satsym.report.said import decimal, say
 from satsym.report.terminal.table import figure
 
 if TYPE_CHECKING:
@@ -51,10 +52,10 @@ def page(found: Survey) -> Figure | None:
     _whole(whole, floquet.multipliers)
     _near(near, floquet.multipliers, floquet.expected_scatter, ROOM * max(floquet.scatter, floquet.expected_scatter))
     entries = [
-        (legend.line(**COMPUTED), "computed multipliers"),
-        (legend.line(**EXACT), "exact: 1, multiplicity 6, Jordan blocks 2 + 1 + 1 + 1 + 1"),
-        (legend.line(**CIRCLE), "unit circle"),
-        (legend.line(**SCATTER), "scatter expected"),
+        (legend.line(**COMPUTED), say("computed multipliers")),
+        (legend.line(**EXACT), say("exact: 1, multiplicity 6, Jordan blocks 2 + 1 + 1 + 1 + 1")),
+        (legend.line(**CIRCLE), say("unit circle")),
+        (legend.line(**SCATTER), say("scatter expected")),
     ]
     legend.below(sheet, entries)
     return sheet
@@ -66,7 +67,7 @@ def _whole(axes: Axes, multipliers: Any) -> None:
     axes.plot(np.cos(TURN), np.sin(TURN), **CIRCLE)
     axes.plot(multipliers.real, multipliers.imag, **COMPUTED)
     axes.plot([1.0], [0.0], **EXACT)
-    axes.set_title("Floquet multipliers")
+    axes.set_title(say("Floquet multipliers"))
     axes.set_xlabel(r"$\mathrm{Re}\,\mu$")
     axes.set_ylabel(r"$\mathrm{Im}\,\mu$")
 
@@ -82,7 +83,8 @@ def _near(axes: Axes, multipliers: Any, expected: float, reach: float) -> None:
     axes.plot(away.real, away.imag, **COMPUTED)
     axes.plot([0.0], [0.0], **EXACT)
     axes.locator_params(axis="x", nbins=2)  # each tick carries its power of ten
-    axes.set_title(f"near 1: up to {figure(float(np.abs(away).max()), 2)} from it, {figure(expected, 2)} expected")
+    furthest, likely = (decimal(figure(value, 2)) for value in (float(np.abs(away).max()), expected))
+    axes.set_title(say("near 1: up to <furthest> from it, <likely> expected", furthest=furthest, likely=likely))
     axes.set_xlabel(r"$\mathrm{Re}\,\mu - 1$")
     axes.set_ylabel(r"$\mathrm{Im}\,\mu$")
 

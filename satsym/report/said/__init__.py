@@ -1,0 +1,160 @@
+"""What is said on terminals and in pictures, in the language that was asked for.
+
+A message is written in English where it is made, with ``<name>`` where something is filled in. That text is the key of
+its translation in the file of a language, ``id.toml`` for Indonesian; English needs none. What has no translation
+stays English as a whole. The texts of documents have keys of their own, in :mod:`satsym.report.texts`.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
+from functools import cache
+
+from satsym import wording
+from satsym.status import BadInput
+from satsym.wording import shown, suggestion
+
+VARIABLE = "SATSYM_LANG"
+"""Of the environment: the language where no other is asked for."""
+
+CLAUSES = "; "
+"""Between clauses of a message, each of which is a text of its own."""
+
+_HOLE = re.compile(r"<([a-z_]+)>")
+_TOLD = "said_"
+"""Begins names of places that hold a text, to be translated as well; all others hold names and numbers."""
+_ASKED: ContextVar[str | None] = ContextVar("language", default=None)
+
+
+def language() -> str:
+    """The language that was asked for, else that of the environment, else English.
+
+    Raises
+    ------
+    BadInput
+        If there are no texts in it.
+    """
+    return _ASKED.get() or known(os.environ.get(VARIABLE) or "en", VARIABLE)
+
+
+def known(name: str, place: str) -> str:
+    """The name of a language that there are texts in.
+
+    Raises
+    ------
+    BadInput
+        If there are none, with the place where it was asked for.
+    """
+    if name == "en":
+        return name
+    from satsym.report import texts
+
+    if name not in texts.languages():
+        raise BadInput(f"{place}: no texts in the language {shown(name)}; {suggestion(name, texts.languages())}")
+    return name
+
+
+def ask(name: str) -> None:
+    """Ask for a language, for what runs in this context."""
+    _ASKED.set(name)
+
+
+@contextmanager
+def spoken(name: str) -> Iterator[None]:
+    """Ask for a language in here."""
+    before = _ASKED.set(name)
+    try:
+        yield
+    finally:
+        _ASKED.reset(before)
+
+
+def say(text: str, **fill: object) -> str:
+    """A text in the language asked for, with its places filled in."""
+    if (spoken_here := language()) != "en":
+        text = translations(spoken_here).get(text, text)
+    return _filled(text, fill) if fill else text
+
+
+def each(*heads: str) -> tuple[str, ...]:
+    """Texts one by one, as above the columns of a table."""
+    return tuple(map(say, heads))
+
+
+def counted(number: int, one: str, several: str = "") -> str:
+    """A number of things: 1 iteration, 2 iterations; a language without plurals has one word."""
+    return wording.counted(number, one, several) if language() == "en" else f"{number} {say(one)}"
+
+
+def decimal(text: str) -> str:
+    """Numbers in a picture with the decimal sign of the language."""
+    return text if language() == "en" else re.sub(r"(?<=\d)\.(?=\d)", ",", text)
+
+
+def numbers(given: Iterable[str]) -> str:
+    """Numbers one after the other; where they have a decimal comma, semicolons are between them."""
+    return (", " if language() == "en" else "; ").join(map(decimal, given))
+
+
+def message(text: str) -> str:
+    """What a solver, a check or a refusal says in English, by its whole or clause by clause; else as it is."""
+    if (asked := language()) == "en" or not text:
+        return text
+    found = _translated(text, asked)
+    if found is None:
+        clauses = [_translated(clause, asked) for clause in text.split(CLAUSES)]
+        found = None if None in clauses else CLAUSES.join(filter(None, clauses))
+    return text if found is None else found
+
+
+def _translated(text: str, asked: str) -> str | None:
+    """The translation of a text, or of the one whose filled in form it is."""
+    exact = translations(asked).get(text)
+    if exact is not None:
+        return exact
+    for pattern, translation in _patterns(asked):
+        if found := pattern.fullmatch(text):
+            parts = {
+                name: message(part) if name.startswith(_TOLD) else part for name, part in found.groupdict().items()
+            }
+            return _filled(translation, parts)
+    return None
+
+
+def _filled(text: str, fill: Mapping[str, object]) -> str:
+    return _HOLE.sub(lambda hole: str(fill.get(hole[1], hole[0])), text)
+
+
+@cache
+def translations(asked: str) -> Mapping[str, str]:
+    """English -> that language; nothing where there is no file."""
+    import tomllib  # nothing of this for English
+    from pathlib import Path
+
+    file = Path(__file__).with_name(f"{asked}.toml")
+    tables = tomllib.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
+    return {english: text for table in tables.values() for english, text in table.items()}
+
+
+@cache
+def _patterns(asked: str) -> list[tuple[re.Pattern[str], str]]:
+    """Texts with places in them as patterns, what says most of itself first."""
+    with_places = {english: text for english, text in translations(asked).items() if _HOLE.search(english)}
+    by_length = sorted(with_places, key=lambda english: -len(_HOLE.sub("", english)))
+    return [(_pattern(english), with_places[english]) for english in by_length]
+
+
+def _pattern(english: str) -> re.Pattern[str]:
+    """What matches a text however it is filled in; a place that comes twice is the same both times."""
+    parts, seen = [], set[str]()
+    for k, part in enumerate(_HOLE.split(english)):
+        if k % 2 == 0:
+            parts.append(re.escape(part))
+        else:
+            parts.append(f"(?P={part})" if part in seen else f"(?P<{part}>.+?)")
+            seen.add(part)
+    return re.compile("".join(parts))

@@ -1,0 +1,136 @@
+"""What is said in Indonesian: all of it, with the same numbers, and nothing of it to programs."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections import Counter
+from collections.abc import Callable
+from enum import Enum
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from satsym import instance
+from satsym.analysis.orbits.conic import Conic
+from satsym.report import plots, said
+from satsym.report.said import counted, decimal, message, numbers, say, spoken, translations
+from satsym.solvers import simulate, solve
+from satsym.status import Status, Verdict
+from tests.cli.test_cli import Run, case, run
+from tests.support.said import HOLE, looked_up, written
+
+__all__ = ["case", "run"]
+
+INDONESIAN = translations("id")
+SAME = {"model <name>", "linear", "radial", "periapsis", "apoapsis", "parabola", "residual"}
+"""Words of both languages."""
+
+
+def test_every_text_that_is_looked_up_has_a_translation_with_the_same_places() -> None:
+    assert len(looked_up()) > 80
+    assert [text for text in looked_up() if text not in INDONESIAN] == []
+    for english, text in INDONESIAN.items():
+        assert Counter(HOLE.findall(english)) == Counter(HOLE.findall(text)), english
+        assert text
+        assert text != english or english in SAME, english
+
+
+def test_nothing_is_translated_that_is_nowhere_said() -> None:
+    known = {*written(), *(one.value for one in EVERY)}
+    assert [text for text in INDONESIAN if HOLE.sub("<>", text) not in known] == []
+
+
+EVERY: tuple[Enum, ...] = (*Status, *Verdict, *Conic)
+
+
+@pytest.mark.parametrize("word", EVERY, ids=str)
+def test_every_status_and_verdict_has_a_word(word: Enum) -> None:
+    with spoken("id"):
+        assert message(word.value) == INDONESIAN[word.value]
+
+
+@given(st.sampled_from(sorted(INDONESIAN)), st.text("abc xyz", min_size=1, max_size=6))
+def test_a_text_that_was_filled_in_is_known_again(text: str, value: str) -> None:
+    """Unless it is what another text says as well, filled in otherwise."""
+    holes = {name: value if not name.startswith("said_") else "converged" for name in HOLE.findall(text)}
+    english = say(text, **holes)
+    with spoken("id"):
+        wanted = say(text, **{name: message(part) for name, part in holes.items()})
+        assert message(english) != english or text in SAME or wanted == english
+
+
+def test_english_is_what_is_written_and_what_nobody_translated_stays_whole() -> None:
+    assert say("end <value>", value=3) == "end 3"
+    assert message("converged") == "converged"
+    assert (decimal("0.5 at 1.25"), numbers(["0.5", "1.5"])) == ("0.5 at 1.25", "0.5, 1.5")
+    assert counted(2, "iteration") == "2 iterations"
+    with spoken("id"):
+        assert say("end <value>", value=3) == "akhir 3"
+        assert (decimal("0.5 at 1.25"), numbers(["0.5", "1.5"])) == ("0,5 at 1,25", "0,5; 1,5")
+        assert counted(2, "iteration") == "2 iterasi"
+        assert message("converged; nobody says this") == "converged; nobody says this"
+        assert message("converged; certified") == "konvergen; tersertifikasi"
+
+
+def test_a_language_that_nobody_wrote_is_refused_in_a_line(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    for arguments, variable in ((("models", "--lang", "xx"), ""), (("models",), "yy"), (("--help",), "zz")):
+        monkeypatch.setenv(said.VARIABLE, variable)
+        code, out, err = run(*arguments)
+        assert (code, out) == (3, "")
+        assert re.fullmatch(r'satsym: \S+: no texts in the language "..", ?.*\n'.replace('", ?', '"; '), err)
+
+
+def test_one_run_leaves_its_language_to_no_other(run: Run) -> None:
+    assert run("models", "--lang", "id")[0] == 0
+    assert said.language() == "en"
+
+
+def words(pages: dict) -> set[str]:
+    from matplotlib.text import Text
+
+    return {text.get_text() for page in pages.values() for text in page.findobj(Text) if text.get_text()}
+
+
+@pytest.mark.parametrize("name", ["soft-return", "double-integrator-fuel"])
+def test_pictures_speak_indonesian_with_decimal_commas(name: str) -> None:
+    found = solve(instance.load(name))
+    english = words(plots.figures(found))
+    with spoken("id"):
+        shown = words(plots.figures(found))
+    texts = {text for text in INDONESIAN if text not in SAME}
+    assert english & texts
+    assert not shown & texts
+    assert {"penyelesaian", "iterasi"} <= shown or "penyelesaian" in shown
+    assert not [text for text in shown if re.search(r"\d\.\d", text)]
+
+
+def test_a_picture_of_a_flight_says_how_it_ends_in_indonesian() -> None:
+    with spoken("id"):
+        shown = words(plots.figures(simulate(instance.load("its-thesis"))))
+    assert any(text.startswith("akhir ") for text in shown)
+    assert not any(text.startswith("end ") for text in shown)
+
+
+def alike(run: Callable[..., tuple[int, str, str]], *arguments: str) -> None:
+    """Programs read the same whatever people speak."""
+    english, other = (json.loads(run(*arguments, "--json", "--lang", each)[1]) for each in ("en", "id"))
+    for found in (english, other):
+        found.pop("wall_s", None)
+    assert english == other
+
+
+@pytest.mark.parametrize(
+    "arguments", [("solve", "soft-return"), ("simulate", "its-thesis"), ("lqr", "uny-lqr"), ("models",), ("instances",)]
+)
+def test_programs_read_the_same_in_every_language(run: Run, arguments: tuple[str, ...]) -> None:
+    alike(run, *arguments)
+
+
+def test_files_are_the_same_in_every_language(run: Run, tmp_path: Path) -> None:
+    for each in ("en", "id"):
+        assert run("simulate", "its-thesis", "--lang", each, "--out", each)[0] == 0
+    assert (tmp_path / "en" / "trajectory.csv").read_bytes() == (tmp_path / "id" / "trajectory.csv").read_bytes()
+    assert (tmp_path / "en" / "result.json").read_bytes() == (tmp_path / "id" / "result.json").read_bytes()

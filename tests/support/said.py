@@ -1,0 +1,72 @@
+"""What the program says, as its source has it: texts that are looked up, and texts of which messages are made."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import satsym
+
+SOURCE = Path(satsym.__file__).parent
+HOLE = re.compile(r"<([a-z_]+)>")
+
+
+@cache
+def _trees() -> tuple[ast.Module, ...]:
+    return tuple(ast.parse(path.read_text("utf-8")) for path in sorted(SOURCE.rglob("*.py")))
+
+
+def _literals(node: ast.expr) -> Iterator[str]:
+    """Texts that an argument may be."""
+    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        yield node.value
+    if isinstance(node, ast.IfExp):
+        yield from _literals(node.body)
+        yield from _literals(node.orelse)
+
+
+@cache
+def looked_up() -> frozenset[str]:
+    """Texts given to ``say``, ``each`` and ``counted`` of satsym.report.said, wherever these stand there themselves."""
+    found = set[str]()
+    for tree in _trees():
+        imported = {
+            name.asname or name.name
+            for node in ast.walk(tree)
+            if isinstance(node, ast.ImportFrom) and node.module in ("satsym.report.said", "satsym.report")
+            for name in node.names
+        }
+        for node in ast.walk(tree):
+            if not isinstance(node, ast.Call):
+                continue
+            called = node.func
+            if isinstance(called, ast.Attribute) and isinstance(called.value, ast.Name) and called.value.id == "said":
+                name = called.attr
+            elif isinstance(called, ast.Name) and called.id in imported:
+                name = called.id
+            else:
+                continue
+            given = {"say": node.args[:1], "each": node.args, "counted": node.args[1:2]}.get(name, [])
+            found.update(text for argument in given for text in _literals(argument))
+    return frozenset(found)
+
+
+@cache
+def written() -> frozenset[str]:
+    """Every text in the source, with ``<>`` where a formatted one has a value."""
+    found = set[str]()
+    for tree in _trees():
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Constant) and isinstance(node.value, str):
+                found.add(HOLE.sub("<>", node.value))
+            elif isinstance(node, ast.JoinedStr):
+                found.add(template(node))
+    return frozenset(found)
+
+
+def template(node: ast.JoinedStr) -> str:
+    """A formatted text with ``<>`` for each of its values."""
+    return "".join(str(part.value) if isinstance(part, ast.Constant) else "<>" for part in node.values)
