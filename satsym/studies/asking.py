@@ -77,9 +77,9 @@ def _worth_compiling(study: Study) -> bool:
 
     if study.design.count < MANY or study.command is not Command.SOLVE or not able():
         return False
-    from satsym.studies.solving import together
+    from satsym.studies.together import together
 
-    return together(study.task)
+    return together(study.task) is not None
 
 
 def named(written: Written) -> str | None:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from satsym.analysis.regulator.feedback import Design
     from satsym.instance import Instance
     from satsym.spec import ProblemSpec
+    from satsym.studies.together import Found
 
 Scalar = float | str | None
 
@@ -134,35 +135,21 @@ def of_solution(key: str, solution: Solution, origin: str, kept: bool) -> Row:
     return Row(key, solution.status.value, message, numbers, trajectory)
 
 
-def of_extremal(
-    key: str, spec: ProblemSpec, cost: float, t_final: float, z: tuple[Array, Array], verdict: str | None, origin: str
-) -> Row:
-    """Of one of many optima that were solved together.
-
-    Parameters
-    ----------
-    cost
-        As it is minimised.
-    z
-        States and costates at the start and at the end, shape (2n,).
-    """
-    n, names = len(spec.states), spec.state_names
+def of_extremal(key: str, spec: ProblemSpec, found: Found, k: int, verdict: str | None) -> Row:
+    """Of the k-th of many optima that were solved together."""
+    names = spec.state_names
     numbers: dict[str, Scalar] = {
-        Column.OBJECTIVE: _plain(spec.objective(cost)),
-        Column.T_FINAL: _plain(t_final),
+        Column.OBJECTIVE: _plain(spec.objective(found.costs[k])),
+        Column.T_FINAL: _plain(found.t_final[k]),
         Column.VERDICT: verdict,
-        **_each("x_final", names, z[1][:n, None], -1),
-        **_each("costate_initial", names, z[0][n:, None], 0),
-        "switching_times": 0.0,
+        **_each("x_final", names, found.x_final, k),
+        **_each("costate_initial", names, found.costates, k),
+        "switching_times": float(found.switches[k]),
         "events": 0.0,
-        Column.METHOD: TOGETHER,
-        Column.ORIGIN: origin,
+        Column.METHOD: found.method,
+        Column.ORIGIN: found.origins[k],
     }
     return Row(key, Status.CONVERGED.value, "", numbers)
-
-
-TOGETHER = "shooting"
-"""The method by which many optima are solved together."""
 
 
 def of_simulation(key: str, simulation: Simulation, kept: bool) -> Row:

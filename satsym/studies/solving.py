@@ -6,33 +6,30 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
 
-import numpy as np
-
 from satsym import methods, solvers
 from satsym.instance import Instance
 from satsym.instance.numbers import Table
 from satsym.kernels.batch.compiling import able
 from satsym.solution import Certificate, Solution
 from satsym.solvers.certificate.bulk import certify_all
-from satsym.solvers.certificate.corners import positive
-from satsym.solvers.cold_start.origin import Origin
 from satsym.solvers.improving import goes_on
-from satsym.solvers.redundant_ends import redundant
 from satsym.solvers.repeated import Repeated
 from satsym.status import BadInput, Verdict
 from satsym.studies import rows
-from satsym.studies.asked import Checked, Command, Task
+from satsym.studies.asked import Checked, Task
 from satsym.studies.rows import Cases, Row, Work
+from satsym.studies.together import plain, rows_together, together
 
-ALONE, NEIGHBOUR = "single solver", "nearest answer"
-"""The origin of answers that were found without their neighbours, and from the nearest of these."""
+ALONE = "single solver"
+"""The origin of answers that were found without their neighbours."""
 
 
 def solving(task: Task) -> Work:
     """The work of a chunk of optima."""
     single = _single(task)
-    if together(task) and (able() or not task.compiled):
-        return lambda cases: _together(task, single, cases)
+    solve = together(task)
+    if solve is not None and (able() or not task.compiled):
+        return lambda cases: rows_together(task, solve, single, cases)
     if task.checked is Checked.FULL or not warm(task):
         return rows.one_by_one(single)
     try:
@@ -50,55 +47,7 @@ def _single(task: Task) -> Callable[[str, Instance], Row]:
 def warm(task: Task) -> bool:
     """Whether rows may start from their neighbours: what varies leaves scales and ends as they are."""
     fitting = task.instance.solver.method in (methods.AUTO, "collocation")
-    return fitting and _plain(task) and all(key.table in (Table.INITIAL, Table.PARAMETERS) for key in task.keys)
-
-
-def together(task: Task) -> bool:
-    """Whether rows are solved as columns of arrays: both ends and times are given, and trajectories are not kept."""
-    instance = task.instance
-    given = instance.tf is not None and len(instance.final) == len(instance.initial)
-    fitting = instance.solver.method in (methods.AUTO, rows.TOGETHER) and instance.control_set.kind in ("box", "ball")
-    stays = all(key.table in (Table.INITIAL, Table.FINAL, Table.PARAMETERS) for key in task.keys)
-    wanted = task.command is Command.SOLVE and task.checked is not Checked.FULL and not task.trajectories
-    return wanted and given and fitting and stays and not instance.model.spec.multipliers and _plain(task)
-
-
-def _plain(task: Task) -> bool:
-    """Whether the problem is smooth, and nothing is asked of solvers besides."""
-    instance, spec = task.instance, task.instance.model.spec
-    smooth = not (spec.switching or spec.throttled or spec.stationary or spec.directional or spec.path_constraints)
-    said = (instance.free, instance.continuation, instance.solver.free_angles, instance.guess, instance.end_limits)
-    return smooth and not any(said) and redundant(instance) is None
-
-
-def _together(task: Task, single: Callable[[str, Instance], Row], cases: Cases) -> list[Row]:
-    """All at once; what does not end in a minimum beyond doubt is left to the single solver."""
-    from satsym.solvers.batch.certificate import minima
-    from satsym.solvers.batch.many import Many
-    from satsym.solvers.batch.solving import solved_together, to_rounding
-
-    if not cases:
-        return []
-    many = Many.of(task.instance, [instance for _, instance in cases], task.compiled)
-    answers = solved_together(many)
-    nodes, verdict = answers.nodes, None
-    if task.checked is Checked.LOCAL:
-        fine, verdict = minima(many, nodes), Verdict.LOCAL_MINIMUM.value
-        unclear = np.flatnonzero(nodes.solved & ~fine)
-        nodes = to_rounding(many, nodes, unclear)
-        fine[unclear] = minima(many.only(unclear), nodes.only(unclear))
-    else:
-        fine = nodes.solved & positive(nodes.transition * (many.units / many.units[:, None])[:, :, None, None])
-    done: list[Row] = []
-    for k, (key, instance) in enumerate(cases):
-        if not fine[k]:
-            done.append(rows.tried(single, key, instance))
-            continue
-        end, origin = nodes.z[:, -1, k], NEIGHBOUR if answers.neighbour[k] else Origin.STRAIGHT_LINE.value
-        tf = float(many.times[-1])
-        cost = nodes.cost[k] + instance.model.terminal_cost(tf, tuple(end[: many.states].tolist()), instance.parameters)
-        done.append(rows.of_extremal(key, instance.model.spec, cost, tf, (nodes.z[:, 0, k], end), verdict, origin))
-    return done
+    return fitting and plain(task) and all(key.table in (Table.INITIAL, Table.PARAMETERS) for key in task.keys)
 
 
 def alone(instance: Instance, checked: Checked) -> Solution:

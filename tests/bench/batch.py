@@ -1,5 +1,7 @@
 """Many instances at once, beside C, plain NumPy and CasADi in a loop: `make bench-batch`.
 
+Arguments are the numbers of the tables that are wanted; without any all are made.
+
 Ratios are formed pair by pair within one run, of processor time but for the study, which has two processes.
 """
 
@@ -176,6 +178,56 @@ def optima(rounds: int = 5) -> list[Table]:
     return [first, second]
 
 
+def bodies(count: int) -> tuple[list[Any], np.ndarray]:
+    """Bodies on a line from anywhere to anywhere at any rate, and their least times in closed form."""
+    from satsym import instance
+
+    case, rng = instance.load("double-integrator-time"), np.random.default_rng(2)
+    found, known = [], []
+    for _ in range(count):
+        (q, v), (goal, last) = start, end = rng.uniform(-3.0, 3.0, 2).tolist(), rng.uniform(-2.0, 2.0, 2).tolist()
+        low, high = -(10.0 ** rng.uniform(-0.5, 0.5)), 10.0 ** rng.uniform(-0.5, 0.5)
+        final = dict(zip(("q", "q_dot"), end, strict=True))
+        found.append(replace(case, initial=tuple(start), final=final, lower=(low,), upper=(high,)))
+        times = []
+        for first, then in ((low, high), (high, low)):
+            squared = (goal - q + v * v / (2 * first) - last * last / (2 * then)) / (0.5 / first - 0.5 / then)
+            for turning in (squared**0.5, -(squared**0.5)) if squared >= 0.0 else ():
+                arcs = (turning - v) / first, (last - turning) / then
+                times += [sum(arcs)] if min(arcs) >= 0.0 else []
+        known.append(min(times))
+    return found, np.array(known)
+
+
+def least_times(rounds: int = 3) -> Table:
+    """Least times of bodies on a line, all of them: cold, in a random order."""
+    from satsym.solvers.batch.switching.arrivals import first_arrivals
+    from satsym.solvers.batch.switching.certificate import minima
+
+    cases, known = bodies(RETURNS)
+    parts = [cases[at : at + CHUNK] for at in range(0, RETURNS, CHUNK)]
+
+    def solved() -> list[Any]:
+        return [first_arrivals(part, True) for part in parts]
+
+    answers, ours, checks = solved(), "satsym, numba", "their certificates"
+    found = interleaved({ours: solved, checks: lambda: [minima(one) for one in answers]}, rounds, least=0.0)
+    each = {name: Samples(tuple(s / RETURNS for s in one.seconds)) for name, one in found.items()}
+    there, durations = (np.concatenate([getattr(one, name) for one in answers]) for name in ("solved", "durations"))
+    wrong = int((np.abs(durations / known - 1.0)[there] > SAME).sum())
+    clear = np.concatenate([minima(one) for one in answers]).mean()
+    goals = {
+        ours: (
+            Goal("microseconds", each[ours].middle * 1e6, 60.0),
+            Goal("wrong", wrong, 0.0),
+            Goal("found", float(there.mean()), 0.999, True),
+        ),
+        checks: (Goal("confirmed", float(clear), 0.99, True),),
+    }
+    made = [Row(k, one.least * 1e6, one.middle * 1e6, one.times(each[ours]), goals[k]) for k, one in each.items()]
+    return Table(f"5. {RETURNS} least times of a body on a line, one core", "microseconds each", tuple(made))
+
+
 def study() -> Table:
     """A whole study by its command, machine code being there."""
     command = [str(Path(sys.executable).parent / "satsym"), "study", "return-to-orbit", "--sample", str(RETURNS)]
@@ -193,7 +245,8 @@ def main() -> None:
     """Run all; exit code 0 whatever was reached."""
     print(described(), flush=True)
     tables: list[Table] = []
-    for subject in (lambda: [motions()], optima, lambda: [study()]):
+    subjects = {"1": lambda: [motions()], "2": optima, "4": lambda: [study()], "5": lambda: [least_times()]}
+    for subject in [subjects[number] for number in sys.argv[1:] or subjects]:
         try:
             made = subject()
         except Missing as error:

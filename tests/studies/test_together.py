@@ -17,7 +17,7 @@ from satsym.studies.asked import Study, Task
 from satsym.studies.asking import MANY
 from satsym.studies.asking import asked as asking
 from satsym.studies.rows import Row
-from satsym.studies.solving import together
+from satsym.studies.together import together
 from satsym.studies.workers import Workers
 
 NAME = "return-to-orbit"
@@ -91,6 +91,25 @@ def test_a_worker_without_a_compiler_answers_all_the_same(monkeypatch: pytest.Mo
     found = computed(study)
     assert {row.status for row in found} == {"converged"}
     assert {row.numbers["origin"] for row in found} == {"single solver"}
+
+
+def test_least_times_are_found_together() -> None:
+    line, keys = "double-integrator-time", {"initial.q": "-2,2", "initial.q_dot": "-2,2", "final.q_dot": "-1,1"}
+    written = instance.read(line)
+    said = {"sample": 24, "uniform": keys, "seed": 3}
+    study = asking(written, written.instance(), said, line)
+    found = computed(study)
+    assert {row.numbers["verdict"] for row in found} == {"local minimum"}
+    assert {(row.numbers["method"], row.numbers["origin"]) for row in found} == {("bang-bang", "reachable set")}
+    case, values = instance.load(line), study.design.rows(0, 24).tolist()
+    for row, (q, q_dot, end) in list(zip(found, values, strict=True))[::8]:
+        single = solvers.solve(replace(case, initial=(q, q_dot), final={"q": 0.0, "q_dot": end}), examined=False)
+        assert row.numbers["objective"] == pytest.approx(single.objective, rel=1e-11)
+        for i, state in enumerate(case.model.spec.state_names):
+            assert row.numbers[f"costate_initial.{state}"] == pytest.approx(single.lam[i, 0], rel=1e-9)
+        assert row.numbers["switching_times"] == len(single.switching_times[0])
+    bare = computed(asking(written, written.instance(), said | {"certificate": "none"}, line))
+    assert [row.numbers["objective"] for row in bare] == [row.numbers["objective"] for row in found]
 
 
 def test_workers_change_no_byte(tmp_path: Path) -> None:

@@ -1,0 +1,1 @@
+"""Extremals of saturated controls, many at once."""

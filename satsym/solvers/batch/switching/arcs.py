@@ -1,0 +1,237 @@
+"""Extremals of exact arcs of linear motions, by Newton's method: text that is compiled.
+
+Motions are stated as in :mod:`satsym.solvers.batch.switching.planes`. Times of switches are counted back from the end,
+control by control.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.solvers.batch.switching.planes import at, solved
+
+Array = NDArray[np.float64]
+Places = NDArray[np.int64]
+
+CORRECTIONS = 30
+
+TINY = 1e-3
+"""Share of the duration that an arc has at first where one more is needed than signs show."""
+
+SETTLED, FAR = 1e-11, 1e6
+"""Relative size of a correction after which one more makes arcs exact, and of one that leads nowhere."""
+
+
+def switches_of(
+    costate: Array, rates: Array, powers: Array, length: float, duration: float, times: Array, controls: Places
+) -> int:
+    """Where switching functions change their signs, control by control; how many, or -1 if too many."""
+    n, count = len(costate), 0
+    for c in range(rates.shape[1] - n - 1):
+        before = 0.0
+        for k in range(len(powers)):
+            now = 0.0
+            for i in range(n):
+                for j in range(n):
+                    now += costate[i] * powers[k, i, j] * rates[j, n + c]
+            if k and before * now < 0.0:
+                time = length * (k - 1 + before / (before - now))
+                if time < duration:
+                    if count == len(times):
+                        return -1
+                    times[count], controls[count] = time, c
+                    count += 1
+            if k * length >= duration:
+                break
+            before = now
+    return count
+
+
+def last_levels(costate: Array, rates: Array, box: Array) -> Array:
+    """Controls at the end: where a switching function vanishes there, its rate decides."""
+    n, m = len(costate), box.shape[1]
+    found = np.zeros(m)
+    for c in range(m):
+        column = rates[:n, n + c].copy()
+        matrix = np.ascontiguousarray(rates[:n, :n])
+        for _ in range(n):
+            sigma, size = 0.0, 0.0
+            for i in range(n):
+                sigma += costate[i] * column[i]
+                size += abs(costate[i] * column[i])
+            if abs(sigma) > 1e-12 * size:
+                break
+            column = matrix @ column
+        found[c] = box[0, c] if sigma > 0.0 else box[1, c]
+    return found
+
+
+def outermost(costate: Array, rates: Array, table: Array) -> float:
+    """Size of the first control's switching function at an end, where one that is missed is next."""
+    found = 0.0
+    for i in range(len(costate)):
+        for j in range(len(costate)):
+            found += costate[i] * table[i, j] * rates[j, len(costate)]
+    return abs(found)
+
+
+def missing(costate: Array, rates: Array, powers: Array, whole: Array, times: Array, count: int, final: Array) -> int:
+    """With a switch of a single control next to the end at which its switching function is smaller; how many then."""
+    if outermost(costate, rates, powers[0]) < outermost(costate, rates, whole):
+        times[1 : count + 1] = times[:count].copy()
+        times[0], final[0] = TINY, -1.0
+    else:
+        times[count] = 1.0 - TINY
+    return count + 1
+
+
+def slopes(table: Array, rates: Array, column: int) -> Array:
+    """What an impulse of a control does to the end, and its rate by the time that is left, shape (2, n)."""
+    n = len(table)
+    found = np.zeros((2, n))
+    for i in range(n):
+        for j in range(n):
+            found[0, i] += table[i, j] * rates[j, column]
+            for k in range(n):
+                found[1, i] += table[i, j] * rates[j, k] * rates[k, column]
+    return found
+
+
+def begun(rates: Array, x: Array, u: Array) -> Array:
+    """Rates of states, shape (n,)."""
+    n = len(x)
+    found = rates[:, n + len(u)].copy()
+    for i in range(n):
+        for c in range(len(u)):
+            found[i] += rates[i, n + c] * u[c]
+        for j in range(n):
+            found[i] += rates[i, j] * x[j]
+    return found
+
+
+def equations(
+    matrix: Array,
+    right: Array,
+    costate: Array,
+    duration: float,
+    rates: Array,
+    powers: Array,
+    length: float,
+    x: Array,
+    end: Array,
+    box: Array,
+    final: Array,
+    times: Array,
+    controls: Places,
+) -> None:
+    """Newton's equations for the times, the costates and the duration, times in units of the duration.
+
+    The end is met, every switching function vanishes at its switches, and costates keep their size.
+    """
+    n, count, m = len(x), len(times), len(final)
+    matrix[:], right[:] = 0.0, 0.0
+    whole, level = at(rates, powers, length, duration), final.copy()
+    for s in range(count):
+        c, table = controls[s], at(rates, powers, length, times[s])
+        jump = 2.0 * level[c] - box[0, c] - box[1, c]
+        level[c] -= jump
+        by = slopes(table, rates, n + c)
+        for i in range(n):
+            right[i] -= jump * table[i, n + c]
+            matrix[i, s] = jump * by[0, i] * duration
+            matrix[n + s, count + i] = by[0, i]
+            right[n + s] -= costate[i] * by[0, i]
+            matrix[n + s, s] += costate[i] * by[1, i] * duration
+    rate = begun(rates, x, level)
+    for i in range(n):
+        right[i] += end[i] - whole[i, n + m]
+        for c in range(m):
+            right[i] -= level[c] * whole[i, n + c]
+        for j in range(n):
+            right[i] -= whole[i, j] * x[j]
+            matrix[i, count + n] += whole[i, j] * rate[j] * duration
+        matrix[n + count, count + i] = costate[i]
+    for i in range(len(right)):
+        largest = 0.0
+        for j in range(len(right)):
+            largest = max(largest, abs(matrix[i, j]))
+        for j in range(len(right)):
+            matrix[i, j] /= max(largest, 1e-300)
+        right[i] /= max(largest, 1e-300)
+
+
+def shrunk(share: float, now: float, change: float) -> float:
+    """The share of a correction that leaves a quarter of what is there."""
+    return min(share, -0.75 * now / change) if now + change < 0.25 * now else share
+
+
+def room(times: Array, controls: Places, duration: float, change: Array, longer: float) -> float:
+    """The share of a correction by which no arc shrinks to less than a quarter."""
+    share, count = shrunk(1.0, duration, longer), len(times)
+    for s in range(count):
+        after_another = s > 0 and controls[s - 1] == controls[s]
+        begin, moved = (times[s - 1], change[s - 1]) if after_another else (0.0, 0.0)
+        share = shrunk(share, times[s] - begin, change[s] - moved)
+        if s == count - 1 or controls[s + 1] != controls[s]:
+            share = shrunk(share, duration - times[s], longer - change[s])
+    return share
+
+
+def exact(
+    costate: Array,
+    duration: float,
+    rates: Array,
+    powers: Array,
+    length: float,
+    x: Array,
+    end: Array,
+    box: Array,
+    times: Array,
+    controls: Places,
+) -> tuple[int, float]:
+    """Switching times, costates at the end and the duration by Newton's method, the first two in place.
+
+    Returns
+    -------
+    tuple
+        How many switches, -1 where that fails; and the duration.
+    """
+    n, m = len(x), box.shape[1]
+    count = switches_of(costate, rates, powers, length, duration, times, controls)
+    side = np.ones(m)
+    if count == n - 2 and m == 1:
+        count = missing(costate, rates, powers, at(rates, powers, length, duration), times, count, side)
+        times[0 if side[0] < 0.0 else count - 1] *= duration
+        controls[:count] = 0
+    if count < n - 1:
+        return -1, duration
+    final, settled = last_levels(costate, rates, box), False
+    for c in range(m):
+        final[c] = final[c] if side[c] > 0.0 else box[0, c] + box[1, c] - final[c]
+    costate /= np.abs(costate).max()
+    matrix, right = np.zeros((count + n + 1, count + n + 1)), np.zeros(count + n + 1)
+    own, which = times[:count], controls[:count]
+    for _ in range(CORRECTIONS):
+        equations(matrix, right, costate, duration, rates, powers, length, x, end, box, final, own, which)
+        if not solved(matrix, right):
+            return -1, duration
+        size = np.abs(right).max()
+        if not size <= FAR:
+            return -1, duration
+        change = right[:count] * duration
+        longer = right[count + n] * duration
+        share = room(own, which, duration, change, longer)
+        own += share * change
+        costate += share * right[count : count + n]
+        duration += share * longer
+        if duration > length * (len(powers) - 1):
+            return -1, duration
+        if settled:
+            break
+        settled = share == 1.0 and size <= SETTLED
+    falling = (costate * begun(rates, end, final)).sum()
+    if not settled or not falling < 0.0:  # else it is the last moment at which the end is reached, not the first
+        return -1, duration
+    costate /= -falling
+    return count, duration

@@ -1,0 +1,214 @@
+"""Least times of many linear motions under saturated controls that switch, each with its extremal of exact arcs."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.arrays import Array
+from satsym.instance import Instance
+from satsym.kernels.batch import compiling
+from satsym.solvers.batch.switching import arcs, planes, soonest
+from satsym.solvers.collocation.scaling import final_argument
+
+DRAWN = 3
+"""Places at which coefficients of each motion are compared."""
+
+SAME = 1e-12
+"""Relative difference of coefficients that is rounding."""
+
+FOLLOWED = 1e-7
+"""Relative difference of the reference's rate, by differences, from that of a motion without control."""
+
+STEP = 1e-5
+"""Of these differences, relative to times."""
+
+
+@dataclass(frozen=True, eq=False)
+class Arrivals:
+    """What was found for M instances."""
+
+    instances: Sequence[Instance]
+    solved: NDArray[np.bool_]
+    """For which there is an extremal; the others are for other solvers, shape (M,)."""
+    durations: Array
+    costs: Array
+    """Shapes (M,)."""
+    costates: Array
+    ends: Array
+    """At the start, and states at the end, shapes (n, M)."""
+    times: Array
+    controls: NDArray[np.int64]
+    """Switches in the order of time, and which control, shape (S, M): after the last one come the end and -1."""
+
+    def only(self, chosen: NDArray[np.intp]) -> Arrivals:
+        """Some of them."""
+        arrays = {one.name: getattr(self, one.name) for one in fields(self) if one.name != "instances"}
+        own = {name: table[..., chosen] for name, table in arrays.items()}
+        return replace(self, instances=[self.instances[k] for k in chosen], **own)
+
+
+def stated(instances: Sequence[Instance]) -> Array:
+    """Which states are given at the end, which are on the reference, and the former's values, shape (3, M, n)."""
+    known: dict[int, tuple[float, ...]] = {}  # most share their end
+    rows = [known.get(id(one.final)) or known.setdefault(id(one.final), final_argument(one)) for one in instances]
+    return np.array(rows).reshape(len(rows), 3, -1).swapaxes(0, 1)
+
+
+def applies(instance: Instance) -> bool:
+    """Whether an instance asks for the least time to a state that is given wholly, within bounds on each control."""
+    spec = instance.model.spec
+    plain = spec.switching and spec.control_set == "box" and not (spec.throttled or spec.multipliers)
+    plain = plain and spec.autonomous and not spec.has_terminal_cost and not spec.path_constraints
+    bounded = np.isfinite(instance.lower).all() and np.isfinite(instance.upper).all()
+    return bool(plain and bounded and instance.tf is None and len(instance.final) == len(instance.initial))
+
+
+def first_arrivals(instances: Sequence[Instance], compiled: bool) -> Arrivals:
+    """The least times of instances of one model, which come in an order in which neighbours follow each other.
+
+    Parameters
+    ----------
+    instances
+        Of one model, to each of which :func:`applies`.
+    compiled
+        Whether by machine code.
+    """
+    count, n, m = len(instances), len(instances[0].initial), len(instances[0].lower)
+    boxes = np.array([[one.lower, one.upper] for one in instances])
+    rates, prices, linear = _coefficients(instances)
+    x, end, linear = _ends(instances, rates, linear)
+    apart, acting = np.abs(x - end), np.abs(rates[:, :, n : n + m]) @ np.abs(boxes).max(axis=1)[:, :, None]
+    change = np.abs(rates[:, :, :n] @ x[:, :, None] + rates[:, :, n + m :])[:, :, 0] + acting[:, :, 0]
+    with np.errstate(all="ignore"):
+        scales = np.where(change > 0.0, apart / change, 0.0).max(axis=1)
+        scales = np.where(scales > 0.0, scales, apart.any(axis=1))  # from rest to rest at first nothing changes
+        sizes = np.maximum(np.abs(x), np.abs(end))
+        guesses = (x - end) / np.where(sizes > 0.0, sizes, 1.0) ** 2
+    chosen = np.flatnonzero(linear & (scales > 0.0) & np.isfinite(scales) & np.isfinite(rates).all(axis=(1, 2)))
+    found = np.full((count, n), np.nan), np.full(count, -1), np.full(count, np.nan), *_no_switches(count)
+    if len(chosen):
+        given = (table[chosen] for table in (rates, x, end, boxes, scales, guesses))
+        own = [np.ascontiguousarray(table[chosen]) for table in found]
+        with np.errstate(all="ignore"):
+            _many(compiled)(*map(np.ascontiguousarray, given), *own)
+        for table, part in zip(found, own, strict=True):
+            table[chosen] = part
+    begins, counts, durations, times, controls = found
+    starts = np.array([one.t0 for one in instances])
+    return Arrivals(
+        instances,
+        counts >= 0,
+        durations,
+        prices * durations,
+        (begins * prices[:, None]).T,
+        _states_there(instances, end, starts + durations).T,
+        *_in_order(counts, starts, durations, times, controls),
+    )
+
+
+def _no_switches(count: int) -> tuple[Array, NDArray[np.int64]]:
+    """Room for the times of switches, and for which control it is."""
+    return np.zeros((count, soonest.SWITCHES)), np.zeros((count, soonest.SWITCHES), dtype=np.int64)
+
+
+def _in_order(
+    counts: NDArray[np.int64], starts: Array, durations: Array, times: Array, controls: NDArray[np.int64]
+) -> tuple[Array, NDArray[np.int64]]:
+    """Times of switches, of all controls one after the other, and which control; counted back from the end before."""
+    switches = max(int(counts.max()), 0)
+    used = np.arange(switches) < counts[:, None]
+    forward = np.where(used, durations[:, None] - times[:, :switches], np.inf)
+    order = np.argsort(forward, axis=1, kind="stable")
+    passed = starts[:, None] + np.minimum(np.take_along_axis(forward, order, axis=1), durations[:, None])
+    return passed.T, np.take_along_axis(np.where(used, controls[:, :switches], -1), order, axis=1).T
+
+
+def _states_there(instances: Sequence[Instance], end: Array, t: Array) -> Array:
+    """States at the end, shape (M, n)."""
+    _, on_reference, _ = stated(instances)
+    if not on_reference.any():
+        return end
+    p = tuple(np.array([one.parameters for one in instances]).reshape(len(end), -1).T)
+    curve = np.broadcast_to(instances[0].model.reference_batch(t, p), end.T.shape).T
+    return np.where(on_reference > 0.0, curve, end)
+
+
+@lru_cache(maxsize=1)
+def _machine() -> Callable[..., None]:
+    """Machine code, the same for all models."""
+    trees = [ast.parse(Path(str(one.__file__)).read_text(encoding="utf-8")).body for one in (planes, arcs, soonest)]
+    ours = ("__future__", "satsym")
+    body = [n for tree in trees for n in tree if not str(getattr(n, "module", "")).startswith(ours)]
+    function: Callable[..., None] = compiling.compiled("soonest", ast.unparse(ast.Module(body, [])))["many"]
+    return function
+
+
+def _many(compiled: bool) -> Callable[..., None]:
+    return _machine() if compiled else soonest.many
+
+
+def _coefficients(instances: Sequence[Instance]) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """A, B and d of each motion side by side, its cost of time, and whether that is all there is."""
+    first = instances[0]
+    model, count, n, m = first.model, len(instances), len(first.initial), len(first.lower)
+    rng, p = np.random.default_rng(0), tuple(np.array([one.parameters for one in instances]).reshape(count, -1).T)
+    size = np.maximum(np.abs(np.array([one.initial for one in instances]).T), 1.0)
+    at_x = [size * rng.normal(size=(n, count)) for _ in range(DRAWN)]
+    low, high = (np.array([getattr(one, side) for one in instances]).T for side in ("lower", "upper"))
+    at_u = [low + (high - low) * rng.random((m, count)) for _ in range(DRAWN)]
+    t, none = np.full(count, first.t0), np.zeros((n, count))
+
+    def drawn(function: Callable[..., Any], shape: tuple[int, ...], *more: Array) -> list[Array]:
+        places = zip(at_x, at_u, strict=True)
+        return [np.broadcast_to(function(t, x, u, *more, p), (*shape, count)).reshape(-1, count) for x, u in places]
+
+    with np.errstate(all="ignore"):
+        by_x, by_u = drawn(model.jacobian_x_batch, (n, n)), drawn(model.jacobian_u_batch, (n, m))
+        cost = drawn(model.running_cost_batch, ())
+        linear = _same(by_x) & _same(by_u) & _same(cost) & (cost[0][0] > 0.0)
+        weight = np.broadcast_to(model.magnitude_weight_batch(t, at_x[0], p), (m, count))
+        drift = np.broadcast_to(model.dynamics_batch(t, none, np.zeros((m, count)), p), (n, count))
+    tables = by_x[0].T.reshape(count, n, n), by_u[0].T.reshape(count, n, m), drift.T[:, :, None]
+    return np.concatenate(tables, axis=2), cost[0][0], linear & ~weight.any(axis=0)
+
+
+def _same(drawn: list[Array]) -> NDArray[np.bool_]:
+    """Whether values do not depend on where they are taken, shape (M,)."""
+    spread, size = np.ptp(drawn, axis=0).max(axis=0), np.abs(drawn).max(axis=(0, 1))
+    return np.asarray(np.isfinite(size) & (spread <= SAME * size))
+
+
+def _ends(
+    instances: Sequence[Instance], rates: Array, linear: NDArray[np.bool_]
+) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Initial states and ends, shapes (M, n), and for which that is all there is to them.
+
+    An end on a reference that moves as the motion itself does without control is the origin of the difference of both,
+    which has no drift: that is taken out of ``rates``.
+    """
+    n, first = len(instances[0].initial), instances[0]
+    x = np.array([one.initial for one in instances])
+    _, on_reference, target = stated(instances)
+    if not on_reference.any():
+        return x, target, linear
+    p, t = tuple(np.array([one.parameters for one in instances]).reshape(len(x), -1).T), np.full(len(x), first.t0)
+    followed = on_reference.all(axis=1)
+    for later in (0.0, 1.0, 2.7):
+        now, step = t + later, STEP * np.maximum(np.abs(t + later), 1.0)
+        before, here, after = (
+            np.broadcast_to(first.model.reference_batch(at, p), (n, len(x))).T for at in (now - step, now, now + step)
+        )
+        own = (rates[:, :, :n] @ here[:, :, None])[:, :, 0] + rates[:, :, -1]
+        off = np.abs((after - before) / (2.0 * step)[:, None] - own).max(axis=1)
+        followed &= off <= FOLLOWED * np.maximum(np.abs(own).max(axis=1), np.abs(here).max(axis=1))
+        x = np.where((followed & (later == 0.0))[:, None], x - here, x)
+    rates[followed, :, -1] = 0.0
+    return x, np.where(followed[:, None], 0.0, target), linear & (followed | ~on_reference.any(axis=1))

@@ -1,0 +1,266 @@
+"""The certificate of many extremals of least time, but for competitors: those that are minima beyond doubt.
+
+As :mod:`satsym.solvers.certificate.switching.conditions` has it for one: the flow again from the initial costates, by
+an integration that the solver does not use; H and its minimum at many places; strict switches; and the derivatives of
+the end by the times: if they are independent, no other times lead there. What is not clear here is left to that.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.arrays import Array
+from satsym.kernels import Kernels
+from satsym.solution import Certificate, Solution
+from satsym.solvers.batch.switching.arrivals import Arrivals, stated
+from satsym.solvers.certificate.flow import NEGLIGIBLE, TOLERANCE
+from satsym.solvers.certificate.kernel_consistency import with_kernels_examined
+from satsym.solvers.certificate.switching.conditions import CLOSE, DRIFT, RESIDUAL, STRICT, TIMES
+from satsym.solvers.certificate.switching.variation import RANK
+from satsym.solvers.simulation.extrapolation import leap_and_error
+from satsym.status import Status, Verdict
+
+PARTS = (1, 2, 4, 8)
+"""Into which arcs are taken until errors of the flow are small enough."""
+
+PLACES = np.array([1e-3, 0.02, 0.06, 0.12, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.88, 0.94, 0.98, 1.0 - 1e-3])
+"""Of an arc, at which H and switching functions are looked at."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Flow:
+    """Extremals again, arc by arc; arcs of no length follow after the last."""
+
+    begins: Array
+    lengths: Array
+    """Of the arcs, shapes (K, M)."""
+    u: Array
+    """Controls on each arc, shape (K, m, M)."""
+    values: Array
+    """States, costates, and derivatives of the states by the times of switches: where arcs begin, and at the end, shape
+    (K + 1, 2n + n S, M)."""
+    error: Array
+    """The largest of the flow, relative, shape (M,)."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Many:
+    """Extremals as columns, with what the rates need."""
+
+    found: Arrivals
+
+    @property
+    def model(self) -> Kernels:
+        return self.found.instances[0].model
+
+    def parameters(self, times: int = 1) -> tuple[Array, ...]:
+        """Of each, so many times one after the other."""
+        rows = np.array([one.parameters for one in self.found.instances]).reshape(len(self.found.instances), -1)
+        return tuple(np.tile(rows.T, times))
+
+    def rates(self, u: Array, p: tuple[Array, ...], t: Array, y: Array) -> Array:
+        """Of states, costates and derivatives of the states."""
+        n, model = len(self.found.costates), self.model
+        x, lam = y[:n], y[n : 2 * n]
+        rows = [model.dynamics_batch(t, x, u, p), model.costate_rate_batch(t, x, u, lam, p)]
+        rows = [np.broadcast_to(each, x.shape) for each in rows]
+        if len(y) > 2 * n:
+            slopes = np.broadcast_to(model.jacobian_x_batch(t, x, u, p), (n, n, len(t)))
+            rows.append(np.einsum("ijk,cjk->cik", slopes, y[2 * n :].reshape(-1, n, len(t))).reshape(-1, len(t)))
+        return np.concatenate(rows)
+
+
+def minima(found: Arrivals) -> NDArray[np.bool_]:
+    """Which are strict local minima beyond doubt, shape (M,): the verdict ``local minimum``."""
+    fine = np.zeros(len(found.instances), dtype=bool)
+    # as many unknown times as conditions at the end, or fewer: otherwise the second variation decides
+    fitting = found.solved & ((found.controls >= 0).sum(axis=0) < len(found.costates))
+    chosen = np.flatnonzero(fitting)
+    if len(chosen):
+        with np.errstate(all="ignore"):
+            own = found.only(chosen)
+            flow = _flow(own)
+            clear = (flow.error <= TOLERANCE) & _ended(own, flow) & _switching(own, flow) & _independent(own, flow)
+        fine[chosen] = clear & _kernels_agree(own, flow)
+    return fine
+
+
+def _flow(found: Arrivals) -> _Flow:
+    """From the initial states and costates alone, but for the times of the switches, which are judged afterwards."""
+    many, (n, count) = _Many(found), found.costates.shape
+    initial = np.array([one.initial for one in found.instances]).T
+    start = np.array([one.t0 for one in found.instances])
+    edges = np.concatenate([start[None], found.times, (start + found.durations)[None]])
+    low, high = (np.array([getattr(one, side) for one in found.instances]).T for side in ("lower", "upper"))
+    p, switches = many.parameters(), len(found.times)
+    sigma = np.broadcast_to(many.model.switching_function_batch(start, initial, found.costates, p), low.shape)
+    u = np.where(sigma > 0.0, low, high)
+    y = np.concatenate([initial, found.costates, np.zeros((n * switches, count))])
+    values, controls, error = [y], [], np.zeros(count)
+    for k in range(switches + 1):
+        begin, length = edges[k], edges[k + 1] - edges[k]
+        controls.append(u)
+        y, off = _along(many, u, p, begin, length, y)
+        error = np.maximum(error, off)
+        if k < switches:
+            which = np.arange(len(low))[:, None] == found.controls[k]
+            before = many.model.dynamics_batch(edges[k + 1], y[:n], u, p)
+            u = np.where(which, low + high - u, u)
+            jump = before - many.model.dynamics_batch(edges[k + 1], y[:n], u, p)
+            y[2 * n + k * n : 2 * n + (k + 1) * n] = jump
+        values.append(y)
+    return _Flow(edges[:-1], np.diff(edges, axis=0), np.array(controls), np.array(values), error)
+
+
+def _along(many: _Many, u: Array, p: tuple[Array, ...], t: Array, h: Array, y: Array) -> tuple[Array, Array]:
+    """Where an arc ends, and the largest relative error, shape (M,)."""
+    for parts in PARTS:
+        now, worst = y, np.zeros(len(t))
+        for part in range(parts):
+            step = h / parts
+            now, off = leap_and_error(lambda t, y: many.rates(u, p, t, y), t + part * step, now, step)
+            n = len(many.found.costates)
+            sizes = np.maximum(np.maximum(np.abs(now), np.abs(y)), 1e-300)
+            groups = (slice(0, n), slice(n, 2 * n), slice(2 * n, None))
+            for group in groups:
+                if len(off[group]):
+                    worst = np.maximum(worst, off[group].max(axis=0) / sizes[group].max(axis=0))
+        if (worst <= TOLERANCE).all():
+            break
+    return now, np.where(np.isfinite(worst), worst, np.inf)
+
+
+def _ended(found: Arrivals, flow: _Flow) -> NDArray[np.bool_]:
+    """Whether the flow ends where it should, with H at its end as a free time asks for."""
+    many, n = _Many(found), len(found.costates)
+    x, lam = flow.values[:, :n], flow.values[:, n : 2 * n]
+    tf = flow.begins[-1] + flow.lengths[-1]
+    _, on_reference, target = stated(found.instances).swapaxes(1, 2)
+    p, slip = many.parameters(), np.zeros_like(target)
+    if on_reference.any():
+        step = 1e-6 * np.maximum(np.abs(tf), 1.0)
+        before, there, after = (
+            np.broadcast_to(many.model.reference_batch(t, p), target.shape) for t in (tf - step, tf, tf + step)
+        )
+        target = np.where(on_reference > 0.0, there, target)
+        slip = np.where(on_reference > 0.0, (after - before) / (2.0 * step), 0.0)
+    middle = np.array([0.5 * (np.array(one.lower) + one.upper) for one in found.instances]).T
+    undriven, _ = leap_and_error(
+        lambda t, y: np.broadcast_to(many.model.dynamics_batch(t, y, np.zeros_like(middle), p), y.shape),
+        flow.begins[0],
+        x[0],
+        found.durations,
+        4,
+    )
+    sizes = np.maximum(np.abs(x).max(axis=0), 1e-300)
+    moved = np.minimum(np.nan_to_num(np.abs(x[-1] - undriven) / sizes, nan=1.0).max(axis=0), 1.0)
+    residual = (np.abs(x[-1] - target) / np.maximum(sizes * moved, NEGLIGIBLE * sizes)).max(axis=0)
+    rates = many.model.dynamics_batch(tf, x[-1], flow.u[-1], p)
+    h = many.model.hamiltonian_batch(tf, x[-1], flow.u[-1], lam[-1], p) - (lam[-1] * slip).sum(axis=0)
+    terms = np.maximum(np.abs(lam[-1] * rates).sum(axis=0), np.abs(lam[-1] * slip).sum(axis=0))
+    precise = RESIDUAL if not on_reference.any() else 10.0 * RESIDUAL  # the reference's rate is a difference
+    return np.asarray((residual <= RESIDUAL) & (np.abs(h) <= precise * np.maximum(terms, 1e-300)))
+
+
+def _switching(found: Arrivals, flow: _Flow) -> NDArray[np.bool_]:
+    """Whether switching functions vanish at switches, strictly, and have the right signs elsewhere; H constant."""
+    many, n, lasting = _Many(found), len(found.costates), found.durations
+    arcs, count = flow.lengths.shape
+    t, sigma, h, terms = _looked_at(many, flow)
+    size = np.maximum(np.abs(sigma).max(axis=(0, 1)), 1e-300)
+    u, bounds = (
+        flow.u[:, None],
+        [np.array([getattr(one, side) for one in found.instances]).T for side in ("lower", "upper")],
+    )
+    low, high = bounds
+    right = np.where(u < 0.5 * (low + high), sigma > 0.0, sigma < 0.0) | (low == high)
+    real = flow.lengths > 0.0
+    fine = (right.all(axis=(1, 2)) | ~real).all(axis=0) & (low < high).all(axis=0)
+    away = np.full((*t.shape[:2], len(low), count), True)
+    last = np.broadcast_to(flow.begins[0], (len(low), count)).copy()
+    p, gaps = many.parameters(), np.full(count, np.inf)
+    for k in range(arcs - 1):
+        on = found.controls[k] >= 0
+        edge, z = found.times[k], flow.values[k + 1]
+        x, lam = z[:n], z[n : 2 * n]
+        which = (np.arange(len(low))[:, None] == found.controls[k]) & on
+        own = np.broadcast_to(many.model.switching_function_batch(edge, x, lam, p), low.shape)
+        rate = np.broadcast_to(many.model.switching_rate_batch(edge, x, flow.u[k], lam, p), low.shape)
+        strict = (np.abs(own) <= TIMES * lasting * np.abs(rate)) & (np.abs(rate) * lasting > STRICT * size)
+        fine &= (strict | ~which).all(axis=0)
+        gaps = np.minimum(gaps, np.where(which, edge - last, np.inf).min(axis=0))
+        last = np.where(which, edge, last)
+        away &= ~which | (np.abs(t - edge)[:, :, None] > CLOSE * lasting)
+    gaps = np.minimum(gaps, (flow.begins[0] + lasting - last).min(axis=0))
+    away &= real[:, None, None]
+    distance = np.where(away, np.abs(sigma) / size, np.inf).min(axis=(0, 1, 2))
+    drift = np.abs(h).max(axis=(0, 1)) <= DRIFT * np.maximum(terms.max(axis=(0, 1)), 1e-300)
+    return np.asarray(fine & (gaps > STRICT * lasting) & (distance > STRICT) & drift & _within(many, flow))
+
+
+def _looked_at(many: _Many, flow: _Flow) -> tuple[Array, Array, Array, Array]:
+    """Within arcs: times (K, L, M), switching functions (K, L, m, M), the change of H and the size of its terms.
+
+    Switching functions are in units of their bounds' width, H and its terms of shape (K, L, M).
+    """
+    n, (arcs, count) = len(many.found.costates), flow.lengths.shape
+    m, each = flow.u.shape[1], len(PLACES)
+    begins = np.repeat(flow.begins[:, None], each, axis=1)
+    lengths = flow.lengths[:, None] * PLACES[:, None]
+    u = np.repeat(flow.u[:, None], each, axis=1).transpose(2, 0, 1, 3).reshape(m, -1)
+    y = np.repeat(flow.values[:-1, None, : 2 * n], each, axis=1).transpose(2, 0, 1, 3).reshape(2 * n, -1)
+    t, step, p = begins.ravel(), lengths.ravel(), many.parameters(arcs * each)
+    for part in range(PARTS[1]):
+        half = step / PARTS[1]
+        y, _ = leap_and_error(lambda t, y: many.rates(u, p, t, y), t + part * half, y, half)
+    t, shape = t + step, (arcs, each, count)
+    x, lam = y[:n], y[n:]
+    sigma = np.broadcast_to(many.model.switching_function_batch(t, x, lam, p), (m, len(t)))
+    h = np.broadcast_to(many.model.hamiltonian_batch(t, x, u, lam, p), t.shape).reshape(shape)
+    rates = np.abs(lam * many.model.dynamics_batch(t, x, u, p)).sum(axis=0).reshape(shape)
+    width = np.array([np.array(one.upper) - one.lower for one in many.found.instances]).T
+    signs = sigma.reshape(m, *shape).transpose(1, 2, 0, 3) * width
+    first = h[:1, :1]
+    return t.reshape(shape), signs, np.where(flow.lengths[:, None] > 0.0, h - first, 0.0), rates
+
+
+def _within(many: _Many, flow: _Flow) -> NDArray[np.bool_]:
+    """Whether all states are in the domain, shape (M,)."""
+    names, n = many.model.spec.states, len(many.found.costates)
+    places = [i for i, one in enumerate(names) if one.positive]
+    return np.asarray((flow.values[:, :n][:, places] > 0.0).all(axis=(0, 1)))
+
+
+def _independent(found: Arrivals, flow: _Flow) -> NDArray[np.bool_]:
+    """Whether the end fixes the switching times and the final one: its derivatives by them are independent."""
+    n, count = found.costates.shape
+    last, tf = flow.values[-1], flow.begins[-1] + flow.lengths[-1]
+    many = _Many(found)
+    rates = np.broadcast_to(many.model.dynamics_batch(tf, last[:n], flow.u[-1], many.parameters()), (n, count))
+    table = np.concatenate([last[2 * n :].reshape(-1, n, count), rates[None]]).transpose(2, 1, 0)
+    table = table / np.maximum(np.abs(table).max(axis=2, keepdims=True), 1e-300)
+    used = np.concatenate([found.controls >= 0, np.ones((1, count), dtype=bool)]).T
+    values = np.linalg.svd(np.where(np.isfinite(table), table, 0.0), compute_uv=False)
+    smallest = np.take_along_axis(values, used.sum(axis=1)[:, None] - 1, axis=1)[:, 0]
+    return np.asarray(smallest > RANK * values[:, 0])
+
+
+def _kernels_agree(found: Arrivals, flow: _Flow) -> bool:
+    """Whether the kernels do not contradict each other, near the first extremal; found out once for a model."""
+    model, n = found.instances[0].model, len(found.costates)
+    if model not in _AGREE:
+        z, times = flow.values[:, : 2 * n, 0].T, np.append(flow.begins[:, 0], flow.begins[-1, 0] + flow.lengths[-1, 0])
+        u = np.append(flow.u[:, :, 0], flow.u[-1:, :, 0], axis=0).T
+        one = found.instances[0]
+        answer = Solution(one, "bang-bang", Status.CONVERGED, "", 0.0, times, z[:n], u, z[n:], (), 0, (), 0.0)
+        blank = Certificate(Verdict.LOCAL_MINIMUM, 0.0, 0.0, 0.0, None, 0.0, None, ())
+        _AGREE[model] = with_kernels_examined(blank, answer).verdict is Verdict.LOCAL_MINIMUM
+    return _AGREE[model]
+
+
+_AGREE: WeakKeyDictionary[Kernels, bool] = WeakKeyDictionary()
+"""What was found out."""

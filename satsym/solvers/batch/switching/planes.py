@@ -1,0 +1,266 @@
+"""What steps of linear motions do, and planes between what they reach and a given end: text that is compiled.
+
+Every motion is x' = A x + B u + d with low <= u <= high, from x(0) to a given end; ``rates`` is A, B and d side by
+side, shape (n, n + m + 1). ``powers`` holds what k steps do, shape (count + 1, n, n + m + 1): to states, by controls
+held at one, by the drift. ``box`` has low and high as rows. Costates at the end are a plane, which shows that an end
+is not reached if all that is reached lies on its other side. This module imports nothing of ours but others such:
+compilers see nothing else, and without one its functions run as they stand.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+TERMS = 14
+"""Of a series, for a step whose product with the motion's rates is an eighth: they leave nothing out."""
+
+CORNERS = 80
+"""Support points for a plane at most."""
+
+THERE = 1e-6
+"""Distance of the end from the set, in units of its size, that is none."""
+
+DIP = 0.02
+"""Share of the change from step to step by which a plane that comes nearest between two steps is too near."""
+
+
+def solved(matrix: Array, right: Array) -> bool:
+    """Put the solution of linear equations in the place of the right side; whether there is one."""
+    count = len(right)
+    for k in range(count):
+        best = k
+        for i in range(k + 1, count):
+            if abs(matrix[i, k]) > abs(matrix[best, k]):
+                best = i
+        if not abs(matrix[best, k]) > 1e-13:
+            return False
+        for j in range(count):
+            matrix[k, j], matrix[best, j] = matrix[best, j], matrix[k, j]
+        right[k], right[best] = right[best], right[k]
+        for i in range(k + 1, count):
+            share = matrix[i, k] / matrix[k, k]
+            if share != 0.0:
+                for j in range(k + 1, count):
+                    matrix[i, j] -= share * matrix[k, j]
+                right[i] -= share * right[k]
+    for k in range(count - 1, -1, -1):
+        for j in range(k + 1, count):
+            right[k] -= matrix[k, j] * right[j]
+        right[k] /= matrix[k, k]
+    return True
+
+
+def after(rates: Array, start: Array, length: float) -> Array:
+    """What is done after a short while, from what is done before it: the exponential series."""
+    n, width = start.shape
+    found, term, following = start.copy(), np.zeros_like(start), np.zeros_like(start)
+    for order in range(1, TERMS):
+        largest = 0.0
+        for i in range(n):
+            for j in range(width):
+                value = rates[i, j] if order == 1 and j >= n else 0.0
+                for k in range(n):
+                    value += rates[i, k] * (start[k, j] if order == 1 else term[k, j])
+                following[i, j] = value * length / order
+                largest = max(largest, abs(following[i, j]))
+        found += following
+        term, following = following, term
+        if largest == 0.0:
+            break
+    return found
+
+
+def powers_of(rates: Array, length: float, count: int) -> Array:
+    """What 0, 1, ... count steps do."""
+    n, width = rates.shape
+    found = np.zeros((count + 1, n, width))
+    for i in range(n):
+        found[0, i, i] = 1.0
+    one = after(rates, found[0], length)
+    for step in range(count):
+        for i in range(n):
+            for j in range(width):
+                value = one[i, j] if j >= n else 0.0
+                for k in range(n):
+                    value += one[i, k] * found[step, k, j]
+                found[step + 1, i, j] = value
+    return found
+
+
+def at(rates: Array, powers: Array, length: float, time: float) -> Array:
+    """What is done in any time."""
+    step = min(int(time / length), len(powers) - 1)
+    return after(rates, powers[step], time - step * length)
+
+
+def passed(
+    costate: Array, rates: Array, powers: Array, length: float, x: Array, end: Array, box: Array, since: float
+) -> float:
+    """The first time, not before a given one, at which a plane tells the end no longer from what is reached.
+
+    Negative where that is beyond all steps. ``box`` has low and high as rows.
+    """
+    n, m = len(x), box.shape[1]
+    first, gained, before, earlier = int(np.ceil(since / length - 1e-9)), 0.0, 0.0, 0.0
+    sigma, pushed, goal = np.zeros(m), np.zeros(m), 0.0
+    for i in range(n):
+        goal += costate[i] * end[i]
+    for k in range(len(powers)):
+        table, value = powers[k], -goal
+        for i in range(n):
+            value += costate[i] * table[i, n + m]
+            for j in range(n):
+                value += costate[i] * table[i, j] * x[j]
+        for c in range(m):
+            push, now = 0.0, 0.0
+            for i in range(n):
+                push += costate[i] * table[i, n + c]
+                for j in range(n):
+                    now += costate[i] * table[i, j] * rates[j, n + c]
+            if k:
+                area = push - pushed[c]
+                if sigma[c] * now < 0.0:
+                    part = 0.5 * length * sigma[c] * sigma[c] / (sigma[c] - now)
+                    gained += minimum(part, box[0, c], box[1, c]) + minimum(area - part, box[0, c], box[1, c])
+                else:
+                    gained += minimum(area, box[0, c], box[1, c])
+            sigma[c], pushed[c] = now, push
+        value += gained
+        if k >= first and not value > 0.0:
+            return max(since, length * (k - 1 + before / (before - value))) if before > 0.0 else since
+        if k > first + 1 and earlier > before < value:  # it may be passed for a moment between two steps
+            slope, curve = 0.5 * (value - earlier), value - 2.0 * before + earlier
+            if before - 0.5 * slope * slope / curve <= DIP * curve:
+                return max(since, length * (k - 1 - slope / curve))
+        earlier, before = before, value
+    return -1.0
+
+
+def minimum(area: float, low: float, high: float) -> float:
+    """Of what a control does to costates times states."""
+    return min(area * low, area * high)
+
+
+def nearest(powers: Array, steps: int, x: Array, end: Array, box: Array, tight: float, found: Array) -> float:
+    """How far the end is from what so many steps reach; the plane that shows it is put into ``found``.
+
+    Wolfe's algorithm, in coordinates in which the set is about round; negative where nothing is shown.
+    """
+    n, m = len(x), box.shape[1]
+    lower = rounding(powers, steps, box)
+    if not lower[0, 0] > 0.0:
+        return -1.0
+    middle, moved = powers[steps, :, n + m] - end, np.zeros(n)
+    for i in range(n):
+        for j in range(n):
+            middle[i] += powers[steps, i, j] * x[j]
+        for c in range(m):
+            middle[i] += 0.5 * (box[0, c] + box[1, c]) * powers[steps, i, n + c]
+    corners, weights = np.zeros((n + 1, n)), np.zeros(n + 1)
+    towards(lower, middle)
+    point, corners[0], weights[0], held, best = middle.copy(), middle, 1.0, 1, -np.inf
+    plane = np.zeros(n)
+    for _ in range(CORNERS):
+        size = np.sqrt((point * point).sum())
+        if size <= THERE:
+            break
+        for i in range(n - 1, -1, -1):  # the direction in the coordinates of states
+            plane[i] = point[i]
+            for j in range(i + 1, n):
+                plane[i] -= lower[j, i] * plane[j]
+            plane[i] /= lower[i, i]
+        moved[:] = 0.0
+        for k in range(steps):
+            for c in range(m):
+                pushed = 0.0
+                for i in range(n):
+                    pushed += plane[i] * (powers[k + 1, i, n + c] - powers[k, i, n + c])
+                half = -0.5 * (box[1, c] - box[0, c]) * np.sign(pushed)
+                for i in range(n):
+                    moved[i] += half * (powers[k + 1, i, n + c] - powers[k, i, n + c])
+        towards(lower, moved)
+        moved += middle
+        distance = (point * moved).sum() / size
+        if distance > best:
+            best = distance
+            found[:] = plane
+        if best >= (1.0 - tight) * size or (point * (point - moved)).sum() <= 1e-13 * size * size:
+            break
+        held = joined(corners, weights, held, moved)
+        if held < 0:
+            break
+        point[:] = 0.0
+        for k in range(held):
+            point += weights[k] * corners[k]
+    return best
+
+
+def rounding(powers: Array, steps: int, box: Array) -> Array:
+    """Cholesky's factor of the second moments of what steps do; zero where they do not move everything."""
+    n, m = powers.shape[1], box.shape[1]
+    found = np.zeros((n, n))
+    for k in range(steps):
+        for c in range(m):
+            width = 0.5 * (box[1, c] - box[0, c])
+            for i in range(n):
+                for j in range(i + 1):
+                    one = powers[k + 1, i, n + c] - powers[k, i, n + c]
+                    other = powers[k + 1, j, n + c] - powers[k, j, n + c]
+                    found[i, j] += one * other * width * width * steps
+    for i in range(n):
+        for j in range(i + 1):
+            value = found[i, j]
+            for k in range(j):
+                value -= found[i, k] * found[j, k]
+            if i == j:
+                if not value > 1e-18 * found[i, i]:
+                    found[0, 0] = 0.0
+                    return found
+                found[i, i] = np.sqrt(value)
+            else:
+                found[i, j] = value / found[j, j]
+    return found
+
+
+def towards(lower: Array, point: Array) -> None:
+    """Into the coordinates in which the set is round."""
+    for i in range(len(point)):
+        for j in range(i):
+            point[i] -= lower[i, j] * point[j]
+        point[i] /= lower[i, i]
+
+
+def joined(corners: Array, weights: Array, held: int, new: Array) -> int:
+    """The hull with one corner more, and without those that its nearest point does not need; -1 where that fails."""
+    if held == len(corners):
+        return -1
+    corners[held], weights[held] = new, 0.0
+    held += 1
+    n = corners.shape[1]
+    while True:
+        matrix, right, wanted = np.zeros((held - 1, held - 1)), np.zeros(held - 1), np.ones(held)
+        for i in range(held - 1):
+            for j in range(held - 1):
+                for k in range(n):
+                    matrix[i, j] += (corners[i + 1, k] - corners[0, k]) * (corners[j + 1, k] - corners[0, k])
+            for k in range(n):
+                right[i] -= (corners[i + 1, k] - corners[0, k]) * corners[0, k]
+        if not solved(matrix, right):
+            return -1
+        for i in range(held - 1):
+            wanted[i + 1] = right[i]
+            wanted[0] -= right[i]
+        share, leaving = 1.0, -1
+        for i in range(held):
+            if wanted[i] <= 0.0 and weights[i] / max(weights[i] - wanted[i], 1e-300) <= share:
+                share, leaving = weights[i] / max(weights[i] - wanted[i], 1e-300), i
+        for i in range(held):
+            weights[i] += share * (wanted[i] - weights[i])
+        if leaving < 0:
+            return held
+        for i in range(leaving, held - 1):
+            corners[i], weights[i] = corners[i + 1], weights[i + 1]
+        held -= 1

@@ -1,0 +1,151 @@
+"""Solving the rows of a chunk as columns of arrays; what does not end in a minimum is left to the single solver."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym import methods
+from satsym.arrays import Array
+from satsym.instance import Instance
+from satsym.instance.numbers import Table
+from satsym.solvers.certificate.corners import positive
+from satsym.solvers.cold_start.origin import Origin
+from satsym.solvers.redundant_ends import redundant
+from satsym.status import Verdict
+from satsym.studies import rows
+from satsym.studies.asked import Checked, Command, Task
+from satsym.studies.rows import Cases, Row
+
+NEIGHBOUR, REACHABLE = "nearest answer", "reachable set"
+"""The origin of answers: from the nearest one, and from the ends that are reached in less time."""
+
+SHOOTING, SWITCHING = "shooting", "bang-bang"
+"""The methods by which rows are solved together."""
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """What came of M rows."""
+
+    minimum: NDArray[np.bool_]
+    """Which are what was asked for; the others are for the single solver, shape (M,)."""
+    method: str
+    origins: Sequence[str]
+    costs: Array
+    """As they are minimised, shape (M,)."""
+    t_final: Array
+    x_final: Array
+    costates: Array
+    """At the end and at the start, shapes (n, M)."""
+    switches: Array
+    """How often controls switch, shape (M,)."""
+
+
+Together = Callable[[Task, Sequence[Instance]], Found]
+
+
+def together(task: Task) -> Together | None:
+    """How rows are solved as columns of arrays; ``None`` where they are not: never where trajectories are kept."""
+    stays = all(key.table in (Table.INITIAL, Table.FINAL, Table.PARAMETERS) for key in task.keys)
+    wanted = task.command is Command.SOLVE and task.checked is not Checked.FULL and not task.trajectories
+    if not (wanted and stays):
+        return None
+    if _smooth_with_given_ends(task):
+        return _shot
+    return _first_arrivals if _least_time(task) else None
+
+
+def rows_together(task: Task, solve: Together, single: Callable[[str, Instance], Row], cases: Cases) -> list[Row]:
+    """All at once, and one by one what does not end in a minimum beyond doubt."""
+    if not cases:
+        return []
+    found = solve(task, [instance for _, instance in cases])
+    verdict = Verdict.LOCAL_MINIMUM.value if task.checked is Checked.LOCAL else None
+    return [
+        rows.of_extremal(key, instance.model.spec, found, k, verdict)
+        if found.minimum[k]
+        else rows.tried(single, key, instance)
+        for k, (key, instance) in enumerate(cases)
+    ]
+
+
+def plain(task: Task) -> bool:
+    """Whether the problem is smooth, and nothing is asked of solvers besides."""
+    spec = task.instance.model.spec
+    smooth = not (spec.switching or spec.throttled or spec.stationary or spec.directional or spec.path_constraints)
+    return smooth and _bare(task.instance) and redundant(task.instance) is None
+
+
+def _bare(instance: Instance) -> bool:
+    """Whether nothing is asked of solvers but a solution."""
+    said = (instance.free, instance.continuation, instance.solver.free_angles, instance.guess, instance.end_limits)
+    return not any(said)
+
+
+def _smooth_with_given_ends(task: Task) -> bool:
+    """Whether controls are smooth, and both ends and times given."""
+    instance = task.instance
+    given = instance.tf is not None and len(instance.final) == len(instance.initial)
+    fitting = instance.solver.method in (methods.AUTO, SHOOTING) and instance.control_set.kind in ("box", "ball")
+    return given and fitting and not instance.model.spec.multipliers and plain(task)
+
+
+def _shot(task: Task, instances: Sequence[Instance]) -> Found:
+    """Extremals with smooth controls and given ends."""
+    from satsym.solvers.batch.certificate import minima
+    from satsym.solvers.batch.many import Many
+    from satsym.solvers.batch.solving import solved_together, to_rounding
+
+    many = Many.of(task.instance, instances, task.compiled)
+    answers = solved_together(many)
+    nodes = answers.nodes
+    if task.checked is Checked.LOCAL:
+        fine = minima(many, nodes)
+        unclear = np.flatnonzero(nodes.solved & ~fine)
+        nodes = to_rounding(many, nodes, unclear)
+        fine[unclear] = minima(many.only(unclear), nodes.only(unclear))
+    else:
+        fine = nodes.solved & positive(nodes.transition * (many.units / many.units[:, None])[:, :, None, None])
+    n, tf = many.states, float(many.times[-1])
+    x = nodes.z[:n, -1]
+    pairs = zip(instances, x.T.tolist(), strict=True)
+    return Found(
+        minimum=fine,
+        method=SHOOTING,
+        origins=[NEIGHBOUR if near else Origin.STRAIGHT_LINE.value for near in answers.neighbour],
+        costs=nodes.cost + [one.model.terminal_cost(tf, tuple(end), one.parameters) for one, end in pairs],
+        t_final=np.full(many.count, tf),
+        x_final=x,
+        costates=nodes.z[n:, 0],
+        switches=np.zeros(many.count),
+    )
+
+
+def _least_time(task: Task) -> bool:
+    """Whether the least time of a motion with switching controls to a given state is asked for."""
+    from satsym.solvers.batch.switching.arrivals import applies
+
+    fitting = task.instance.solver.method in (methods.AUTO, SWITCHING)
+    return fitting and _bare(task.instance) and applies(task.instance)
+
+
+def _first_arrivals(task: Task, instances: Sequence[Instance]) -> Found:
+    """Extremals of exact arcs, to which nothing arrives earlier."""
+    from satsym.solvers.batch.switching.arrivals import first_arrivals
+    from satsym.solvers.batch.switching.certificate import minima
+
+    found = first_arrivals(instances, task.compiled)
+    return Found(
+        minimum=minima(found) if task.checked is Checked.LOCAL else found.solved,
+        method=SWITCHING,
+        origins=[REACHABLE] * len(instances),
+        costs=found.costs,
+        t_final=np.array([one.t0 for one in instances]) + found.durations,
+        x_final=found.ends,
+        costates=found.costates,
+        switches=(found.controls >= 0).sum(axis=0),
+    )
