@@ -316,3 +316,9 @@ def variables_of(model: Model) -> tuple[Variable, ...]:
     kept = {v.symbol for v in found}
     found += [v for v in model.brings() if v.symbol not in kept]
     return tuple(found)
+
+
+def with_origins(model: Model) -> tuple[Model, ...]:
+    """A model, the one from whose motion it is derived, and so on."""
+    origin = model.origin()
+    return (model, *(with_origins(origin) if origin else ()))

@@ -126,12 +126,21 @@ def compiled(text: str, folder: Path) -> str:
     return (folder / "it.log").read_text(encoding="utf-8", errors="replace")
 
 
+COMPLAINT = re.compile(
+    r"(?:Over|Under)full \\[hv]box.*|^(?!Package: ).*[Ww]arning.*|Missing character.*|.*undefined.*", re.M
+)
+
+
 def assert_clean(log: str) -> None:
-    too_wide = [float(points) for points in re.findall(r"Overfull \\hbox \(([\d.]+)pt", log)]
-    assert not [points for points in too_wide if points > 5]
-    assert "Overfull \\vbox" not in log
-    for complaint in ("undefined", "multiply defined", "Missing character", "Rerun to get"):
-        assert complaint not in log
+    assert COMPLAINT.findall(log) == []
+
+
+def filled(pdf: Path) -> list[float]:
+    """How much of each page but the last is filled, from its top to its lowest line of text."""
+    boxes = subprocess.run(["pdftotext", "-bbox", pdf, "-"], capture_output=True, check=True, text=True).stdout
+    pages = [sorted(float(y) for y in re.findall(r'yMax="([\d.]+)"', page)) for page in boxes.split("<page ")[1:]]
+    height, foot = 240 * 72 / 25.4, 30  # of the text, and what parts it from the number of the page
+    return [1 - (ys[-1] - foot - max(y for y in ys if y < ys[-1] - foot / 2)) / height for ys in pages[:-1]]
 
 
 @needs_tex
@@ -155,6 +164,22 @@ def test_what_is_typeset_compiles_within_its_margins_and_every_reference_leads_s
 )
 def test_document_compiles_by_itself(name: str, language: str, tmp_path: Path) -> None:
     assert_clean(compiled(render(derived(name), language), tmp_path))
+    if shutil.which("pdftotext"):
+        assert min(filled(tmp_path / "it.pdf"), default=1) > 0.7
+
+
+@needs_tex
+@pytest.mark.slow
+def test_compiled_twice_a_document_has_the_same_bytes_title_and_bookmarks(tmp_path: Path) -> None:
+    text, folders = render(derived("double_integrator_energy")), (tmp_path / "one", tmp_path / "two")
+    for folder in folders:
+        folder.mkdir()
+        compiled(text, folder)
+    one, two = ((folder / "it.pdf").read_bytes() for folder in folders)
+    assert one == two
+    marks = (folders[0] / "it.out").read_text(encoding="utf-8")
+    assert len(derived("double_integrator_energy").steps) < marks.count("BOOKMARK")
+    assert f"pdftitle={{{tex.escape(derived('double_integrator_energy').title)}}}" in text
 
 
 @needs_tex

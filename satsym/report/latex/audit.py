@@ -20,8 +20,8 @@ from satsym.report.findings.review import (
     where,
 )
 from satsym.report.latex import formula_tex
-from satsym.report.latex.document import PREAMBLE, UNHYPHENATED
-from satsym.report.latex.tex import escape, name
+from satsym.report.latex.preamble import preamble
+from satsym.report.latex.tex import bookmark, escape, name
 from satsym.report.latex.width import width
 from satsym.report.texts import Texts, load
 
@@ -53,7 +53,6 @@ def render(ledgers: Sequence[Ledger], judged: Mapping[str, Sequence[Judged]], la
     """
     texts = load(language)
     reviews = [Review(ledger, judged[ledger.document.key], texts) for ledger in ledgers]
-    hyphens = "" if language == "en" else UNHYPHENATED
     head = [
         rf"\begin{{center}}{{\LARGE {_breakable(title(reviews))}\par}}\vspace{{1ex}}",
         rf"{escape(texts.get('audit', 'made'))}\end{{center}}",
@@ -61,7 +60,8 @@ def render(ledgers: Sequence[Ledger], judged: Mapping[str, Sequence[Judged]], la
     ]
     body = "\n\n".join([*head, *(part for review in reviews for part in _section(review))])
     source = "% Written by satsym audit. Do not edit.\n"
-    return f"{source}{PREAMBLE}{hyphens}{_MACROS}\\begin{{document}}\n{body}\n\\end{{document}}\n"
+    opening = preamble(texts, bookmark(title(reviews)))
+    return f"{source}{opening}{_MACROS}\\begin{{document}}\n{body}\n\\end{{document}}\n"
 
 
 def _legend(texts: Texts, reviews: Sequence[Review]) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""A derivation as a LaTeX document: what it starts from, then every step with its rule, equations and checks.
+"""A derivation as a LaTeX document: what it starts from, then every step with its rule and its equations.
 
 The sentences are those of :mod:`satsym.report.texts`; every equation is printed from the derivation's own
 objects, and carries its address as its label.
@@ -6,59 +6,19 @@ objects, and carries its address as its label.
 
 from __future__ import annotations
 
-from satsym.report.latex import tex
+from collections.abc import Iterator
+
+from satsym.report.latex import boundary_value, checks, preamble, tex
+from satsym.report.latex.references import cited
 from satsym.report.latex.statement import statement
 from satsym.report.latex.steps import Context, Shown, conclusion, numbers_of, quantities, shown
 from satsym.report.texts import Texts, load
-from satsym.symbolic import Check, Derivation, Step
-from satsym.symbolic.checks import DIGITS, POINTS
+from satsym.symbolic import Derivation, Step
+from satsym.symbolic.convention import worded
 from satsym.symbolic.latex.typeset import Typesetter
-
-PACKAGES = "amsmath, amssymb, array, booktabs, longtable, xcolor"
-"""What a document needs that takes in the body alone."""
-
-PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
-\usepackage[T1]{fontenc}
-\usepackage{lmodern}
-\usepackage{microtype}
-\usepackage{amsmath,amssymb}
-\usepackage{array,booktabs,longtable}
-\usepackage[width=160mm,height=240mm]{geometry}
-\usepackage{xcolor}
-\usepackage[colorlinks,allcolors=blue!45!black]{hyperref}
-\setlength{\jot}{5pt}
-\setlength{\parindent}{0pt}
-\setlength{\parskip}{4pt plus 2pt}
-\setlength{\emergencystretch}{3em}
-\widowpenalty=10000 \clubpenalty=10000 \displaywidowpenalty=10000 \postdisplaypenalty=10000
-"""
-
-UNHYPHENATED = r"""% the hyphenation patterns that every TeX has are for English
-\hyphenpenalty=10000 \tolerance=2000 \hbadness=3000
-"""
-
-MACROS = r"""\makeatletter
-\@ifundefined{c@satsymstep}{\newcounter{satsymstep}}{\setcounter{satsymstep}{0}}
-\def\theHsatsymstep{<name>.\arabic{satsymstep}}
-% {label}{title}: heading of a step
-\def\satsymstep#1#2{\subsection*{\refstepcounter{satsymstep}\label{#1}<step>~\thesatsymstep\quad #2}}
-% {back}{labels}: labels for things that share the number of an equation, counted back from the last one
-\def\satsymalso#1#2{\begingroup\addtocounter{equation}{-#1}%
-  \protected@edef\@currentlabel{\theequation}\def\@currentHref{equation.\csname theHequation\endcsname}%
-  \protected@edef\@currentHref{\@currentHref}%
-  \@for\satsym@label:=#2\do{\label{\satsym@label}}\addtocounter{equation}{#1}\endgroup}
-% {claims}: how a step was checked
-\def\satsymchecks#1{\par\nobreak{\footnotesize\noindent\color{black!55}#1\par}}
-% keeps a list on one page
-\def\satsymtogether{\@itempenalty\@M\@beginparpenalty\@M\@endparpenalty\@M\itemsep0pt}
-\makeatother
-"""
 
 SECTION_FROM = {"hamiltonian": "conditions", "stability": "structure", "lqr_hamiltonian": "regulator"}
 """Steps that begin a new section."""
-
-BY_INSPECTION = frozenset({"declared", "dimensions agree"})
-"""Claims that are checked term by term, not by calculation."""
 
 
 def render(derivation: Derivation, language: str = "en", standalone: bool = True) -> str:
@@ -69,7 +29,7 @@ def render(derivation: Derivation, language: str = "en", standalone: bool = True
     derivation
         What was derived, with or without a cost.
     language
-        Language of the sentences; titles and meanings stay as the derivation file has them.
+        Language of the sentences, and of titles and meanings as far as the derivation file has them in it.
     standalone
         Whether the result is a document, or a body for ``\input`` in one that has the packages (they are
         named in its first line).
@@ -87,17 +47,23 @@ def render(derivation: Derivation, language: str = "en", standalone: bool = True
         If the language has no text for a step, its rule or one of its checks.
     """
     texts = load(language).with_own(derivation.model.sentences().get(language, {}))
-    body = "\n\n".join(_Composer(derivation, texts).paragraphs()) + "\n"
-    macros = MACROS.replace("<name>", tex.label(derivation.name)).replace("<step>", texts.get("words", "step"))
-    source = f"% Written by satsym from the derivation of {tex.label(derivation.name)}. Do not edit.\n"
+    composer, name = _Composer(derivation, texts), tex.label(derivation.name)
+    body = "\n\n".join(composer.paragraphs())
+    body, works = cited(body, name)
+    source = f"% Written by satsym from the derivation of {name}. Do not edit.\n"
+    macros, end = preamble.macros(name, texts), composer.checks()
     if not standalone:
-        return f"{source}% Needs the packages {PACKAGES}.\n{macros}\n{body}"
-    title = (
-        f"\\begin{{center}}\n  {{\\LARGE {tex.escape(derivation.title)}\\par}}\n"
-        f"  \\vspace{{1ex}}{tex.name(derivation.name)}\n\\end{{center}}"
+        return f"{source}% Needs the packages {preamble.PACKAGES}.\n{macros}\n{body}\n\n{works}\n\n{end}\n"
+    title = tex.escape(derivation.title)
+    head = (
+        f"\\begin{{center}}\n  {{\\LARGE {title}\\par}}\n  \\vspace{{1ex}}{tex.name(derivation.name)}\n"
+        f"\\end{{center}}\n\\begin{{abstract}}\n{composer.abstract()}\n\\end{{abstract}}"
     )
-    hyphens = "" if language == "en" else UNHYPHENATED
-    return f"{source}{PREAMBLE}{hyphens}{macros}\\begin{{document}}\n{title}\n\n{body}\\end{{document}}\n"
+    opening = preamble.preamble(texts, tex.bookmark(derivation.title))
+    return (
+        f"{source}{opening}{macros}\\begin{{document}}\n{head}\n\n{body}\n\n{works}\n"
+        f"\\appendix\n{end}\n\\end{{document}}\n"
+    )
 
 
 class _Composer:
@@ -106,35 +72,52 @@ class _Composer:
         self._context = Context(derivation, texts, Typesetter(derivation))
         self._declared = statement(derivation, texts, self._context.typeset)
         self._shown: dict[str, Shown] = {}
+        kind = "problem" if derivation.problem else "model"
+        starts = {SECTION_FROM[step.name]: step.name for step in derivation.steps if step.name in SECTION_FROM}
+        self._sections = [kind, "motion", *starts, *(["boundary_value"] if derivation.problem else [])]
+
+    def abstract(self) -> str:
+        """What each section does."""
+        places = {key: self._place(key) for key in (*self._sections, "checks")}
+        return " ".join(self._texts.get("abstract", key, section=place) for key, place in places.items())
 
     def paragraphs(self) -> list[str]:
-        """Everything between title and end."""
-        kind = "problem" if self._derivation.problem else "model"
-        label = tex.label(f"{self._derivation.name}:statement")
-        done = [
-            rf"{self._section(kind)}\label{{{label}}}",
-            *self._declared.paragraphs,
-            self._texts.get("statement", "about", statement=label),
-            self._section("motion"),
-        ]
+        """Everything from the statement to what it leads to."""
+        done = [self._section(self._sections[0]), *self._declared.paragraphs, self._section("motion")]
         for step in self._derivation.steps:
             if step.name in SECTION_FROM:
-                done.append(self._section(SECTION_FROM[step.name]))
+                done += self._opening(SECTION_FROM[step.name])
             done.append(self._step(step))
+        if self._derivation.problem:
+            done += [self._section("boundary_value"), *boundary_value.collected(self._context)]
         return done
 
+    def checks(self) -> str:
+        """How all steps were checked."""
+        return f"{self._section('checks')}\n{checks.listed(self._derivation, self._texts)}"
+
+    def _place(self, section: str) -> str:
+        return tex.label(f"{self._derivation.name}:section.{section}")
+
     def _section(self, key: str) -> str:
-        return rf"\section{{{self._texts.get('sections', key)}}}"
+        return rf"\section{{{self._texts.get('sections', key)}}}\label{{{self._place(key)}}}"
+
+    def _opening(self, key: str) -> Iterator[str]:
+        """The head of a section, and what it builds on."""
+        problem = self._derivation.problem
+        yield self._section(key)
+        yield self._texts.get("openings", worded(key, problem) if problem else key)
 
     def _step(self, step: Step) -> str:
-        """Heading, rule, equations, checks; the sources are the steps before this one."""
+        """Heading, rule, equations, what they come to; the sources are the steps before this one."""
         title = self._texts.get("titles", step.name)
         fill = {"sources": self._sources(step), "quantities": quantities(self._context, step)}
         rule = self._texts.get("rules", step.rule, **fill)
         self._shown[step.name] = shown(self._context, step)
         heading = rf"\satsymstep{{{tex.label(self._context.address(step))}}}{{{title}}}"
         said = [conclusion(self._context, c) for c in step.conclusions]
-        return "\n".join((heading, rule, self._shown[step.name].body, *said, self._checks(step)))
+        further = self._texts.find("further", step.name)
+        return "\n".join((heading, rule, self._shown[step.name].body, *said, *([further] if further else [])))
 
     def _sources(self, step: Step) -> str:
         named = (self._source(name) for name in step.follows_from)
@@ -150,14 +133,3 @@ class _Composer:
             return ""
         ends = self._declared.ends.get(name)
         return self._texts.get("declared", name) + (f"~{numbers_of(*ends)}" if ends else "")
-
-    def _checks(self, step: Step) -> str:
-        checks = "\n".join(rf"  $\checkmark$~{checked(self._texts, check)}" for check in step.checks)
-        return f"\\satsymchecks{{%\n{checks}}}"
-
-
-def checked(texts: Texts, check: Check) -> str:
-    """What was found true, and how; not the measured deviation, which is noise, but its limit."""
-    method = "inspection" if check.claim in BY_INSPECTION else "numeric" if check.limit else "exact"
-    how = texts.get("methods", method, points=str(POINTS), digits=str(DIGITS), limit=tex.number(check.limit))
-    return f"{texts.get('claims', check.claim)} ({how})."

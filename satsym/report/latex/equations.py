@@ -15,11 +15,11 @@ LINE = 35.0
 INDENT = 1.0
 """What a continued line is moved in by, in em; twice that within parentheses."""
 
-STRUT = r"\vphantom{\bigg|}"
-"""Makes room for fractions in a row of a matrix."""
-TALL = 12
+APART = r" \\ \noalign{\vskip 4pt} "
+"""Between rows of a matrix with fractions."""
+TALL = 6
 """Lines of one equation that are kept on one page, at most."""
-TOGETHER = 8
+TOGETHER = 4
 """Lines of the longest group of equations that no page may break."""
 
 
@@ -36,6 +36,8 @@ class Row:
     """Something the left side also equals, written between both sides."""
     end: str = ""
     """What both sides also are, with its relation: ``= 0``, written at the end."""
+    again: bool = False
+    """Whether it was shown before, and bears the number that it has there."""
 
     @property
     def left_tex(self) -> str:
@@ -45,7 +47,8 @@ class Row:
     @property
     def tag(self) -> str:
         """The command that labels it."""
-        return rf"\label{{{label(self.address)}}}"
+        address = label(self.address)
+        return rf"\tag{{\ref{{{address}}}}}" if self.again else rf"\label{{{address}}}"
 
 
 def array(cells: Sequence[Sequence[str]]) -> str:
@@ -53,8 +56,7 @@ def array(cells: Sequence[Sequence[str]]) -> str:
     if len(cells) == len(cells[0]) == 1:
         return cells[0][0]
     rows = [" & ".join(row) for row in cells]
-    rows = [row.replace(r"\frac", r"\dfrac") + (STRUT if r"\frac" in row else "") for row in rows]
-    body = r" \\ ".join(rows)
+    body = (APART if any(r"\frac" in row for row in rows) else r" \\ ").join(rows).replace(r"\frac", r"\dfrac")
     return rf"\left(\begin{{array}}{{@{{}}{'c' * len(cells[0])}@{{}}}} {body} \end{{array}}\right)"
 
 
@@ -67,22 +69,6 @@ def display(rows: Sequence[Row]) -> str:
             blocks.append([])
         blocks[-1].append(row)
     return "\n".join(map(_block, blocks))
-
-
-def columns(rows: Sequence[Row], names: Sequence[str]) -> str | None:
-    """The equations with the terms of each name below each other; ``None`` if they do not fit, or gain nothing."""
-    cells = [_cells(row, names) for row in rows]
-    used = [k for k in range(len(names) + 1) if any(row[k] for row in cells)]
-    if len(used) < 2 or sum(sum(map(bool, row)) > 1 for row in cells) < 2:
-        return None
-    widths = [max(width(joined(row[k])) + 1.3 for row in cells) for k in used]
-    if max(width(row.left_tex) for row in rows) + sum(widths) > LINE:
-        return None
-    lines = []
-    for row, parts in zip(rows, cells, strict=True):
-        written = [_cell(parts, k, first=place == 0) for place, k in enumerate(used)] if any(parts) else ["0"]
-        lines.append(f"{row.left_tex} &= {' && '.join(written).rstrip(' &')} {row.tag}")
-    return _environment(f"alignat}}{{{len(used)}", lines, "alignat")
 
 
 def broken(terms: Sequence[Term], limit: float) -> list[str]:
@@ -125,20 +111,21 @@ def _left_is_long(row: Row) -> bool:
 
 
 def _block(rows: list[Row]) -> str:
+    star = "*" if rows[0].again else ""
     if len(rows) == 1 and _left_is_long(rows[0]):
-        return _environment("equation", [f"{_both_sides_broken(rows[0])} {rows[0].tag}"])
+        return _environment(f"equation{star}", [f"{_both_sides_broken(rows[0])} {rows[0].tag}"])
     room = LINE - max(width(row.left_tex) for row in rows) - 1.3
     lines = []
     for row in rows:
         right = broken(row.right, room)
-        between = r" \notag \displaybreak[1] \\" if len(right) > TALL else r" \\"
+        between = r" \notag \displaybreak[2] \\" if len(right) > TALL else r" \\"
         body = f"{row.left_tex} &= " + f"{between}\n  &".join(right) + (f" {row.end}" if row.end else "")
         if 1 < len(right) <= TALL:
             body = f"\\begin{{split}}\n  {body}\n  \\end{{split}}"
         elif len(rows) == len(right) == 1:
             body = body.replace(" &= ", " = ", 1)
         lines.append(f"{body} {row.tag}")
-    return _environment("align" if len(rows) > 1 or len(right) > TALL else "equation", lines)
+    return _environment(("align" if len(rows) > 1 or len(right) > TALL else "equation") + star, lines)
 
 
 def _both_sides_broken(row: Row) -> str:
@@ -149,34 +136,10 @@ def _both_sides_broken(row: Row) -> str:
     return "\\begin{split}\n  " + " \\\\\n  ".join(lines) + "\n  \\end{split}"
 
 
-def _environment(opening: str, lines: Sequence[str], closing: str = "") -> str:
+def _environment(name: str, lines: Sequence[str]) -> str:
     last, tall = len(lines) - 1, any(r"\begin{array}" in line for line in lines)
     height = sum(1 + line.count(r"\\") for line in lines)
     breakable = [tall or (height > TOGETHER and 0 < k < last - 1) for k in range(last)]
-    ends = [r" \displaybreak[1] \\" if b else r" \\" for b in breakable]
+    ends = [r" \displaybreak[2] \\" if b else r" \\" for b in breakable]
     body = "\n  ".join(line + end for line, end in zip(lines, [*ends, ""], strict=True))
-    return f"\\begin{{{opening}}}\n  {body}\n\\end{{{closing or opening}}}"
-
-
-def _cells(row: Row, names: Sequence[str]) -> list[list[Term]]:
-    """Terms of the right side by the first of the names in them; the last cell is for terms with none."""
-    cells: list[list[Term]] = [[] for _ in range(len(names) + 1)]
-    for term in row.right:
-        if term.tex != "0":
-            cells[next((k for k, name in enumerate(names) if name in term.names), len(names))].append(term)
-    return cells
-
-
-def _cell(parts: Sequence[Sequence[Term]], k: int, *, first: bool) -> str:
-    """One cell; a sign that begins an equation stands in the column of the signs."""
-    terms = parts[k]
-    if not terms:
-        return ""
-    text = joined(terms)
-    if any(parts[:k]):
-        return "{}" + " ".join(t.signed(first=False) for t in terms)
-    if first:
-        return text
-    if terms[0].negative:
-        return "{}- " + text[1:]
-    return rf"\phantom{{{{}}+{{}}}} {text}"
+    return f"\\begin{{{name}}}\n  {body}\n\\end{{{name}}}"

@@ -22,6 +22,8 @@ DEFINED = {
     "H": r"H_{\mathbf{uu}} = \frac{\partial^2 H}{\partial\mathbf{u}^2}",
 }
 """What a matrix stands for, by the prefix that the names of its entries have."""
+TALL = 14
+"""Lines of a matrix, at most; a row with fractions counts as two."""
 GAP = 1.0
 """Between columns, in em."""
 
@@ -117,11 +119,11 @@ def fitted(
 
 
 def _written(matrix: NamedMatrix, typeset: Typesetter) -> tuple[str | None, dict[str, Equation]]:
-    """The matrix, and which entries it shows by a name; ``None`` if it is too wide even so."""
+    """The matrix, and which entries it shows by a name; ``None`` if it is too wide even so, or too tall."""
     room = LINE - width(DEFINED.get(matrix.prefix, matrix.prefix)) - 2.0
     cells = [["0" if e is None else typeset.tex(e.rhs) for e in row] for row in matrix.entries]
     short, named = fitted(cells, room, matrix.prefix.lower())
-    if short is None:
+    if short is None or sum(1 + any(r"\frac" in cell for cell in row) for row in short) > TALL:
         return None, {}
     entries = {name: matrix.entries[i][j] for name, (i, j) in named.items()}
     return array(short), {name: e for name, e in entries.items() if e is not None}

@@ -15,7 +15,7 @@ from satsym.symbolic import notation as n
 from satsym.symbolic.convention import worded
 from satsym.symbolic.latex.terms import Term, joined, plain
 from satsym.symbolic.latex.typeset import Typesetter
-from satsym.symbolic.model import Line
+from satsym.symbolic.model import Line, variables_of, with_origins
 from satsym.symbolic.principle.parts import Part as ControlPart
 from satsym.symbolic.principle.parts import parts_of
 from satsym.symbolic.principle.path_notation import rate
@@ -33,7 +33,7 @@ def statement(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part
     """The whole of it."""
     kinds = (
         *(_cost, _control_set, _constraints, _path_constraints),
-        *(_quantities, _definitions),
+        *(_quantities, _assumed, _definitions),
         *(_motion, _outputs),
     )
     parts = [part(derivation, texts, typeset) for part in kinds]
@@ -69,7 +69,8 @@ def _cost(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
     if "first_order" in derivation:
         equations = derivation.step("first_order").equations
         first, last = (tex.label(f"{derivation.name}:first_order.{e.name}") for e in (equations[0], equations[-1]))
-        paragraphs.append(texts.get("statement", "subject", first=first, last=last))
+        state = r",\, \allowbreak ".join(v.latex for v in problem.model.states)
+        paragraphs.append(texts.get("statement", "subject", first=first, last=last, state=state))
     return Part(tuple(paragraphs), {"cost": (whole.address, rows[-1].address)})
 
 
@@ -143,11 +144,34 @@ def _quantities(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Pa
         "outputs": tuple(o.variable for o in model.outputs),
         "original": model.replaced_states(),
     }
+    groups["others"] = _others(derivation, groups)
     return Part((texts.get("statement", "quantities"), _table(groups, texts)))
+
+
+def _others(derivation: Derivation, groups: Mapping[str, Sequence[Variable]]) -> tuple[Variable, ...]:
+    """What statement and steps name besides."""
+    known = {v.symbol for group in groups.values() for v in group}
+    stated = [side for said in derivation.model.statement() for line in said.lines for side in (line.left, line.right)]
+    derived = [side for step in derivation.steps for e in step.equations for side in (e.lhs, e.rhs)]
+    used = {s.name for side in (*stated, *derived) for s in getattr(side, "free_symbols", ())}
+    found = {v.symbol: v for model in with_origins(derivation.model) for v in variables_of(model)}
+    return tuple(v for name, v in found.items() if name in used - known)
+
+
+def _assumed(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
+    """Signs that were declared, and what parameters must obey together."""
+    model = derivation.model
+    declared = (*model.states, *model.parameters, *(d.variable for d in model.definitions))
+    positive = r",\, \allowbreak ".join(v.latex for v in declared if v.positive)
+    relations = (r"\ge", ">")
+    demanded = [f"${typeset.tex(d.margin)} {relations[d.strict]} 0$" for d in model.demanded()]
+    conditions = [*([f"${positive} > 0$"] if positive else []), *demanded]
+    return Part((texts.get("statement", "assumed", conditions=texts.listed(conditions)),) if conditions else ())
 
 
 def _table(groups: Mapping[str, Sequence[Variable]], texts: Texts) -> str:
     """All quantities in one table that may run over several pages."""
+    point = texts.get("words", "point")
     heads = [texts.get("words", key) for key in ("symbol", "name", "unit", "default", "meaning")]
     lines = [r"\toprule", " & ".join(heads) + r" \\", r"\midrule", r"\endhead", r"\bottomrule", r"\endfoot"]
     for place, (group, variables) in enumerate(groups.items()):
@@ -155,7 +179,13 @@ def _table(groups: Mapping[str, Sequence[Variable]], texts: Texts) -> str:
             lines += [r"\addlinespace"] if place else []
             lines.append(rf"\multicolumn{{5}}{{@{{}}l}}{{\textit{{{texts.get('words', group)}}}}} \\*")
         for v in variables:
-            cells = (f"${v.latex}$", tex.name(v.symbol), tex.unit(v.unit), tex.number(v.default), tex.escape(v.meaning))
+            cells = (
+                f"${v.latex}$",
+                tex.name(v.symbol),
+                tex.unit(v.unit),
+                tex.number(v.default, point),
+                tex.escape(v.meaning),
+            )
             lines.append(" & ".join(cells) + r" \\")
     body = "\n".join(lines)
     columns = r"@{}lllr>{\raggedright\arraybackslash}p{0.42\linewidth}@{}"

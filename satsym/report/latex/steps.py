@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from satsym.report.latex import tex
-from satsym.report.latex.equations import Row, columns, display
+from satsym.report.latex.equations import Row, display
 from satsym.report.latex.matrices import matrix_rows, with_matrices
 from satsym.report.texts import Texts
 from satsym.symbolic import Conclusion, Derivation, Equation, Step
@@ -53,7 +53,7 @@ def shown(context: Context, step: Step) -> Shown:
 def _as_they_stand(context: Context, step: Step) -> Shown:
     if any(e.rhs.is_Matrix for e in step.equations):
         return _with_whole_matrices(context, step)
-    return _display([_row(context, step, e) for e in step.equations])
+    return _display([row_of(context, step, e) for e in step.equations])
 
 
 def _with_whole_matrices(context: Context, step: Step) -> Shown:
@@ -78,7 +78,7 @@ def _rows(context: Context, step: Step, equation: Equation) -> tuple[list[Row], 
         return matrix_rows(address, context.typeset.tex(equation.lhs), equation.rhs, context.typeset)
     if equation.name == "characteristic_polynomial":
         return [_polynomial(context, step, equation)], []
-    return [_row(context, step, equation)], []
+    return [row_of(context, step, equation)], []
 
 
 def _polynomial(context: Context, step: Step, equation: Equation) -> Row:
@@ -110,7 +110,7 @@ def _stationarity(context: Context, step: Step) -> Shown:
         for e in step.equations
         if context.typeset.is_zero(e.lhs)
     ]
-    solved = [_row(context, step, e) for e in step.equations if not context.typeset.is_zero(e.lhs)]
+    solved = [row_of(context, step, e) for e in step.equations if not context.typeset.is_zero(e.lhs)]
     words = context.texts.get("groups", "solved" if len(conditions) > 1 else "solved_one")
     return Shown(f"{display(conditions)}\n{words}\n{display(solved)}", conditions[0].address, solved[-1].address)
 
@@ -118,24 +118,26 @@ def _stationarity(context: Context, step: Step) -> Shown:
 def _state_equations(context: Context, step: Step) -> Shown:
     symbol = context.typeset.symbol
     costates = dict(zip((v.symbol for v in context.derivation.model.states), context.costates(), strict=True))
-    return _display([_row(context, step, e, also=_derivative(symbol(costates[e.name]))) for e in step.equations])
+    return _display([row_of(context, step, e, also=_derivative(symbol(costates[e.name]))) for e in step.equations])
 
 
 def _costate_equations(context: Context, step: Step) -> Shown:
-    """Terms with the same costate below each other, if they fit."""
     symbol = context.typeset.symbol
-    rows = [_row(context, step, e, also=f"-{_derivative(symbol(e.name))}") for e in step.equations]
-    in_order = [
-        Row(row.address, row.left, context.typeset.terms(e.rhs, plus_first=False), row.also)
-        for row, e in zip(rows, step.equations, strict=True)
-    ]
-    in_columns = columns(in_order, context.costates())
-    return Shown(in_columns, rows[0].address, rows[-1].address) if in_columns else _display(rows)
+    rows = costate_rows(context, step)
+    return _display(
+        [replace(row, also=f"-{_derivative(symbol(e.name))}") for row, e in zip(rows, step.equations, strict=True)]
+    )
+
+
+def costate_rows(context: Context, step: Step) -> list[Row]:
+    """Terms in the order of the costates, even where that begins with a minus."""
+    terms = context.typeset.terms
+    return [replace(row_of(context, step, e), right=terms(e.rhs, plus_first=False)) for e in step.equations]
 
 
 def _at_the_end(context: Context, step: Step) -> Shown:
     end = context.typeset.at("t_f")
-    return _display([_row(context, step, e, typeset=end) for e in step.equations])
+    return _display([row_of(context, step, e, typeset=end) for e in step.equations])
 
 
 def _boundary_conditions(context: Context, step: Step) -> Shown:
@@ -148,7 +150,7 @@ def _boundary_conditions(context: Context, step: Step) -> Shown:
     for e in step.equations:
         group = "initial" if e.name in states else "costates" if e.name in context.costates() else e.name
         group = group if group in groups else ""
-        groups[group].append(_row(context, step, e, typeset=start if group == "initial" else end))
+        groups[group].append(row_of(context, step, e, typeset=start if group == "initial" else end))
     parts = []
     for group, rows in groups.items():
         heading = group if group == "initial" else worded(group, problem)
@@ -201,7 +203,8 @@ def _display(rows: Sequence[Row]) -> Shown:
     return Shown(display(rows), rows[0].address, rows[-1].address)
 
 
-def _row(context: Context, step: Step, equation: Equation, also: str = "", typeset: Typesetter | None = None) -> Row:
+def row_of(context: Context, step: Step, equation: Equation, also: str = "", typeset: Typesetter | None = None) -> Row:
+    """An equation as it stands, or in the notation of another typesetter."""
     typeset = typeset or context.typeset
     left, right = typeset.terms(equation.lhs), typeset.terms(equation.rhs)
     return Row(f"{context.address(step)}.{equation.name}", left, right, also)

@@ -54,6 +54,11 @@ def escape(text: str) -> str:
     return re.sub("-(?=-)", "-{}", escaped)
 
 
+def bookmark(text: str) -> str:
+    """Any text, for places where no mathematics can stand: symbols are spelt."""
+    return re.sub(r"\\ensuremath\{[\\^]*(\w+|-)\}", r"\1", escape(text))
+
+
 def _character(c: str) -> str:
     if c in _SPECIAL:
         return _SPECIAL[c]
@@ -89,11 +94,11 @@ def unit(text: str) -> str:
     return rf"$\mathrm{{{written}}}$"
 
 
-def number(value: float | None) -> str:
-    """A number as a person writes it; an en dash for none."""
+def number(value: float | None, point: str = ".") -> str:
+    """A number as a person writes it, with a decimal point or what stands for it; an en dash for none."""
     if value is None:
         return "--"
-    digits, _, exponent = f"{value:.12g}".partition("e")
+    digits, _, exponent = f"{value:.12g}".replace(".", point).partition("e")
     if not exponent:
         return f"${digits}$"
     power = f"10^{{{int(exponent)}}}"

@@ -9,7 +9,8 @@ from satsym.report.display import unit_text
 from satsym.report.html.markup import Markup, joined, tag
 from satsym.report.html.mathml import math
 from satsym.report.latex import tex
-from satsym.report.latex.document import SECTION_FROM, checked
+from satsym.report.latex.checks import checked
+from satsym.report.latex.document import SECTION_FROM
 from satsym.report.latex.steps import Context, conclusion, quantities
 from satsym.report.page.prose import prose, scrolled
 from satsym.report.terminal.table import figure

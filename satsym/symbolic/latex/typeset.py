@@ -13,7 +13,7 @@ from satsym.symbolic.derivation import Derivation, Equation, Step
 from satsym.symbolic.latex.printer import Kind, Printer
 from satsym.symbolic.latex.terms import Term
 from satsym.symbolic.linear import notation as linear_notation
-from satsym.symbolic.model import symbols_of
+from satsym.symbolic.model import symbols_of, variables_of, with_origins
 from satsym.symbolic.switching import notation as switching_notation
 
 
@@ -106,7 +106,8 @@ def _has_prefix(equation: Equation, prefix: str) -> bool:
 
 
 def _notation(derivation: Derivation, time: str) -> dict[str, str]:
-    notation = dict(derivation.notation)
+    origins = {v.symbol: v.latex for model in with_origins(derivation.model)[::-1] for v in variables_of(model)}
+    notation = origins | dict(derivation.notation)
     if time:
         states = symbols_of(derivation.model.states)
         for symbol in (*states, *map(n.costate_of, states), n.HAMILTONIAN):

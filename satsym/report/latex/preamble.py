@@ -1,0 +1,70 @@
+"""What stands before a document begins: packages, one look for all pages, and the macros of steps."""
+
+from __future__ import annotations
+
+import re
+
+from satsym.report.texts import Texts
+
+PACKAGES = "amsmath, amssymb, array, booktabs, longtable, xcolor, tikz"
+"""What a document needs that takes in the body alone."""
+
+PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
+\ifdefined\pdfinfoomitdate % the same bytes whenever it is compiled
+  \pdfinfoomitdate=1 \pdftrailerid{} \pdfsuppressptexinfo=-1
+\fi
+\usepackage[T1]{fontenc}
+\usepackage{lmodern}
+\usepackage[<babel>]{babel}
+\usepackage[expansion=false]{microtype}
+\usepackage{amsmath,amssymb}
+\usepackage{array,booktabs,longtable}
+\usepackage[width=160mm,height=240mm]{geometry}
+\usepackage{xcolor,tikz}
+\usepackage[colorlinks,allcolors=blue!45!black]{hyperref}
+\hypersetup{pdftitle={<title>},pdflang={<language>},pdfcreator={satsym}}
+\setlength{\jot}{6pt}
+\setlength{\parindent}{0pt}
+\setlength{\parskip}{4pt plus 2pt}
+\setlength{\emergencystretch}{5em}\tolerance=2000 \hbadness=3000
+\widowpenalty=10000 \clubpenalty=10000 \displaywidowpenalty=10000
+"""
+
+UNHYPHENATED = r"""% the hyphenation patterns that every TeX has are for English
+\hyphenpenalty=10000
+"""
+
+MACROS = r"""\makeatletter
+\@ifundefined{c@satsymstep}{\newcounter{satsymstep}\newcounter{satsymcheck}}{}
+\setcounter{satsymstep}{0}\setcounter{satsymcheck}{0}
+\def\theHsatsymstep{<name>.\arabic{satsymstep}}\def\theHsatsymcheck{<name>.check.\arabic{satsymcheck}}
+% {label}{text}: a link where there are links
+\def\satsymto#1#2{\@ifundefined{hyperref}{#2}{\hyperref[#1]{#2}}}
+% {label}{title}: heading of a step, with a mark in the margin that leads to its checks
+\def\satsymstep#1#2{\subsection*{\refstepcounter{satsymstep}\label{#1}%
+  \@ifundefined{pdfbookmark}{}{\pdfbookmark[2]{<step> \thesatsymstep. #2}{#1}}%
+  \llap{\satsymto{#1:checks}{\normalfont\footnotesize$\checkmark$}\enspace}<step>~\thesatsymstep\quad #2}}
+% {label}{claims}: how a step was checked
+\def\satsymchecked#1#2{\par\hangindent 2.2em\hangafter1\noindent\refstepcounter{satsymcheck}\label{#1:checks}%
+  \hbox to 2.2em{\ref{#1}\hfil}#2}
+% {back}{labels}: labels for things that share the number of an equation, counted back from the last one
+\def\satsymalso#1#2{\begingroup\addtocounter{equation}{-#1}%
+  \protected@edef\@currentlabel{\theequation}\def\@currentHref{equation.\csname theHequation\endcsname}%
+  \protected@edef\@currentHref{\@currentHref}%
+  \@for\satsym@label:=#2\do{\label{\satsym@label}}\addtocounter{equation}{#1}\endgroup}
+% keeps a list on one page
+\def\satsymtogether{\@itempenalty\@M\@beginparpenalty\@M\@endparpenalty\@M\itemsep0pt}
+\makeatother
+"""
+
+
+def preamble(texts: Texts, title: str) -> str:
+    """All up to macros, in a language, for a document of that title, which is LaTeX."""
+    fill = {"babel": texts.get("words", "babel"), "language": texts.language, "title": title}
+    hyphens = "" if texts.language == "en" else UNHYPHENATED
+    return re.sub("<([a-z]+)>", lambda hole: fill[hole[1]], PREAMBLE) + hyphens
+
+
+def macros(name: str, texts: Texts) -> str:
+    """The macros of steps, for a document of that name."""
+    return MACROS.replace("<name>", name).replace("<step>", texts.get("words", "step"))
