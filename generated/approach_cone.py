@@ -5,7 +5,7 @@ Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend tha
 Source: ../derivations/examples/kept_orbit.py e89be9172e891c8e79a7325f3458710f
 Source: ../derivations/clohessy_wiltshire.py 52520f4e0a2f16c4858ba5a6515ea5d0
 Source: ../derivations/polar_orbit.py eea94ffce26c74c68c16f37511ae1eb3
-Digest: e3ec1e518c79b82e5a22af5d73ee08b53558f52dca22e7689d248d861efbed90
+Digest: ff808e6cdd9c518e49e0e7f414019c351f9fa0461a9c98468f7266de5c415915
 """
 
 import math
@@ -228,9 +228,10 @@ def path_gradient(t, x, u, p):
     )
 
 
-def path_effect(t, x, p):
+def path_effect(t, x, u, p):
     """Its derivatives by the controls, row by row."""
     x1, x2, x3, x4 = x
+    u1, u2 = u
     sigma, omega, slope, mouth = p
     return (
         0.0,
@@ -256,9 +257,10 @@ def path_rates(t, x, u, p):
     )
 
 
-def path_vanishing(t, x, lam, p, bounds):
+def path_vanishing(t, x, u, lam, p, bounds):
     """What vanishes besides on the boundary, or where it begins and ends, and its rate, row by row."""
     x1, x2, x3, x4 = x
+    u1, u2 = u
     lambda_x1, lambda_x2, lambda_x3, lambda_x4 = lam
     sigma, omega, slope, mouth = p
     omega_sq = omega*omega
@@ -278,9 +280,10 @@ def path_vanishing(t, x, lam, p, bounds):
     )
 
 
-def path_multiplier(t, x, lam, p, bounds):
+def path_multiplier(t, x, u, lam, p, bounds):
     """The multiplier of each while it is on its boundary."""
     x1, x2, x3, x4 = x
+    u1, u2 = u
     lambda_x1, lambda_x2, lambda_x3, lambda_x4 = lam
     sigma, omega, slope, mouth = p
     w = 4.0*lambda_x3
@@ -877,13 +880,14 @@ def path_gradient_batch(t, x, u, p, out=None):
     return out
 
 
-def path_effect_batch(t, x, p, out=None):
+def path_effect_batch(t, x, u, p, out=None):
     """Its derivatives by the controls, row by row. Batch form."""
     x1, x2, x3, x4 = x
+    u1, u2 = u
     sigma, omega, slope, mouth = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((2, 2, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
+        out = np.empty((2, 2, *shape), np.result_type(float, t, x, u, *p))
     out[0, 0] = 0.0
     out[0, 1] = 0.0
     out[1, 0] = 0.0
@@ -909,14 +913,15 @@ def path_rates_batch(t, x, u, p, out=None):
     return out
 
 
-def path_vanishing_batch(t, x, lam, p, bounds, out=None):
+def path_vanishing_batch(t, x, u, lam, p, bounds, out=None):
     """What vanishes besides on the boundary, or where it begins and ends, and its rate, row by row. Batch form."""
     x1, x2, x3, x4 = x
+    u1, u2 = u
     lambda_x1, lambda_x2, lambda_x3, lambda_x4 = lam
     sigma, omega, slope, mouth = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((2, 2, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
+        out = np.empty((2, 2, *shape), np.result_type(float, t, x, u, lam, *p, *bounds))
     omega_sq = omega*omega
     w = 3.0*omega_sq*x1
     twice_omega = 2.0*omega
@@ -933,14 +938,15 @@ def path_vanishing_batch(t, x, lam, p, bounds, out=None):
     return out
 
 
-def path_multiplier_batch(t, x, lam, p, bounds, out=None):
+def path_multiplier_batch(t, x, u, lam, p, bounds, out=None):
     """The multiplier of each while it is on its boundary. Batch form."""
     x1, x2, x3, x4 = x
+    u1, u2 = u
     lambda_x1, lambda_x2, lambda_x3, lambda_x4 = lam
     sigma, omega, slope, mouth = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((2, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
+        out = np.empty((2, *shape), np.result_type(float, t, x, u, lam, *p, *bounds))
     w = 4.0*lambda_x3
     w_2 = 3.0*omega*omega*omega*x1
     omega_sq = omega*omega

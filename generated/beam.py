@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/bryson_denham.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/bryson_denham.py
 Source: ../derivations/examples/bryson_denham.py 40d7dac073b1a99986530fae9830d7de
-Digest: c3650a0746fa03e3895faf9b175297a94a219b74de852e82341e7c9ac5f7ab6d
+Digest: 8097df0ac3a0e11d27b9b17e84990c6fb49f7dfcde0e23aea1b46401cce3f6e7
 """
 
 import math
@@ -176,9 +176,10 @@ def path_gradient(t, x, u, p):
     )
 
 
-def path_effect(t, x, p):
+def path_effect(t, x, u, p):
     """Its derivatives by the controls, row by row."""
     x_value, v = x
+    (u_value,) = u
     (l,) = p
     return (
         0.0,
@@ -196,9 +197,10 @@ def path_rates(t, x, u, p):
     )
 
 
-def path_vanishing(t, x, lam, p, bounds):
+def path_vanishing(t, x, u, lam, p, bounds):
     """What vanishes besides on the boundary, or where it begins and ends, and its rate, row by row."""
     x_value, v = x
+    (u_value,) = u
     lambda_x, lambda_v = lam
     (l,) = p
     return (
@@ -207,9 +209,10 @@ def path_vanishing(t, x, lam, p, bounds):
     )
 
 
-def path_multiplier(t, x, lam, p, bounds):
+def path_multiplier(t, x, u, lam, p, bounds):
     """The multiplier of each while it is on its boundary."""
     x_value, v = x
+    (u_value,) = u
     lambda_x, lambda_v = lam
     (l,) = p
     return (
@@ -559,13 +562,14 @@ def path_gradient_batch(t, x, u, p, out=None):
     return out
 
 
-def path_effect_batch(t, x, p, out=None):
+def path_effect_batch(t, x, u, p, out=None):
     """Its derivatives by the controls, row by row. Batch form."""
     x_value, v = x
+    (u_value,) = u
     (l,) = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((1, 1, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
+        out = np.empty((1, 1, *shape), np.result_type(float, t, x, u, *p))
     out[0, 0] = 0.0
     return out
 
@@ -583,27 +587,29 @@ def path_rates_batch(t, x, u, p, out=None):
     return out
 
 
-def path_vanishing_batch(t, x, lam, p, bounds, out=None):
+def path_vanishing_batch(t, x, u, lam, p, bounds, out=None):
     """What vanishes besides on the boundary, or where it begins and ends, and its rate, row by row. Batch form."""
     x_value, v = x
+    (u_value,) = u
     lambda_x, lambda_v = lam
     (l,) = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((1, 2, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
+        out = np.empty((1, 2, *shape), np.result_type(float, t, x, u, lam, *p, *bounds))
     out[0, 0] = -0.5*lambda_v
     out[0, 1] = 0.5*lambda_x
     return out
 
 
-def path_multiplier_batch(t, x, lam, p, bounds, out=None):
+def path_multiplier_batch(t, x, u, lam, p, bounds, out=None):
     """The multiplier of each while it is on its boundary. Batch form."""
     x_value, v = x
+    (u_value,) = u
     lambda_x, lambda_v = lam
     (l,) = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((1, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
+        out = np.empty((1, *shape), np.result_type(float, t, x, u, lam, *p, *bounds))
     out[0] = 0.0
     return out
 

@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/obstacle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/obstacle.py
 Source: ../derivations/examples/obstacle.py 935b9e8d2400951ac21806daa850147f
-Digest: 7596be71a4cd22954be9698a66e8ff5025e32eed9c92113685ce4bffeec1d835
+Digest: 2a60bb0ee172aba840bd450cb5c09d582b1ee8ecaaa035506dfa8775bd3c65b3
 """
 
 import math
@@ -228,9 +228,10 @@ def path_gradient(t, x, u, p):
     )
 
 
-def path_effect(t, x, p):
+def path_effect(t, x, u, p):
     """Its derivatives by the controls, row by row."""
     x_value, y, vx, vy = x
+    ux, uy = u
     x_1, y_1, radius_1, x_2, y_2, radius_2 = p
     return (
         0.0,
@@ -260,9 +261,10 @@ def path_rates(t, x, u, p):
     )
 
 
-def path_vanishing(t, x, lam, p, bounds):
+def path_vanishing(t, x, u, lam, p, bounds):
     """What vanishes besides on the boundary, or where it begins and ends, and its rate, row by row."""
     x_value, y, vx, vy = x
+    ux, uy = u
     lambda_x, lambda_y, lambda_vx, lambda_vy = lam
     x_1, y_1, radius_1, x_2, y_2, radius_2 = p
     twice_lambda_vx = 2.0*lambda_vx
@@ -279,9 +281,10 @@ def path_vanishing(t, x, lam, p, bounds):
     )
 
 
-def path_multiplier(t, x, lam, p, bounds):
+def path_multiplier(t, x, u, lam, p, bounds):
     """The multiplier of each while it is on its boundary."""
     x_value, y, vx, vy = x
+    ux, uy = u
     lambda_x, lambda_y, lambda_vx, lambda_vy = lam
     x_1, y_1, radius_1, x_2, y_2, radius_2 = p
     twice_x_value = 2.0*x_value
@@ -825,13 +828,14 @@ def path_gradient_batch(t, x, u, p, out=None):
     return out
 
 
-def path_effect_batch(t, x, p, out=None):
+def path_effect_batch(t, x, u, p, out=None):
     """Its derivatives by the controls, row by row. Batch form."""
     x_value, y, vx, vy = x
+    ux, uy = u
     x_1, y_1, radius_1, x_2, y_2, radius_2 = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((2, 2, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
+        out = np.empty((2, 2, *shape), np.result_type(float, t, x, u, *p))
     out[0, 0] = 0.0
     out[0, 1] = 0.0
     out[1, 0] = 0.0
@@ -861,14 +865,15 @@ def path_rates_batch(t, x, u, p, out=None):
     return out
 
 
-def path_vanishing_batch(t, x, lam, p, bounds, out=None):
+def path_vanishing_batch(t, x, u, lam, p, bounds, out=None):
     """What vanishes besides on the boundary, or where it begins and ends, and its rate, row by row. Batch form."""
     x_value, y, vx, vy = x
+    ux, uy = u
     lambda_x, lambda_y, lambda_vx, lambda_vy = lam
     x_1, y_1, radius_1, x_2, y_2, radius_2 = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((2, 2, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
+        out = np.empty((2, 2, *shape), np.result_type(float, t, x, u, lam, *p, *bounds))
     twice_lambda_vx = 2.0*lambda_vx
     twice_lambda_vy = 2.0*lambda_vy
     w = 2.0*vx*vx + 2.0*vy*vy - 2.0*lambda_vx*x_value - 2.0*lambda_vy*y
@@ -882,14 +887,15 @@ def path_vanishing_batch(t, x, lam, p, bounds, out=None):
     return out
 
 
-def path_multiplier_batch(t, x, lam, p, bounds, out=None):
+def path_multiplier_batch(t, x, u, lam, p, bounds, out=None):
     """The multiplier of each while it is on its boundary. Batch form."""
     x_value, y, vx, vy = x
+    ux, uy = u
     lambda_x, lambda_y, lambda_vx, lambda_vy = lam
     x_1, y_1, radius_1, x_2, y_2, radius_2 = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((2, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
+        out = np.empty((2, *shape), np.result_type(float, t, x, u, lam, *p, *bounds))
     twice_x_value = 2.0*x_value
     twice_y = 2.0*y
     w = x_value*x_value + y*y

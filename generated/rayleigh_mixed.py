@@ -3,7 +3,7 @@
 Written by satsym from derivations/examples/oscillators.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/oscillators.py
 Source: ../derivations/examples/oscillators.py f7bd65b4a3ceeb7d53ceb7dea4512271
-Digest: 5fe782cf38eb737cb1034ef136332534ce8edacd9770ffb47da8fdf77bc8bdad
+Digest: 866ed7d0a48b8ca2c3a057ac4d8b02e3e7d77a8329be5793e6a140519d1ebeeb
 """
 
 import math
@@ -160,9 +160,10 @@ def path_gradient(t, x, u, p):
     )
 
 
-def path_effect(t, x, p):
+def path_effect(t, x, u, p):
     """Its derivatives by the controls, row by row."""
     x1, x2 = x
+    (u_value,) = u
     return (
         1.0,
     )
@@ -178,9 +179,10 @@ def path_rates(t, x, u, p):
     )
 
 
-def path_vanishing(t, x, lam, p, bounds):
+def path_vanishing(t, x, u, lam, p, bounds):
     """What vanishes besides on the boundary, or where it begins and ends, and its rate, row by row."""
     x1, x2 = x
+    (u_value,) = u
     lambda_x1, lambda_x2 = lam
     return (
         (1.0/6.0)*x1 - 2.0*lambda_x2,
@@ -188,9 +190,10 @@ def path_vanishing(t, x, lam, p, bounds):
     )
 
 
-def path_multiplier(t, x, lam, p, bounds):
+def path_multiplier(t, x, u, lam, p, bounds):
     """The multiplier of each while it is on its boundary."""
     x1, x2 = x
+    (u_value,) = u
     lambda_x1, lambda_x2 = lam
     return (
         (1.0/3.0)*x1 - 4.0*lambda_x2,
@@ -564,12 +567,13 @@ def path_gradient_batch(t, x, u, p, out=None):
     return out
 
 
-def path_effect_batch(t, x, p, out=None):
+def path_effect_batch(t, x, u, p, out=None):
     """Its derivatives by the controls, row by row. Batch form."""
     x1, x2 = x
+    (u_value,) = u
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((1, 1, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
+        out = np.empty((1, 1, *shape), np.result_type(float, t, x, u, *p))
     out[0, 0] = 1.0
     return out
 
@@ -586,25 +590,27 @@ def path_rates_batch(t, x, u, p, out=None):
     return out
 
 
-def path_vanishing_batch(t, x, lam, p, bounds, out=None):
+def path_vanishing_batch(t, x, u, lam, p, bounds, out=None):
     """What vanishes besides on the boundary, or where it begins and ends, and its rate, row by row. Batch form."""
     x1, x2 = x
+    (u_value,) = u
     lambda_x1, lambda_x2 = lam
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((1, 2, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
+        out = np.empty((1, 2, *shape), np.result_type(float, t, x, u, lam, *p, *bounds))
     out[0, 0] = (1.0/6.0)*x1 - 2.0*lambda_x2
     out[0, 1] = 0.0
     return out
 
 
-def path_multiplier_batch(t, x, lam, p, bounds, out=None):
+def path_multiplier_batch(t, x, u, lam, p, bounds, out=None):
     """The multiplier of each while it is on its boundary. Batch form."""
     x1, x2 = x
+    (u_value,) = u
     lambda_x1, lambda_x2 = lam
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((1, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
+        out = np.empty((1, *shape), np.result_type(float, t, x, u, lam, *p, *bounds))
     out[0] = (1.0/3.0)*x1 - 4.0*lambda_x2
     return out
 

@@ -5,7 +5,7 @@ Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend tha
 Source: ../derivations/examples/kept_orbit.py e89be9172e891c8e79a7325f3458710f
 Source: ../derivations/clohessy_wiltshire.py 52520f4e0a2f16c4858ba5a6515ea5d0
 Source: ../derivations/polar_orbit.py eea94ffce26c74c68c16f37511ae1eb3
-Digest: 78d627bd8dfe8addd7231299bcdf2204149c11beaa0f8bc91ba21d74407cf1a4
+Digest: 13284bf836d51182d46250be807a9f4e58ce0c056e5c97e6c302bdd19a162625
 """
 
 import math
@@ -291,9 +291,10 @@ def path_gradient(t, x, u, p):
     )
 
 
-def path_effect(t, x, p):
+def path_effect(t, x, u, p):
     """Its derivatives by the controls, row by row."""
     r, r_dot, theta, theta_dot = x
+    u1, u2 = u
     sigma, omega, c1, c2, r_min = p
     return (
         0.0,
@@ -314,9 +315,10 @@ def path_rates(t, x, u, p):
     )
 
 
-def path_vanishing(t, x, lam, p, bounds):
+def path_vanishing(t, x, u, lam, p, bounds):
     """What vanishes besides on the boundary, or where it begins and ends, and its rate, row by row."""
     r, r_dot, theta, theta_dot = x
+    u1, u2 = u
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
     sigma, omega, c1, c2, r_min = p
     inv_c1 = 1.0/c1
@@ -331,9 +333,10 @@ def path_vanishing(t, x, lam, p, bounds):
     )
 
 
-def path_multiplier(t, x, lam, p, bounds):
+def path_multiplier(t, x, u, lam, p, bounds):
     """The multiplier of each while it is on its boundary."""
     r, r_dot, theta, theta_dot = x
+    u1, u2 = u
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
     sigma, omega, c1, c2, r_min = p
     inv_c2 = 1.0/c2
@@ -1060,13 +1063,14 @@ def path_gradient_batch(t, x, u, p, out=None):
     return out
 
 
-def path_effect_batch(t, x, p, out=None):
+def path_effect_batch(t, x, u, p, out=None):
     """Its derivatives by the controls, row by row. Batch form."""
     r, r_dot, theta, theta_dot = x
+    u1, u2 = u
     sigma, omega, c1, c2, r_min = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((1, 2, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
+        out = np.empty((1, 2, *shape), np.result_type(float, t, x, u, *p))
     out[0, 0] = 0.0
     out[0, 1] = 0.0
     return out
@@ -1087,14 +1091,15 @@ def path_rates_batch(t, x, u, p, out=None):
     return out
 
 
-def path_vanishing_batch(t, x, lam, p, bounds, out=None):
+def path_vanishing_batch(t, x, u, lam, p, bounds, out=None):
     """What vanishes besides on the boundary, or where it begins and ends, and its rate, row by row. Batch form."""
     r, r_dot, theta, theta_dot = x
+    u1, u2 = u
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
     sigma, omega, c1, c2, r_min = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((1, 2, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
+        out = np.empty((1, 2, *shape), np.result_type(float, t, x, u, lam, *p, *bounds))
     inv_c1 = 1.0/c1
     inv_r = 1.0/r
     theta_dot_sq = theta_dot*theta_dot
@@ -1106,14 +1111,15 @@ def path_vanishing_batch(t, x, lam, p, bounds, out=None):
     return out
 
 
-def path_multiplier_batch(t, x, lam, p, bounds, out=None):
+def path_multiplier_batch(t, x, u, lam, p, bounds, out=None):
     """The multiplier of each while it is on its boundary. Batch form."""
     r, r_dot, theta, theta_dot = x
+    u1, u2 = u
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
     sigma, omega, c1, c2, r_min = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((1, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
+        out = np.empty((1, *shape), np.result_type(float, t, x, u, lam, *p, *bounds))
     inv_c2 = 1.0/c2
     inv_r = 1.0/r
     inv_r_sq = inv_r*inv_r

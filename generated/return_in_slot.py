@@ -5,7 +5,7 @@ Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend tha
 Source: ../derivations/examples/kept_orbit.py e89be9172e891c8e79a7325f3458710f
 Source: ../derivations/clohessy_wiltshire.py 52520f4e0a2f16c4858ba5a6515ea5d0
 Source: ../derivations/polar_orbit.py eea94ffce26c74c68c16f37511ae1eb3
-Digest: 89129cef668e1cc83c8b4f93433a0c8c8dc59a353ec87d487f2d837016789096
+Digest: e66c716e43ff581669ec58256971740cd9d8ef917079622a8115ef7c5ed2c3a6
 """
 
 import math
@@ -298,9 +298,10 @@ def path_gradient(t, x, u, p):
     )
 
 
-def path_effect(t, x, p):
+def path_effect(t, x, u, p):
     """Its derivatives by the controls, row by row."""
     r, r_dot, theta, theta_dot = x
+    u1, u2 = u
     sigma, omega, c1, c2, slot = p
     return (
         0.0,
@@ -326,9 +327,10 @@ def path_rates(t, x, u, p):
     )
 
 
-def path_vanishing(t, x, lam, p, bounds):
+def path_vanishing(t, x, u, lam, p, bounds):
     """What vanishes besides on the boundary, or where it begins and ends, and its rate, row by row."""
     r, r_dot, theta, theta_dot = x
+    u1, u2 = u
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
     sigma, omega, c1, c2, slot = p
     inv_r = 1.0/r
@@ -351,9 +353,10 @@ def path_vanishing(t, x, lam, p, bounds):
     )
 
 
-def path_multiplier(t, x, lam, p, bounds):
+def path_multiplier(t, x, u, lam, p, bounds):
     """The multiplier of each while it is on its boundary."""
     r, r_dot, theta, theta_dot = x
+    u1, u2 = u
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
     sigma, omega, c1, c2, slot = p
     inv_r = 1.0/r
@@ -1090,13 +1093,14 @@ def path_gradient_batch(t, x, u, p, out=None):
     return out
 
 
-def path_effect_batch(t, x, p, out=None):
+def path_effect_batch(t, x, u, p, out=None):
     """Its derivatives by the controls, row by row. Batch form."""
     r, r_dot, theta, theta_dot = x
+    u1, u2 = u
     sigma, omega, c1, c2, slot = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]))
-        out = np.empty((2, 2, *shape), np.result_type(float, t, x, *p))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]))
+        out = np.empty((2, 2, *shape), np.result_type(float, t, x, u, *p))
     out[0, 0] = 0.0
     out[0, 1] = 0.0
     out[1, 0] = 0.0
@@ -1122,14 +1126,15 @@ def path_rates_batch(t, x, u, p, out=None):
     return out
 
 
-def path_vanishing_batch(t, x, lam, p, bounds, out=None):
+def path_vanishing_batch(t, x, u, lam, p, bounds, out=None):
     """What vanishes besides on the boundary, or where it begins and ends, and its rate, row by row. Batch form."""
     r, r_dot, theta, theta_dot = x
+    u1, u2 = u
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
     sigma, omega, c1, c2, slot = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((2, 2, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
+        out = np.empty((2, 2, *shape), np.result_type(float, t, x, u, lam, *p, *bounds))
     inv_r = 1.0/r
     twice_theta_dot = 2.0*theta_dot
     inv_r_twice_theta_dot = inv_r*twice_theta_dot
@@ -1149,14 +1154,15 @@ def path_vanishing_batch(t, x, lam, p, bounds, out=None):
     return out
 
 
-def path_multiplier_batch(t, x, lam, p, bounds, out=None):
+def path_multiplier_batch(t, x, u, lam, p, bounds, out=None):
     """The multiplier of each while it is on its boundary. Batch form."""
     r, r_dot, theta, theta_dot = x
+    u1, u2 = u
     lambda_r, lambda_r_dot, lambda_theta, lambda_theta_dot = lam
     sigma, omega, c1, c2, slot = p
     if out is None:
-        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(lam[0]))
-        out = np.empty((2, *shape), np.result_type(float, t, x, lam, *p, *bounds))
+        shape = np.broadcast_shapes(np.shape(t), np.shape(x[0]), np.shape(u[0]), np.shape(lam[0]))
+        out = np.empty((2, *shape), np.result_type(float, t, x, u, lam, *p, *bounds))
     inv_r = 1.0/r
     inv_c1 = 1.0/c1
     inv_c2 = 1.0/c2

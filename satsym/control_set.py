@@ -26,8 +26,9 @@ Norms = Mapping[str, tuple[float, float]]
 
 def bound_names(spec: ProblemSpec) -> tuple[tuple[str, ...], ...]:
     """What the bounds of each control are called; nothing where the control set is no box."""
-    ends = ("min", "max") if spec.control_set == "box" else ()
-    return tuple(tuple(f"{name}_{end}" for end in ends) for name in spec.control_names)
+    boxed = set(spec.control_names) if spec.control_set == "box" else set()
+    boxed = boxed.union(*(part.controls for part in spec.control_parts if part.kind == "box"))
+    return tuple(tuple(f"{name}_{end}" for end in ("min", "max") if name in boxed) for name in spec.control_names)
 
 
 def stated_constraints(spec: ProblemSpec) -> dict[str, int]:

@@ -16,7 +16,14 @@ from satsym.symbolic.kepler.central_force import inertial_state, strength_of
 from satsym.symbolic.linear.notation import matrix_symbols
 from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.notation import costate_of, given, multipliers, on_reference, target
-from satsym.symbolic.principle import inequalities, mixed_constraints, path_notation, product, set_laws
+from satsym.symbolic.principle import (
+    inequalities,
+    mixed_constraints,
+    path_constraints,
+    path_notation,
+    product,
+    set_laws,
+)
 from satsym.symbolic.principle.parts import FRACTION, SMOOTHING, limits_of, minimum_norm_of
 from satsym.symbolic.switching.notation import REGULARISED
 
@@ -187,16 +194,16 @@ def _of_path_constraints(derivation: Derivation) -> list[Function]:
     stated = {e.name: e.rhs for name in steps for e in derivation.step(name).equations}
     rates = [[*one.rates[1:], *(sp.Integer(0),) * 2][:2] for one in found]
     vanishing = [
-        [stated.get(path_notation.vanishing_entry(one.name, k), sp.Integer(0)) for k in range(2)] for one in found
+        [stated.get(path_notation.vanishing_entry(one.name, k), (one.rates[0], 0)[k]) for k in range(2)]
+        for one in found
     ]
-    multiplier = sp.Matrix([stated[f"{one.name}_eta"] for one in found])
+    multiplier = sp.Matrix([stated.get(f"{one.name}_eta", sp.Integer(0)) for one in found])
     g = sp.Matrix([one.rates[0] for one in found])
-    laws = [[stated[f"{one.name}_{u.name}"] for u in controls] for one in found]
-    on_boundary = "t x lam p bounds"
+    on_boundary = "t x u lam p bounds"
     return [
         _vector("path_constraints", "What may not be positive along the way.", "t x u p bounds", g),
         _matrix("path_gradient", "Its derivatives by the states, row by row.", "t x u p", g.jacobian(states)),
-        _matrix("path_effect", "Its derivatives by the controls, row by row.", "t x p", g.jacobian(controls)),
+        _matrix("path_effect", "Its derivatives by the controls, row by row.", "t x u p", g.jacobian(controls)),
         _matrix(
             "path_rates",
             "Its first and second rates of change; 0 for those after the control.",
@@ -210,8 +217,17 @@ def _of_path_constraints(derivation: Derivation) -> list[Function]:
             sp.Matrix(vanishing),
         ),
         _vector("path_multiplier", "The multiplier of each while it is on its boundary.", on_boundary, multiplier),
-        _matrix("boundary_control", "The controls on the boundary of each, row by row.", on_boundary, sp.Matrix(laws)),
+        *([] if path_constraints.stationary(derivation) else [_boundary_control(derivation, found, stated)]),
     ]
+
+
+def _boundary_control(
+    derivation: Derivation, found: list[path_constraints.Constraint], stated: dict[str, sp.Expr]
+) -> Function:
+    """The law on boundaries, where it is written in closed form."""
+    laws = [[stated[f"{one.name}_{u.name}"] for u in symbols_of(derivation.model.controls)] for one in found]
+    summary = "The controls on the boundary of each, row by row."
+    return _matrix("boundary_control", summary, "t x lam p bounds", sp.Matrix(laws))
 
 
 def _switching_laws(derivation: Derivation) -> list[Function]:

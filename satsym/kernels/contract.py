@@ -87,15 +87,19 @@ THROTTLES = {"throttle_slope": _signature("t x lam p", "r")}
 PATH_CONSTRAINTS = {
     "path_constraints": _signature("t x u p bounds", "h"),
     "path_gradient": _signature("t x u p", "hn"),
-    "path_effect": _signature("t x p", "hm"),
+    "path_effect": _signature("t x u p", "hm"),
     "path_rates": _signature("t x u p", "hw"),
-    "path_vanishing": _signature("t x lam p bounds", "hw"),
-    "path_multiplier": _signature("t x lam p bounds", "h"),
-    "boundary_control": _signature("t x lam p bounds", "hm"),
+    "path_vanishing": _signature("t x u lam p bounds", "hw"),
+    "path_multiplier": _signature("t x u lam p bounds", "h"),
 }
 """What a problem has besides that must keep to inequalities along the way, see
 :mod:`satsym.symbolic.principle.path_constraints` and :mod:`satsym.symbolic.principle.mixed_constraints`; second rates
-of constraints of order one are 0, and of those of order zero, which hold a control, all are."""
+of constraints of order one are 0, and of those of order zero, which hold a control, all are. The controls of the last
+two are those of the law; see :data:`BOUNDARY_CONTROLS` for where they say nothing of them."""
+
+BOUNDARY_CONTROLS = {"boundary_control": _signature("t x lam p bounds", "hm")}
+"""Where H is known to be quadratic in the controls. Elsewhere controls are where H_u vanishes, or that of H with a
+constraint that holds them, which Newton's method finds with its multiplier."""
 
 CURVE = {
     "beyond_switching_curve": _signature("t x p bounds final"),
@@ -129,7 +133,7 @@ Eigenvalues are rows of a real and an imaginary part.
 
 POINTWISE = {
     **(_MOTION | _REFERENCE | _INVARIANTS | _POSITION | _QUANTITIES | _BALANCES | _KEPLERIAN | _COST),
-    **(_SWITCHING | DIRECTIONS | THROTTLES | PATH_CONSTRAINTS | CURVE | LINEAR),
+    **(_SWITCHING | DIRECTIONS | THROTTLES | PATH_CONSTRAINTS | BOUNDARY_CONTROLS | CURVE | LINEAR),
 }
 """All functions of one point in time that any model has."""
 
@@ -155,6 +159,7 @@ def pointwise(spec: ProblemSpec) -> dict[str, Signature]:
     found |= DIRECTIONS if spec.directional else {}
     found |= THROTTLES if spec.throttled else {}
     found |= PATH_CONSTRAINTS if spec.path_constraints else {}
+    found |= BOUNDARY_CONTROLS if spec.path_constraints and not spec.control_parts else {}
     if spec.switching:
         found = {name: signature for name, signature in found.items() if name not in _OF_REGULAR_LAWS} | _SWITCHING
         found |= CURVE if spec.switching_curve else {}

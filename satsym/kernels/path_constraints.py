@@ -18,19 +18,27 @@ def of_path_constraints(of: Evaluation) -> Iterator[Relation]:
     second, derived = orders > 1, orders > 0
     yield from derivative(of, "path_gradient", "path_constraints", ("x",))
     yield from derivative(of, "path_effect", "path_constraints", ("u",))
-    rates, law = of("path_rates"), of("control_law", bounds=_none(of))
+    rates, law = of("path_rates"), _law(of)
     first, terms = along(of, "path_constraints", of("dynamics"))
     wanted = np.where(derived[:, None], first, 0.0)
     yield Relation("path_rates", "first rates of the constraints", rates[:, 0], wanted, terms)
     faster, terms = along(of, "path_rates", of("dynamics"))
     wanted = np.where(second[:, None], faster[:, 0], 0.0)
     yield Relation("path_rates", "second rates of the constraints", rates[:, 1], wanted, terms[:, 0])
-    vanishing, last, own = of("path_vanishing"), of("path_rates", u=law), of("path_constraints", u=law)
+    vanishing, last, own = of("path_vanishing", u=law), of("path_rates", u=law), of("path_constraints", u=law)
     wanted = np.where(second[:, None], last[:, 1], np.where(derived[:, None], last[:, 0], own))
     faint = FAINT * max(size(last).max(), size(own).max())
     yield Relation("path_vanishing", "the last rate under the law", vanishing[:, 0], wanted, faint)
     for k, order in enumerate(orders):
-        yield from _while_active(of, k) if order == 0 else _on_boundary(of, k, order)
+        if order:
+            yield from _on_boundary(of, k, order)
+        elif of.has("boundary_control"):
+            yield from _while_active(of, k)
+
+
+def _law(of: Evaluation) -> Array:
+    """Without bounds; where the law is not in closed form any controls, as what is looked at holds for all of these."""
+    return of("control_law", bounds=_none(of)) if of.has("boundary_control") else np.asarray(of.at["u"])
 
 
 def _none(of: Evaluation) -> Any:
@@ -41,7 +49,8 @@ def _none(of: Evaluation) -> Any:
 
 def _while_active(of: Evaluation, which: int) -> Iterator[Relation]:
     """Of a constraint that holds controls: with its multiplier they are stationary, and keep it zero."""
-    u, eta, effect = of("boundary_control")[which], of("path_multiplier")[which], of("path_effect")[which]
+    u = of("boundary_control")[which]
+    eta, effect = of("path_multiplier")[which], of("path_effect", u=u)[which]
     kept, sizes = of("path_constraints", u=u)[which], np.abs(effect * u).sum(axis=0)
     yield Relation("boundary_control", "keeps the constraint", kept, np.zeros_like(kept), sizes)
     slope = of("stationarity", u=u)
@@ -50,12 +59,14 @@ def _while_active(of: Evaluation, which: int) -> Iterator[Relation]:
 
 def _on_boundary(of: Evaluation, which: int, order: int) -> Iterator[Relation]:
     """Of a constraint on states alone."""
-    vanishing = of("path_vanishing")
+    vanishing = of("path_vanishing", u=_law(of))
     found, terms = _rates_on_boundary(of, which)
     if order > 1:
         yield Relation("path_vanishing", "and its rate", vanishing[which, 1], found[which, 0], terms[which, 0])
     zero = found[which, order - 1]
     yield Relation("path_multiplier", "keeps to the boundary", zero, np.zeros_like(zero), terms[which, order - 1])
+    if not of.has("boundary_control"):
+        return
     u = of("boundary_control")[which]
     kept = of("path_rates", u=u)[which, order - 1]
     sizes = np.abs(of.slope("path_rates", "u") * u).sum(axis=-2)[which, order - 1]
@@ -64,9 +75,20 @@ def _on_boundary(of: Evaluation, which: int, order: int) -> Iterator[Relation]:
 
 def _rates_on_boundary(of: Evaluation, which: int) -> tuple[Array, Array]:
     """Rates of what vanishes along the extremal on the boundary of one constraint, and sizes of their terms."""
-    law = of("control_law", bounds=_none(of))
-    eta, push = of("path_multiplier")[which], of("path_gradient")[which]
-    forced = of("costate_rate", u=law) - eta * push
-    by_state, terms = along(of, "path_vanishing", of("dynamics", u=law))
-    parts = of.slope("path_vanishing", "lam") * forced
+    law = _law(of)
+    eta, push = of("path_multiplier", u=law)[which], of("path_gradient")[which]
+    moving, forced = of("dynamics", u=law), of("costate_rate", u=law) - eta * push
+    found, terms = _along_extremal(of, "path_vanishing", law, moving, forced)
+    if of.has("boundary_control"):
+        return found, terms
+    drift = _along_extremal(of, "stationarity", law, moving, forced)[0]
+    turning = -np.linalg.solve(np.moveaxis(of("control_hessian", u=law), -1, 0), drift.T[..., None])[..., 0].T
+    parts = of.slope("path_vanishing", "u", u=law) * turning
+    return found + parts.sum(axis=-2), terms + np.abs(parts).sum(axis=-2)
+
+
+def _along_extremal(of: Evaluation, name: str, u: Array, moving: Array, forced: Array) -> tuple[Array, Array]:
+    """The rate of change of a function with states and costates, controls being held, and sizes of its terms."""
+    by_state, terms = along(of, name, moving, u=u)
+    parts = of.slope(name, "lam", u=u) * forced
     return by_state + parts.sum(axis=-2), terms + np.abs(parts).sum(axis=-2)

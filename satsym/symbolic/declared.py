@@ -13,9 +13,9 @@ from satsym.symbolic.algebra import constants_of
 from satsym.symbolic.derivation import Derivation, DerivationError
 from satsym.symbolic.linear import notation as linear_notation
 from satsym.symbolic.model import Model, Problem, symbols_of, variables_of
-from satsym.symbolic.principle import control_sets, path_notation
 from satsym.symbolic.principle import notation as principle_notation
-from satsym.symbolic.principle.parts import limits_of
+from satsym.symbolic.principle import path_notation
+from satsym.symbolic.principle.parts import limits_of, parts_of
 from satsym.symbolic.switching import notation as switching_notation
 from satsym.wording import shown
 
@@ -80,13 +80,13 @@ def _refuse_inequalities(problem: Problem) -> None:
 def _refuse_constraints(problem: Problem) -> None:
     """Refuse constraints along the way beside what excludes them."""
     constraints, what = problem.path_constraints, f"{problem.name}: path_constraints"
-    controls = problem.model.controls if problem.control_set == "box" else ()
-    if taken := [b.symbol for b in control_sets.bounds("box", controls) if b.symbol in constraints]:
+    parts = parts_of(problem) if constraints else ()
+    if taken := [b.symbol for part in parts if part.kind == "box" for b in part.limits if b.symbol in constraints]:
         message = f"{taken[0]} is the name of a bound of the controls; take another"
         raise DerivationError(f"{what}: {message}", ("path_constraints",))
-    if constraints and (problem.control_set not in ("free", "box") or problem.control_sets):
+    if any(part.kind in ("ball", "annulus") for part in parts):
         message = (
-            "beside bounds of the controls other than those of a box they are not derived; "
+            "beside bounds of the controls other than those of a box, or an angle, they are not derived; "
             "leave out the control set, or state no constraints"
         )
         raise DerivationError(f"{what}: {message}", ("path_constraints", "control_set", "control_sets"))

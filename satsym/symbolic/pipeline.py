@@ -26,6 +26,7 @@ from satsym.symbolic.principle import (
     path_constraints,
     pontryagin,
     product,
+    stationary_controls,
     transversality,
 )
 from satsym.symbolic.switching import curve as switching_curve
@@ -35,6 +36,18 @@ from satsym.symbolic.time_limit import entering
 
 OUTPUTS: tuple[MaybeStep, ...] = (steps.output_matrix, steps.output_equations)
 
+PATH_CONSTRAINTS: tuple[MaybeStep, ...] = (
+    path_constraints.constraint_order,
+    stationary_controls.control_rates,
+    path_constraints.boundary_control,
+    path_constraints.constraint_multiplier,
+    path_constraints.constrained_costates,
+    path_constraints.junction_conditions,
+    mixed_constraints.mixed_constraints,
+    mixed_constraints.mixed_costates,
+)
+"""Where there are inequalities along the way."""
+
 MINIMUM_PRINCIPLE: tuple[MaybeStep, ...] = (
     pontryagin.hamiltonian,
     pontryagin.stationarity,
@@ -43,13 +56,7 @@ MINIMUM_PRINCIPLE: tuple[MaybeStep, ...] = (
     pontryagin.minimised_hamiltonian,
     pontryagin.state_equations,
     pontryagin.costate_equations,
-    path_constraints.constraint_order,
-    path_constraints.boundary_control,
-    path_constraints.constraint_multiplier,
-    path_constraints.constrained_costates,
-    path_constraints.junction_conditions,
-    mixed_constraints.mixed_constraints,
-    mixed_constraints.mixed_costates,
+    *PATH_CONSTRAINTS,
     pontryagin.boundary_conditions,
     transversality.boundary_residual,
     effort.exact_differential,
@@ -64,6 +71,7 @@ PRODUCT_PRINCIPLE: tuple[MaybeStep, ...] = (
     minimised.minimised_hamiltonian,
     pontryagin.state_equations,
     pontryagin.costate_equations,
+    *PATH_CONSTRAINTS,
     pontryagin.boundary_conditions,
     transversality.boundary_residual,
 )
@@ -206,10 +214,10 @@ def _principle(motion_derived: Derivation) -> tuple[MaybeStep, ...]:
     """What follows from the motion: the principle that suits the cost, or linear theory where there is none."""
     if motion_derived.problem is None:
         return LINEAR
-    if motion_derived.problem.path_constraints:  # no other has steps for them
-        return MINIMUM_PRINCIPLE
     if product.applies(motion_derived):
         return PRODUCT_PRINCIPLE
+    if motion_derived.problem.path_constraints:  # no other has steps for them
+        return MINIMUM_PRINCIPLE
     return SWITCHING_PRINCIPLE if switching.applies(motion_derived) else MINIMUM_PRINCIPLE
 
 

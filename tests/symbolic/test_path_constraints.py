@@ -9,7 +9,7 @@ import pytest
 import sympy as sp
 
 from satsym.report.latex.document import render
-from satsym.symbolic import FirstOrder, Problem, Variable, derive, symbols_of
+from satsym.symbolic import Angle, Ball, Box, FirstOrder, Problem, Variable, derive, symbols_of
 from satsym.symbolic.derivation import DerivationError, Step
 from satsym.symbolic.model import Convention, t
 from satsym.symbolic.principle import inequalities
@@ -40,7 +40,7 @@ TWO = FirstOrder(
 
 def kept(constraint: sp.Expr, **more: Any) -> Problem:
     stated = {"name": "kept", "title": "", "model": CHAIN, "running_cost": u**2 / 2} | more
-    return Problem(path_constraints={"bound": constraint}, **stated)
+    return Problem(**{"path_constraints": {"bound": constraint}, **stated})
 
 
 def values(step: Step) -> dict[str, sp.Expr]:
@@ -116,6 +116,36 @@ def test_bounds_of_a_box_are_constraints_like_others():
     assert r"u^{\max}" in render(found, "en")
 
 
+@pytest.mark.parametrize("convention", ["minimum", "maximum"])
+def test_controls_that_are_not_in_closed_form_stay_symbols_with_rates(convention: Convention):
+    """With the cost cosh u: cosh(u) u' = -lambda_d', which is lambda_b; on d <= 1 it vanishes with u."""
+    found = derived(kept(d - 1, running_cost=sp.cosh(u), convention=convention))
+    eta, lam = sp.Symbol("eta_bound", real=True), sp.Symbol("lambda_b", real=True)
+    side = 1 if convention == "minimum" else -1
+    assert sp.simplify(values(found.step("control_rates"))["bound_u"] - (side * lam + eta) / sp.cosh(u)) == 0
+    assert values(found.step("constraint_multiplier")) == {"bound_vanishing": u, "bound_eta": -side * lam}
+    assert values(found.step("junction_conditions"))["bound_jump"] == 0
+    assert "boundary_control" not in found
+
+
+def test_a_constraint_in_which_controls_stand_otherwise_than_linearly_has_conditions_for_them():
+    found = derived(kept(u**2 + b**2 - 1))
+    step, eta = values(found.step("mixed_constraints")), sp.Symbol("eta_bound", real=True)
+    assert sp.simplify(step["bound_u"] - (u + sp.Symbol("lambda_d", real=True) + 2 * eta * u)) == 0
+    pushed = values(found.step("mixed_costates"))["bound_lambda_b"]
+    assert sp.simplify(pushed + 2 * b * eta + sp.Symbol("lambda_a", real=True)) == 0
+
+
+@pytest.mark.parametrize("language", ["en", "id"])
+def test_laws_near_the_boundary_of_an_angle_are_typeset(language: str):
+    stirred = replace(CHAIN, rates={a: b, b: d, d: sp.sin(u), e: -e}, controls=(Variable("u", "u", kind="angle"),))
+    problem = kept(b - 1, model=stirred, running_cost=1, control_sets={"push": Angle("u")})
+    with_mixed = replace(problem, path_constraints={"bound": b - 1, "push": sp.cos(u) - d})
+    text = render(derived(with_mixed), language).replace("\n", " ")
+    assert r"\frac{d u}{dt}" in text
+    assert r"\eta_{2}" in text
+
+
 @pytest.mark.parametrize("language", ["en", "id"])
 def test_it_is_typeset(language: str):
     text = render(shipped("return_in_slot"), language)
@@ -129,12 +159,13 @@ def test_it_is_typeset(language: str):
     [
         (kept(e - 1), "no control influences it, so nothing can keep it"),
         (kept(a - 1), "its order is more than 2"),
-        (kept(b - 1, running_cost=sp.exp(u) + sp.exp(-u)), "H is not quadratic in the controls"),
-        (kept(b - 1, running_cost=sp.sqrt(1 + u**2)), "H is not quadratic in the controls"),
-        (kept(b - u**2), "the controls enter it otherwise than linearly"),
+        (kept(b - 1, running_cost=a**2, control_sets={"push": Box("u")}), "H is linear in u; they are derived where"),
+        (kept(b - 1, running_cost=a * u**2, control_sets={"push": Box("u")}), "not always convex in u, which may jump"),
+        (kept(b - 1, control_sets={"push": Ball("u")}), "beside bounds of the controls other than those of a box"),
         (kept(b - sp.Symbol("q", real=True)), "uses undeclared symbols: q"),
         (kept(b - 1, control_set="ball"), "beside bounds of the controls other than those of a box"),
         (replace(kept(b - 1, control_set="box"), path_constraints={"u_max": b - 1}), "is the name of a bound"),
+        (kept(b - 1, control_sets={"p": Box("u")}, path_constraints={"u_max": b - 1}), "is the name of a bound"),
         (replace(kept(b - 1), path_constraints={"no name": b - 1}), "a constraint's name is"),
         (replace(kept(b - 1), path_constraints=(b - 1,)), "write a name for each"),  # type: ignore[arg-type]
     ],
@@ -144,11 +175,18 @@ def test_what_cannot_be_derived_is_refused(problem: Problem, message: str):
         derive(problem)
 
 
+def test_a_wrong_rate_of_a_control_fails_its_check(monkeypatch: pytest.MonkeyPatch):
+    true = steps.rates_of_controls
+    monkeypatch.setattr(steps, "rates_of_controls", lambda *of: {u: true(*of)[u] + b / 8})
+    with pytest.raises(DerivationError, match="failed its check"):
+        derive(kept(d - 1, running_cost=sp.cosh(u)))
+
+
 @pytest.mark.parametrize("wrong", ["multiplier", "rate", "costate", "control"])
 def test_a_wrong_equation_fails_its_check(wrong: str, monkeypatch: pytest.MonkeyPatch):
     """Mutations of what the steps are made of: none passes."""
     if wrong == "multiplier":
-        monkeypatch.setattr(steps, "_canonical", _with_sign(steps._canonical))
+        monkeypatch.setattr(steps, "canonical", _with_sign(steps.canonical))
     elif wrong == "rate":
         true = steps.total_derivative
         monkeypatch.setattr(steps, "total_derivative", lambda e, rates: true(e, rates) + a)

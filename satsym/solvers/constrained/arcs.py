@@ -12,6 +12,7 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.collocation.gauss import STAGES, lagrange, scheme
 from satsym.solvers.collocation.scaling import final_argument
+from satsym.solvers.constrained.law import by_newton, stationary
 from satsym.solvers.constrained.structure import FREE, Junction, Structure
 
 OF_TERMS = 1e-3
@@ -29,36 +30,49 @@ def holds_control(instance: Instance, constraint: int) -> bool:
 def control(instance: Instance, constraint: int, t: Array, z: Array) -> Array:
     """Controls, shape (m, N), on the boundary of a constraint or on none."""
     model, n, p = instance.model, len(instance.initial), instance.parameters
+    if stationary(instance):
+        return by_newton(instance, constraint if holds_control(instance, constraint) else FREE, t, z)[0]
     if holds_control(instance, constraint):
         found = model.boundary_control_batch(t, z[:n], z[n:], p, instance.control_set.arguments)
         return _row(np.asarray(found), len(model.spec.path_constraints), len(t))[constraint]
-    found = model.control_law_batch(t, z[:n], z[n:], p, instance.control_set.without_bounds.arguments)
+    found = model.control_law_batch(t, z[:n], z[n:], p, without_bounds(instance))
     return np.broadcast_to(np.asarray(found), (len(model.spec.controls), len(t)))
+
+
+def without_bounds(instance: Instance) -> tuple[float, ...]:
+    """The argument ``bounds`` of the law without them; of a law that is found near one with them, that one's."""
+    return (instance.control_set if stationary(instance) else instance.control_set.without_bounds).arguments
 
 
 def field(instance: Instance, constraint: int, t: Array, z: Array) -> Array:
     """Rates of states and costates, shape (2n, N), on the boundary of a constraint or on none."""
     model, p, n = instance.model, instance.parameters, len(instance.initial)
     x, lam = z[:n], z[n:]
-    if constraint == FREE:
-        return np.array(model.canonical_batch(t, x, lam, p, instance.control_set.without_bounds.arguments))
+    if constraint == FREE and not stationary(instance):
+        return np.array(model.canonical_batch(t, x, lam, p, without_bounds(instance)))
     u = control(instance, constraint, t, z)
     rates = (model.dynamics_batch(t, x, u, p), model.costate_rate_batch(t, x, u, lam, p))
-    force = multipliers(instance, t, z)[constraint] * gradient(instance, constraint, t, x, u)
-    return np.concatenate([np.broadcast_to(rates[0], x.shape), np.broadcast_to(rates[1], x.shape) - force])
+    found = np.concatenate([np.broadcast_to(one, x.shape) for one in rates])
+    if constraint != FREE:
+        found[len(x) :] -= multiplier(instance, constraint, t, z, u) * gradient(instance, constraint, t, x, u)
+    return found
 
 
-def multipliers(instance: Instance, t: Array, z: Array) -> Array:
-    """What eta of each constraint is on its boundary, shape (h, N)."""
+def multiplier(instance: Instance, constraint: int, t: Array, z: Array, u: Array | None = None) -> Array:
+    """What eta of a constraint is on its boundary, shape (N,), by the controls there where these are known."""
     model, n = instance.model, len(instance.initial)
-    found = model.path_multiplier_batch(t, z[:n], z[n:], instance.parameters, instance.control_set.arguments)
-    return np.broadcast_to(np.asarray(found), (len(model.spec.path_constraints), len(t)))
+    if stationary(instance) and holds_control(instance, constraint):
+        return by_newton(instance, constraint, t, z)[1]
+    u = control(instance, constraint, t, z) if u is None else u
+    found = model.path_multiplier_batch(t, z[:n], u, z[n:], instance.parameters, instance.control_set.arguments)
+    return np.broadcast_to(np.asarray(found), (len(model.spec.path_constraints), len(t)))[constraint]
 
 
 def vanishing(instance: Instance, constraint: int, t: Array, z: Array) -> Array:
     """What vanishes besides on the boundary, shape (q, N); of what holds a control that where it begins and ends."""
     model, n = instance.model, len(instance.initial)
-    found = model.path_vanishing_batch(t, z[:n], z[n:], instance.parameters, instance.control_set.arguments)
+    u = control(instance, FREE, t, z)
+    found = model.path_vanishing_batch(t, z[:n], u, z[n:], instance.parameters, instance.control_set.arguments)
     every = _row(np.asarray(found), len(model.spec.path_constraints), len(t))
     return every[constraint, : max(1, model.spec.path_constraints[constraint].order)]
 
@@ -75,9 +89,9 @@ def gradients(instance: Instance, t: Array, x: Array, u: Array) -> Array:
     return _row(found, len(instance.model.spec.path_constraints), len(t))
 
 
-def effects(instance: Instance, t: Array, x: Array) -> Array:
+def effects(instance: Instance, t: Array, x: Array, u: Array) -> Array:
     """g_u of all constraints, shape (h, m, N)."""
-    found = np.asarray(instance.model.path_effect_batch(t, x, instance.parameters))
+    found = np.asarray(instance.model.path_effect_batch(t, x, u, instance.parameters))
     return _row(found, len(instance.model.spec.path_constraints), len(t))
 
 
@@ -97,7 +111,7 @@ def sizes(instance: Instance, t: Array, x: Array, u: Array) -> Array:
 def terms(instance: Instance, t: Array, x: Array, u: Array) -> Array:
     """What constraints add up from by states and controls, shape (h, N): rounding of these is nothing."""
     push = (np.abs(gradients(instance, t, x, u)) * np.abs(x)).sum(axis=1)
-    return np.asarray(push + (np.abs(effects(instance, t, x)) * np.abs(u)).sum(axis=1))
+    return np.asarray(push + (np.abs(effects(instance, t, x, u)) * np.abs(u)).sum(axis=1))
 
 
 def depends(instance: Instance) -> NDArray[np.bool_]:

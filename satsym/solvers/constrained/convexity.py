@@ -42,8 +42,8 @@ def convex(instance: Instance) -> bool:
     for k in range(len(model.spec.path_constraints)):
 
         def pushes(y: Array, k: int = k) -> Array:
-            by_x, by_u = gradients(instance, t, y[: len(x)], y[len(x) :])[k], effects(instance, t, y[: len(x)])[k]
-            return np.concatenate([by_x, by_u])
+            x_and_u = y[: len(x)], y[len(x) :]
+            return np.concatenate([slopes_by(instance, t, *x_and_u)[k] for slopes_by in (gradients, effects)])
 
         tables.append(_second(pushes, np.concatenate([x, u])))
     return strict and all(map(_never_negative, tables))

@@ -14,7 +14,16 @@ from satsym.instance import Instance
 from satsym.kernels.evaluation import COMPLEX_STEP
 from satsym.solvers.collocation.gauss import STAGES, scheme
 from satsym.solvers.collocation.scaling import final_argument
-from satsym.solvers.constrained.arcs import Arcs, control, field, gradient, holds_control, values, vanishing
+from satsym.solvers.constrained.arcs import (
+    Arcs,
+    control,
+    field,
+    gradient,
+    holds_control,
+    values,
+    vanishing,
+    without_bounds,
+)
 from satsym.solvers.constrained.structure import FREE, Event, Junction
 
 if TYPE_CHECKING:
@@ -182,11 +191,12 @@ def at_end(instance: Instance, constraint: int, t: Array, z: Array, nu: tuple[An
 
     In that one H stands under the control of that arc.
     """
-    model, n, p, free = instance.model, len(instance.initial), instance.parameters, instance.control_set.without_bounds
+    model, n, p, bounds = instance.model, len(instance.initial), instance.parameters, without_bounds(instance)
     x, lam = z[:n], z[n:]
-    found = np.array(model.boundary_batch(t, x, lam, nu, p, free.arguments, final_argument(instance)))
+    found = np.array(model.boundary_batch(t, x, lam, nu, p, bounds, final_argument(instance)))
     if holds_control(instance, constraint):
-        ours, other = (model.hamiltonian_batch(t, x, control(instance, k, t, z), lam, p) for k in (constraint, FREE))
+        law = model.control_law_batch(t, x, lam, p, bounds)
+        ours, other = (model.hamiltonian_batch(t, x, u, lam, p) for u in (control(instance, constraint, t, z), law))
         found[-1] += np.asarray(ours) - np.asarray(other)
     return found
 

@@ -12,9 +12,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.solvers.constrained.slopes import Slopes, rooms
+from satsym.solvers.constrained.slopes import Slopes
 from satsym.solvers.constrained.stagewise import Factors
 from satsym.solvers.constrained.transcription import Point, Program, Step
+from satsym.solvers.constrained.units import Units
 from satsym.solvers.iteration import Limits
 
 TO_BOUNDARY = 0.995
@@ -57,58 +58,64 @@ def regularised(program: Program, start: Point, worth: float, limits: Limits) ->
     worth
         The size of costs.
     """
+    unit, units = max(abs(worth), 1e-12) / program.intervals, Units.of(program, start)
     g = program.constraints(start)
     room = np.abs(g).max(axis=1, keepdims=True)
-    room = np.where(room > 0.0, room, rooms(program, start))
-    at = replace(start, s=np.maximum(-g, 0.1 * room))
-    unit = max(abs(worth), 1e-12) / program.intervals
+    at = replace(start, s=np.maximum(-g, 0.1 * np.where(room > 0.0, room, units.g)))
     weight, at = FIRST * unit, replace(at, z=FIRST * unit / at.s)
     filtered, curved = list[tuple[float, float]](), 0.0
     for step in range(STEPS):
         slopes = Slopes.of(program, at)
-        error, violation = _error(program, at, slopes, weight, unit)
+        error, violation = _error(program, at, slopes, weight, unit, units)
         while error < 10.0 * weight / unit and weight > LAST * unit:
             weight, filtered = max(LAST * unit, min(0.2 * weight, unit * (weight / unit) ** 1.5)), []
-            error, violation = _error(program, at, slopes, weight, unit)
+            error, violation = _error(program, at, slopes, weight, unit, units)
         if error < 10.0 * LAST and weight <= LAST * unit:
             return Path(at, program.cost(at), True, violation, step)
         if limits.expired:
             break
-        moved = _stepped(program, at, slopes, weight, filtered, curved)
+        moved = _stepped(program, at, slopes, weight, filtered, curved, units)
         limits.spend(program.intervals)
         if moved is None:
             break
         at, curved = moved
-    return Path(at, program.cost(at), False, _violation(program, at), STEPS)
+    return Path(at, program.cost(at), False, _violation(program, at, units), STEPS)
 
 
-def _error(program: Program, at: Point, slopes: Slopes, weight: float, unit: float) -> tuple[float, float]:
+def _error(
+    program: Program, at: Point, slopes: Slopes, weight: float, unit: float, units: Units
+) -> tuple[float, float]:
     """How far the conditions of the barrier's problem are from holding, relative, and the violation of constraints."""
-    balance, own = slopes.pushed(at.z * program.kept), slopes.gradient
+    balance, own = (units.converted(one) for one in (slopes.pushed(at.z * program.kept), slopes.gradient))
     balances, owns = (
         max(np.abs(one.x).max(), np.abs(one.u).max(initial=0.0), abs(one.duration)) for one in (balance, own)
     )
-    violation = _violation(program, at)
+    violation = _violation(program, at, units)
     complementary = float((np.abs(at.s * at.z - weight) * program.kept).max(initial=0.0)) / unit
-    return max(float(balances / max(1.0, owns, np.abs(at.y).max())), violation, complementary), violation
+    worth = max(unit * program.intervals, owns, np.abs(at.y * units.x[:, None]).max())
+    return max(float(balances / worth), violation, complementary), violation
 
 
-def _violation(program: Program, at: Point) -> float:
+def _violation(program: Program, at: Point, units: Units) -> float:
     """Largest gap of the motion, the end and the slacks, relative to sizes of states and constraints."""
-    size = np.abs(at.x).max(axis=1, keepdims=True) + 1e-300
-    size = np.maximum(size, 1e-3 * size.max())
     slack = (program.constraints(at) + at.s) * program.kept
-    parts = [np.abs(program.gaps(at) / size).max(), np.abs(program.ends(at)).max(initial=0.0) / size.max()]
-    return float(max(*parts, np.abs(slack / rooms(program, at)).max(initial=0.0)))
+    gaps, ends = np.abs(program.gaps(at) / units.x[:, None]), np.abs(program.ends(at) / units.ends)
+    return float(max(gaps.max(), ends.max(initial=0.0), np.abs(slack / units.g).max(initial=0.0)))
 
 
 def _stepped(
-    program: Program, at: Point, slopes: Slopes, weight: float, filtered: list[tuple[float, float]], last: float
+    program: Program,
+    at: Point,
+    slopes: Slopes,
+    weight: float,
+    filtered: list[tuple[float, float]],
+    last: float,
+    units: Units,
 ) -> tuple[Point, float] | None:
     """The next point with the curvature that was added, given the last that was; ``None`` where none is accepted."""
-    here, kept = _measures(program, at, weight), program.kept > 0.0
+    here, kept = _measures(program, at, weight, units), program.kept > 0.0
     for curved in _curvatures(last):
-        direction = _direction(program, at, slopes, weight, curved)
+        direction = _direction(program, at, slopes, weight, curved, units)
         if direction is None:
             continue
         step, ds, dz = direction
@@ -116,7 +123,7 @@ def _stepped(
         for _ in range(25):
             there = at.moved(step, length)
             there = replace(there, s=at.s + length * ds, z=np.maximum(at.z + dual * dz, 1e-300))
-            found = _measures(program, there, weight)
+            found = _measures(program, there, weight, units)
             if there.duration > 0.0 and _accepted(found, [*filtered, here]):
                 filtered.append((here[0] * (1.0 - 1e-5), here[1] - 1e-5 * here[0]))
                 return _safe(there, weight), curved or last
@@ -149,11 +156,12 @@ def _accepted(found: tuple[float, float], others: list[tuple[float, float]]) -> 
     )
 
 
-def _measures(program: Program, at: Point, weight: float) -> tuple[float, float]:
+def _measures(program: Program, at: Point, weight: float, units: Units) -> tuple[float, float]:
     """Violation in all, and cost with the barrier."""
     with np.errstate(all="ignore"):
-        slack = (program.constraints(at) + at.s) * program.kept
-        whole = np.abs(program.gaps(at)).sum() + np.abs(program.ends(at)).sum() + np.abs(slack).sum()
+        slack = (program.constraints(at) + at.s) * program.kept / units.g
+        gaps, ends = program.gaps(at) / units.x[:, None], program.ends(at) / units.ends
+        whole = np.abs(gaps).sum() + np.abs(ends).sum() + np.abs(slack).sum()
         return float(whole), program.cost(at) - weight * float((np.log(at.s) * program.kept).sum())
 
 
@@ -164,18 +172,18 @@ def _room(values: Array, change: Array) -> float:
 
 
 def _direction(
-    program: Program, at: Point, slopes: Slopes, weight: float, curved: float
+    program: Program, at: Point, slopes: Slopes, weight: float, curved: float, units: Units
 ) -> tuple[Step, Array, Array] | None:
     """Newton's step, of the slacks and their multipliers too; ``None`` where it need not descend."""
     kept, s, z = program.kept, at.s, at.z
     off = (program.constraints(at) + s) * kept
     pushed = slopes.pushed((weight / s + z / s * off) * kept)
-    stiff, own = slopes.stiffened(z / s * kept)
+    stiff, own = units.scaled(*slopes.stiffened(z / s * kept))
     try:
         factors = Factors.of(stiff, own, curved)
         if not factors.convex:
             return None
-        step = factors.step(stiff, pushed)
+        step = units.converted(factors.step(stiff, units.converted(pushed)))
     except np.linalg.LinAlgError:
         return None
     change = slopes.change(step)

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.solvers.constrained.arcs import Arcs, control, gradient, multipliers, values
+from satsym.solvers.constrained.arcs import Arcs, control, gradient, values
+from satsym.solvers.constrained.arcs import multiplier as multiplier_of
 from satsym.solvers.constrained.arcs import sizes as measured
 from satsym.solvers.constrained.structure import FREE, Contact, Event, Structure
 from satsym.solvers.switching.trajectory import runs
@@ -284,7 +285,7 @@ def _released(arcs: Arcs, arc: int, one: Contact) -> list[Contact]:
 def multiplier(arcs: Arcs, arc: int) -> Array:
     """eta along an arc on a boundary, shape (N,)."""
     times, z = along(arcs, arc)
-    return multipliers(arcs.instance, times, z)[arcs.structure.arcs[arc]]
+    return multiplier_of(arcs.instance, arcs.structure.arcs[arc], times, z)
 
 
 def _pressure(arcs: Arcs) -> float:

@@ -133,7 +133,7 @@ def constraint_slopes(program: Program, at: Point) -> tuple[Array, Array]:
     if holding.any():
         t, x = program.times(at.duration, middle=True), middles(at.x)
         by_x = np.where(holding, gradients(program.instance, t, x, at.u), by_x)
-        by_u = np.where(holding, effects(program.instance, t, x), by_u)
+        by_u = np.where(holding, effects(program.instance, t, x, at.u), by_u)
     return by_x * program.kept[:, None], by_u * program.kept[:, None]
 
 
@@ -173,11 +173,11 @@ def _constraint_curvature(program: Program, at: Point) -> tuple[Array, Array]:
     for j in range(n if len(own) else 0):
         by_x = gradients(one, nodes, _moved(at.x[:, 1:], j), at.u)[~program.holding]
         curved[:, j] = np.imag((by_x * own).sum(axis=0)) / COMPLEX_STEP
-    for j in range(n if len(holding) else 0):
-        x = _moved(middles(at.x), j)
-        by_x, by_u = (f[program.holding] for f in (gradients(one, between, x, at.u), effects(one, between, x)))
-        held[:n, j] = np.imag((by_x * holding).sum(axis=0)) / COMPLEX_STEP
-        held[n:, j] = held[j, n:] = np.imag((by_u * holding).sum(axis=0)) / COMPLEX_STEP
+    both = np.concatenate([middles(at.x), at.u])
+    for j in range(n + m if len(holding) else 0):
+        moved = _moved(both, j)
+        slopes = (of(one, between, moved[:n], moved[n:])[program.holding] for of in (gradients, effects))
+        held[:, j] = np.imag(np.concatenate([(slope * holding).sum(axis=0) for slope in slopes])) / COMPLEX_STEP
     return (curved + curved.swapaxes(0, 1)) / 2, (held + held.swapaxes(0, 1)) / 2
 
 

@@ -17,6 +17,7 @@ from satsym.solution import Event, Progress, Solution
 from satsym.solvers import iteration, two_point
 from satsym.solvers.constrained.arcs import Arcs, control
 from satsym.solvers.constrained.convexity import convex
+from satsym.solvers.constrained.easing import tightened
 from satsym.solvers.constrained.feasibility import impossible, refuse
 from satsym.solvers.constrained.interior_point import Path, regularised
 from satsym.solvers.constrained.newton import from_arcs, from_path, solved
@@ -116,9 +117,8 @@ def _best(instance: Instance, relaxed: Solution, limits: Limits) -> Arcs | Stopp
     for intervals in INTERVALS:
         program = Program(instance, intervals)
         begun = first(program, relaxed)
-        found = _searched(
-            program, [begun, *([] if convex(instance) else drawn(program, begun, DRAWN, 0))], worth, limits
-        )
+        starts = [begun, *([] if convex(instance) else drawn(program, begun, DRAWN, 0))]
+        found = _searched(program, starts, worth, limits, begun)
         exact = [one for one in found if isinstance(one, Arcs)]
         if exact or limits.late or _impossible(found[0]):
             return min(exact, key=lambda one: one.cost(), default=LATE if LATE in found else found[0])
@@ -129,8 +129,12 @@ def _impossible(one: Arcs | Stopped) -> bool:
     return isinstance(one, Stopped) and one.status is Status.INFEASIBLE
 
 
-def _searched(program: Program, starts: list[Point], worth: float, limits: Limits) -> list[Arcs | Stopped]:
+def _searched(
+    program: Program, starts: list[Point], worth: float, limits: Limits, eased: Point | None = None
+) -> list[Arcs | Stopped]:
     """To what each start leads; what leads to the same regularised path leads to the same extremal.
+
+    From one of them constraints are eased where they are too far from holding.
 
     Each may do the work that the limits allow. Where time is up that is the last of them.
     """
@@ -139,6 +143,8 @@ def _searched(program: Program, starts: list[Point], worth: float, limits: Limit
     for start in starts:
         own = replace(limits, meter=Meter())
         path = regularised(program, start, worth, own)
+        if start is eased and not path.solved:
+            path = tightened(program, start, worth, own)
         same = [one for cost, one in known if path.solved and abs(path.cost - cost) <= SAME * abs(cost)]
         if same:
             one = same[0]

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from satsym.arrays import Array
 from satsym.solution import Solution
 from satsym.solvers.collocation.scaling import two_point
-from satsym.solvers.constrained.transcription import Point, Program, middles
+from satsym.solvers.constrained.transcription import Point, Program
+from satsym.solvers.constrained.units import control_unit
 
 AMPLITUDE = 0.3
 """How far paths leave the one in their middle, relative to the sizes of states."""
@@ -54,7 +54,9 @@ def drawn(program: Program, about: Point, pairs: int, seed: int) -> list[Point]:
     bumps = [rng.normal(size=(n, 1)) * size * AMPLITUDE * np.sin(np.pi * tau) for _ in range(pairs)]
     pushes = [np.zeros_like(about.u)] * pairs
     if program.holding.any():
-        reach = np.maximum(np.abs(about.u).max(axis=1, keepdims=True), _control_unit(program, about, unit))
+        reach = np.maximum(
+            np.abs(about.u).max(axis=1, keepdims=True), control_unit(program, about, unit[:, 0])[:, None]
+        )
         waves = [np.cos(np.pi * k * tau[1:]) for k in range(2)]
         pushes = [sum(rng.normal(size=reach.shape) * reach * AMPLITUDE * wave for wave in waves) for _ in range(pairs)]
     return [
@@ -62,12 +64,3 @@ def drawn(program: Program, about: Point, pairs: int, seed: int) -> list[Point]:
         for bump, push in zip(bumps, pushes, strict=True)
         for side in (1.0, -1.0)
     ]
-
-
-def _control_unit(program: Program, about: Point, unit: Array) -> Array:
-    """Of each control, shape (m, 1): what moves a state by its unit while the motion lasts."""
-    n, m = len(about.x), len(about.u)
-    t, x = program.times(about.duration, middle=True), middles(about.x)
-    found = np.abs(np.asarray(program.instance.model.jacobian_u_batch(t, x, about.u, program.p)).reshape(n, m, -1))
-    strength = (found.max(axis=2) / unit).max(axis=0) * about.duration
-    return np.where(strength > 0.0, 1.0 / np.maximum(strength, 1e-300), 0.0)[:, None]

@@ -68,6 +68,8 @@ class Program:
 
     instance: Instance
     intervals: int
+    eased: Array | float = 0.0
+    """By how much constraints may be positive, shape (h, 1)."""
 
     @cached_property
     def kept(self) -> Array:
@@ -157,7 +159,7 @@ class Program:
         if self.holding.any():
             held = values(one, self.times(lasting, middle=True), middles(at.x), at.u)
             found = np.where(self.holding[:, None], held, found)
-        return np.asarray(found * self.kept)
+        return np.asarray((found - self.eased) * self.kept)
 
     def ends(self, at: Point, duration: complex | None = None) -> Array:
         """Conditions at the end: given states, then terminal constraints."""
@@ -175,21 +177,20 @@ class Program:
         n, model = len(at.x), self.instance.model
         c = len(model.spec.multipliers)
         nu, t = tuple(at.v[len(at.v) - c :].tolist()), np.array([self.instance.t0 + duration])
-        nothing, x, lam = (0.0,) * 3 * n, at.x[:, -1:].astype(complex), np.zeros((n, 1))
+        nothing, x, lam = (0.0,) * 3 * n, at.x[:, -1:], np.zeros((n, 1))
         bounds = self.instance.control_set.arguments
         rows = np.asarray(model.boundary_batch(t, x, lam, nu, self.p, bounds, nothing))[:, 0]
-        slopes = np.asarray(model.boundary_jacobian_batch(t, x, lam, nu, self.p, bounds, nothing))
+        slopes = np.asarray(model.boundary_jacobian_batch(np.real(t), x, lam, nu, self.p, bounds, nothing))
         table = slopes.reshape(len(rows), -1)
-        found = rows[n : n + c], table[n : n + c, :n], -rows[:n]
-        return found if isinstance(duration, complex) else tuple(map(np.real, found))
+        return rows[n : n + c], table[n : n + c, :n], -rows[:n]
 
     def curvature_at_end(self, at: Point) -> Array:
-        """Second derivatives of S + nu' psi by the state."""
+        """Second derivatives of S + nu' psi by the state; by arrays, as laws may have no numbers without costates."""
         n, model = len(at.x), self.instance.model
         c = len(model.spec.multipliers)
-        nu, x = tuple(at.v[len(at.v) - c :].tolist()), tuple(at.x[:, -1].tolist())
+        nu, end = tuple(at.v[len(at.v) - c :].tolist()), np.array([self.final_time(at.duration)])
         arguments = nu, self.p, self.instance.control_set.arguments, (0.0,) * 3 * n
-        table = np.array(model.boundary_jacobian(self.final_time(at.duration), x, (0.0,) * n, *arguments))
+        table = np.asarray(model.boundary_jacobian_batch(end, at.x[:, -1:], np.zeros((n, 1)), *arguments))
         return -table.reshape(n + c + 1, -1)[:n, :n]
 
 

@@ -20,6 +20,7 @@ from satsym.symbolic.derivation import Derivation, Equation, Step
 from satsym.symbolic.model import symbols_of, t
 from satsym.symbolic.notation import rate_of
 from satsym.symbolic.principle import path_notation as pn
+from satsym.symbolic.principle import stationary_controls
 from satsym.symbolic.principle.path_constraints import (
     COMPETITORS,
     Constraint,
@@ -28,6 +29,7 @@ from satsym.symbolic.principle.path_constraints import (
     free_law,
     motion_of,
     problem_of,
+    stationary,
 )
 from satsym.symbolic.principle.pontryagin import costates
 
@@ -40,6 +42,8 @@ def mixed_constraints(so_far: Derivation) -> Step | None:
     problem = problem_of(so_far)
     if not (stated := pn.mixed(problem)):
         return None
+    if stationary(so_far):
+        return stationary_controls.mixed(so_far, stated, STEP)
     controls, h = symbols_of(so_far.model.controls), so_far.equation("hamiltonian.H").rhs
     equations, checks = list[Equation](), []
     slopes, weight = sp.Matrix([h]).jacobian(controls).T, sp.hessian(h, controls).applyfunc(sp.simplify)
@@ -75,6 +79,7 @@ def mixed_costates(so_far: Derivation) -> Step | None:
     for found in constraints(so_far):
         laws, value = _active(so_far, found)
         eta, g = pn.multiplier(found.name), found.rates[0]
+        whole = h.xreplace(laws) if laws else h + sign(problem) * eta * g  # in whose controls that is least
         pushed = [
             tidy(rate - sign(problem) * eta * sp.diff(g, x), lam)
             for x, rate in zip(states, so_far.rhs("costate_equations"), strict=True)
@@ -87,7 +92,7 @@ def mixed_costates(so_far: Derivation) -> Step | None:
         moving = {x: rate.xreplace(laws) for x, rate in motion_of(so_far).items()}
         moving |= {c: r.xreplace({eta: value}).xreplace(laws) for c, r in zip(lam, pushed, strict=True)}
         by_time = (sp.diff(h, t) + sign(problem) * value * sp.diff(g, t)).xreplace(laws)
-        drifts.append(total_derivative(h.xreplace(laws), moving) - by_time)
+        drifts.append(total_derivative(whole, moving) - by_time)
     checks.append(identity("H changes on the boundary with the constraint", drifts))
     rule, sources = worded("adjoin what holds a control", problem), (STEP, "costate_equations")
     return Step("mixed_costates", rule, tuple(equations), sources, tuple(checks))
@@ -102,7 +107,9 @@ def constraints(so_far: Derivation) -> list[Constraint]:
 
 
 def _active(so_far: Derivation, found: Constraint) -> tuple[dict[sp.Symbol, sp.Expr], sp.Expr]:
-    """Controls and multiplier while it is."""
+    """Controls and multiplier while it is; where they are not in closed form, no controls, and its symbol."""
+    if stationary(so_far):
+        return {}, pn.multiplier(found.name)
     stated = {e.name: e.rhs for e in so_far.step(STEP).equations}
     controls = symbols_of(so_far.model.controls)
     return {u: stated[f"{found.name}_{u.name}"] for u in controls}, stated[f"{found.name}_eta"]

@@ -31,6 +31,9 @@ COMPETITORS = 20
 STEP = "constraint_order"
 """The step that only derivations of such problems have."""
 
+CONTROL_PARTS = "control_parts"
+"""The step of derivations whose law is found set by set; see :mod:`satsym.symbolic.principle.product`."""
+
 
 @dataclass(frozen=True)
 class Constraint:
@@ -54,13 +57,13 @@ def constraint_order(so_far: Derivation) -> Step | None:
         equations += [
             Equation(pn.entry(found.name, k), pn.rate(found.name, k), rate) for k, rate in enumerate(found.rates)
         ]
-        checks.append(_rates_along(found.rates, motion))
+        checks.append(rates_along(found.rates, motion))
     return Step(STEP, "differentiate until a control appears", tuple(equations), ("first_order",), tuple(checks))
 
 
 def boundary_control(so_far: Derivation) -> Step | None:
-    """The control that minimises H among those that keep g^(q) = 0."""
-    if STEP not in so_far:
+    """The control that minimises H among those that keep g^(q) = 0, in closed form."""
+    if STEP not in so_far or stationary(so_far):
         return None
     problem, controls = problem_of(so_far), symbols_of(so_far.model.controls)
     h, equations, checks = so_far.equation("hamiltonian.H").rhs, list[Equation](), []
@@ -90,7 +93,7 @@ def constraint_multiplier(so_far: Derivation) -> Step | None:
     equations, checks, law = list[Equation](), [], free_law(so_far)
     for found in constraints(so_far):
         vanishing = _vanishing(so_far, found)
-        moving = _canonical(so_far, found)
+        moving = canonical(so_far, found)
         last = tidy(sp.expand(total_derivative(vanishing[-1], moving)), (eta := pn.multiplier(found.name),))
         by_eta = sp.simplify(sp.diff(last, eta))
         value = tidy(simplified(-last.xreplace({eta: sp.Integer(0)}) / by_eta))
@@ -99,7 +102,7 @@ def constraint_multiplier(so_far: Derivation) -> Step | None:
         ]
         equations.append(Equation(f"{found.name}_eta", eta, value))
         chain = (found.rates[-2], *vanishing, sp.Integer(0))
-        checks.append(_rates_along(chain, {x: r.xreplace({eta: value}) for x, r in moving.items()}))
+        checks.append(rates_along(chain, {x: r.xreplace({eta: value}) for x, r in moving.items()}))
         checks.append(adjoined(so_far, found, [moving[lam] for lam in costates(so_far)], law))
     rule, sources = (
         worded("keep the law on the boundary", problem_of(so_far)),
@@ -113,14 +116,14 @@ def constrained_costates(so_far: Derivation) -> Step | None:
     if STEP not in so_far:
         return None
     states, equations, drifts, checks = symbols_of(so_far.model.states), list[Equation](), [], []
-    law = free_law(so_far)
+    law, controls = free_law(so_far), symbols_of(so_far.model.controls)
     for found in constraints(so_far):
-        moving = _canonical(so_far, found)
+        moving = canonical(so_far, found)
         equations += [Equation(f"{found.name}_{lam.name}", n.rate_of(lam), moving[lam]) for lam in costates(so_far)]
         h = so_far.equation("hamiltonian.H").rhs.xreplace(law)
         g, eta = found.rates[0], pn.multiplier(found.name)
         shift = sign(problem_of(so_far)) * eta * sum(sp.diff(g, x) * moving[x] for x in states)
-        change = sum(sp.diff(h, v) * rate for v, rate in moving.items())
+        change = sum(sp.diff(h, v) * rate for v, rate in moving.items() if v not in controls)  # in these it is least
         drifts.append(change + shift)
         checks.append(adjoined(so_far, found, [moving[lam] for lam in costates(so_far)], law))
     checks.append(identity("H changes on the boundary with the constraint", drifts))
@@ -148,14 +151,13 @@ def junction_conditions(so_far: Derivation) -> Step | None:
         jump_of_h = tidy(-sign(problem) * zeta * sp.diff(g, t))
         before = {costate: costate + jump for costate, jump in zip(lam, jumps, strict=True)}
         if found.order == 1:
-            vanishing = _vanishing(so_far, found)[0]
-            moved = sp.simplify((vanishing.xreplace(before) - vanishing) / zeta)
-            kept.append(sp.diff(moved, zeta))
-            if moved == 0:
+            moved, stays = _moved_by_jump(so_far, found, before)
+            kept += stays
+            if all(sp.simplify(m) == 0 for m in moved):
                 raise DerivationError(f"{so_far.name}: path_constraints {found.name}: the jump of costates is open")
             equations.append(Equation(f"{found.name}_jump", zeta, sp.Integer(0)))
             continue
-        kept += [value.xreplace(before) - value for value in law.values()]
+        kept += _moved_by_jump(so_far, found, before)[1]
         # the rate of g vanishes where the jump is
         kept.append(h.xreplace(before) - h - sign(problem) * zeta * found.rates[1] - jump_of_h)
         equations += [
@@ -166,6 +168,30 @@ def junction_conditions(so_far: Derivation) -> Step | None:
     check = identity("the control passes junctions unchanged", kept)
     rule = worded("junctions", problem)
     return Step("junction_conditions", rule, tuple(equations), (STEP, "control_law"), (check,))
+
+
+def _moved_by_jump(
+    so_far: Derivation, found: Constraint, before: Mapping[sp.Symbol, sp.Expr]
+) -> tuple[list[sp.Expr], list[sp.Expr]]:
+    """By what a jump of the costates times its multiplier moves what the control follows from, and what must vanish.
+
+    Of an order of one that is g' under the law, by a multiple of zeta; or H_u, of which the control is the root, by
+    zeta times the effect of controls on g'. Of an order of two it is the law, or H_u, which must not move.
+    """
+    zeta = pn.jump(found.name)
+    if stationary(so_far):
+        controls = symbols_of(so_far.model.controls)
+        h, effects = so_far.equation("hamiltonian.H").rhs, gradient(found.rates[1], controls)
+        shifts = [slope.xreplace(before) - slope for slope in gradient(h, controls)]
+        if found.order > 1:
+            return [], shifts
+        factor = sign(problem_of(so_far)) * zeta
+        return effects, [shift - factor * effect for shift, effect in zip(shifts, effects, strict=True)]
+    if found.order > 1:
+        return [], [value.xreplace(before) - value for value in free_law(so_far).values()]
+    vanishing = _vanishing(so_far, found)[0]
+    moved = sp.simplify((vanishing.xreplace(before) - vanishing) / zeta)
+    return [moved], [sp.diff(moved, zeta)]
 
 
 def constraints(so_far: Derivation) -> list[Constraint]:
@@ -217,8 +243,15 @@ def affine(so_far: Derivation, found: Constraint, controls: tuple[sp.Symbol, ...
     return effect, found.rates[-1].xreplace(dict.fromkeys(controls, sp.Integer(0)))
 
 
+def stationary(so_far: Derivation) -> bool:
+    """Whether H is not known to be quadratic in the controls, which then stay symbols at which H_u vanishes."""
+    return CONTROL_PARTS in so_far
+
+
 def free_law(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
-    """The control that minimises H, without bounds."""
+    """The control that minimises H, without bounds; nothing where the controls stay symbols."""
+    if stationary(so_far):
+        return {}
     controls = symbols_of(so_far.model.controls)
     return {u: so_far.equation(f"stationarity.{u.name}_hat").rhs for u in controls}
 
@@ -226,13 +259,13 @@ def free_law(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
 def _vanishing(so_far: Derivation, found: Constraint) -> tuple[sp.Expr, ...]:
     """What must vanish on the boundary besides g and its rates: g^(q) under the law, and its first q - 1 rates."""
     vanishing = [tidy(simplified(found.rates[-1].xreplace(free_law(so_far))))]
-    moving = _canonical(so_far, found)
+    moving = canonical(so_far, found)
     for _ in range(found.order - 1):
         vanishing.append(tidy(simplified(total_derivative(vanishing[-1], moving))))
     return tuple(vanishing)
 
 
-def _canonical(so_far: Derivation, found: Constraint) -> dict[sp.Symbol, sp.Expr]:
+def canonical(so_far: Derivation, found: Constraint) -> dict[sp.Symbol, sp.Expr]:
     """Rates of states and costates on the boundary, the multiplier being a symbol."""
     states, law = symbols_of(so_far.model.states), free_law(so_far)
     force = -sign(problem_of(so_far)) * pn.multiplier(found.name)
@@ -240,7 +273,15 @@ def _canonical(so_far: Derivation, found: Constraint) -> dict[sp.Symbol, sp.Expr
     moving = {x: rate.xreplace(law) for x, rate in motion_of(so_far).items()}
     for x, lam, rate in zip(states, costates(so_far), rates, strict=True):
         moving[lam] = tidy(rate.xreplace(law) + force * sp.diff(found.rates[0], x))
-    return moving
+    return moving | (rates_of_controls(so_far, moving) if stationary(so_far) else {})
+
+
+def rates_of_controls(so_far: Derivation, moving: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, sp.Expr]:
+    """At what rate controls move at which H_u vanishes, with states and costates: H_uu u' = -d/dt H_u without them."""
+    controls, h = symbols_of(so_far.model.controls), so_far.equation("hamiltonian.H").rhs
+    drift = sp.Matrix([total_derivative(slope, moving) for slope in gradient(h, controls)])
+    rates = -sp.hessian(h, controls).applyfunc(sp.simplify).LUsolve(drift)
+    return {u: tidy(simplified(rate)) for u, rate in zip(controls, rates, strict=True)}
 
 
 def motion_of(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
@@ -248,7 +289,7 @@ def motion_of(so_far: Derivation) -> dict[sp.Symbol, sp.Expr]:
     return dict(zip(symbols_of(so_far.model.states), so_far.rhs("first_order"), strict=True))
 
 
-def _rates_along(rates: tuple[sp.Expr, ...], motion: Mapping[sp.Symbol, sp.Expr]) -> Check:
+def rates_along(rates: tuple[sp.Expr, ...], motion: Mapping[sp.Symbol, sp.Expr]) -> Check:
     """Each but the first against the numeric rate of the one before it along the motion."""
     values, derived, pace = numeric(list(rates[:-1])), numeric(list(rates[1:])), numeric(list(motion.values()))
 

@@ -7,7 +7,7 @@ import sympy as sp
 from satsym.symbolic.dimension_algebra import Dimension, over
 from satsym.symbolic.model import Problem, Requirement, symbols_of
 from satsym.symbolic.notation import HAMILTONIAN, costate_of
-from satsym.symbolic.principle import control_sets
+from satsym.symbolic.principle.parts import parts_of
 
 
 def of_states(problem: Problem) -> dict[str, sp.Expr]:
@@ -30,13 +30,15 @@ def _holds_control(problem: Problem, g: sp.Expr) -> bool:
 
 
 def _bounds(problem: Problem) -> dict[sp.Symbol, sp.Expr]:
-    if not problem.path_constraints or problem.control_set != "box":
+    if not problem.path_constraints:
         return {}
-    controls = symbols_of(problem.model.controls)
-    limits = symbols_of(control_sets.bounds("box", problem.model.controls))
-    low, high = limits[: len(controls)], limits[len(controls) :]
-    found = {b: b - u for b, u in zip(low, controls, strict=True)}
-    return found | {b: u - b for b, u in zip(high, controls, strict=True)}
+    found: dict[sp.Symbol, sp.Expr] = {}
+    for part in parts_of(problem):
+        if part.kind == "box":
+            low, high = part.bounds[: len(part.symbols)], part.bounds[len(part.symbols) :]
+            found |= {b: b - u for b, u in zip(low, part.symbols, strict=True)}
+            found |= {b: u - b for b, u in zip(high, part.symbols, strict=True)}
+    return found
 
 
 HIGHEST = 2
@@ -83,6 +85,11 @@ def boundary_control(name: str, control: sp.Symbol) -> sp.Symbol:
     return sp.Symbol(f"{control.name}_on_{name}", real=True)
 
 
+def control_rate(name: str, control: sp.Symbol) -> sp.Symbol:
+    """The symbol for the rate of a control on the boundary of a constraint."""
+    return sp.Symbol(f"rate_of_{control.name}_on_{name}", real=True)
+
+
 def names(problem: Problem) -> dict[str, str]:
     """Name -> LaTeX of all of them."""
     if not problem.path_constraints:
@@ -99,7 +106,9 @@ def names(problem: Problem) -> dict[str, str]:
         found |= {vanishing(name, order).name: rf"{dots}\varphi{foot}" for order, dots in enumerate(("", r"\dot"))}
         found |= {multiplier(name).name: rf"\eta{foot}", jump(name).name: rf"\zeta{foot}"}
         for v in problem.model.controls:
-            found[boundary_control(name, symbols_of((v,))[0]).name] = rf"{v.latex}^{{\mathrm{{b}}{foot}}}"
+            (u,) = symbols_of((v,))
+            found[boundary_control(name, u).name] = rf"{v.latex}^{{\mathrm{{b}}{foot}}}"
+            found[control_rate(name, u).name] = rf"\frac{{d {v.latex}}}{{dt}}"
     return found
 
 
@@ -126,6 +135,7 @@ def declare(
         known[multiplier(name).name] = over(over(total, found), second)
         for control in symbols_of(problem.model.controls):
             known[boundary_control(name, control).name] = known[control.name]
+            known[control_rate(name, control).name] = over(known[control.name], second)
     if problem.path_constraints:
         known[change(HAMILTONIAN).name] = known[HAMILTONIAN.name]
         for state in symbols_of(problem.model.states):

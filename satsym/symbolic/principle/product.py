@@ -37,6 +37,7 @@ from satsym.symbolic.principle.set_laws import (
     shortened,
     written_out,
 )
+from satsym.symbolic.principle.stationary_controls import refuse_jumping
 from satsym.symbolic.roots import Choice, Vertex
 
 STEP = "control_parts"
@@ -44,13 +45,19 @@ STEP = "control_parts"
 
 
 def applies(so_far: Derivation) -> bool:
-    """Whether the control set is stated set by set, or is a ball on which H is linear, or H is not quadratic."""
+    """Whether the control set is stated set by set, or is a ball on which H is linear, or H is not quadratic.
+
+    Or a path constraint is not linear in the controls.
+    """
     problem = so_far.problem
     if problem is None:
         return False
     if problem.control_sets:
         return True
     controls = symbols_of(problem.model.controls)
+    kept = [sp.diff(g, u) for g in problem.path_constraints.values() for u in controls]
+    if any(sp.simplify(sp.diff(slope, u)) != 0 for slope in kept for u in controls if slope.has(u)):
+        return True  # on the boundary of such a constraint no law is in closed form
     stated = [with_norms(e, parts_of(problem)) for e in (problem.running_cost, *so_far.rhs("first_order"))]
     if problem.control_set != "ball":
         if any(e.has(sp.Abs) for e in stated):
@@ -69,6 +76,8 @@ def control_parts(so_far: Derivation) -> Step:
     """What H is of the controls of each set."""
     problem, h = problem_of(so_far), so_far.equation("hamiltonian.H").rhs
     every = found(so_far)
+    if problem.path_constraints:
+        refuse_jumping(so_far.name, every)
     equations: list[Equation] = []
     for one in every:
         symbols = one.part.symbols

@@ -14,9 +14,10 @@ from satsym.solvers.certificate.constrained import comparison
 from satsym.solvers.certificate.constrained.replay import Piece, Replay, replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
 from satsym.solvers.certificate.flow import FAINT, typical
-from satsym.solvers.constrained.arcs import control, holds_control, multipliers, sizes, values, vanishing
+from satsym.solvers.constrained.arcs import control, holds_control, multiplier, sizes, values, vanishing
 from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.constrained.equations import changing
+from satsym.solvers.constrained.law import smallest_curvature, stationary
 from satsym.solvers.constrained.structure import FREE, within
 from satsym.solvers.constrained.violation import VIOLATED
 from satsym.status import Verdict
@@ -43,11 +44,11 @@ def certify(solution: Solution, deadline: float, seed: int = 0, compared: bool =
             missing = float("nan")
             check = Check("flow from the initial costates is finite", 1.0, 0.0)
             return Certificate(Verdict.FAILED, missing, missing, missing, None, missing, None, (check,))
-        first = _first_order(solution, again)
+        first, curved = _first_order(solution, again), _legendre_clebsch(solution, again)
         second: list[Check] = []
         others = Comparison((), ())
         if all(c.passed for c in first):
-            second = [Check("legendre-clebsch", float(not conditions.legendre_clebsch(solution) > 0.0), 0.0)]
+            second = [Check("legendre-clebsch", float(not curved > 0.0), 0.0)]
             if convex(solution.instance):
                 second.append(Check("not convex", 0.0, 0.0))
             elif all(c.passed for c in second):
@@ -58,12 +59,21 @@ def certify(solution: Solution, deadline: float, seed: int = 0, compared: bool =
     return Certificate(
         verdict=Verdict.of(all(c.passed for c in first), all(c.passed for c in second), compared),
         **conditions.headlines(first),
-        legendre_clebsch=conditions.legendre_clebsch(solution),
+        legendre_clebsch=curved,
         conjugate_time=None,
         checks=(*first, *second),
         competitors=tuple(kind.summary for kind in others.kinds),
         not_checked=others.not_checked,
     )
+
+
+def _legendre_clebsch(solution: Solution, again: Replay) -> float:
+    """Least curvature of H by the controls at the nodes, along what keeps active constraints."""
+    if not stationary(solution.instance):
+        return conditions.legendre_clebsch(solution)
+    active = [p.constraint if holds_control(solution.instance, p.constraint) else FREE for p in again.pieces]
+    pieces = zip(again.pieces, active, strict=True)
+    return min(smallest_curvature(solution.instance, k, solution.times[p.nodes], p.z) for p, k in pieces)
 
 
 def _first_order(solution: Solution, again: Replay) -> list[Check]:
@@ -191,7 +201,7 @@ def _rates(solution: Solution, piece: Piece, place: int) -> Array:
 def _multipliers(solution: Solution, again: Replay) -> list[Array]:
     """eta along each arc on a boundary of a constraint on states alone."""
     return [
-        multipliers(solution.instance, piece.times, piece.dense)[piece.constraint]
+        multiplier(solution.instance, piece.constraint, piece.times, piece.dense)
         for piece in again.pieces
         if piece.constraint != FREE and not holds_control(solution.instance, piece.constraint)
     ]

@@ -24,7 +24,7 @@ from satsym.solution import Solution
 from satsym.solvers.certificate.constrained.replay import Replay
 from satsym.solvers.certificate.end_form import end_form
 from satsym.solvers.certificate.flow import unit_sizes
-from satsym.solvers.constrained.arcs import control, effects, gradient, holds_control, multipliers
+from satsym.solvers.constrained.arcs import control, effects, gradient, holds_control, multiplier
 from satsym.solvers.constrained.structure import FREE, pressing, within
 
 MESH = 160
@@ -93,7 +93,7 @@ def _held(solution: Solution, constraint: int, t: Array, z: Array) -> Array:
     """g_x and g_u of a constraint that holds a control, in one row."""
     instance, x = solution.instance, z[: len(solution.x)]
     u = control(instance, constraint, t, z)
-    return np.concatenate([gradient(instance, constraint, t, x, u), effects(instance, t, x)[constraint]])[:, 0]
+    return np.concatenate([gradient(instance, constraint, t, x, u), effects(instance, t, x, u)[constraint]])[:, 0]
 
 
 def _mesh(solution: Solution, again: Replay) -> tuple[Array, list[int], list[int]]:
@@ -133,14 +133,16 @@ def _along(solution: Solution, t: Array, z: Array, which: list[int]) -> tuple[Ar
         return np.concatenate([np.broadcast_to(by_x, x.shape), np.broadcast_to(by_u, u.shape)])
 
     table = _slopes(slopes, np.concatenate([x, u]))
-    eta = multipliers(instance, t, z)
     for k in {one for one in which if one != FREE}:
 
         def pushes(y: Array, k: int = k) -> Array:
             by_x = gradient(instance, k, t, y[:n], y[n:])
-            return np.concatenate([by_x, np.broadcast_to(effects(instance, t, y[:n])[k], u.shape)])
+            return np.concatenate([by_x, np.broadcast_to(effects(instance, t, y[:n], y[n:])[k], u.shape)])
 
-        table += _slopes(pushes, np.concatenate([x, u])) * np.where(where == k, eta[k], 0.0)
+        active = where == k
+        eta = np.zeros(count)
+        eta[active] = multiplier(instance, k, t[active], z[:, active])
+        table += _slopes(pushes, np.concatenate([x, u])) * eta
     second = list(np.moveaxis((table + table.swapaxes(0, 1)) / 2, -1, 0))
     return np.moveaxis(a, -1, 0), np.moveaxis(b, -1, 0), second, [one[n:, n:] for one in second]
 
