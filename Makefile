@@ -69,8 +69,8 @@ bench-truth: $(VENV)/installed-bench  ## random instances of all classes beside 
 bench-optima: $(VENV)/installed-bench  ## problems whose optima are known, beside a direct method (takes minutes)
 	$(BIN)/python tests/bench/optima.py
 
-bench-batch: $(VENV)/installed-bench  ## many instances at once beside C, NumPy and CasADi in a loop (takes minutes)
-	$(BIN)/python tests/bench/batch.py
+bench-batch: $(VENV)/installed-bench  ## many instances at once beside C, NumPy and CasADi in a loop (takes minutes; TABLES="1 5" some)
+	OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python tests/bench/batch.py $(TABLES)
 
 docs: $(VENV)/installed-docs  ## build the documentation into docs/_build, warnings being errors
 	$(BIN)/python -m sphinx -q -W --keep-going docs docs/_build/html

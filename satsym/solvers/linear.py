@@ -22,6 +22,7 @@ from satsym.solvers.extremal import solved
 from satsym.solvers.iteration import Limits
 from satsym.solvers.shooting.arcs import MOST_STEPS, Arcs, sufficient
 from satsym.solvers.shooting.newton import doubled, linearised, residual
+from satsym.solvers.switching.linear.linear_motion import exponential
 from satsym.solvers.two_point import unfinished
 from satsym.status import BadInput, Status
 from satsym.wording import counted
@@ -68,7 +69,7 @@ class Exponential(Arcs):
 
     def variations(self) -> tuple[Array, Array]:
         """As of :class:`Arcs`."""
-        flows = self._flows(np.diff(self.mesh))
+        flows = self.flows(np.diff(self.mesh))
         ends = flows[:, :-1, :-1] @ self.nodes.T[:-1, :, None] + flows[:, :-1, -1:]
         return ends[:, :, 0].T, flows[:, :-1, :-1]
 
@@ -79,7 +80,7 @@ class Exponential(Arcs):
     def __call__(self, tau: Array) -> Array:
         """As of :class:`Arcs`."""
         arc = np.clip(np.searchsorted(self.mesh, tau, side="right") - 1, 0, len(self.mesh) - 2)
-        flows = self._flows(tau - self.mesh[arc])
+        flows = self.flows(tau - self.mesh[arc])
         values: Array = (flows[:, :-1, :-1] @ self.nodes.T[arc, :, None] + flows[:, :-1, -1:])[:, :, 0].T
         return values
 
@@ -102,12 +103,10 @@ class Exponential(Arcs):
         found[:-1] = np.append(slopes, driven, axis=1) * self.problem.elapsed(self.theta)
         return found
 
-    def _flows(self, widths: Array) -> Array:
+    def flows(self, widths: Array) -> Array:
         """State transition matrices over these shares of the duration, shape (M, 2n + 1, 2n + 1)."""
-        from scipy.linalg import expm
-
-        flows: Array = expm(self._generator * widths[:, None, None])
-        return flows
+        turned = self._generator * widths[:, None, None]
+        return exponential(turned) if np.isfinite(turned).all() else np.full_like(turned, np.nan)
 
 
 def _extremal(instance: Instance, limits: Limits, effort: bool) -> Extremal:
@@ -116,7 +115,7 @@ def _extremal(instance: Instance, limits: Limits, effort: bool) -> Extremal:
     problem = two_point(instance, instance.tf - instance.t0)
     free = problem.relaxed(float("inf"))
     arcs = _arcs(free)
-    if not _linear(free):
+    if not is_linear(free):
         return Extremal(problem, arcs, float("inf"), Status.NON_FINITE, "the canonical equations are not finite", 0)
     try:
         matching, wrong = linearised(arcs)
@@ -138,7 +137,7 @@ def _extremal(instance: Instance, limits: Limits, effort: bool) -> Extremal:
     return Extremal(problem, arcs, cost, Status.CONVERGED, message, 1)
 
 
-def _linear(problem: TwoPoint) -> bool:
+def is_linear(problem: TwoPoint) -> bool:
     """Whether derivatives are finite; an instance for which they differ between random places is refused."""
     n, names, rng = problem.states, problem.instance.model.spec.state_names, np.random.default_rng(0)
     tau, places = np.linspace(0.0, 1.0, PLACES), rng.standard_normal((2, 2 * n, PLACES))

@@ -13,7 +13,7 @@ from satsym.instance import numbers as keys
 from satsym.status import BadInput
 from satsym.studies import rows
 from satsym.studies.asked import Chunk, Command, Study, Task, keys_of
-from satsym.studies.rows import Failure, Row, Work
+from satsym.studies.rows import Cases, Failure, Row, Work
 
 
 def computed(packed: bytes, chunk: Chunk) -> list[Row]:
@@ -59,7 +59,7 @@ def begun(task: Task) -> Work:
         return solving(task)
     if task.command is Command.SIMULATE:
         return _simulating(task)
-    return rows.one_by_one(_regulated)
+    return _regulated
 
 
 def _simulating(task: Task) -> Work:
@@ -72,9 +72,33 @@ def _simulating(task: Task) -> Work:
     return rows.one_by_one(simulated)
 
 
-def _regulated(key: str, instance: Instance) -> Row:
+def _regulated(cases: Cases) -> list[Row]:
+    """All regulators at once, and one by one those that are not clear."""
+    from satsym.analysis.regulator.many import regulators
+
+    instances = [instance for _, instance in cases]
+    alike = bool(cases) and all(one.lqr is instances[0].lqr and not one.free for one in instances)
+    found = regulators(instances) if alike else None
+    if found is None:
+        return rows.one_by_one(_designed)(cases)
+    assert instances[0].lqr is not None
+    names = instances[0].lqr.inputs, instances[0].model.spec.state_names
+    return [
+        rows.of_regulator(key, names, found.K[k], found.eigenvalues[k], found.residual[k], found.cost[k])
+        if found.clear[k]
+        else rows.tried(_designed, key, instance)
+        for k, (key, instance) in enumerate(cases)
+    ]
+
+
+def _designed(key: str, instance: Instance) -> Row:
+    """One regulator by itself."""
     from satsym.analysis.regulator.feedback import designed
 
     instance.require_numbers()
     with np.errstate(all="ignore"):
-        return rows.of_regulator(key, designed(instance))
+        design = designed(instance)
+    found, deviation = design.regulator, design.deviation
+    cost = None if deviation is None else found.cost(deviation)
+    names = found.system.inputs, found.system.states
+    return rows.of_regulator(key, names, found.K, found.eigenvalues, found.residual, cost)

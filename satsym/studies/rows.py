@@ -8,13 +8,15 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import TYPE_CHECKING, TypeAlias
 
+import numpy as np
+from numpy.typing import NDArray
+
 from satsym.arrays import Array
 from satsym.instance.unknowns import Place
 from satsym.solution import Simulation, Solution
 from satsym.status import BadInput, Status
 
 if TYPE_CHECKING:
-    from satsym.analysis.regulator.feedback import Design
     from satsym.instance import Instance
     from satsym.spec import ProblemSpec
     from satsym.studies.together import Found
@@ -165,17 +167,21 @@ def of_simulation(key: str, simulation: Simulation, kept: bool) -> Row:
     return Row(key, simulation.status.value, message, numbers, trajectory)
 
 
-def of_regulator(key: str, design: Design) -> Row:
-    """Of a linear feedback."""
-    found, deviation = design.regulator, design.deviation
-    numbers: dict[str, Scalar] = {
-        Column.COST_FROM_INITIAL: None if deviation is None else _plain(found.cost(deviation))
-    }
-    for i, name in enumerate(found.system.inputs):
-        numbers |= {f"K.{name}.{state}": _plain(k) for state, k in zip(found.system.states, found.K[i], strict=True)}
-    for i, value in enumerate(found.eigenvalues, 1):
+def of_regulator(
+    key: str,
+    names: tuple[Sequence[str], Sequence[str]],
+    K: Array,
+    eigenvalues: NDArray[np.complexfloating],
+    residual: float,
+    cost: float | None,
+) -> Row:
+    """Of a linear feedback, with the names of its inputs and of the states."""
+    numbers: dict[str, Scalar] = {Column.COST_FROM_INITIAL: None if cost is None else _plain(cost)}
+    for name, row in zip(names[0], K.tolist(), strict=True):
+        numbers |= {f"K.{name}.{state}": _plain(k) for state, k in zip(names[1], row, strict=True)}
+    for i, value in enumerate(eigenvalues.tolist(), 1):
         numbers |= {f"eigenvalue_{i}.re": _plain(value.real), f"eigenvalue_{i}.im": _plain(value.imag)}
-    numbers["riccati_residual"] = _plain(found.residual)
+    numbers["riccati_residual"] = _plain(residual)
     return Row(key, Status.CONVERGED.value, "", numbers)
 
 

@@ -20,10 +20,10 @@ from satsym.studies import rows
 from satsym.studies.asked import Checked, Command, Task
 from satsym.studies.rows import Cases, Row
 
-NEIGHBOUR, REACHABLE = "nearest answer", "reachable set"
-"""The origin of answers: from the nearest one, and from the ends that are reached in less time."""
+NEIGHBOUR, LINE, CLOSED, REACHABLE = "nearest answer", Origin.STRAIGHT_LINE.value, "closed form", "reachable set"
+"""The origin of answers: the nearest one, a line between the ends, a formula, or what is reached in less time."""
 
-SHOOTING, SWITCHING = "shooting", "bang-bang"
+SHOOTING, LINEAR, SWITCHING = "shooting", "linear", "bang-bang"
 """The methods by which rows are solved together."""
 
 
@@ -90,18 +90,23 @@ def _smooth_with_given_ends(task: Task) -> bool:
     """Whether controls are smooth, and both ends and times given."""
     instance = task.instance
     given = instance.tf is not None and len(instance.final) == len(instance.initial)
-    fitting = instance.solver.method in (methods.AUTO, SHOOTING) and instance.control_set.kind in ("box", "ball")
+    fitting = instance.solver.method in (methods.AUTO, SHOOTING, LINEAR) and instance.control_set.kind in (
+        "box",
+        "ball",
+    )
     return given and fitting and not instance.model.spec.multipliers and plain(task)
 
 
 def _shot(task: Task, instances: Sequence[Instance]) -> Found:
     """Extremals with smooth controls and given ends."""
+    from satsym.solvers.batch import closed_form
     from satsym.solvers.batch.certificate import minima
     from satsym.solvers.batch.many import Many
-    from satsym.solvers.batch.solving import solved_together, to_rounding
+    from satsym.solvers.batch.solving import Answers, solved_together, to_rounding
 
     many = Many.of(task.instance, instances, task.compiled)
-    answers = solved_together(many)
+    linear = closed_form.applies(many)
+    answers = Answers(closed_form.solved(many), np.zeros(many.count, dtype=bool)) if linear else solved_together(many)
     nodes = answers.nodes
     if task.checked is Checked.LOCAL:
         fine = minima(many, nodes)
@@ -115,8 +120,8 @@ def _shot(task: Task, instances: Sequence[Instance]) -> Found:
     pairs = zip(instances, x.T.tolist(), strict=True)
     return Found(
         minimum=fine,
-        method=SHOOTING,
-        origins=[NEIGHBOUR if near else Origin.STRAIGHT_LINE.value for near in answers.neighbour],
+        method=LINEAR if linear else SHOOTING,
+        origins=[CLOSED] * many.count if linear else [NEIGHBOUR if k else LINE for k in answers.neighbour],
         costs=nodes.cost + [one.model.terminal_cost(tf, tuple(end), one.parameters) for one, end in pairs],
         t_final=np.full(many.count, tf),
         x_final=x,

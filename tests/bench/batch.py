@@ -18,6 +18,7 @@ from time import perf_counter
 from typing import Any
 
 import numpy as np
+import regulators
 import rows
 from compiled_c import compiler
 from ends import program
@@ -228,6 +229,37 @@ def least_times(rounds: int = 3) -> Table:
     return Table(f"5. {RETURNS} least times of a body on a line, one core", "microseconds each", tuple(made))
 
 
+def linear(rounds: int = 3) -> Table:
+    """Linear problems with given ends, without bounds."""
+    from satsym import instance
+    from satsym.solvers.batch import closed_form
+    from satsym.solvers.batch.many import Many
+    from satsym.solvers.linear import solve
+
+    case, rng = instance.load("double-integrator-energy"), np.random.default_rng(3)
+    case = replace(case, lower=(-np.inf,), upper=(np.inf,))
+    cases = [replace(case, initial=tuple(rng.uniform(-1.0, 1.0, 2).tolist())) for _ in range(RETURNS)]
+    parts = [cases[at : at + CHUNK] for at in range(0, RETURNS, CHUNK)]
+
+    def solved() -> list[Any]:
+        return [closed_form.solved(many) for part in parts if closed_form.applies(many := Many.of(case, part, False))]
+
+    answers, name = solved(), "satsym, NumPy"
+    one = interleaved({name: solved}, rounds, least=0.0)[name]
+    each = Samples(tuple(seconds / RETURNS for seconds in one.seconds))
+    truth = np.array([solve(one).lam[:, 0] for one in cases[:LOOPED]])
+    found = np.concatenate([one.z[2:, 0] for one in answers], axis=1)
+    off = float((np.abs(found[:, :LOOPED].T - truth).max(axis=1) / np.abs(truth).max(axis=1)).max())
+    there = float(np.concatenate([one.solved for one in answers]).mean())
+    goals = (
+        Goal("microseconds", each.middle * 1e6, 25.0),
+        Goal("costates off", off, SAME),
+        Goal("solved", there, 0.999, True),
+    )
+    row = Row(name, each.least * 1e6, each.middle * 1e6, None, goals)
+    return Table(f"6. {RETURNS} linear problems with given ends, one core", "microseconds each", (row,))
+
+
 def study() -> Table:
     """A whole study by its command, machine code being there."""
     command = [str(Path(sys.executable).parent / "satsym"), "study", "return-to-orbit", "--sample", str(RETURNS)]
@@ -246,6 +278,7 @@ def main() -> None:
     print(described(), flush=True)
     tables: list[Table] = []
     subjects = {"1": lambda: [motions()], "2": optima, "4": lambda: [study()], "5": lambda: [least_times()]}
+    subjects |= {"6": lambda: [linear()], "7": lambda: [regulators.many()]}
     for subject in [subjects[number] for number in sys.argv[1:] or subjects]:
         try:
             made = subject()

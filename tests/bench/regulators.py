@@ -75,7 +75,7 @@ def many(rounds: int = 3) -> Table:
     samples = interleaved({BATCH: ours, LOOP: loop}, rounds, 0.0)
     each = {name: Samples(tuple(s / len(found[name]) for s in sample.seconds)) for name, sample in samples.items()}
     residuals = {name: largest_residual(P, given) for name, P in found.items()}
-    rows = _rows(each, residuals, {LOOP: ("at least 30 x satsym", 30.0)})
+    rows = _rows(each, residuals, {LOOP: ("at least 90 x satsym", 90.0)})
     return Table(f"7. {COUNT} linear-quadratic regulators", "microseconds each", rows)
 
 

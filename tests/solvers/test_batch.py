@@ -11,6 +11,8 @@ import pytest
 from satsym import instance
 from satsym.instance import Instance
 from satsym.kernels import load
+from satsym.solvers import linear
+from satsym.solvers.batch import closed_form
 from satsym.solvers.batch.certificate import minima
 from satsym.solvers.batch.many import Many
 from satsym.solvers.batch.motion import motion
@@ -162,3 +164,25 @@ def test_where_nothing_is_solved_nobody_stumbles() -> None:
     many, nodes = together([replace(case, initial=(1e-6, 40.0 + k, 900.0, -70.0)) for k in range(3)])
     assert not nodes.solved.any()
     assert not minima(many, nodes).any()
+
+
+def test_linear_problems_have_a_closed_form() -> None:
+    """Against the single one; with bounds that some meet, and one whose end cannot be told apart from others."""
+    case, rng = instance.load("double-integrator-energy"), np.random.default_rng(2)
+    cases = [replace(case, initial=tuple(rng.uniform(-1.0, 1.0, 2).tolist()), tf=2.0) for _ in range(12)]
+    many = Many.of(cases[0], cases, False)
+    assert closed_form.applies(many)
+    nodes = closed_form.solved(many)
+    bound = nodes.outcome == Outcome.BOUNDS
+    assert 0 < bound.sum() < 12
+    fine = minima(many, nodes)
+    assert (fine == nodes.solved).all()
+    for k in np.flatnonzero(nodes.solved):
+        single = linear.solve(cases[k])
+        assert nodes.cost[k] == pytest.approx(single.objective, rel=1e-13)
+        assert np.abs(nodes.z[2:, 0, k] - single.lam[:, 0]).max() <= 1e-13 * np.abs(single.lam[:, 0]).max()
+        assert not len(single.switching_times[0])
+
+
+def test_what_is_no_linear_problem_is_left_to_shooting() -> None:
+    assert not closed_form.applies(Many.of(returns(2)[0], returns(2), False))

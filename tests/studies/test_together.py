@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from satsym import instance, solvers
+from satsym.analysis.regulator import many
 from satsym.report import study as reports
 from satsym.status import BadInput
 from satsym.studies import chunks, solving
@@ -110,6 +111,24 @@ def test_least_times_are_found_together() -> None:
         assert row.numbers["switching_times"] == len(single.switching_times[0])
     bare = computed(asking(written, written.instance(), said | {"certificate": "none"}, line))
     assert [row.numbers["objective"] for row in bare] == [row.numbers["objective"] for row in found]
+
+
+def test_linear_problems_and_regulators_are_found_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    line = "double-integrator-energy"
+    said = {"vary": {"initial.q": "0.2:0.4:3", "initial.q_dot": "-0.1:0:2"}}
+    found = computed(asking(instance.read(line), instance.read(line).instance(), said, line))
+    assert {(one.numbers["method"], one.numbers["verdict"]) for one in found} == {("linear", "local minimum")}
+    geo = "geo-lqr"
+    said = {"command": "lqr", "vary": {"initial.r": "42000 km:42300 km:4", "parameters.omega": "7e-5:7.5e-5:3"}}
+    written = instance.read(geo)
+    study = asking(written, written.instance(), said, geo)
+    at_once = computed(study)
+    monkeypatch.setattr(many, "regulators", lambda instances: None)
+    for one, other in zip(at_once, computed(study), strict=True):
+        assert list(one.numbers) == list(other.numbers)
+        numbers = ([v for k, v in row.numbers.items() if k != "riccati_residual"] for row in (one, other))
+        assert next(numbers) == pytest.approx(next(numbers), rel=1e-6, abs=1e-20)
+        assert float(one.numbers["riccati_residual"] or 0.0) < 1e-12
 
 
 def test_workers_change_no_byte(tmp_path: Path) -> None:

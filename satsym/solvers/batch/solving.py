@@ -113,11 +113,11 @@ def solved(many: Many, start: Array) -> Nodes:
     with np.errstate(all="ignore"):
         nodes = accurate(many, *rough(many, start), aim)
         met = np.flatnonzero(nodes.solved)
-        nodes.outcome[met[_bounds_met(many.only(met), nodes.z[:, :, met])]] = Outcome.BOUNDS
+        nodes.outcome[met[bounds_met(many.only(met), nodes.z[:, :, met])]] = Outcome.BOUNDS
     return nodes
 
 
-def _bounds_met(many: Many, z: Array) -> NDArray[np.bool_]:
+def bounds_met(many: Many, z: Array) -> NDArray[np.bool_]:
     """Whose controls may leave the bounds, judged by nodes and what they change by between these, shape (M,)."""
     within = many.instance.control_set
     if not within.bounded or not many.count:

@@ -61,13 +61,13 @@ class LinearMotion:
 
 
 def exponential(matrix: Array) -> Array:
-    """The exponential of a matrix: its series for a small part of it, squared."""
-    size = float(np.abs(matrix).sum(axis=0).max(initial=0.0))
+    """The exponential of a matrix, or of each of several: its series for a small part of it, squared."""
+    size = float(np.abs(matrix).sum(axis=-2).max(initial=0.0))
     if not np.isfinite(size):
         raise ArithmeticError("coefficients are not finite")
     halvings = max(0, int(np.ceil(np.log2(max(size, 1e-300)))) + 1)
     small = matrix / 2.0**halvings
-    term = found = np.eye(len(matrix))
+    term = found = np.broadcast_to(np.eye(matrix.shape[-1]), matrix.shape)
     for k in range(1, TERMS):
         term = term @ small / k
         found = found + term

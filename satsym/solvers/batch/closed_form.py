@@ -1,0 +1,74 @@
+"""Many linear problems in closed form: initial costates by the Gramian that all of them share, nodes by exponentials.
+
+As :mod:`satsym.solvers.linear` has it for one. What does not come out to rounding is left to shooting.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.solvers.batch.many import Many
+from satsym.solvers.batch.newton import ROUNDING, Nodes, Outcome
+from satsym.solvers.batch.solving import bounds_met
+from satsym.solvers.linear import Exponential, is_linear
+from satsym.status import BadInput
+
+POINTS = 8
+"""At which the running cost is taken on each segment: what these leave out is below rounding."""
+
+
+def applies(many: Many) -> bool:
+    """Whether the canonical equations are linear, do not know the time, and are the same for all problems."""
+    same = not np.ptp(many.parameters, axis=1).any() if len(many.parameters) else True
+    if not (same and many.instance.model.spec.autonomous) or many.instance.parameters != tuple(many.parameters[:, 0]):
+        return False
+    try:
+        return is_linear(many.problem)
+    except BadInput:
+        return False
+
+
+def solved(many: Many) -> Nodes:
+    """All problems, to each of which :func:`applies`."""
+    n, rows, count = many.states, 2 * many.states, many.count
+    arcs = Exponential(many.problem, many.mesh, np.ones((rows, len(many.mesh))), many.problem.theta)
+    points, weights = np.polynomial.legendre.leggauss(POINTS)
+    widths, shares = np.diff(many.mesh), np.append((points + 1.0) / 2.0, 1.0)
+    unit = np.append(many.units, 1.0)
+    with np.errstate(all="ignore"):
+        flows = arcs.flows(np.outer(widths, shares).ravel()) * unit[:, None] / unit
+        flows = flows.reshape(len(widths), len(shares), rows + 1, rows + 1)
+        begins = np.empty((len(many.mesh), rows + 1, rows + 1))
+        begins[0] = np.eye(rows + 1)
+        for k, flow in enumerate(flows[:, -1]):
+            begins[k + 1] = flow @ begins[k]
+        whole = begins[-1]
+        given = np.concatenate([many.initial, np.zeros((n, count)), np.ones((1, count))])
+        missing = (many.end - (whole @ given)[:n]) / unit[:n, None]
+        try:
+            gramian = whole[:n, n:rows] * unit[n:rows] / unit[:n, None]
+            given[n:rows] = np.linalg.solve(gramian, missing) * unit[n:rows, None]
+        except np.linalg.LinAlgError:
+            given[n:rows] = np.nan
+        z = np.ascontiguousarray((begins @ given)[:, :rows].transpose(1, 0, 2))
+        size = np.abs(z).max(axis=1)[:n] + unit[:n, None]
+        error = (np.abs(z[:n, -1] - many.end) / size).max(axis=0)
+        outcome = np.full(count, Outcome.SOLVED, dtype=object)
+        outcome[~(error <= ROUNDING) | ~np.isfinite(z).all(axis=(0, 1))] = Outcome.INACCURATE
+        fine = np.flatnonzero(outcome == Outcome.SOLVED)
+        outcome[fine[bounds_met(many.only(fine), z[:, :, fine])]] = Outcome.BOUNDS
+        inside = flows[:, :-1].reshape(-1, rows + 1, rows + 1) @ np.repeat(begins[:-1] @ given, POINTS, axis=0)
+        cost = _cost(many, inside[:, :rows], np.outer(widths, weights / 2.0).ravel(), np.outer(widths, shares[:-1]))
+    transition = flows[:, -1, :rows, :rows].transpose(1, 2, 0)[..., None]
+    return Nodes(z, cost, error, outcome, np.broadcast_to(transition, (*transition.shape[:3], count)))
+
+
+def _cost(many: Many, z: Array, weights: Array, shares: Array) -> Array:
+    """The running cost, of values at points of all segments, shape (K, 2n, M)."""
+    n, model, p = many.states, many.instance.model, many.instance.parameters
+    flat = z.transpose(1, 0, 2).reshape(2 * n, -1)
+    t = np.repeat(many.instance.t0 + many.problem.duration * (many.mesh[:-1, None] + shares).ravel(), many.count)
+    u = model.control_law_batch(t, flat[:n], flat[n:], p, many.problem.control_set.arguments)
+    running = np.broadcast_to(model.running_cost_batch(t, flat[:n], u, p), t.shape).reshape(len(weights), -1)
+    return np.asarray(many.problem.duration * (weights @ running))
