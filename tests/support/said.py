@@ -16,7 +16,8 @@ HOLE = re.compile(r"<([a-z_]+)>")
 
 @cache
 def _trees() -> tuple[ast.Module, ...]:
-    return tuple(ast.parse(path.read_text("utf-8")) for path in sorted(SOURCE.rglob("*.py")))
+    own = [*SOURCE.rglob("*.py"), *(SOURCE.parent / "derivations").glob("*.py")]
+    return tuple(ast.parse(path.read_text("utf-8")) for path in sorted(own))
 
 
 def _literals(node: ast.expr) -> Iterator[str]:
@@ -61,12 +62,17 @@ def written() -> frozenset[str]:
     for tree in _trees():
         for node in ast.walk(tree):
             if isinstance(node, ast.Constant) and isinstance(node.value, str):
-                found.add(HOLE.sub("<>", node.value))
+                found.add(anonymous(node.value))
             elif isinstance(node, ast.JoinedStr):
                 found.add(template(node))
-    return frozenset(found)
+    return frozenset(found | {text.removeprefix(before) for text in found for before in ("<> ", "<>; ")})
+
+
+def anonymous(text: str) -> str:
+    """A text with ``<>`` for each place in it, and for several in a row."""
+    return re.sub(r"(?:<>)+", "<>", re.sub(r"\{[^{}]*\}", "<>", HOLE.sub("<>", text)))
 
 
 def template(node: ast.JoinedStr) -> str:
     """A formatted text with ``<>`` for each of its values."""
-    return "".join(str(part.value) if isinstance(part, ast.Constant) else "<>" for part in node.values)
+    return anonymous("".join(str(part.value) if isinstance(part, ast.Constant) else "<>" for part in node.values))

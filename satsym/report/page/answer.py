@@ -8,6 +8,7 @@ from satsym.report.display import number, unit_text
 from satsym.report.html.markup import Markup, joined, tag
 from satsym.report.page.prose import scrolled
 from satsym.report.results.unit_names import time_unit
+from satsym.report.said import message, say
 from satsym.report.terminal.solution import control_rows, state_rows
 from satsym.report.terminal.table import figure
 from satsym.report.texts import Texts
@@ -26,8 +27,8 @@ def facts(solution: Solution, texts: Texts) -> Markup:
         if times
     )
     known = {
-        "status": solution.status.value,
-        "message": solution.message,
+        "status": message(solution.status.value),
+        "message": message(solution.message),
         "maximum" if spec.maximise else "cost": cost if solution.status.answered else "",
         "final_time": span,
         "boundary": str(instance.boundary_type),
@@ -40,14 +41,12 @@ def facts(solution: Solution, texts: Texts) -> Markup:
 
 def states(solution: Solution, texts: Texts) -> Markup:
     """Where each state starts and ends, and its costate."""
-    return table(
-        texts, texts.get("page", "states"), state_rows(solution.instance, solution.times, solution.x, solution.lam)
-    )
+    return table(texts.get("page", "states"), state_rows(solution.instance, solution.times, solution.x, solution.lam))
 
 
 def controls(solution: Solution, texts: Texts) -> Markup:
     """How far each control goes, and its bounds."""
-    return table(texts, texts.get("page", "controls"), control_rows(solution.instance, solution.times, solution.u))
+    return table(texts.get("page", "controls"), control_rows(solution.instance, solution.times, solution.u))
 
 
 def certificate(found: Certificate, spec: ProblemSpec, texts: Texts) -> Markup:
@@ -57,33 +56,31 @@ def certificate(found: Certificate, spec: ProblemSpec, texts: Texts) -> Markup:
         return tuple(texts.get("page", key) for key in keys)
 
     checks: list[tuple[str, ...]] = [said("check", "found", "limit", "result")] + [
-        (c.name, figure(abs(c.value), 2), figure(c.limit, 2), *said("ok" if c.passed else "failed"))
+        (message(c.name), figure(abs(c.value), 2), figure(c.limit, 2), *said("ok" if c.passed else "failed"))
         for c in found.checks
     ]
     compared: list[tuple[str, ...]] = [said("competitors", "tried", "solved", "best")] + [
-        (c.kind.value, str(c.tried), str(c.solved), figure(spec.objective(c.cheapest), 10))
+        (message(c.kind.value), str(c.tried), str(c.solved), figure(spec.objective(c.cheapest), 10))
         for c in found.competitors
         if c.tried
     ]
-    missing = ", ".join(kind.value for kind in found.not_checked)
+    missing = ", ".join(message(kind.value) for kind in found.not_checked)
     return joined(
         tag("p", texts.get("page", found.verdict.value)),
         tag("p", texts.get("page", "not_checked", kinds=missing)) if missing else "",
-        table(texts, texts.get("page", "checks"), checks),
-        table(texts, texts.get("page", "compared"), compared) if len(compared) > 1 else "",
+        table(texts.get("page", "checks"), checks),
+        table(texts.get("page", "compared"), compared) if len(compared) > 1 else "",
     )
 
 
-def table(texts: Texts, caption: str, rows: Sequence[Sequence[str]]) -> Markup:
+def table(caption: str, rows: Sequence[Sequence[str]]) -> Markup:
     """Rows below their header, without columns that hold nothing; a first cell names its row."""
     header, *body = rows
     body = [
-        [unit_text(cell) if name == "unit" else cell for name, cell in zip(header, row, strict=True)] for row in body
-    ]
-    kept = [k for k, column in enumerate(zip(*body, strict=True)) if any(column)] if body else []
-    head = tag("tr", *(tag("th", texts.find("columns", header[k]) or header[k], scope="col") for k in kept))
-    lines = [
-        tag("tr", *(tag("td", row[k]) if k else tag("th", row[k], scope="row", lang="en") for k in kept))
+        [unit_text(cell) if name == say("unit") else cell for name, cell in zip(header, row, strict=True)]
         for row in body
     ]
+    kept = [k for k, column in enumerate(zip(*body, strict=True)) if any(column)] if body else []
+    head = tag("tr", *(tag("th", header[k], scope="col") for k in kept))
+    lines = [tag("tr", *(tag("td", row[k]) if k else tag("th", row[k], scope="row") for k in kept)) for row in body]
     return scrolled(tag("table", tag("caption", caption), tag("thead", head), tag("tbody", *lines), class_="facts"))

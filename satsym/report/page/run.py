@@ -14,6 +14,7 @@ from satsym.report.page.motion import motion
 from satsym.report.page.pictures import pictures
 from satsym.report.plots.scene import Scene
 from satsym.report.results.objects import file_of
+from satsym.report.said import message, say, spoken
 from satsym.report.texts import Texts, load
 from satsym.solution import Solution
 
@@ -35,7 +36,7 @@ def render(
     given
         What the instance was called on the command line.
     language
-        Of the page; what the model's author wrote, and names of checks, stay as they are.
+        Of the page; what authors of models wrote stays as it is.
     stated
         The file that states the model, where it is none that is shipped.
 
@@ -44,18 +45,28 @@ def render(
     str
         HTML that depends on nothing but the arguments.
     """
+    with spoken(language):
+        return _rendered(solution, derivation, (given, stated), language)
+
+
+def _rendered(solution: Solution, derivation: Derivation | None, given: tuple[str, str], language: str) -> str:
     texts, instance = load(language), solution.instance
-    title = instance.title or instance.model.spec.title or instance.name
-    shown = {name: part for name, part in _sections(solution, derivation, (given, stated), texts).items() if part}
+    authored = instance.title or instance.model.spec.title or instance.name
+    title = say(authored)
+    shown = {name: part for name, part in _sections(solution, derivation, given, texts).items() if part}
     links = [tag("li", tag("a", texts.get("page", name), href=f"#{name}")) for name in shown]
     sections = [tag("section", tag("h2", texts.get("page", name)), part, id=name) for name, part in shown.items()]
     found = solution.certificate
-    verdict = tag("b", found.verdict.value, class_=f"verdict {found.verdict.value.split()[0]}") if found else Markup()
+    verdict = (
+        tag("b", message(found.verdict.value), class_=f"verdict {found.verdict.value.split()[0]}")
+        if found
+        else Markup()
+    )
     body = [
         tag("a", texts.get("page", "skip"), class_="skip", href="#answer"),
         tag(
             "header",
-            tag("h1", title, lang="en"),
+            tag("h1", title, lang="en" if title == authored else language),
             tag("p", texts.get("page", "about", name=instance.name, model=instance.model.spec.name), " ", verdict),
             tag("nav", tag("ul", *links), aria_label=texts.get("page", "contents")),
         ),

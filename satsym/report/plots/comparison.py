@@ -11,7 +11,7 @@ from satsym.report import display
 from satsym.report.look import SCREEN, Look
 from satsym.report.plots import legend, style
 from satsym.report.results import files
-from satsym.report.said import decimal, message, say
+from satsym.report.said import decimal, say
 from satsym.report.terminal.comparison import unit_of
 
 if TYPE_CHECKING:
@@ -106,7 +106,7 @@ def _over_time(axes: Axes, cases: Sequence[Case], variable: Variable) -> None:
             axes.axhline(edge / measure.divisor, **style.BOUND)
     axes.axhline(0.0, color=style.GREY, linewidth=0.8, zorder=1.9)
     axes.set_xlim(0.0, end / factor)
-    axes.set_title(display.shortened(message(variable.meaning), 62))
+    axes.set_title(display.shortened(say(variable.meaning), 62))
     sudden = [(case.instance.name, case.metrics.get("impulse", 0.0)) for case in cases]
     if variable in cases[0].instance.model.spec.controls and any(impulse for _, impulse in sudden):
         # an impulse has no height; an arrow stands for it, and its size is said

@@ -68,7 +68,7 @@ class Scene:
     @property
     def title(self) -> str:
         """What the instance is about, in a line."""
-        return message(self.instance.title or self.spec.title) or self.instance.name
+        return say(self.instance.title or self.spec.title) or self.instance.name
 
     @property
     def nodes(self) -> Array:

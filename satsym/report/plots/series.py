@@ -14,7 +14,7 @@ from satsym.report.display import formula, plain
 from satsym.report.plots import curves
 from satsym.report.plots.scene import Scene
 from satsym.report.results.unit_names import cost_per, time_unit
-from satsym.report.said import message, say
+from satsym.report.said import say
 from satsym.solution import Simulation
 from satsym.spec import PRODUCT
 
@@ -69,7 +69,7 @@ def states(scene: Scene) -> list[Series]:
             v.latex,
             v.symbol,
             v.unit,
-            plain(message(v.meaning)),
+            plain(say(v.meaning)),
             scene.x[i],
             reference=None if scene.reference is None else scene.reference[i],
             free=None if scene.free is None else scene.free[i],
@@ -92,7 +92,7 @@ def controls(scene: Scene) -> list[Series]:
             v.latex,
             v.symbol,
             v.unit,
-            plain(message(v.meaning)),
+            plain(say(v.meaning)),
             scene.u[i],
             lower=instance.lower[i] if box else -math.inf,
             upper=instance.upper[i] if box else math.inf,
@@ -193,7 +193,7 @@ def invariants(scene: Scene) -> list[Series]:
             v.latex,
             v.symbol,
             v.unit,
-            plain(message(v.meaning)) or v.symbol.replace("_", " "),
+            plain(say(v.meaning or v.symbol.replace("_", " "))),
             rows[i],
             reference=None if reference is None else reference[i],
             free=None if free is None else free[i],

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from satsym.report.display import shortened
 from satsym.report.look import SCREEN, Look
 from satsym.report.results import files
-from satsym.report.said import message
+from satsym.report.said import say
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -198,7 +198,7 @@ def titled(title: str, width: float, height: float) -> Figure:
     page = figure(width, height)
     if not with_titles():
         return page
-    text = shortened(message(title), int(9.8 * page.get_figwidth() / sheet().letters))
+    text = shortened(say(title), int(9.8 * page.get_figwidth() / sheet().letters))
     page.suptitle(text, x=0.012, ha="left", fontsize=points(11.5), fontweight="bold", parse_math=False)
     return page
 

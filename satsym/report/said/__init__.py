@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import cache
@@ -21,9 +21,8 @@ from satsym.wording import shown, suggestion
 VARIABLE = "SATSYM_LANG"
 """Of the environment: the language where no other is asked for."""
 
-CLAUSES = "; "
-"""Between clauses of a message, each of which is a text of its own."""
-
+_BREAK = re.compile(r"(; |(?<=[.:]) )")
+"""Between clauses and sentences of a message, each of which may be a text of its own."""
 _HOLE = re.compile(r"<([a-z_]+)>")
 _TOLD = "said_"
 """Begins names of places that hold a text, to be translated as well; all others hold names and numbers."""
@@ -101,28 +100,47 @@ def numbers(given: Iterable[str]) -> str:
 
 
 def message(text: str) -> str:
-    """What a solver, a check or a refusal says in English, by its whole or clause by clause; else as it is."""
+    """What a solver, a check or a refusal says in English, by its whole or part by part; else as it is."""
     if (asked := language()) == "en" or not text:
         return text
-    found = _translated(text, asked)
-    if found is None:
-        clauses = [_translated(clause, asked) for clause in text.split(CLAUSES)]
-        found = None if None in clauses else CLAUSES.join(filter(None, clauses))
+    found = _by_parts(_BREAK.split(text), asked)
     return text if found is None else found
 
 
-def _translated(text: str, asked: str) -> str | None:
+def _by_parts(parts: Sequence[str], asked: str) -> str | None:
+    """The translation of clauses with what is between them; of as many together as there is one for."""
+    for count in range(len(parts), 0, -2):
+        found = _translated("".join(parts[:count]), asked)
+        if found is not None and count < len(parts):
+            rest = _by_parts(parts[count + 1 :], asked)
+            found = None if rest is None else found + parts[count] + rest
+        if found is not None:
+            return found
+    return None
+
+
+def _translated(text: str, asked: str, group: str = "told") -> str | None:
     """The translation of a text, or of the one whose filled in form it is."""
     exact = translations(asked).get(text)
     if exact is not None:
         return exact
-    for pattern, translation in _patterns(asked):
+    for pattern, translation in _patterns(asked, group):
         if found := pattern.fullmatch(text):
-            parts = {
-                name: message(part) if name.startswith(_TOLD) else part for name, part in found.groupdict().items()
-            }
-            return _filled(translation, parts)
+            parts = {k: _inside(part, asked) if k.startswith(_TOLD) else part for k, part in found.groupdict().items()}
+            if None not in parts.values():  # else half of it would stay English
+                return _filled(translation, parts)
     return None
+
+
+def _inside(text: str, asked: str) -> str | None:
+    """The translation of what fills a place: a text, or a list of which each item is one; numbers stay as they are."""
+    if not re.search("[a-z]{2}", text):
+        return text
+    found = _by_parts(_BREAK.split(text), asked)
+    if found is None:
+        items = [_translated(item, asked, "items") for item in text.split(", ")]
+        found = None if None in items else ", ".join(filter(None, items))
+    return found
 
 
 def _filled(text: str, fill: Mapping[str, object]) -> str:
@@ -132,18 +150,28 @@ def _filled(text: str, fill: Mapping[str, object]) -> str:
 @cache
 def translations(asked: str) -> Mapping[str, str]:
     """English -> that language; nothing where there is no file."""
+    return {english: text for texts in _groups(asked).values() for english, text in texts.items()}
+
+
+@cache
+def _groups(asked: str) -> Mapping[str, Mapping[str, str]]:
+    """The same by group: ``said`` is looked up as it is, ``told`` is known again in whatever way it is filled in.
+
+    So are ``items``, which lists in such texts consist of.
+    """
     import tomllib  # nothing of this for English
     from pathlib import Path
 
     file = Path(__file__).with_name(f"{asked}.toml")
-    tables = tomllib.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
-    return {english: text for table in tables.values() for english, text in table.items()}
+    groups = tomllib.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
+    return {name: {k: v for table in tables.values() for k, v in table.items()} for name, tables in groups.items()}
 
 
 @cache
-def _patterns(asked: str) -> list[tuple[re.Pattern[str], str]]:
+def _patterns(asked: str, group: str) -> list[tuple[re.Pattern[str], str]]:
     """Texts with places in them as patterns, what says most of itself first."""
-    with_places = {english: text for english, text in translations(asked).items() if _HOLE.search(english)}
+    told = _groups(asked).get(group, {})
+    with_places = {english: text for english, text in told.items() if _HOLE.search(english)}
     by_length = sorted(with_places, key=lambda english: -len(_HOLE.sub("", english)))
     return [(_pattern(english), with_places[english]) for english in by_length]
 
@@ -155,6 +183,7 @@ def _pattern(english: str) -> re.Pattern[str]:
         if k % 2 == 0:
             parts.append(re.escape(part))
         else:
-            parts.append(f"(?P={part})" if part in seen else f"(?P<{part}>.+?)")
+            inside = "." if part.startswith(_TOLD) else "[^;]"  # names and numbers end where their clause does
+            parts.append(f"(?P={part})" if part in seen else f"(?P<{part}>{inside}*?)")
             seen.add(part)
     return re.compile("".join(parts))

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from satsym.report.results.objects import file_of, head, plain
 from satsym.report.results.unit_names import units
+from satsym.report.said import each, message, say
 from satsym.report.terminal.solution import joined
-from satsym.report.terminal.table import figure, table
+from satsym.report.terminal.table import figure, table, wrapped
 from satsym.status import Status
 
 if TYPE_CHECKING:
@@ -63,12 +64,17 @@ def comparison_text(cases: Sequence[Case], over: Range | None = None) -> str:
         for key, values in metrics_of(cases).items()
     ]
     said = [
-        (case.instance.name, case.how, case.verdict or ("" if case.answered else "no answer"), case.message)
+        (
+            case.instance.name,
+            message(case.how),
+            message(case.verdict) if case.verdict else "" if case.answered else say("no answer"),
+            message(case.message),
+        )
         for case in cases
     ]
     blocks = [
-        table([("metric", *names, "unit"), *rows], right=range(1, len(names) + 1)),
-        table([("instance", "how", "certificate", "message"), *said]),
+        table([(say("metric"), *names, say("unit")), *rows], right=range(1, len(names) + 1)),
+        table([each("instance", "how", "certificate", "message"), *said]),
     ]
     return joined([*blocks, _range(cases[0], over)] if over else blocks)
 
@@ -76,7 +82,8 @@ def comparison_text(cases: Sequence[Case], over: Range | None = None) -> str:
 def _range(case: Case, over: Range) -> list[str]:
     limits = case.instance.limits
     watched = [name for name in over.peaks if name in limits]
-    header = ("damping", "command", "control peak", "impulse", *(f"{name} peak" for name in watched), "")
+    peaks = (say("<name> peak", name=name) for name in watched)
+    header = (*each("damping", "command", "control peak", "impulse"), *peaks, "")
     rows = []
     for i, damping in enumerate(over.dampings):
         for j, command in enumerate(over.commands):
@@ -85,11 +92,11 @@ def _range(case: Case, over: Range) -> list[str]:
                 (
                     *(figure(v) for v in (damping, command, over.control_peak[i, j], over.impulse[i, j])),
                     *(figure(over.peaks[name][i, j]) for name in watched),
-                    f"past the limit of {', '.join(beyond)}" if beyond else "",
+                    say("past the limit of <names>", names=", ".join(beyond)) if beyond else "",
                 )
             )
     return [
-        f"  {case.instance.name} for other dampings and commands",
+        *wrapped(say("<name> for other dampings and commands", name=case.instance.name)),
         *table([header, *rows], right=range(len(header) - 1)),
     ]
 

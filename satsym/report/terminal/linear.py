@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from satsym.analysis.linear.stability import UNSTABLE, shown
 from satsym.report.results.exact import omitted_because
 from satsym.report.results.unit_names import COST, of_regulator, time_unit
+from satsym.report.said import counted, each, message, say
 from satsym.report.terminal.solution import joined
 from satsym.report.terminal.table import figure, table, wrapped
 
@@ -23,28 +24,28 @@ if TYPE_CHECKING:
 def analysis_text(found: Analysis, colour: bool = False) -> str:
     """Summary of an analysis."""
     about, system = found.about, found.about.system
-    verdict = found.stability.verdict or "undecided"
+    verdict = message(found.stability.verdict or "undecided")
     if colour:
-        verdict = f"\x1b[{31 if verdict == UNSTABLE else 32}m{verdict}\x1b[0m"
-    header = ("eigenvalue", "algebraic", "geometric", "Jordan blocks")
+        verdict = f"\x1b[{31 if found.stability.verdict == UNSTABLE else 32}m{verdict}\x1b[0m"
+    header = each("eigenvalue", "algebraic", "geometric", "Jordan blocks")
     eigenvalues = [
-        (complex_number(each.value), str(each.algebraic), str(each.geometric), ", ".join(map(str, each.blocks)))
-        for each in found.eigenvalues
+        (complex_number(one.value), str(one.algebraic), str(one.geometric), ", ".join(map(str, one.blocks)))
+        for one in found.eigenvalues
     ]
     return joined(
         [
-            [about.model.spec.title, f"{about.model.spec.name}, {_where(about)}: {verdict}"],
-            wrapped(found.stability.reason),
+            [say(about.model.spec.title), f"{about.model.spec.name}, {_where(about)}: {verdict}"],
+            wrapped(message(found.stability.reason)),
             _point(about),
             _matrix("A", system.A, system.states, system.states),
             _matrix("B", system.B, system.states, system.inputs),
             _matrix("C", system.C, system.outputs, system.states),
             table([header, *eigenvalues], right=(1, 2)),
             _mode_table(found),
-            _polynomial("characteristic polynomial", found.polynomial, found.routh),
-            _reach("controllability", "controllable", "inputs", found.controllability, len(system.states))
-            + _reach("observability", "observable", "outputs", found.observability, len(system.states)),
-            wrapped(omitted_because(about)),
+            _polynomial(say("characteristic polynomial"), found.polynomial, found.routh),
+            _reach(CONTROLLABILITY, found.controllability, len(system.states))
+            + _reach(OBSERVABILITY, found.observability, len(system.states)),
+            wrapped(message(omitted_because(about))),
         ]
     )
 
@@ -52,23 +53,25 @@ def analysis_text(found: Analysis, colour: bool = False) -> str:
 def regulator_text(design: Design) -> str:
     """Summary of a regulator."""
     found, about, system = design.regulator, design.about, design.regulator.system
-    over = "an infinite horizon" if found.horizon is None else f"a horizon of {figure(found.horizon)}, at its beginning"
+    over = say("u = -K x for an infinite horizon")
+    if found.horizon is not None:
+        over = say("u = -K x for a horizon of <time>, at its beginning", time=figure(found.horizon))
     name = about.model.spec.name if design.instance is None else design.instance.name
-    facts = [("Riccati residual", figure(found.residual, 2))]
+    facts = [(say("Riccati residual"), figure(found.residual, 2))]
     if found.error is not None:
-        facts.append(("estimated error of P", figure(found.error, 2)))
+        facts.append((say("estimated error of P"), figure(found.error, 2)))
     if design.deviation is not None:
         unit = of_regulator(about.model.spec, system.inputs, design.relative)
         cost = figure(found.cost(design.deviation), 10)
-        facts.append(("cost from the initial state", cost if unit in ("1", COST) else f"{cost} {unit}"))
+        facts.append((say("cost from the initial state"), cost if unit in ("1", COST) else f"{cost} {unit}"))
     eigenvalues = [(complex_number(value),) for value in found.eigenvalues]
     return joined(
         [
-            [design.title, f"{name}, model {about.model.spec.name}: u = -K x for {over}"],
+            [say(design.title), f"{say('<name>, model <model>', name=name, model=about.model.spec.name)}: {over}"],
             _matrix("K", found.K, system.inputs, system.states),
             _matrix("P", found.P, system.states, system.states),
-            table([("closed-loop eigenvalue",), *eigenvalues]),
-            _polynomial("characteristic polynomial of the closed loop", found.polynomial, found.routh),
+            table([each("closed-loop eigenvalue"), *eigenvalues]),
+            _polynomial(say("characteristic polynomial of the closed loop"), found.polynomial, found.routh),
             table([("", ""), *facts])[1:],
         ]
     )
@@ -76,10 +79,12 @@ def regulator_text(design: Design) -> str:
 
 def _where(about: Linearisation) -> str:
     if about.model.spec.linear:
-        found = "which is linear"
+        found = say("which is linear")
     else:
-        found = "linearised about its reference" if about.on_reference else "linearised about an equilibrium"
-    return found if about.constant else f"{found}, its coefficients at t = {figure(about.t0)}"
+        found = say("linearised about its reference" if about.on_reference else "linearised about an equilibrium")
+    if about.constant:
+        return found
+    return say("<linearised>, its coefficients at t = <time>", linearised=found, time=figure(about.t0))
 
 
 def _point(about: Linearisation) -> list[str]:
@@ -90,7 +95,7 @@ def _point(about: Linearisation) -> list[str]:
         (state.symbol, figure(value, 10), "" if state.unit == "1" else state.unit)
         for state, value in zip(about.model.spec.states, about.point, strict=True)
     ]
-    return table([("state", f"at t = {figure(about.t0)}", "unit"), *rows], right=(1,))
+    return table([(say("state"), say("at <times>", times=f"t = {figure(about.t0)}"), say("unit")), *rows], right=(1,))
 
 
 def _matrix(letter: str, matrix: Array, rows: Sequence[str], columns: Sequence[str]) -> list[str]:
@@ -103,11 +108,12 @@ def _matrix(letter: str, matrix: Array, rows: Sequence[str], columns: Sequence[s
 def _mode_table(found: Analysis) -> list[str]:
     """What each mode is, how long it takes and which states carry it."""
     unit = time_unit(found.about.model.spec)
-    header = ("mode", "", f"period{unit and f' [{unit}]'}", "damping ratio", f"time constant{unit and f' [{unit}]'}")
+    bracket = unit and f" [{unit}]"
+    header = (say("mode"), "", say("period") + bracket, say("damping ratio"), say("time constant") + bracket)
     rows = [
         (
             shown(each.eigenvalue.value),
-            each.name,
+            message(each.name),
             *(
                 "" if value is None else figure(value)
                 for value in (each.period, each.damping_ratio, each.time_constant)
@@ -116,7 +122,7 @@ def _mode_table(found: Analysis) -> list[str]:
         )
         for each in found.modes
     ]
-    return table([(*header, "carried by"), *rows], right=(2, 3, 4))
+    return table([(*header, say("carried by")), *rows], right=(2, 3, 4))
 
 
 def _polynomial(what: str, coefficients: Array, array: Routh) -> list[str]:
@@ -128,20 +134,37 @@ def _polynomial(what: str, coefficients: Array, array: Routh) -> list[str]:
     written = " + ".join(f"{'' if c == '1' and s else c}{' ' if s and c != '1' else ''}{s}" for c, s in terms)
     column = ", ".join(figure(value, 6) for value in array.column)
     count = array.sign_changes
-    says = f"{count} sign change{'s' * (count != 1)}: {count or 'no'} right-half-plane root{'s' * (count != 1)}"
-    axis = f", {array.on_axis} on the imaginary axis" if array.on_axis else ""
-    met = f" (met: {array.special_case})" if array.special_case else ""
-    return wrapped(f"{what}: {written.replace('+ -', '- ')}") + wrapped(f"Routh column: {column}; {says}{axis}{met}")
+    roots = counted(count, "right-half-plane root") if count else say("no right-half-plane roots")
+    says = say(
+        "Routh column: <column>; <changes>: <roots>", column=column, changes=counted(count, "sign change"), roots=roots
+    )
+    if array.on_axis:
+        says = say("<routh>, <number> on the imaginary axis", routh=says, number=array.on_axis)
+    if array.special_case:
+        says = say("<routh> (met: <case>)", routh=says, case=message(array.special_case))
+    return wrapped(f"{what}: {written.replace('+ -', '- ')}") + wrapped(says)
 
 
-def _reach(word: str, verb: str, kind: str, found: Reach | None, n: int) -> list[str]:
+CONTROLLABILITY = (
+    "controllability: there are no inputs",
+    "controllability: controllable subspace of dimension <rank> of <n>; <alone>",
+)
+OBSERVABILITY = (
+    "observability: there are no outputs",
+    "observability: observable subspace of dimension <rank> of <n>; <alone>",
+)
+
+
+def _reach(texts: tuple[str, str], found: Reach | None, n: int) -> list[str]:
     if found is None:
-        return [f"  {word}: there are no {kind}"]
+        return wrapped(say(texts[0]))
     alone = [
-        f"{name} alone {each.rank}" + (f" (without the mode s = {_modes(each)})" if each.lost else "")
-        for name, each in found.alone.items()
+        say("<name> alone <rank> (without the mode s = <mode>)", name=name, rank=one.rank, mode=_modes(one))
+        if one.lost
+        else say("<name> alone <rank>", name=name, rank=one.rank)
+        for name, one in found.alone.items()
     ]
-    return wrapped(f"{word}: {verb} subspace of dimension {found.rank} of {n}; " + ", ".join(alone))
+    return wrapped(say(texts[1], rank=found.rank, n=n, alone=", ".join(alone)))
 
 
 def _modes(found: Reach) -> str:

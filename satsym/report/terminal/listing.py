@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from satsym.report.results.objects import bounded
+from satsym.report.said import each, say
 from satsym.report.terminal.table import figure, fitting, table, wrapped
 from satsym.spec import ProblemSpec, Variable
 
@@ -19,28 +20,30 @@ MOST = 4
 
 def models_text(specs: Iterable[ProblemSpec]) -> str:
     """A line for each model."""
-    header = ("model", "states", "controls", "title")
-    rows = [(s.name, _few(s.state_names), _few(s.control_names), s.title) for s in specs]
+    header = each("model", "states", "controls", "title")
+    rows = [(s.name, _few(s.state_names), _few(s.control_names), say(s.title)) for s in specs]
     return "\n".join(table([header, *rows], indent=""))
 
 
 def _few(names: Sequence[str]) -> str:
-    return ", ".join(names) if len(names) <= MOST else f"{', '.join(names[: MOST - 1])} ... {len(names)} in all"
+    if len(names) <= MOST:
+        return ", ".join(names)
+    return say("<names> ... <number> in all", names=", ".join(names[: MOST - 1]), number=len(names))
 
 
 def instances_text(instances: Iterable[Instance]) -> str:
     """A line for each instance."""
-    header = ("instance", "model", "type", "final time", "bounded", "title")
+    header = each("instance", "model", "type", "final time", "bounded", "title")
     rows = [
         (
-            each.name,
-            each.model.spec.name,
-            str(each.boundary_type),
-            "free" if each.tf is None else figure(each.tf),
-            "yes" if bounded(each) else "no",
-            each.title,
+            one.name,
+            one.model.spec.name,
+            str(one.boundary_type),
+            say("free") if one.tf is None else figure(one.tf),
+            say("yes" if bounded(one) else "no"),
+            say(one.title),
         )
-        for each in instances
+        for one in instances
     ]
     return "\n".join(table([header, *rows], right=(2, 3), indent=""))
 
@@ -48,28 +51,38 @@ def instances_text(instances: Iterable[Instance]) -> str:
 def model_text(spec: ProblemSpec) -> str:
     """Everything that an instance of the model can name."""
     blocks = [
-        [spec.title, f"{spec.name}, from {spec.source}: {_control_set(spec)}"],
-        _variables("state", spec.states),
-        _variables("control", spec.controls),
-        _variables("parameter", spec.parameters),
+        [
+            say(spec.title),
+            say("<name>, from <file>: <set>", name=spec.name, file=spec.source, set=_control_set(spec)),
+        ],
+        _variables(say("state"), spec.states),
+        _variables(say("control"), spec.controls),
+        _variables(say("parameter"), spec.parameters),
     ]
     if spec.has_reference:
-        blocks.append(wrapped('It has a reference: [final] may say "reference" for any state.'))
+        blocks.append(wrapped(say('It has a reference: [final] may say "reference" for any state.')))
     return "\n\n".join("\n".join(part for line in block for part in fitting(line)) for block in blocks if block)
 
 
 def _control_set(spec: ProblemSpec) -> str:
     """What limits the controls, in words."""
-    kinds = {"free": "any control", "box": "each control between its bounds", "ball": "bounded norm"}
-    kinds |= {"annulus": "norm between its bounds", "angle": "any angle"}
+    kinds = dict(
+        zip(
+            ("free", "box", "ball", "annulus", "angle"),
+            each(
+                "any control", "each control between its bounds", "bounded norm", "norm between its bounds", "any angle"
+            ),
+            strict=True,
+        )
+    )
     if spec.control_parts:
         return "; ".join(f"{part.name} ({', '.join(part.controls)}): {kinds[part.kind]}" for part in spec.control_parts)
-    return kinds[spec.control_set] if spec.control_set else "no cost"
+    return kinds[spec.control_set] if spec.control_set else say("no cost")
 
 
 def _variables(word: str, variables: Iterable[Variable]) -> list[str]:
     rows = [
-        (v.symbol, "" if v.default is None else figure(v.default), "" if v.unit == "1" else v.unit, v.meaning)
+        (v.symbol, "" if v.default is None else figure(v.default), "" if v.unit == "1" else v.unit, say(v.meaning))
         for v in variables
     ]
-    return table([(word, "default", "unit", "meaning"), *rows], right=(1,)) if rows else []
+    return table([(word, *each("default", "unit", "meaning")), *rows], right=(1,)) if rows else []

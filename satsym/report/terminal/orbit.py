@@ -9,6 +9,7 @@ from satsym.analysis.orbits.conic import TOLERANCE, Conic
 from satsym.analysis.orbits.floquet import FASTER
 from satsym.report.display import time_scale
 from satsym.report.results.orbit import units
+from satsym.report.said import each, message, say
 from satsym.report.terminal.linear import complex_number
 from satsym.report.terminal.solution import joined
 from satsym.report.terminal.table import figure, table, wrapped
@@ -31,20 +32,23 @@ def orbit_text(found: Survey, colour: bool = False) -> str:
         Whether the kind of orbit is coloured: green where it closes.
     """
     case, orbit = found.case, found.elements
-    kind = orbit.conic.value
+    kind = message(orbit.conic.value)
     if colour:
         kind = f"\x1b[{31 if orbit.period is None else 32}m{kind}\x1b[0m"
     length, time = units(case.model.spec)
-    says = found.floquet.verdict or found.floquet.status
+    says = message(found.floquet.verdict or found.floquet.status)
     return joined(
         [
-            [*filter(None, [case.title]), f"{case.name}, model {case.model.spec.name}: {kind} ({says})"],
+            [
+                *filter(None, [say(case.title)]),
+                f"{say('<name>, model <model>', name=case.name, model=case.model.spec.name)}: {kind} ({says})",
+            ],
             _elements(found, length, time),
-            wrapped(_tolerances(orbit.conic)),
+            wrapped(say(_BORDERS[orbit.conic], tolerance=f"{TOLERANCE:g}")),
             _point(found.point, length, time),
-            wrapped(found.point.note),
+            wrapped(message(found.point.note)),
             _revolution(found.floquet, length),
-            wrapped(found.floquet.note),
+            wrapped(message(found.floquet.note)),
             _turning(found.floquet, time),
         ]
     )
@@ -58,56 +62,56 @@ def _elements(found: Survey, length: str, time: str) -> list[str]:
     speed = _per(length, time)
     momentum = float(orbit.angular_momentum @ orbit.angular_momentum) ** 0.5
     rows = [
-        ("eccentricity", orbit.eccentricity, ""),
-        ("semi-major axis", orbit.semi_major_axis, length),
-        ("semi-latus rectum", orbit.parameter, length),
-        ("periapsis distance", orbit.periapsis, length),
-        ("apoapsis distance", orbit.apoapsis, length),
-        ("period", orbit.period, time),
+        (say("eccentricity"), orbit.eccentricity, ""),
+        (say("semi-major axis"), orbit.semi_major_axis, length),
+        (say("semi-latus rectum"), orbit.parameter, length),
+        (say("periapsis distance"), orbit.periapsis, length),
+        (say("apoapsis distance"), orbit.apoapsis, length),
+        (say("period"), orbit.period, time),
         ("", None if readable in (time, "1") or orbit.period is None else own / factor, readable),
-        ("energy", orbit.energy, _squared(length, time)),
-        ("angular momentum", momentum, _per(f"{length}^2" if length != "1" else "1", time)),
-        ("speed at infinity", orbit.excess_speed, speed),
-        ("inclination", _degrees(orbit.inclination), "deg"),
-        ("longitude of the node", _degrees(orbit.node), "deg"),
-        ("argument of periapsis", _degrees(orbit.periapsis_argument), "deg"),
-        ("true anomaly at the start", _degrees(orbit.true_anomaly), "deg"),
+        (say("energy"), orbit.energy, _squared(length, time)),
+        (say("angular momentum"), momentum, _per(f"{length}^2" if length != "1" else "1", time)),
+        (say("speed at infinity"), orbit.excess_speed, speed),
+        (say("inclination"), _degrees(orbit.inclination), "deg"),
+        (say("longitude of the node"), _degrees(orbit.node), "deg"),
+        (say("argument of periapsis"), _degrees(orbit.periapsis_argument), "deg"),
+        (say("true anomaly at the start"), _degrees(orbit.true_anomaly), "deg"),
     ]
     shown = [
         (name, figure(value, DIGITS), unit if unit != "1" else "") for name, value, unit in rows if value is not None
     ]
-    return table([("orbit", orbit.conic.value, "unit"), *shown], right=(1,))
+    return table([(say("orbit"), message(orbit.conic.value), say("unit")), *shown], right=(1,))
 
 
-def _tolerances(conic: Conic) -> str:
-    border = {
-        Conic.CIRCLE: f"a circle: the eccentricity is at most {TOLERANCE:g}",
-        Conic.ELLIPSE: f"an ellipse: the eccentricity is above {TOLERANCE:g}, up to which it would be a circle, and "
-        f"the square of the speed falls short of that of escape by more than a relative tolerance of {TOLERANCE:g}",
-        Conic.PARABOLA: f"a parabola: the square of the speed is that of escape within a relative tolerance of "
-        f"{TOLERANCE:g}",
-        Conic.HYPERBOLA: f"a hyperbola: the square of the speed exceeds that of escape by more than a relative "
-        f"tolerance of {TOLERANCE:g}",
-        Conic.RECTILINEAR: f"rectilinear: the velocity is along the radius within {TOLERANCE:g} rad",
-    }
-    return f"called {border[conic]}"
+_BORDERS = {
+    Conic.CIRCLE: "called a circle: the eccentricity is at most <tolerance>",
+    Conic.ELLIPSE: "called an ellipse: the eccentricity is above <tolerance>, up to which it would be a circle, and "
+    "the square of the speed falls short of that of escape by more than a relative tolerance of <tolerance>",
+    Conic.PARABOLA: "called a parabola: the square of the speed is that of escape within a relative tolerance of "
+    "<tolerance>",
+    Conic.HYPERBOLA: "called a hyperbola: the square of the speed exceeds that of escape by more than a relative "
+    "tolerance of <tolerance>",
+    Conic.RECTILINEAR: "called rectilinear: the velocity is along the radius within <tolerance> rad",
+}
 
 
 def _point(found: Point, length: str, time: str) -> list[str]:
     at = f"{figure(found.distance, DIGITS)} {length}".removesuffix(" 1")
-    header = ("eigenvalue", "closed form", "unit")
+    header = each("eigenvalue", "closed form", "unit")
     pairs = zip(found.eigenvalues.tolist(), found.closed_form.tolist(), strict=True)
     unit = _per("1", time)
     rows = [(_rounded(value, found.deviation), complex_number(exact), unit) for value, exact in pairs]
-    negative = f'"if all are negative": {found.conclusion_verdict or "undecided"}'
+    rule = 'rule of the signs, "stable if all(e.real <= 0)": <verdict>; "if all are negative": <other>'
+    verdict, other = message(found.rule_verdict), message(found.conclusion_verdict or "undecided")
     own = []
     if found.own is not None:
         listed = ", ".join(_rounded(value, 1e-16) for value in found.own.tolist())
-        own = wrapped(f"the same rule in the model's own coordinates: {found.own_verdict}, from {listed}")
+        text = "the same rule in the model's own coordinates: <verdict>, from <eigenvalues>"
+        own = wrapped(say(text, verdict=message(found.own_verdict or "undecided"), eigenvalues=listed))
     return [
-        *wrapped(f"the Jacobian at the start, {at} from the centre:"),
+        *wrapped(say("the Jacobian at the start, <distance> from the centre:", distance=at)),
         *table([header, *rows], right=(0, 1)),
-        *wrapped(f'rule of the signs, "stable if all(e.real <= 0)": {found.rule_verdict}; {negative}'),
+        *wrapped(say(rule, verdict=verdict, other=other)),
         *own,
     ]
 
@@ -115,30 +119,34 @@ def _point(found: Point, length: str, time: str) -> list[str]:
 def _revolution(found: Floquet, length: str) -> list[str]:
     matrix = found.monodromy
     if matrix is None or found.multipliers is None:
-        return [f"  Floquet multipliers: {found.status}"]
-    header = ("Floquet multipliers, computed", "distance from 1")
+        return wrapped(say("Floquet multipliers: <status>", status=message(found.status)))
+    header = each("Floquet multipliers, computed", "distance from 1")
     rows = [(_rounded(value, 1e-12), figure(abs(value - 1.0), 2)) for value in found.multipliers.tolist()]
     return [*table([header, *rows], right=(0, 1)), "", *_checks(found, matrix, length)]
 
 
 def _checks(found: Floquet, matrix: Monodromy, length: str) -> list[str]:
     unit = "" if length == "1" else f" {length}"
-    at = "the start" if found.orbit.conic is Conic.CIRCLE else "apoapsis"
+    circle = found.orbit.conic is Conic.CIRCLE
     rows = [
-        ("exact multipliers", "6 times 1", "Jordan blocks 2, 1, 1, 1, 1"),
+        (say("exact multipliers"), say("6 times 1"), say("Jordan blocks <sizes>", sizes="2, 1, 1, 1, 1")),
         (
-            "scatter of the computed ones",
+            say("scatter of the computed ones"),
             figure(found.scatter or 0.0, 2),
-            f"up to {figure(found.expected_scatter or 0.0, 2)} expected",
+            say("up to <scatter> expected", scatter=figure(found.expected_scatter or 0.0, 2)),
         ),
-        ("det M - 1", figure(matrix.determinant - 1.0, 2), f"of the revolution from {at}"),
-        ("M'JM - J", figure(matrix.symplectic_defect, 2), "relative: M is symplectic"),
-        ("second singular value of M - I", figure(matrix.second_singular, 2), "relative: its rank is one"),
-        ("(M - I)^2", figure(matrix.square, 2), "relative: it is nilpotent"),
         (
-            "lag after a revolution",
+            "det M - 1",
+            figure(matrix.determinant - 1.0, 2),
+            say("of the revolution from the start" if circle else "of the revolution from apoapsis"),
+        ),
+        ("M'JM - J", figure(matrix.symplectic_defect, 2), say("relative: M is symplectic")),
+        (say("second singular value of M - I"), figure(matrix.second_singular, 2), say("relative: its rank is one")),
+        ("(M - I)^2", figure(matrix.square, 2), say("relative: it is nilpotent")),
+        (
+            say("lag after a revolution"),
             figure(found.lag or 0.0) + unit,
-            f"if faster by {FASTER:g}; as much in each more",
+            say("if faster by <share>; as much in each more", share=f"{FASTER:g}"),
         ),
     ]
     return table([("", "", ""), *rows], right=(1,))[1:]
@@ -148,18 +156,23 @@ def _turning(found: Floquet, time: str) -> list[str]:
     if found.turning is None:
         return []
     unit = _per("1", time)
-    header = ("eigenvalue", "algebraic", "Jordan blocks", "unit")
+    header = each("eigenvalue", "algebraic", "Jordan blocks", "unit")
     rows = [
-        (complex_number(each.value), str(each.algebraic), ", ".join(map(str, each.blocks)), unit if each.value else "")
-        for each in found.turning.eigenvalues
+        (complex_number(one.value), str(one.algebraic), ", ".join(map(str, one.blocks)), unit if one.value else "")
+        for one in found.turning.eigenvalues
     ]
-    says = (
+    says = say(
         "These are Hill's equations (model hill) about the circle with this semi-major axis. There a circle is an "
         "equilibrium, where eigenvalues mean something: oscillations once a revolution, in and out of the plane, and "
         "a drift along the track from the block of size 2. Over a revolution each of them becomes exp(s T) = 1: the "
         "multipliers above. What they leave out is of the order of the eccentricity."
     )
-    return [*wrapped("in axes that rotate with the orbit:"), *table([header, *rows], right=(0, 1)), "", *wrapped(says)]
+    return [
+        *wrapped(say("in axes that rotate with the orbit:")),
+        *table([header, *rows], right=(0, 1)),
+        "",
+        *wrapped(says),
+    ]
 
 
 def _rounded(value: complex, error: float) -> str:

@@ -12,17 +12,18 @@ from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.instance.unknowns import Place
 from satsym.report.results.unit_names import cost_per, time_unit
+from satsym.report.said import counted, each, message, say
 from satsym.report.terminal.table import WIDEST, figure, fitting, room, table, wrapped
 from satsym.solution import Certificate, Iteration, Simulation, Solution
 from satsym.status import Status, Verdict
-from satsym.wording import counted
 
 SHOWN_TIMES = 6
 """Switching times of one control that are listed."""
 
 _AT_BOUND = 1e-9
-_END = {1: "given", 2: "given", 3: "free or partly so", 4: "on the reference", 5: "free or partly so"}
-"""The final state, by boundary type."""
+_PARTLY = "final state free or partly so"
+_END = {1: "final state given", 2: "final state given", 3: _PARTLY, 4: "final state on the reference", 5: _PARTLY}
+"""By boundary type."""
 
 
 def solution_text(solution: Solution, colour: bool = False) -> str:
@@ -33,8 +34,8 @@ def solution_text(solution: Solution, colour: bool = False) -> str:
         _objective(instance, solution.objective),
         *_interval(solution),
         *_found(instance, unit),
-        ("final time", f"{figure(_last(solution.times), 10)} {unit}".rstrip()),
-        ("boundary type", _boundary(instance)),
+        (say("final time"), f"{figure(_last(solution.times), 10)} {unit}".rstrip()),
+        (say("boundary type"), _boundary(instance)),
     ]
     blocks = [
         _heading(instance, solution.status, f"{solution.method}, {_effort(solution)}", colour),
@@ -57,16 +58,16 @@ def simulation_text(simulation: Simulation, colour: bool = False) -> str:
     """Summary of a flight; see :func:`solution_text`."""
     instance = simulation.instance
     unit = time_unit(instance.model.spec)
-    facts = [("final time", f"{figure(_last(simulation.times), 10)} {unit}".rstrip())]
+    facts = [(say("final time"), f"{figure(_last(simulation.times), 10)} {unit}".rstrip())]
     kept = [(name, figure(i.initial, 10), figure(i.drift, 3)) for name, i in simulation.invariants.items()]
     metrics = [(name, figure(value, 10)) for name, value in simulation.metrics.items()]
     blocks = [
-        _heading(instance, simulation.status, f"feedback {simulation.feedback}", colour),
+        _heading(instance, simulation.status, say("feedback <law>", law=message(simulation.feedback)), colour),
         _message(simulation.status, simulation.message),
         table([("", ""), *facts])[1:],
         _states(instance, simulation.times, simulation.x, None),
-        table([("invariant", "initial", "drift"), *kept], right=(1, 2)) if kept else [],
-        table([("metric", "value"), *metrics], right=(1,)) if metrics else [],
+        table([each("invariant", "initial", "drift"), *kept], right=(1, 2)) if kept else [],
+        table([each("metric", "value"), *metrics], right=(1,)) if metrics else [],
     ]
     return joined(blocks)
 
@@ -80,10 +81,11 @@ def with_files(text: str, saved: Sequence[Path]) -> str:
         places.setdefault(path.parent, []).append(path.name)
     lines = []
     for folder, names in places.items():
-        told = wrapped(f"written to {folder}: {', '.join(names)}")
+        told = wrapped(say("written to <folder>: <names>", folder=folder, names=", ".join(names)))
         # a folder that leaves no room for a name stands alone
-        alone = len(f"  written to {folder}: {names[0]},") > (room() or WIDEST)
-        lines.append([f"  written to {folder}:", *wrapped(", ".join(names))] if alone else told)
+        first = say("written to <folder>:", folder=folder)
+        alone = len(f"  {first} {names[0]},") > (room() or WIDEST)
+        lines.append([f"  {first}", *wrapped(", ".join(names))] if alone else told)
     return joined([text.splitlines(), *lines])
 
 
@@ -92,8 +94,9 @@ def _boundary(instance: Instance) -> str:
     kind = instance.boundary_type
     end = _END[kind]
     if instance.ranges:
-        end = "within ranges" if len(instance.ranges) == len(instance.initial) else "partly within ranges"
-    return f"{kind}, final time {'free' if instance.tf is None else 'given'}, final state {end}"
+        whole = len(instance.ranges) == len(instance.initial)
+        end = "final state within ranges" if whole else "final state partly within ranges"
+    return f"{kind}, {say('final time free' if instance.tf is None else 'final time given')}, {message(end)}"
 
 
 def _objective(instance: Instance, cost: float) -> tuple[str, str]:
@@ -102,9 +105,9 @@ def _objective(instance: Instance, cost: float) -> tuple[str, str]:
     unit = "" if spec.objective_unit == "1" else spec.objective_unit
     text = f"{figure(spec.objective(cost), 10)} {unit}".rstrip()
     return (
-        ("objective J, maximised", f"{text} (costs and costates are those of -J)")
+        (say("objective J, maximised"), say("<value> (costs and costates are those of -J)", value=text))
         if spec.maximise
-        else ("cost J", text)
+        else (say("cost J"), text)
     )
 
 
@@ -114,45 +117,53 @@ def _interval(solution: Solution) -> list[tuple[str, str]]:
         return []
     spec = solution.instance.model.spec
     ends = sorted(spec.objective(end) for end in (solution.interval.lower, solution.interval.upper))
-    name = "maximum objective" if spec.maximise else "minimum cost"
-    return [(name, f"from {figure(ends[0], 12)} to {figure(ends[1], 12)}")]
+    name = say("maximum objective" if spec.maximise else "minimum cost")
+    return [(name, say("from <low> to <high>", low=figure(ends[0], 12), high=figure(ends[1], 12)))]
 
 
 def _found(instance: Instance, time: str) -> list[tuple[str, str]]:
     """What was free at the start and among the parameters."""
     spec = instance.model.spec
-    groups = {Place.INITIAL: ("initial", spec.states), Place.PARAMETER: ("parameter", spec.parameters)}
+    groups = {Place.INITIAL: (say("initial"), spec.states), Place.PARAMETER: (say("parameter"), spec.parameters)}
     rows = []
     for one in instance.free:
-        word, variables = groups.get(one.place, ("initial time", ()))
+        word, variables = groups.get(one.place, (say("initial time"), ()))
         unit = variables[one.index].unit if variables else time
         name = f"{word} {one.name}" if variables else word
-        rows.append((name, f"{figure(one.of(instance), 10)} {'' if unit == '1' else unit}".rstrip() + ", found"))
+        value = f"{figure(one.of(instance), 10)} {'' if unit == '1' else unit}".rstrip()
+        rows.append((name, say("<value>, found", value=value)))
     return rows
 
 
 def progress_line(iteration: Iteration, instance: Instance) -> str:
     """One iteration of a solver, for the live line."""
     value = figure(instance.model.spec.objective(iteration.objective), 8)
-    return f"iteration {iteration.number}   J {value}   residual {iteration.residual:.1e}"
+    residual = f"{iteration.residual:.1e}"
+    return say(
+        "iteration <number>   J <value>   residual <residual>", number=iteration.number, value=value, residual=residual
+    )
 
 
 def _certificate(certificate: Certificate, instance: Instance) -> list[str]:
     """The verdict, what it was compared with, and each check with its limit; a failed one says so."""
     spec = instance.model.spec
     rows = [
-        (c.name, figure(abs(c.value), 2), "ok" if c.passed else f"FAILED, limit {figure(c.limit, 2)}")
+        (
+            message(c.name),
+            figure(abs(c.value), 2),
+            say("ok") if c.passed else say("FAILED, limit <limit>", limit=figure(c.limit, 2)),
+        )
         for c in certificate.checks
     ]
     compared = [
-        (c.kind.value, str(c.tried), str(c.unanswered), figure(spec.objective(c.cheapest), 10))
+        (message(c.kind.value), str(c.tried), str(c.unanswered), figure(spec.objective(c.cheapest), 10))
         for c in certificate.competitors
         if c.tried
     ]
-    best = "highest objective" if spec.maximise else "cheapest costs"
-    header = ("competitors", "tried", "unanswered", best)
+    best = say("highest objective" if spec.maximise else "cheapest costs")
+    header = (*each("competitors", "tried", "unanswered"), best)
     return [
-        *wrapped(f"certificate: {_verdict(certificate)}"),
+        *wrapped(say("certificate: <verdict>", verdict=_verdict(certificate))),
         *table([("", "", ""), *rows], right=(1,))[1:],
         *(["", *table([header, *compared], right=(1, 2, 3))] if compared else []),
     ]
@@ -160,12 +171,14 @@ def _certificate(certificate: Certificate, instance: Instance) -> list[str]:
 
 def _verdict(certificate: Certificate) -> str:
     """The verdict in words, with what was not checked."""
-    words = certificate.verdict.value
+    words = message(certificate.verdict.value)
     solved = sum(c.solved for c in certificate.competitors)
     if certificate.verdict is Verdict.CERTIFIED and solved:
-        words += f": strict local minimum; {counted(solved, 'competitor')} of these kinds compared, none cheaper"
-    missing = ", ".join(kind.value for kind in certificate.not_checked)
-    return f"{words}; not checked: {missing}" if missing else words
+        compared = counted(solved, "competitor")
+        best = "strict local minimum; <compared> of these kinds compared, none cheaper"
+        words = f"{words}: {say(best, compared=compared)}"
+    missing = ", ".join(message(kind.value) for kind in certificate.not_checked)
+    return say("<verdict>; not checked: <kinds>", verdict=words, kinds=missing) if missing else words
 
 
 def joined(blocks: Sequence[Sequence[str]]) -> str:
@@ -174,16 +187,19 @@ def joined(blocks: Sequence[Sequence[str]]) -> str:
 
 
 def _heading(instance: Instance, status: Status, how: str, colour: bool) -> list[str]:
-    word = f"\x1b[{32 if status.answered else 31}m{status.value}\x1b[0m" if colour else status.value
-    return [*filter(None, [instance.title]), f"{instance.name}, model {instance.model.spec.name}: {word} ({how})"]
+    word = message(status.value)
+    word = f"\x1b[{32 if status.answered else 31}m{word}\x1b[0m" if colour else word
+    name = say("<name>, model <model>", name=instance.name, model=instance.model.spec.name)
+    return [*filter(None, [say(instance.title)]), f"{name}: {word} ({how})"]
 
 
 def _effort(solution: Solution) -> str:
     return f"{counted(solution.iterations, 'iteration')}, {figure(solution.wall_s, 2)} s"
 
 
-def _message(status: Status, message: str) -> list[str]:
-    return wrapped(status.explain(message))
+def _message(status: Status, reason: str) -> list[str]:
+    advice = "" if status.advice in reason else status.advice
+    return wrapped("; ".join(filter(None, [message(reason), message(advice)])))
 
 
 def _states(instance: Instance, times: Array, x: Array, lam: Array | None) -> list[str]:
@@ -195,7 +211,7 @@ def state_rows(instance: Instance, times: Array, x: Array, lam: Array | None) ->
     spec = instance.model.spec
     reference = _reference(instance, times)
     rows: list[tuple[str, ...]] = [
-        ("state", "initial", "final", "given", "reference", "difference", "unit", "costate at t0", "unit")
+        each("state", "initial", "final", "given", "reference", "difference", "unit", "costate at t0", "unit")
     ]
     for i, state in enumerate(spec.states):
         final = _last(x[i])
@@ -224,11 +240,11 @@ def _difference(instance: Instance, name: str, value: float, reference: float) -
 def _given(instance: Instance, name: str) -> str:
     value = instance.final.get(name)
     if name in instance.ranges:
-        lower, upper = (figure(end) if math.isfinite(end) else "free" for end in instance.ranges[name])
+        lower, upper = (figure(end) if math.isfinite(end) else say("free") for end in instance.ranges[name])
         return f"[{lower}, {upper}]"
     if value is None:
-        return "free" if instance.final else ""
-    return value if isinstance(value, str) else figure(value)
+        return say("free") if instance.final else ""
+    return message(value) if isinstance(value, str) else figure(value)
 
 
 def _reference(instance: Instance, times: Array) -> Sequence[float] | None:
@@ -242,14 +258,14 @@ def _reference(instance: Instance, times: Array) -> Sequence[float] | None:
 def control_rows(instance: Instance, times: Array, u: Array) -> list[tuple[str, ...]]:
     """Below a header, a row for each control, and one for their norm where it is bounded."""
     spec = instance.model.spec
-    rows: list[tuple[str, ...]] = [("control", "minimum", "maximum", "bounds", "saturated", "unit")]
+    rows: list[tuple[str, ...]] = [each("control", "minimum", "maximum", "bounds", "saturated", "unit")]
     for i, control in enumerate(spec.controls):
         limits = (instance.lower[i], instance.upper[i])
         unit = "" if control.unit == "1" else control.unit
         rows.append((control.symbol, *_range(times, u[i], limits), unit))
     for bound in instance.bounded_norms:
         norm = np.sqrt((u[list(bound.places)] ** 2).sum(axis=0)) if u.size else u[0]
-        named = f"norm of {bound.name}" if bound.name else "norm"
+        named = say("norm of <name>", name=bound.name) if bound.name else say("norm")
         unit = "" if bound.unit == "1" else bound.unit
         rows.append((named, *_range(times, norm, (bound.lower or -math.inf, bound.upper)), unit))
     return rows
@@ -264,7 +280,8 @@ def _range(times: Array, row: Array, limits: tuple[float, float]) -> tuple[str, 
     if not finite:
         return *extremes, "", ""
     lower, upper = (figure(limit) if math.isfinite(limit) else "" for limit in limits)
-    words = f"[{lower}, {upper}]" if lower and upper else f"at least {lower}" if lower else f"at most {upper}"
+    words = f"[{lower}, {upper}]" if lower and upper else ""
+    words = words or (say("at least <value>", value=lower) if lower else say("at most <value>", value=upper))
     at_bound = np.logical_or.reduce([np.abs(row - bound) <= _AT_BOUND * max(1.0, abs(bound)) for bound in finite])
     fraction = float(np.trapezoid(at_bound.astype(float), times)) / float(times[-1] - times[0])
     return *extremes, words, f"{100.0 * fraction:.3g} %"
@@ -274,16 +291,20 @@ def _switching(solution: Solution, unit: str) -> list[str]:
     rows = []
     for control, times in zip(solution.instance.model.spec.control_names, solution.switching_times, strict=True):
         if times:
-            more = f" and {len(times) - SHOWN_TIMES} more" if len(times) > SHOWN_TIMES else ""
             listed = ", ".join(figure(t) for t in times[:SHOWN_TIMES])
-            rows.append(("switching times:", control, f"at {listed}{more} {unit}".rstrip()))
+            if len(times) > SHOWN_TIMES:
+                listed = say("<listed> and <number> more", listed=listed, number=len(times) - SHOWN_TIMES)
+            rows.append((say("switching times:"), control, say("at <times>", times=f"{listed} {unit}".rstrip())))
     return table([("", "", ""), *rows])[1:] if rows else []
 
 
 def _events(solution: Solution, unit: str) -> list[str]:
     """Where path constraints are met and left."""
-    rows = [(one.kind, one.name, f"at {figure(one.t, 10)} {unit}".rstrip()) for one in solution.events]
-    return table([("path constraint", "", ""), *rows]) if rows else []
+    rows = [
+        (message(one.kind), one.name, say("at <times>", times=f"{figure(one.t, 10)} {unit}".rstrip()))
+        for one in solution.events
+    ]
+    return table([(say("path constraint"), "", ""), *rows]) if rows else []
 
 
 def _last(row: Array) -> float:

@@ -6,40 +6,52 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from satsym.report.said import counted, each, message, say
 from satsym.report.terminal.table import figure, table
 from satsym.status import Status
 from satsym.studies.running import Advance
-from satsym.wording import counted
 
 
 def progress_line(advance: Advance) -> str:
     """How far it is, how quick, how long it still takes, and what failed so far."""
-    parts = [f"{advance.done} of {counted(advance.total, 'row')}"]
+    parts = [say("<done> of <rows>", done=advance.done, rows=counted(advance.total, "row"))]
     if advance.rate > 0.0:
         parts.append(f"{advance.rate:.3g}/s")
-        parts.append(f"{_time(advance.left)} left")
-    parts.append(f"{advance.failures} failed")
+        parts.append(say("<time> left", time=_time(advance.left)))
+    parts.append(say("<number> failed", number=advance.failures))
     return ", ".join(parts)
 
 
-def study_text(said: Mapping[str, Any]) -> str:
+def study_text(found: Mapping[str, Any]) -> str:
     """Summary of a study from what its result.json holds."""
-    failed = said["rows"] - said["statuses"].get(Status.CONVERGED.value, 0)
+    failed = found["rows"] - found["statuses"].get(Status.CONVERGED.value, 0)
     lines = [
-        f"{said['instance']}, model {said['model']}: {said['each']} for {counted(said['rows'], 'row')} of "
-        f"{', '.join(said['varied'])}",
+        say(
+            "<name>, model <model>: <each> for <rows> of <varied>",
+            name=found["instance"],
+            model=found["model"],
+            each=found["each"],
+            rows=counted(found["rows"], "row"),
+            varied=", ".join(found["varied"]),
+        ),
         "",
-        *table([("", ""), *((name, str(count)) for name, count in said["statuses"].items())], right=(1,))[1:],
+        *table([("", ""), *((message(name), str(count)) for name, count in found["statuses"].items())], right=(1,))[1:],
     ]
-    if said["verdicts"]:
-        lines += ["", *table([("verdict", "rows"), *((k, str(v)) for k, v in said["verdicts"].items())], right=(1,))]
-    if said["worst"]:
-        rows = [(str(one["row"]), figure(one["objective"]), one["reproduce"]) for one in said["worst"]]
-        lines += ["", "worst:", *table([("row", "objective", "command"), *rows], right=(0, 1))]
-    if said["failures"]:
-        rows = [(str(one["row"]), one["status"], one["reproduce"]) for one in said["failures"]]
-        lines += ["", f"{counted(failed, 'row')} failed{', among them' if len(rows) < failed else ''}:"]
-        lines += table([("row", "status", "command"), *rows], right=(0,))
+    if found["verdicts"]:
+        lines += [
+            "",
+            *table(
+                [each("verdict", "rows"), *((message(k), str(v)) for k, v in found["verdicts"].items())], right=(1,)
+            ),
+        ]
+    if found["worst"]:
+        rows = [(str(one["row"]), figure(one["objective"]), one["reproduce"]) for one in found["worst"]]
+        lines += ["", say("worst:"), *table([each("row", "objective", "command"), *rows], right=(0, 1))]
+    if found["failures"]:
+        rows = [(str(one["row"]), message(one["status"]), one["reproduce"]) for one in found["failures"]]
+        told = "<rows> failed, among them:" if len(rows) < failed else "<rows> failed:"
+        lines += ["", say(told, rows=counted(failed, "row"))]
+        lines += table([each("row", "status", "command"), *rows], right=(0,))
     return "\n".join(lines)
 
 
