@@ -37,4 +37,24 @@ clohessy_wiltshire = Linearised(
     outputs=(Output(DISTANCE, r), Output(ANGLE, sigma * theta)),
 )
 
+TRANSLATIONS = {
+    "id": {
+        "Clohessy-Wiltshire equations: motion in the plane of a circular orbit, linearised": (
+            "Persamaan Clohessy-Wiltshire: linearisasi gerak pada bidang orbit lingkaran"
+        ),
+        "deviation of the distance from the centre of force": "simpangan jarak dari pusat gaya",
+        "deviation of the radial velocity": "simpangan kecepatan radial",
+        "deviation of the angle, as a length along the reference orbit": (
+            "simpangan sudut, sebagai panjang sepanjang orbit acuan"
+        ),
+        "deviation of the angular velocity, as a velocity along the reference orbit": (
+            "simpangan kecepatan sudut, sebagai kecepatan sepanjang orbit acuan"
+        ),
+        "deviation of the measured distance": "simpangan jarak terukur",
+        "deviation of the measured angle, times the radius of the reference orbit": (
+            "simpangan sudut terukur kali jari-jari orbit acuan"
+        ),
+    },
+}
+
 PROBLEMS = (clohessy_wiltshire,)

@@ -51,4 +51,19 @@ double_integrator_fuel = Problem(
     control_set="box",
 )
 
+TRANSLATIONS = {
+    "id": {
+        "Minimum time for a body on a line": "Waktu minimum bagi benda pada garis lurus",
+        "Minimum energy for a body on a line": "Energi minimum bagi benda pada garis lurus",
+        "Minimum fuel for a body on a line, weighing time against it": (
+            "Bahan bakar minimum bagi benda pada garis lurus dengan bobot waktu"
+        ),
+        "A body on a line, accelerated at will": "Benda pada garis lurus yang dipercepat dengan bebas",
+        "position": "posisi",
+        "velocity": "kecepatan",
+        "thrust per unit mass": "gaya dorong per satuan massa",
+        "weight of time against fuel": "bobot waktu terhadap bahan bakar",
+    },
+}
+
 PROBLEMS = (double_integrator_time, double_integrator_energy, double_integrator_fuel)

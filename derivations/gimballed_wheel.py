@@ -321,4 +321,76 @@ roll_yaw_manoeuvre = Problem(
     control_set="box",
 )
 
+TRANSLATIONS = {
+    "id": {
+        "Satellite with a momentum wheel in two gimbals and a flexible mode about each axis": (
+            "Satelit dengan roda momentum dalam dua gimbal dan satu modus lentur pada setiap sumbu"
+        ),
+        "Satellite with a gimballed wheel and flexible modes, linearised about rest": (
+            "Satelit dengan roda bergimbal dan modus lentur, linearisasi di sekitar keadaan diam"
+        ),
+        "Roll and yaw of a satellite with a gimballed wheel and flexible modes, linearised about rest": (
+            "Guling dan geleng satelit dengan roda bergimbal dan modus lentur, linearisasi di sekitar keadaan diam"
+        ),
+        "Satellite with a constant momentum of its wheel about -y, in a circular orbit": (
+            "Satelit dengan momentum roda yang konstan terhadap -y, pada orbit lingkaran"
+        ),
+        "Gyrostat that points to the Earth, linearised about rest": (
+            "Girostat yang mengarah ke Bumi, linearisasi di sekitar keadaan diam"
+        ),
+        "Roll and yaw of a gyrostat, linearised about rest": (
+            "Guling dan geleng girostat, linearisasi di sekitar keadaan diam"
+        ),
+        "Roll and yaw manoeuvre of a gyrostat with the minimum integral of squared torques": (
+            "Manuver guling dan geleng girostat dengan integral kuadrat torsi yang minimum"
+        ),
+        "roll angle, about x, after yaw": "sudut guling, terhadap x, sesudah geleng",
+        "yaw angle, about z, the first of the three": "sudut geleng, terhadap z, yang pertama dari ketiganya",
+        "pitch angle, about y, the last of the three": "sudut angguk, terhadap y, yang terakhir dari ketiganya",
+        "angle of the inner gimbal, about x": "sudut gimbal dalam, terhadap x",
+        "angle of the outer gimbal, about z": "sudut gimbal luar, terhadap z",
+        "deflection of the mode about x": "lendutan modus terhadap x",
+        "deflection of the mode about y": "lendutan modus terhadap y",
+        "deflection of the mode about z": "lendutan modus terhadap z",
+        "angular velocity in space along the body's x": "kecepatan sudut dalam ruang sepanjang sumbu x benda",
+        "angular velocity in space along the body's y": "kecepatan sudut dalam ruang sepanjang sumbu y benda",
+        "angular velocity in space along the body's z": "kecepatan sudut dalam ruang sepanjang sumbu z benda",
+        "rate of the inner gimbal": "laju gimbal dalam",
+        "rate of the outer gimbal": "laju gimbal luar",
+        "rate of the mode about x": "laju modus terhadap x",
+        "rate of the mode about y": "laju modus terhadap y",
+        "rate of the mode about z": "laju modus terhadap z",
+        "rate of the roll angle": "laju sudut guling",
+        "rate of the yaw angle": "laju sudut geleng",
+        "rate of the pitch angle": "laju sudut angguk",
+        "deviation of the wheel's speed from its nominal one": "simpangan kecepatan roda dari kecepatan nominalnya",
+        "torque of the actuator on the inner gimbal": "torsi aktuator pada gimbal dalam",
+        "torque of the actuator on the outer gimbal": "torsi aktuator pada gimbal luar",
+        "torque of the motor between wheel and inner gimbal": "torsi motor antara roda dan gimbal dalam",
+        "torque on the body in roll": "torsi guling pada benda",
+        "torque on the body in yaw": "torsi geleng pada benda",
+        "momentum of the wheel relative to the body, about -y": "momentum roda relatif terhadap benda, terhadap -y",
+        "moment of inertia of the satellite in roll": "momen inersia guling satelit",
+        "moment of inertia of the satellite in pitch": "momen inersia angguk satelit",
+        "moment of inertia of the satellite in yaw": "momen inersia geleng satelit",
+        "moment of inertia of the wheel across its axis": "momen inersia roda melintang terhadap sumbunya",
+        "moment of inertia of the wheel about its axis": "momen inersia roda terhadap sumbunya",
+        "angular velocity in the orbit": "kecepatan sudut orbit",
+        "nominal speed of the wheel": "kecepatan nominal roda",
+        "stiffness of the spring on the inner gimbal": "kekakuan pegas pada gimbal dalam",
+        "stiffness of the spring on the outer gimbal": "kekakuan pegas pada gimbal luar",
+        "damping on the inner gimbal": "redaman pada gimbal dalam",
+        "damping on the outer gimbal": "redaman pada gimbal luar",
+        "elastic part of I_x": "bagian elastis I_x",
+        "elastic part of I_y": "bagian elastis I_y",
+        "elastic part of I_z": "bagian elastis I_z",
+        "frequency of the mode about x, the body fixed": "frekuensi modus terhadap x, dengan benda dijepit",
+        "frequency of the mode about y, the body fixed": "frekuensi modus terhadap y, dengan benda dijepit",
+        "frequency of the mode about z, the body fixed": "frekuensi modus terhadap z, dengan benda dijepit",
+        "damping ratio of the mode about x": "rasio redaman modus terhadap x",
+        "damping ratio of the mode about y": "rasio redaman modus terhadap y",
+        "damping ratio of the mode about z": "rasio redaman modus terhadap z",
+    },
+}
+
 PROBLEMS = (gimballed_wheel, gyrostat, gyrostat_linear, gimballed_linear, roll_yaw, roll_yaw_manoeuvre)

@@ -59,4 +59,36 @@ hill = Linearised(
     outputs=(Output(DISTANCE, distance), Output(HEIGHT, z)),
 )
 
+TRANSLATIONS = {
+    "id": {
+        "Two-body motion in rotating axes": "Gerak dua benda pada sumbu yang berputar",
+        "Hill's equations: motion near a circular orbit, in and out of its plane": (
+            "Persamaan Hill: gerak di dekat orbit lingkaran, di dalam dan di luar bidangnya"
+        ),
+        "position outwards": "posisi ke arah luar",
+        "position ahead": "posisi ke arah depan",
+        "position along the normal": "posisi sepanjang normal",
+        "rate of x": "laju x",
+        "rate of y": "laju y",
+        "rate of z": "laju z",
+        "deviation outwards": "simpangan ke arah luar",
+        "deviation ahead": "simpangan ke arah depan",
+        "deviation along the normal": "simpangan sepanjang normal",
+        "rate of xi": "laju xi",
+        "rate of eta": "laju eta",
+        "rate of zeta": "laju zeta",
+        "thrust per unit mass outwards": "gaya dorong per satuan massa ke arah luar",
+        "thrust per unit mass ahead": "gaya dorong per satuan massa ke arah depan",
+        "thrust per unit mass along the normal": "gaya dorong per satuan massa sepanjang normal",
+        "distance from the plane of the reference orbit": "jarak dari bidang orbit acuan",
+        "radius of the reference orbit": "jari-jari orbit acuan",
+        "angular velocity of the reference orbit": "kecepatan sudut orbit acuan",
+        "gravitational parameter": "parameter gravitasi",
+        "distance from the centre of force": "jarak dari pusat gaya",
+        "deviation of the distance from the centre of force": "simpangan jarak dari pusat gaya",
+        "gravity": "gravitasi",
+        "thrust": "dorong",
+    },
+}
+
 PROBLEMS = (hill,)

@@ -185,6 +185,59 @@ pitch_scaled_time = Problem(
     control_set="box",
 )
 
+TRANSLATIONS = {
+    "id": {
+        "Pitch axis of a satellite with a reaction wheel": "Sumbu angguk satelit dengan roda reaksi",
+        "Pitch axis under a proportional and differential law, critically damped": (
+            "Sumbu angguk dengan hukum proporsional-diferensial, teredam kritis"
+        ),
+        "Pitch axis of a symmetric satellite, nondimensional": "Sumbu angguk satelit simetris, tak berdimensi",
+        "Pitch axis of a symmetric satellite with the power of its motor, nondimensional": (
+            "Sumbu angguk satelit simetris dengan daya motornya, tak berdimensi"
+        ),
+        "Pitch axis of a symmetric satellite that starts at rest": (
+            "Sumbu angguk satelit simetris yang mulai dari keadaan diam"
+        ),
+        "Pitch manoeuvre of minimum electrical energy": "Manuver angguk dengan energi listrik minimum",
+        "Pitch manoeuvre in minimum time": "Manuver angguk dengan waktu minimum",
+        "Pitch manoeuvre of minimum energy, nondimensional": "Manuver angguk dengan energi minimum, tak berdimensi",
+        "Pitch manoeuvre in minimum time, nondimensional": "Manuver angguk dengan waktu minimum, tak berdimensi",
+        "pitch angle from the local vertical": "sudut angguk dari vertikal setempat",
+        "rate of the pitch angle": "laju sudut angguk",
+        "deviation of the wheel's speed from its nominal one": "simpangan kecepatan roda dari kecepatan nominalnya",
+        "inertia of the wheel times its acceleration relative to the body": (
+            "inersia roda kali percepatannya relatif terhadap benda"
+        ),
+        "moment of inertia of the satellite in roll": "momen inersia guling satelit",
+        "moment of inertia of the satellite in pitch": "momen inersia angguk satelit",
+        "moment of inertia of the satellite in yaw": "momen inersia geleng satelit",
+        "moment of inertia of the wheel about its axis": "momen inersia roda terhadap sumbunya",
+        "angular velocity in the orbit": "kecepatan sudut orbit",
+        "nominal speed of the wheel": "kecepatan nominal roda",
+        "resistance of the armature": "hambatan jangkar",
+        "torque constant": "konstanta torsi",
+        "speed constant": "konstanta kecepatan",
+        "torque of the motor between wheel and body": "torsi motor antara roda dan benda",
+        "current of the motor": "arus motor",
+        "voltage across the motor": "tegangan motor",
+        "electrical power of the motor": "daya listrik motor",
+        "damping: the double pole lies at -E": "redaman: kutub ganda terletak di -E",
+        "pitch angle that is commanded at time 0": "sudut angguk yang diperintahkan pada waktu 0",
+        "gain of the rate": "penguatan laju",
+        "gain of the angle": "penguatan sudut",
+        "maximum torque of the wheel": "torsi maksimum roda",
+        "power in units of what heats the motor at the maximum torque": (
+            "daya dalam satuan daya panas motor pada torsi maksimum"
+        ),
+        "weight of the wheel's power against the heat": "bobot daya roda terhadap panas",
+        "pitch angle": "sudut angguk",
+        "its rate, in units of time that go with the maximum torque": (
+            "lajunya, dalam satuan waktu menurut torsi maksimum"
+        ),
+        "torque of the wheel, relative to its maximum": "torsi roda, relatif terhadap maksimumnya",
+    },
+}
+
 PROBLEMS = (
     pitch_wheel,
     pitch_classical,

@@ -87,4 +87,38 @@ polar_orbit_ball = Problem(
     control_set="ball",
 )
 
+TRANSLATIONS = {
+    "id": {
+        "Motion of a satellite in polar coordinates": "Gerak satelit dalam koordinat polar",
+        "Minimum-effort transfer of a satellite in polar coordinates": (
+            "Transfer satelit dengan upaya minimum dalam koordinat polar"
+        ),
+        "Transfer of a satellite in polar coordinates, weighing time against effort": (
+            "Transfer satelit dalam koordinat polar dengan bobot waktu dan upaya"
+        ),
+        "Minimum-effort transfer of a satellite with one steerable engine, in polar coordinates": (
+            "Transfer satelit dengan upaya minimum dan satu mesin yang dapat diarahkan, dalam koordinat polar"
+        ),
+        "distance from the centre of force": "jarak dari pusat gaya",
+        "radial velocity": "kecepatan radial",
+        "polar angle in the inertial plane": "sudut polar pada bidang inersial",
+        "angular velocity": "kecepatan sudut",
+        "radial thrust per unit mass": "gaya dorong radial per satuan massa",
+        "tangential thrust per unit mass": "gaya dorong tangensial per satuan massa",
+        "radius of the reference orbit": "jari-jari orbit acuan",
+        "angular velocity of the reference orbit": "kecepatan sudut orbit acuan",
+        "weight of the radial thrust": "bobot gaya dorong radial",
+        "weight of the tangential thrust": "bobot gaya dorong tangensial",
+        "terminal weight of the distance": "bobot akhir jarak",
+        "terminal weight of the radial velocity": "bobot akhir kecepatan radial",
+        "terminal weight of the angle": "bobot akhir sudut",
+        "terminal weight of the angular velocity": "bobot akhir kecepatan sudut",
+        "weight of time": "bobot waktu",
+        "gravitational parameter": "parameter gravitasi",
+        "gravity": "gravitasi",
+        "radial thrust": "dorong radial",
+        "tangential thrust": "dorong tangensial",
+    },
+}
+
 PROBLEMS = (polar_orbit, polar_orbit_timed, polar_orbit_ball)

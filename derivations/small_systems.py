@@ -94,4 +94,33 @@ van_der_pol = Problem(
     control_set="box",
 )
 
+TRANSLATIONS = {
+    "id": {
+        "A saddle: one state grows, the other decays": "Titik pelana: satu keadaan tumbuh, yang lain meluruh",
+        "A stable node: both states decay": "Simpul stabil: kedua keadaan meluruh",
+        "Three real modes, two of them growing": "Tiga modus real, dua di antaranya tumbuh",
+        "A motion with explicit time and a quadratic output": "Gerak dengan waktu eksplisit dan keluaran kuadratik",
+        "Linearisation about a motion that varies with time": (
+            "Linearisasi di sekitar gerak yang berubah terhadap waktu"
+        ),
+        "Minimum square deviation, at no cost of the control": "Kuadrat simpangan minimum tanpa biaya kontrol",
+        "A rate": "Suatu laju",
+        "Damping of Van der Pol's oscillator, at no cost of the control": (
+            "Peredaman osilator Van der Pol tanpa biaya kontrol"
+        ),
+        "Van der Pol's oscillator": "Osilator Van der Pol",
+        "state 1": "keadaan 1",
+        "state 2": "keadaan 2",
+        "state 3": "keadaan 3",
+        "control": "kontrol",
+        "output": "keluaran",
+        "position": "posisi",
+        "velocity": "kecepatan",
+        "deviation of state 1": "simpangan keadaan 1",
+        "deviation of state 2": "simpangan keadaan 2",
+        "deviation of the control": "simpangan kontrol",
+        "deviation of the output": "simpangan keluaran",
+    },
+}
+
 PROBLEMS = (saddle, stable_node, three_modes, explicit_time, time_varying, singular_regulator, van_der_pol)

@@ -36,4 +36,22 @@ two_body = Newton(
     forces={"gravity": -mu * r / r.norm() ** 3, "thrust": thrust},
 )
 
+TRANSLATIONS = {
+    "id": {
+        "Two-body motion in Cartesian coordinates": "Gerak dua benda dalam koordinat Kartesius",
+        "first component of the position": "komponen pertama posisi",
+        "second component of the position": "komponen kedua posisi",
+        "third component of the position": "komponen ketiga posisi",
+        "first component of the velocity": "komponen pertama kecepatan",
+        "second component of the velocity": "komponen kedua kecepatan",
+        "third component of the velocity": "komponen ketiga kecepatan",
+        "thrust per unit mass along x": "gaya dorong per satuan massa sepanjang x",
+        "thrust per unit mass along y": "gaya dorong per satuan massa sepanjang y",
+        "thrust per unit mass along z": "gaya dorong per satuan massa sepanjang z",
+        "gravitational parameter of the central body": "parameter gravitasi benda pusat",
+        "gravity": "gravitasi",
+        "thrust": "dorong",
+    },
+}
+
 PROBLEMS = (two_body,)

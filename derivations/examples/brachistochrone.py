@@ -34,4 +34,16 @@ brachistochrone = Problem(
     control_sets={"slope": Angle("theta")},
 )
 
+TRANSLATIONS = {
+    "id": {
+        "A bead slides along a curve in minimum time": "Manik meluncur sepanjang kurva dengan waktu minimum",
+        "A bead on a curve": "Manik pada kurva",
+        "distance": "jarak",
+        "height": "tinggi",
+        "speed": "laju",
+        "direction of the motion below the horizontal": "arah gerak di bawah horizontal",
+        "gravity": "gravitasi",
+    },
+}
+
 PROBLEMS = (brachistochrone,)

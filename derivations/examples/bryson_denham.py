@@ -35,4 +35,16 @@ bryson_denham = Problem(
 
 beam = replace(bryson_denham, name="beam", title="A clamped beam under a ceiling", running_cost=u**2)
 
+TRANSLATIONS = {
+    "id": {
+        "Minimum effort before a wall": "Upaya minimum di depan dinding",
+        "A clamped beam under a ceiling": "Balok terjepit di bawah langit-langit",
+        "A body on a line": "Benda pada garis lurus",
+        "position": "posisi",
+        "velocity": "kecepatan",
+        "acceleration": "percepatan",
+        "position of the wall": "posisi dinding",
+    },
+}
+
 PROBLEMS = (bryson_denham, beam)

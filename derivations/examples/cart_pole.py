@@ -46,4 +46,20 @@ cart_pole = Problem(
     control_set="box",
 )
 
+TRANSLATIONS = {
+    "id": {
+        "A cart swings its pole up at least effort": "Kereta mengayunkan tiangnya ke atas dengan upaya minimum",
+        "A cart with a pole": "Kereta dengan tiang",
+        "position of the cart": "posisi kereta",
+        "angle of the pole, from hanging": "sudut tiang dari posisi menggantung",
+        "velocity of the cart": "kecepatan kereta",
+        "rate of the pole": "laju tiang",
+        "force on the cart": "gaya pada kereta",
+        "mass of the cart": "massa kereta",
+        "mass at the pole's end": "massa di ujung tiang",
+        "length of the pole": "panjang tiang",
+        "gravity": "gravitasi",
+    },
+}
+
 PROBLEMS = (cart_pole,)

@@ -31,4 +31,14 @@ catalyst = Problem(
     control_set="box",
 )
 
+TRANSLATIONS = {
+    "id": {
+        "Mixing of two catalysts for the largest yield": "Pencampuran dua katalis untuk hasil terbesar",
+        "A tubular reactor with two catalysts": "Reaktor pipa dengan dua katalis",
+        "fraction of substance 1": "fraksi zat 1",
+        "fraction of substance 2": "fraksi zat 2",
+        "fraction of the first catalyst": "fraksi katalis pertama",
+    },
+}
+
 PROBLEMS = (catalyst,)

@@ -30,4 +30,14 @@ chain = Problem(
     running_cost=height * sqrt(1 + slope**2),
 )
 
+TRANSLATIONS = {
+    "id": {
+        "A hanging chain": "Rantai yang menggantung",
+        "A curve over the horizontal, with its length": "Kurva di atas horizontal beserta panjangnya",
+        "height": "tinggi",
+        "length so far": "panjang sejauh ini",
+        "slope of the chain": "kemiringan rantai",
+    },
+}
+
 PROBLEMS = (chain,)

@@ -27,4 +27,16 @@ fuller = Problem(
     control_set="box",
 )
 
+TRANSLATIONS = {
+    "id": {
+        "Minimum squared distance of a body on a line that is brought to rest": (
+            "Kuadrat jarak minimum benda pada garis lurus yang dibawa diam"
+        ),
+        "A body on a line": "Benda pada garis lurus",
+        "position": "posisi",
+        "velocity": "kecepatan",
+        "force per mass": "gaya per satuan massa",
+    },
+}
+
 PROBLEMS = (fuller,)

@@ -43,4 +43,19 @@ goddard = Problem(
     control_set="box",
 )
 
+TRANSLATIONS = {
+    "id": {
+        "Ascent of a rocket to the maximum height": "Roket naik ke ketinggian maksimum",
+        "A rocket in vertical flight": "Roket yang bergerak vertikal",
+        "distance from the centre": "jarak dari pusat",
+        "velocity": "kecepatan",
+        "mass": "massa",
+        "thrust": "gaya dorong",
+        "drag at velocity one and the initial height": "gaya hambat pada kecepatan satu dan ketinggian awal",
+        "how fast drag falls with height": "laju berkurangnya gaya hambat terhadap ketinggian",
+        "gravity at the initial height": "gravitasi pada ketinggian awal",
+        "exhaust velocity": "kecepatan gas buang",
+    },
+}
+
 PROBLEMS = (goddard,)

@@ -26,4 +26,15 @@ hypersensitive = Problem(
     running_cost=(x**2 + u**2) / 2,
 )
 
+TRANSLATIONS = {
+    "id": {
+        "From one state to another in a long time, at least deviation and effort": (
+            "Dari satu keadaan ke keadaan lain dalam waktu panjang dengan simpangan dan upaya minimum"
+        ),
+        "A state that decays by its cube": "Keadaan yang meluruh menurut pangkat tiganya",
+        "state": "keadaan",
+        "control": "kontrol",
+    },
+}
+
 PROBLEMS = (hypersensitive,)

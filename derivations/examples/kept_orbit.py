@@ -50,4 +50,18 @@ approach_cone = Problem(
     path_constraints={"above": x1 + slope * x3 - mouth, "below": -x1 + slope * x3 - mouth},
 )
 
+TRANSLATIONS = {
+    "id": {
+        "Return to the orbit above a smallest radius": "Kembali ke orbit di atas jari-jari terkecil",
+        "Return to the orbit within a slot of angle about the reference": (
+            "Kembali ke orbit dalam selang sudut di sekitar acuan"
+        ),
+        "Rendezvous from behind within an approach cone": "Pertemuan dari belakang dalam kerucut pendekatan",
+        "smallest distance from the centre of force": "jarak terkecil dari pusat gaya",
+        "half the width of the slot, as an angle": "setengah lebar selang, sebagai sudut",
+        "slope of the approach cone": "kemiringan kerucut pendekatan",
+        "half the width of the cone at its end": "setengah lebar kerucut di ujungnya",
+    },
+}
+
 PROBLEMS = (return_above, return_in_slot, approach_cone)

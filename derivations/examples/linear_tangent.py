@@ -37,4 +37,17 @@ linear_tangent = Problem(
     control_sets={"steering": Angle("beta")},
 )
 
+TRANSLATIONS = {
+    "id": {
+        "Steering in minimum time": "Pengarahan dengan waktu minimum",
+        "A point that is steered in a plane": "Titik yang diarahkan pada bidang",
+        "distance": "jarak",
+        "height": "tinggi",
+        "horizontal velocity": "kecepatan horizontal",
+        "vertical velocity": "kecepatan vertikal",
+        "direction of the acceleration": "arah percepatan",
+        "acceleration": "percepatan",
+    },
+}
+
 PROBLEMS = (linear_tangent,)

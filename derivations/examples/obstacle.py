@@ -45,4 +45,21 @@ obstacle = Problem(
     },
 )
 
+TRANSLATIONS = {
+    "id": {
+        "Minimum effort around two discs": "Upaya minimum mengelilingi dua cakram",
+        "A body in the plane": "Benda pada bidang",
+        "position in the direction of the end": "posisi ke arah akhir",
+        "position across it": "posisi melintang",
+        "velocity in the direction of the end": "kecepatan ke arah akhir",
+        "velocity across it": "kecepatan melintang",
+        "acceleration in the direction of the end": "percepatan ke arah akhir",
+        "acceleration across it": "percepatan melintang",
+        "centre of the first disc": "pusat cakram pertama",
+        "the same across that direction": "demikian pula melintang terhadap arah itu",
+        "its radius": "jari-jarinya",
+        "centre of the second disc": "pusat cakram kedua",
+    },
+}
+
 PROBLEMS = (obstacle,)

@@ -51,4 +51,23 @@ rayleigh_mixed = replace(
     path_constraints={"bound": u + x1 / 6},
 )
 
+TRANSLATIONS = {
+    "id": {
+        "Damping of Van der Pol's oscillator with a bounded control": (
+            "Peredaman osilator Van der Pol dengan kontrol terbatas"
+        ),
+        "Damping of Rayleigh's oscillator": "Peredaman osilator Rayleigh",
+        "Damping of Rayleigh's oscillator with a control bounded by the state": (
+            "Peredaman osilator Rayleigh dengan kontrol yang dibatasi oleh keadaan"
+        ),
+        "Van der Pol's oscillator": "Osilator Van der Pol",
+        "Rayleigh's oscillator, a tunnel diode": "Osilator Rayleigh, dioda terowongan",
+        "state 1": "keadaan 1",
+        "state 2": "keadaan 2",
+        "position": "posisi",
+        "velocity": "kecepatan",
+        "control": "kontrol",
+    },
+}
+
 PROBLEMS = (van_der_pol_boxed, rayleigh, rayleigh_mixed)

@@ -43,4 +43,26 @@ reorientation = Problem(
     control_set="box",
 )
 
+TRANSLATIONS = {
+    "id": {
+        "Rest-to-rest reorientation of a rigid body in minimum time": (
+            "Reorientasi benda tegar dari diam ke diam dengan waktu minimum"
+        ),
+        "A rigid body with three torques": "Benda tegar dengan tiga torsi",
+        "component 1 of the quaternion": "komponen 1 kuaternion",
+        "component 2 of the quaternion": "komponen 2 kuaternion",
+        "component 3 of the quaternion": "komponen 3 kuaternion",
+        "component 4 of the quaternion": "komponen 4 kuaternion",
+        "angular velocity about axis 1": "kecepatan sudut terhadap sumbu 1",
+        "angular velocity about axis 2": "kecepatan sudut terhadap sumbu 2",
+        "angular velocity about axis 3": "kecepatan sudut terhadap sumbu 3",
+        "torque about axis 1": "torsi terhadap sumbu 1",
+        "torque about axis 2": "torsi terhadap sumbu 2",
+        "torque about axis 3": "torsi terhadap sumbu 3",
+        "moment of inertia about axis 1": "momen inersia terhadap sumbu 1",
+        "moment of inertia about axis 2": "momen inersia terhadap sumbu 2",
+        "moment of inertia about axis 3": "momen inersia terhadap sumbu 3",
+    },
+}
+
 PROBLEMS = (reorientation,)

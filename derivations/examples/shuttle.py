@@ -68,4 +68,30 @@ shuttle = Problem(
     control_sets={"attack": Box("alpha"), "bank": Box("beta")},
 )
 
+TRANSLATIONS = {
+    "id": {
+        "A shuttle glides to the largest latitude": "Pesawat ulang-alik meluncur ke lintang terbesar",
+        "Gliding entry over a round Earth at rest": "Peluncuran masuk atmosfer di atas Bumi bulat yang diam",
+        "altitude": "ketinggian",
+        "longitude": "bujur",
+        "latitude": "lintang",
+        "speed": "laju",
+        "angle of the path above the horizontal": "sudut lintasan di atas horizontal",
+        "azimuth": "azimut",
+        "angle of attack": "sudut serang",
+        "bank": "sudut miring",
+        "gravitational parameter": "parameter gravitasi",
+        "radius of the Earth": "jari-jari Bumi",
+        "density at the ground": "kerapatan di permukaan tanah",
+        "scale height": "tinggi skala",
+        "reference area": "luas acuan",
+        "mass": "massa",
+        "lift without angle of attack": "gaya angkat tanpa sudut serang",
+        "slope of the lift": "kemiringan gaya angkat",
+        "drag without angle of attack": "gaya hambat tanpa sudut serang",
+        "slope of the drag there": "kemiringan gaya hambat di sana",
+        "growth of the drag": "pertumbuhan gaya hambat",
+    },
+}
+
 PROBLEMS = (shuttle,)

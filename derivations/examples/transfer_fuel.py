@@ -44,4 +44,24 @@ transfer_fuel = Problem(
     control_sets={"thrust": Ball("T_r", "T_t")},
 )
 
+TRANSLATIONS = {
+    "id": {
+        "Transfer between circular orbits with minimum fuel": (
+            "Transfer antara orbit lingkaran dengan bahan bakar minimum"
+        ),
+        "A satellite whose thrust can be turned and throttled": (
+            "Satelit yang gaya dorongnya dapat diarahkan dan diatur"
+        ),
+        "distance from the centre": "jarak dari pusat",
+        "polar angle": "sudut polar",
+        "radial velocity": "kecepatan radial",
+        "transverse velocity": "kecepatan transversal",
+        "mass over the initial mass": "massa per massa awal",
+        "radial thrust over the initial mass": "gaya dorong radial per massa awal",
+        "transverse thrust over the initial mass": "gaya dorong transversal per massa awal",
+        "gravitational parameter": "parameter gravitasi",
+        "exhaust velocity": "kecepatan gas buang",
+    },
+}
+
 PROBLEMS = (transfer_fuel,)

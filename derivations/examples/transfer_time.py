@@ -40,4 +40,18 @@ transfer_time = Problem(
     control_sets={"steering": Angle("beta")},
 )
 
+TRANSLATIONS = {
+    "id": {
+        "Transfer between circular orbits in minimum time": "Transfer antara orbit lingkaran dengan waktu minimum",
+        "A satellite with constant thrust": "Satelit dengan gaya dorong konstan",
+        "distance from the centre": "jarak dari pusat",
+        "radial velocity": "kecepatan radial",
+        "transverse velocity": "kecepatan transversal",
+        "direction of the thrust, above the local horizontal": "arah gaya dorong di atas horizontal setempat",
+        "gravitational parameter": "parameter gravitasi",
+        "thrust over the initial mass": "gaya dorong per massa awal",
+        "flow of mass over the initial mass": "laju massa per massa awal",
+    },
+}
+
 PROBLEMS = (transfer_time,)

@@ -33,4 +33,16 @@ zermelo = Problem(
     control_sets={"rudder": Angle("heading")},
 )
 
+TRANSLATIONS = {
+    "id": {
+        "A ship crosses a linear current in minimum time": "Kapal melintasi arus linear dengan waktu minimum",
+        "A ship in a current": "Kapal dalam arus",
+        "distance along the current": "jarak sepanjang arus",
+        "distance across it": "jarak melintang arus",
+        "heading": "arah haluan",
+        "speed of the ship in the water": "laju kapal di dalam air",
+        "distance over which the current grows by that speed": "jarak tempat arus bertambah sebesar laju itu",
+    },
+}
+
 PROBLEMS = (zermelo,)

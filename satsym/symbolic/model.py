@@ -108,6 +108,9 @@ class Model:
         What is measured. May be empty.
     demands
         What the parameters must obey together; instances that do not are refused. May be empty.
+    translations
+        Language -> titles, meanings and other words of this declaration, as they stand in it -> in that language. May
+        be empty; a derivation file states them once for all, as ``TRANSLATIONS``.
     """
 
     name: str
@@ -119,6 +122,7 @@ class Model:
     reference: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     outputs: tuple[Output, ...] = ()
     demands: tuple[Demand, ...] = ()
+    translations: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
     plain_time: ClassVar[bool] = False
     """Whether time is a plain number even though other variables have units."""
@@ -322,3 +326,8 @@ def with_origins(model: Model) -> tuple[Model, ...]:
     """A model, the one from whose motion it is derived, and so on."""
     origin = model.origin()
     return (model, *(with_origins(origin) if origin else ()))
+
+
+def translated(model: Model, language: str) -> dict[str, str]:
+    """Words of a model in a language, and of those from whose motion it is derived; its own go first."""
+    return {k: text for one in with_origins(model)[::-1] for k, text in one.translations.get(language, {}).items()}

@@ -12,10 +12,11 @@ from satsym.report.latex import boundary_value, checks, preamble, tex
 from satsym.report.latex.references import cited
 from satsym.report.latex.statement import statement
 from satsym.report.latex.steps import Context, Shown, conclusion, numbers_of, quantities, shown
-from satsym.report.texts import Texts, load
+from satsym.report.texts import PHRASES, Texts, load
 from satsym.symbolic import Derivation, Step
 from satsym.symbolic.convention import worded
 from satsym.symbolic.latex.typeset import Typesetter
+from satsym.symbolic.model import translated
 
 SECTION_FROM = {"hamiltonian": "conditions", "stability": "structure", "lqr_hamiltonian": "regulator"}
 """Steps that begin a new section."""
@@ -46,7 +47,7 @@ def render(derivation: Derivation, language: str = "en", standalone: bool = True
     MissingText
         If the language has no text for a step, its rule or one of its checks.
     """
-    texts = load(language).with_own(derivation.model.sentences().get(language, {}))
+    texts = in_language(derivation, language)
     composer, name = _Composer(derivation, texts), tex.label(derivation.name)
     body = "\n\n".join(composer.paragraphs())
     body, works = cited(body, name)
@@ -54,16 +55,23 @@ def render(derivation: Derivation, language: str = "en", standalone: bool = True
     macros, end = preamble.macros(name, texts), composer.checks()
     if not standalone:
         return f"{source}% Needs the packages {preamble.PACKAGES}.\n{macros}\n{body}\n\n{works}\n\n{end}\n"
-    title = tex.escape(derivation.title)
+    own = texts.phrase(derivation.title)
+    title = tex.escape(own)
     head = (
         f"\\begin{{center}}\n  {{\\LARGE {title}\\par}}\n  \\vspace{{1ex}}{tex.name(derivation.name)}\n"
         f"\\end{{center}}\n\\begin{{abstract}}\n{composer.abstract()}\n\\end{{abstract}}"
     )
-    opening = preamble.preamble(texts, tex.bookmark(derivation.title))
+    opening = preamble.preamble(texts, tex.bookmark(own))
     return (
         f"{source}{opening}{macros}\\begin{{document}}\n{head}\n\n{body}\n\n{works}\n"
         f"\\appendix\n{end}\n\\end{{document}}\n"
     )
+
+
+def in_language(derivation: Derivation, language: str) -> Texts:
+    """The texts of a language, with what the model brings: its kind's sentences, its own words."""
+    model = derivation.model
+    return load(language).with_own({**model.sentences().get(language, {}), PHRASES: translated(model, language)})
 
 
 class _Composer:

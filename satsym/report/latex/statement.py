@@ -153,7 +153,7 @@ def _others(derivation: Derivation, groups: Mapping[str, Sequence[Variable]]) ->
     known = {v.symbol for group in groups.values() for v in group}
     stated = [side for said in derivation.model.statement() for line in said.lines for side in (line.left, line.right)]
     derived = [side for step in derivation.steps for e in step.equations for side in (e.lhs, e.rhs)]
-    used = {s.name for side in (*stated, *derived) for s in getattr(side, "free_symbols", ())}
+    used = {s.name.removeprefix("d_") for side in (*stated, *derived) for s in getattr(side, "free_symbols", ())}
     found = {v.symbol: v for model in with_origins(derivation.model) for v in variables_of(model)}
     return tuple(v for name, v in found.items() if name in used - known)
 
@@ -208,10 +208,10 @@ def _motion(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
     paragraphs: list[str] = []
     ends: dict[str, tuple[str, str]] = {}
     for said in derivation.model.statement():
-        fill = {"name": tex.name(said.of.name), "title": tex.escape(said.of.title)} if said.of else {}
+        fill = {"name": tex.name(said.of.name), "title": tex.escape(texts.phrase(said.of.title))} if said.of else {}
         shown: dict[str, list[Row]] = {}
         for line in said.lines:
-            new, rows = _rows(line, typeset), shown.setdefault(line.thing, [])
+            new, rows = _rows(line, texts, typeset), shown.setdefault(line.thing, [])
             for k, row in enumerate(new, len(rows) + 1):
                 address = _address(derivation, line.address or f"{line.thing}.{k}")
                 rows.append(Row(address, row.left, row.right))
@@ -221,10 +221,10 @@ def _motion(derivation: Derivation, texts: Texts, typeset: Typesetter) -> Part:
     return Part(tuple(paragraphs), ends)
 
 
-def _rows(line: Line, typeset: Typesetter) -> list[Row]:
+def _rows(line: Line, texts: Texts, typeset: Typesetter) -> list[Row]:
     """An equation; several where a vector is too wide."""
     left = line.left if isinstance(line.left, str) else typeset.symbol(line.left.name)
-    left += rf"_{{\text{{{tex.escape(line.index)}}}}}" if line.index else ""
+    left += rf"_{{\text{{{tex.escape(texts.phrase(line.index))}}}}}" if line.index else ""
     if line.components:
         return _vector(left, [typeset.terms(component) for component in line.components])
     return [Row("", plain(left), typeset.terms(line.right))]

@@ -10,11 +10,11 @@ from satsym.report.html.markup import Markup, joined, tag
 from satsym.report.html.mathml import math
 from satsym.report.latex import tex
 from satsym.report.latex.checks import checked
-from satsym.report.latex.document import SECTION_FROM
+from satsym.report.latex.document import SECTION_FROM, in_language
 from satsym.report.latex.steps import Context, conclusion, quantities
 from satsym.report.page.prose import prose, scrolled
 from satsym.report.terminal.table import figure
-from satsym.report.texts import Texts
+from satsym.report.texts import PHRASES, Texts
 from satsym.spec import Variable
 from satsym.symbolic.latex.typeset import Typesetter, matrices
 
@@ -35,7 +35,7 @@ class Derived:
     """
 
     def __init__(self, derivation: Derivation, texts: Texts, values: Mapping[str, float]) -> None:
-        own = texts.with_own(derivation.model.sentences().get(texts.language, {}))
+        own = in_language(derivation, texts.language)
         self._derivation, self._texts, self._values = derivation, own, values
         self._context = Context(derivation, own, Typesetter(derivation))
         self._numbers: dict[str, str] = {}
@@ -70,7 +70,7 @@ class Derived:
             if terminal:
                 yield scrolled(math(f"S = {typeset.tex(problem.terminal_cost)}", block=True))
         for said in self._derivation.model.statement():
-            fill = {"name": said.of.name, "title": said.of.title} if said.of else {}
+            fill = {"name": said.of.name, "title": texts.phrase(said.of.title)} if said.of else {}
             yield tag("p", prose(texts.get("statement", said.sentence, **fill), {}))
             for line in said.lines:
                 left = line.left if isinstance(line.left, str) else typeset.symbol(line.left.name)
@@ -90,14 +90,14 @@ class Derived:
         return scrolled(tag("table", *rows, class_="facts"))
 
     def _quantity(self, v: Variable) -> Markup:
-        value = self._values.get(v.symbol)
+        value, said = self._values.get(v.symbol), self._texts.phrase(v.meaning)
         return tag(
             "tr",
             tag("td", math(v.latex)),
             tag("th", tag("code", v.symbol), scope="row"),
             tag("td", unit_text(v.unit)),
             tag("td", "" if value is None else figure(value, 10), class_="number"),
-            tag("td", v.meaning, lang="en"),
+            tag("td", said, lang=self._texts.language if self._texts.find(PHRASES, v.meaning) else "en"),
         )
 
     def _step(self, number: int, step: Step) -> Markup:

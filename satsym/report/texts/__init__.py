@@ -13,6 +13,9 @@ from satsym.status import BadInput
 from satsym.wording import shown
 
 _FOLDER = Path(__file__).parent
+PHRASES = "phrases"
+"""The table of what models have in other languages, by their own words; it is not among the texts."""
+
 _HOLE = re.compile(r"<([a-z_]+)>")
 
 
@@ -52,6 +55,10 @@ class Texts:
     def find(self, table: str, key: str) -> str | None:
         """The text at a key of a table, as it stands there; ``None`` if there is none."""
         return self.tables.get(table, {}).get(key)
+
+    def phrase(self, text: str) -> str:
+        """A title or meaning in this language, as far as who wrote it has it so."""
+        return self.find(PHRASES, text) or text
 
     def with_own(self, own: Mapping[str, Mapping[str, str]]) -> Texts:
         """These texts and some more, table by table; where both have a key, the others count."""

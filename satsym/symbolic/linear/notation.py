@@ -36,15 +36,15 @@ HAMILTONIAN_MATRIX = sp.Symbol("hamiltonian_matrix")
 RICCATI_RATE, RICCATI_RESIDUAL = sp.Symbol("riccati_rate"), sp.Symbol("riccati_residual")
 
 FIXED = {
-    LAMBDA: r"\lambda",
-    CHARACTERISTIC: r"\det(\lambda I - A)",
+    LAMBDA: "s",
+    CHARACTERISTIC: r"\det(s I - A)",
     JORDAN: "J",
-    JORDAN_BASIS: "T",
+    JORDAN_BASIS: "V",
     TRANSITION: "e^{At}",
     ROUTH: r"\mathcal{R}",
     SIGN_CHANGES: r"n_{+}",
     COMPANION_FORM: "A_c",
-    COUPLING: r"S = B R^{-1} B^{\mathsf{T}}",
+    COUPLING: r"W = B R^{-1} B^{\mathsf{T}}",
     GAIN: r"K = R^{-1} B^{\mathsf{T}} P",
     HAMILTONIAN_MATRIX: "M",
     RICCATI_RATE: r"-\dot P",
@@ -77,8 +77,8 @@ def results(model: Model) -> dict[str, str]:
     """Notation of what the steps for linear models find; no variable of a model that is analysed has such a name."""
     notation = {s.name: latex for s, latex in FIXED.items()}
     n, m = len(model.states), len(model.controls)
-    notation[EIGENVALUES.name] = rf"(\lambda_1, \dots, \lambda_{{{n}}})" if n > 1 else r"\lambda_1"
-    notation[DISTINCT.name] = r"\boldsymbol{\lambda}"
+    notation[EIGENVALUES.name] = rf"(s_1, \dots, s_{{{n}}})" if n > 1 else "s_1"
+    notation[DISTINCT.name] = r"\mathbf{s}"
     notation[ALGEBRAIC.name] = r"\mathbf{m}_a"
     notation[GEOMETRIC.name] = r"\mathbf{m}_g"
     notation |= {small(k).name: rf"\varepsilon_{{{k}}}" for k in range(1, n + 2)}
@@ -96,7 +96,8 @@ def weights(model: Model) -> dict[str, str]:
     for letter, variables in (("Q", model.states), ("R", model.controls), ("P", model.states), ("S", model.states)):
         for (i, a), (j, b) in combinations_with_replacement(list(enumerate(symbols_of(variables), 1)), 2):
             comma = "," if len(variables) > 9 else ""
-            notation[weight(letter, a, b).name] = rf"{letter.lower()}_{{{i}{comma}{j}}}"
+            small = "w" if letter == "S" else letter.lower()
+            notation[weight(letter, a, b).name] = rf"{small}_{{{i}{comma}{j}}}"
     return notation
 
 
@@ -115,11 +116,12 @@ def _of_port(kind: str, letter: str, port: Variable | None) -> dict[str, str]:
     """Names for one input or output, or for all together."""
     suffix = f"_{port.symbol}" if port else ""
     index = f"_{{{port.latex}}}" if port else ""
-    matrix, basis = f"{letter}{index}", f"T{index}"
+    matrix, basis = f"{letter}{index}", f"T_{{{letter}{',' if port else ''}{port.latex if port else ''}}}"
     column = rf"\mathbf{{b}}{index}" if port else "B"
     row = rf"\mathbf{{c}}{index}" if port else "C"
     controls = kind == "controllability"
-    pencil = rf"(\lambda I - A,\; {column})" if controls else rf"(\lambda I - A;\; {row})"
+    mode = f"{'z' if controls else 'v'}_{{{f'{port.latex},' if port else ''}"
+    pencil = rf"(s I - A,\; {column})" if controls else rf"(s I - A;\; {row})"
     return {
         f"{kind}{suffix}": matrix,
         f"{kind}_rank{suffix}": rf"\operatorname{{rank}} {matrix}",
@@ -128,7 +130,7 @@ def _of_port(kind: str, letter: str, port: Variable | None) -> dict[str, str]:
         f"{kind}_state{suffix}": rf"{basis}^{{-1}} A {basis}",
         f"{kind}_port{suffix}": rf"{basis}^{{-1}} {column}" if controls else rf"{row} {basis}",
         f"{kind}_companion_basis{suffix}": f"T_{{c,{port.latex}}}" if port else "T_c",
-        **{f"{kind}_mode{suffix}_{k}": rf"{'z' if controls else 'v'}{index}" for k in range(1, 20)},
+        **{f"{kind}_mode{suffix}_{k}": f"{mode}{k}}}" for k in range(1, 20)},
     }
 
 

@@ -6,8 +6,9 @@ import hashlib
 import importlib.util
 import sys
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -161,6 +162,25 @@ def _module(path: Path) -> ModuleType:
     return sys.modules[name]
 
 
+def _translate(module: ModuleType) -> None:
+    """Give the file's translations to what it states; its own ones go first."""
+    words, stated = getattr(module, "TRANSLATIONS", {}), getattr(module, "PROBLEMS", ())
+    if not isinstance(words, Mapping) or not all(isinstance(each, Mapping) for each in words.values()):
+        raise TypeError('TRANSLATIONS must have phrases by language, {"id": {"velocity": "kecepatan"}}')
+    if words and isinstance(stated, tuple):
+        module.PROBLEMS = tuple(_in_languages(one, words) for one in stated)  # type: ignore[attr-defined]
+
+
+def _in_languages(one: Any, words: Mapping[str, Mapping[str, str]]) -> Any:
+    if isinstance(one, Problem):
+        return replace(one, model=_in_languages(one.model, words))
+    if not isinstance(one, Model):
+        return one
+    own = one.translations
+    both = {key: {**words.get(key, {}), **own.get(key, {})} for key in dict.fromkeys((*words, *own))}
+    return replace(one, translations=both)
+
+
 def _execute(path: Path, name: str) -> None:
     resolved = path.resolve()
     spec = importlib.util.spec_from_file_location(name, resolved)
@@ -174,6 +194,7 @@ def _execute(path: Path, name: str) -> None:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", SyntaxWarning)  # the error that follows says the same, with its line
             spec.loader.exec_module(module)
+        _translate(module)
     except Exception as error:
         del sys.modules[name]
         line, message = said(error, resolved, vars(module))

@@ -27,7 +27,12 @@ peak_of = named("{}_peak")
 
 def names(model: Model) -> dict[str, str]:
     """Name -> LaTeX of all of them."""
-    found = {POTENTIAL.name: "V", REDUCED_COST.name: "L_0", MINIMUM_COST.name: "J_0", COST_FROM_REST.name: "J_0"}
+    found = {
+        POTENTIAL.name: r"\mathcal{V}",
+        REDUCED_COST.name: "L_0",
+        MINIMUM_COST.name: "J_0",
+        COST_FROM_REST.name: r"J_{\mathrm{rest}}",
+    }
     found |= {f"reduced_lambda_{v.symbol}": rf"\mu_{{{v.latex}}}" for v in model.states}
     for v in model.controls:
         found |= {f"{v.symbol}_peak": rf"|{v.latex}|_{{\max}}", f"{v.symbol}_answer": rf"{v.latex}(t)"}
