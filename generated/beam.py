@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/bryson_denham.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/bryson_denham.py
-Source: ../derivations/examples/bryson_denham.py 40d7dac073b1a99986530fae9830d7de
-Digest: 8097df0ac3a0e11d27b9b17e84990c6fb49f7dfcde0e23aea1b46401cce3f6e7
+Source: ../derivations/examples/bryson_denham.py 44314c87fa5d23f0e198f4ff33a9e0b3
+Digest: 912dee7bddd14f7648ceff0b69704c08cbac55e28c21debc74e80712a23cf569
 """
 
 import math

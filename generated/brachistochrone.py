@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/brachistochrone.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/brachistochrone.py
-Source: ../derivations/examples/brachistochrone.py 7dd71e3f9e58e3d1fbb10a1622b14b39
-Digest: 62f14d53c655c5469d1daf6be1759c72509f1d7b254f08c6c06575e911b5d848
+Source: ../derivations/examples/brachistochrone.py fa1f49f00f5dfcff7088d1aed3cb6b0f
+Digest: fe3e07f42754a15c19f5f917539362e394755d1922c3eeb3d09bb01984eb3974
 """
 
 import math

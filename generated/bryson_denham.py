@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/bryson_denham.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/bryson_denham.py
-Source: ../derivations/examples/bryson_denham.py 40d7dac073b1a99986530fae9830d7de
-Digest: f7ce327df644a73b703fb3ea0f8dc43f9e759f9bb551cef49fe21d2acf128474
+Source: ../derivations/examples/bryson_denham.py 44314c87fa5d23f0e198f4ff33a9e0b3
+Digest: 97f6c6edd9ae51091031d59efa630f98a74f9eeac52b56026a52f6662372f69e
 """
 
 import math

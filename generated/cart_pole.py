@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/cart_pole.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/cart_pole.py
-Source: ../derivations/examples/cart_pole.py 33a94df2e697bb698067192969b8f71f
-Digest: 575b96bb5d94b1534f5ff5d0321e7f6212197ad0a37b8637a88277c91e2b973a
+Source: ../derivations/examples/cart_pole.py 1ec4b261474823ca7f437e71ca4dd56f
+Digest: 24119c5ae2101ad2f80a219a09b68e8f5d523895533890ec43aafaca1094395e
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/catalyst.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/catalyst.py
-Source: ../derivations/examples/catalyst.py 0367c29be2f6aff768553de0947f23d7
-Digest: 12723d43884b3c0f4ad8772c4b4eeed8463ae49b329d23c05cb449df48b6e44d
+Source: ../derivations/examples/catalyst.py d67ddf7b1d4e1ce71e1cb1ea89772f8e
+Digest: 152580c30e8c93ffc316c62f1128c1ca2c4256a00845d3651fe6dcba65547094
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/chain.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/chain.py
-Source: ../derivations/examples/chain.py 4cea224eab31b2fcf2cd02907033705f
-Digest: 14fa192407d909b660481a7085dee3899d780e4b597f896209648c89b3b21445
+Source: ../derivations/examples/chain.py 7586c7c24736b49a23ff8d1429f856a6
+Digest: 4a08cb6643a07947dbdd01072ea1eb5414e587a96ffbbc42d464db0cd4144146
 """
 
 import math

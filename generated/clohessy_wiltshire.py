@@ -2,9 +2,9 @@
 
 Written by satsym from derivations/clohessy_wiltshire.py. Do not edit: mend that file instead, then run
     satsym derive derivations/clohessy_wiltshire.py
-Source: ../derivations/clohessy_wiltshire.py 52520f4e0a2f16c4858ba5a6515ea5d0
-Source: ../derivations/polar_orbit.py eea94ffce26c74c68c16f37511ae1eb3
-Digest: 5ab185f851efced5d41e1ee5bf47ba043781117415c35783b21f08b108204314
+Source: ../derivations/clohessy_wiltshire.py 5a9b7bbf42a3dff60eb055f9d5a11a8d
+Source: ../derivations/polar_orbit.py beea12059a301c5a587ef084855422b4
+Digest: 56626849cd4c889ceb55dd76df5da936b992823f74763c55612da5ea439a285d
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
-Source: ../derivations/double_integrator.py 7c9a8916264bd019727ab8ecd9867ba4
-Digest: c72f93cb2b0c424b2ca3a7c95ecf188b1215e4f82743d5da5bc789aa2b16c26d
+Source: ../derivations/double_integrator.py ae09fe708a921b49abbeaeb38ac7f16d
+Digest: 0712a4fcd35cba11c779bbf3b9848c22a1caffaedf05ac05eff785ea90cb8f5c
 """
 
 import math

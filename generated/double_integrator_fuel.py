@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
-Source: ../derivations/double_integrator.py 7c9a8916264bd019727ab8ecd9867ba4
-Digest: 168753bdeef64edeb424c1608ef9268e04fa07aa632bd75b0f4f8f553fa0ef7d
+Source: ../derivations/double_integrator.py ae09fe708a921b49abbeaeb38ac7f16d
+Digest: b1adc7d0ca5fe2e024ae8b505ebfca373e324879eda7c33011c7cec7ea334ba0
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/double_integrator.py. Do not edit: mend that file instead, then run
     satsym derive derivations/double_integrator.py
-Source: ../derivations/double_integrator.py 7c9a8916264bd019727ab8ecd9867ba4
-Digest: 06fe7a2d87a1cd2a68d0f240c1c91c0e9c5646a412688af62514b39b30bf58c3
+Source: ../derivations/double_integrator.py ae09fe708a921b49abbeaeb38ac7f16d
+Digest: d1507c8fa173f99a7c9fea844c607eee01206e0b6231dedfcdaedc569f323bdf
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 64cc26ba670282a2a440511b061ad932
-Digest: 9fbb63bb78ae9093aa0f138dde7b9791cee642fd952de833209298bfd0a1c088
+Source: ../derivations/small_systems.py 3854106df4512aa1bc4ae0f6f795a1c5
+Digest: af0cb257644b3f820417f936936f09b42bf5a079af0d08e6eaff1b4ed3ecc63d
 """
 
 import math

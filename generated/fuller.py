@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/fuller.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/fuller.py
-Source: ../derivations/examples/fuller.py 3f853fbdfebb569b9374e4a329c695b1
-Digest: ff8b45a035b747bc1dc887d7f2ccdf60f91d0452ddff8332fe1872751828b087
+Source: ../derivations/examples/fuller.py c4dc6caca7a707b0cb0c62f20fd308b0
+Digest: 3f3d6944a439a9b629f07c750badf63d8671bee31d839f077d487832a2803a7b
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py f592f2f81dafd584b30b3628a88ec24b
-Digest: 4bac13758f9647f81f1d4f175e51dca8604e58c79a67dd24fddb34da0df43cdb
+Source: ../derivations/gimballed_wheel.py c91814578848cf0928ec7649cab8f8d9
+Digest: e71836bfee173f3dc4a6472f2cb544201a62e5636e9f3b3b0976108b66edcf95
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py f592f2f81dafd584b30b3628a88ec24b
-Digest: e04bd3c9f327db799c0a8f2acb235a303a2d56aba73d6e48dd9909139d9e793a
+Source: ../derivations/gimballed_wheel.py c91814578848cf0928ec7649cab8f8d9
+Digest: 71c1056db268ca62ea6c207c284d55a4f87c443c4fc3d208170a18c1eab93167
 """
 
 import math

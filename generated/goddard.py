@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/goddard.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/goddard.py
-Source: ../derivations/examples/goddard.py 58e1065548d776c5eef5c563937f9858
-Digest: c491c29bed4ef2572c74c64899bbadb6fe912c171da400269cb1eb33824e0d55
+Source: ../derivations/examples/goddard.py 27604a23a96d665117c75fa4aca8df42
+Digest: c6849321a29726ab62fbde678f2ad31ff76ecd524d00f3c2932db399afb6f697
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py f592f2f81dafd584b30b3628a88ec24b
-Digest: a38af245d5e5384eb558bd3787f0b4a70d22a614fd8c5769a02251152dfd1117
+Source: ../derivations/gimballed_wheel.py c91814578848cf0928ec7649cab8f8d9
+Digest: f934b9ed20e604674aa7a0b1bc5e1e0bfb36f39d28a1af3d409758918898868f
 """
 
 import math

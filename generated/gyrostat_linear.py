@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py f592f2f81dafd584b30b3628a88ec24b
-Digest: 53421c0f1bdc886fd1293cf1f7c76aea363a2db5985e5b3fb2ab941dcba38475
+Source: ../derivations/gimballed_wheel.py c91814578848cf0928ec7649cab8f8d9
+Digest: a15ff7b017e994aba8192f4732ce2ee49dc6e4d6405364d0d0133dbc49e2680f
 """
 
 import math

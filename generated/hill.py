@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/hill.py. Do not edit: mend that file instead, then run
     satsym derive derivations/hill.py
-Source: ../derivations/hill.py ee354b3f2271303d4519af49c43affe4
-Digest: 45ce7e90a762bb57c81c63e6b0b96d037d0c41be297cd5f2221e39b7512fd8c1
+Source: ../derivations/hill.py b7b14df847dca4bf2b9a93d1ef3edd41
+Digest: 866ae272a0a50fde7acc4fc4c1f5635470a006cdcfe3686ad6022fb794fa6287
 """
 
 import math

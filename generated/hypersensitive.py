@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/hypersensitive.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/hypersensitive.py
-Source: ../derivations/examples/hypersensitive.py 3d9e7a9eec7b48cfaf8b5a8d54b45b74
-Digest: d2eebb24a60de6441676e1be13ed9bc9f0415e64682a5d92423d31cd0c69d818
+Source: ../derivations/examples/hypersensitive.py 400b1669f619b256ef79ff1d95ebb2fe
+Digest: 7a9ac9e26a634d006e527dcf434ef41c5d4e75a6d42afc56c632702a71c0f6b9
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/linear_tangent.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/linear_tangent.py
-Source: ../derivations/examples/linear_tangent.py 9a5990cd81ea2ea84a5e4f5a4d6a0b85
-Digest: a462fbd741d53a92aa05c241a97c5558dfb709c15bc5f8516178cd84d2333acb
+Source: ../derivations/examples/linear_tangent.py 639abd2005e2909cc8051ebdf8e788cb
+Digest: 8b0e695283d950d6da5a7ba882fa1460420430dd4e50a22eb029da436edaabe5
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/obstacle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/obstacle.py
-Source: ../derivations/examples/obstacle.py 935b9e8d2400951ac21806daa850147f
-Digest: 2a60bb0ee172aba840bd450cb5c09d582b1ee8ecaaa035506dfa8775bd3c65b3
+Source: ../derivations/examples/obstacle.py 3ec78a7c8707327607d302db3be43cea
+Digest: 03eddf4859f1128169c81f5d4fbbb238515a40a0b77ffbd3aa6a830aa18412ed
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py d70f236478efb04d631a9d1e77eb3d4f
-Digest: 4b4b7d9bb9d94f1227102fa1eb3dcc2d3131a3199b0f5cba51ff9724e3d4e2d1
+Source: ../derivations/pitch_wheel.py 9f6c26e6dd9cc1bd083ea404d3559c2f
+Digest: a041fae3f9cd392109d3297e5d2c0b0e252c4b8235a40827cb0a84d1decc5af5
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py d70f236478efb04d631a9d1e77eb3d4f
-Digest: 89ccf7cb4d77767d0ae71ab592bac804578669dc4710dc0d6b6117dc7deba5f0
+Source: ../derivations/pitch_wheel.py 9f6c26e6dd9cc1bd083ea404d3559c2f
+Digest: a2f74abbee7b54fe6571bc927732a2cb40b1fead43e2f602a32e7ff92e2c6588
 """
 
 import math

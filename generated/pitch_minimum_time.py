@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py d70f236478efb04d631a9d1e77eb3d4f
-Digest: 4def6e6aae20c58ec9efb372b68885415a3c99549c36f5b37b999e74c5e65dce
+Source: ../derivations/pitch_wheel.py 9f6c26e6dd9cc1bd083ea404d3559c2f
+Digest: 1323f496e70e4b9e99b2b7a936973d9a10a081230c30fc28fd3f48d5d01e6283
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py d70f236478efb04d631a9d1e77eb3d4f
-Digest: 54e43530f006b3fdeb602cb58f7d1bbf7bd38042c127e774c3e903845e28ea2a
+Source: ../derivations/pitch_wheel.py 9f6c26e6dd9cc1bd083ea404d3559c2f
+Digest: 5b8ebbfe87e2d69906409a5c8c9e9e01243a5a434da6df1a69ba006daba402cb
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py d70f236478efb04d631a9d1e77eb3d4f
-Digest: 827f447c37d9dfb9d257d6e8d98d8b882290ba9e3fa1f5539ed5736d46a395fa
+Source: ../derivations/pitch_wheel.py 9f6c26e6dd9cc1bd083ea404d3559c2f
+Digest: 8223e873849ee4572f6719662ed393d1c32e9418b6e91e555e7771c165662559
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py d70f236478efb04d631a9d1e77eb3d4f
-Digest: a637a2f7e9eb968d25e3b0e59c3490bd35bc0d03fad40708c966caea7b02b01b
+Source: ../derivations/pitch_wheel.py 9f6c26e6dd9cc1bd083ea404d3559c2f
+Digest: 5519ff6daa0afe1b1b17eb2b64df6a85f814433a76ebef0386ad569cf8379b2c
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/pitch_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/pitch_wheel.py
-Source: ../derivations/pitch_wheel.py d70f236478efb04d631a9d1e77eb3d4f
-Digest: e70ba98636ba0f39aa9ec1cdff048b178ac3c9daed92f5d2f4f6917f37bb94fe
+Source: ../derivations/pitch_wheel.py 9f6c26e6dd9cc1bd083ea404d3559c2f
+Digest: c12db1393229e05d286ab8a7d86589b60d179fba70b3274c16ccb25f141f0a6b
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
-Source: ../derivations/polar_orbit.py eea94ffce26c74c68c16f37511ae1eb3
-Digest: fcec5f70a659d2d664564d0645215e3bfca4cb2d5fad3802c95267e1740b2e69
+Source: ../derivations/polar_orbit.py beea12059a301c5a587ef084855422b4
+Digest: 8c024ef5f31f21b2146b7cab5f6a61705e52ba3b1b1a9d98f5d4eeee912176c4
 """
 
 import math

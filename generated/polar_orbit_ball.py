@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
-Source: ../derivations/polar_orbit.py eea94ffce26c74c68c16f37511ae1eb3
-Digest: 41708e41018e153ec14418bac230b5f1f20f05801a87579e3e098e64506bf5c9
+Source: ../derivations/polar_orbit.py beea12059a301c5a587ef084855422b4
+Digest: 7d7ca5ba4babc671d1371b2c9b75ff0cb43bef57a193c02c5addce5a5d3a3e4f
 """
 
 import math

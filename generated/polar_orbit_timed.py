@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/polar_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/polar_orbit.py
-Source: ../derivations/polar_orbit.py eea94ffce26c74c68c16f37511ae1eb3
-Digest: 7ddd6744e2883828c19402186e847f40767eb92f2d14b9d8d65de422137c7cac
+Source: ../derivations/polar_orbit.py beea12059a301c5a587ef084855422b4
+Digest: ac2a6d88019a44cbab5c30cc0a6c9c43ec274de3172d098f606019bbbac0b7c3
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/oscillators.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/oscillators.py
-Source: ../derivations/examples/oscillators.py f7bd65b4a3ceeb7d53ceb7dea4512271
-Digest: 3ae9bdc92a6f846fac661ee23c43157026e34c392371f9b19305d4fac79c44fd
+Source: ../derivations/examples/oscillators.py a5c85291cad59fc659263e3acc435961
+Digest: b146c1b0332095ebcfb53ec8e0bacab928f2492e4525e0ede4ce4e927ba19ba7
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/oscillators.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/oscillators.py
-Source: ../derivations/examples/oscillators.py f7bd65b4a3ceeb7d53ceb7dea4512271
-Digest: 866ed7d0a48b8ca2c3a057ac4d8b02e3e7d77a8329be5793e6a140519d1ebeeb
+Source: ../derivations/examples/oscillators.py a5c85291cad59fc659263e3acc435961
+Digest: 9da36d63e8474a376189049d543cbee47b163bc0e80cc36659fc5ad94a22f9a6
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/reorientation.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/reorientation.py
-Source: ../derivations/examples/reorientation.py 187dd85ea745859e2c6cd67d76228408
-Digest: 3966bf98e9b88d93e2d12ce44c90f3da5b98836f08020a91ec81e55d44088543
+Source: ../derivations/examples/reorientation.py 8c2e5667e7283e0d22b96e097224f888
+Digest: fe3eb687f0af8a4022f83262c865dbf73faf347f4e272d9b6813092154e95c25
 """
 
 import math

@@ -2,10 +2,10 @@
 
 Written by satsym from derivations/examples/kept_orbit.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/kept_orbit.py
-Source: ../derivations/examples/kept_orbit.py e89be9172e891c8e79a7325f3458710f
-Source: ../derivations/clohessy_wiltshire.py 52520f4e0a2f16c4858ba5a6515ea5d0
-Source: ../derivations/polar_orbit.py eea94ffce26c74c68c16f37511ae1eb3
-Digest: e66c716e43ff581669ec58256971740cd9d8ef917079622a8115ef7c5ed2c3a6
+Source: ../derivations/examples/kept_orbit.py b28fc210988413ee7c05e3bbfde2e565
+Source: ../derivations/clohessy_wiltshire.py 5a9b7bbf42a3dff60eb055f9d5a11a8d
+Source: ../derivations/polar_orbit.py beea12059a301c5a587ef084855422b4
+Digest: c327dc1ee9d2c0e12eb200911b0248078a5f2934a69268d4255be9bd3afba46d
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py f592f2f81dafd584b30b3628a88ec24b
-Digest: 75d80352af368e3ce8d95e1245199edb963dc4adb7ce01d20db5bf97fd38fb72
+Source: ../derivations/gimballed_wheel.py c91814578848cf0928ec7649cab8f8d9
+Digest: a541153d759dd16fdced858171074985fe984f6598f39eb4761457a0c7ea39a5
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/gimballed_wheel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/gimballed_wheel.py
-Source: ../derivations/gimballed_wheel.py f592f2f81dafd584b30b3628a88ec24b
-Digest: eaa35701676a08b7ad5c1bef0ba7398155d63148c86cd39ded7673bf2df3b8e4
+Source: ../derivations/gimballed_wheel.py c91814578848cf0928ec7649cab8f8d9
+Digest: 07b507f306551ac1b90bacc5e31d5e5ddcf87cfa7b37d580722294377ecb2aae
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 64cc26ba670282a2a440511b061ad932
-Digest: 0fd7047286aa9330dfdc065d42eacaeccb8b71bc945d6f93d51de5717c28e115
+Source: ../derivations/small_systems.py 3854106df4512aa1bc4ae0f6f795a1c5
+Digest: 07efa2b6a25d4a4b197a2394c3176757f1eaf7c2e41ce684a7a114401fa319bf
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/shuttle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/shuttle.py
-Source: ../derivations/examples/shuttle.py 90ce04e0c14ffe867abe3453567e1ac2
-Digest: c0564160c834e98fa5ee338f020b6e747148c87cffd3eb998a7fb71a388ca676
+Source: ../derivations/examples/shuttle.py bc57e9bdcc2885dbf562c0dd6495909a
+Digest: cdd08052f1d74b9a1e8fb766af2021ab4134cdc1b736d1e8f5c87eada273ac8d
 """
 
 import math

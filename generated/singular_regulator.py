@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 64cc26ba670282a2a440511b061ad932
-Digest: eb2be6535916a5dc15216c3712ed04264b16fc9d1ff6335e9d9bde381375ceec
+Source: ../derivations/small_systems.py 3854106df4512aa1bc4ae0f6f795a1c5
+Digest: 274a3e5586ed16774182b67555102ffcceff0f7db6dc29b6ffc2284ab12a2b4f
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 64cc26ba670282a2a440511b061ad932
-Digest: cc36174d4165c33845ee5e15e4d096ebafd45cd969c4b57c24ccd626511622ac
+Source: ../derivations/small_systems.py 3854106df4512aa1bc4ae0f6f795a1c5
+Digest: e6a10c21f16aee8671b19500be59b6ee522e812bd587f2ce033a793272041466
 """
 
 import math

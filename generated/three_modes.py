@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 64cc26ba670282a2a440511b061ad932
-Digest: c888ca0a3316b2642668dac049ee65e9d5747beda1965b6bff8f39a5758850ea
+Source: ../derivations/small_systems.py 3854106df4512aa1bc4ae0f6f795a1c5
+Digest: 40cb0a60bb8257242ec2afc6c11218a640692d7006461772c48a794f77822fc6
 """
 
 import math

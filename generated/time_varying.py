@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 64cc26ba670282a2a440511b061ad932
-Digest: 108d7e19f1afe6162513ab88c0eedfd9c59a1bd6e7b9134332dcd72133134ceb
+Source: ../derivations/small_systems.py 3854106df4512aa1bc4ae0f6f795a1c5
+Digest: 4f0b6bb870d1d1fe6b5f863f90e746b88c70f542fa3a737048d7f7c6c5ea09d8
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/transfer_fuel.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/transfer_fuel.py
-Source: ../derivations/examples/transfer_fuel.py c0f542e11e9e340509ed9a0606d3f35f
-Digest: ac61e74dc5f7a6022ec31e96610796402b914005176da9c3e1ab1254375ea2df
+Source: ../derivations/examples/transfer_fuel.py 078cf3905af2aafee1b73814bf026035
+Digest: 32cf889764178c5c42bdb743e35e88fbbe1b391fb63eca883ac8a6da65ba58f4
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/transfer_time.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/transfer_time.py
-Source: ../derivations/examples/transfer_time.py b6d01faf7286916d9f44995f810f7ba1
-Digest: fb480be878d1a1e5e077ea6e819791cdd46f605ed294ca9110abfdbc0c3019d7
+Source: ../derivations/examples/transfer_time.py 42b06c64f5ad41d9d80ce09027f93a9d
+Digest: 1c6e273fa68c2beeeadeeda3fe649d716177d30807ae18d113aa4abb13cff60c
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/two_body.py. Do not edit: mend that file instead, then run
     satsym derive derivations/two_body.py
-Source: ../derivations/two_body.py 1e43053811502655dda447a261a022eb
-Digest: 7a65087287e60d599b12bb02c8b9d0f2323a003adc604ff39e54766b864e1f99
+Source: ../derivations/two_body.py 79fc86b56a168dac4a7575d445d06059
+Digest: 9a7f143228240de28f066ccdbc635a734f533182b64b3c6831398af493e86dd1
 """
 
 import math

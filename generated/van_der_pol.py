@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/small_systems.py. Do not edit: mend that file instead, then run
     satsym derive derivations/small_systems.py
-Source: ../derivations/small_systems.py 64cc26ba670282a2a440511b061ad932
-Digest: e20c55f11de958d94c38261ab173a6b0b64c2512e70a2f434d3988281b04171a
+Source: ../derivations/small_systems.py 3854106df4512aa1bc4ae0f6f795a1c5
+Digest: 015e90d4df03cbd9e3b5d204651b72c58a8d5a98973586f91817c4f5210323e8
 """
 
 import math

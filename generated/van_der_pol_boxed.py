@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/oscillators.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/oscillators.py
-Source: ../derivations/examples/oscillators.py f7bd65b4a3ceeb7d53ceb7dea4512271
-Digest: 4b07d94d972208b3ecfdad974dd3ffc7198c9e4fff02b1dcf9a7c31d0402b0f8
+Source: ../derivations/examples/oscillators.py a5c85291cad59fc659263e3acc435961
+Digest: d036aee13e36446d19f30cbc8a691caa29c701287a1d4164f44f8decda9dbbab
 """
 
 import math

@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/zermelo.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/zermelo.py
-Source: ../derivations/examples/zermelo.py 25f09390ecc610dc9dbedfda09d624f5
-Digest: a28c2c71dc75dbb966ae4ba93af5cef7b483fdc042b87e2093710d0f19112c77
+Source: ../derivations/examples/zermelo.py 02bab05fb4ab60a4d234d6fd8e9b20c9
+Digest: 644775cd5c1e3cc13842a51ab8c92d28b7469eec32c1f19c8ccfed15629d7752
 """
 
 import math
