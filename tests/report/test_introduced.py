@@ -51,3 +51,9 @@ def test_shipped_models_have_their_titles_and_meanings_in_every_language(languag
         said |= {subject.title, *(text for m in models for text in (m.title, *(v.meaning for v in variables_of(m))))}
         said |= {line.index for m in models for paragraph in m.statement() for line in paragraph.lines}
     assert {text for text in said if text} == set(known)
+
+
+def test_documents_have_them() -> None:
+    text = render(shipped("polar_orbit"), "id")
+    assert "kecepatan radial" in text
+    assert "radial velocity" not in text

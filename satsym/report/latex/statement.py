@@ -184,7 +184,7 @@ def _table(groups: Mapping[str, Sequence[Variable]], texts: Texts) -> str:
                 tex.name(v.symbol),
                 tex.unit(v.unit),
                 tex.number(v.default, point),
-                tex.escape(v.meaning),
+                tex.escape(texts.phrase(v.meaning)),
             )
             lines.append(" & ".join(cells) + r" \\")
     body = "\n".join(lines)
