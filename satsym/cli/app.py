@@ -58,6 +58,7 @@ COMMANDS = (
     "audit",
     "completion",
     "doctor",
+    "bench",
 )
 """In the order of the help."""
 

@@ -1,0 +1,148 @@
+"""How fast this machine is for a model: steps of its motion, and one solution."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from satsym.arrays import Array
+from satsym.instance import Instance
+from satsym.kernels import Kernels
+from satsym.kernels.batch.compiling import able
+from satsym.status import Status
+
+COLUMNS, STEPS = 4096, 10
+"""Motions at once, and steps between two looks at the clock."""
+
+LENGTH, ASIDE = 1e-4, 1e-3
+"""Of a step, in the unit of time; and how far starts are apart."""
+
+RUNS = 3
+"""Of which the fastest counts: what else the machine does makes others slower."""
+
+
+@dataclass(frozen=True)
+class Speed:
+    """Steps of the classical Runge-Kutta method, each of one motion.
+
+    Attributes
+    ----------
+    backend
+        ``"numpy"`` or ``"numba"``.
+    cores
+        That took part.
+    steps
+        A second.
+    """
+
+    backend: str
+    cores: int
+    steps: float
+
+
+@dataclass(frozen=True)
+class Solved:
+    """One solution.
+
+    Attributes
+    ----------
+    status, method
+        How it ended, and by what.
+    seconds, certificate_seconds
+        Until the answer, and for its certificate with all competitors; the latter ``None`` without an answer.
+    """
+
+    status: Status
+    method: str
+    seconds: float
+    certificate_seconds: float | None
+
+
+def cores() -> int:
+    """That this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def speeds(subject: Instance | Kernels, seconds: float) -> Iterator[Speed]:
+    """Steps of many motions at once, by NumPy, and where there is a compiler by machine code, on one core and on all.
+
+    Parameters
+    ----------
+    subject
+        A model, or an instance of one, about whose initial state the motions begin.
+    seconds
+        That each is measured for; making machine code comes before that.
+    """
+    from satsym.kernels.blocks import block_step
+    from satsym.solvers.simulation.batch import simulate
+
+    model = subject if isinstance(subject, Kernels) else subject.model
+    x, p = _columns(subject)
+    until = [0.0, LENGTH * STEPS]
+    yield Speed("numpy", 1, _rate(lambda: simulate(model, until, x, list(p), STEPS), seconds))
+    if not able():
+        return
+    advance, controls = block_step(model.compiled()), np.zeros((len(model.spec.controls), COLUMNS))
+    for count in sorted({1, cores()}):
+        ends = np.linspace(0, COLUMNS, count + 1).astype(int)
+        parts = [
+            tuple(np.ascontiguousarray(rows[:, low:high]) for rows in (x, controls, p)) for low, high in pairwise(ends)
+        ]
+        with ThreadPoolExecutor(count) as pool:
+
+            def run(pool: ThreadPoolExecutor = pool, parts: list[tuple[Array, ...]] = parts) -> None:
+                list(pool.map(lambda part: advance(0.0, LENGTH, STEPS * REPEATED, part[0].copy(), *part[1:]), parts))
+
+            yield Speed("numba", count, REPEATED * _rate(run, seconds))
+
+
+REPEATED = 20
+"""So many times more steps of machine code lie between two looks at the clock: starting a thread takes as long."""
+
+
+def _columns(subject: Instance | Kernels) -> tuple[Array, Array]:
+    """States about a start, and parameters, a column for each motion."""
+    if isinstance(subject, Kernels):
+        start = [1.0] * len(subject.spec.states)
+        parameters = [1.0 if one.default is None else float(one.default) for one in subject.spec.parameters]
+    else:
+        start, parameters = list(subject.initial), list(subject.parameters)
+    rng, x = np.random.default_rng(0), np.array(start)[:, None]
+    apart = ASIDE * np.maximum(np.abs(x), 1.0) * rng.uniform(-1.0, 1.0, (len(x), COLUMNS))
+    return x + apart, np.repeat(np.array(parameters).reshape(-1, 1), COLUMNS, axis=1)
+
+
+def _rate(run: Callable[[], object], seconds: float) -> float:
+    """Steps a second, of the fastest of several runs."""
+    with np.errstate(all="ignore"):
+        run()  # what is made when it is first called is made now
+        best = 0.0
+        for _ in range(RUNS):
+            count, began = 0, time.perf_counter()
+            while (took := time.perf_counter() - began) < seconds / RUNS or not count:
+                run()
+                count += 1
+            best = max(best, count * COLUMNS * STEPS / took)
+    return best
+
+
+def solved(instance: Instance) -> Solved:
+    """The time of one solution, and of its certificate."""
+    from satsym import solvers
+    from satsym.solvers.certificate import certify
+
+    solvers.solve(instance, examined=False)  # so that what is loaded is there
+    began = time.perf_counter()
+    found = solvers.solve(instance, examined=False)
+    took = time.perf_counter() - began
+    if not found.status.answered:
+        return Solved(found.status, found.method, took, None)
+    began = time.perf_counter()
+    certify(replace(found, wall_s=took))
+    return Solved(found.status, found.method, took, time.perf_counter() - began)

@@ -1,0 +1,54 @@
+"""``satsym bench``: how fast this machine is for a model."""
+
+from __future__ import annotations
+
+import click
+
+from satsym.cli import names
+from satsym.cli.options import json_option
+from satsym.cli.output import answer, live
+from satsym.status import ExitCode
+
+QUICK, THOROUGH = 0.5, 5.0
+"""Seconds for which each kind of step is measured."""
+
+EXAMPLES = """\b
+Examples:
+  satsym bench return-to-orbit --quick  an instance: steps of its motion, and its solution
+  satsym bench polar_orbit              a model: steps alone, each kind for five seconds
+
+Exit codes: 0 measured, 4 measured, but the instance has no answer."""
+
+
+@click.command(epilog=EXAMPLES)
+@click.argument("subject", metavar="X", shell_complete=names.completed(names.instances, names.models))
+@click.option("--quick", is_flag=True, help="Half a second for each kind of step instead of five.")
+@json_option
+def bench(subject: str, quick: bool, as_json: bool) -> ExitCode:
+    """Measure how fast this machine is for a model.
+
+    X is an instance or a model, shipped or the path of one. Steps are those of many motions at once by the classical
+    Runge-Kutta method, with NumPy, and with numba (extra fast) on one core and on all; an instance with a cost is also
+    solved and certified.
+    """
+    from satsym.analysis.speed import solved, speeds
+    from satsym.analysis.subject import find
+    from satsym.kernels import Kernels
+    from satsym.report.results.speed import speed_object
+    from satsym.report.said import say
+    from satsym.report.terminal.speed import backend_name, speed_text
+
+    given, found = find(subject), []
+    model = given if isinstance(given, Kernels) else given.model
+    with live() as line:
+        line.show(say("measuring <what> ...", what=backend_name("numpy")))
+        for one in speeds(given, QUICK if quick else THOROUGH):
+            found.append(one)
+            line.show(say("measuring <what> ...", what=backend_name("numba")))
+        solution = None
+        if not isinstance(given, Kernels) and model.spec.has_cost:
+            line.show(say("measuring <what> ...", what=say("one solution")))
+            solution = solved(given)
+    result = speed_object(given, found, solution)
+    answer(as_json, result, lambda: speed_text(result))
+    return ExitCode.DONE if solution is None or solution.status.answered else ExitCode.NO_ANSWER
