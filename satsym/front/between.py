@@ -169,9 +169,11 @@ def extremal(case: Instance, times: Array, x: Array, lam: Array, corners: Array)
     return Motion(times, np.vstack([x, lam]), rates, corners, case.solver.tolerance), None
 
 
-def bounded(case: Instance, times: Array, x: Array, lam: Array, arcs: Sequence[int]) -> tuple[Motion, Pieces | None]:
-    """The same where arcs run on boundaries of constraints, the one of each by its number, -1 for none."""
-    from satsym.solvers.constrained.arcs import field
+def bounded(
+    case: Instance, times: Array, x: Array, lam: Array, arcs: Sequence[tuple[int, ...]]
+) -> tuple[Motion, Pieces | None]:
+    """The same where arcs run on boundaries of constraints, those of each by their numbers."""
+    from satsym.solvers.constrained.active import field
 
     edges = np.flatnonzero(np.diff(times) == 0.0) + 1
 

@@ -196,12 +196,12 @@ def test_what_pushes_at_the_end_is_kept_apart_from_multipliers_of_terminal_const
     )
     again = replay(found)
     assert again is not None
-    assert again.pressed == pytest.approx((4 * 0.8 - 0.7) / 1.6)  # lambda_x - S_x = zeta g_x
+    assert again.pressed == {0: pytest.approx((4 * 0.8 - 0.7) / 1.6)}  # lambda_x - S_x = zeta g_x
     assert judged(limited(found, 1e-9)) == (Verdict.EXTREMAL_ONLY, {"time was up before: structure of boundary arcs"})
     given = replace(found, instance=replace(case, final={"x": 0.8}))
     free = replay(given)
     assert free is not None
-    assert free.pressed is None  # what is given pushes by itself
+    assert not free.pressed  # what is given pushes by itself
 
 
 def test_curved_terminal_constraints_count_by_their_multipliers_after_the_jump_at_the_end(round_the_disc: Solution):
@@ -244,7 +244,7 @@ def test_a_motion_on_the_rim_from_start_to_end_is_an_extremal():
     speed = c * np.sin(end)
     given = in_the_plane().with_(parameters={"c": c, "k": 4.0})
     found = motion(given, (1.0, True), first=end - speed, speed=-speed)
-    assert stated_arcs(found) == [0]
+    assert stated_arcs(found) == [(0,)]
     assert judged(limited(found, 1e-9)) == (Verdict.EXTREMAL_ONLY, {"time was up before: structure of boundary arcs"})
     beside = replace(found, x=found.x * 0.999, instance=replace(found.instance, initial=tuple(found.x[:, 0] * 0.999)))
     assert judged(beside)[0] is Verdict.FAILED

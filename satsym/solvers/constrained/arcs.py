@@ -13,7 +13,10 @@ from satsym.instance import Instance
 from satsym.solvers.collocation.gauss import STAGES, lagrange, scheme
 from satsym.solvers.collocation.scaling import final_argument
 from satsym.solvers.constrained.law import by_newton, stationary
-from satsym.solvers.constrained.structure import FREE, Junction, Structure
+from satsym.solvers.constrained.structure import FREE, Active, Junction, Structure
+
+NONE = -1
+"""In place of a constraint's number."""
 
 OF_TERMS = 1e-3
 """Share of its terms that a constraint is measured by where it is hardly ever off its boundary."""
@@ -24,14 +27,14 @@ DRAWN = 20
 
 def holds_control(instance: Instance, constraint: int) -> bool:
     """Whether it is a constraint that holds a control; none is not."""
-    return constraint != FREE and instance.model.spec.path_constraints[constraint].order == 0
+    return constraint != NONE and instance.model.spec.path_constraints[constraint].order == 0
 
 
 def control(instance: Instance, constraint: int, t: Array, z: Array) -> Array:
     """Controls, shape (m, N), on the boundary of a constraint or on none."""
     model, n, p = instance.model, len(instance.initial), instance.parameters
     if stationary(instance):
-        return by_newton(instance, constraint if holds_control(instance, constraint) else FREE, t, z)[0]
+        return by_newton(instance, (constraint,) if holds_control(instance, constraint) else FREE, t, z)[0]
     if holds_control(instance, constraint):
         found = model.boundary_control_batch(t, z[:n], z[n:], p, instance.control_set.arguments)
         return _row(np.asarray(found), len(model.spec.path_constraints), len(t))[constraint]
@@ -48,12 +51,12 @@ def field(instance: Instance, constraint: int, t: Array, z: Array) -> Array:
     """Rates of states and costates, shape (2n, N), on the boundary of a constraint or on none."""
     model, p, n = instance.model, instance.parameters, len(instance.initial)
     x, lam = z[:n], z[n:]
-    if constraint == FREE and not stationary(instance):
+    if constraint == NONE and not stationary(instance):
         return np.array(model.canonical_batch(t, x, lam, p, without_bounds(instance)))
     u = control(instance, constraint, t, z)
     rates = (model.dynamics_batch(t, x, u, p), model.costate_rate_batch(t, x, u, lam, p))
     found = np.concatenate([np.broadcast_to(one, x.shape) for one in rates])
-    if constraint != FREE:
+    if constraint != NONE:
         found[len(x) :] -= multiplier(instance, constraint, t, z, u) * gradient(instance, constraint, t, x, u)
     return found
 
@@ -62,7 +65,7 @@ def multiplier(instance: Instance, constraint: int, t: Array, z: Array, u: Array
     """What eta of a constraint is on its boundary, shape (N,), by the controls there where these are known."""
     model, n = instance.model, len(instance.initial)
     if stationary(instance) and holds_control(instance, constraint):
-        return by_newton(instance, constraint, t, z)[1]
+        return by_newton(instance, (constraint,), t, z)[1][0]
     u = control(instance, constraint, t, z) if u is None else u
     found = model.path_multiplier_batch(t, z[:n], u, z[n:], instance.parameters, instance.control_set.arguments)
     return np.broadcast_to(np.asarray(found), (len(model.spec.path_constraints), len(t)))[constraint]
@@ -71,7 +74,7 @@ def multiplier(instance: Instance, constraint: int, t: Array, z: Array, u: Array
 def vanishing(instance: Instance, constraint: int, t: Array, z: Array) -> Array:
     """What vanishes besides on the boundary, shape (q, N); of what holds a control that where it begins and ends."""
     model, n = instance.model, len(instance.initial)
-    u = control(instance, FREE, t, z)
+    u = control(instance, NONE, t, z)
     found = model.path_vanishing_batch(t, z[:n], u, z[n:], instance.parameters, instance.control_set.arguments)
     every = _row(np.asarray(found), len(model.spec.path_constraints), len(t))
     return every[constraint, : max(1, model.spec.path_constraints[constraint].order)]
@@ -162,35 +165,44 @@ class Arcs:
         return [0, *np.cumsum(sizes).tolist()]
 
     @cached_property
+    def active(self) -> list[Active]:
+        """What is active on each arc."""
+        return self.structure.arcs(self.instance)
+
+    @cached_property
     def rest(self) -> Rest:
         """Where the other unknowns stand."""
         first, count = self.places[-1], len(self.junctions)
-        jumps = [k for k, one in enumerate(self.junctions) if one.jump is not None]
+        jumps = [(k, which) for k, one in enumerate(self.junctions) for which, _ in one.jumps]
         c = len(self.instance.model.spec.multipliers)
         free = self.instance.tf is None
         after = first + count
         return Rest(
             first,
             after if free else None,
-            {k: after + free + i for i, k in enumerate(jumps)},
+            {one: after + free + i for i, one in enumerate(jumps)},
             after + free + len(jumps),
             c,
-            self.pressed,
+            len(self.pressed),
         )
 
     @cached_property
-    def pinned(self) -> bool:
-        """Whether given final states keep the constraint of the last contact at the end by themselves."""
-        if not self.structure.ends or holds_control(self.instance, self.structure.contacts[-1].constraint):
-            return False
+    def pinned(self) -> Active:
+        """Constraints active at the end that given final states keep there by themselves."""
         given = np.array(final_argument(self.instance)).reshape(3, -1)[:2].sum(axis=0)
-        return not (depends(self.instance)[self.structure.contacts[-1].constraint] & (given == 0.0)).any()
+        states = [k for k in self.structure.ended if not holds_control(self.instance, k)]
+        return tuple(k for k in states if not (depends(self.instance)[k] & (given == 0.0)).any())
 
     @property
-    def pressed(self) -> bool:
-        """Whether the constraint of the last contact pushes at the end."""
-        last = self.structure.contacts[-1:]
-        return self.structure.ends and not self.pinned and not holds_control(self.instance, last[0].constraint)
+    def pressed(self) -> Active:
+        """Constraints that push at the end."""
+        states = (k for k in self.structure.ended if not holds_control(self.instance, k))
+        return tuple(k for k in states if k not in self.pinned)
+
+    def pressure(self, constraint: int) -> float:
+        """The multiplier with which a constraint pushes at the end."""
+        place = self.rest.nu + self.rest.constraints
+        return float(self.unknown[place + self.pressed.index(constraint)]) if constraint in self.pressed else 0.0
 
     def nodes(self, arc: int) -> Array:
         """Values at beginnings of intervals with those at their stages, and at the end: (K (stages + 1) + 1, 2n)."""
@@ -213,9 +225,9 @@ class Arcs:
         first = self.places[-1]
         return np.concatenate([[self.instance.t0], self.unknown[first : first + len(self.junctions)], [self.end]])
 
-    def jump(self, junction: int) -> float:
-        """Multiplier of the jump there."""
-        place = self.rest.jumps.get(junction)
+    def jump(self, junction: int, constraint: int) -> float:
+        """Multiplier of the jump there along the gradient of a constraint."""
+        place = self.rest.jumps.get((junction, constraint))
         return 0.0 if place is None else float(self.unknown[place])
 
     def stages(self, arc: int) -> tuple[Array, Array]:
@@ -232,18 +244,6 @@ class Arcs:
         known = self.nodes(arc)[:-1].reshape(k, STAGES + 1, -1)[which]
         return np.asarray(np.einsum("ts,tsd->dt", lagrange(STAGES, share - which), known))
 
-    def cost(self) -> float:
-        """The running cost by Gauss's rule, and the terminal cost."""
-        one, n, total = self.instance, self.n, 0.0
-        for arc, k in enumerate(self.intervals):
-            t, z = self.stages(arc)[0].ravel(), self.stages(arc)[1].reshape(-1, 2 * n).T
-            u = control(one, self.structure.arcs[arc], t, z)
-            cost = np.broadcast_to(one.model.running_cost_batch(t, z[:n], u, one.parameters), t.shape)
-            weights = np.tile(scheme(STAGES).weights, k) * (self.times[arc + 1] - self.times[arc]) / k
-            total += float(cost @ weights)
-        end = tuple(self.node(len(self.intervals) - 1, -1)[:n].tolist())
-        return total + float(one.model.terminal_cost(self.end, end, one.parameters))
-
 
 @dataclass(frozen=True)
 class Rest:
@@ -253,13 +253,13 @@ class Rest:
     """Of the first junction's."""
     end: int | None
     """Of a free final time."""
-    jumps: dict[int, int]
-    """By junction."""
+    jumps: dict[tuple[int, int], int]
+    """By junction and constraint."""
     nu: int
     """Of the first multiplier of terminal constraints."""
     constraints: int
-    pressed: bool
-    """Whether a multiplier at the end follows them."""
+    pressed: int
+    """Multipliers at the end that follow them."""
 
     @property
     def size(self) -> int:

@@ -14,20 +14,16 @@ from satsym.instance import Instance
 from satsym.kernels.evaluation import COMPLEX_STEP
 from satsym.solvers.collocation.gauss import STAGES, scheme
 from satsym.solvers.collocation.scaling import final_argument
-from satsym.solvers.constrained.arcs import (
-    Arcs,
-    control,
-    field,
-    gradient,
-    holds_control,
-    values,
-    vanishing,
-    without_bounds,
-)
-from satsym.solvers.constrained.structure import FREE, Event, Junction
+from satsym.solvers.constrained.active import analytic, control, deciding, field, vanishing
+from satsym.solvers.constrained.arcs import Arcs, gradient, holds_control, values, without_bounds
+from satsym.solvers.constrained.structure import Active, Event, Junction
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_matrix
+
+
+DIFFERENCE = 1e-6
+"""Relative step of derivatives that need not be exact: only Newton's steps depend on them."""
 
 
 class System:
@@ -68,11 +64,11 @@ class System:
     def _collocation(self, arc: int) -> None:
         """z_i - z_0 - h sum a_ij f_j at the stages, and the step to the next node."""
         arcs, d, k = self.arcs, 2 * self.arcs.n, self.arcs.intervals[arc]
-        constraint, gauss = arcs.structure.arcs[arc], scheme(STAGES)
+        active, gauss = arcs.active[arc], scheme(STAGES)
         a, b = arcs.times[arc : arc + 2]
         t, z = arcs.stages(arc)
         places, values = t.ravel(), z.reshape(-1, d).T
-        f = field(arcs.instance, constraint, places, values).T.reshape(k, STAGES, d)
+        f = field(arcs.instance, active, places, values).T.reshape(k, STAGES, d)
         table = np.vstack([gauss.matrix, gauss.weights])  # the last row leads to the next node
         h = (b - a) / k
         known = arcs.nodes(arc)
@@ -82,7 +78,7 @@ class System:
         self.residuals.append((reached - begins[:, None] - h * moved).ravel())
         if not self.sloped:
             return
-        f_z, f_t = _derivatives(partial(field, arcs.instance, constraint), places, values)
+        f_z, f_t = _derivatives(partial(field, arcs.instance, active), places, values, analytic(arcs.instance, active))
         f_t = f_t.T.reshape(k, STAGES, d)
         f_z = f_z.transpose(2, 0, 1).reshape(k, STAGES, d, d)
         first, rows = arcs.places[arc], self.height + np.arange(k * (STAGES + 1) * d).reshape(k, STAGES + 1, d)
@@ -106,97 +102,86 @@ class System:
         self.residuals.append(arcs.node(0, 0)[:n] - np.array(arcs.instance.initial))
         self._add(self.height + np.arange(n), np.arange(n), 1.0)
         self.height += n
-        if arcs.structure.starts and not holds_control(arcs.instance, arcs.structure.contacts[0].constraint):
-            constraint = arcs.structure.contacts[0].constraint
-            time = np.array([arcs.instance.t0])
-            self._conditions(lambda v: vanishing(arcs.instance, constraint, time, v), list(range(2 * n)))
+        begun, time = arcs.structure.begun, np.array([arcs.instance.t0])
+        for constraint in (k for k in begun if not holds_control(arcs.instance, k)):
+            what = partial(vanishing, arcs.instance, begun, constraint, time)
+            self._conditions(what, list(range(2 * n)), analytic(arcs.instance, begun))
 
     def _junction(self, k: int, junction: Junction) -> None:
-        """States continue, costates jump; tangency, and what is held on a boundary after it."""
-        arcs, n, d, constraint = self.arcs, self.arcs.n, 2 * self.arcs.n, junction.constraint
+        """States continue, costates jump; tangency, and what is held on boundaries after it."""
+        arcs, d = self.arcs, 2 * self.arcs.n
         before, after = arcs.places[k + 1] - d, arcs.places[k + 1]
-        time, jump = arcs.rest.times + k, arcs.rest.jumps.get(k)
-        columns = [*range(before, before + d), *range(after, after + d), time, *([] if jump is None else [jump])]
-
-        def conditions(v: Array) -> Array:
-            left, right, t = v[:d], v[d : 2 * d], v[2 * d]
-            gap = right - left
-            if jump is not None:
-                gap[n:] = gap[n:] + v[2 * d + 1] * gradient(arcs.instance, constraint, t, left[:n])
-            if holds_control(arcs.instance, constraint):
-                return np.concatenate([gap, changing(arcs.instance, arcs.structure.arcs[k], constraint, t, left)])
-            if junction.event is Event.EXIT:
-                return gap
-            pinned = junction.event is Event.ENTRY and arcs.pinned and k == len(arcs.junctions) - 1
-            found: list[NDArray[Any]] = [gap]
-            if not pinned:
-                found.append(_tangency(arcs.instance, constraint, t, left[:n]))
-            if junction.event is Event.ENTRY:
-                found.append(vanishing(arcs.instance, constraint, t, right))
-            return np.concatenate(found)
-
-        self._conditions(conditions, columns)
+        time, jumps = arcs.rest.times + k, [arcs.rest.jumps[k, which] for which, _ in junction.jumps]
+        columns = [*range(before, before + d), *range(after, after + d), time, *jumps]
+        exact = all(analytic(arcs.instance, active) for active in (junction.before, junction.after))
+        self._conditions(partial(_met, arcs, junction), columns, exact)
 
     def _end(self) -> None:
-        """The boundary residuals; where a constraint pushes at the end, with costates after its jump."""
+        """The boundary residuals; where constraints push at the end, with costates after their jumps."""
         arcs, one, n, d = self.arcs, self.arcs.instance, self.arcs.n, 2 * self.arcs.n
         rest, last = arcs.rest, arcs.places[-1] - d
         free = [] if rest.end is None else [rest.end]
         columns = [*range(last, last + d), *range(rest.nu, rest.size), *free]
+        touched = [c.constraint for c in arcs.structure.contacts if c.closes and c.touches]
 
         def conditions(v: Array) -> Array:
-            z, nu, t = v[:d], v[d : d + rest.constraints], v[-1] if free else np.full(1, one.tf, dtype=complex)
+            z, nu, t = v[:d], v[d : d + rest.constraints], v[-1] if free else np.full(1, one.tf, dtype=v.dtype)
             lam = z[n:]
-            if rest.pressed:
-                constraint = arcs.structure.contacts[-1].constraint
-                lam = lam - v[d + rest.constraints] * gradient(one, constraint, t, z[:n])
-            rows = at_end(one, arcs.structure.arcs[-1], t, np.concatenate([z[:n], lam]), tuple(nu))
+            for place, constraint in enumerate(arcs.pressed):
+                lam = lam - v[d + rest.constraints + place] * gradient(one, constraint, t, z[:n])
+            rows = at_end(one, arcs.active[-1], t, np.concatenate([z[:n], lam]), tuple(nu))
             rows = rows if free else rows[:-1]
-            if not (rest.pressed and arcs.structure.contacts[-1].touches):
-                return rows
             u = np.zeros((len(one.model.spec.controls), 1))
-            return np.concatenate([rows, values(one, t, z[:n], u)[arcs.structure.contacts[-1].constraint][None]])
+            met = [k for k in touched if k in arcs.pressed]
+            return np.concatenate([rows, values(one, t, z[:n], u)[met]])
 
         self._conditions(conditions, columns)
 
-    def _conditions(self, conditions: Callable[[Array], Array], columns: Sequence[int]) -> None:
-        """Conditions on a few unknowns, each a row of one column, by complex steps."""
-        here = self.arcs.unknown[list(columns)].astype(complex)
+    def _conditions(self, conditions: Callable[[Array], Array], columns: Sequence[int], exact: bool = True) -> None:
+        """Conditions on a few unknowns, each a row of one column, by complex steps or differences."""
+        here = self.arcs.unknown[list(columns)]
         value = np.real(conditions(here[:, None])[:, 0])
-        if not self.sloped:
-            self.residuals.append(value)
-            return
-        moved = here[:, None] + 1j * COMPLEX_STEP * np.eye(len(here))
-        slopes = (
-            np.column_stack([np.imag(conditions(moved[:, j : j + 1])[:, 0]) for j in range(len(here))]) / COMPLEX_STEP
-        )
         self.residuals.append(value)
+        if not self.sloped:
+            return
+        slopes = _slopes(lambda v: conditions(v), here[:, None], exact)[..., 0]
         self._add(self.height + np.arange(len(value))[:, None], np.array(columns), slopes)
         self.height += len(value)
 
 
-def changing(instance: Instance, before: int, constraint: int, t: Array, z: Array) -> Array:
-    """What vanishes where a constraint that holds a control becomes active after an arc, or inactive, shape (1, N).
+def _met(arcs: Arcs, junction: Junction, v: Array) -> Array:
+    """What vanishes at a junction: of states and costates before and after it, its time, and its multipliers."""
+    instance, n, d, constraint = arcs.instance, arcs.n, 2 * arcs.n, junction.constraint
+    left, right, t = v[:d], v[d : 2 * d], v[2 * d]
+    gap = right - left
+    for (which, _), zeta in zip(junction.jumps, v[2 * d + 1 :], strict=True):
+        gap[n:] = gap[n:] + zeta * gradient(instance, which, t, left[:n])
+    found: list[NDArray[Any]] = [gap]
+    if holds_control(instance, constraint):
+        found.append(deciding(instance, junction.before, constraint, t, left)[None])
+    elif junction.event is not Event.EXIT:
+        closes = arcs.structure.contacts[junction.contact].closes
+        if not (closes and constraint in arcs.pinned):
+            found.append(_tangency(instance, constraint, t, left[:n]))
+        if junction.event is Event.ENTRY:
+            found.append(vanishing(instance, junction.after, constraint, t, right))
+    for which, _ in junction.jumps:
+        if which != constraint:
+            found.append(vanishing(instance, junction.after, which, t, right)[1:])
+    return np.concatenate(found)
 
-    Where another one is active before, that is the constraint itself under the control that keeps the other.
-    """
-    if before in (FREE, constraint):
-        return vanishing(instance, constraint, t, z)
-    u = control(instance, before, t, z)
-    return values(instance, t, z[: len(instance.initial)], u)[[constraint]]
 
-
-def at_end(instance: Instance, constraint: int, t: Array, z: Array, nu: tuple[Any, ...]) -> Array:
-    """The boundary residuals, that of a free final time last, after an arc on the boundary of a constraint or on none.
+def at_end(instance: Instance, active: Active, t: Array, z: Array, nu: tuple[Any, ...]) -> Array:
+    """The boundary residuals, that of a free final time last, after an arc on boundaries or on none.
 
     In that one H stands under the control of that arc.
     """
     model, n, p, bounds = instance.model, len(instance.initial), instance.parameters, without_bounds(instance)
     x, lam = z[:n], z[n:]
     found = np.array(model.boundary_batch(t, x, lam, nu, p, bounds, final_argument(instance)))
-    if holds_control(instance, constraint):
+    if any(holds_control(instance, k) for k in active):
         law = model.control_law_batch(t, x, lam, p, bounds)
-        ours, other = (model.hamiltonian_batch(t, x, u, lam, p) for u in (control(instance, constraint, t, z), law))
+        ours, other = (model.hamiltonian_batch(t, x, u, lam, p) for u in (control(instance, active, t, z), law))
         found[-1] += np.asarray(ours) - np.asarray(other)
     return found
 
@@ -212,13 +197,23 @@ def _tangency(instance: Instance, constraint: int, t: Array, x: Array) -> Array:
 
 
 def _derivatives(
-    rates: Callable[[NDArray[Any], NDArray[Any]], NDArray[Any]], t: Array, z: Array
+    rates: Callable[[NDArray[Any], NDArray[Any]], NDArray[Any]], t: Array, z: Array, exact: bool
 ) -> tuple[Array, Array]:
     """Derivatives of a field by the values, shape (2n, 2n, N), and by time."""
-    slopes = np.empty((len(z), *z.shape))
-    for j in range(len(z)):
-        moved = z.astype(complex)
-        moved[j] += 1j * COMPLEX_STEP
-        slopes[:, j] = np.imag(rates(t, moved)) / COMPLEX_STEP
-    by_time = np.imag(rates(t + 1j * COMPLEX_STEP, z.astype(complex))) / COMPLEX_STEP
-    return slopes, by_time
+    both = np.concatenate([z, t[None]])
+    slopes = _slopes(lambda v: rates(v[-1], v[:-1]), both, exact)
+    return slopes[:, :-1], slopes[:, -1]
+
+
+def _slopes(function: Callable[[NDArray[Any]], NDArray[Any]], at: Array, exact: bool) -> Array:
+    """Derivatives by each row, shape (rows, d, N): by complex steps, or else by central differences."""
+    columns = []
+    for j in range(len(at)):
+        unit = np.zeros((len(at), 1))
+        unit[j] = 1.0
+        if exact:
+            columns.append(np.imag(function(at + 1j * COMPLEX_STEP * unit)) / COMPLEX_STEP)
+            continue
+        step = DIFFERENCE * max(float(np.abs(at[j]).max()), 1e-3)
+        columns.append((function(at + step * unit) - function(at - step * unit)) / (2.0 * step))
+    return np.stack(columns, axis=1)

@@ -1,4 +1,4 @@
-"""Controls where H is not known to be quadratic in them: at which H_u vanishes, or that of H with an active constraint.
+"""Controls where H is not known to be quadratic in them: at which H_u vanishes, or that of H with active constraints.
 
 The law of the model, with its bounds, is where Newton's steps begin: it says which of several local minima is meant.
 Bounds are constraints that hold a control like others, so that beyond them the controls go on as if there were none.
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.kernels.evaluation import COMPLEX_STEP
-from satsym.solvers.constrained.structure import FREE
+from satsym.solvers.constrained.structure import Active
 
 STEPS, ENOUGH = 30, 1e-13
 """Newton's steps at most, and the size of one after which another is the last, relative to one plus the control's."""
@@ -26,9 +26,9 @@ def stationary(instance: Instance) -> bool:
 
 
 def by_newton(
-    instance: Instance, constraint: int, t: NDArray[Any], z: NDArray[Any]
+    instance: Instance, active: Active, t: NDArray[Any], z: NDArray[Any]
 ) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Controls, shape (m, N), and the multiplier, shape (N,), of an active constraint that holds controls, or of none.
+    """Controls, shape (m, N), and multipliers, shape (k, N), of active constraints that hold controls.
 
     Times and values may be complex by a small step: then controls are exact to first order in it.
     """
@@ -38,64 +38,62 @@ def by_newton(
     begun = instance.model.control_law_batch(
         times, places[:n], places[n:], instance.parameters, instance.control_set.arguments
     )
-    w = np.zeros((m + (constraint != FREE), count))
+    w = np.zeros((m + len(active), count))
     w[:m] = np.broadcast_to(np.asarray(begun), (m, count))
     slopes: Array = np.empty((count, len(w), len(w)))
     for _ in range(STEPS):
-        slopes = _slopes(instance, constraint, times, places, w)
-        step = _solved(slopes, _conditions(instance, constraint, times, places, w))
+        slopes = _slopes(instance, active, times, places, w)
+        step = _solved(slopes, _conditions(instance, active, times, places, w))
         w = w - step
         if not (np.abs(step[:m]) > ENOUGH * (1.0 + np.abs(w[:m]))).any():
             break
     if np.iscomplexobj(t) or np.iscomplexobj(z):
-        w = w - _solved(slopes, _conditions(instance, constraint, t, z, w))
-    return w[:m], w[m] if constraint != FREE else np.zeros(count)
+        w = w - _solved(slopes, _conditions(instance, active, t, z, w))
+    return w[:m], w[m:]
 
 
-def smallest_curvature(instance: Instance, constraint: int, t: Array, z: Array) -> float:
-    """Least eigenvalue of H_uu, or that of H with an active constraint along what keeps it; infinite where none is."""
+def smallest_curvature(instance: Instance, active: Active, t: Array, z: Array) -> float:
+    """Least eigenvalue of H_uu, or that of H with active constraints along what keeps these; infinite where none is."""
     m = len(instance.model.spec.controls)
-    u, mu = by_newton(instance, constraint, t, z)
-    bordered = _slopes(instance, constraint, t, z, np.concatenate([u, mu[None]])[: m + (constraint != FREE)])
+    bordered = _slopes(instance, active, t, z, np.concatenate(by_newton(instance, active, t, z)))
     table = bordered[:, :m, :m]
-    if constraint != FREE:
-        kept = np.linalg.svd(bordered[:, m:, :m])[2][:, 1:]
+    if active:
+        kept = np.linalg.svd(bordered[:, m:, :m])[2][:, len(active) :]
         table = kept @ table @ kept.swapaxes(1, 2)
     return float(np.linalg.eigvalsh(table).min(initial=np.inf))
 
 
-def _conditions(instance: Instance, constraint: int, t: NDArray[Any], z: NDArray[Any], w: NDArray[Any]) -> NDArray[Any]:
-    """H_u + mu g_u and g, shape (m + 1, N); H_u alone where no constraint is active."""
+def _conditions(instance: Instance, active: Active, t: NDArray[Any], z: NDArray[Any], w: NDArray[Any]) -> NDArray[Any]:
+    """H_u + mu' g_u and g, shape (m + k, N)."""
     model, n, m, p = instance.model, len(instance.initial), len(instance.model.spec.controls), instance.parameters
-    x, u, shape = z[:n], w[:m], (m, len(t))
-    slope = np.broadcast_to(np.asarray(model.stationarity_batch(t, x, u, z[n:], p)), shape)
-    if constraint == FREE:
-        return slope
+    x, u, h = z[:n], w[:m], len(model.spec.path_constraints)
+    slope = np.broadcast_to(np.asarray(model.stationarity_batch(t, x, u, z[n:], p)), (m, len(t)))
     bounds = instance.control_set.arguments
-    g = np.broadcast_to(np.asarray(model.path_constraints_batch(t, x, u, p, bounds))[constraint], shape[1:])
-    return np.concatenate([slope + w[m] * _effect(instance, constraint, t, x, u), g[None]])
+    g = np.broadcast_to(np.asarray(model.path_constraints_batch(t, x, u, p, bounds)), (h, len(t)))[list(active)]
+    return np.concatenate([slope + (w[m:, None] * _effects(instance, active, t, x, u)).sum(axis=0), g])
 
 
-def _slopes(instance: Instance, constraint: int, t: Array, z: Array, w: Array) -> Array:
-    """Derivatives of the conditions by controls and multiplier, shape (N, m + 1, m + 1)."""
+def _slopes(instance: Instance, active: Active, t: Array, z: Array, w: Array) -> Array:
+    """Derivatives of the conditions by controls and multipliers, shape (N, m + k, m + k)."""
     model, n, m, p = instance.model, len(instance.initial), len(instance.model.spec.controls), instance.parameters
     x, u, count = z[:n], w[:m], len(t)
     found = np.zeros((len(w), len(w), count))
     found[:m, :m] = np.asarray(model.control_hessian_batch(t, x, u, z[n:], p)).reshape(m, m, -1)
-    if constraint != FREE:
-        found[:m, m] = found[m, :m] = _effect(instance, constraint, t, x, u)
-        for j in range(m):
-            moved = u.astype(complex)
-            moved[j] += 1j * COMPLEX_STEP
-            found[:m, j] += w[m] * np.imag(_effect(instance, constraint, t, x, moved)) / COMPLEX_STEP
+    found[m:, :m] = _effects(instance, active, t, x, u)
+    found[:m, m:] = found[m:, :m].swapaxes(0, 1)
+    for j in range(m if active else 0):
+        moved = u.astype(complex)
+        moved[j] += 1j * COMPLEX_STEP
+        bent = np.imag(_effects(instance, active, t, x, moved)) / COMPLEX_STEP
+        found[:m, j] += (w[m:, None] * bent).sum(axis=0)
     return np.moveaxis(found, -1, 0)
 
 
-def _effect(instance: Instance, constraint: int, t: NDArray[Any], x: NDArray[Any], u: NDArray[Any]) -> NDArray[Any]:
-    """g_u of one constraint, shape (m, N)."""
+def _effects(instance: Instance, active: Active, t: NDArray[Any], x: NDArray[Any], u: NDArray[Any]) -> NDArray[Any]:
+    """g_u of active constraints, shape (k, m, N)."""
     m, h = len(u), len(instance.model.spec.path_constraints)
     found = np.asarray(instance.model.path_effect_batch(t, x, u, instance.parameters))
-    return np.broadcast_to(found.reshape(h, m, -1)[constraint], (m, len(t)))
+    return np.broadcast_to(found.reshape(h, m, -1), (h, m, len(t)))[list(active)]
 
 
 def _solved(slopes: Array, residual: NDArray[Any]) -> NDArray[Any]:

@@ -10,7 +10,8 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.instance import Instance
 from satsym.solvers.collocation.gauss import STAGES, scheme
-from satsym.solvers.constrained.arcs import Arcs
+from satsym.solvers.constrained.active import control
+from satsym.solvers.constrained.arcs import Arcs, gradient
 from satsym.solvers.constrained.equations import System
 from satsym.solvers.constrained.structure import Structure
 from satsym.solvers.constrained.transcription import Point, Program
@@ -22,6 +23,9 @@ ACCURATE = 1e-12
 SETTLED = 1e-10
 """Change of times, cost and initial costates from one mesh to the next that is none."""
 
+ONCE, APART = 1e-4, 5e-3
+"""Shares of the duration: below which junctions come at once in a guess, and by which they are moved apart then."""
+
 ITERATIONS, HALVINGS = 25, 6
 DENSITY, MESHES = 24, 4
 """Intervals over the whole duration at first, and how often they are doubled."""
@@ -30,20 +34,27 @@ DENSITY, MESHES = 24, 4
 def begun(instance: Instance, structure: Structure, near: tuple[Array, Array, Array], end: float) -> Arcs:
     """The unknowns of a structure from a path: times (N,), values (2n, N) at these, and multipliers at the end."""
     times, table, nu = near
-    inner = [one.time for one in structure.junctions(instance)]
+    junctions = structure.junctions(instance)
+    inner = _apart([one.time for one in junctions], end - instance.t0)
     edges = [instance.t0, *inner, end]
-    intervals = tuple(max(4, int(np.ceil(DENSITY * abs(b - a) / (end - instance.t0)))) for a, b in _pairs(edges))
-    parts = []
-    for (a, b), k in zip(_pairs(edges), intervals, strict=True):
+    intervals = tuple(max(4, int(np.ceil(DENSITY * abs(b - a) / (end - instance.t0)))) for a, b in pairwise(edges))
+    parts: list[Array] = []
+    for arc, ((a, b), k) in enumerate(zip(pairwise(edges), intervals, strict=True)):
         places = _places(k)
+        if 0 < arc < len(junctions) and _at_once(junctions[arc - 1].time, junctions[arc].time, end - instance.t0):
+            left = parts[-1].reshape(len(parts[-1]) // len(table), -1)[-1].copy()
+            for which, zeta in junctions[arc - 1].jumps:
+                t, x = np.array([a]), left[: len(left) // 2, None]
+                left[len(left) // 2 :] -= zeta * gradient(instance, which, t, x)[:, 0]
+            parts.append(np.tile(left, len(places)))
+            continue
         inside = (times > min(a, b)) & (times < max(a, b))
         known = times[inside] if inside.sum() > 1 else times
         rows = table[:, inside] if inside.sum() > 1 else table
         parts.append(np.array([np.interp(a + (b - a) * places, known, row) for row in rows]).T.ravel())
-    jumps = [one.jump for one in structure.junctions(instance) if one.jump is not None]
+    jumps = [guess for one in junctions for _, guess in one.jumps]
     arcs = Arcs(instance, structure, intervals, np.concatenate([*parts, inner, [end] if instance.tf is None else []]))
-    pushed = [0.0] if arcs.pressed else []
-    return replace(arcs, unknown=np.concatenate([arcs.unknown, jumps, nu, pushed]))
+    return replace(arcs, unknown=np.concatenate([arcs.unknown, jumps, nu, np.zeros(len(arcs.pressed))]))
 
 
 def solved(arcs: Arcs, limits: Limits) -> Arcs | None:
@@ -79,8 +90,35 @@ def from_arcs(arcs: Arcs, structure: Structure) -> Arcs:
     return begun(arcs.instance, structure, (times[order], rows[:, order], nu), arcs.end)
 
 
-def _pairs(edges: list[float]) -> list[tuple[float, float]]:
-    return list(pairwise(edges))
+def _at_once(one: float, other: float, lasting: float) -> bool:
+    """Whether two junctions come at once in a guess."""
+    return other - one < ONCE * lasting
+
+
+def _apart(times: list[float], lasting: float) -> list[float]:
+    """Times in order, those that coincide moved apart: an arc of no length says nothing about where it ends."""
+    groups: list[list[float]] = []
+    for time in times:
+        if groups and _at_once(groups[-1][-1], time, lasting):
+            groups[-1].append(time)
+        else:
+            groups.append([time])
+    return [
+        time + APART * lasting * (place - (len(group) - 1) / 2) for group in groups for place, time in enumerate(group)
+    ]
+
+
+def cost(arcs: Arcs) -> float:
+    """The running cost by Gauss's rule, and the terminal cost."""
+    one, n, total = arcs.instance, arcs.n, 0.0
+    for arc, k in enumerate(arcs.intervals):
+        t, z = arcs.stages(arc)[0].ravel(), arcs.stages(arc)[1].reshape(-1, 2 * n).T
+        u = control(one, arcs.active[arc], t, z)
+        running = np.broadcast_to(one.model.running_cost_batch(t, z[:n], u, one.parameters), t.shape)
+        weights = np.tile(scheme(STAGES).weights, k) * (arcs.times[arc + 1] - arcs.times[arc]) / k
+        total += float(running @ weights)
+    end = tuple(arcs.node(len(arcs.intervals) - 1, -1)[:n].tolist())
+    return total + float(one.model.terminal_cost(arcs.end, end, one.parameters))
 
 
 def _places(intervals: int) -> Array:
@@ -96,11 +134,11 @@ def _converged(arcs: Arcs, limits: Limits) -> Arcs | None:
     for _ in range(ITERATIONS):
         if limits.expired:
             return None
-        system = System(arcs)
         limits.spend(sum(arcs.intervals) * STAGES)
         try:
+            system = System(arcs)
             inverse = splu(system.jacobian)
-        except (RuntimeError, ValueError):
+        except (RuntimeError, ValueError, np.linalg.LinAlgError):  # LinAlgError: constraints that are not independent
             return None
         size = _sizes(arcs)
         step = inverse.solve(system.residual)
@@ -137,7 +175,7 @@ def _sizes(arcs: Arcs) -> Array:
 
 def _refined(arcs: Arcs) -> Arcs:
     """On twice as many intervals."""
-    parts = []
+    parts: list[Array] = []
     for k, count in enumerate(arcs.intervals):
         a, b = arcs.times[k : k + 2]
         parts.append(arcs.at(k, a + (b - a) * _places(2 * count)).T.ravel())
@@ -148,7 +186,7 @@ def _refined(arcs: Arcs) -> Arcs:
 def _distance(one: Arcs, other: Arcs) -> float:
     """Largest change of times, of the cost and of the initial costates, each relative to its size."""
     lasting = abs(other.end - other.instance.t0)
-    cost = abs(one.cost() - other.cost()) / max(abs(other.cost()), 1e-300)
+    changed = abs(cost(one) - cost(other)) / max(abs(cost(other)), 1e-300)
     first, again = (each.node(0, 0)[each.n :] for each in (one, other))
     begun = float(np.abs(first - again).max() / max(np.abs(again).max(), 1e-300))
-    return max(float(np.abs(one.times - other.times).max()) / lasting, cost, begun)
+    return max(float(np.abs(one.times - other.times).max()) / lasting, changed, begun)

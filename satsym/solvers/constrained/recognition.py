@@ -7,7 +7,7 @@ boundary arc vanishes are taken for one arc later (:mod:`satsym.solvers.constrai
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import pairwise
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,7 @@ from satsym.arrays import Array
 from satsym.solvers.constrained.arcs import values
 from satsym.solvers.constrained.interior_point import Path
 from satsym.solvers.constrained.slopes import constraint_slopes, rooms
-from satsym.solvers.constrained.structure import Contact, Structure
+from satsym.solvers.constrained.structure import Contact, Structure, ordered
 from satsym.solvers.constrained.transcription import Program
 from satsym.solvers.switching.trajectory import runs
 
@@ -36,8 +36,18 @@ INSTANT = 2
 """Intervals within which multipliers of a touch point are spread."""
 
 
-def recognised(program: Program, path: Path) -> Structure:
-    """Contacts with all constraints, those of an order of one as arcs."""
+PARALLEL = 1.0 - 1e-6
+"""Squared cosine of the effects of two constraints on the controls from which on they are the same, or opposed."""
+
+
+def recognised(program: Program, path: Path, resting: bool = False) -> Structure:
+    """Contacts with all constraints, those of an order of one as arcs.
+
+    Parameters
+    ----------
+    resting
+        Whether contacts between which slacks stay small are one, though multipliers vanish there.
+    """
     found: list[Contact] = []
     model, at = program.instance.model, path.at
     nodes, between = (np.real(program.times(at.duration, middle)) for middle in (False, True))
@@ -49,11 +59,11 @@ def recognised(program: Program, path: Path) -> Structure:
         near = (s < CLOSE * room) & (program.kept[k] > 0.0)
         pushing = (np.abs(g_x[k]) * z / np.maximum(costates[:, None], NOTHING * costates.max() + 1e-300)).max(axis=0)
         counts = near & (z / max(float(z.max()), 1e-300) > s / room)
-        for first, last in runs(_bridged(counts)):
+        for first, last in _spans(near, counts) if resting else runs(_bridged(counts)):
             if one.order == 0 or pushing[first : last + 1].sum() > NOTHING:
                 found.append(_contact(k, one.order, between if one.order == 0 else nodes, z, first, last))
-    found.sort(key=lambda contact: contact.middle)
-    return _with_ends(program, tuple(found), nodes, terms[:, 0])
+    found = _meeting(program, path, found, nodes)
+    return ordered([_with_ends(program, one, nodes, terms[:, 0]) for one in found])
 
 
 def _bridged(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -61,6 +71,12 @@ def _bridged(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
     found = flags.copy()
     found[1:-1] |= flags[:-2] & flags[2:]
     return found
+
+
+def _spans(near: NDArray[np.bool_], counts: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """From the first to the last place that counts, in each run of those that are near."""
+    inside = (np.flatnonzero(counts[a : b + 1]) + a for a, b in runs(_bridged(near)))
+    return [(int(places[0]), int(places[-1])) for places in inside if len(places)]
 
 
 def _contact(constraint: int, order: int, times: Array, z: Array, begins: int, ends: int) -> Contact:
@@ -77,32 +93,33 @@ def _contact(constraint: int, order: int, times: Array, z: Array, begins: int, e
     return Contact(constraint, start, end, jumps)
 
 
-def _with_ends(program: Program, contacts: tuple[Contact, ...], times: Array, sizes: Array) -> Structure:
-    """Whether the first contact holds from the start on, and the last until the end; constraints have sizes."""
-    if not contacts:
-        return Structure(())
+def _with_ends(program: Program, contact: Contact, times: Array, sizes: Array) -> Contact:
+    """A contact that holds from the start on, or until the end, if it does; constraints have sizes."""
     one, step = program.instance, 1.5 * float(times[1] - times[0])
-    contacts = _meeting(program, contacts, times)
-    first, last = contacts[0], contacts[-1]
-    starts = not first.touches and first.start - one.t0 < step and _on_boundary(program, first.constraint, sizes)
-    order, end = one.model.spec.path_constraints[last.constraint].order, float(times[-1])
-    if end - last.end >= step or (order > 1 and not last.touches):
-        return Structure(contacts, starts)
-    alone = end - last.start <= step
-    kept = Contact(last.constraint, end if alone else last.start, end, last.jumps)
-    return Structure((*contacts[:-1], kept), starts, ends=True)
+    opens = not contact.touches and contact.start - one.t0 < step and _on_boundary(program, contact.constraint, sizes)
+    order, end = one.model.spec.path_constraints[contact.constraint].order, float(times[-1])
+    if end - contact.end >= step or (order > 1 and not contact.touches):
+        return replace(contact, opens=opens)
+    start = end if end - contact.start <= step else contact.start
+    return replace(contact, start=start, end=end, opens=opens and start < end, closes=True)
 
 
-def _meeting(program: Program, contacts: tuple[Contact, ...], times: Array) -> tuple[Contact, ...]:
-    """Without the gaps of a step between constraints that hold controls, one of which follows the other."""
-    found, step = list(contacts), 1.5 * float(times[1] - times[0])
-    for k, (one, other) in enumerate(pairwise(contacts)):
+def _meeting(program: Program, path: Path, contacts: list[Contact], times: Array) -> list[Contact]:
+    """Without the gaps of a step between constraints that hold controls and follow each other.
+
+    Those do that cannot be active at once: they push controls the same way, or against each other.
+    """
+    found, step = sorted(contacts, key=lambda one: one.middle), 1.5 * float(times[1] - times[0])
+    effect = constraint_slopes(program, path.at)[1]
+    for j, k in combinations(range(len(found)), 2):
+        one, other = found[j], found[k]
         held = program.holding[one.constraint] and program.holding[other.constraint]
-        if held and one.constraint != other.constraint and other.start - one.end < step:
-            middle = 0.5 * (one.end + other.start)
-            if found[k].start < middle < other.end:
-                found[k], found[k + 1] = replace(found[k], end=middle), replace(found[k + 1], start=middle)
-    return tuple(found)
+        if held and one.constraint != other.constraint and abs(other.start - one.end) < step:
+            middle, (e, f) = 0.5 * (one.end + other.start), effect[[one.constraint, other.constraint]]
+            along = (e * f).sum(axis=0) ** 2 >= PARALLEL * (e * e).sum(axis=0) * (f * f).sum(axis=0)
+            if along[int(np.abs(times - middle).argmin())] and one.start < middle < other.end:
+                found[j], found[k] = replace(one, end=middle), replace(other, start=middle)
+    return found
 
 
 def _on_boundary(program: Program, constraint: int, sizes: Array) -> bool:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
+from itertools import combinations, pairwise
 
 import numpy as np
 
 from satsym.arrays import Array
-from satsym.solvers.constrained.arcs import Arcs, control, gradient, values
-from satsym.solvers.constrained.arcs import multiplier as multiplier_of
+from satsym.solvers.constrained.active import control, multipliers
+from satsym.solvers.constrained.arcs import Arcs, effects, gradient, values
 from satsym.solvers.constrained.arcs import sizes as measured
-from satsym.solvers.constrained.structure import FREE, Contact, Event, Structure
+from satsym.solvers.constrained.structure import FREE, Contact, Event, Structure, ordered
 from satsym.solvers.switching.trajectory import runs
 
 SLACK = 1e-9
@@ -21,6 +23,12 @@ STEEP = 1e-7
 
 DENSE = 8
 """Places an interval at which constraints are looked at."""
+
+ROUNDED = 1e-11
+"""Share of the duration by which junctions that come at once may change places."""
+
+PARALLEL = 1.0 - 1e-6
+"""Squared cosine of the effects of two constraints on the controls from which on they are the same, or opposed."""
 
 BESIDE = 0.05
 """Share of the duration around a touch point within which a violation makes an arc of it."""
@@ -34,30 +42,24 @@ def wrong(arcs: Arcs) -> tuple[str, list[Structure]]:
 
 def contacts(arcs: Arcs) -> list[Contact]:
     """The contacts of the structure, with the times and jumps that were found."""
-    found, times = [], arcs.times
-    k = 0
-    pressed = (float(arcs.unknown[-1]), 0.0) if arcs.pressed else (0.0, 0.0)
+    times, found = arcs.times, []
+    at = {(one.contact, one.event): k for k, one in enumerate(arcs.junctions)}
+    left = {one.left: k for k, one in enumerate(arcs.junctions) if one.left is not None}
     for number, one in enumerate(arcs.structure.contacts):
-        last = number == len(arcs.structure.contacts) - 1
-        if one.touches and last and arcs.structure.ends:
-            found.append(Contact(one.constraint, float(times[-1]), float(times[-1]), pressed))
-            continue
+        touch, entry, gone = (at.get((number, event)) for event in (Event.TOUCH, Event.ENTRY, Event.EXIT))
+        pressed = arcs.pressure(one.constraint) if one.closes else 0.0
         if one.touches:
-            found.append(Contact(one.constraint, float(times[k + 1]), float(times[k + 1]), (arcs.jump(k), 0.0)))
-            k += 1
+            time = float(times[-1] if touch is None else times[touch + 1])
+            jump = pressed if touch is None else arcs.jump(touch, one.constraint)
+            found.append(replace(one, start=time, end=time, jumps=(jump, 0.0)))
             continue
-        start, end, jumps = float(times[0]), float(times[-1]), [0.0, 0.0]
-        if number > 0 and arcs.structure.joined(number - 1):
-            k -= 1  # the end of the one before is its entry
-        if not (number == 0 and arcs.structure.starts):
-            start, jumps[0], k = float(times[k + 1]), arcs.jump(k), k + 1
-        if arcs.structure.joined(number):
-            end, k = float(times[k + 1]), k + 1
-        elif not (last and arcs.structure.ends):
-            end, jumps[1], k = float(times[k + 1]), arcs.jump(k), k + 1
-        else:
-            jumps[1] = pressed[0]
-        found.append(Contact(one.constraint, start, end, (jumps[0], jumps[1])))
+        gone = left.get(number, gone)
+        start, end = (float(times[d] if k is None else times[k + 1]) for k, d in ((entry, 0), (gone, -1)))
+        jumps = (
+            0.0 if entry is None else arcs.jump(entry, one.constraint),
+            pressed if gone is None else arcs.jump(gone, one.constraint),
+        )
+        found.append(replace(one, start=start, end=end, jumps=jumps))
     return found
 
 
@@ -83,20 +85,25 @@ def constrained(arcs: Arcs, arc: int) -> tuple[Array, Array]:
 def _with_controls(arcs: Arcs, arc: int) -> tuple[Array, Array, Array]:
     """Times between the nodes, states and controls there."""
     times, z = along(arcs, arc)
-    return times, z[: arcs.n], control(arcs.instance, arcs.structure.arcs[arc], times, z)
+    return times, z[: arcs.n], control(arcs.instance, arcs.active[arc], times, z)
 
 
 def _order(arcs: Arcs, constraint: int) -> int:
     return arcs.instance.model.spec.path_constraints[constraint].order
 
 
-def _instead(arcs: Arcs, place: int | slice, *others: Contact) -> Structure:
-    """The structure with other contacts in place of one or some; flags of ends hold for what stays an arc there."""
-    kept = contacts(arcs)
-    kept[place if isinstance(place, slice) else slice(place, place + 1)] = others
-    first, last = arcs.times[0], arcs.times[-1]
-    starts = arcs.structure.starts and bool(kept) and kept[0].start <= first
-    return Structure(tuple(kept), starts, arcs.structure.ends and bool(kept) and kept[-1].end >= last)
+def _instead(arcs: Arcs, places: int | Iterable[int], *others: Contact) -> Structure:
+    """The structure with other contacts in place of one or some."""
+    gone = {places} if isinstance(places, int) else set(places)
+    return ordered([*(one for k, one in enumerate(contacts(arcs)) if k not in gone), *others])
+
+
+def _ends_kept(one: Contact, *parts: Contact) -> list[Contact]:
+    """Parts of a contact, of which the first holds from the start on if that did, and the last until the end."""
+    return [
+        replace(part, opens=one.opens and part.start <= one.start, closes=one.closes and part.end >= one.end)
+        for part in parts
+    ]
 
 
 def _touch(one: Contact) -> Contact:
@@ -104,88 +111,120 @@ def _touch(one: Contact) -> Contact:
 
 
 def _disordered(arcs: Arcs) -> tuple[str, list[Structure]] | None:
-    """Arcs that end before they begin."""
-    lasting = arcs.end - arcs.instance.t0
-    for place, one in enumerate(contacts(arcs)):
+    """Arcs that end before they begin, and junctions that change places."""
+    lasting, known = arcs.end - arcs.instance.t0, contacts(arcs)
+    for place, one in enumerate(known):
         if not one.touches and one.end - one.start < SLACK * lasting:
             tries = [_instead(arcs, place, _touch(one))] if _order(arcs, one.constraint) > 1 else []
             return "an arc on a boundary has no length", [*tries, _instead(arcs, place)]
-    if np.diff(arcs.times).min() <= 0.0:
-        known = contacts(arcs)
-        joins = [_joined(arcs, k) for k in range(len(known) - 1) if known[k].end >= known[k + 1].start]
+    if np.diff(arcs.times).min() < -ROUNDED * lasting:
+        sorted_ = ordered(known)
+        tries = [sorted_] if _possible(arcs, sorted_) else []
+        crossed = [(j, k) for j, k in combinations(range(len(known)), 2) if known[j].end >= known[k].start]
+        joins = [_joined(arcs, j, k) for j, k in crossed]
         others = [_instead(arcs, place) for place in range(len(known))]
-        return "contacts change places", [*(one for one in joins if one is not None), *others]
+        return "contacts change places", [*tries, *(one for one in joins if one is not None), *others]
     return None
 
 
-def _joined(arcs: Arcs, place: int) -> Structure | None:
-    """With no free arc between two contacts, of constraints that hold controls."""
-    first, second = contacts(arcs)[place : place + 2]
-    if _order(arcs, first.constraint) + _order(arcs, second.constraint) > 0:
+def _possible(arcs: Arcs, structure: Structure) -> bool:
+    """Whether controls can keep all that is active at once, and each constraint is so once at a time."""
+    m = len(arcs.instance.model.spec.controls)
+    every = structure.arcs(arcs.instance)
+    opposed = any(_opposed(arcs, j, k) for active in every for j, k in combinations(active, 2))
+    pairs = combinations(structure.contacts, 2)
+    twice = any(a.constraint == b.constraint and max(a.start, b.start) < min(a.end, b.end) for a, b in pairs)
+    return not opposed and not twice and max(map(len, every)) <= m
+
+
+def _opposed(arcs: Arcs, one: int, other: int) -> bool:
+    """Whether two constraints hold controls, and do so the same way or against each other."""
+    if _order(arcs, one) + _order(arcs, other) > 0:
+        return False
+    z = arcs.node(0, 0)[: arcs.n, None]
+    u = control(arcs.instance, FREE, t := np.array([arcs.instance.t0]), arcs.node(0, 0)[:, None])
+    e, f = effects(arcs.instance, t, z, u)[[one, other], :, 0]
+    return bool((e @ f) ** 2 >= PARALLEL * (e @ e) * (f @ f))
+
+
+def _joined(arcs: Arcs, one: int, other: int) -> Structure | None:
+    """With no free arc between two contacts, of constraints that hold controls and cannot be active at once."""
+    first, second = contacts(arcs)[one], contacts(arcs)[other]
+    if first.constraint == second.constraint or not _opposed(arcs, first.constraint, second.constraint):
         return None
     middle = 0.5 * (first.end + second.start)
-    kept = replace(first, end=middle), replace(second, start=middle)
-    return _instead(arcs, slice(place, place + 2), *kept)
+    return _instead(arcs, (one, other), replace(first, end=middle), replace(second, start=middle))
 
 
 def _pulling(arcs: Arcs) -> tuple[str, list[Structure]] | None:
     """Jumps with a negative multiplier."""
     known = contacts(arcs)
-    largest = max([abs(jump) for one in known for jump in one.jumps], default=0.0)
+    jumps = [(k, which, arcs.jump(k, which)) for k, one in enumerate(arcs.junctions) for which, _ in one.jumps]
+    pressures = [abs(arcs.pressure(k)) for k in arcs.pressed]
+    largest = max([*(abs(jump) for *_, jump in jumps), *pressures], default=0.0)
     costates = max(float(np.abs(arcs.nodes(k)[:, arcs.n :]).max()) for k in range(len(arcs.intervals)))
+
+    def none(constraint: int, time: float) -> float:
+        t, arc = np.array([time]), int(np.searchsorted(arcs.times[1:-1], time))
+        push = float(np.abs(gradient(arcs.instance, constraint, t, arcs.at(arc, t)[: arcs.n])).max())
+        return -SLACK * max(largest, costates / max(push, 1e-300))
+
     for place, one in enumerate(known):
-        t, arc = np.array([one.middle]), int(np.searchsorted(arcs.times[1:-1], one.middle))
-        push = float(np.abs(gradient(arcs.instance, one.constraint, t, arcs.at(arc, t)[: arcs.n])).max())
-        if min(one.jumps) < -SLACK * max(largest, costates / max(push, 1e-300)):
+        if min(one.jumps) < none(one.constraint, one.middle):
             tries = [] if one.touches or _order(arcs, one.constraint) < 2 else [_instead(arcs, place, _touch(one))]
             return "a multiplier at a junction is negative", [*tries, _instead(arcs, place)]
+    for k, which, jump in jumps:
+        if which != arcs.junctions[k].constraint and jump < none(which, float(arcs.times[k + 1])):
+            return "a multiplier at a junction is negative", []
     return None
 
 
 def _resting(arcs: Arcs) -> tuple[str, list[Structure]] | None:
-    """Free arcs between two touch points that lie on the boundary: they are arcs on it, whose multiplier vanishes."""
-    known, room, k = contacts(arcs), sizes(arcs), -1
-    for arc, boundary in enumerate(arcs.structure.arcs):
-        k += arc > 0 and boundary < 0
-        if boundary >= 0 or not 0 <= k < len(known) - 1:
-            continue
-        first, second = known[k : k + 2]
-        both = first.constraint
-        if not (first.touches and second.touches and second.constraint == both):
-            continue
-        if np.abs(constrained(arcs, arc)[1][both]).max() < SLACK * room[both]:
-            one = Contact(both, first.start, second.start, (first.jumps[0], second.jumps[0]))
-            return "a free arc lies on a boundary", [_instead(arcs, slice(k, k + 2), one)]
+    """Touch points between which their constraint stays on its boundary: arcs on it, whose multiplier vanishes."""
+    known, room = contacts(arcs), sizes(arcs)
+    for constraint in {one.constraint for one in known}:
+        own = [k for k, one in enumerate(known) if one.constraint == constraint]
+        for j, k in pairwise(own):
+            first, second = known[j], known[k]
+            if not (first.touches and second.touches):
+                continue
+            if np.abs(_between(arcs, constraint, first.start, second.start)).max() < SLACK * room[constraint]:
+                one = Contact(constraint, first.start, second.start, (first.jumps[0], second.jumps[0]))
+                return "a free arc lies on a boundary", [_instead(arcs, (j, k), replace(one, closes=second.closes))]
     return None
+
+
+def _between(arcs: Arcs, constraint: int, start: float, end: float) -> Array:
+    """A constraint on the arcs between two times, shape (N,)."""
+    inside = [k for k in range(len(arcs.intervals)) if start <= arcs.times[k] and arcs.times[k + 1] <= end]
+    return np.concatenate([constrained(arcs, k)[1][constraint] for k in inside] or [np.full(1, np.inf)])
 
 
 def _rising(arcs: Arcs) -> tuple[str, list[Structure]] | None:
     """Touch points at which the constraint would be crossed: its second rate is positive on one side."""
     room, lasting, instance, n = sizes(arcs), arcs.end - arcs.instance.t0, arcs.instance, arcs.n
-    places = [k for k, one in enumerate(contacts(arcs)) if one.touches and one.start < arcs.end]
-    for junction, place in zip(
-        [k for k, j in enumerate(arcs.junctions) if j.event is Event.TOUCH], places, strict=True
-    ):
-        one, t = contacts(arcs)[place], arcs.times[junction + 1 : junction + 2]
-        for z in (arcs.node(junction, -1)[:, None], arcs.node(junction + 1, 0)[:, None]):
-            u = control(instance, FREE, t, z)
+    for k, junction in enumerate(arcs.junctions):
+        if junction.event is not Event.TOUCH:
+            continue
+        one, t = contacts(arcs)[junction.contact], arcs.times[k + 1 : k + 2]
+        for z in (arcs.node(k, -1)[:, None], arcs.node(k + 1, 0)[:, None]):
+            u = control(instance, junction.after, t, z)
             rates = np.asarray(instance.model.path_rates_batch(t, z[:n], u, instance.parameters)).reshape(-1, 2)
             if rates[one.constraint, 1] * lasting**2 > STEEP * room[one.constraint]:
                 half = 0.5 * np.sqrt(float(rates[one.constraint, 1]) * lasting**2 / room[one.constraint])
                 half = min(half * lasting, 0.25 * lasting, one.start - arcs.times[0], arcs.times[-1] - one.start)
                 longer = Contact(one.constraint, one.start - half, one.start + half, (one.jumps[0] / 2,) * 2)
-                return "a constraint rises at its touch point", [_instead(arcs, place, longer)]
+                return "a constraint rises at its touch point", [_instead(arcs, junction.contact, longer)]
     return None
 
 
 def _violated(arcs: Arcs) -> tuple[str, list[Structure]] | None:
     """Constraints that are positive between contacts."""
     room, worst = sizes(arcs), None
-    for arc, boundary in enumerate(arcs.structure.arcs):
+    for arc, active in enumerate(arcs.active):
         times, g = constrained(arcs, arc)
         g = g / room[:, None]
-        if boundary >= 0:
-            g[boundary] = 0.0
+        g[list(active)] = 0.0
         constraint = int(g.max(axis=1).argmax())
         most = float(g[constraint].max())
         if most > SLACK and (worst is None or most > worst[0]):
@@ -205,92 +244,100 @@ def _violated(arcs: Arcs) -> tuple[str, list[Structure]] | None:
             found.append(_instead(arcs, place, Contact(constraint, low, high, (one.jumps[0] / 2,) * 2)))
     if (within := _instead_of_active(arcs, constraint, start, end)) is not None:
         return reason, [within, *found]
-    gap = slice((first := sum(one.middle < 0.5 * (start + end) for one in known)), first)
     own = Contact(constraint, start, end)
     added = [own] if _order(arcs, constraint) < 2 else [_touch(own), own]
-    return reason, found + [_instead(arcs, gap, each) for each in added]
+    tries = [*found, *(_instead(arcs, (), each) for each in added)]
+    return reason, [one for one in tries if _possible(arcs, one)]
 
 
 def _instead_of_active(arcs: Arcs, constraint: int, start: float, end: float) -> Structure | None:
-    """With a constraint active in place of another while it is violated, both of which hold controls."""
+    """With a constraint active in place of another while it is violated, which hold the same controls."""
     for place, one in enumerate(contacts(arcs)):
         if one.touches or not one.start <= 0.5 * (start + end) <= one.end:
             continue
-        if _order(arcs, constraint) + _order(arcs, one.constraint) > 0:
-            return None
+        if not _opposed(arcs, constraint, one.constraint):
+            continue
         low, high = max(start, one.start), min(end, one.end)
-        parts = [replace(one, end=low), Contact(constraint, low, high), replace(one, start=high)]
-        return _instead(arcs, place, *(part for part in parts if part.end > part.start))
+        parts = [replace(one, end=low), replace(one, constraint=constraint, start=low, end=high)]
+        parts.append(replace(one, start=high))
+        return _instead(arcs, place, *_ends_kept(one, *(part for part in parts if part.end > part.start)))
     return None
 
 
 def _merged(arcs: Arcs, constraint: int, start: float, end: float) -> list[Structure]:
     """With one arc in place of two contacts with a constraint between which it is violated."""
     known = contacts(arcs)
-    place = sum(one.middle < 0.5 * (start + end) for one in known)
-    if not 0 < place < len(known):
+    own = [k for k, one in enumerate(known) if one.constraint == constraint]
+    place = sum(known[k].middle < 0.5 * (start + end) for k in own)
+    if not 0 < place < len(own):
         return []
-    first, second = known[place - 1 : place + 1]
-    if first.constraint != constraint or second.constraint != constraint:
-        return []
+    first, second = known[own[place - 1]], known[own[place]]
     jumps = first.jumps[0], second.jumps[0 if second.touches else 1]
-    return [_instead(arcs, slice(place - 1, place + 1), Contact(constraint, first.start, second.end, jumps))]
+    one = Contact(constraint, first.start, second.end, jumps, first.opens, second.closes)
+    return [_instead(arcs, own[place - 1 : place + 1], one)]
 
 
 def _pulling_along(arcs: Arcs) -> tuple[str, list[Structure]] | None:
     """Boundary arcs with a negative multiplier somewhere: shorter ones, touch points at both ends, or one."""
-    known, place = contacts(arcs), -1
-    for arc, boundary in enumerate(arcs.structure.arcs):
-        if boundary < 0:
+    for place, one in enumerate(contacts(arcs)):
+        if one.touches or multiplier(arcs, place)[1].min() >= -SLACK * _pressure(arcs):
             continue
-        place = next(k for k in range(place + 1, len(known)) if not known[k].touches)
-        if multiplier(arcs, arc).min() >= -SLACK * _pressure(arcs):
-            continue
-        one, reason = known[place], "a multiplier along a boundary is negative"
+        boundary, reason = one.constraint, "a multiplier along a boundary is negative"
         if _order(arcs, boundary) < 2:
-            return reason, [_instead(arcs, place, *_pushing(arcs, arc, one))]
+            return reason, [_instead(arcs, place, *_pushing(arcs, place, one))]
         ends = [Contact(boundary, t, t, (jump, 0.0)) for t, jump in zip((one.start, one.end), one.jumps, strict=True)]
-        shorter = [_instead(arcs, place, *parts)] if (parts := _released(arcs, arc, one)) else []
+        ends = [replace(end, closes=one.closes and end.end >= one.end) for end in ends]
+        shorter = [_instead(arcs, place, *parts)] if (parts := _released(arcs, place, one)) else []
         return reason, [*shorter, _instead(arcs, place, *ends), _instead(arcs, place, _touch(one))]
     return None
 
 
-def _pushing(arcs: Arcs, arc: int, one: Contact) -> list[Contact]:
+def _pushing(arcs: Arcs, place: int, one: Contact) -> list[Contact]:
     """Where the multiplier along an arc is positive; of a constraint on states alone nowhere, as it has to be kept."""
     if _order(arcs, one.constraint) > 0:
         return []
-    times = along(arcs, arc)[0]
-    return [Contact(one.constraint, float(times[a]), float(times[b])) for a, b in runs(multiplier(arcs, arc) > 0.0)]
+    times, eta = multiplier(arcs, place)
+    parts = (replace(one, start=float(times[a]), end=float(times[b])) for a, b in runs(eta > 0.0) if b > a)
+    return _ends_kept(one, *parts)
 
 
-def _released(arcs: Arcs, arc: int, one: Contact) -> list[Contact]:
+def _released(arcs: Arcs, place: int, one: Contact) -> list[Contact]:
     """Where the multiplier along an arc is positive longest, with touch points in place of the ends that are left.
 
     The arc begins and ends within, as a free arc beside a touch point makes it shorter still.
     """
-    times, margin = along(arcs, arc)[0], BESIDE * (one.end - one.start)
-    first, last = max(runs(multiplier(arcs, arc) > 0.0), key=lambda run: run[1] - run[0], default=(0, 0))
+    times, eta = multiplier(arcs, place)
+    margin = BESIDE * (one.end - one.start)
+    first, last = max(runs(eta > 0.0), key=lambda run: run[1] - run[0], default=(0, 0))
     start, end = float(times[first]) + margin, float(times[last]) - margin
     if not start < end:
         return []
     begins, ends = first == 0, last == len(times) - 1
     jumps = one.jumps[0] if begins else 0.0, one.jumps[1] if ends else 0.0
+    low, high = one.start if begins else start, one.end if ends else end
     return [
         *([] if begins else [Contact(one.constraint, one.start, one.start, (one.jumps[0], 0.0))]),
-        Contact(one.constraint, one.start if begins else start, one.end if ends else end, jumps),
+        *_ends_kept(one, replace(one, start=low, end=high, jumps=jumps)),
         *([] if ends else [Contact(one.constraint, one.end, one.end, (one.jumps[1], 0.0))]),
     ]
 
 
-def multiplier(arcs: Arcs, arc: int) -> Array:
-    """eta along an arc on a boundary, shape (N,)."""
-    times, z = along(arcs, arc)
-    return multiplier_of(arcs.instance, arcs.structure.arcs[arc], times, z)
+def multiplier(arcs: Arcs, place: int) -> tuple[Array, Array]:
+    """Times along a contact, and its eta there, shapes (N,)."""
+    one, times, eta = contacts(arcs)[place], [], []
+    for arc, active in enumerate(arcs.active):
+        a, b = arcs.times[arc : arc + 2]
+        if one.constraint in active and one.start <= 0.5 * (a + b) <= one.end:
+            t, z = along(arcs, arc)
+            times.append(t)
+            eta.append(multipliers(arcs.instance, active, t, z)[active.index(one.constraint)])
+    return np.concatenate(times), np.concatenate(eta)
 
 
 def _pressure(arcs: Arcs) -> float:
     """What multipliers are measured by: the largest of them, or jumps over the duration."""
-    along_arcs = [float(np.abs(multiplier(arcs, k)).max()) for k, b in enumerate(arcs.structure.arcs) if b >= 0]
-    jumps = [abs(arcs.jump(k)) for k in range(len(arcs.junctions))]
-    jumps += [abs(float(arcs.unknown[-1]))] if arcs.pressed else []
+    arcs_of = [k for k, one in enumerate(contacts(arcs)) if not one.touches]
+    along_arcs = [float(np.abs(multiplier(arcs, k)[1]).max()) for k in arcs_of]
+    jumps = [abs(arcs.jump(k, which)) for k, one in enumerate(arcs.junctions) for which, _ in one.jumps]
+    jumps += [abs(arcs.pressure(k)) for k in arcs.pressed]
     return max([*along_arcs, *(jump / (arcs.end - arcs.instance.t0) for jump in jumps), 1e-300])

@@ -6,6 +6,7 @@ import time
 from collections import Counter
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 
@@ -15,16 +16,17 @@ from satsym.instance import Instance
 from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Event, Progress, Solution
 from satsym.solvers import iteration, two_point
-from satsym.solvers.constrained.arcs import Arcs, control
+from satsym.solvers.constrained.active import control
+from satsym.solvers.constrained.arcs import Arcs
 from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.constrained.easing import tightened
 from satsym.solvers.constrained.feasibility import impossible, refuse
 from satsym.solvers.constrained.interior_point import Path, regularised
-from satsym.solvers.constrained.newton import from_arcs, from_path, solved
+from satsym.solvers.constrained.newton import cost, from_arcs, from_path, solved
 from satsym.solvers.constrained.recognition import recognised
-from satsym.solvers.constrained.revision import SLACK, contacts, wrong
+from satsym.solvers.constrained.revision import ROUNDED, SLACK, contacts, wrong
 from satsym.solvers.constrained.starts import drawn, first, straight
-from satsym.solvers.constrained.structure import Structure
+from satsym.solvers.constrained.structure import Contact, Structure, ordered
 from satsym.solvers.constrained.transcription import Point, Program
 from satsym.solvers.constrained.violation import violation
 from satsym.solvers.failures import FAILURES, tried
@@ -105,7 +107,7 @@ def cheaper(solution: Solution, deadline: float) -> Solution | None:
     with np.errstate(all="ignore"):
         limits = replace(watched(solution.instance, None)[0], deadline=deadline)
         found = tried(partial(_best, solution.instance, solution, limits))
-    if not isinstance(found, Arcs) or not found.cost() < solution.objective:
+    if not isinstance(found, Arcs) or not cost(found) < solution.objective:
         return None
     return _answered(solution.instance, found, solution, time.perf_counter() - began)
 
@@ -121,7 +123,7 @@ def _best(instance: Instance, relaxed: Solution, limits: Limits) -> Arcs | Stopp
         found = _searched(program, starts, worth, limits, begun)
         exact = [one for one in found if isinstance(one, Arcs)]
         if exact or limits.late or _impossible(found[0]):
-            return min(exact, key=lambda one: one.cost(), default=LATE if LATE in found else found[0])
+            return min(exact, key=cost, default=LATE if LATE in found else found[0])
     return found[0]
 
 
@@ -145,7 +147,7 @@ def _searched(
         path = regularised(program, start, worth, own)
         if start is eased and not path.solved:
             path = tightened(program, start, worth, own)
-        same = [one for cost, one in known if path.solved and abs(path.cost - cost) <= SAME * abs(cost)]
+        same = [one for other, one in known if path.solved and abs(path.cost - other) <= SAME * abs(other)]
         if same:
             one = same[0]
         elif not path.solved:
@@ -175,7 +177,7 @@ def others(instance: Instance, worth: float, seed: int, deadline: float) -> tupl
     with np.errstate(all="ignore"):
         found = _searched(program, drawn(program, straight(program), COMPARED, seed), worth, limits)
     answered = [one for one in found if one is not LATE]
-    return len(answered), [one.cost() for one in answered if isinstance(one, Arcs)], limits.late
+    return len(answered), [cost(one) for one in answered if isinstance(one, Arcs)], limits.late
 
 
 def _unsolved(program: Program, worth: float) -> Stopped:
@@ -188,7 +190,8 @@ def _unsolved(program: Program, worth: float) -> Stopped:
 def _exact(program: Program, path: Path, limits: Limits) -> Arcs | Stopped:
     """Exact arcs from a regularised path, the structure revised until nothing is wrong with it."""
     instance = program.instance
-    waiting: list[tuple[Structure, Arcs | None]] = [(recognised(program, path), None)]
+    first = recognised(program, path)
+    waiting: list[tuple[Structure, Arcs | None]] = [(first, None), (recognised(program, path, resting=True), None)]
     seen: Counter[tuple[object, ...]] = Counter()
     reason = "the equations of its arcs are not solved"
     while waiting and seen.total() < REVISED and not limits.expired:
@@ -207,8 +210,7 @@ def _exact(program: Program, path: Path, limits: Limits) -> Arcs | Stopped:
         if not reason:
             return found
         waiting = [*((other, found) for other in others), *waiting]
-    shown = recognised(program, path).name(instance)
-    return Stopped(Status.NOT_CONVERGED, f"no structure near ({shown}) is an extremal: {reason}")
+    return Stopped(Status.NOT_CONVERGED, f"no structure near ({first.name(instance)}) is an extremal: {reason}")
 
 
 def _variants(instance: Instance, structure: Structure) -> list[Structure]:
@@ -217,36 +219,42 @@ def _variants(instance: Instance, structure: Structure) -> list[Structure]:
     for k, one in enumerate(structure.contacts):
         second = instance.model.spec.path_constraints[one.constraint].order > 1
         if not one.touches:
-            touch = replace(one, start=one.middle, end=one.middle, jumps=(sum(one.jumps), 0.0))
-            kept = (*structure.contacts[:k], *([touch] if second else []), *structure.contacts[k + 1 :])
-            last = k == len(structure.contacts) - 1
-            found.append(Structure(kept, structure.starts and k > 0, structure.ends and not last))
+            touch = Contact(one.constraint, one.middle, one.middle, (sum(one.jumps), 0.0))
+            found.append(ordered([*structure.contacts[:k], *([touch] if second else []), *structure.contacts[k + 1 :]]))
     return found
 
 
-def _answered(instance: Instance, arcs: Arcs, relaxed: Solution, wall_s: float) -> Solution:
-    """Exact arcs as a solution."""
-    nodes, n = np.linspace(instance.t0, arcs.end, instance.solver.steps + 1), arcs.n
-    parts: list[tuple[Array, Array]] = []
-    for arc, (a, b) in enumerate(zip(arcs.times[:-1], arcs.times[1:], strict=True)):
-        inside = nodes[(nodes > a) & (nodes < b)]
-        z = arcs.at(arc, np.concatenate([[a], inside, [b]]))
-        z[:, 0], z[:, -1] = arcs.node(arc, 0), arcs.node(arc, -1)
-        parts.append((np.concatenate([[a], inside, [b]]), z))
-    times, z = np.concatenate([t for t, _ in parts]), np.concatenate([v for _, v in parts], axis=1)
-    u = np.concatenate(
-        [control(instance, k, t, v) for k, (t, v) in zip(arcs.structure.arcs, parts, strict=True)], axis=1
-    )
-    status = Status.CONVERGED if instance.model.in_domain(z[:n]) else Status.LEFT_DOMAIN
+def _events(arcs: Arcs, times: Array) -> tuple[Event, ...]:
+    """What happens at these times of arcs, where one boundary follows another the exit too."""
+    instance, known = arcs.instance, arcs.structure.contacts
     names = [one.name for one in instance.model.spec.path_constraints]
-    events = tuple(
-        Event(one.event.value, names[one.constraint], float(t))
-        for one, t in zip(arcs.junctions, arcs.times[1:-1], strict=True)
-    )
-    if arcs.structure.starts:
-        events = (Event("entry", names[arcs.structure.contacts[0].constraint], instance.t0), *events)
-    if arcs.structure.ends and arcs.structure.contacts[-1].touches:
-        events += (Event("touch", names[arcs.structure.contacts[-1].constraint], float(arcs.end)),)
+    found = [Event("entry", names[k], instance.t0) for k in arcs.structure.begun]
+    for one, t in zip(arcs.junctions, times[1:-1].tolist(), strict=True):
+        found += [] if one.left is None else [Event("exit", names[known[one.left].constraint], t)]
+        found.append(Event(one.event.value, names[one.constraint], t))
+    touched = (one.constraint for one in known if one.closes and one.touches)
+    return (*found, *(Event("touch", names[k], float(arcs.end)) for k in touched))
+
+
+def _answered(instance: Instance, arcs: Arcs, relaxed: Solution, wall_s: float) -> Solution:
+    """Exact arcs as a solution; junctions that come at once have one time."""
+    nodes, n = np.linspace(instance.t0, arcs.end, instance.solver.steps + 1), arcs.n
+    parts: list[tuple[Array, Array, Array]] = []
+    brief = ROUNDED * (arcs.end - instance.t0)
+    edges = [instance.t0]
+    for a, b in pairwise(arcs.times):
+        edges.append(edges[-1] if b - a <= brief else float(b))
+    for arc, (a, b) in enumerate(pairwise(edges)):
+        if a == b:
+            continue
+        times = np.concatenate([[a], nodes[(nodes > a) & (nodes < b)], [b]])
+        z = arcs.at(arc, times)
+        z[:, 0], z[:, -1] = arcs.node(arc, 0), arcs.node(arc, -1)
+        parts.append((times, z, control(instance, arcs.active[arc], times, z)))
+    times, z, u = (np.concatenate([part[k] for part in parts], axis=-1) for k in range(3))
+    status = Status.CONVERGED if instance.model.in_domain(z[:n]) else Status.LEFT_DOMAIN
+    events = _events(arcs, np.array(edges))
+    names = [one.name for one in instance.model.spec.path_constraints]
     lasting = ", ".join(f"{names[c.constraint]} {c.end - c.start:.4g} long" for c in contacts(arcs) if not c.touches)
     message = f"structure {arcs.structure.name(instance)}" + (f" ({lasting})" if lasting else "")
     return Solution(
@@ -254,13 +262,13 @@ def _answered(instance: Instance, arcs: Arcs, relaxed: Solution, wall_s: float) 
         method=BOUNDARY_ARCS,
         status=status,
         message=f"{message}, from a regularised path",
-        objective=arcs.cost(),
+        objective=cost(arcs),
         times=times,
         x=z[:n],
         u=u,
         lam=z[n:],
         switching_times=tuple(
-            tuple(one.t for one in events if one.name in bounds and instance.t0 < one.t)
+            tuple(dict.fromkeys(one.t for one in events if one.name in bounds and instance.t0 < one.t))
             for bounds in bound_names(instance.model.spec)
         ),
         iterations=len(relaxed.history),

@@ -1,9 +1,10 @@
-"""Which constraint is active when: contacts with boundaries, and the arcs into which they cut the time."""
+"""Which constraints are active when: contacts with boundaries, and the arcs into which they cut the time."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from itertools import groupby
 
 from satsym.instance import Instance
 from satsym.solution import Event as Happening
@@ -18,8 +19,11 @@ class Event(Enum):
     TOUCH = "touch"
 
 
-FREE = -1
-"""In place of a constraint's number: on no boundary."""
+Active = tuple[int, ...]
+"""Constraints on whose boundaries an arc runs, by their numbers in order."""
+
+FREE: Active = ()
+"""On no boundary."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +35,10 @@ class Contact:
     end: float
     jumps: tuple[float, float] = (0.0, 0.0)
     """Multipliers at both of its ends, to begin with; a touch point has the first."""
+    opens: bool = False
+    """Whether it holds from the start of the motion on."""
+    closes: bool = False
+    """Whether it holds until the end; a touch point is then met at the end alone."""
 
     @property
     def touches(self) -> bool:
@@ -48,84 +56,137 @@ class Junction:
     """Between two arcs."""
 
     event: Event
+    contact: int
+    """Whose event it is, by its number."""
     constraint: int
     time: float
-    jump: float | None
-    """Multiplier of the jump of costates to begin with; ``None`` where they do not jump."""
+    left: int | None
+    """The contact that ends where this one begins: from one boundary directly to another."""
+    before: Active
+    after: Active
+    jumps: tuple[tuple[int, float], ...]
+    """Constraints along whose gradients costates may jump, with multipliers to begin with."""
 
 
 @dataclass(frozen=True)
 class Structure:
-    """Contacts in order of time, none of which overlaps another."""
+    """Contacts in order of their middles; those of different constraints may overlap."""
 
     contacts: tuple[Contact, ...]
-    starts: bool = False
-    """Whether the first of them holds from the start on."""
-    ends: bool = False
-    """Whether the last of them holds until the end; a touch point is then met at the end alone."""
 
     def junctions(self, instance: Instance) -> list[Junction]:
-        """Where arcs meet."""
-        orders, found = [one.order for one in instance.model.spec.path_constraints], list[Junction]()
-        for k, one in enumerate(self.contacts):
-            jumps = one.jumps if orders[one.constraint] > 1 else (None, None)
-            if one.touches and self.ends and k == len(self.contacts) - 1:
-                continue
-            if one.touches:
-                found.append(Junction(Event.TOUCH, one.constraint, one.start, one.jumps[0]))
-                continue
-            if not (k == 0 and self.starts):
-                found.append(Junction(Event.ENTRY, one.constraint, one.start, jumps[0]))
-            if not (k == len(self.contacts) - 1 and self.ends) and not self.joined(k):
-                found.append(Junction(Event.EXIT, one.constraint, one.end, jumps[1]))
+        """Where arcs meet, in order of time.
+
+        Costates jump where a constraint of order two begins or ends to be active. Where another one of order two stays
+        active at any junction, its own conditions there ask for a jump along its gradient, too.
+        """
+        orders = [one.order for one in instance.model.spec.path_constraints]
+        known, found = set(self.begun), list[Junction]()
+        for time, event, number in self._events():
+            one = self.contacts[number]
+            left, before = self._followed(number) if event is Event.ENTRY else None, tuple(sorted(known))
+            if event is Event.ENTRY:
+                known.add(one.constraint)
+            elif event is Event.EXIT:
+                known.discard(one.constraint)
+            if left is not None:
+                known.discard(self.contacts[left].constraint)
+            stays = [k for k in before if k in known and k != one.constraint and orders[k] > 1]
+            jumps = [(k, 0.0) for k in stays]
+            if event is Event.TOUCH or orders[one.constraint] > 1:
+                jumps.insert(0, (one.constraint, one.jumps[event is Event.EXIT]))
+            found.append(
+                Junction(event, number, one.constraint, time, left, before, tuple(sorted(known)), tuple(jumps))
+            )
         return found
 
+    def _events(self) -> list[tuple[float, Event, int]]:
+        """Times, kinds, and contacts of all junctions."""
+        found = list[tuple[float, Event, int]]()
+        for number, one in enumerate(self.contacts):
+            if one.touches:
+                found += [] if one.closes else [(one.start, Event.TOUCH, number)]
+                continue
+            found += [] if one.opens else [(one.start, Event.ENTRY, number)]
+            found += [] if one.closes or self.joined(number) else [(one.end, Event.EXIT, number)]
+        return sorted(found, key=lambda each: each[0])
+
     def joined(self, contact: int) -> bool:
-        """Whether the next contact begins where this one ends: from one boundary directly to another."""
-        return contact + 1 < len(self.contacts) and self.contacts[contact].end == self.contacts[contact + 1].start
+        """Whether another contact begins where this one ends: from one boundary directly to another."""
+        one = self.contacts[contact]
+        return not one.touches and any(each.start == one.end and not each.touches for each in self.contacts)
+
+    def _followed(self, contact: int) -> int | None:
+        """The contact that ends where this one begins."""
+        start = self.contacts[contact].start
+        places = (k for k, each in enumerate(self.contacts) if each.end == start and not each.touches)
+        return next(places, None)
 
     @property
-    def arcs(self) -> list[int]:
-        """The constraint on whose boundary each arc runs, or that none does."""
-        found = [] if self.starts else [FREE]
-        for k, one in enumerate(self.contacts):
-            found += [FREE] if one.touches else [one.constraint] if self.joined(k) else [one.constraint, FREE]
-        return found[:-1] if self.ends else found
+    def begun(self) -> Active:
+        """What is active from the start on."""
+        return tuple(sorted(one.constraint for one in self.contacts if one.opens and not one.touches))
+
+    @property
+    def ended(self) -> Active:
+        """What is active at the end, or touched there."""
+        return tuple(sorted(one.constraint for one in self.contacts if one.closes))
+
+    def arcs(self, instance: Instance) -> list[Active]:
+        """What is active on each arc."""
+        return [self.begun, *(one.after for one in self.junctions(instance))]
 
     def name(self, instance: Instance) -> str:
-        """For messages: ``free, wall, free``; touch points in brackets."""
-        spec = instance.model.spec.path_constraints
-        words = [] if self.starts else ["free"]
-        for k, one in enumerate(self.contacts):
-            name = spec[one.constraint].name
-            words += [f"[{name}]" if one.touches else name, *([] if self.joined(k) else ["free"])]
-        return ", ".join(words[:-1] if self.ends else words)
+        """For messages: ``free, wall, free``; touch points in brackets, what is active at once with plus signs."""
+        names = [one.name for one in instance.model.spec.path_constraints]
+
+        def said(active: Active) -> str:
+            return " + ".join(names[k] for k in active) or "free"
+
+        words = [said(self.begun)]
+        for one in self.junctions(instance):
+            words += [f"[{names[one.constraint]}]"] if one.event is Event.TOUCH else []
+            words.append(said(one.after))
+        words += [f"[{names[one.constraint]}]" for one in self.contacts if one.closes and one.touches]
+        return ", ".join(words)
 
     @property
     def key(self) -> tuple[object, ...]:
         """What two of them have in common that differ in times only."""
-        contacts = ((one.constraint, one.touches, self.joined(k)) for k, one in enumerate(self.contacts))
-        return (self.starts, self.ends, *contacts)
+        events = ((event, self.contacts[k].constraint, self.joined(k)) for _, event, k in self._events())
+        return (self.begun, self.ended, *events)
 
 
-def stated_arcs(solution: Solution) -> list[int]:
-    """The constraint on whose boundary each arc between events runs, or that none does."""
+def ordered(contacts: list[Contact]) -> Structure:
+    """The structure of contacts in any order."""
+    return Structure(tuple(sorted(contacts, key=lambda one: one.middle)))
+
+
+def stated_arcs(solution: Solution) -> list[Active]:
+    """What is active on each arc between events."""
     names = [one.name for one in solution.instance.model.spec.path_constraints]
-    begun = [one.name for one in solution.events if one.t <= solution.times[0]]
-    found = [names.index(begun[0]) if begun else FREE]
-    for one in within(solution):
-        found.append(names.index(one.name) if one.kind == "entry" else FREE)
+    known = {names.index(one.name) for one in solution.events if one.t <= solution.times[0]}
+    found = [tuple(sorted(known))]
+    for group in within(solution):
+        for one in group:
+            if one.kind == "entry":
+                known.add(names.index(one.name))
+            elif one.kind == "exit":
+                known.discard(names.index(one.name))
+        found.append(tuple(sorted(known)))
     return found
 
 
-def within(solution: Solution) -> tuple[Happening, ...]:
-    """The events between start and end, where arcs meet."""
-    return tuple(one for one in solution.events if solution.times[0] < one.t < solution.times[-1])
+def within(solution: Solution) -> list[tuple[Happening, ...]]:
+    """The events between start and end, where arcs meet; those of one time together, what begins or touches first."""
+    inner = [one for one in solution.events if solution.times[0] < one.t < solution.times[-1]]
+    groups = (list(group) for _, group in groupby(inner, key=lambda one: one.t))
+    return [tuple(sorted(group, key=lambda one: one.kind == "exit")) for group in groups]
 
 
-def pressing(solution: Solution) -> int:
-    """The constraint on states that may push at the end: that of the last arc, or that is touched there; or none."""
-    names = [one.name for one in solution.instance.model.spec.path_constraints]
-    last = [one for one in solution.events if one.t >= solution.times[-1]]
-    found = names.index(last[0].name) if last else stated_arcs(solution)[-1]
-    return FREE if found != FREE and solution.instance.model.spec.path_constraints[found].order == 0 else found
+def pressing(solution: Solution) -> Active:
+    """The constraints on states that may push at the end: those of the last arc, and those that are touched there."""
+    spec = solution.instance.model.spec.path_constraints
+    names = [one.name for one in spec]
+    last = {names.index(one.name) for one in solution.events if one.t >= solution.times[-1]}
+    return tuple(sorted(k for k in last.union(stated_arcs(solution)[-1]) if spec[k].order > 0))

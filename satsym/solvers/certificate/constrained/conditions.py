@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -14,9 +15,9 @@ from satsym.solvers.certificate.constrained import comparison
 from satsym.solvers.certificate.constrained.replay import Piece, Replay, replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
 from satsym.solvers.certificate.flow import FAINT, typical
-from satsym.solvers.constrained.arcs import control, holds_control, multiplier, sizes, values, vanishing
+from satsym.solvers.constrained.active import control, deciding, multipliers
+from satsym.solvers.constrained.arcs import holds_control, sizes, values
 from satsym.solvers.constrained.convexity import convex
-from satsym.solvers.constrained.equations import changing
 from satsym.solvers.constrained.law import smallest_curvature, stationary
 from satsym.solvers.constrained.structure import FREE, within
 from satsym.solvers.constrained.violation import VIOLATED
@@ -71,9 +72,11 @@ def _legendre_clebsch(solution: Solution, again: Replay) -> float:
     """Least curvature of H by the controls at the nodes, along what keeps active constraints."""
     if not stationary(solution.instance):
         return conditions.legendre_clebsch(solution)
-    active = [p.constraint if holds_control(solution.instance, p.constraint) else FREE for p in again.pieces]
-    pieces = zip(again.pieces, active, strict=True)
-    return min(smallest_curvature(solution.instance, k, solution.times[p.nodes], p.z) for p, k in pieces)
+    found = []
+    for p in again.pieces:
+        held = tuple(k for k in p.active if holds_control(solution.instance, k))
+        found.append(smallest_curvature(solution.instance, held, solution.times[p.nodes], p.z))
+    return min(found)
 
 
 def _first_order(solution: Solution, again: Replay) -> list[Check]:
@@ -100,10 +103,10 @@ def _first_order(solution: Solution, again: Replay) -> list[Check]:
 
 def _sufficient(solution: Solution, again: Replay) -> list[Check]:
     """Each is a deficit that must not be positive."""
-    least, most = _least_multiplier(solution, again)
+    least, most = _least_multiplier(solution, again, strict=True)
     strict = least > STRICT * most and min(_pushed(solution, again, tent=True), default=np.inf) > STRICT
     vanishing = Check("multiplier vanishes on a boundary", float(not strict), 0.0)
-    if solution.instance.tf is None and (again.pressed is not None or again.pieces[-1].constraint != FREE):
+    if solution.instance.tf is None and (again.pressed or again.pieces[-1].active):
         return [vanishing, Check("second variation not resolved: ends on a boundary at a free time", 1.0, 0.0)]
     return [
         vanishing,
@@ -113,14 +116,14 @@ def _sufficient(solution: Solution, again: Replay) -> list[Check]:
 
 def _controls(solution: Solution, piece: Piece) -> tuple[Array, Array, Array]:
     """Times, states and controls between the nodes of an arc."""
-    u = control(solution.instance, piece.constraint, piece.times, piece.dense)
+    u = control(solution.instance, piece.active, piece.times, piece.dense)
     return piece.times, piece.dense[: len(solution.x)], u
 
 
 def _stationarity(solution: Solution, again: Replay) -> float:
     """Largest difference of the control from the one that minimises H and keeps what is active, relative."""
     z = np.concatenate([solution.x, solution.lam])
-    parts = [control(solution.instance, p.constraint, solution.times[p.nodes], z[:, p.nodes]) for p in again.pieces]
+    parts = [control(solution.instance, p.active, solution.times[p.nodes], z[:, p.nodes]) for p in again.pieces]
     law = np.concatenate(parts, axis=1)
     size = max(float(np.abs(solution.u).max()), float(np.abs(law).max()))
     return float(np.abs(law - solution.u).max() / size) if size > 0.0 else 0.0
@@ -133,7 +136,7 @@ def more_at_end(solution: Solution, again: Replay) -> float:
     law = model.control_law_batch(t, z[:n], z[n:], p, instance.control_set.arguments)
     ours, other = (
         float(np.asarray(model.hamiltonian_batch(t, z[:n], u, z[n:], p)).sum())
-        for u in (control(instance, again.pieces[-1].constraint, t, z), np.asarray(law))
+        for u in (control(instance, again.pieces[-1].active, t, z), np.asarray(law))
     )
     return ours - other
 
@@ -159,9 +162,8 @@ def _off_boundary(solution: Solution, again: Replay) -> float:
     """Largest distance from the boundary on its arcs, relative."""
     sizes, worst = _sizes(solution, again), 0.0
     for piece in again.pieces:
-        if piece.constraint != FREE:
-            g = values(solution.instance, *_controls(solution, piece))[piece.constraint]
-            worst = max(worst, float(np.abs(g).max()) / sizes[piece.constraint])
+        g = values(solution.instance, *_controls(solution, piece))
+        worst = max([worst, *(float(np.abs(g[k]).max() / sizes[k]) for k in piece.active)])
     return float(worst)
 
 
@@ -173,16 +175,22 @@ def _off_tangency(solution: Solution, again: Replay) -> float:
     """
     instance, n, sizes, worst = solution.instance, len(solution.x), _sizes(solution, again), 0.0
     lasting = float(solution.times[-1] - solution.times[0])
-    met = [one for one in solution.events if one.t > solution.times[0]]
-    for event, piece in zip(met, again.pieces, strict=False):
-        which, t, z = _number(solution, event.name), piece.times[-1:], piece.z[:, -1:]
-        if holds_control(instance, which):
-            found = [abs(float(changing(instance, piece.constraint, which, t, z)[0, 0]))]
-        else:
-            found = [abs(float(values(instance, t, z[:n], control(instance, FREE, t, z))[which, 0]))]
-        if instance.model.spec.path_constraints[which].order > 1 and event.t < solution.times[-1]:
-            found.append(abs(_rates(solution, piece, -1)[which, 0]) * lasting)
-        worst = max(worst, max(found) / sizes[which])
+    last = tuple(one for one in solution.events if one.t >= solution.times[-1])
+    for group, piece in zip([*within(solution), last], again.pieces, strict=True):
+        begun = {one.name for one in group if one.kind != "exit"}
+        for event in group:
+            which, t, z = _number(solution, event.name), piece.times[-1:], piece.z[:, -1:]
+            if holds_control(instance, which):
+                if event.kind == "exit" and begun:  # what follows it directly says where
+                    continue
+                found = [abs(float(deciding(instance, piece.active, which, t, z)[0]))]
+            elif event.kind == "exit":
+                continue
+            else:
+                found = [abs(float(values(instance, t, z[:n], control(instance, FREE, t, z))[which, 0]))]
+            if instance.model.spec.path_constraints[which].order > 1 and event.t < solution.times[-1]:
+                found.append(abs(_rates(solution, piece, -1)[which, 0]) * lasting)
+            worst = max(worst, max(found) / sizes[which])
     return float(worst)
 
 
@@ -199,12 +207,13 @@ def _rates(solution: Solution, piece: Piece, place: int) -> Array:
 
 
 def _multipliers(solution: Solution, again: Replay) -> list[Array]:
-    """eta along each arc on a boundary of a constraint on states alone."""
-    return [
-        multiplier(solution.instance, piece.constraint, piece.times, piece.dense)
-        for piece in again.pieces
-        if piece.constraint != FREE and not holds_control(solution.instance, piece.constraint)
-    ]
+    """eta along each arc of each constraint on states alone that is active."""
+    found = list[Array]()
+    for piece in again.pieces:
+        states = [place for place, k in enumerate(piece.active) if not holds_control(solution.instance, k)]
+        if states:
+            found += list(multipliers(solution.instance, piece.active, piece.times, piece.dense)[states])
+    return found
 
 
 def _pushed(solution: Solution, again: Replay, tent: bool) -> list[float]:
@@ -215,17 +224,28 @@ def _pushed(solution: Solution, again: Replay, tent: bool) -> list[float]:
     tent
         Whether it is related to the share of the arc since its entry, and until its exit, where it vanishes.
     """
-    found, sizes, (begin, end) = list[float](), _sizes(solution, again), solution.times[[0, -1]]
-    for piece in again.pieces:
-        if not holds_control(solution.instance, piece.constraint):
-            continue
-        t, (a, b) = piece.times, piece.times[[0, -1]]
-        push = vanishing(solution.instance, piece.constraint, t, piece.dense)[0] / sizes[piece.constraint]
-        if tent:
-            share = np.minimum(t - a if a > begin else np.inf, b - t if b < end else np.inf) / (b - a)
-            push = (push / np.minimum(share, 1.0))[share > BESIDE]
-        found.append(float(push.min()))
+    instance, found, sizes = solution.instance, list[float](), _sizes(solution, again)
+    for which in {k for piece in again.pieces for k in piece.active if holds_control(instance, k)}:
+        for pieces in _runs(again.pieces, which):
+            t = np.concatenate([piece.times for piece in pieces])
+            push = [deciding(instance, piece.active, which, piece.times, piece.dense) for piece in pieces]
+            found.append(_least_push(solution, t, np.concatenate(push) / sizes[which], tent))
     return found
+
+
+def _runs(pieces: list[Piece], which: int) -> list[list[Piece]]:
+    """Arcs that follow each other while a constraint stays active."""
+    together = groupby(pieces, key=lambda piece: which in piece.active)
+    return [list(group) for active, group in together if active]
+
+
+def _least_push(solution: Solution, t: Array, push: Array, tent: bool) -> float:
+    """The least of it while a constraint is active."""
+    (begin, end), (a, b) = solution.times[[0, -1]], t[[0, -1]]
+    if tent:
+        share = np.minimum(t - a if a > begin else np.inf, b - t if b < end else np.inf) / (b - a)
+        push = (push / np.minimum(share, 1.0))[share > BESIDE]
+    return float(push.min())
 
 
 def _negative(solution: Solution, again: Replay) -> float:
@@ -233,22 +253,26 @@ def _negative(solution: Solution, again: Replay) -> float:
 
     Of constraints that hold a control it is what makes them active, relative to their size.
     """
-    least, most = _least_multiplier(solution, again)
+    least, most = _least_multiplier(solution, again, strict=False)
     return max(0.0, float(-least / most), -min(_pushed(solution, again, tent=False), default=0.0))
 
 
-def _least_multiplier(solution: Solution, again: Replay) -> tuple[float, float]:
+def _least_multiplier(solution: Solution, again: Replay, strict: bool) -> tuple[float, float]:
     """The least multiplier, those at junctions over the duration, and the largest magnitude of any.
 
     Of constraints on states alone; infinite and one where none of these is ever active.
+
+    Parameters
+    ----------
+    strict
+        Whether multipliers may be left out that need not be positive: where others begin or end to be active.
     """
-    lasting = float(solution.times[-1] - solution.times[0])
-    jumping = [
-        abs(jump) > 0.0 or solution.instance.model.spec.path_constraints[_number(solution, event.name)].order > 1
-        for event, jump in zip(within(solution), again.jumps, strict=True)
-    ]
-    jumps = [jump / lasting for jump, counts in zip(again.jumps, jumping, strict=True) if counts]
-    jumps += [] if again.pressed is None else [again.pressed / lasting]
+    lasting, spec = float(solution.times[-1] - solution.times[0]), solution.instance.model.spec.path_constraints
+    jumps = list[float]()
+    for group, own in zip(within(solution), again.jumps, strict=True):
+        met = {_number(solution, event.name) for event in group}
+        jumps += [zeta / lasting for k, zeta in own.items() if (k in met and spec[k].order > 1) or not strict]
+    jumps += [zeta / lasting for zeta in again.pressed.values()]
     along = [float(eta.min()) for eta in _multipliers(solution, again)]
     sizes = [float(np.abs(eta).max()) for eta in _multipliers(solution, again)]
     return float(min([*jumps, *along], default=np.inf)), float(max([*map(abs, jumps), *sizes], default=1.0)) or 1e-300
@@ -259,7 +283,7 @@ def _drift(solution: Solution, again: Replay) -> float | None:
     instance, n = solution.instance, len(solution.x)
     model, p, t = instance.model, instance.parameters, solution.times
     x, lam = again.z[:n], again.z[n:]
-    parts = [control(instance, one.constraint, t[one.nodes], again.z[:, one.nodes]) for one in again.pieces]
+    parts = [control(instance, one.active, t[one.nodes], again.z[:, one.nodes]) for one in again.pieces]
     u = np.concatenate(parts, axis=1)
     moving: Any = t + 1e-30j
     if not model.spec.autonomous or np.imag(values(instance, moving, x, u)).any():

@@ -16,8 +16,9 @@ from satsym.solution import Solution
 from satsym.solvers.certificate.end_form import fixed_states
 from satsym.solvers.certificate.flow import FAINT, TOLERANCE, Flow, typical
 from satsym.solvers.collocation.scaling import final_argument
-from satsym.solvers.constrained.arcs import control, field, gradient, holds_control
-from satsym.solvers.constrained.structure import FREE, pressing, stated_arcs, within
+from satsym.solvers.constrained.active import control, field
+from satsym.solvers.constrained.arcs import gradient, gradients
+from satsym.solvers.constrained.structure import Active, pressing, stated_arcs, within
 from satsym.solvers.failures import FAILURES
 from satsym.solvers.simulation.extrapolation import integrate, leap
 
@@ -32,8 +33,8 @@ BETWEEN = 4
 class Piece:
     """An arc of the replay."""
 
-    constraint: int
-    """On whose boundary it runs, or that it runs on none."""
+    active: Active
+    """On whose boundaries it runs."""
     nodes: slice
     """The solution's nodes on it."""
     z: Array
@@ -48,12 +49,12 @@ class Replay:
     """The extremal again."""
 
     pieces: list[Piece]
-    jumps: Array
-    """Multipliers at the events before the end, shape (E,)."""
-    pressed: float | None
-    """The multiplier at the end, where a constraint may push there."""
+    jumps: list[dict[int, float]]
+    """Multipliers where arcs meet, by constraint."""
+    pressed: dict[int, float]
+    """Multipliers at the end, of constraints that may push there."""
     off_gradient: float
-    """Largest part of a jump that no multiple of the constraint's gradient makes up, relative to the costates."""
+    """Largest part of a jump that no multiples of constraints' gradients make up, relative to the costates."""
     z: Array
     """At the solution's nodes, shape (2n, N)."""
     cost: float
@@ -77,52 +78,58 @@ def replay(solution: Solution) -> Replay | None:
     sizes = np.concatenate(typical(solution, FAINT))
     value, cost, pieces, jumps, off = np.concatenate([solution.x[:, 0], solution.lam[:, 0]]), 0.0, [], [], 0.0
     try:
-        for k, constraint in enumerate(arcs):
+        for k, active in enumerate(arcs):
             nodes = slice(edges[k], edges[k + 1])
-            piece, spent = _piece(instance, constraint, solution.times[nodes], value, sizes, nodes)
+            piece, spent = _piece(instance, active, solution.times[nodes], value, sizes, nodes)
             pieces.append(piece)
             cost += spent
             value = piece.z[:, -1].copy()
             if k < len(events):
-                zeta, left = _jump(solution, k, int(breaks[k]), sizes)
-                jumps.append(zeta)
+                along = jumping(solution, k, active, arcs[k + 1])
+                found, left = _jump(solution, along, int(breaks[k]), sizes)
+                jumps.append(found)
                 off = max(off, left)
-                which = _of_event(solution, k)
-                t = np.array([events[k].t])
-                value[n:] -= zeta * gradient(instance, which, t, value[:n, None])[:, 0]
-    except FAILURES:
+                value[n:] -= _push(solution, found, float(solution.times[breaks[k]]), value)
+    except (*FAILURES, np.linalg.LinAlgError):
         return None
-    last, end = pressing(solution), value.copy()
-    pressed = None if last == FREE else _pressed(solution, last, value)
-    if pressed is not None:
-        end[n:] -= pressed * gradient(instance, last, solution.times[-1:], end[:n, None])[:, 0]
+    pressed, end = _pressed(solution, pressing(solution), value), value.copy()
+    end[n:] -= _push(solution, pressed, float(solution.times[-1]), end)
     final = float(solution.times[-1])
     total = cost + float(instance.model.terminal_cost(final, tuple(end[:n].tolist()), instance.parameters))
-    return Replay(pieces, np.array(jumps), pressed, off, np.concatenate([p.z for p in pieces], axis=1), total, end)
+    return Replay(pieces, jumps, pressed, off, np.concatenate([p.z for p in pieces], axis=1), total, end)
 
 
-def _of_event(solution: Solution, k: int) -> int:
-    names = [one.name for one in solution.instance.model.spec.path_constraints]
-    return names.index(within(solution)[k].name)
+def jumping(solution: Solution, junction: int, before: Active, after: Active) -> list[int]:
+    """Along whose gradients costates may jump where arcs meet: those of order two on whose boundaries it is."""
+    spec = solution.instance.model.spec.path_constraints
+    names = [one.name for one in spec]
+    met = within(solution)[junction]
+    own = {names.index(one.name) for one in met if one.kind == "touch" or spec[names.index(one.name)].order > 1}
+    return sorted(own.union(k for k in before if k in after and spec[k].order > 1))
 
 
-def _jump(solution: Solution, event: int, node: int, sizes: Array) -> tuple[float, float]:
-    """The multiplier of the solution's jump, and what of the jump it leaves; none where the order is one."""
-    instance, n, which = solution.instance, len(solution.x), _of_event(solution, event)
+def _jump(solution: Solution, along: list[int], node: int, sizes: Array) -> tuple[dict[int, float], float]:
+    """The multipliers of the solution's jump, and what of it they leave."""
+    n, place = len(solution.x), slice(node, node + 1)
     change = solution.lam[:, node] - solution.lam[:, node + 1]
-    if holds_control(instance, which):
-        return 0.0, float((np.abs(change) / sizes[n:]).max())
-    g_x = gradient(instance, which, solution.times[node : node + 1], solution.x[:, node : node + 1])[:, 0]
-    lasts = instance.model.spec.path_constraints[which].order > 1 or within(solution)[event].kind == "touch"
-    zeta = float(change @ g_x / (g_x @ g_x)) if lasts else 0.0
-    return zeta, float((np.abs(change - zeta * g_x) / sizes[n:]).max())
+    push = gradients(solution.instance, solution.times[place], solution.x[:, place], solution.u[:, place])[along, :, 0]
+    zeta = np.linalg.lstsq(push.T, change, rcond=None)[0] if along else np.zeros(0)
+    left = float((np.abs(change - zeta @ push) / sizes[n:]).max())
+    return dict(zip(along, zeta.tolist(), strict=True)), left
 
 
-def _pressed(solution: Solution, constraint: int, value: Array) -> float | None:
-    """The multiplier with which a constraint pushes at the end, by what transversality lacks.
+def _push(solution: Solution, multipliers: dict[int, float], time: float, value: Array) -> Array:
+    """By how much multipliers at one time change the costates, shape (n,)."""
+    n, t = len(solution.x), np.array([time])
+    parts = [zeta * gradient(solution.instance, k, t, value[:n, None])[:, 0] for k, zeta in multipliers.items()]
+    return np.asarray(sum(parts, np.zeros(n)))
 
-    Multipliers of terminal constraints make up what they can; where they, or given states, could make up all that the
-    constraint brings about, there is none.
+
+def _pressed(solution: Solution, may: Active, value: Array) -> dict[int, float]:
+    """The multipliers with which constraints push at the end, by what transversality lacks.
+
+    Multipliers of terminal constraints make up what they can; where they, or given states, could make up all that a
+    constraint brings about, it has none.
     """
     instance, n, t = solution.instance, len(solution.x), float(solution.times[-1])
     final, free, x = final_argument(instance), ~fixed_states(instance), tuple(value[:n].tolist())
@@ -132,27 +139,33 @@ def _pressed(solution: Solution, constraint: int, value: Array) -> float | None:
         found = instance.model.boundary(t, x, tuple(lam), tuple(nu), instance.parameters, bounds, final)
         return np.array(found)[:n][free]
 
-    none, g_x = np.zeros(count), gradient(instance, constraint, np.array([t]), value[:n, None])[:, 0]
-    begun = lacking(value[n:], none)
+    none, begun = np.zeros(count), lacking(value[n:], np.zeros(count))
     tied = np.reshape([lacking(value[n:], one) - begun for one in np.eye(count)], (count, len(begun))).T
-    pushed = lacking(value[n:] - g_x, none) - begun
-    own = pushed - tied @ np.linalg.lstsq(tied, pushed, rcond=None)[0] if count else pushed
-    if not np.linalg.norm(own) > INDEPENDENT * np.linalg.norm(g_x):
-        return None
-    return float(-(own @ begun) / (own @ own))
+    found, rows = [], []
+    for constraint in may:
+        g_x = gradient(instance, constraint, np.array([t]), value[:n, None])[:, 0]
+        pushed = lacking(value[n:] - g_x, none) - begun
+        own = pushed - tied @ np.linalg.lstsq(tied, pushed, rcond=None)[0] if count else pushed
+        if np.linalg.norm(own) > INDEPENDENT * np.linalg.norm(g_x):
+            found.append(constraint)
+            rows.append(own)
+    if not found:
+        return {}
+    zeta = np.linalg.lstsq(np.array(rows).T, -begun, rcond=None)[0]
+    return dict(zip(found, zeta.tolist(), strict=True))
 
 
 def _piece(
-    instance: Instance, constraint: int, nodes: Array, start: Array, sizes: Array, place: slice
+    instance: Instance, active: Active, nodes: Array, start: Array, sizes: Array, place: slice
 ) -> tuple[Piece, float]:
     """Integrate an arc, and leap from its steps to the nodes and between them."""
     n, model, p = len(instance.initial), instance.model, instance.parameters
 
     def rates(t: Array, y: Array) -> Array:
         z = y[:-1]
-        u = control(instance, constraint, t, z)
+        u = control(instance, active, t, z)
         cost = np.broadcast_to(model.running_cost_batch(t, z[:n], u, p), t.shape)
-        return np.concatenate([field(instance, constraint, t, z), cost[None]])
+        return np.concatenate([field(instance, active, t, z), cost[None]])
 
     scale = np.append(sizes, sizes[:n] @ sizes[n:])
     one = _single(rates)
@@ -162,7 +175,7 @@ def _piece(
     step = np.clip(np.searchsorted(found.times, wanted, side="right") - 1, 0, len(found.times) - 2)
     values = leap(rates, found.times[step], found.values[step].T, wanted - found.times[step])
     values[:, -1] = found.end
-    piece = Piece(constraint, place, values[:-1, ::BETWEEN], wanted, values[:-1])
+    piece = Piece(active, place, values[:-1, ::BETWEEN], wanted, values[:-1])
     return piece, float(found.end[-1])
 
 

@@ -24,8 +24,9 @@ from satsym.solution import Solution
 from satsym.solvers.certificate.constrained.replay import Replay
 from satsym.solvers.certificate.end_form import end_form
 from satsym.solvers.certificate.flow import unit_sizes
-from satsym.solvers.constrained.arcs import control, effects, gradient, holds_control, multiplier
-from satsym.solvers.constrained.structure import FREE, pressing, within
+from satsym.solvers.constrained.active import control, multipliers
+from satsym.solvers.constrained.arcs import effects, gradient, holds_control
+from satsym.solvers.constrained.structure import FREE, Active, within
 
 MESH = 160
 """Intervals."""
@@ -49,14 +50,14 @@ def curvature(solution: Solution, again: Replay) -> float:
         after = moves[k] @ state + inputs[k] @ moved
         both = np.vstack([(state + after) / 2, moved])
         form += h[k] * both.T @ second[k] @ both
-        if holds_control(instance, which[k]):
-            ties.append(_held(solution, which[k], middles[k : k + 1], z[:, k : k + 1]) @ both)
+        held = [each for each in which[k] if holds_control(instance, each)]
+        ties += [_held(solution, which[k], each, middles[k : k + 1], z[:, k : k + 1]) @ both for each in held]
         pure += h[k] * moved.T @ weight[k] @ moved
         state = after
-        at = times[k + 1]
-        if which[k] != FREE and not holds_control(instance, which[k]):
-            ties.append(gradient(instance, which[k], np.array([at]), _values(again, np.array([at]))[:n])[:, 0] @ state)
-        if (one := met.get(k + 1)) is not None:
+        at = times[k + 1 : k + 2]
+        states = (each for each in which[k] if each not in held)
+        ties += [gradient(instance, each, at, _values(again, at)[:n])[:, 0] @ state for each in states]
+        for one in met.get(k + 1, ()):
             ties.append(one.gradient @ state)
             form += state.T @ (one.factor * np.outer(one.rate, one.rate) + one.curved) @ state
     unit = unit_sizes(solution)
@@ -89,22 +90,22 @@ def _least(form: Array, pure: Array, ties: Array) -> float:
         return float("nan")
 
 
-def _held(solution: Solution, constraint: int, t: Array, z: Array) -> Array:
+def _held(solution: Solution, active: Active, constraint: int, t: Array, z: Array) -> Array:
     """g_x and g_u of a constraint that holds a control, in one row."""
     instance, x = solution.instance, z[: len(solution.x)]
-    u = control(instance, constraint, t, z)
+    u = control(instance, active, t, z)
     return np.concatenate([gradient(instance, constraint, t, x, u), effects(instance, t, x, u)[constraint]])[:, 0]
 
 
-def _mesh(solution: Solution, again: Replay) -> tuple[Array, list[int], list[int]]:
-    """Times with all events among them, the boundary on which each interval runs, and after how many each arc ends."""
+def _mesh(solution: Solution, again: Replay) -> tuple[Array, list[Active], list[int]]:
+    """Times with all events among them, what is active on each interval, and after how many each arc ends."""
     whole = float(solution.times[-1] - solution.times[0])
-    times, which, ends = [np.array([solution.times[0]])], list[int](), list[int]()
+    times, which, ends = [np.array([solution.times[0]])], list[Active](), list[int]()
     for piece in again.pieces:
         a, b = piece.times[0], piece.times[-1]
         count = max(4, int(np.ceil(MESH * (b - a) / whole)))
         times.append(np.linspace(a, b, count + 1)[1:])
-        which += [piece.constraint] * count
+        which += [piece.active] * count
         ends.append(len(which))
     return np.concatenate(times), which, ends
 
@@ -116,14 +117,19 @@ def _values(again: Replay, times: Array) -> Array:
     return np.array([np.interp(times, known, row) for row in rows])
 
 
-def _along(solution: Solution, t: Array, z: Array, which: list[int]) -> tuple[Array, Array, list[Array], list[Array]]:
+def _along(
+    solution: Solution, t: Array, z: Array, which: list[Active]
+) -> tuple[Array, Array, list[Array], list[Array]]:
     """Jacobians of the motion, second derivatives of H + eta g by state and control, and H_uu, at midpoints."""
     instance, n = solution.instance, len(solution.x)
     model, p, x, lam = instance.model, instance.parameters, z[:n], z[n:]
-    m, count, where = len(model.spec.controls), len(t), np.array(which)
-    u = np.empty((m, count))
-    for k in set(which):
-        u[:, where == k] = control(instance, k, t[where == k], z[:, where == k])
+    m, count = len(model.spec.controls), len(t)
+    u, eta = np.empty((m, count)), np.zeros((len(model.spec.path_constraints), count))
+    for active in set(which):
+        here = np.array([one == active for one in which])
+        u[:, here] = control(instance, active, t[here], z[:, here])
+        for k, row in zip(active, multipliers(instance, active, t[here], z[:, here]), strict=True):
+            eta[k, here] = row
     a = np.broadcast_to(np.asarray(model.jacobian_x_batch(t, x, u, p)).reshape(n, n, -1), (n, n, count))
     b = np.broadcast_to(np.asarray(model.jacobian_u_batch(t, x, u, p)).reshape(n, m, -1), (n, m, count))
 
@@ -133,16 +139,13 @@ def _along(solution: Solution, t: Array, z: Array, which: list[int]) -> tuple[Ar
         return np.concatenate([np.broadcast_to(by_x, x.shape), np.broadcast_to(by_u, u.shape)])
 
     table = _slopes(slopes, np.concatenate([x, u]))
-    for k in {one for one in which if one != FREE}:
+    for k in {one for active in which for one in active}:
 
         def pushes(y: Array, k: int = k) -> Array:
             by_x = gradient(instance, k, t, y[:n], y[n:])
             return np.concatenate([by_x, np.broadcast_to(effects(instance, t, y[:n], y[n:])[k], u.shape)])
 
-        active = where == k
-        eta = np.zeros(count)
-        eta[active] = multiplier(instance, k, t[active], z[:, active])
-        table += _slopes(pushes, np.concatenate([x, u])) * eta
+        table += _slopes(pushes, np.concatenate([x, u])) * eta[k]
     second = list(np.moveaxis((table + table.swapaxes(0, 1)) / 2, -1, 0))
     return np.moveaxis(a, -1, 0), np.moveaxis(b, -1, 0), second, [one[n:, n:] for one in second]
 
@@ -168,17 +171,19 @@ class Met:
     curved: Array
 
 
-def _met_at_ends(solution: Solution, again: Replay) -> list[Met | None]:
+def _met_at_ends(solution: Solution, again: Replay) -> list[list[Met]]:
     """What is met where each arc ends; at the end of the motion, which stays where it is, what pushes there."""
-    instance, names = solution.instance, [one.name for one in solution.instance.model.spec.path_constraints]
-    found: list[Met | None] = []
-    for event, piece, zeta in zip(within(solution), again.pieces, again.jumps, strict=False):
-        which, at = names.index(event.name), (piece.times[-1:], piece.z[:, -1:])
-        holding = holds_control(instance, which)  # which is kept by its control alone
-        found.append(None if holding else _met(instance, which, *at, float(zeta), event.kind == "touch"))
-    if again.pressed is not None:
-        end = again.pieces[-1].times[-1:], again.end[:, None]
-        found.append(_met(instance, pressing(solution), *end, again.pressed, touches=False))
+    instance, spec = solution.instance, solution.instance.model.spec.path_constraints
+    names = [one.name for one in spec]
+    found = list[list[Met]]()
+    for group, piece, jumps in zip(within(solution), again.pieces, again.jumps, strict=False):
+        at, touched = (piece.times[-1:], piece.z[:, -1:]), {e.name for e in group if e.kind == "touch"}
+        # what holds a control is kept by its control alone
+        own = {names.index(event.name) for event in group} | jumps.keys()
+        states = sorted(k for k in own if spec[k].order > 0)
+        found.append([_met(instance, k, *at, jumps.get(k, 0.0), names[k] in touched) for k in states])
+    end = again.pieces[-1].times[-1:], again.end[:, None]
+    found.append([_met(instance, k, *end, zeta, touches=False) for k, zeta in again.pressed.items()])
     return found
 
 

@@ -1,0 +1,267 @@
+"""Several constraints active at once: the control, the multipliers, and the field in which extremals move.
+
+Of one constraint these are derived and generated. Of several they follow from what is generated for each; beside a
+constraint on states only where H is quadratic in the controls. With W = H_uu and a row E_k of derivatives by the
+controls, of g_k where that holds a control and else of its last rate: those that hold controls push them by
+-W^-1 E' eta off the minimum of H. On boundaries of constraints on states the last rates vanish under that control, and
+stay so: of multipliers that follow from the last rate's own rates, those of order one enter the first of these, and
+those of order two the second. Rates are derivatives along the extremal, by complex steps and, where these are not
+analytic any more, by differences.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from satsym.arrays import Array
+from satsym.instance import Instance
+from satsym.kernels.evaluation import COMPLEX_STEP
+from satsym.solvers.constrained import arcs as one_by_one
+from satsym.solvers.constrained.law import by_newton, stationary
+from satsym.solvers.constrained.structure import Active
+
+STEP = 1e-2
+"""Of differences, relative to the time in which a state or a costate changes by its size."""
+
+EIGHTH = ((1, 4 / 5), (2, -1 / 5), (3, 4 / 105), (4, -1 / 280))
+"""Weights of central differences of order eight."""
+
+Rates = Callable[[NDArray[Any], NDArray[Any]], Array]
+
+
+def order(instance: Instance, constraint: int) -> int:
+    """Of a constraint."""
+    return instance.model.spec.path_constraints[constraint].order
+
+
+def analytic(instance: Instance, active: Active) -> bool:
+    """Whether complex steps may be taken through what is found here: where no complex step is taken within."""
+    orders = {order(instance, k) for k in active}
+    return len(active) < 2 or len(orders) == 1
+
+
+def control(instance: Instance, active: Active, t: Array, z: Array) -> Array:
+    """Controls, shape (m, N): the minimum of H among those that keep what holds controls."""
+    held = tuple(k for k in active if order(instance, k) == 0)
+    if len(held) < 2:
+        return one_by_one.control(instance, held[0] if held else one_by_one.NONE, t, z)
+    return Together(instance, held, t, z).control
+
+
+def field(instance: Instance, active: Active, t: Array, z: Array) -> Array:
+    """Rates of states and costates, shape (2n, N)."""
+    if len(active) < 2:
+        return one_by_one.field(instance, active[0] if active else one_by_one.NONE, t, z)
+    if stationary(instance) and any(order(instance, k) for k in active):
+        raise np.linalg.LinAlgError("constraints on states beside others, where H is not quadratic in the controls")
+    here = Together(instance, active, t, z)
+    return here.along(here.multipliers)
+
+
+def multipliers(instance: Instance, active: Active, t: Array, z: Array) -> Array:
+    """eta of each that is active, shape (k, N)."""
+    if len(active) < 2:
+        return np.array([one_by_one.multiplier(instance, k, t, z) for k in active]).reshape(len(active), len(t))
+    return Together(instance, active, t, z).multipliers
+
+
+def vanishing(instance: Instance, active: Active, constraint: int, t: Array, z: Array) -> Array:
+    """What of a constraint on states vanishes besides while these are active, shape (q, N)."""
+    if active == (constraint,):
+        return one_by_one.vanishing(instance, constraint, t, z)
+    return Together(instance, active, t, z).vanishing(constraint)
+
+
+def deciding(instance: Instance, active: Active, constraint: int, t: Array, z: Array) -> Array:
+    """What decides whether a constraint that holds a control is active, shape (N,): itself under the others alone."""
+    others = tuple(k for k in active if k != constraint)
+    x = z[: len(instance.initial)]
+    return one_by_one.values(instance, t, x, control(instance, others, t, z))[constraint]
+
+
+@dataclass(frozen=True, eq=False)
+class Together:
+    """Several constraints at times (N,), with states and costates (2n, N)."""
+
+    instance: Instance
+    active: Active
+    t: NDArray[Any]
+    z: NDArray[Any]
+
+    @property
+    def n(self) -> int:
+        """States."""
+        return len(self.instance.initial)
+
+    def _of_order(self, *wanted: int) -> list[int]:
+        return [k for k in self.active if order(self.instance, k) in wanted]
+
+    @cached_property
+    def curvature(self) -> Array:
+        """H_uu, shape (N, m, m): differences of H_u, which is linear in the controls."""
+        x, lam = self.z[: self.n], self.z[self.n :]
+        model, m = self.instance.model, len(self.instance.model.spec.controls)
+
+        def slope(u: Array) -> Array:
+            u = np.broadcast_to(u[:, None], (m, len(self.t)))
+            return np.broadcast_to(model.stationarity_batch(self.t, x, u, lam, self.instance.parameters), u.shape)
+
+        rest = slope(np.zeros(m))
+        return np.moveaxis(np.array([slope(unit) - rest for unit in np.eye(m)]), -1, 0).swapaxes(1, 2)
+
+    def effects(self, which: list[int]) -> Array:
+        """E of constraints, shape (N, k, m)."""
+        found, x, m = [], self.z[: self.n], len(self.instance.model.spec.controls)
+        held = one_by_one.effects(self.instance, self.t, x, np.zeros((m, len(self.t))))
+        rest = self._last_rates(which, np.zeros((m, len(self.t))))
+        rows = [self._last_rates(which, np.repeat(unit[:, None], len(self.t), axis=1)) - rest for unit in np.eye(m)]
+        for place, k in enumerate(which):
+            found.append(held[k] if order(self.instance, k) == 0 else np.array([row[place] for row in rows]))
+        return np.moveaxis(np.array(found), -1, 0)
+
+    def _last_rates(self, which: list[int], u: Array) -> Array:
+        """The last rates of constraints under controls, shape (k, N); of what holds controls it is the constraint."""
+        x, model = self.z[: self.n], self.instance.model
+        h = len(model.spec.path_constraints)
+        rates = np.asarray(model.path_rates_batch(self.t, x, u, self.instance.parameters))
+        rates = np.broadcast_to(rates.reshape(h, 2, -1), (h, 2, len(self.t)))
+        own, orders = one_by_one.values(self.instance, self.t, x, u), [order(self.instance, k) for k in which]
+        rows = [own[k] if q == 0 else rates[k, q - 1] for k, q in zip(which, orders, strict=True)]
+        return np.array(rows).reshape(len(which), len(self.t))
+
+    @cached_property
+    def _holding(self) -> tuple[Array, Array]:
+        """The control, shape (m, N), and multipliers of what holds it, shape (k, N)."""
+        free = one_by_one.control(self.instance, one_by_one.NONE, self.t, self.z)
+        which = self._of_order(0)
+        if stationary(self.instance):
+            return by_newton(self.instance, tuple(which), self.t, self.z)
+        if not which:
+            return free, np.zeros((0, len(self.t)))
+        effect = self.effects(which)
+        turned = np.linalg.solve(self.curvature, effect.swapaxes(1, 2))  # (N, m, k)
+        missed = self._last_rates(which, free)
+        eta = np.linalg.solve(effect @ turned, missed.T[..., None])
+        return free - (turned @ eta)[..., 0].T, eta[..., 0].T
+
+    @property
+    def control(self) -> Array:
+        """Shape (m, N)."""
+        return self._holding[0]
+
+    def along(self, eta: Array) -> Array:
+        """Rates of states and costates, shape (2n, N), with multipliers of all that are active, shape (k, N)."""
+        model, p, u = self.instance.model, self.instance.parameters, self.control
+        x, lam = self.z[: self.n], self.z[self.n :]
+        push = one_by_one.gradients(self.instance, self.t, x, u)[list(self.active)]
+        rates = (model.dynamics_batch(self.t, x, u, p), model.costate_rate_batch(self.t, x, u, lam, p))
+        moved, turned = (np.broadcast_to(rate, x.shape) for rate in rates)
+        return np.concatenate([moved, turned - np.einsum("kN,knN->nN", eta, push)])
+
+    @cached_property
+    def multipliers(self) -> Array:
+        """eta of all that are active, shape (k, N)."""
+        if self._of_order(1, 2) and analytic(self.instance, self.active):
+            return self._of_one_order
+        found = dict(zip(self._of_order(0), self._holding[1], strict=True))
+        found |= dict(zip(self._of_order(1), self._of_first_order, strict=True))
+        found |= dict(zip(self._of_order(2), self._of_second_order, strict=True))
+        return np.array([found[k] for k in self.active])
+
+    @property
+    def _of_one_order(self) -> Array:
+        """Of constraints on states of the same order: alone each obeys M_kk eta_k = -a_k, together M eta = -a."""
+        effect = self.effects(list(self.active))
+        gram = effect @ np.linalg.solve(self.curvature, effect.swapaxes(1, 2))
+        alone = np.array([one_by_one.multiplier(self.instance, k, self.t, self.z) for k in self.active])
+        needed = np.einsum("Nkk,kN->Nk", gram, alone)
+        return np.linalg.solve(gram, needed[..., None])[..., 0].T
+
+    @cached_property
+    def _partial(self) -> Array:
+        """Rates with the multipliers of what holds controls alone."""
+        return self.along(self._eta(self._holding[1], self._of_order(0)))
+
+    def _eta(self, found: Array, which: list[int]) -> Array:
+        """Multipliers of some in a table of all, the others zero."""
+        table = np.zeros((len(self.active), len(self.t)), np.result_type(found, float))
+        table[[self.active.index(k) for k in which]] = found
+        return table
+
+    def _pushes(self, which: list[int]) -> list[Array]:
+        """Directions in which multipliers turn costates, shape (2n, N) each."""
+        push = one_by_one.gradients(self.instance, self.t, self.z[: self.n], self.control)
+        return [np.concatenate([0.0 * push[k], -push[k]]) for k in which]
+
+    @cached_property
+    def _of_first_order(self) -> Array:
+        """Multipliers of constraints of order one: with them their rates stay as they are."""
+        if not (which := self._of_order(1)):
+            return np.zeros((0, len(self.t)))
+        rates = self._rates_of(which)
+        by_eta = np.array([_derivative(rates, self.t, self.z, 0.0, push) for push in self._pushes(which)])
+        drift = _derivative(rates, self.t, self.z, 1.0, self._partial)
+        return np.linalg.solve(by_eta.transpose(2, 1, 0), -drift.T[..., None])[..., 0].T
+
+    def _rates_of(self, which: list[int]) -> Rates:
+        """Last rates of some constraints at other places."""
+
+        def rates(t: NDArray[Any], z: NDArray[Any]) -> Array:
+            there = Together(self.instance, self.active, t, z)
+            return there._last_rates(which, there.control)
+
+        return rates
+
+    @cached_property
+    def _without_second(self) -> Array:
+        """Rates without the multipliers of constraints of order two."""
+        first = self._eta(self._of_first_order, self._of_order(1))
+        return self.along(self._eta(self._holding[1], self._of_order(0)) + first)
+
+    def _next(self, which: list[int]) -> Array:
+        """Rates of the last rates of constraints of order two, shape (k, N)."""
+        if not self._of_order(0, 1) and set(which) <= set(self.active):
+            known = [one_by_one.vanishing(self.instance, k, self.t, self.z)[1] for k in which]
+            return np.array(known).reshape(len(which), len(self.t))
+        return _derivative(self._rates_of(which), self.t, self.z, 1.0, self._without_second)
+
+    @cached_property
+    def _of_second_order(self) -> Array:
+        """Multipliers of constraints of order two, with which the rates of their last rates stay as they are."""
+        if not (which := self._of_order(2)):
+            return np.zeros((0, len(self.t)))
+
+        def rates(t: NDArray[Any], z: NDArray[Any]) -> Array:
+            return Together(self.instance, self.active, t, z)._next(which)
+
+        by_eta = np.array([_difference(rates, self.t, self.z, 0.0, push) for push in self._pushes(which)])
+        drift = _difference(rates, self.t, self.z, 1.0, self._without_second)
+        return np.linalg.solve(by_eta.transpose(2, 1, 0), -drift.T[..., None])[..., 0].T
+
+    def vanishing(self, constraint: int) -> Array:
+        """The last rate of a constraint on states, and of one of order two the rate of that, shape (q, N)."""
+        last = self._last_rates([constraint], self.control)
+        return last if order(self.instance, constraint) < 2 else np.concatenate([last, self._next([constraint])])
+
+
+def _derivative(function: Rates, t: Array, z: Array, dt: float, dz: Array) -> Array:
+    """Along a direction, by a complex step."""
+    step = COMPLEX_STEP
+    return np.imag(function(t + 1j * step * dt, z + 1j * step * dz)) / step
+
+
+def _difference(function: Rates, t: Array, z: Array, dt: float, dz: Array) -> Array:
+    """Along a direction, by central differences."""
+    n = len(z) // 2
+    size = np.abs(z).max(axis=1, keepdims=True)
+    for half in (slice(0, n), slice(n, 2 * n)):
+        size[half] = np.maximum(size[half], 1e-3 * max(float(size[half].max()), 1e-300))
+    step = STEP / max(float((np.abs(dz) / size).max()), 1e-300)
+    sides = ((w, function(t + s * k * step * dt, z + s * k * step * dz) * s) for k, w in EIGHTH for s in (1, -1))
+    return np.asarray(sum(w * value for w, value in sides) / step)
