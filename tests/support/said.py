@@ -16,7 +16,7 @@ HOLE = re.compile(r"<([a-z_]+)>")
 
 @cache
 def _trees() -> tuple[ast.Module, ...]:
-    own = [*SOURCE.rglob("*.py"), *(SOURCE.parent / "derivations").glob("*.py")]
+    own = [*SOURCE.rglob("*.py"), *(SOURCE.parent / "derivations").rglob("*.py")]
     return tuple(ast.parse(path.read_text("utf-8")) for path in sorted(own))
 
 

@@ -1,8 +1,8 @@
 """What is said on terminals and in pictures, in the language that was asked for.
 
 A message is written in English where it is made, with ``<name>`` where something is filled in. That text is the key of
-its translation in the file of a language, ``id.toml`` for Indonesian; English needs none. What has no translation
-stays English as a whole. The texts of documents have keys of their own, in :mod:`satsym.report.texts`.
+its translation in the folder of a language, ``id`` for Indonesian; English needs none. What has no translation stays
+English as a whole. The texts of documents have keys of their own, in :mod:`satsym.report.texts`.
 """
 
 from __future__ import annotations
@@ -150,21 +150,40 @@ def _filled(text: str, fill: Mapping[str, object]) -> str:
 @cache
 def translations(asked: str) -> Mapping[str, str]:
     """English -> that language; nothing where there is no file."""
-    return {english: text for texts in _groups(asked).values() for english, text in texts.items()}
+    found = dict(_of_models(asked))
+    for texts in _groups(asked).values():
+        found |= texts
+    return found
+
+
+def _of_models(asked: str) -> Iterator[tuple[str, str]]:
+    """Titles and meanings of shipped derivation files, as they have them in that language; no file is executed."""
+    import ast
+
+    from satsym import sources
+
+    for file in sources.shipped():
+        for statement in ast.parse(file.read_text(encoding="utf-8")).body:
+            match statement:
+                case ast.Assign(targets=[ast.Name(id="TRANSLATIONS")], value=table):
+                    yield from ast.literal_eval(table).get(asked, {}).items()
 
 
 @cache
 def _groups(asked: str) -> Mapping[str, Mapping[str, str]]:
-    """The same by group: ``said`` is looked up as it is, ``told`` is known again in whatever way it is filled in.
+    """The same by file.
 
-    So are ``items``, which lists in such texts consist of.
+    ``said`` and ``authored``, titles of shipped instances, are looked up as they are. ``told`` is known again in
+    whatever way it is filled in, and so are ``items``, which lists in such texts consist of.
     """
     import tomllib  # nothing of this for English
     from pathlib import Path
 
-    file = Path(__file__).with_name(f"{asked}.toml")
-    groups = tomllib.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
-    return {name: {k: v for table in tables.values() for k, v in table.items()} for name, tables in groups.items()}
+    found = {}
+    for file in (Path(__file__).parent / asked).glob("*.toml"):
+        tables = tomllib.loads(file.read_text(encoding="utf-8")).values()
+        found[file.stem] = {english: text for table in tables for english, text in table.items()}
+    return found
 
 
 @cache
