@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import shutil
 import sys
 import tempfile
+from contextlib import suppress
 from pathlib import Path
 
 
@@ -36,3 +38,29 @@ def write(path: Path, content: bytes) -> None:
         Path(name).replace(path)
     except OSError:
         return
+
+
+def used(place: Path) -> None:
+    """Note that a folder is of use, for :func:`prune`."""
+    with suppress(OSError):
+        os.utime(place)
+
+
+def prune(parent: Path, most: int, left: Path) -> None:
+    """Remove the folders in a folder that were used longest ago, until the others have no more than so many bytes.
+
+    Parameters
+    ----------
+    left
+        The one that stays in any case.
+    """
+    ages: list[tuple[float, int, Path]] = []
+    with suppress(OSError):
+        for one in parent.iterdir():
+            if one.is_dir():
+                ages.append((one.stat().st_mtime, sum(file.stat().st_size for file in one.iterdir()), one))
+    total = 0
+    for _, size, one in sorted(ages, key=lambda each: (each[2] != left, -each[0])):
+        total += size
+        if total > most and one != left:
+            shutil.rmtree(one, ignore_errors=True)

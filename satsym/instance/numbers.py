@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING, Any
 
+from satsym.instance.control import MAX_NORM
 from satsym.instance.resolve import parameters, quantity, time, value_of
 from satsym.spec import ProblemSpec, Variable
 from satsym.status import BadInput
@@ -25,6 +26,10 @@ class Table(str, Enum):
     PARAMETERS = "parameters"
     TIME = "time"
     CONTROL = "control"
+
+
+SIDES = ("lower", "upper")
+"""Of bounds on one control, as ``control.u1.lower``."""
 
 
 @dataclass(frozen=True)
@@ -65,8 +70,8 @@ class Key:
         if self.table is Table.TIME:
             return time(given, place, spec)
         if self.table is Table.CONTROL:
-            number = quantity(given, spec.controls[0].unit, place)
-            if number <= 0.0:
+            number = quantity(given, self.unit(spec), place)
+            if self.name == MAX_NORM and number <= 0.0:
                 raise BadInput(f"{place}: {shown(given)} leaves no control; write a positive number")
             return number
         return value_of(self._variable(spec), given, place)
@@ -87,7 +92,10 @@ class Key:
         if self.table is Table.TIME:
             return instance.t0 if self.name == "t0" else instance.tf
         if self.table is Table.CONTROL:
-            return instance.max_norm
+            if self.name == MAX_NORM:
+                return instance.max_norm
+            bound = float(getattr(instance, self.side)[self._control(spec)])
+            return bound if math.isfinite(bound) else None
         if self.table is Table.FINAL:
             found = instance.final.get(self.name)
             return found if isinstance(found, float) else None
@@ -108,7 +116,16 @@ class Key:
         """Its unit; of times nothing, for the model says what it counts them in."""
         if self.table is Table.TIME:
             return ""
-        return spec.controls[0].unit if self.table is Table.CONTROL else self._variable(spec).unit
+        return spec.controls[self._control(spec)].unit if self.table is Table.CONTROL else self._variable(spec).unit
+
+    @property
+    def side(self) -> str:
+        """Of a bound of one control, ``lower`` or ``upper``."""
+        return self.name.rpartition(".")[2]
+
+    def _control(self, spec: ProblemSpec) -> int:
+        """The place of the control that is bounded, the first one's of all."""
+        return 0 if self.name == MAX_NORM else spec.control_names.index(self.name.rpartition(".")[0])
 
     def _variable(self, spec: ProblemSpec) -> Variable:
         variables = spec.parameters if self.table is Table.PARAMETERS else spec.states
@@ -122,8 +139,11 @@ def placed(instance: Instance, values: Mapping[Key, float]) -> Instance:
         match key.table:
             case Table.TIME:
                 fields[key.name] = value
-            case Table.CONTROL:
+            case Table.CONTROL if key.name == MAX_NORM:
                 fields["max_norm"] = value
+            case Table.CONTROL:
+                row = fields.get(key.side, getattr(instance, key.side))
+                fields[key.side] = _with(row, spec.control_names.index(key.name.rpartition(".")[0]), value)
             case Table.FINAL:
                 fields["final"] = {**fields.get("final", instance.final), key.name: value}
             case Table.INITIAL:
@@ -146,10 +166,18 @@ def known(spec: ProblemSpec) -> Iterator[Key]:
         (Table.PARAMETERS, spec.parameter_names),
         (Table.TIME, ("tf", "t0")),
         (Table.FINAL, spec.state_names),
-        (Table.CONTROL, ("max_norm",) if spec.control_set == "ball" else ()),
+        (Table.CONTROL, (MAX_NORM,) if spec.control_set == "ball" else ()),
+        (Table.CONTROL, tuple(f"{name}.{side}" for name in _in_boxes(spec) for side in SIDES)),
     ):
         for name in names:
             yield Key(table, name)
+
+
+def _in_boxes(spec: ProblemSpec) -> tuple[str, ...]:
+    """Controls that have bounds of their own."""
+    if spec.control_parts:
+        return tuple(name for part in spec.control_parts if part.kind == "box" for name in part.controls)
+    return spec.control_names if spec.control_set == "box" else ()
 
 
 def find(text: str, instance: Instance) -> Key:
@@ -210,6 +238,9 @@ def at(instance: Instance, keys: tuple[Key, ...], values: tuple[float, ...]) -> 
     found = placed(found, {key: key.value(value, spec) for key, value in ends.items()})
     if any(key.table is Table.PARAMETERS for key in keys):
         parameters(dict(zip(spec.parameter_names, found.parameters, strict=True)), spec)
+    for name, low, high in zip(spec.control_names, found.lower, found.upper, strict=True):
+        if low > high:
+            raise BadInput(f"control.{name}: lower bound {low:g} is above the upper one, {high:g}; exchange them")
     if instance.continuation:
         ways = [replace(one, end=ends.get(one.key, one.end)) for one in instance.continuation]
         found = replace(found, continuation=tuple(one for one in ways if one.begin != one.end))

@@ -50,7 +50,7 @@ Together = Callable[[Task, Sequence[Instance]], Found]
 
 def together(task: Task) -> Together | None:
     """How rows are solved as columns of arrays; ``None`` where they are not: never where trajectories are kept."""
-    stays = all(key.table in (Table.INITIAL, Table.FINAL, Table.PARAMETERS) for key in task.keys)
+    stays = all(key.table is not Table.TIME for key in task.keys)
     wanted = task.command is Command.SOLVE and task.checked is not Checked.FULL and not task.trajectories
     if not (wanted and stays):
         return None

@@ -131,6 +131,25 @@ def test_linear_problems_and_regulators_are_found_together(monkeypatch: pytest.M
         assert float(one.numbers["riccati_residual"] or 0.0) < 1e-12
 
 
+def test_bounds_of_single_controls_vary_and_each_row_is_judged_by_its_own() -> None:
+    """Without bounds the largest second thrust of these two returns is 0.0726 and 0.0116."""
+    bounded = "return-to-orbit-005"
+    written = instance.read(bounded)
+    said = {"vary": {"initial.r": "1.02:1.06:2", "control.u2.upper": "0.04:0.12:2"}}
+    study = asking(written, written.instance(), said, bounded)
+    assert together(study.task)
+    found = computed(study)
+    assert {row.status for row in found} == {"converged"}
+    case, values = instance.load(bounded), study.design.rows(0, 4).tolist()
+    alone = [row.numbers["origin"] == "single solver" for row in found]
+    assert alone == [r < 1.04 and upper < 0.07 for r, upper in values]
+    for row, (r, upper) in zip(found, values, strict=True):
+        own = replace(case, initial=(r, *case.initial[1:]), upper=(case.upper[0], upper))
+        assert row.numbers["objective"] == pytest.approx(solvers.solve(own, examined=False).objective, rel=1e-8)
+    with pytest.raises(BadInput, match="is above the upper one"):
+        asking(written, written.instance(), {"vary": {"control.u2.lower": "0:9:2"}}, bounded)
+
+
 def test_workers_change_no_byte(tmp_path: Path) -> None:
     study = asked(**SAMPLE | {"certificate": "local"})
     for name, count in (("one", 1), ("two", 2)):

@@ -28,6 +28,10 @@ FAST = {"contract", "nsz", "arcp"}
 """What compilers may do to sums and products; never assume that numbers are finite, for whether they are is asked."""
 
 
+MOST_KEPT = 500 * 10**6
+"""Bytes of machine code that are kept: what was used longest ago is removed when more is made."""
+
+
 def able() -> bool:
     """Whether there is a compiler."""
     return find_spec("numba") is not None
@@ -67,6 +71,8 @@ def compiled(name: str, text: str) -> Mapping[str, Any]:
     path = kept.folder("kernels") / f"{name}-{digest}" / "columns.py"
     if kept.read(path) != text.encode():
         kept.write(path, text.encode())
+        kept.prune(kept.folder("kernels"), MOST_KEPT, path.parent)
+    kept.used(path.parent)
     keeps = kept.read(path) == text.encode() and _writable(path.parent)
     if not any(path.parent.glob("__pycache__/*.nbi")):  # numba keeps machine code there
         activity.tell(f"compiling {name}, which happens once ...")

@@ -14,7 +14,7 @@ from typing import IO, Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from satsym.instance.numbers import Table
+from satsym.instance.numbers import SIDES, Table
 from satsym.report.results.files import Content
 from satsym.report.results.unit_names import COST, per, units
 from satsym.spec import ProblemSpec
@@ -94,6 +94,8 @@ def _units(spec: ProblemSpec) -> Iterator[tuple[str, str | None]]:
         yield f"drift.{v.symbol}", v.unit
     if spec.controls:
         yield f"{Table.CONTROL.value}.max_norm", spec.controls[0].unit
+    for v in spec.controls:
+        yield from ((f"{Table.CONTROL.value}.{v.symbol}.{side}", v.unit) for side in SIDES)
 
 
 def columns(path: Path, chosen: Callable[[list[str]], Iterable[str]] = lambda names: names) -> dict[str, NDArray[Any]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +25,7 @@ FINER = 2
 
 @dataclass(frozen=True, eq=False)
 class Many:
-    """M instances whose ends and times are given, without bounds."""
+    """M instances whose ends and times are given, solved without their bounds."""
 
     problem: TwoPoint
     """Of the instance that they vary: scales, times and what else all share."""
@@ -39,6 +40,10 @@ class Many:
     """Nodes in [0, 1], shape (N+1,), the same for all."""
     condense: Condensing
     """How nodes follow from the first one."""
+    lower: Array
+    upper: Array
+    radius: Array
+    """Bounds on controls, shapes (m, M), and on their norm, shape (M,), by which solutions are judged."""
 
     @classmethod
     def of(cls, instance: Instance, instances: Sequence[Instance], compiled: bool) -> Many:
@@ -58,6 +63,9 @@ class Many:
             parameters,
             mesh,
             condensing(problem.states, compiled),
+            np.array([one.lower for one in instances]).reshape(len(instances), -1).T,
+            np.array([one.upper for one in instances]).reshape(len(instances), -1).T,
+            np.array([one.max_norm for one in instances]),
         )
 
     @property
@@ -96,9 +104,11 @@ class Many:
         """Some of them."""
         if len(chosen) == self.count:
             return self
-        own = (np.ascontiguousarray(rows[:, chosen]) for rows in (self.initial, self.end, self.parameters))
-        initial, end, parameters = own
-        return replace(self, initial=initial, end=end, parameters=parameters)
+        columns: dict[str, Any] = {
+            name: np.ascontiguousarray(getattr(self, name)[..., chosen])
+            for name in ("initial", "end", "parameters", "lower", "upper", "radius")
+        }
+        return replace(self, **columns)
 
     def segments(self, z: Array) -> tuple[Array, Array, Array, Array]:
         """Arguments of steps over all segments, a column for each of each instance.

@@ -131,6 +131,6 @@ def bounds_met(many: Many, z: Array) -> NDArray[np.bool_]:
     moved[:, 1:] = np.abs(np.diff(u, axis=1))
     moved[:, :-1] = np.maximum(moved[:, :-1], moved[:, 1:])
     if within.kind == "ball":
-        return np.asarray((np.linalg.norm(np.abs(u) + moved, axis=0) >= within.radius).any(axis=0))
-    low, high = (np.array(side).reshape(-1, 1, 1) for side in within.box)
+        return np.asarray((np.linalg.norm(np.abs(u) + moved, axis=0) >= many.radius).any(axis=0))
+    low, high = many.lower[:, None], many.upper[:, None]
     return np.asarray(((u - moved <= low) | (u + moved >= high)).any(axis=(0, 1)))
