@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from satsym.report.latex import boundary_value, checks, preamble, tex
+from satsym.report.latex.figure import figure
 from satsym.report.latex.references import cited
 from satsym.report.latex.statement import statement
 from satsym.report.latex.steps import Context, Shown, conclusion, numbers_of, quantities, shown
@@ -91,7 +92,9 @@ class _Composer:
 
     def paragraphs(self) -> list[str]:
         """Everything from the statement to what it leads to."""
-        done = [self._section(self._sections[0]), *self._declared.paragraphs, self._section("motion")]
+        drawn = figure(self._derivation.model, self._texts)
+        done = [self._section(self._sections[0]), *self._declared.paragraphs, *([drawn] if drawn else [])]
+        done.append(self._section("motion"))
         for step in self._derivation.steps:
             if step.name in SECTION_FROM:
                 done += self._opening(SECTION_FROM[step.name])

@@ -1,0 +1,89 @@
+"""The geometry of a model as a TikZ picture."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from math import cos, degrees, hypot, sin
+
+from satsym.report.latex.tex import escape
+from satsym.report.texts import Texts
+from satsym.symbolic.latex.geometry import Arrow, Picture, Place, picture
+from satsym.symbolic.model import Model
+
+SIZE = 2.6
+"""Distance of the body from the centre, in cm."""
+
+_WORD = re.compile(r"\\text\{([^}]*)\}")
+
+
+def figure(model: Model, texts: Texts) -> str:
+    """A figure with its caption; empty for a model that declares no geometry that is known to be drawn."""
+    found = picture(model)
+    if found is None:
+        return ""
+    lines = "\n".join(f"  {line};" for line in DRAWN[found.kind](found))
+    lines = _WORD.sub(lambda word: rf"\text{{{escape(texts.phrase(word[1]))}}}", lines)
+    caption = texts.get("figures", found.kind) + (f" {texts.get('figures', 'path')}" if found.path else "")
+    return (
+        f"\\begin{{figure}}[htb]\n\\centering\n\\begin{{tikzpicture}}[>=stealth]\n{lines}\n\\end{{tikzpicture}}\n"
+        f"\\caption{{{caption}}}\n\\end{{figure}}"
+    )
+
+
+def _space(shown: Picture) -> Iterator[str]:
+    """Inertial axes, the reference, and arrows with their names."""
+    first, *others = shown.arrows
+    scale = SIZE / hypot(*first.end)
+    far = 1.25 * SIZE
+    yield rf"\draw[->,black!50] (0,0) -- ({far:.2f},0)"
+    yield rf"\draw[->,black!50] (0,0) -- (0,{far:.2f})"
+    if shown.path:
+        yield r"\draw[dashed,black!50] plot[smooth] coordinates {" + " ".join(_at(p, scale) for p in shown.path) + "}"
+    yield rf"\draw (0,0) -- {_at(first.end, scale)}" + (
+        rf" node[midway,above left] {_names(first)}" if first.labels else ""
+    )
+    if shown.angle:
+        turn, name = degrees(shown.angle[0]), shown.angle[1]
+        yield rf"\draw[->] (0.9,0) arc (0:{turn:.1f}:0.9)"
+        yield rf"\node at ({turn / 2:.1f}:1.15) {{${name}$}}"
+    for arrow in others:
+        start, end = _at(arrow.start, scale), _at(arrow.end, scale)
+        yield rf"\draw[->,thick] {start} -- {end} node[{_side(arrow)}] {_names(arrow)}"
+    yield rf"\fill (0,0) circle (1.5pt) {_at(first.end, scale)} circle (2pt)"
+
+
+def _bodies(shown: Picture) -> Iterator[str]:
+    """Concentric bodies, each with the sense of its turn, and the angle from its reference direction."""
+    for k, name in enumerate(shown.bodies):
+        radius = SIZE * (len(shown.bodies) - k) / (len(shown.bodies) + 0.5)
+        yield rf"\draw (0,0) circle ({radius:.2f})"
+        yield rf"\draw[->,thick] (100:{radius:.2f}) arc (100:150:{radius:.2f})"
+        yield rf"\node[above] at (-90:{radius:.2f}) {{$\omega_{{\text{{{name}}}}}$}}"
+    if shown.angle:
+        turn, name = degrees(shown.angle[0]), shown.angle[1]
+        far, arc = 1.25 * SIZE, 1.1 * SIZE
+        yield rf"\draw[dashed,black!50] (0,0) -- ({far:.2f},0)"
+        yield rf"\draw (0,0) -- ({far * cos(shown.angle[0]):.2f},{far * sin(shown.angle[0]):.2f})"
+        yield rf"\draw[->] ({arc:.2f},0) arc (0:{turn:.1f}:{arc:.2f}) node[midway,right] {{${name}$}}"
+    yield r"\fill (0,0) circle (1.5pt)"
+
+
+DRAWN: dict[str, Callable[[Picture], Iterator[str]]] = {"motion": _space, "deviations": _space, "bodies": _bodies}
+
+
+def _at(place: Place, scale: float) -> str:
+    x, y = (round(scale * part, 3) + 0.0 for part in place)
+    return f"({x:.3f},{y:.3f})"
+
+
+def _names(arrow: Arrow) -> str:
+    return "{$" + r",\, ".join(arrow.labels) + "$}"
+
+
+def _side(arrow: Arrow) -> str:
+    """Where the name of an arrow stands: on from its head, or beside one that points back to the centre."""
+    x, y = (b - a for a, b in zip(arrow.start, arrow.end, strict=True))
+    if x * arrow.start[0] + y * arrow.start[1] < 0 and abs(x * arrow.start[1] - y * arrow.start[0]) < 1e-6:
+        return "below right"
+    return f"{'above' if y > 0 else 'below'} {'right' if x > 0 else 'left'}"

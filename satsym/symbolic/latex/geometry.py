@@ -1,0 +1,169 @@
+"""The geometry that a model declares, as points and arrows of a picture: nothing in it is assumed.
+
+A particle in a plane has its position, unit vectors and forces; deviations from its reference are arrows along which
+they move it; bodies that turn about one axis have their angle and the sense of their turns.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from math import atan2, hypot, isclose, pi
+from typing import Any
+
+import sympy as sp
+
+from satsym.symbolic.kinds.gyrostat import Gyrostat
+from satsym.symbolic.kinds.linearised import Linearised
+from satsym.symbolic.kinds.newton import Newton
+from satsym.symbolic.kinds.reduced import Reduced
+from satsym.symbolic.model import Model, symbols_of, t, variables_of
+
+Place = tuple[float, float]
+
+TIME, ANGLE, BEYOND = 0.6, 0.75, 1.3
+"""When the reference is shown, what an angle is drawn as, and how far off the reference what is positive is drawn."""
+CURVE = tuple(2 * pi * k / 48 for k in range(49))
+"""Times at which the path of the reference is drawn."""
+
+
+@dataclass(frozen=True)
+class Arrow:
+    """From where and where to, with the names of what points there, as LaTeX."""
+
+    start: Place
+    end: Place
+    labels: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Picture:
+    """What is drawn, in a unit of length that suits it.
+
+    Attributes
+    ----------
+    kind
+        Key of what it shows: a motion, deviations, bodies.
+    path
+        Points of the reference.
+    arrows
+        From the centre, and where the body is.
+    angle
+        That of the body as seen from the centre, and its name; none if no coordinate is that angle.
+    bodies
+        Names of concentric bodies.
+    """
+
+    kind: str
+    path: tuple[Place, ...] = ()
+    arrows: tuple[Arrow, ...] = ()
+    angle: tuple[float, str] | None = None
+    bodies: tuple[str, ...] = ()
+
+
+def picture(model: Model) -> Picture | None:
+    """The picture of a model, if it declares one."""
+    if isinstance(model, Reduced):
+        return picture(model.of)
+    if isinstance(model, Gyrostat):
+        angles = [v for v in model.states if v.symbol in {s.name for s in model.angles}]
+        return Picture("bodies", angle=(ANGLE, angles[0].latex), bodies=tuple(model.bodies)) if angles else None
+    if isinstance(model, Linearised) and isinstance(model.of, Newton):
+        return _deviations(model, model.of)
+    if isinstance(model, Newton) and len(model.position) == 2:
+        return _motion(model)
+    return None
+
+
+def _motion(model: Newton) -> Picture | None:
+    values = _values(model)
+    moving = symbols_of(v for v in model.states if v.positive)
+    values |= {s: values[s] * BEYOND for s in moving}
+    place = _at(model.position, values)
+    if hypot(*place) == 0:
+        return None
+    pointing: dict[Place, list[str]] = {}
+    for direction, label in _labelled(model):
+        x, y = _at(direction, values)
+        if size := hypot(x, y):
+            pointing.setdefault((round(x / size, 6), round(y / size, 6)), []).append(label)
+    size = 0.45 * hypot(*place)
+    arrows = [Arrow((0, 0), place, (_distance(model, values, place),))]
+    arrows += [
+        Arrow(place, (place[0] + size * x, place[1] + size * y), tuple(labels)) for (x, y), labels in pointing.items()
+    ]
+    return Picture("motion", _path(model), tuple(arrows), _angle(model, values, place))
+
+
+def _labelled(model: Newton) -> Iterator[tuple[Any, str]]:
+    """Unit vectors; forces, those of one control by its name."""
+    latex = {v.symbol: v.latex for v in model.controls}
+    for name, direction in model.directions.items():
+        yield direction, model.names(None)[name]
+    for name, force in model.forces.items():
+        controls = [latex[s.name] for s in sp.Matrix(force).free_symbols if s.name in latex]
+        if len(controls) < 2:
+            yield force, controls[0] if controls else rf"\mathbf{{F}}_{{\text{{{name}}}}}"
+
+
+def _distance(model: Newton, values: Mapping[sp.Symbol, Any], place: Place) -> str:
+    """The coordinate that is the distance from the centre, or else the position vector."""
+    lengths = [v for v in model.states if isclose(float(values[symbols_of((v,))[0]]), hypot(*place), rel_tol=1e-9)]
+    return lengths[0].latex if len(lengths) == 1 else r"\mathbf{r}"
+
+
+def _angle(model: Newton, values: Mapping[sp.Symbol, Any], place: Place) -> tuple[float, str] | None:
+    angles = [v for v in model.states if v.kind == "angle"]
+    seen = atan2(place[1], place[0])
+    return next(((seen, v.latex) for v in angles if isclose(float(values[symbols_of((v,))[0]]), seen)), None)
+
+
+def _deviations(model: Linearised, of: Newton) -> Picture | None:
+    """Where each deviation alone moves the body, to first order, from a point of the reference."""
+    old, new = symbols_of(of.states), symbols_of(model.states)
+    values = _values(of) | {s: sp.sympify(model.about[s]).subs(_numbers(of)).subs(t, TIME) for s in old}
+    changes = sp.Matrix([model.deviations[s] for s in new]).jacobian(old).subs(values)
+    if changes.rows != changes.cols or changes.det() == 0:
+        return None
+    moves = of.position.jacobian(old).subs(values) * changes.inv()
+    place, heights = _at(of.position, values), of.position[2:]
+    if any(sp.sympify(height).subs(model.about).subs(values) != 0 for height in heights):
+        return None  # the reference does not lie in the plane of the picture
+    far = 0.45 * hypot(*place)
+    arrows = [Arrow((0, 0), place, ())]
+    for k, v in enumerate(model.states):
+        x, y = (float(moves[i, k]) for i in range(2))
+        if size := hypot(x, y):
+            arrows.append(Arrow(place, (place[0] + far * x / size, place[1] + far * y / size), (v.latex,)))
+    return Picture("deviations", _path(of, model.about), tuple(arrows)) if hypot(*place) and len(arrows) > 1 else None
+
+
+def _path(model: Newton, about: Mapping[sp.Symbol, Any] | None = None) -> tuple[Place, ...]:
+    """The reference, at even steps of time."""
+    curve = about or model.reference
+    if not curve:
+        return ()
+    position = model.position.subs(curve).subs(_numbers(model))
+    return tuple(_at(position, {t: time}) for time in CURVE)
+
+
+def _numbers(model: Model) -> dict[sp.Symbol, Any]:
+    """What parameters are by default, one where they have none, and the constants that follow."""
+    numbers: dict[sp.Symbol, Any] = {
+        s: 1 if v.default is None else v.default
+        for s, v in zip(symbols_of(model.parameters), model.parameters, strict=True)
+    }
+    return numbers | {symbols_of((d.variable,))[0]: d.value.subs(numbers) for d in model.definitions}
+
+
+def _values(model: Model) -> dict[sp.Symbol, Any]:
+    """Numbers for all that moves: those of the reference where there is one."""
+    numbers = _numbers(model) | {t: TIME}
+    everything = variables_of(model)
+    values = {s: ANGLE if v.kind == "angle" else 1 for s, v in zip(symbols_of(everything), everything, strict=True)}
+    return values | numbers | {s: sp.sympify(c).subs(numbers) for s, c in model.reference.items()}
+
+
+def _at(vector: Any, values: Mapping[sp.Symbol, Any]) -> Place:
+    x, y = (float(part) for part in sp.Matrix(vector).subs(values)[:2])
+    return x, y

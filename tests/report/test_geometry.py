@@ -1,0 +1,69 @@
+"""The picture of a model shows what the model declares, and models that declare no geometry have none."""
+
+from __future__ import annotations
+
+from math import atan2, hypot, isclose
+
+import pytest
+
+from satsym.report.latex.figure import figure
+from satsym.report.texts import load
+from satsym.symbolic import Model, Problem
+from satsym.symbolic.latex.geometry import Arrow, picture
+from tests.support.derived import stated
+
+
+def model(name: str) -> Model:
+    subject = stated(name)
+    return subject.model if isinstance(subject, Problem) else subject
+
+
+def turn(arrow: Arrow) -> float:
+    """Direction of an arrow, as an angle."""
+    return atan2(arrow.end[1] - arrow.start[1], arrow.end[0] - arrow.start[0])
+
+
+def named(name: str) -> dict[str, Arrow]:
+    found = picture(model(name))
+    assert found
+    return {label: arrow for arrow in found.arrows for label in arrow.labels}
+
+
+def test_thrust_points_along_the_unit_vectors_and_gravity_to_the_centre() -> None:
+    arrows, found = named("polar_orbit"), picture(model("polar_orbit"))
+    place = arrows["r"].end
+    seen = atan2(place[1], place[0])
+    assert found
+    assert found.angle == (seen, r"\theta")
+    assert isclose(turn(arrows[r"\mathbf{e}_{r}"]), seen, rel_tol=1e-5)
+    assert arrows["u_1"] == arrows[r"\mathbf{e}_{r}"]
+    assert isclose(turn(arrows["u_2"]) - seen, 1.5707963, rel_tol=1e-5)
+    pull = arrows[r"\mathbf{F}_{\text{gravity}}"]
+    assert hypot(*pull.end) < hypot(*place)
+    assert isclose(pull.end[0] * place[1], pull.end[1] * place[0], rel_tol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("name", "outwards", "ahead"), [("clohessy_wiltshire", "x_1", "x_3"), ("hill", r"\xi", r"\eta")]
+)
+def test_deviations_move_the_body_outwards_and_ahead(name: str, outwards: str, ahead: str) -> None:
+    arrows = named(name)
+    assert set(arrows) == {outwards, ahead}
+    place = arrows[outwards].start
+    assert isclose(turn(arrows[outwards]), atan2(place[1], place[0]))
+    assert isclose(turn(arrows[ahead]) - turn(arrows[outwards]), 1.5707963, rel_tol=1e-5)
+
+
+def test_the_reference_passes_where_deviations_begin() -> None:
+    found = picture(model("clohessy_wiltshire"))
+    assert found
+    assert all(isclose(hypot(*place), 1) for place in (*found.path, found.arrows[1].start))
+
+
+def test_words_are_those_of_the_language() -> None:
+    assert "gravitasi" in figure(model("polar_orbit"), load("id").with_own({"phrases": {"gravity": "gravitasi"}}))
+
+
+@pytest.mark.parametrize("name", ["van_der_pol", "two_body", "goddard", "gyrostat_linear"])
+def test_no_geometry_is_invented(name: str) -> None:
+    assert figure(model(name), load("en")) == ""
