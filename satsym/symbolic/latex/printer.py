@@ -89,7 +89,7 @@ class Printer(LatexPrinter):
         below = take_apart(summands[0]).number_below
         negative = all(map(is_negative, summands))
         inner = sp.Add(*((-below if negative else below) * s for s in summands))
-        return self._with_sum(negative, rf"\tfrac{{1}}{{{below}}}", inner, "", _names(inner))
+        return self._with_sum(negative, rf"\tfrac{{1}}{{{below}}}", inner, "")
 
     def _summand_order(self, summand: sp.Expr) -> tuple[Any, ...]:
         """Fewer costates first, then in the order of costates and directions; controls and fractions last."""
@@ -114,9 +114,9 @@ class Printer(LatexPrinter):
         return self._term(expr).signed(first=True)
 
     def _term(self, expression: sp.Expr) -> Term:
-        parts, names = take_apart(expression), _names(expression)
+        parts = take_apart(expression)
         if not parts.top and not parts.bottom:
-            return _whole(parts.negative, self._fraction_of_numbers(parts), names)
+            return _whole(parts.negative, self._fraction_of_numbers(parts))
         negative, top = parts.negative, sorted(parts.top, key=self._factor_order)
         sums = [f for f in top if f.is_Add]
         last = Kind.FUNCTION if sums and not parts.bottom else Kind.DIRECTION
@@ -128,19 +128,19 @@ class Printer(LatexPrinter):
         plain = [f for f in others if f not in functions]
         whole = f"{self._over(parts, [*plain, *sums, *functions])} {tail}".strip()
         if len(sums) != 1 or small_fraction:
-            return _whole(negative, whole, names)
+            return _whole(negative, whole)
         (inner,) = sums
-        broken = self._with_sum(negative, self._over(parts, others, alone=False), inner, tail, names)
+        broken = self._with_sum(negative, self._over(parts, others, alone=False), inner, tail)
         if others and any(base(f).is_Add for f in parts.bottom):
-            return Term(negative, whole, broken.pieces, names)
+            return Term(negative, whole, broken.pieces)
         if parts.bottom and parts.number == 1 and all(self._rank(base(f))[0] is Kind.COSTATE for f in others):
             with self._inside():
                 above = self._print(inner)
             tex = rf"{self._product(others)} \frac{{{above}}}{{{self._below(parts)}}} {tail}".strip()
-            return Term(negative, tex, broken.pieces, names)
+            return Term(negative, tex, broken.pieces)
         return broken
 
-    def _with_sum(self, negative: bool, head: str, inner: sp.Expr, tail: str, names: frozenset[str]) -> Term:
+    def _with_sum(self, negative: bool, head: str, inner: sp.Expr, tail: str) -> Term:
         """``head (sum) tail``, with the places inside the sum where it may be broken."""
         terms = self.terms(inner)
         whole = joined(terms)
@@ -148,7 +148,7 @@ class Printer(LatexPrinter):
         pieces = [Piece(p.tex, p.depth + 1) for k, t in enumerate(terms) for p in t.signed_pieces(first=k == 0)]
         pieces[0] = Piece(f"{head} {opening}{pieces[0].tex}".strip())
         pieces[-1] = Piece(f"{pieces[-1].tex}{closing} {tail}".strip(), pieces[-1].depth)
-        return Term(negative, f"{head} {opening}{whole}{closing} {tail}".strip(), tuple(pieces), names)
+        return Term(negative, f"{head} {opening}{whole}{closing} {tail}".strip(), tuple(pieces))
 
     def _over(self, parts: Product, factors: Sequence[sp.Expr], alone: bool = True) -> str:
         """Number and factors over what is below the line; ``alone`` if no sum in parentheses follows."""
@@ -339,12 +339,8 @@ def _plus_first(summands: Sequence[sp.Expr]) -> list[sp.Expr]:
     return [*_plus_first(rest), first] if first.is_number else [plus, *(s for s in summands if s is not plus)]
 
 
-def _whole(negative: bool, tex: str, names: frozenset[str]) -> Term:
-    return Term(negative, tex, (Piece(tex),), names)
-
-
-def _names(expression: sp.Expr) -> frozenset[str]:
-    return frozenset(s.name for s in expression.free_symbols)
+def _whole(negative: bool, tex: str) -> Term:
+    return Term(negative, tex, (Piece(tex),))
 
 
 def _escaped(name: str) -> str:

@@ -24,8 +24,6 @@ class Term:
     """The term without its sign."""
     pieces: tuple[Piece, ...]
     """The same in pieces, for a term that is too long for a line."""
-    names: frozenset[str] = frozenset()
-    """Names of the symbols in it."""
 
     def signed(self, *, first: bool) -> str:
         """With its sign, as the first term of a sum or a later one."""
