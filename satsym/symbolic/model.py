@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from satsym.symbolic.derivation import Derivation, Step
     from satsym.symbolic.dimension_algebra import Dimension
     from satsym.symbolic.equilibria.rest import Rest
+    from satsym.symbolic.motion.geometry import Picture
 
 MaybeStep: TypeAlias = "Callable[[Derivation], Step | None]"
 """A pure function from what has been derived to the next step; ``None`` where it does not apply to the model."""
@@ -220,6 +221,10 @@ class Model:
     def statement(self) -> tuple[Paragraph, ...]:
         """What a report states of the motion before anything is derived, besides variables, constants and outputs."""
         return ()
+
+    def picture(self) -> Picture | None:
+        """Its geometry as a picture; ``None`` where it declares none that is known to be drawn."""
+        return None
 
     def declared(self) -> dict[str, sp.Expr | sp.Matrix]:
         """What the address ``model:declared.name`` names, besides constants and costs; vectors as columns."""

@@ -9,7 +9,7 @@ import pytest
 from satsym.report.latex.figure import figure
 from satsym.report.texts import load
 from satsym.symbolic import Model, Problem
-from satsym.symbolic.latex.geometry import Arrow, picture
+from satsym.symbolic.motion.geometry import Arrow
 from tests.support.derived import stated
 
 
@@ -24,13 +24,13 @@ def turn(arrow: Arrow) -> float:
 
 
 def named(name: str) -> dict[str, Arrow]:
-    found = picture(model(name))
+    found = model(name).picture()
     assert found
     return {label: arrow for arrow in found.arrows for label in arrow.labels}
 
 
 def test_thrust_points_along_the_unit_vectors_and_gravity_to_the_centre() -> None:
-    arrows, found = named("polar_orbit"), picture(model("polar_orbit"))
+    arrows, found = named("polar_orbit"), model("polar_orbit").picture()
     place = arrows["r"].end
     seen = atan2(place[1], place[0])
     assert found
@@ -55,7 +55,7 @@ def test_deviations_move_the_body_outwards_and_ahead(name: str, outwards: str, a
 
 
 def test_the_reference_passes_where_deviations_begin() -> None:
-    found = picture(model("clohessy_wiltshire"))
+    found = model("clohessy_wiltshire").picture()
     assert found
     assert all(isclose(hypot(*place), 1) for place in (*found.path, found.arrows[1].start))
 

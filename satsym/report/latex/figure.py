@@ -8,8 +8,8 @@ from math import cos, degrees, hypot, sin
 
 from satsym.report.latex.tex import escape
 from satsym.report.texts import Texts
-from satsym.symbolic.latex.geometry import Arrow, Picture, Place, picture
 from satsym.symbolic.model import Model
+from satsym.symbolic.motion.geometry import Arrow, Picture, Place
 
 SIZE = 2.6
 """Distance of the body from the centre, in cm."""
@@ -19,7 +19,7 @@ _WORD = re.compile(r"\\text\{([^}]*)\}")
 
 def figure(model: Model, texts: Texts) -> str:
     """A figure with its caption; empty for a model that declares no geometry that is known to be drawn."""
-    found = picture(model)
+    found = model.picture()
     if found is None:
         return ""
     lines = "\n".join(f"  {line};" for line in DRAWN[found.kind](found))

@@ -17,6 +17,7 @@ from satsym.symbolic.derivation import Derivation, DerivationError, Equation, St
 from satsym.symbolic.dimension_algebra import Dimension, over
 from satsym.symbolic.kinds import stated_as
 from satsym.symbolic.model import Line, MaybeStep, Model, Output, Paragraph, Problem, Requirement, symbols_of
+from satsym.symbolic.motion import geometry
 from satsym.symbolic.motion import steps as motion
 
 
@@ -73,6 +74,10 @@ class Gyrostat(Model):
     def carried(self) -> tuple[Output, ...]:
         """The derived quantities."""
         return self.quantities
+
+    def picture(self) -> geometry.Picture | None:
+        """Its bodies about their axis."""
+        return geometry.bodies(self, next(iter(self.angles)), tuple(self.bodies)) if self.angles else None
 
     def misfits(self) -> Iterator[str]:
         """Angles that are no states, torques on no bodies, drives of other things than the controls."""

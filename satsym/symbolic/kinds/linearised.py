@@ -23,6 +23,7 @@ from satsym.symbolic.kinds import stated_as
 from satsym.symbolic.kinds.derived import Derived, original_equations, there_and_back
 from satsym.symbolic.linear.notation import results
 from satsym.symbolic.model import Line, MaybeStep, Paragraph, Problem, Requirement, symbols_of, t
+from satsym.symbolic.motion import geometry
 from satsym.symbolic.motion.steps import jacobians
 
 
@@ -72,6 +73,11 @@ class Linearised(Derived):
     def measured(self) -> tuple[Variable, ...]:
         """The variables of the motion."""
         return (*self.of.states, *self.of.controls)
+
+    def picture(self) -> geometry.Picture | None:
+        """Where its deviations move a particle."""
+        particle = self.of.particle()
+        return geometry.deviations(self, particle, self.about, self.deviations) if particle else None
 
     def misfits(self) -> Iterator[str]:
         """Variables that do not replace those of the motion one by one."""

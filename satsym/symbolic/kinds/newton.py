@@ -18,6 +18,7 @@ from satsym.symbolic.kepler import central_force, conic
 from satsym.symbolic.kepler import points as point_steps
 from satsym.symbolic.kinds import stated_as
 from satsym.symbolic.model import Line, MaybeStep, Paragraph, Particle, Problem, Requirement, symbols_of
+from satsym.symbolic.motion import geometry
 from satsym.symbolic.motion import steps as motion
 from satsym.wording import unlike
 
@@ -122,6 +123,10 @@ class Newton(Particle):
         for name, force in self.forces.items():
             for component in force:
                 require(f"the force {name!r}, per unit mass,", component, acceleration)
+
+    def picture(self) -> geometry.Picture | None:
+        """Its position, unit vectors and forces."""
+        return geometry.motion(self, self.directions)
 
     def statement(self) -> tuple[Paragraph, ...]:
         """The vectors along inertial axes."""

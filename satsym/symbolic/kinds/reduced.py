@@ -15,6 +15,7 @@ from satsym.symbolic.derivation import Check, Derivation, DerivationError, Equat
 from satsym.symbolic.kinds import stated_as
 from satsym.symbolic.kinds.derived import SpecialCase, original_equations
 from satsym.symbolic.model import MaybeStep, symbols_of
+from satsym.symbolic.motion import geometry
 from satsym.symbolic.motion import steps as motion
 
 
@@ -26,6 +27,10 @@ class Reduced(SpecialCase):
 
     Each state that is left out must be among ``along``; that it stays what it is there is proved.
     """
+
+    def picture(self) -> geometry.Picture | None:
+        """That of the motion, whose variables it keeps."""
+        return self.of.picture()
 
     def steps(self) -> tuple[MaybeStep, ...]:
         """The states that are left out, the motion of the others, and what holds for any motion."""

@@ -13,11 +13,7 @@ from typing import Any
 
 import sympy as sp
 
-from satsym.symbolic.kinds.gyrostat import Gyrostat
-from satsym.symbolic.kinds.linearised import Linearised
-from satsym.symbolic.kinds.newton import Newton
-from satsym.symbolic.kinds.reduced import Reduced
-from satsym.symbolic.model import Model, symbols_of, t, variables_of
+from satsym.symbolic.model import Model, Particle, symbols_of, t, variables_of
 
 Place = tuple[float, float]
 
@@ -61,21 +57,16 @@ class Picture:
     bodies: tuple[str, ...] = ()
 
 
-def picture(model: Model) -> Picture | None:
-    """The picture of a model, if it declares one."""
-    if isinstance(model, Reduced):
-        return picture(model.of)
-    if isinstance(model, Gyrostat):
-        angles = [v for v in model.states if v.symbol in {s.name for s in model.angles}]
-        return Picture("bodies", angle=(ANGLE, angles[0].latex), bodies=tuple(model.bodies)) if angles else None
-    if isinstance(model, Linearised) and isinstance(model.of, Newton):
-        return _deviations(model, model.of)
-    if isinstance(model, Newton) and len(model.position) == 2:
-        return _motion(model)
-    return None
+def bodies(model: Model, angle: sp.Symbol, names: tuple[str, ...]) -> Picture:
+    """Bodies about one axis, and one angle of them."""
+    latex = next(v.latex for v in model.states if v.symbol == angle.name)
+    return Picture("bodies", angle=(ANGLE, latex), bodies=names)
 
 
-def _motion(model: Newton) -> Picture | None:
+def motion(model: Particle, directions: Mapping[str, sp.Matrix]) -> Picture | None:
+    """A particle in a plane, with unit vectors and forces; none in space, where pictures would hide what is behind."""
+    if len(model.position) != 2:
+        return None
     values = _values(model)
     moving = symbols_of(v for v in model.states if v.positive)
     values |= {s: values[s] * BEYOND for s in moving}
@@ -83,7 +74,7 @@ def _motion(model: Newton) -> Picture | None:
     if hypot(*place) == 0:
         return None
     pointing: dict[Place, list[str]] = {}
-    for direction, label in _labelled(model):
+    for direction, label in _labelled(model, directions):
         x, y = _at(direction, values)
         if size := hypot(x, y):
             pointing.setdefault((round(x / size, 6), round(y / size, 6)), []).append(label)
@@ -95,10 +86,10 @@ def _motion(model: Newton) -> Picture | None:
     return Picture("motion", _path(model), tuple(arrows), _angle(model, values, place))
 
 
-def _labelled(model: Newton) -> Iterator[tuple[Any, str]]:
+def _labelled(model: Particle, directions: Mapping[str, sp.Matrix]) -> Iterator[tuple[Any, str]]:
     """Unit vectors; forces, those of one control by its name."""
     latex = {v.symbol: v.latex for v in model.controls}
-    for name, direction in model.directions.items():
+    for name, direction in directions.items():
         yield direction, model.names(None)[name]
     for name, force in model.forces.items():
         controls = [latex[s.name] for s in sp.Matrix(force).free_symbols if s.name in latex]
@@ -106,28 +97,30 @@ def _labelled(model: Newton) -> Iterator[tuple[Any, str]]:
             yield force, controls[0] if controls else rf"\mathbf{{F}}_{{\text{{{name}}}}}"
 
 
-def _distance(model: Newton, values: Mapping[sp.Symbol, Any], place: Place) -> str:
+def _distance(model: Particle, values: Mapping[sp.Symbol, Any], place: Place) -> str:
     """The coordinate that is the distance from the centre, or else the position vector."""
     lengths = [v for v in model.states if isclose(float(values[symbols_of((v,))[0]]), hypot(*place), rel_tol=1e-9)]
     return lengths[0].latex if len(lengths) == 1 else r"\mathbf{r}"
 
 
-def _angle(model: Newton, values: Mapping[sp.Symbol, Any], place: Place) -> tuple[float, str] | None:
+def _angle(model: Particle, values: Mapping[sp.Symbol, Any], place: Place) -> tuple[float, str] | None:
     angles = [v for v in model.states if v.kind == "angle"]
     seen = atan2(place[1], place[0])
     return next(((seen, v.latex) for v in angles if isclose(float(values[symbols_of((v,))[0]]), seen)), None)
 
 
-def _deviations(model: Linearised, of: Newton) -> Picture | None:
+def deviations(
+    model: Model, of: Particle, about: Mapping[sp.Symbol, Any], changed: Mapping[sp.Symbol, Any]
+) -> Picture | None:
     """Where each deviation alone moves the body, to first order, from a point of the reference."""
     old, new = symbols_of(of.states), symbols_of(model.states)
-    values = _values(of) | {s: sp.sympify(model.about[s]).subs(_numbers(of)).subs(t, TIME) for s in old}
-    changes = sp.Matrix([model.deviations[s] for s in new]).jacobian(old).subs(values)
+    values = _values(of) | {s: sp.sympify(about[s]).subs(_numbers(of)).subs(t, TIME) for s in old}
+    changes = sp.Matrix([changed[s] for s in new]).jacobian(old).subs(values)
     if changes.rows != changes.cols or changes.det() == 0:
         return None
     moves = of.position.jacobian(old).subs(values) * changes.inv()
     place, heights = _at(of.position, values), of.position[2:]
-    if any(sp.sympify(height).subs(model.about).subs(values) != 0 for height in heights):
+    if any(sp.sympify(height).subs(about).subs(values) != 0 for height in heights):
         return None  # the reference does not lie in the plane of the picture
     far = 0.45 * hypot(*place)
     arrows = [Arrow((0, 0), place, ())]
@@ -135,10 +128,10 @@ def _deviations(model: Linearised, of: Newton) -> Picture | None:
         x, y = (float(moves[i, k]) for i in range(2))
         if size := hypot(x, y):
             arrows.append(Arrow(place, (place[0] + far * x / size, place[1] + far * y / size), (v.latex,)))
-    return Picture("deviations", _path(of, model.about), tuple(arrows)) if hypot(*place) and len(arrows) > 1 else None
+    return Picture("deviations", _path(of, about), tuple(arrows)) if hypot(*place) and len(arrows) > 1 else None
 
 
-def _path(model: Newton, about: Mapping[sp.Symbol, Any] | None = None) -> tuple[Place, ...]:
+def _path(model: Particle, about: Mapping[sp.Symbol, Any] | None = None) -> tuple[Place, ...]:
     """The reference, at even steps of time."""
     curve = about or model.reference
     if not curve:
