@@ -30,6 +30,18 @@ class Checked(Choice):
     FULL = "full"
 
 
+class TableFormat(Choice):
+    """What the table of a study is written as."""
+
+    CSV = "csv"
+    PARQUET = "parquet"
+
+    @property
+    def file(self) -> str:
+        """Its name."""
+        return f"table.{self.value}"
+
+
 class Sampling(Choice):
     """How a sample is drawn: Sobol' points with a random shift and scramble, Latin hypercubes, independent points."""
 

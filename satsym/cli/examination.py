@@ -17,6 +17,7 @@ from satsym.cli.requirements import Requirement, requirements
 EXTRAS = {
     "fast": "compiled kernels, for many steps or many cases",
     "cluster": "studies on a Dask cluster",
+    "table": "tables of studies as Parquet",
     "control": "comparison with python-control",
     "bench": "the peers that `make bench` times, and Dask",
     "dev": "tests and lint",

@@ -14,8 +14,8 @@ from satsym.front.instance import Instance, as_case
 from satsym.front.tables import name_of, plain
 from satsym.report.look import Look
 from satsym.report.results.files import to_json
-from satsym.report.results.study_table import TABLE, columns
-from satsym.report.study import carry_out, draw
+from satsym.report.results.study_table import columns, path_of
+from satsym.report.study import carry_out, draw, written_as
 from satsym.report.terminal.study import study_text
 from satsym.status import BadInput
 from satsym.studies.asking import asked, named
@@ -48,7 +48,7 @@ class Study:
     @cached_property
     def columns(self) -> dict[str, NDArray[Any]]:
         """The table by the names of its columns, units left out: numbers (NaN where there is none), or texts."""
-        return columns(self.folder / TABLE)
+        return columns(path_of(self.folder))
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         return self.columns[name]
@@ -79,6 +79,7 @@ def study(
     certificate: str | None = None,
     feedback: str | None = None,
     trajectories: bool = False,
+    table: str | None = None,
     resume: bool = True,
     workers: int | None = None,
     executor: Callable[[], Executor] | None = None,
@@ -98,6 +99,8 @@ def study(
         Distributions to draw `sample` rows from: by key mean and standard deviation, or both ends.
     sample, method, seed, command, certificate, feedback, trajectories
         As in the table ``[study]``, instead of what that says; see ``docs/instances.md``.
+    table
+        What its table is written as: ``"csv"``, the default, or ``"parquet"``, which needs pyarrow (extra ``table``).
     resume
         Whether a study may be there.
     workers
@@ -128,6 +131,7 @@ def study(
     said |= {"command": command, "certificate": certificate, "feedback": feedback, "trajectories": trajectories}
     subject = named(case.written)
     found = asked(case.written, case.case, plain(said), subject or str(place / f"{case.name}.toml"))
+    found = written_as(found, table)
     count = processes(workers, found.chunks)
     made, more = executor or (lambda: Workers(count)), {} if subject else saved.origin(case)
     return Study(place, carry_out(found, place, made, count, resume=resume, watch=progress, more=more))

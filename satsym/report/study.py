@@ -8,24 +8,25 @@ import shutil
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from satsym.choices import Command
+from satsym.choices import Command, TableFormat
 from satsym.report.look import SCREEN, Look
-from satsym.report.results import sets, studies
+from satsym.report.results import parquet, sets, studies
 from satsym.report.results.files import Content, check_writable, opened, to_json, write_text
 from satsym.report.results.set_list import ASKED, STUDY
 from satsym.report.results.studies import Merged
-from satsym.report.results.study_table import TABLE
+from satsym.report.results.study_table import path_of
 from satsym.status import BadInput
 from satsym.studies import parts
 from satsym.studies.asked import Study, differences
 from satsym.studies.parts import Parts
 from satsym.studies.rows import PASSING
 from satsym.studies.running import Watch, run
-from satsym.wording import printable
+from satsym.wording import printable, shown, suggestion
 
 LOG = "times.log"
 """When chunks were done and how long they took: not of the results, for it is never twice the same."""
@@ -89,6 +90,23 @@ def carry_out(
             f"{printable(str(folder))}: cannot be written ({reason}); free some space, then repeat with --resume"
         ) from None
     return done
+
+
+def written_as(study: Study, form: str | None) -> Study:
+    """A study whose table is written as what has that name.
+
+    Raises
+    ------
+    BadInput
+        If there is no such form, or what writes it is not installed.
+    """
+    if form is None:
+        return study
+    if form not in TableFormat.names():
+        raise BadInput(f"table: {shown(form)} is unknown; {suggestion(form, TableFormat.names())}")
+    if form == TableFormat.PARQUET.value:
+        parquet.require()
+    return replace(study, table=TableFormat(form))
 
 
 def _carried_out(
@@ -179,10 +197,10 @@ def draw(folder: Path, look: Look = SCREEN, out: Path | None = None) -> tuple[di
     if sets.written_at(folder) is None:
         raise BadInput(f"{printable(str(folder))}: that study is not done; go on with it: `satsym study X --resume`")
     found = sets.read(folder)
-    if found.command != STUDY or TABLE not in found.listed:
+    if found.command != STUDY or path_of(folder).name not in found.listed:
         raise BadInput(f"{printable(str(folder))}: holds the result of {printable(found.command)}, and no study")
     said: dict[str, Any] = json.loads(found.result)
-    pictures = plots.pictures(studies.numbers(folder / TABLE, said), look)
+    pictures = plots.pictures(studies.numbers(path_of(folder), said), look)
     if out is None or out.resolve() == folder.resolve():
         return said, sets.extend(found, pictures)
     sets.keep_apart(out, "plot")

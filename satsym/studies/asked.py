@@ -17,7 +17,7 @@ import numpy as np
 
 from satsym import __version__, sources
 from satsym.arrays import Array
-from satsym.choices import Checked, Command
+from satsym.choices import Checked, Command, TableFormat
 from satsym.instance import Instance
 from satsym.instance.numbers import Key
 from satsym.kernels import Kernels
@@ -53,6 +53,8 @@ class Study:
         Whether kernels are compiled.
     trajectories
         Whether trajectories are kept.
+    table
+        What its table is written as.
     subject
         How a command line names the instance.
     """
@@ -64,6 +66,7 @@ class Study:
     feedback: str | None = None
     compiled: bool = False
     trajectories: bool = False
+    table: TableFormat = TableFormat.CSV
     subject: str = ""
 
     @cached_property
@@ -105,6 +108,8 @@ class Study:
             "python": platform.python_version(),
             "machine": platform.machine(),
         }
+        if self.table is not TableFormat.CSV:
+            found["table"] = self.table.value
         return found | {name: _version(name) for name in LIBRARIES}
 
     @cached_property
@@ -115,7 +120,7 @@ class Study:
     @property
     def row_digest(self) -> str:
         """Of what the result of a row depends on besides its own numbers."""
-        varied = {*self.design.stated(), "rows", "chunk"}
+        varied = {*self.design.stated(), "rows", "chunk", "table"}
         return _digest({k: v for k, v in self.identity.items() if k not in varied and not k.startswith("instance ")})
 
     @cached_property

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from satsym.choices import Checked, Choice, Command, Sampling
+from satsym.choices import Checked, Choice, Command, Sampling, TableFormat
 from satsym.cli.options import json_option, place_option, plot_options, subject_argument
 from satsym.cli.output import answer, live
 from satsym.cli.saving import RESULTS
@@ -55,6 +55,7 @@ def _listed(choices: type[Choice]) -> str:
 )
 @click.option("--feedback", metavar="LAW", help="Of simulate, as `satsym simulate` has it.")
 @click.option("--trajectories", is_flag=True, help="Keep them, too, in few npz files.")
+@click.option("--table", metavar="FORM", help=f"What the table is written as: {_listed(TableFormat)}; by default csv.")
 @place_option("--out", metavar="DIR", help="Where it goes; by default results/NAME/study.")
 @click.option("--resume", is_flag=True, help="Go on with the study that is there, or begin it.")
 @click.option(
@@ -77,6 +78,7 @@ def study(
     scheduler: str | None,
     look: Look | None,
     as_json: bool,
+    table: str | None,
     **options: Any,
 ) -> ExitCode:
     """Solve, simulate or regulate an instance for many values.
@@ -86,8 +88,8 @@ def study(
     goes on with it, and what has been computed is not computed again.
     """
     from satsym import instance
-    from satsym.report.results.study_table import TABLE
-    from satsym.report.study import carry_out, draw
+    from satsym.report.results.study_table import path_of
+    from satsym.report.study import carry_out, draw, written_as
     from satsym.report.terminal.solution import with_files
     from satsym.report.terminal.study import progress_line, study_text
     from satsym.status import Status
@@ -99,6 +101,7 @@ def study(
     case = written.instance()
     said = {name: read_pairs(pairs, name) for name, pairs in (("vary", vary), ("normal", normal), ("uniform", uniform))}
     found = asked(written, case, said | options, named(written) or subject)
+    found = written_as(found, table)
     folder = out or Path(RESULTS, case.name, "study")
     with _computing(scheduler, processes(workers, found.chunks)) as (made, count), live() as line:
         try:
@@ -115,7 +118,7 @@ def study(
             raise
     drawn = draw(folder, look)[1] if look else []
     pictures = {"pictures": [str(path) for path in drawn]} if look else {}
-    answer(as_json, result | pictures, lambda: with_files(study_text(result), [folder / TABLE, *drawn]))
+    answer(as_json, result | pictures, lambda: with_files(study_text(result), [path_of(folder), *drawn]))
     return ExitCode.DONE if result["status"] == Status.CONVERGED.value else ExitCode.NO_ANSWER
 
 

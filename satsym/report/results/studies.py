@@ -19,7 +19,7 @@ from satsym.report.results import study_table
 from satsym.report.results.files import Content, text, to_json
 from satsym.report.results.objects import head
 from satsym.report.results.set_list import ASKED
-from satsym.report.results.study_table import BEFORE, TABLE, table
+from satsym.report.results.study_table import BEFORE, table
 from satsym.status import Status
 from satsym.studies.asked import Study
 from satsym.studies.parts import Parts
@@ -83,7 +83,8 @@ def files(merged: Merged) -> dict[str, Content]:
     study = merged.study
     keys = [key.text for key in study.design.keys]
     asked = {ASKED: text(to_json(asked_object(study)))}
-    return asked | {TABLE: table(study.instance.model.spec, keys, merged.rows)} | trajectories(merged)
+    written = table(study.instance.model.spec, keys, merged.rows, study.table)
+    return asked | {study.table.file: written} | trajectories(merged)
 
 
 def trajectories(merged: Merged) -> dict[str, Content]:

@@ -1,4 +1,4 @@
-"""The table of a study as CSV: names and units of its columns, and numbers and words read back by these names."""
+"""The table of a study: names and units of its columns, and numbers and words read back by these names."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from typing import IO, Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from satsym.choices import TableFormat
 from satsym.instance.numbers import SIDES, Table
+from satsym.report.results import parquet
 from satsym.report.results.files import Content
 from satsym.report.results.unit_names import COST, per, units
 from satsym.spec import ProblemSpec
 from satsym.studies.rows import TEXTS, Column, Row, Scalar
-
-TABLE = "table.csv"
 
 BEFORE, AFTER = (Column.ROW, Column.KEY), (Column.STATUS, Column.MESSAGE)
 """Columns that stand before the values of what varies, and after them."""
@@ -30,8 +30,8 @@ Rows: TypeAlias = Callable[[], Iterable[tuple[int, list[float], Row]]]
 """Number from 0, values of what varies, and what came of it."""
 
 
-def table(spec: ProblemSpec, varied: Sequence[str], rows: Rows) -> Content:
-    """The table in UTF-8; empty where there is no number.
+def table(spec: ProblemSpec, varied: Sequence[str], rows: Rows, form: TableFormat = TableFormat.CSV) -> Content:
+    """The table; empty where there is no number.
 
     Parameters
     ----------
@@ -40,11 +40,37 @@ def table(spec: ProblemSpec, varied: Sequence[str], rows: Rows) -> Content:
     rows
         Gone through twice.
     """
+    return _as_parquet(spec, varied, rows) if form is TableFormat.PARQUET else _as_csv(spec, varied, rows)
+
+
+def _found(rows: Rows) -> list[str]:
+    """Names of all numbers that there are."""
+    found: dict[str, None] = {}
+    for _, _, row in rows():
+        found.update(dict.fromkeys(row.numbers))
+    return [str(getattr(name, "value", name)) for name in found]
+
+
+def _as_parquet(spec: ProblemSpec, varied: Sequence[str], rows: Rows) -> Content:
+    def written(stream: IO[bytes]) -> None:
+        found = _found(rows)
+        names = [str(getattr(name, "value", name)) for name in (*BEFORE, *varied, *AFTER, *found)]
+        kinds: list[type] = [int, str, *[float] * len(varied), str, str]
+        kinds += [str if name in TEXTS else float for name in found]
+        lines = (
+            [number, row.key, *values, row.status, row.message, *(row.numbers.get(name) for name in found)]
+            for number, values, row in rows()
+        )
+        parquet.write(stream, header(spec, names), kinds, lines)
+
+    return written
+
+
+def _as_csv(spec: ProblemSpec, varied: Sequence[str], rows: Rows) -> Content:
+    """In UTF-8."""
 
     def written(stream: IO[bytes]) -> None:
-        found: dict[str, None] = {}
-        for _, _, row in rows():
-            found.update(dict.fromkeys(row.numbers))
+        found = _found(rows)
         text = io.TextIOWrapper(stream, encoding="utf-8", newline="", write_through=True)
         out = csv.writer(text, lineterminator="\n")
         names = [*BEFORE, *varied, *AFTER, *found]
@@ -106,6 +132,10 @@ def columns(path: Path, chosen: Callable[[list[str]], Iterable[str]] = lambda na
     chosen
         Of all names those that are wanted.
     """
+    if path.name == TableFormat.PARQUET.file:
+        known = {label.partition(" [")[0]: label for label in parquet.names_of(path)}
+        taken = list(chosen(list(known)))
+        return dict(zip(taken, parquet.read(path, [known[name] for name in taken]), strict=True))
     with path.open(encoding="utf-8", newline="") as stream:
         rows = csv.reader(stream)
         names = list(labels_of(next(rows)))
@@ -120,6 +150,8 @@ def columns(path: Path, chosen: Callable[[list[str]], Iterable[str]] = lambda na
 
 def labels(path: Path) -> dict[str, str]:
     """Names of columns -> these with their units."""
+    if path.name == TableFormat.PARQUET.file:
+        return labels_of(parquet.names_of(path))
     with path.open(encoding="utf-8", newline="") as stream:
         return labels_of(next(csv.reader(stream)))
 
@@ -127,6 +159,11 @@ def labels(path: Path) -> dict[str, str]:
 def labels_of(header: Sequence[str]) -> dict[str, str]:
     """The same of the first line of a table."""
     return {label.partition(" [")[0]: label for label in header}
+
+
+def path_of(folder: Path) -> Path:
+    """The table of a study that is done, whatever it is written as."""
+    return next((found for one in TableFormat if (found := folder / one.file).is_file()), folder / TableFormat.CSV.file)
 
 
 def _cell(value: Scalar) -> str:
