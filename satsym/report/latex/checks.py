@@ -26,7 +26,7 @@ def listed(derivation: Derivation, texts: Texts) -> str:
     items = [
         rf"\satsymchecked{{{tex.label(f'{derivation.name}:{s.name}')}}}{{{found}}}"
         for s in steps
-        if (found := " ".join(f"{_brief(texts, c)}." for c in s.checks if c.claim not in said) or "--")
+        if (found := " ".join(dict.fromkeys(f"{_brief(texts, c)}." for c in s.checks if c.claim not in said)) or "--")
     ]
     return "\n\n".join([*paragraphs, "\n".join((r"{\small", *items, r"\par}"))])
 
