@@ -33,6 +33,17 @@ SAME = {
 """Words of both languages."""
 
 
+ENGLISH = re.compile(
+    r"\b(the|of|and|with|for|from|to|by|at|are|has|no|not|on|states?|control|costs?|final|initial|unit|value|written|"
+    r"costate|given|free|eigenvalues?|iterations?|circle|ellipse|unstable|ok|failed|certified|converged)\b"
+)
+
+
+NAMES = re.compile(
+    r"results/\S*|\S+\.(?:csv|json|npz|png)|derivations/\S+|satsym [^\n]*|\"[^\"]*\"|\[final\]|\w+(?:[.-]\w+)+"
+)
+
+
 def authored(spec: ProblemSpec) -> list[str]:
     variables = (*spec.states, *spec.controls, *spec.parameters, *spec.invariants, *spec.quantities)
     return [spec.title, *(v.meaning for v in variables)]
@@ -64,7 +75,7 @@ COMPOSED = (
     *("1 arc", "<number> arcs", "1 arc of <count> steps", "<number> arcs of <count> steps"),
     "the constraint of <name> by <value>",
     "<said_which> does not close: without a period there is no monodromy matrix, and there are no multipliers.",
-    *("A parabola", "A hyperbola", "A rectilinear orbit"),
+    *("A parabola", "A hyperbola", "A rectilinear orbit", "a number in <unit>"),
 )
 """What stands nowhere as it is said."""
 EVERY: tuple[Enum, ...] = (*Status, *Verdict, *Conic)
@@ -114,6 +125,34 @@ def test_a_language_that_nobody_wrote_is_refused_in_a_line(run: Run, monkeypatch
         code, out, err = run(*arguments)
         assert (code, out) == (3, "")
         assert re.fullmatch(r'satsym: \S+: no texts in the language "..", ?.*\n'.replace('", ?', '"; '), err)
+
+
+@pytest.mark.parametrize(
+    ("text", "arguments"),
+    [
+        ("", ("solve", "nowhere.toml")),
+        ("", ("solve", "soft-retrun")),
+        ("", ("analyse", "nothing-like-it")),
+        ("", ("solve", "soft-return", "--set", "initial.q=1")),
+        ("", ("solve", "soft-return", "--set", "initial.r=[1,2]")),
+        ("", ("solve", "soft-return", "--set", "initial.r=5 apples")),
+        ("", ("solve", "soft-return", "--set", "initial.r=5 kg")),
+        ("", ("solve", "itb-earth")),
+        ('model = "polar_orbit"\n[initial]\nr = 1.0\n[time]\ntf = 1.0', ("solve", "x.toml")),
+        ('model = "polar_orbit"\n[initial]\nq = 1.0\n[time]\ntf = 1.0', ("solve", "x.toml")),
+        ('model = "polar_orbit"\n[initial\n', ("solve", "x.toml")),
+    ],
+)
+def test_what_newcomers_are_refused_is_said_in_indonesian_on_one_line(
+    run: Run, tmp_path: Path, text: str, arguments: tuple[str, ...]
+) -> None:
+    (tmp_path / "x.toml").write_text(text, encoding="utf-8")
+    english, other = (run(*arguments, "--lang", each) for each in ("en", "id"))
+    assert (english[0], other[0]) == (3, 3)
+    assert other[2].count("\n") == 1
+    shown = NAMES.sub("", re.sub(r"`[^`]*`|\[\w+\] \w+|bukan TOML yang sah: [^;]*", "", other[2]))
+    assert not ENGLISH.search(shown), other[2]
+    assert other[2] != english[2]
 
 
 def test_one_run_leaves_its_language_to_no_other(run: Run) -> None:
@@ -167,15 +206,6 @@ def test_files_are_the_same_in_every_language(run: Run, tmp_path: Path) -> None:
         assert run("simulate", "its-thesis", "--lang", each, "--out", each)[0] == 0
     assert (tmp_path / "en" / "trajectory.csv").read_bytes() == (tmp_path / "id" / "trajectory.csv").read_bytes()
     assert (tmp_path / "en" / "result.json").read_bytes() == (tmp_path / "id" / "result.json").read_bytes()
-
-
-ENGLISH = re.compile(
-    r"\b(the|of|and|with|for|from|to|by|at|are|has|no|not|on|states?|control|costs?|final|initial|unit|value|written|"
-    r"costate|given|free|eigenvalues?|iterations?|circle|ellipse|unstable|ok|failed|certified|converged)\b"
-)
-NAMES = re.compile(
-    r"results/\S*|\S+\.(?:csv|json|npz|png)|derivations/\S+|satsym [^\n]*|\"[^\"]*\"|\[final\]|\w+(?:[.-]\w+)+"
-)
 
 
 @pytest.mark.parametrize(

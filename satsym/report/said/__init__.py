@@ -23,6 +23,8 @@ VARIABLE = "SATSYM_LANG"
 
 _BREAK = re.compile(r"(; |(?<=[.:]) )")
 """Between clauses and sentences of a message, each of which may be a text of its own."""
+_PLACE = re.compile(r"(?:\[[\w.]+\] )?\S+:")
+"""What a message may begin with that is no text: a file, an instance, a key."""
 _HOLE = re.compile(r"<([a-z_]+)>")
 _TOLD = "said_"
 """Begins names of places that hold a text, to be translated as well; all others hold names and numbers."""
@@ -116,6 +118,9 @@ def _by_parts(parts: Sequence[str], asked: str) -> str | None:
             found = None if rest is None else found + parts[count] + rest
         if found is not None:
             return found
+    if len(parts) > 1 and _PLACE.fullmatch(parts[0]):
+        rest = _by_parts(parts[2:], asked)
+        return None if rest is None else parts[0] + parts[1] + rest
     return None
 
 
