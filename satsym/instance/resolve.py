@@ -79,9 +79,10 @@ def _initial(variable: Variable, value: float | str | None) -> float:
 
 
 def final(table: Mapping[str, float | str], spec: ProblemSpec) -> dict[str, float | Literal["reference"]]:
-    """The given final states in the model's order; ``"reference"`` stays as it is."""
+    """The given final states in the model's order; ``"reference"`` stays as it is, what is ``"free"`` is not given."""
     known(table, spec.states, "state", "final")
-    return {v.symbol: _final(v, table[v.symbol], spec) for v in spec.states if v.symbol in table}
+    given = [v for v in spec.states if table.get(v.symbol, FREE) != FREE]
+    return {v.symbol: _final(v, table[v.symbol], spec) for v in given}
 
 
 def _final(variable: Variable, value: float | str, spec: ProblemSpec) -> float | Literal["reference"]:

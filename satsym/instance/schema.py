@@ -192,7 +192,7 @@ class InstanceFile(_Table, frozen=True):
     final: Annotated[
         dict[str, FinalValue],
         Key(
-            'given final values; a state left out is free, as is an end of a range that is "free"',
+            'given final values; a state left out or "free" is free, as is an end of a range that is "free"',
             (*SOLVING, *RELAYS),
             "the model's",
             "STATE",

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from satsym.instance.resolve import FREE, time
+from satsym.instance.resolve import FREE, REFERENCE, time
 from satsym.instance.schema import InstanceFile
 from satsym.spec import ProblemSpec, Variable
 from satsym.status import BadInput
@@ -126,7 +126,7 @@ def _first(file: InstanceFile, unknown: Unknown, spec: ProblemSpec) -> float | s
         variable = spec.parameters[unknown.index]
         stated = [guess.parameter.get(name), variable.default]
     for value in stated:
-        if isinstance(value, str | float | int) and value != "reference":
+        if isinstance(value, str | float | int) and value not in (REFERENCE, FREE):
             return value
     if variable.typical is not None:
         return sum(variable.typical) / 2.0

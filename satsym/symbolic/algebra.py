@@ -2,12 +2,30 @@
 
 from __future__ import annotations
 
+import math
+import random
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 
 import sympy as sp
 
 from satsym.symbolic.model import Model, symbols_of, t
+
+LARGEST = 400
+"""Terms, were it multiplied out, of what is simplified; what would have more stays as it was derived."""
+
+PROVABLE = 4000
+"""Terms of a sum that is multiplied out."""
+
+LONG = 150
+GROWTH = 2
+"""Terms of what is multiplied out, and how many times as many operations as before, beyond which it stays as it was."""
+
+MINUTE = 1e-30
+"""A number that is smaller may be zero."""
+
+ONE_POINT = 20
+"""Seed of the point at which expressions are looked at first."""
 
 STEEP = 20
 """Largest number in an exponent that is multiplied out."""
@@ -45,6 +63,8 @@ def simplified(expression: sp.Expr) -> sp.Expr:
 
 @lru_cache(maxsize=4096)  # problems of one model ask alike
 def _simplified(expression: sp.Expr) -> sp.Expr:
+    if terms_of(expression) > PROVABLE:
+        return expression
     expanded = _expand(expression)
     squares = {
         p: (1 - sp.sin(p.base.args[0]) ** 2) ** (p.exp // 2) * p.base ** (p.exp % 2)
@@ -58,6 +78,8 @@ def _simplified(expression: sp.Expr) -> sp.Expr:
 
 def shortened(expression: sp.Expr) -> sp.Expr:
     """As by sympy's simplify, but logarithms stay apart: their factors would become exponents, which have no units."""
+    if terms_of(expression) > LARGEST:
+        return expression
     logarithms = {e: sp.Dummy(real=True) for e in expression.atoms(sp.log)}
     if not logarithms:
         return sp.simplify(expression)
@@ -67,17 +89,67 @@ def shortened(expression: sp.Expr) -> sp.Expr:
 
 
 def vanishes(expression: sp.Expr) -> bool:
-    """Whether an expression is identically zero, as far as simplifying shows it."""
-    return bool(simplified(expression) == 0)
+    """Whether an expression is identically zero, as far as simplifying shows it; a number elsewhere shows that not."""
+    return expression == 0 or (not _differs_from_zero(expression) and bool(simplified(expression) == 0))
+
+
+def depends(expression: sp.Expr, symbols: Iterable[sp.Symbol]) -> bool:
+    """Whether an expression changes with any of these symbols, as far as simplifying shows it."""
+    return any(not vanishes(sp.diff(expression, s)) for s in expression.free_symbols & set(symbols))
+
+
+@lru_cache(maxsize=4096)
+def _differs_from_zero(expression: sp.Expr) -> bool:
+    """Whether its number at one point, which is good to 15 digits, is certainly not zero."""
+    rng = random.Random(ONE_POINT)
+    point = {symbol: sp.Rational(rng.randrange(500, 1500), 1000) for symbol in sorted(expression.free_symbols, key=str)}
+    value = expression.xreplace(point).evalf()
+    return bool(value.is_number and value.is_finite and abs(value) > MINUTE)
+
+
+def terms_of(expression: sp.Expr) -> int:
+    """How many terms the expression has when it is multiplied out, or what is inside its functions, if none cancel."""
+    if expression.is_Add:
+        return sum(terms_of(e) for e in expression.args)
+    if expression.is_Mul:
+        return math.prod(terms_of(e) for e in expression.args)
+    if expression.is_Pow and expression.exp.is_Integer:
+        terms, power = terms_of(expression.base), abs(int(expression.exp))
+        return math.comb(terms + power - 1, power)
+    return max((terms_of(e) for e in expression.args if isinstance(e, sp.Expr)), default=1)
 
 
 def tidy(expression: sp.Expr, by: Sequence[sp.Symbol] = ()) -> sp.Expr:
-    """The expression as a sum over the symbols it is linear in, each with its shortest coefficient."""
+    """The expression as a sum over the symbols it is linear in, each with its shortest coefficient.
+
+    What would be too long when multiplied out is only parted, and its coefficients are left as they are.
+    """
     named, steep = _steep_named(sp.sympify(expression))
-    expanded = _expand(named)
+    expanded = _multiplied_out(named)
+    if expanded is None:
+        return _parted(named, tuple(by)).xreplace(steep)
     collected = sp.collect(expanded, list(by), evaluate=False) if by else {sp.Integer(1): expanded}
     parts = [factor * _shortest(coefficient) for factor, coefficient in collected.items()]
     return sp.Add(*parts).xreplace(steep)
+
+
+def _multiplied_out(expression: sp.Expr) -> sp.Expr | None:
+    """The expanded expression, unless that is long and much longer than it was."""
+    if terms_of(expression) > PROVABLE:
+        return None
+    expanded = _expand(expression)
+    long = terms_of(expanded) > LONG
+    return None if long and expanded.count_ops() > GROWTH * expression.count_ops() else expanded
+
+
+def _parted(expression: sp.Expr, by: tuple[sp.Symbol, ...]) -> sp.Expr:
+    """A sum over the symbols it is linear in, each with the coefficient that differentiating leaves."""
+    for k, symbol in enumerate(by):
+        slope = sp.diff(expression, symbol)
+        if slope != 0 and not slope.has(symbol):
+            rest = _parted(expression.xreplace({symbol: sp.Integer(0)}), by[k + 1 :])
+            return symbol * tidy(slope, by[k + 1 :]) + rest
+    return expression if _multiplied_out(expression) is None else tidy(expression)
 
 
 def _steep_named(expression: sp.Expr) -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]]:
@@ -104,8 +176,10 @@ def _coefficients(exponential: sp.exp) -> Iterable[sp.Expr]:
 
 @lru_cache(maxsize=4096)  # problems of one model ask alike
 def _shortest(expression: sp.Expr) -> sp.Expr:
-    candidates = [_expand(expression), sp.factor(expression), sp.together(expression)]
-    return min(candidates, key=sp.count_ops)
+    expanded = _expand(expression)
+    # A sum with decimals is hardly ever a product of others, and to look for them takes sympy up to a minute.
+    products = sp.gcd_terms(expanded) if expression.has(sp.Float) else sp.factor(expression)
+    return min((expanded, products, sp.together(expression)), key=sp.count_ops)
 
 
 def _expand(expression: sp.Expr) -> sp.Expr:

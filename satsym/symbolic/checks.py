@@ -15,7 +15,7 @@ import mpmath as mp
 import sympy as sp
 
 from satsym.spec import Variable
-from satsym.symbolic.algebra import vanishes
+from satsym.symbolic.algebra import LARGEST, PROVABLE, terms_of, vanishes
 from satsym.symbolic.derivation import Check, DerivationError
 from satsym.symbolic.minimisers import MPMATH_FUNCTIONS
 from satsym.symbolic.roots import Root
@@ -194,10 +194,17 @@ def _largest(values: Iterable[Any]) -> float:
 def identity(claim: str, expressions: Iterable[sp.Expr]) -> Check:
     """Check that expressions are identically zero, by simplification where multiplying out does not show it.
 
-    Decimals are rounded when they are multiplied out: what has some is held against the size of its terms.
+    Decimals are rounded when they are multiplied out: what has some is held against the size of its terms at random
+    points, and so is what has too many terms.
     """
-    left = [e for e in expressions if sp.expand(e) != 0]
-    remainders = [e for e in left if not (_rounds_to_zero(claim, e) if e.has(sp.Float) else vanishes(e))]
+
+    def zero(e: sp.Expr) -> bool:
+        terms = terms_of(e)
+        if terms <= PROVABLE and sp.expand(e) == 0:
+            return True
+        return _rounds_to_zero(claim, e) if terms > LARGEST or e.has(sp.Float) else vanishes(e)
+
+    remainders = [e for e in expressions if not zero(e)]
     return Check(claim, float(len(remainders)), 0.0)
 
 

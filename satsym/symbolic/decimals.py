@@ -19,11 +19,30 @@ T = TypeVar("T")
 DIGITS = 60
 """Twice as many as numbers have in checks."""
 
+CERTAIN = 50
+"""Of these, how many are right after a few multiplications."""
+
 
 def lengthened(stated: T) -> T:
     """A problem or a model whose decimals are what is written, exactly; itself where it has none."""
     found: T = _lengthened(stated)
     return found
+
+
+def as_fractions(expression: sp.Expr) -> sp.Expr:
+    """The expression with fractions for its decimals: sums of decimals hardly ever cancel, and have no factors."""
+    return expression.xreplace({d: sp.Rational(str(sp.Float(d, CERTAIN))) for d in expression.atoms(sp.Float)})
+
+
+def as_decimals(expression: sp.Expr) -> sp.Expr:
+    """The expression with decimals for its fractions, apart from exponents, which are roots."""
+    if expression.is_Rational and not expression.is_Integer:
+        return sp.Float(expression, DIGITS)
+    if not expression.args:
+        return expression
+    if expression.is_Pow:
+        return sp.Pow(as_decimals(expression.base), expression.exp)
+    return expression.func(*map(as_decimals, expression.args))
 
 
 def _lengthened(stated: Any) -> Any:

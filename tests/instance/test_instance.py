@@ -94,6 +94,12 @@ def test_model_initial_state_and_final_time_are_enough(load: Callable[[str], Ins
     assert all(type(number) is float for number in case.parameters + case.initial + (case.t0, case.tf))
 
 
+def test_a_final_state_that_is_called_free_is_as_if_left_out(load: Callable[[str], Instance]) -> None:
+    assert load(SMALLEST + "final = {r = 'free', r_dot = 0.5}\n").final == {"r_dot": 0.5}
+    with pytest.raises(BadInput, match=r"\[final\] s"):
+        load(SMALLEST + "final = {s = 'free'}\n")
+
+
 def test_an_instance_cannot_be_changed_but_can_be_sent_to_another_process(load: Callable[[str], Instance]) -> None:
     case = load(EXAMPLE)
     with pytest.raises(dataclasses.FrozenInstanceError):

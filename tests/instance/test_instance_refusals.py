@@ -110,7 +110,6 @@ def written(folder: Path, **changes: str | None) -> Path:
         ("initial.theta", '"1 + 1"', ["[initial] theta"]),
         ("initial.theta", "\"__import__('os').system('true')\"", ["[initial] theta"]),
         ("final.r", "-1", ["[final] r", "domain"]),
-        ("final.r", '"free"', ["[final] r", "number with a unit"]),
         ("parameters.sigma", "0", ["[parameters] sigma", "positive"]),
         ("parameters.omega", '"-1 rad/s"', ["[parameters] omega", "positive"]),
         ("time.tf", "0", ["[time] tf: 0 is not after t0 = 0;"]),

@@ -7,8 +7,9 @@ import pytest
 import sympy as sp
 from sympy import cos, sin, sqrt
 
-from satsym.symbolic.algebra import simplified, tidy, vanishes
-from satsym.symbolic.checks import identity
+from satsym.symbolic.algebra import PROVABLE, depends, simplified, terms_of, tidy, vanishes
+from satsym.symbolic.checks import deviation, identity, numeric, points
+from satsym.symbolic.decimals import as_decimals, as_fractions
 from satsym.symbolic.linear.matrices import right_half_plane
 
 x, y = sp.symbols("x y", positive=True)
@@ -66,3 +67,54 @@ def test_decimals_that_cancel_but_for_rounding_vanish_in_products_too(factor: sp
     cancels = (z + tenth) ** 3 - z**3 - 3 * tenth * z**2 - 3 * tenth**2 * z - rest
     for off, right in ((0, True), (sp.Float("1e-13", 60) * z, False)):
         assert identity("decimals", [factor * (cancels + off)]).passed == right
+
+
+def test_what_an_expression_depends_on_is_seen_although_it_is_written_with_more() -> None:
+    expression = x * (cos(q) ** 2 + sin(q) ** 2) + y
+    assert not depends(expression, [q])
+    assert depends(expression, [q, x])
+    assert not depends(sp.Integer(3), [x])
+
+
+def test_terms_are_counted_before_they_are_multiplied_out() -> None:
+    for expression in ((x + y + q) ** 4, (x + 1) * (y + 2) * (q + 3) + x**7, x * y / (x + y) ** 3, x):
+        numerator, denominator = sp.fraction(expression)
+        expected = len(sp.Add.make_args(sp.expand(numerator))) * len(sp.Add.make_args(sp.expand(denominator)))
+        assert terms_of(expression) == expected
+    assert terms_of(x * sin((x + y) ** 3)) == 4
+
+
+def test_what_would_grow_when_multiplied_out_is_parted_by_what_it_is_linear_in_and_no_more() -> None:
+    lam = sp.symbols("lambda_1:3", real=True)
+    long = (1 + x + y + q + x * q) ** 8
+    expression = lam[0] * long * (lam[1] + 2) + lam[1] * sin(long) + 1 / (1 + long)
+    found = tidy(expression, lam)
+    assert found.count_ops() < 2 * expression.count_ops()
+    assert {term for term in sp.Add.make_args(found) if term.has(lam[0])} == {
+        term for term in sp.Add.make_args(found) if term.coeff(lam[0]) != 0
+    }
+    sides = numeric([found, expression])
+    with mp.workdps(30):
+        assert all(deviation(*([value] for value in sides(p))) < 1e-25 for p in points({x, y, q, *lam}, "parted"))
+
+
+@pytest.mark.parametrize(("off", "right"), [(0, True), (sp.Rational(1, 10**9), False)])
+def test_identities_too_long_to_be_multiplied_out_are_decided_by_numbers(off: sp.Expr, right: bool) -> None:
+    one, other = (1 + x + y) ** 60, (1 + q + x * q) ** 2
+    expression = one * other * (1 + off * x) - one * (1 + 2 * q * (1 + x) + q**2 * (1 + x) ** 2)
+    assert terms_of(expression) > PROVABLE
+    assert identity("long", [expression]).passed == right
+
+
+def test_decimals_are_fractions_and_back() -> None:
+    a, b, c = (sp.Float(text, 60) for text in ("20.967", "0.47", "6.265"))
+    expression = sqrt(x) * (a * x * y + b * c * y) ** 2 + sp.exp(-b * q)
+    fractions = as_fractions(sp.expand(expression))
+    assert not fractions.has(sp.Float)
+    assert sp.factor(fractions.coeff(sp.exp(-sp.Rational(47, 100) * q))) == 1
+    assert sp.simplify(fractions - as_fractions(expression)) == 0
+    again = as_decimals(fractions)
+    assert {r.q for r in again.atoms(sp.Rational)} == {1, 2}  # exponents that are roots stay so
+    sides = numeric([again, expression])
+    with mp.workdps(30):
+        assert all(deviation(*([value] for value in sides(p))) < 1e-25 for p in points({x, y, q}, "decimals"))

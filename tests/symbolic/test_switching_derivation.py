@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+import mpmath as mp
 import pytest
 import sympy as sp
 
@@ -105,6 +106,22 @@ def test_singular_arcs_have_their_known_order_control_and_sign(
     assert sp.simplify(found.equation("generalised_legendre_clebsch.u1").rhs - kelley) == 0
     verdict = {1: "satisfied", -1: "violated"}.get(kelley, "open")
     assert list(said(found.step("generalised_legendre_clebsch"))) == [f"Legendre-Clebsch {verdict}"]
+
+
+def test_decimals_neither_hide_nor_slow_down_a_singular_arc() -> None:
+    """Along F-8's own motion, whose decimals have tens of digits once they are multiplied."""
+
+    def rates(number: Callable[[str], sp.Expr]) -> dict[sp.Symbol, sp.Expr]:
+        k1, k2, k3, k4, k5 = map(number, ("0.877", "3.846", "0.47", "4.208", "20.967"))
+        return {x1: -k1 * x1 + x3 - k3 * x1**2 * x3 + k2 * x1**3, x2: x3, x3: -k4 * x1 - k3 * x1**2 - k5 * u1}
+
+    decimal, exact = (derive(switching(rates(kind), 1)) for kind in (lambda s: sp.Float(s, 60), sp.Rational))
+    name = "singular_arcs.u1"
+    with mp.workdps(30):
+        pair = numeric([d.equation(name).rhs for d in (decimal, exact)])
+        symbols = exact.equation(name).rhs.free_symbols
+        assert symbols
+        assert all(deviation(*([value] for value in pair(p))) < 1e-25 for p in points(symbols, name))
 
 
 def test_two_catalysts_are_mixed_as_jackson_found() -> None:

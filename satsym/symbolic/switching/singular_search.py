@@ -8,13 +8,14 @@ solved for one of them, so that what follows is known *on the arc* (Kelley, Kopp
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 import sympy as sp
 
-from satsym.symbolic.algebra import shortened, tidy, total_derivative
+from satsym.symbolic.algebra import depends, shortened, tidy, total_derivative
 from satsym.symbolic.convention import sign
+from satsym.symbolic.decimals import as_decimals, as_fractions
 from satsym.symbolic.derivation import Derivation
 from satsym.symbolic.model import symbols_of
 from satsym.symbolic.switching.functions import flow, parts
@@ -96,8 +97,31 @@ def searches(so_far: Derivation) -> list[Search]:
     for u, sigma, w in zip(controls, found.switching, found.weights, strict=True):
         for branch, side in SIDES.items() if w != 0 else (("", 0),):
             threshold = sigma + sign(so_far.problem) * side * w
-            results.append(_search(u, branch, threshold, motion, controls))
+            results.append(_in_fractions(u, branch, threshold, motion, controls))
     return results
+
+
+def _in_fractions(
+    u: sp.Symbol,
+    branch: str,
+    threshold: sp.Expr,
+    motion: tuple[tuple[sp.Symbol, sp.Expr], ...],
+    controls: tuple[sp.Symbol, ...],
+) -> Search:
+    """The search with fractions for decimals, which neither cancel nor factor; in decimals again in the end."""
+    if not any(e.has(sp.Float) for e in (threshold, *(rate for _, rate in motion))):
+        return _search(u, branch, threshold, motion, controls)
+    rates = tuple((z, as_fractions(rate)) for z, rate in motion)
+    found = _search(u, branch, as_fractions(threshold), rates, controls)
+    solved = {k: as_decimals(v) for k, v in found.surface.solved.items()}
+    return replace(
+        found,
+        threshold=threshold,
+        derivatives=tuple(map(as_decimals, found.derivatives)),
+        surface=Surface(solved, list(map(as_decimals, found.surface.left))),
+        slope=as_decimals(found.slope),
+        singular=as_decimals(found.singular),
+    )
 
 
 @lru_cache(maxsize=32)  # two steps need them
@@ -157,7 +181,10 @@ def _slope(condition: sp.Expr, unknown: sp.Symbol) -> sp.Expr | None:
         return None
     others = sp.Mul(*(factor for factor in factors if factor != having[0]))
     if not having[0].is_polynomial(unknown):
-        slope = _simplest(sp.diff(having[0], unknown))
+        slope = sp.diff(having[0], unknown)
+        if depends(slope, [unknown]):
+            return None
+        slope = _simplest(slope)
         return None if slope.has(unknown) else slope * others
     polynomial = sp.Poly(having[0], unknown)
     return _simplest(polynomial.LC() * others) if polynomial.degree() == 1 else None
