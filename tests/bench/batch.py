@@ -17,6 +17,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
+import growth
 import numpy as np
 import regulators
 import rows
@@ -273,12 +274,28 @@ def study() -> Table:
     return Table(title, "seconds", (Row("satsym study", took, took, None, goals),))
 
 
+def two_processes(count: int = 100_000) -> Table:
+    """A large study by one process and by two."""
+    took = {}
+    for workers in (1, 2):
+        command = [str(Path(sys.executable).parent / "satsym"), "study", "return-to-orbit", "--sample", str(count)]
+        command += ["--uniform", "initial.r=0.9,1.1", "--uniform", "initial.theta_dot=0.9,1.1", "--seed", "1"]
+        with tempfile.TemporaryDirectory() as folder:
+            began = perf_counter()
+            subprocess.run([*command, "--out", folder, "--workers", str(workers)], check=True, capture_output=True)
+            took[workers] = perf_counter() - began
+    ratio = took[1] / took[2]
+    made = [Row("one process", took[1], took[1]), Row("two", took[2], took[2], None, (Goal("x", ratio, 1.6, True),))]
+    return Table(f"9. satsym study: {count} returns to the orbit", "seconds on the wall", tuple(made))
+
+
 def main() -> None:
     """Run all; exit code 0 whatever was reached."""
     print(described(), flush=True)
     tables: list[Table] = []
     subjects = {"1": lambda: [motions()], "2": optima, "4": lambda: [study()], "5": lambda: [least_times()]}
     subjects |= {"6": lambda: [linear()], "7": lambda: [regulators.many()]}
+    subjects |= {"8": lambda: [growth.growth()], "9": lambda: [two_processes()]}
     for subject in [subjects[number] for number in sys.argv[1:] or subjects]:
         try:
             made = subject()
