@@ -24,6 +24,7 @@ from satsym.solvers.certificate.constrained import second_variation
 from satsym.solvers.certificate.constrained.replay import replay
 from satsym.solvers.certificate.constrained.second_variation import curvature
 from satsym.solvers.certificate.saddle import fall
+from satsym.solvers.constrained.solving import solve as solve_arcs
 from satsym.solvers.constrained.structure import stated_arcs
 from satsym.solvers.improving import bottomless
 from satsym.status import Status, Verdict
@@ -261,3 +262,26 @@ def test_a_motion_on_the_rim_from_start_to_end_is_an_extremal():
 )
 def test_a_form_without_numbers_is_not_positive(form: np.ndarray, pure: np.ndarray, ties: np.ndarray, least: float):
     assert second_variation._least(form, pure, ties) == pytest.approx(least, nan_ok=True)
+
+
+def test_where_rounding_grows_along_the_flow_it_is_followed_part_by_part():
+    """A return that stays above a floor for long: one flow misses the end by twice what it may, its parts do not."""
+    given = satsym.Instance.of(
+        "return_above",
+        initial={"r": 1.08120458266, "r_dot": 0.01077883814, "theta": 0.0327927717, "theta_dot": 0.90093427772},
+        final=dict.fromkeys(("r", "r_dot", "theta", "theta_dot"), "reference"),
+        parameters={"r_min": 0.9907505085883487},
+        tf=8.877432264346659,
+    )
+    found = solve_arcs(given.case)
+    verdict, failing = judged(limited(found, 1e-9))
+    parts = replay(found, in_segments=True)
+    assert parts is not None
+    assert parts.gap < 1e-9
+    assert verdict is not Verdict.FAILED, failing
+    middle = len(found.times) // 2
+    beside = found.lam * np.where(np.arange(len(found.times)) < middle, 1.0, 1.0 + 1e-7)
+    assert judged(limited(replace(found, lam=beside), 1e-9))[0] is Verdict.FAILED
+    moved = replay(replace(found, lam=beside), in_segments=True)
+    assert moved is not None
+    assert moved.gap > 1e-8

@@ -16,7 +16,8 @@ from satsym.instance import Instance
 from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Event, Progress, Solution
 from satsym.solvers import iteration, two_point
-from satsym.solvers.constrained.active import control
+from satsym.solvers.collocation.gauss import STAGES
+from satsym.solvers.constrained.active import control, field
 from satsym.solvers.constrained.arcs import Arcs
 from satsym.solvers.constrained.convexity import convex
 from satsym.solvers.constrained.easing import tightened
@@ -31,6 +32,7 @@ from satsym.solvers.constrained.transcription import Point, Program
 from satsym.solvers.constrained.violation import violation
 from satsym.solvers.failures import FAILURES, tried
 from satsym.solvers.iteration import Limits, Meter, watched
+from satsym.solvers.simulation.extrapolation import leap
 from satsym.status import Status
 
 INTERVALS = (100, 250, 800)
@@ -236,6 +238,16 @@ def _events(arcs: Arcs, times: Array) -> tuple[Event, ...]:
     return (*found, *(Event("touch", names[k], float(arcs.end)) for k in touched))
 
 
+def _at_nodes(arcs: Arcs, arc: int, times: Array) -> Array:
+    """Values (2n, N) on an arc, from where its intervals begin: more accurate than its polynomials within these."""
+    k, (a, b) = arcs.intervals[arc], arcs.times[arc : arc + 2]
+    which = np.clip(((times - a) / (b - a) * k).astype(int), 0, k - 1)
+    begins, starts = a + (b - a) * which / k, arcs.nodes(arc)[:: STAGES + 1][which].T
+    z = leap(partial(field, arcs.instance, arcs.active[arc]), begins, starts, times - begins)
+    z[:, 0], z[:, -1] = arcs.node(arc, 0), arcs.node(arc, -1)
+    return z
+
+
 def _answered(instance: Instance, arcs: Arcs, relaxed: Solution, wall_s: float) -> Solution:
     """Exact arcs as a solution; junctions that come at once have one time."""
     nodes, n = np.linspace(instance.t0, arcs.end, instance.solver.steps + 1), arcs.n
@@ -248,8 +260,7 @@ def _answered(instance: Instance, arcs: Arcs, relaxed: Solution, wall_s: float) 
         if a == b:
             continue
         times = np.concatenate([[a], nodes[(nodes > a) & (nodes < b)], [b]])
-        z = arcs.at(arc, times)
-        z[:, 0], z[:, -1] = arcs.node(arc, 0), arcs.node(arc, -1)
+        z = _at_nodes(arcs, arc, times)
         parts.append((times, z, control(instance, arcs.active[arc], times, z)))
     times, z, u = (np.concatenate([part[k] for part in parts], axis=-1) for k in range(3))
     status = Status.CONVERGED if instance.model.in_domain(z[:n]) else Status.LEFT_DOMAIN

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -24,6 +25,9 @@ from satsym.solvers.simulation.extrapolation import integrate, leap
 
 INDEPENDENT = 1e-9
 """Least share of a constraint's gradient that neither given states nor terminal constraints make up."""
+
+SEGMENTS = 32
+"""Into which a motion is cut at nodes, besides where arcs meet, that is integrated part by part."""
 
 BETWEEN = 4
 """Places looked at between two nodes, the second of these included."""
@@ -61,6 +65,8 @@ class Replay:
     """Of the whole motion, the terminal cost included."""
     end: Array
     """States and costates at the end, the latter after a jump there."""
+    gap: float = 0.0
+    """The most that a segment misses of the node at which the next one begins, relative to sizes."""
 
     def flow(self, solution: Solution) -> Flow:
         """As conditions at the end have it."""
@@ -68,23 +74,35 @@ class Replay:
         return Flow(solution.times, z[:n], z[n:], self.cost)
 
 
-def replay(solution: Solution) -> Replay | None:
-    """Integrate again; ``None`` where the motion is not finite, or events do not fit the nodes."""
-    instance, n, arcs = solution.instance, len(solution.x), stated_arcs(solution)
+def replay(solution: Solution, in_segments: bool = False) -> Replay | None:
+    """Integrate again; ``None`` where the motion is not finite, or events do not fit the nodes.
+
+    Parameters
+    ----------
+    in_segments
+        Whether arcs, and parts of these, begin at the solution's nodes instead of where the ones before end: rounding
+        does not grow along the whole motion then.
+    """
+    n, arcs = len(solution.x), stated_arcs(solution)
     breaks = np.flatnonzero(np.diff(solution.times) == 0.0)
-    if len(breaks) != len(events := within(solution)):
+    if len(breaks) != len(within(solution)):
         return None
     edges = [0, *(breaks + 1).tolist(), len(solution.times)]
-    sizes = np.concatenate(typical(solution, FAINT))
-    value, cost, pieces, jumps, off = np.concatenate([solution.x[:, 0], solution.lam[:, 0]]), 0.0, [], [], 0.0
+    sizes, known = np.concatenate(typical(solution, FAINT)), np.concatenate([solution.x, solution.lam])
+    value, cost, pieces, jumps, off, gap = known[:, 0], 0.0, [], [], 0.0, 0.0
     try:
         for k, active in enumerate(arcs):
-            nodes = slice(edges[k], edges[k + 1])
-            piece, spent = _piece(instance, active, solution.times[nodes], value, sizes, nodes)
-            pieces.append(piece)
-            cost += spent
-            value = piece.z[:, -1].copy()
-            if k < len(events):
+            nodes, parts = slice(edges[k], edges[k + 1]), list[Piece]()
+            for part in _parts(nodes, solution.times) if in_segments else (nodes,):
+                if in_segments and part.start > 0:
+                    gap = max(gap, float((np.abs(value - known[:, part.start]) / sizes).max()))
+                    value = known[:, part.start]
+                piece, spent = _piece(solution.instance, active, solution.times[part], value, sizes, part)
+                parts.append(piece)
+                cost += spent
+                value = piece.z[:, -1].copy()
+            pieces.append(_joined(parts, nodes))
+            if k < len(breaks):
                 along = jumping(solution, k, active, arcs[k + 1])
                 found, left = _jump(solution, along, int(breaks[k]), sizes)
                 jumps.append(found)
@@ -94,9 +112,26 @@ def replay(solution: Solution) -> Replay | None:
         return None
     pressed, end = _pressed(solution, pressing(solution), value), value.copy()
     end[n:] -= _push(solution, pressed, float(solution.times[-1]), end)
-    final = float(solution.times[-1])
-    total = cost + float(instance.model.terminal_cost(final, tuple(end[:n].tolist()), instance.parameters))
-    return Replay(pieces, jumps, pressed, off, np.concatenate([p.z for p in pieces], axis=1), total, end)
+    last = float(solution.times[-1]), tuple(end[:n].tolist()), solution.instance.parameters
+    total, z = cost + float(solution.instance.model.terminal_cost(*last)), np.concatenate([p.z for p in pieces], axis=1)
+    return Replay(pieces, jumps, pressed, off, z, total, end, gap)
+
+
+def _parts(nodes: slice, times: Array) -> list[slice]:
+    """An arc cut at nodes, each part with the node at which it ends."""
+    whole, lasting = times[-1] - times[0], times[nodes.stop - 1] - times[nodes.start]
+    count = min(max(1, round(SEGMENTS * lasting / whole)), nodes.stop - nodes.start - 1)
+    edges = np.linspace(nodes.start, nodes.stop - 1, count + 1).round().astype(int).tolist()
+    return [slice(a, b + 1) for a, b in pairwise(edges)]
+
+
+def _joined(parts: list[Piece], nodes: slice) -> Piece:
+    """Parts as one arc, which has where each ends, and not where the next one begins."""
+    first, *others = parts
+    z = np.concatenate([first.z, *(part.z[:, 1:] for part in others)], axis=1)
+    times = np.concatenate([first.times, *(part.times[1:] for part in others)])
+    dense = np.concatenate([first.dense, *(part.dense[:, 1:] for part in others)], axis=1)
+    return Piece(first.active, nodes, z, times, dense)
 
 
 def jumping(solution: Solution, junction: int, before: Active, after: Active) -> list[int]:
