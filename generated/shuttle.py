@@ -2,8 +2,8 @@
 
 Written by satsym from derivations/examples/shuttle.py. Do not edit: mend that file instead, then run
     satsym derive derivations/examples/shuttle.py
-Source: ../derivations/examples/shuttle.py bc57e9bdcc2885dbf562c0dd6495909a
-Digest: cdd08052f1d74b9a1e8fb766af2021ab4134cdc1b736d1e8f5c87eada273ac8d
+Source: ../derivations/examples/shuttle.py 3573ef6d7890a052c116b99a02148533
+Digest: 66344c65eed332e2421dce8df2d167d43367c9b0d01828d15d60d94b0ffa2901
 """
 
 import math

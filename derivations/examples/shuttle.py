@@ -2,10 +2,13 @@
 
 Angle of attack and bank are the controls. The lift grows linearly with the angle of attack, the drag as its square,
 and the bank turns the lift. Without a limit on heating the largest latitude is 34.1411843 degrees. The bounds of the
-bank matter: on its back, with negative lift, the same polar would glide further.
+bank matter: on its back, with negative lift, the same polar would glide further. In the second problem the wing's
+leading edge must not be heated more than it stands: the less the larger the angle of attack.
 """
 
-from sympy import cos, exp, sin
+from dataclasses import replace
+
+from sympy import Rational, cos, exp, sin
 
 from satsym.symbolic import Box, FirstOrder, Problem, Variable, symbols_of
 
@@ -68,9 +71,35 @@ shuttle = Problem(
     control_sets={"attack": Box("alpha"), "bank": Box("beta")},
 )
 
+Q_R = 17700.0 * 0.002378**0.5
+HEATING = (
+    Variable("q_max", r"q_{\max}", "BTU/ft^2/s", "heating that the leading edge stands", 70.0, positive=True),
+    Variable("q_r", "q_r", "BTU/ft^2/s", "heating by ground air at the reference speed", Q_R, positive=True),
+    Variable("v_r", "v_r", "ft/s", "reference speed", 1e4, positive=True),
+    Variable("c_0", "c_0", meaning="heating without angle of attack", default=1.0672181),
+    Variable("c_1", "c_1", "1/deg", "slope of the heating there", -0.19213774e-1),
+    Variable("c_2", "c_2", "1/deg^2", "its growth", 0.21286289e-3),
+    Variable("c_3", "c_3", "1/deg^3", "and that of its growth", -0.10117249e-5),
+)
+q_max, q_r, v_r, c_0, c_1, c_2, c_3 = symbols_of(HEATING)
+heating = (
+    q_r * exp(-h / (2 * h_r)) * (v / v_r) ** Rational(307, 100) * (c_0 + c_1 * alpha + c_2 * alpha**2 + c_3 * alpha**3)
+)
+
+shuttle_heating = replace(
+    shuttle,
+    name="shuttle_heating",
+    title="A shuttle glides to the largest latitude without being heated too much",
+    model=replace(shuttle.model, name="heated_entry", parameters=PARAMETERS + HEATING),
+    path_constraints={"heating": heating - q_max},
+)
+
 TRANSLATIONS = {
     "id": {
         "A shuttle glides to the largest latitude": "Pesawat ulang-alik meluncur ke lintang terbesar",
+        "A shuttle glides to the largest latitude without being heated too much": (
+            "Pesawat ulang-alik meluncur ke lintang terbesar tanpa terlalu panas"
+        ),
         "Gliding entry over a round Earth at rest": "Peluncuran masuk atmosfer di atas Bumi bulat yang diam",
         "altitude": "ketinggian",
         "longitude": "bujur",
@@ -91,7 +120,14 @@ TRANSLATIONS = {
         "drag without angle of attack": "gaya hambat tanpa sudut serang",
         "slope of the drag there": "kemiringan gaya hambat di sana",
         "growth of the drag": "pertumbuhan gaya hambat",
+        "heating that the leading edge stands": "pemanasan yang ditahan tepi depan sayap",
+        "heating by ground air at the reference speed": "pemanasan oleh udara permukaan pada laju acuan",
+        "reference speed": "laju acuan",
+        "heating without angle of attack": "pemanasan tanpa sudut serang",
+        "slope of the heating there": "kemiringan pemanasan di sana",
+        "its growth": "pertumbuhannya",
+        "and that of its growth": "dan pertumbuhan dari pertumbuhannya",
     },
 }
 
-PROBLEMS = (shuttle,)
+PROBLEMS = (shuttle, shuttle_heating)

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import math
+import random
 from typing import Any
 
 import pytest
 import sympy as sp
 from scipy.integrate import quad
-from scipy.optimize import root
+from scipy.optimize import brentq, root
 
 import satsym
+from satsym import instance
 from satsym.front.solution import Solution
+from satsym.solvers import solve
+from satsym.status import Verdict
 from satsym.symbolic import Angle, Box, FirstOrder, Problem, Variable, symbols_of
 from satsym.symbolic.model import t
 
@@ -53,13 +57,27 @@ def kinds(found: Solution) -> list[tuple[str, str]]:
     return [(one.kind, one.name) for one in found.events]
 
 
+def channel(current: float, width: float, length: float) -> tuple[float, bool]:
+    """How long a boat takes to a place on its own bank, and whether it comes to the other one.
+
+    The tangent of its course falls by w a unit of time, and w y + 1 / cos is the same all along.
+    """
+
+    def across(slope: float) -> float:
+        """The way in the time in which the course turns to that of the bank."""
+        return (slope * math.sqrt(1 + slope**2) + math.asinh(slope)) / (2 * current)
+
+    steepest = math.sqrt((1 + current * width) ** 2 - 1)
+    if 2 * across(steepest) < length:
+        return 2 * steepest / current + (length - 2 * across(steepest)) / (1 + current * width), True
+    return 2 * brentq(lambda slope: 2 * across(slope) - length, 0.0, steepest) / current, False
+
+
 @pytest.mark.parametrize("kind", [Angle("beta"), Box("beta")])
 @pytest.mark.parametrize(("current", "width", "length"), [(2.0, 0.2, 2.0), (0.5, 1.0, 6.0)])
 def test_a_boat_in_a_channel_goes_along_its_far_bank(kind: Any, current: float, width: float, length: float):
-    """The tangent of its course falls by w a unit of time, and w y + 1 / cos is the same all along."""
-    slope = math.sqrt((1 + current * width) ** 2 - 1)
-    across = ((1 + current * width) * slope - (slope * (1 + current * width) - math.asinh(slope)) / 2) / current
-    lasting = 2 * slope / current + (length - 2 * across) / (1 + current * width)
+    """Which is also what bounds of the course do not change that are never met."""
+    slope, (lasting, _) = math.sqrt((1 + current * width) ** 2 - 1), channel(current, width, length)
     found = certified(
         boat("channel", kind, bank=y - c),
         parameters={"w": current, "c": width},
@@ -71,6 +89,24 @@ def test_a_boat_in_a_channel_goes_along_its_far_bank(kind: Any, current: float, 
     assert found.objective == pytest.approx(lasting, rel=1e-10)
     assert kinds(found) == [("entry", "bank"), ("exit", "bank")]
     assert [one.t for one in found.events] == pytest.approx([slope / current, lasting - slope / current], abs=1e-8)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(8))
+def test_channels_at_random(seed: int):
+    """Wherever the far bank is met it is followed, and else only the current decides."""
+    rng = random.Random(seed)
+    current, width, length = rng.uniform(0.2, 3.0), rng.uniform(0.1, 0.8), rng.uniform(1.0, 5.0)
+    lasting, met = channel(current, width, length)
+    found = certified(
+        boat("channel", bank=y - c),
+        parameters={"w": current, "c": width},
+        initial={"x": 0.0, "y": 0.0},
+        final={"x": length, "y": 0.0},
+        tf="free",
+    )
+    assert found.objective == pytest.approx(lasting, rel=1e-9)
+    assert kinds(found) == ([("entry", "bank"), ("exit", "bank")] if met else [])
 
 
 def test_a_boat_that_may_not_steer_far_out_does_so_longer():
@@ -151,3 +187,16 @@ def test_before_a_wall_with_a_cost_that_grows_exponentially():
     )
     assert found.objective == pytest.approx(cost, rel=1e-9)
     assert [one.t for one in found.events] == pytest.approx([lasting, 1 - lasting], abs=1e-7)
+
+
+@pytest.mark.study
+def test_the_shuttle_that_may_not_be_heated_too_much_glides_as_far_as_by_direct_collocation():
+    """CasADi and Ipopt, Legendre points of degree 5 in three phases with free junctions.
+
+    On 29, 58 and 116 intervals 30.62548227, 30.62547391 and 30.62547383 degrees.
+    """
+    found = solve(instance.load("shuttle-heating"))
+    assert math.degrees(-found.objective) == pytest.approx(30.62547383, rel=1e-9)
+    assert [(one.kind, one.name) for one in found.events] == [("entry", "heating"), ("exit", "heating")]
+    assert found.certificate is not None
+    assert found.certificate.verdict is Verdict.CERTIFIED, found.certificate

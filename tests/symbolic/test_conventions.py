@@ -116,7 +116,7 @@ def test_every_step_has_its_texts(problem: Problem, language: str, convention: C
 
 
 STATED = {p.name: p for path in loader.shipped() for p in loader.load(path) if isinstance(p, Problem)}
-LONG = {"shuttle", "reorientation"}
+LONG = {"shuttle", "shuttle_heating", "reorientation"}
 """Problems that take more than ten seconds to derive: studies, drawn or not."""
 
 

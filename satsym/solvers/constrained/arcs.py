@@ -53,11 +53,16 @@ def field(instance: Instance, constraint: int, t: Array, z: Array) -> Array:
     x, lam = z[:n], z[n:]
     if constraint == NONE and not stationary(instance):
         return np.array(model.canonical_batch(t, x, lam, p, without_bounds(instance)))
-    u = control(instance, constraint, t, z)
+    eta: Array | None = None
+    if stationary(instance) and holds_control(instance, constraint):  # both at once
+        u, (eta,) = by_newton(instance, (constraint,), t, z)
+    else:
+        u = control(instance, constraint, t, z)
     rates = (model.dynamics_batch(t, x, u, p), model.costate_rate_batch(t, x, u, lam, p))
     found = np.concatenate([np.broadcast_to(one, x.shape) for one in rates])
     if constraint != NONE:
-        found[len(x) :] -= multiplier(instance, constraint, t, z, u) * gradient(instance, constraint, t, x, u)
+        eta = multiplier(instance, constraint, t, z, u) if eta is None else eta
+        found[len(x) :] -= eta * gradient(instance, constraint, t, x, u)
     return found
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from satsym.solution import Kind, Solution
 from satsym.solvers.certificate.comparison import Comparison, summed
 from satsym.solvers.constrained.convexity import convex
@@ -20,6 +22,9 @@ def compared(solution: Solution, deadline: float, seed: int) -> Comparison:
     """
     if convex(solution.instance):  # there are no others
         return Comparison((), ())
-    tried, costs, interrupted = others(solution.instance, solution.objective, seed + 1, deadline)
+    instance = solution.instance
+    if instance.tf is None:  # paths last as long as the solution does
+        instance = replace(instance, tf_guess=float(solution.times[-1]))
+    tried, costs, interrupted = others(instance, solution.objective, seed + 1, deadline)
     found = summed(solution, Kind.ARCS, tried, costs, interrupted)
     return Comparison((found,), () if costs and not interrupted else (Kind.ARCS,))
