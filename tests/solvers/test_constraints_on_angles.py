@@ -165,6 +165,7 @@ def test_a_square_of_the_control_may_be_bounded():
     assert [one.t for one in found.events] == pytest.approx([0.0, 0.5], abs=1e-8)
 
 
+@pytest.mark.study
 def test_before_a_wall_with_a_cost_that_grows_exponentially():
     """Towards the rest at the wall u = -4 asinh(k s), s being the time until then; there nothing pushes."""
     wall = 0.1
