@@ -14,6 +14,9 @@ from satsym.symbolic.model import Model, symbols_of, t
 LARGEST = 400
 """Terms, were it multiplied out, of what is simplified; what would have more stays as it was derived."""
 
+LENGTHY = 1000
+"""Operations, likewise."""
+
 PROVABLE = 4000
 """Terms of a sum that is multiplied out."""
 
@@ -78,7 +81,7 @@ def _simplified(expression: sp.Expr) -> sp.Expr:
 
 def shortened(expression: sp.Expr) -> sp.Expr:
     """As by sympy's simplify, but logarithms stay apart: their factors would become exponents, which have no units."""
-    if terms_of(expression) > LARGEST:
+    if terms_of(expression) > LARGEST or expression.count_ops() > LENGTHY:
         return expression
     logarithms = {e: sp.Dummy(real=True) for e in expression.atoms(sp.log)}
     if not logarithms:

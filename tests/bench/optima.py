@@ -11,6 +11,7 @@ nothing for finding it. Processor time is measured, the least of the turns: what
 from __future__ import annotations
 
 import math
+import os
 import sys
 import tomllib
 from collections.abc import Callable, Mapping
@@ -19,6 +20,8 @@ from importlib import import_module
 from pathlib import Path
 from time import process_time
 from typing import Any
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the command line has it; threads only wait for each other here
 
 import direct
 from machine import described

@@ -15,7 +15,7 @@ import satsym
 from satsym import instance
 from satsym.front.solution import Solution
 from satsym.solvers import solve
-from satsym.status import Verdict
+from satsym.status import BadInput, Status, Verdict
 from satsym.symbolic import Angle, Box, FirstOrder, Problem, Variable, symbols_of
 from satsym.symbolic.model import t
 
@@ -201,3 +201,10 @@ def test_the_shuttle_that_may_not_be_heated_too_much_glides_as_far_as_by_direct_
     assert [(one.kind, one.name) for one in found.events] == [("entry", "heating"), ("exit", "heating")]
     assert found.certificate is not None
     assert found.certificate.verdict is Verdict.CERTIFIED, found.certificate
+
+
+def test_an_end_beyond_a_bank_is_refused_whenever_it_is_reached_unless_the_bank_moves():
+    given = {"parameters": {"c": 0.2}, "initial": {"x": 0.0, "y": 0.0}, "final": {"x": 2.0, "y": 0.5}, "tf": "free"}
+    with pytest.raises(BadInput, match=r"final: path constraint bank is 0\.3 there and may not be positive"):
+        satsym.solve(satsym.Instance.of(boat("beyond", bank=y - c), **given))
+    assert satsym.solve(satsym.Instance.of(boat("moving", bank=y - c - t), **given)).status is Status.CONVERGED

@@ -32,6 +32,10 @@ UNAVOIDABLE = 1e-7
 """Least violation, relative to the constraint's size, and least share of the cost, that exceed rounding."""
 
 
+DURATIONS = (0.37, 1.0, 2.6)
+"""Of the guessed one: where it is looked whether a constraint at the given end changes with time."""
+
+
 def refuse(instance: Instance) -> None:
     """Refuse an instance whose given start or end violates a constraint, or leaves it at once.
 
@@ -46,9 +50,25 @@ def refuse(instance: Instance) -> None:
         _refuse_at(instance, instance.tf, tuple(program.target(instance.tf - instance.t0).tolist()), "final", -1.0)
         return
     end = program.kept[:, -1] == 0.0
-    if end.any() and instance.tf is not None:
-        state = np.where(np.isin(np.arange(len(instance.initial)), program.given), program.target(program.guessed), 0.0)
-        _refuse_values(instance, instance.tf, tuple(state.tolist()), "final", end)
+    if end.any() and (instance.tf is not None or _stands(program, end)):
+        tf = instance.t0 + program.guessed
+        _refuse_values(instance, tf, _end(program, program.guessed), "final", end)
+
+
+def _end(program: Program, duration: float) -> tuple[float, ...]:
+    """What is given of the final state after a duration, zero where nothing is."""
+    is_given = np.isin(np.arange(len(program.instance.initial)), program.given)
+    return tuple(np.where(is_given, program.target(duration), 0.0).tolist())
+
+
+def _stands(program: Program, which: NDArray[np.bool_]) -> bool:
+    """Whether these constraints have the same value at the given end whenever that is reached."""
+    instance, rest = program.instance, np.zeros((len(program.instance.model.spec.controls), 1))
+    found = [
+        values(instance, np.array([instance.t0 + duration]), np.array(_end(program, duration))[:, None], rest)[which, 0]
+        for duration in (program.guessed * share for share in DURATIONS)
+    ]
+    return all(np.array_equal(one, found[0]) for one in found)
 
 
 def _refuse_at(instance: Instance, time: float, state: tuple[float, ...], key: str, direction: float) -> None:
