@@ -18,7 +18,7 @@ def tell(what: str) -> None:
 
 @contextmanager
 def heard(listener: Callable[[str], None]) -> Iterator[None]:
-    """Have a listener told in here."""
+    """Pass what is said in here to a listener."""
     before = _LISTENER.set(listener)
     try:
         yield

@@ -26,7 +26,7 @@ _BREAK = re.compile(r"(; |(?<=[.:]) )")
 _PLACE = re.compile(r"(?:\[[\w.]+\] )?\S+:")
 """What a message may begin with that is no text: a file, an instance, a key."""
 _HOLE = re.compile(r"<([a-z_]+)>")
-_TOLD = "said_"
+_TEXT_PLACE = "said_"
 """Begins names of places that hold a text, to be translated as well; all others hold names and numbers."""
 _ASKED: ContextVar[str | None] = ContextVar("language", default=None)
 
@@ -124,14 +124,16 @@ def _by_parts(parts: Sequence[str], asked: str) -> str | None:
     return None
 
 
-def _translated(text: str, asked: str, group: str = "told") -> str | None:
+def _translated(text: str, asked: str, group: str = "messages") -> str | None:
     """The translation of a text, or of the one whose filled in form it is."""
     exact = translations(asked).get(text)
     if exact is not None:
         return exact
     for pattern, translation in _patterns(asked, group):
         if found := pattern.fullmatch(text):
-            parts = {k: _inside(part, asked) if k.startswith(_TOLD) else part for k, part in found.groupdict().items()}
+            parts = {
+                k: _inside(part, asked) if k.startswith(_TEXT_PLACE) else part for k, part in found.groupdict().items()
+            }
             if None not in parts.values():  # else half of it would stay English
                 return _filled(translation, parts)
     return None
@@ -178,7 +180,7 @@ def _of_models(asked: str) -> Iterator[tuple[str, str]]:
 def _groups(asked: str) -> Mapping[str, Mapping[str, str]]:
     """The same by file.
 
-    ``said`` and ``authored``, titles of shipped instances, are looked up as they are. ``told`` is known again in
+    ``said`` and ``authored``, titles of shipped instances, are looked up as they are. ``messages`` is known again in
     whatever way it is filled in, and so are ``items``, which lists in such texts consist of.
     """
     import tomllib  # nothing of this for English
@@ -194,8 +196,8 @@ def _groups(asked: str) -> Mapping[str, Mapping[str, str]]:
 @cache
 def _patterns(asked: str, group: str) -> list[tuple[re.Pattern[str], str]]:
     """Texts with places in them as patterns, what says most of itself first."""
-    told = _groups(asked).get(group, {})
-    with_places = {english: text for english, text in told.items() if _HOLE.search(english)}
+    phrases = _groups(asked).get(group, {})
+    with_places = {english: text for english, text in phrases.items() if _HOLE.search(english)}
     by_length = sorted(with_places, key=lambda english: -len(_HOLE.sub("", english)))
     return [(_pattern(english), with_places[english]) for english in by_length]
 
@@ -207,7 +209,7 @@ def _pattern(english: str) -> re.Pattern[str]:
         if k % 2 == 0:
             parts.append(re.escape(part))
         else:
-            inside = "." if part.startswith(_TOLD) else "[^;]"  # names and numbers end where their clause does
+            inside = "." if part.startswith(_TEXT_PLACE) else "[^;]"  # names and numbers end where their clause does
             parts.append(f"(?P={part})" if part in seen else f"(?P<{part}>{inside}*?)")
             seen.add(part)
     return re.compile("".join(parts))

@@ -81,11 +81,11 @@ def with_files(text: str, saved: Sequence[Path]) -> str:
         places.setdefault(path.parent, []).append(path.name)
     lines = []
     for folder, names in places.items():
-        told = wrapped(say("written to <folder>: <names>", folder=folder, names=", ".join(names)))
+        summary = wrapped(say("written to <folder>: <names>", folder=folder, names=", ".join(names)))
         # a folder that leaves no room for a name stands alone
         first = say("written to <folder>:", folder=folder)
         alone = len(f"  {first} {names[0]},") > (room() or WIDEST)
-        lines.append([f"  {first}", *wrapped(", ".join(names))] if alone else told)
+        lines.append([f"  {first}", *wrapped(", ".join(names))] if alone else summary)
     return joined([text.splitlines(), *lines])
 
 

@@ -49,8 +49,8 @@ def study_text(found: Mapping[str, Any]) -> str:
         lines += ["", say("worst:"), *table([each("row", "objective", "command"), *rows], right=(0, 1))]
     if found["failures"]:
         rows = [(str(one["row"]), message(one["status"]), one["reproduce"]) for one in found["failures"]]
-        told = "<rows> failed, among them:" if len(rows) < failed else "<rows> failed:"
-        lines += ["", say(told, rows=counted(failed, "row"))]
+        heading = "<rows> failed, among them:" if len(rows) < failed else "<rows> failed:"
+        lines += ["", say(heading, rows=counted(failed, "row"))]
         lines += table([each("row", "status", "command"), *rows], right=(0,))
     return "\n".join(lines)
 
