@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from satsym.analysis import subject as subjects
 from satsym.front import html
 from satsym.front.instance import Instance
+from satsym.front.single_threaded import single_threaded
 from satsym.instance import Instance as Case
 from satsym.kernels import Kernels
 from satsym.report.results.files import to_json
@@ -139,6 +140,7 @@ class Regulator(_Said):
         return regulator_text(self.design)
 
 
+@single_threaded()
 def analyse(subject: Subject) -> Analysis:
     """Tell what a model does near its reference or an equilibrium, and an orbit about a centre.
 
@@ -156,6 +158,7 @@ def analyse(subject: Subject) -> Analysis:
     return Analysis(given, *subjects.examined(given), derivation)
 
 
+@single_threaded()
 def lqr(subject: Subject) -> Regulator:
     """Find the linear feedback that costs least.
 

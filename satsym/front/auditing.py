@@ -11,6 +11,7 @@ from typing import Any
 from satsym import auditing
 from satsym.auditing import Judged, Ledger, cache
 from satsym.front import html
+from satsym.front.single_threaded import single_threaded
 from satsym.report.findings import objects, review
 from satsym.report.results.files import to_json
 from satsym.report.terminal import audit as reporting
@@ -77,6 +78,7 @@ class Audit:
         return html.page(f"audit of {named}", counted, html.table(("document", "item", "verdict", "diagnosis"), found))
 
 
+@single_threaded()
 def audit(*ledgers: str | Path, items: Sequence[str] = (), fresh: bool = False) -> Audit:
     """Judge what documents print.
 

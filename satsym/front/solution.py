@@ -15,6 +15,7 @@ from satsym.front import between, html
 from satsym.front.curves import Curve
 from satsym.front.instance import Instance, as_case
 from satsym.front.result import Result
+from satsym.front.single_threaded import single_threaded
 from satsym.report.results.objects import solution_object
 from satsym.report.terminal.solution import solution_text
 from satsym.solution import Certificate, Event, Progress
@@ -107,6 +108,7 @@ class Solution(Result[solution.Solution]):
         )
 
 
+@single_threaded()
 def solve(instance: Instance | str | Path, progress: Progress | None = None, **options: Any) -> Solution:
     """Solve an instance and certify the answer.
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from satsym.front import saved
 from satsym.front.instance import Instance, as_case
+from satsym.front.single_threaded import single_threaded
 from satsym.front.tables import name_of, plain
 from satsym.report.look import Look
 from satsym.report.results.files import to_json
@@ -65,6 +66,7 @@ class Study:
         return study_text(self.summary)
 
 
+@single_threaded()
 def study(
     instance: Instance | str | Path,
     folder: str | Path,

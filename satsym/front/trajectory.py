@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 from satsym.front import html
 from satsym.front.instance import Instance, as_case
 from satsym.front.result import Result
+from satsym.front.single_threaded import single_threaded
 from satsym.report.results.objects import simulation_object
 from satsym.report.terminal.solution import simulation_text
 from satsym.solution import Invariant, Simulation
@@ -55,6 +56,7 @@ class Trajectory(Result[Simulation]):
         )
 
 
+@single_threaded()
 def simulate(instance: Instance | str | Path, feedback: str | None = None) -> Trajectory:
     """Follow the motion of an instance under a control law.
 

@@ -1,0 +1,49 @@
+"""Linear algebra on one thread while something is computed.
+
+On matrices as small as ours threads cost several times what they save, and on cores that others use as well they only
+wait for each other, until time is up before a certificate has compared all that it would. The command line says so to
+libraries before it loads them; a notebook has loaded some already.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from threading import RLock
+
+VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+"""Read by libraries when they are loaded, as SciPy's own is in the midst of a solution."""
+
+_HELD = RLock()
+"""By the thread that holds libraries to one thread: what it sets it restores, and others compute as they find them."""
+
+
+@contextmanager
+def single_threaded() -> Iterator[None]:
+    """Hold all libraries of linear algebra to one thread; afterwards each has as many as before.
+
+    One that was loaded in the meantime has as many as the others.
+    """
+    from threadpoolctl import ThreadpoolController
+
+    if not _HELD.acquire(blocking=False):
+        yield
+        return
+    try:
+        libraries = ThreadpoolController().select(user_api="blas")
+        before = {library.filepath: library.num_threads for library in libraries.lib_controllers}
+        variables = {name: os.environ[name] for name in VARIABLES if name in os.environ}
+        with libraries.limit(limits=1):
+            os.environ.update(dict.fromkeys(VARIABLES, "1"))
+            try:
+                yield
+            finally:
+                for name in VARIABLES:
+                    os.environ.pop(name, None)
+                os.environ.update(variables)
+                for library in ThreadpoolController().select(user_api="blas").lib_controllers:
+                    if library.filepath not in before:
+                        library.set_num_threads(max(before.values(), default=os.cpu_count() or 1))
+    finally:
+        _HELD.release()
