@@ -21,6 +21,7 @@ import growth
 import numpy as np
 import regulators
 import rows
+import single
 from compiled_c import compiler
 from ends import program
 from machine import described
@@ -296,6 +297,7 @@ def main() -> None:
     subjects = {"1": lambda: [motions()], "2": optima, "4": lambda: [study()], "5": lambda: [least_times()]}
     subjects |= {"6": lambda: [linear()], "7": lambda: [regulators.many()]}
     subjects |= {"8": lambda: [growth.growth()], "9": lambda: [two_processes()]}
+    subjects |= {"10": lambda: single.single(population(single.ROUNDS))}
     for subject in [subjects[number] for number in sys.argv[1:] or subjects]:
         try:
             made = subject()

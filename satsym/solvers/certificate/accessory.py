@@ -157,28 +157,26 @@ def _law_slopes(solution: Solution, t: Array, z: Array, scale: Array) -> Array:
 def _sensitivities(linear: _Linear, grid: Grid) -> tuple[Array, Array]:
     """States at nodes and midpoints, shape (2N+1, n, P), and controls there, (2N+1, m, P), by P changes.
 
-    By the classical Runge-Kutta method and, for the midpoints, Hermite's interpolation; each change is constant on
-    its piece and costs half its square.
+    By the classical Runge-Kutta method and, for the midpoints, Hermite's interpolation, which is as linear in states
+    and changes at the beginning of a step as its end is; each change is constant on its piece and costs half its
+    square.
     """
     n, edges = linear.motion.shape[1], np.linspace(0, grid.steps, min(PIECES, grid.steps) + 1).round().astype(int)
     piece, shapes = np.repeat(np.arange(len(edges) - 1), np.diff(edges)), _shapes(linear, grid, edges)
-    changes = shapes.shape[2]
     own, steps = shapes[piece], _steps(linear, grid)
-    driven = steps[:, :n, n:] @ own
-    states = np.zeros((grid.steps + 1, n, changes))
+    driven, course = steps[:, :n, n:] @ own, np.zeros((2 * grid.steps + 1, n, shapes.shape[2]))
     for k in range(grid.steps):
-        states[k + 1] = steps[k, :n, :n] @ states[k] + driven[k]
-    begun, ended = states[:-1], states[1:]
-    slopes = [
-        linear.motion[at] @ here + linear.push[at] @ own
-        for at, here in ((slice(0, -2, 2), begun), (slice(2, None, 2), ended))
-    ]
-    between = (begun + ended) / 2.0 + grid.widths[:, None, None] / 8.0 * (slopes[0] - slopes[1])
+        np.matmul(steps[k, :n, :n], course[2 * k], out=course[2 * k + 2])
+        course[2 * k + 2] += driven[k]
+    both, h = np.concatenate([linear.motion, linear.push], axis=2), grid.widths[:, None, None]
+    between = (np.eye(n, steps.shape[2]) + steps[:, :n]) / 2.0 + h / 8.0 * (both[:-2:2] - both[2::2] @ steps)
+    course[1::2] = between @ np.concatenate([course[:-1:2], own], axis=1)
     # To be simulated, changes go linearly from the middle of a piece to that of the next.
     times, middles = interleave(grid.nodes, grid.midpoints), (grid.nodes[edges[1:]] + grid.nodes[edges[:-1]]) / 2.0
-    hats = np.array([np.interp(times, middles, row) for row in np.eye(len(middles))]).T
-    weights = np.tensordot(hats, shapes, axes=1)
-    course = interleave(states.transpose(1, 2, 0), between.transpose(1, 2, 0)).transpose(2, 0, 1)
+    place = np.interp(times, middles, np.arange(len(middles)))
+    before = np.minimum(place.astype(int), max(len(middles) - 2, 0))
+    share = (place - before)[:, None, None]
+    weights = (1.0 - share) * shapes[before] + share * shapes[np.minimum(before + 1, len(middles) - 1)]
     return course, weights
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from satsym.arrays import Array
 from satsym.solution import Check, Solution
 from satsym.solvers.certificate.end_form import final_values, fixed_states, multipliers
-from satsym.solvers.certificate.flow import FAINT, NEGLIGIBLE, Flow, products, typical, undriven, unit_sizes
+from satsym.solvers.certificate.flow import FAINT, NEGLIGIBLE, Flow, costing, products, typical, undriven, unit_sizes
 from satsym.solvers.certificate.segments import Segments, values
 from satsym.solvers.collocation.elimination import Matching
 from satsym.solvers.collocation.scaling import final_argument
@@ -164,24 +164,18 @@ def node_by_node(solution: Solution, along: Segments) -> Flow | None:
     To be compared with the solution; ``None`` where it is not finite.
     """
     instance, model, n = solution.instance, solution.instance.model, len(solution.x)
-    p, bounds, times = instance.parameters, instance.control_set.arguments, solution.times
+    times = solution.times
     begins = along.nodes[np.searchsorted(along.nodes, np.arange(1, len(times))) - 1]
     start, h = values(solution), (times[1:] - times[begins]) / along.steps
-
-    def rates(t: Array, y: Array) -> Array:
-        x, lam = y[:n], y[n:-1]
-        cost = model.running_cost_batch(t, x, model.control_law_batch(t, x, lam, p, bounds), p)
-        return np.concatenate([model.canonical_batch(t, x, lam, p, bounds), np.broadcast_to(cost, t.shape)[None]])
-
-    found = np.append(start[:, begins], np.zeros((1, len(h))), axis=0)
+    rates, found = costing(solution), np.append(start[:, begins], np.zeros((1, len(h))), axis=0)
     try:
         for step in range(along.steps):
             found = leap(rates, times[begins] + step * h, found, h)
         ends = np.column_stack([start[:, 0], found[:-1]])
-        terminal = float(model.terminal_cost(float(times[-1]), tuple(ends[:n, -1].tolist()), p))
+        terminal = model.terminal_cost(float(times[-1]), tuple(ends[:n, -1].tolist()), instance.parameters)
     except FAILURES:
         return None
-    return Flow(times, ends[:n], ends[n:], float(found[-1, along.nodes[1:] - 1].sum()) + terminal)
+    return Flow(times, ends[:n], ends[n:], float(found[-1, along.nodes[1:] - 1].sum()) + float(terminal))
 
 
 def correction(solution: Solution, along: Segments, reached: Flow) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -55,8 +56,7 @@ def flow(solution: Solution) -> Flow | None:
     n, p, bounds = len(instance.initial), instance.parameters, instance.control_set.arguments
     start, end = float(solution.times[0]), float(solution.times[-1])
     corners = [t for times in solution.switching_times for t in times if start < t < end]
-    stations = np.unique(np.concatenate([np.linspace(start, end, STATIONS + 1), corners]))
-    sizes = np.maximum(np.concatenate(typical(solution, FAINT)), _resolved(solution) / STATIONS)
+    stations, size = np.unique(np.concatenate([np.linspace(start, end, STATIONS + 1), corners])), sizes(solution)
 
     def rates(t: float, y: Array) -> Array:
         x, lam = tuple(y[:n].tolist()), tuple(y[n : 2 * n].tolist())
@@ -64,7 +64,7 @@ def flow(solution: Solution) -> Flow | None:
         return np.array([*model.canonical(t, x, lam, p, bounds), cost])
 
     values = np.concatenate([instance.initial, solution.lam[:, 0], [0.0]])
-    scale = np.append(sizes, sizes[:n] @ sizes[n:])
+    scale = np.append(size, size[:n] @ size[n:])
     found = [values]
     try:
         for piece in integrate(rates, stations, values, TOLERANCE, scale):
@@ -90,6 +90,24 @@ def undriven(solution: Solution) -> Array | None:
         return integrate(rates, times, np.array(instance.initial), ROUGHLY, typical(solution)[0])[0].end
     except FAILURES:
         return None
+
+
+def costing(solution: Solution) -> Callable[[Array, Array], Array]:
+    """The canonical rates with that of the cost, functions of times (M,) and values (2n + 1, M)."""
+    instance, model, n = solution.instance, solution.instance.model, len(solution.x)
+    p, bounds = instance.parameters, instance.control_set.arguments
+
+    def rates(t: Array, y: Array) -> Array:
+        x, lam = y[:n], y[n:-1]
+        cost = model.running_cost_batch(t, x, model.control_law_batch(t, x, lam, p, bounds), p)
+        return np.concatenate([model.canonical_batch(t, x, lam, p, bounds), np.broadcast_to(cost, t.shape)[None]])
+
+    return rates
+
+
+def sizes(solution: Solution) -> Array:
+    """To which errors of steps are held, shape (2n,)."""
+    return np.maximum(np.concatenate(typical(solution, FAINT)), _resolved(solution) / STATIONS)
 
 
 def _resolved(solution: Solution) -> Array:

@@ -11,7 +11,7 @@ reached yet, stay there. Two phases that pass together are seen as well as one, 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -83,8 +83,8 @@ def followed(transition: Array) -> Phases | None:
     if not np.isfinite(frames).all():
         return None
     every = np.linalg.qr(np.array(frames))[0]
-    values = [np.zeros(n)]
-    for new in _angles(every)[1:]:
+    values = [[0.0] * n]
+    for new in _angles(every)[1:].tolist():
         values.append(_continued(values[-1], new))
     return Phases(np.array(values), every)
 
@@ -98,19 +98,17 @@ def _angles(frames: Array) -> Array:
     return found
 
 
-def _continued(before: Array, angles: Array) -> Array:
+def _continued(before: Sequence[float], angles: Iterable[float]) -> list[float]:
     """Phases that go on from those before to given angles, keeping their order round the circle."""
-    residues = np.mod(before, TURN)
-    order = np.argsort(residues)
-    ahead = np.sort(angles)
-    moved = float(ahead.sum() - residues.sum())
+    count, residues = len(before), [phase % TURN for phase in before]
+    order, ahead = sorted(range(count), key=residues.__getitem__), sorted(angles)
     # Their sum moves by less than half a turn: so many of the largest come from a turn before.
-    shift = round((np.angle(np.exp(1j * moved)) - moved) / TURN)
-    places = np.arange(len(before)) + shift
-    after = ahead[places % len(before)] + TURN * (places // len(before))
-    found = np.empty_like(before)
-    found[order] = before[order] + after - residues[order]
-    return np.sort(found)
+    shift = -round((sum(ahead) - sum(residues)) / TURN)
+    found = []
+    for place, phase in enumerate(order, shift):
+        after = ahead[place % count] + TURN * (place // count)
+        found.append(before[phase] + after - residues[phase])
+    return sorted(found)
 
 
 def first_passage(times: Array, phases: Phases, between: Callable[[int, Array], Array]) -> float | None:
@@ -131,7 +129,7 @@ def first_passage(times: Array, phases: Phases, between: Callable[[int, Array], 
     for _ in range(ROUNDS):
         inner = np.linspace(early, late, PARTS + 1)[1:]
         angles = _angles(np.linalg.qr(between(station, inner) @ phases.frames[station])[0])
-        values = np.array([_continued(phases.values[station], new) for new in angles])
+        values = np.array([_continued(phases.values[station].tolist(), new) for new in angles.tolist()])
         met = np.append(_passed(values)[:-1] > 0, True)  # at the end it has been met
         first = int(np.argmax(met))
         early, late = (float(inner[first - 1]) if first else early), float(inner[first])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -154,6 +155,12 @@ class _Search:
     end: Array
     missed: float
 
+    @cached_property
+    def _own(self) -> tuple[Grid, Array, Array]:
+        """The grid of the solution's own duration, its nodes with midpoints, and the solution's control there."""
+        grid = self.simulations.grid()
+        return grid, interleave(grid.nodes, grid.midpoints), stated_control(self.solution, grid)
+
     def corrected(self, change: Array) -> float:
         """The cost of a neighbour once its end is as the solution's; infinite where it cannot be made so."""
         response, tried = self.second.ties, change[:0]
@@ -174,11 +181,14 @@ class _Search:
         return float("inf")
 
     def _simulated(self, change: Array) -> tuple[float, Array]:
-        longer = float(self.second.duration @ change)
-        grid, before = self.simulations.grid(longer), self.simulations.grid()
-        at, times = interleave(grid.nodes, grid.midpoints), interleave(before.nodes, before.midpoints)
-        by = np.array([np.interp(at, times, row) for row in self.second.controls @ change])
-        control = self.simulations.instance.control_set.project(stated_control(self.solution, grid) + by)
+        longer, (before, times, u) = float(self.second.duration @ change), self._own
+        by = self.second.controls @ change
+        if not longer:
+            return self.simulations(self.simulations.instance.control_set.project(u + by), before)
+        grid = self.simulations.grid(longer)
+        at = interleave(grid.nodes, grid.midpoints)
+        moved = np.array([np.interp(at, times, row) for row in by])
+        control = self.simulations.instance.control_set.project(stated_control(self.solution, grid) + moved)
         return self.simulations(control, grid)
 
 

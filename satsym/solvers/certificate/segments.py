@@ -33,8 +33,8 @@ COLUMNS = 5
 BEYOND = 1e16
 """Growth at which nothing is left of a number's digits."""
 
-SWEEPS = 12
-"""Through all units."""
+SWEEPS, STEADY = 12, 1e-2
+"""Through all units, at most; and the relative change of units in one below which there is no other."""
 
 SAME = 1e-9
 """Share of the duration by which a node and a switching time may differ that are one."""
@@ -139,11 +139,14 @@ def balanced(scale: Array, sizes: Array, duration: float) -> Array:
     square, smallest = (size * unit / unit[:, None]) ** 2, 1.0 / duration**2
     change = np.ones(2 * n)
     for _ in range(SWEEPS):
+        before = change
         for move in np.concatenate([np.append(np.eye(n), -np.eye(n), axis=1), np.repeat([[0.0, 1.0]], n, axis=1)]):
             rates, power = square * (change / change[:, None]) ** 2, move - move[:, None]
             rising, falling = (float((rates * np.maximum(sign * power, 0.0)).sum()) for sign in (1.0, -1.0))
             moved = float(change[np.argmax(move)] ** 2)
             change = change * ((falling + smallest / moved) / (rising + smallest * moved)) ** (move / 8.0)
+        if (np.abs(change / before - 1.0) < STEADY).all():
+            break
     return scale * unit * change
 
 

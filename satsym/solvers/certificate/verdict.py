@@ -11,6 +11,7 @@ from satsym.methods import BOUNDARY_ARCS
 from satsym.solution import Certificate, Check, Solution
 from satsym.solvers import revolutions
 from satsym.solvers.certificate import competitors, conditions
+from satsym.solvers.certificate.closed_flow import closed_flow
 from satsym.solvers.certificate.comparison import Comparison, Competitor
 from satsym.solvers.certificate.conditions import correction, node_by_node
 from satsym.solvers.certificate.end_limits import with_limits
@@ -131,7 +132,7 @@ def _first_order(solution: Solution, along: Segments | None) -> list[Check]:
 
     So it is where it misses, and its own rounding grows beyond what may be missed. Empty where neither is finite.
     """
-    recomputed = flow(solution)
+    recomputed = (along and closed_flow(solution, along)) or flow(solution)
     checks = first_order(solution, recomputed, conditions.OF_FLOW) if recomputed else []
     if checks:
         checks.append(Check(conditions.OF_NODES, node_defect(solution), DEFECT))
